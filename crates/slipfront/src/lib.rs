@@ -1,0 +1,1 @@
+//! 2D lattice spring-block model.
