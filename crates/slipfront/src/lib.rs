@@ -1,1 +1,47 @@
-//! 2D lattice spring-block model.
+//! Two-dimensional lattice spring-block model of the transition from static to kinetic friction.
+//!
+//! A slider of `nx` x `ny` blocks lies on a rigid plane, is pulled at constant speed through one spring per
+//! block, and holds together by springs to the eight neighbours of each block. Every block obeys
+//! Amontons-Coulomb friction with its own coefficients; blocks over a texture (a cavity, a groove) touch
+//! nothing. The model is that of Tribology International (2023), doi 10.1016/j.triboint.2023.108866, with the
+//! numbered deviations D1... that the project's book explains.
+//!
+//! This crate is the physics alone: no files, no terminal, no clock. Everything is dimensionless: lengths in
+//! blocks, masses in blocks, time in `l sqrt(rho/E)`, displacements in `P mu_s l/E`, forces in `P mu_s l^2`;
+//! [`scales`] converts, and nothing else does.
+//!
+//! ```
+//! use slipfront::{Drive, FrictionLaw, Lattice, Model, Simulation, Stop, Surface};
+//!
+//! let lattice = Lattice::free(5, 5);
+//! let surface = Surface::uniform(&lattice, 1.0, 0.5);
+//! let model = Model::new(lattice, surface, Drive::along_x(0.03), 0.1 * 0.75_f64.sqrt(), 1e-6, FrictionLaw::Projection);
+//! let mut simulation = Simulation::at_rest(&model, 0.1);
+//! simulation.run(Stop::at_step(1000), &mut []).unwrap();
+//! // A uniform lattice slips as one block, when its drive springs reach the threshold: t* = (8/3)/V*.
+//! assert!((simulation.peak().time_star - 8.0 / 3.0 / 0.03).abs() < 0.2);
+//! ```
+
+pub mod kernel;
+pub mod known_answers;
+pub mod lattice;
+pub mod observe;
+pub mod scales;
+pub mod surface;
+
+mod error;
+mod friction;
+mod model;
+mod simulation;
+mod state;
+mod vector_field;
+
+pub use error::{RunError, SurfaceError};
+pub use friction::FrictionLaw;
+pub use lattice::{Edges, Lattice};
+pub use model::{Drive, Model};
+pub use scales::Scales;
+pub use simulation::{Simulation, Snapshot, Stop, StopReason};
+pub use state::{Contact, State};
+pub use surface::Surface;
+pub use vector_field::VectorField;

@@ -1,0 +1,42 @@
+//! What can go wrong in the physics, each a sentence.
+
+use thiserror::Error;
+
+/// A run that had to end early.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RunError {
+    /// A displacement is infinite or not a number.
+    #[error(
+        "the displacement of block ({i}, {j}) is {value} at step {step}, t* = {time_star}: the run has diverged; \
+         lower the load's strain epsilon or the time step"
+    )]
+    NotFinite {
+        /// Step at which it was noticed.
+        step: u64,
+        /// Dimensionless time of that step.
+        time_star: f64,
+        /// Column of the block.
+        i: usize,
+        /// Row of the block.
+        j: usize,
+        /// The component that is not finite.
+        value: f64,
+    },
+    /// An observer could not do its work.
+    #[error("{0}")]
+    Observer(String),
+}
+
+/// A surface that cannot carry the slider.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SurfaceError {
+    /// Every block is textured.
+    #[error(
+        "the texture covers all {n_blocks} blocks, so that nothing is left in contact to carry the load: \
+         reduce its coverage"
+    )]
+    NoContact {
+        /// Number of blocks.
+        n_blocks: usize,
+    },
+}

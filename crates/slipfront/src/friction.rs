@@ -1,0 +1,174 @@
+//! The friction law with memory (Eq. 4, D1, D2), damping included, in its three readings.
+//!
+//! A law is given what a block feels at t_n and answers with the velocity half a step later, the friction
+//! force and whether the block slides. The [`kernel`](crate::kernel) calls it once per block and step.
+
+use crate::Contact;
+use crate::state::contact_of;
+use crate::vector_field::{add, dot, length};
+
+/// Which reading of Eq. 4 is used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrictionLaw {
+    /// Implicit Coulomb friction with memory (Moreau's time-stepping). The one to use.
+    Projection,
+    /// Explicit friction against the velocity; a block sticks when it turns round. For comparison.
+    Reversal,
+    /// Eq. 4 as printed: no memory, and the sign of D1. For comparison.
+    Literal,
+}
+
+/// A block at t_n, as its friction law sees it.
+pub(crate) struct Block {
+    /// Velocity at `t - dt/2`.
+    pub velocity: [f64; 2],
+    /// Memory: stuck or sliding in the step before.
+    pub contact: Contact,
+    /// `F_s + F_c`, and any constant force.
+    pub force: [f64; 2],
+    /// Static threshold `mu_s F_n`.
+    pub hold: f64,
+    /// Magnitude of kinetic friction `mu_k F_n`.
+    pub slide: f64,
+}
+
+/// What the update that starts at t_n does with the block.
+pub(crate) struct Update {
+    /// Velocity at `t + dt/2`.
+    pub velocity: [f64; 2],
+    /// Friction force `F_f`; for a block that rests or stops, what balances the others.
+    pub friction: [f64; 2],
+    /// Stuck or sliding from t_n on.
+    pub contact: Contact,
+}
+
+/// Time step and damping (Eq. 5), centred in time so that stability does not depend on it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Integrator {
+    /// `c- = 1 - Omega dt/2`.
+    before: f64,
+    /// `1/c+`, `c+ = 1 + Omega dt/2`.
+    inverse_after: f64,
+    /// `dt/(m c+)`.
+    impulse: f64,
+}
+
+impl Integrator {
+    pub(crate) fn new(damping: f64, dt: f64) -> Self {
+        let after = 1.0 + 0.5 * damping * dt;
+        Self {
+            before: 1.0 - 0.5 * damping * dt,
+            inverse_after: 1.0 / after,
+            impulse: dt / after,
+        }
+    }
+
+    /// Velocity at `t + dt/2` under a force alone (Eqs. 5-8): `(c- v + dt F/m)/c+`.
+    #[inline]
+    fn push(&self, velocity: [f64; 2], force: [f64; 2]) -> [f64; 2] {
+        let one = |v: f64, f: f64| self.before * v * self.inverse_after + self.impulse * f;
+        [one(velocity[0], force[0]), one(velocity[1], force[1])]
+    }
+}
+
+/// One reading of the law.
+pub(crate) trait Law {
+    fn update(&self, block: &Block, integrator: &Integrator) -> Update;
+}
+
+/// At rest, or stopped: friction balances all other forces.
+#[inline]
+fn at_rest(force: [f64; 2]) -> Update {
+    Update {
+        velocity: [0.0, 0.0],
+        friction: [-force[0], -force[1]],
+        contact: Contact::Stuck,
+    }
+}
+
+/// Friction of magnitude `slide` against the direction of `motion`.
+#[inline]
+fn against(motion: [f64; 2], slide: f64) -> [f64; 2] {
+    let speed = length(motion);
+    if speed > 0.0 {
+        [-slide * motion[0] / speed, -slide * motion[1] / speed]
+    } else {
+        [0.0, 0.0]
+    }
+}
+
+/// Moreau's time-stepping: the velocity that friction could at most take away, q, is taken from the velocity
+/// that the block would have without it.
+pub(crate) struct Projection;
+
+impl Law for Projection {
+    #[inline]
+    fn update(&self, block: &Block, integrator: &Integrator) -> Update {
+        if block.contact == Contact::Stuck && length(block.force) <= block.hold {
+            return at_rest(block.force);
+        }
+        let free = integrator.push(block.velocity, block.force);
+        let speed = length(free);
+        let q = integrator.impulse * block.slide;
+        if speed <= q {
+            return at_rest(block.force);
+        }
+        let keep = 1.0 - q / speed;
+        let velocity = [free[0] * keep, free[1] * keep];
+        // A velocity that rounds to zero has stopped.
+        if contact_of(velocity) == Contact::Stuck {
+            return at_rest(block.force);
+        }
+        let pull = block.slide / speed;
+        Update {
+            velocity,
+            friction: [-pull * free[0], -pull * free[1]],
+            contact: Contact::Sliding,
+        }
+    }
+}
+
+/// Explicit kinetic friction against the old velocity (the force's direction for a block that breaks loose).
+pub(crate) struct Reversal;
+
+impl Law for Reversal {
+    #[inline]
+    fn update(&self, block: &Block, integrator: &Integrator) -> Update {
+        let total = length(block.force);
+        let starts = contact_of(block.velocity) == Contact::Stuck;
+        if starts && total <= block.hold.max(block.slide) {
+            return at_rest(block.force);
+        }
+        let friction = against(if starts { block.force } else { block.velocity }, block.slide);
+        let velocity = integrator.push(block.velocity, add(block.force, friction));
+        if !starts && dot(velocity, block.velocity) <= 0.0 && total <= block.hold {
+            return at_rest(block.force);
+        }
+        Update {
+            velocity,
+            friction,
+            contact: contact_of(velocity),
+        }
+    }
+}
+
+/// Eq. 4 to the letter: below the threshold friction balances the forces on a block even while it moves.
+pub(crate) struct Literal;
+
+impl Law for Literal {
+    #[inline]
+    fn update(&self, block: &Block, integrator: &Integrator) -> Update {
+        let starts = contact_of(block.velocity) == Contact::Stuck;
+        let friction = if length(block.force) <= block.hold {
+            [-block.force[0], -block.force[1]]
+        } else {
+            against(if starts { block.force } else { block.velocity }, block.slide)
+        };
+        let velocity = integrator.push(block.velocity, add(block.force, friction));
+        Update {
+            velocity,
+            friction,
+            contact: contact_of(velocity),
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! The slider's blocks, their neighbours and the springs between them.
+//!
+//! Block (i, j) has index `j nx + i`: i runs along x, row 0 lies at y = 0, and its centre stands at
+//! ((i + 1/2), (j + 1/2)) in units of the block size. The [`kernel`](crate::kernel) reads the springs from here.
+
+/// Stiffness of a spring to a straight neighbour, `k_1 = (3/4) E l`, in units of `E l`.
+pub const K_STRAIGHT: f64 = 0.75;
+/// Stiffness of a spring to a diagonal neighbour, `k_2 = k_1/2`, in units of `E l`.
+pub const K_DIAGONAL: f64 = 0.375;
+/// Stiffness of the spring that drives a block, `k_s = k_2`, in units of `E l`.
+pub const K_DRIVE: f64 = 0.375;
+/// Poisson's ratio of this lattice, which cannot be chosen.
+pub const POISSON_RATIO: f64 = 1.0 / 3.0;
+/// Square of the lattice's highest frequency, `omega_max^2 = 6.5 k_1/m`.
+pub const OMEGA_MAX_SQUARED: f64 = 6.5 * K_STRAIGHT;
+
+/// Largest stable time step, `dt* < 2/omega_max = 0.9058`, at any damping (D7, D11).
+pub fn dt_star_limit() -> f64 {
+    2.0 / OMEGA_MAX_SQUARED.sqrt()
+}
+
+/// How the lattice ends along one axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edges {
+    /// The neighbours beyond the edge are absent.
+    Free,
+    /// The last block is the neighbour of the first.
+    Periodic,
+}
+
+/// The blocks and how they are joined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lattice {
+    /// Blocks along x.
+    pub nx: usize,
+    /// Blocks along y.
+    pub ny: usize,
+    /// Ends along x and along y.
+    pub edges: [Edges; 2],
+}
+
+impl Lattice {
+    /// A lattice with free edges all around.
+    pub fn free(nx: usize, ny: usize) -> Self {
+        Self {
+            nx,
+            ny,
+            edges: [Edges::Free; 2],
+        }
+    }
+
+    /// A lattice with the given ends along x and along y; a periodic axis needs at least
+    /// [`Lattice::MIN_PERIODIC`] blocks, or a block would be its own neighbour twice.
+    pub fn with_edges(nx: usize, ny: usize, edges: [Edges; 2]) -> Self {
+        Self { nx, ny, edges }
+    }
+
+    /// Fewest blocks along a periodic axis.
+    pub const MIN_PERIODIC: usize = 3;
+
+    /// Number of blocks, `N = nx ny`.
+    pub fn n_blocks(&self) -> usize {
+        self.nx * self.ny
+    }
+
+    /// Index of block (i, j).
+    pub fn block(&self, i: usize, j: usize) -> usize {
+        j * self.nx + i
+    }
+
+    /// Column and row of the block with index `b`.
+    pub fn column_row(&self, b: usize) -> (usize, usize) {
+        (b % self.nx, b / self.nx)
+    }
+
+    /// Index range of row `j`.
+    pub(crate) fn row(&self, j: usize) -> std::ops::Range<usize> {
+        j * self.nx..(j + 1) * self.nx
+    }
+
+    /// The row `offset` (-1, 0, 1) above row `j`, or none beyond a free edge.
+    pub(crate) fn row_beside(&self, j: usize, offset: isize) -> Option<usize> {
+        beside(j, offset, self.ny, self.edges[1])
+    }
+
+    /// The block `[di, dj]` away from block (i, j), each -1, 0 or 1, or none beyond a free edge.
+    pub fn neighbour(&self, i: usize, j: usize, offset: [isize; 2]) -> Option<usize> {
+        let i = beside(i, offset[0], self.nx, self.edges[0])?;
+        let j = beside(j, offset[1], self.ny, self.edges[1])?;
+        Some(self.block(i, j))
+    }
+}
+
+fn beside(place: usize, offset: isize, count: usize, edges: Edges) -> Option<usize> {
+    let wanted = place as isize + offset;
+    match edges {
+        Edges::Periodic => Some(wanted.rem_euclid(count as isize) as usize),
+        Edges::Free => (0..count as isize).contains(&wanted).then_some(wanted as usize),
+    }
+}
+
+/// A spring between a block and one of its eight neighbours. Four bonds per block make all of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bond {
+    /// Columns and rows from the block to its neighbour.
+    pub offset: [isize; 2],
+    /// Stiffness in units of `E l`.
+    pub stiffness: f64,
+    /// Rest vector **d** from the block to its neighbour, in units of the block size.
+    pub rest: [f64; 2],
+    /// Rest length `d`.
+    pub rest_length: f64,
+}
+
+impl Bond {
+    /// To the neighbour at x + 1.
+    pub const EAST: Bond = Bond {
+        offset: [1, 0],
+        stiffness: K_STRAIGHT,
+        rest: [1.0, 0.0],
+        rest_length: 1.0,
+    };
+    /// To the neighbour at y + 1.
+    pub const NORTH: Bond = Bond {
+        offset: [0, 1],
+        stiffness: K_STRAIGHT,
+        rest: [0.0, 1.0],
+        rest_length: 1.0,
+    };
+    /// To the neighbour at (x + 1, y + 1).
+    pub const NORTH_EAST: Bond = Bond {
+        offset: [1, 1],
+        stiffness: K_DIAGONAL,
+        rest: [1.0, 1.0],
+        rest_length: std::f64::consts::SQRT_2,
+    };
+    /// To the neighbour at (x - 1, y + 1).
+    pub const NORTH_WEST: Bond = Bond {
+        offset: [-1, 1],
+        stiffness: K_DIAGONAL,
+        rest: [-1.0, 1.0],
+        rest_length: std::f64::consts::SQRT_2,
+    };
+    /// Every spring of the lattice once.
+    pub const ALL: [Bond; 4] = [Bond::EAST, Bond::NORTH, Bond::NORTH_EAST, Bond::NORTH_WEST];
+
+    /// Force on the block from this spring (one term of Eq. 3), exact at any strain:
+    ///
+    /// ```text
+    /// F = k (r - d)/eps  r/|r|,   r = d + eps e,   (r - d)/eps = (2 d.e + eps e^2)/(r + d)
+    /// ```
+    ///
+    /// `e`: displacement of the neighbour less that of the block, in units of `P mu_s l/E`; `epsilon`: the
+    /// strain `P mu_s/E` that ties this unit to the block size. No two nearly equal lengths are subtracted, so
+    /// that small displacements lose no digits.
+    ///
+    /// ```
+    /// use slipfront::lattice::Bond;
+    /// // Small strain: only the part of e along the spring counts.
+    /// assert_eq!(Bond::EAST.force([2.0, 5.0], 0.0), [0.75 * 2.0, 0.0]);
+    /// ```
+    #[inline]
+    pub fn force(&self, e: [f64; 2], epsilon: f64) -> [f64; 2] {
+        let [dx, dy] = self.rest;
+        let (rx, ry) = (dx + epsilon * e[0], dy + epsilon * e[1]);
+        let r = (rx * rx + ry * ry).sqrt();
+        let tension = self.stiffness * self.stretch(e, epsilon) / (r * (r + self.rest_length));
+        [tension * rx, tension * ry]
+    }
+
+    /// Energy of this spring, `(k/2) ((r - d)/eps)^2`, for the same `e` and `epsilon` as [`Bond::force`].
+    #[inline]
+    pub fn energy(&self, e: [f64; 2], epsilon: f64) -> f64 {
+        let [dx, dy] = self.rest;
+        let (rx, ry) = (dx + epsilon * e[0], dy + epsilon * e[1]);
+        let r = (rx * rx + ry * ry).sqrt();
+        let extension = self.stretch(e, epsilon) / (r + self.rest_length);
+        0.5 * self.stiffness * extension * extension
+    }
+
+    /// `(r^2 - d^2)/eps = 2 d.e + eps e^2`.
+    #[inline]
+    fn stretch(&self, e: [f64; 2], epsilon: f64) -> f64 {
+        2.0 * (self.rest[0] * e[0] + self.rest[1] * e[1]) + epsilon * (e[0] * e[0] + e[1] * e[1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbours_stop_at_free_edges_and_wrap_at_periodic_ones() {
+        let lattice = Lattice::with_edges(4, 3, [Edges::Periodic, Edges::Free]);
+        assert_eq!(lattice.neighbour(3, 0, [1, 1]), Some(lattice.block(0, 1)));
+        assert_eq!(lattice.neighbour(0, 2, [-1, 1]), None);
+        assert_eq!(lattice.column_row(lattice.block(3, 1)), (3, 1));
+    }
+
+    #[test]
+    fn a_spring_is_exact_where_lengths_would_cancel() {
+        // At a strain of 1e-9 the naive r - d keeps 7 digits; the small-strain limit is known.
+        let force = Bond::NORTH_EAST.force([1e-6, 3e-6], 1e-9);
+        assert!((force[0] / (K_DIAGONAL * 2e-6) - 1.0).abs() < 1e-14, "{force:?}");
+    }
+
+    #[test]
+    fn a_large_strain_matches_the_plain_formula() {
+        let (e, epsilon): ([f64; 2], f64) = ([0.3, -0.7], 0.2);
+        let r = [1.0 + epsilon * e[0], 1.0 + epsilon * e[1]];
+        let length = (r[0] * r[0] + r[1] * r[1]).sqrt();
+        let tension = K_DIAGONAL * (length - std::f64::consts::SQRT_2) / epsilon / length;
+        let force = Bond::NORTH_EAST.force(e, epsilon);
+        assert!((force[0] - tension * r[0]).abs() < 1e-14 && (force[1] - tension * r[1]).abs() < 1e-14);
+    }
+}

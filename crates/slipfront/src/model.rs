@@ -1,0 +1,143 @@
+//! Everything that never changes in a run.
+
+use crate::friction::FrictionLaw;
+use crate::lattice::{K_DRIVE, Lattice};
+use crate::surface::Surface;
+
+/// How the slider is pulled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive {
+    /// Dimensionless speed `V*` (Eq. 11a).
+    pub v_star: f64,
+    /// Unit vector of the sliding direction.
+    pub direction: [f64; 2],
+    /// Stiffness `k_s` of the spring on every block, in units of `E l`.
+    pub k_drive: f64,
+    /// A constant force on every block beside the spring's, in units of `P mu_s l^2`; zero in the paper.
+    pub constant_force: [f64; 2],
+}
+
+impl Drive {
+    /// Along x at `v_star`.
+    pub fn along_x(v_star: f64) -> Self {
+        Self {
+            v_star,
+            direction: [1.0, 0.0],
+            k_drive: K_DRIVE,
+            constant_force: [0.0, 0.0],
+        }
+    }
+
+    /// At `v_star`, `degrees` from x towards y.
+    pub fn at_angle(v_star: f64, degrees: f64) -> Self {
+        Self {
+            direction: unit_vector(degrees),
+            ..Self::along_x(v_star)
+        }
+    }
+
+    /// Displacement of the driven spring ends at `time_star`.
+    #[inline]
+    pub fn reach(&self, time_star: f64) -> [f64; 2] {
+        let along = self.v_star * time_star;
+        [along * self.direction[0], along * self.direction[1]]
+    }
+}
+
+/// (cos, sin) of an angle in degrees; exact in the axes and symmetric about them, so that a drive along y is
+/// the mirror image of a drive along x to the last bit.
+pub(crate) fn unit_vector(degrees: f64) -> [f64; 2] {
+    let turned = degrees.rem_euclid(360.0);
+    let (quarter, rest) = ((turned / 90.0).floor(), turned.rem_euclid(90.0));
+    let [c, s] = if rest == 45.0 {
+        [std::f64::consts::FRAC_1_SQRT_2; 2]
+    } else if rest < 45.0 {
+        let angle = rest.to_radians();
+        [libm::cos(angle), libm::sin(angle)]
+    } else {
+        let angle = (90.0 - rest).to_radians();
+        [libm::sin(angle), libm::cos(angle)]
+    };
+    match quarter as u8 % 4 {
+        0 => [c, s],
+        1 => [-s, c],
+        2 => [-c, -s],
+        _ => [s, -c],
+    }
+}
+
+/// The slider, its surface and its drive.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model {
+    /// Blocks and springs.
+    pub lattice: Lattice,
+    /// Friction of every block.
+    pub surface: Surface,
+    /// The pull.
+    pub drive: Drive,
+    /// Damping `Omega` per unit of dimensionless time (see [`crate::scales::damping`]).
+    pub damping: f64,
+    /// The load's strain `eps = P mu_s/E`; 0 makes the springs linear.
+    pub epsilon: f64,
+    /// Reading of Eq. 4.
+    pub law: FrictionLaw,
+}
+
+impl Model {
+    /// Puts the parts together. The surface must be made for this lattice.
+    pub fn new(
+        lattice: Lattice,
+        surface: Surface,
+        drive: Drive,
+        damping: f64,
+        epsilon: f64,
+        law: FrictionLaw,
+    ) -> Self {
+        assert_eq!(
+            lattice.n_blocks(),
+            surface.n_blocks(),
+            "the surface belongs to another lattice"
+        );
+        Self {
+            lattice,
+            surface,
+            drive,
+            damping,
+            epsilon,
+            law,
+        }
+    }
+
+    /// Level of mu* in steady sliding:
+    ///
+    /// ```text
+    /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V*
+    /// ```
+    pub fn steady_level(&self) -> f64 {
+        let friction = self.surface.slide.iter().sum::<f64>() / self.surface.n_blocks() as f64;
+        friction + self.damping * self.drive.v_star
+    }
+
+    /// Time of the first slip of a block in contact on a surface without texture, exact:
+    /// `t* = min_i max(mu_si, mu_ki) F_n,i/(k_s V*)`.
+    pub fn first_slip_estimate(&self) -> f64 {
+        self.surface.weakest() / (self.drive.k_drive * self.drive.v_star)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_are_exact_and_symmetric() {
+        assert_eq!(unit_vector(90.0), [0.0, 1.0]);
+        assert_eq!(unit_vector(-90.0), [0.0, -1.0]);
+        assert_eq!(unit_vector(180.0), [-1.0, 0.0]);
+        let [c, s] = unit_vector(45.0);
+        assert!(c == s && (c * c + s * s - 1.0).abs() < 1e-15);
+        let [a, b] = unit_vector(30.0);
+        assert_eq!(unit_vector(60.0), [b, a]);
+        assert_eq!(unit_vector(120.0), [-b, a]);
+    }
+}

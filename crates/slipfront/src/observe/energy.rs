@@ -1,0 +1,146 @@
+//! The ledger of energies: what the drive gives is held by blocks and springs or lost to friction and damping.
+//!
+//! All in units of `P mu_s l^2` times `P mu_s l/E`.
+
+use crate::lattice::{Bond, Lattice};
+use crate::vector_field::dot;
+use crate::{Snapshot, VectorField};
+
+/// Energies held at an instant, and given and lost since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energies {
+    /// Kinetic energy, the mean of the half steps before and after.
+    pub kinetic: f64,
+    /// Held by the springs between blocks.
+    pub lattice: f64,
+    /// Held by the drive springs.
+    pub drive_springs: f64,
+    /// Work done by the drive (and by a constant force) since the start.
+    pub work: f64,
+    /// Lost to friction since the start.
+    pub friction_loss: f64,
+    /// Lost to damping since the start.
+    pub damping_loss: f64,
+    /// What was held at the start.
+    pub held_at_start: f64,
+}
+
+impl Energies {
+    /// Energy held now.
+    pub fn held(&self) -> f64 {
+        self.kinetic + self.lattice + self.drive_springs
+    }
+
+    /// How far the ledger is from closing, relative to all energy that went in:
+    ///
+    /// ```text
+    /// error = (work - (held - held at start) - losses)/(|work| + held at start)
+    /// ```
+    ///
+    /// It falls with the time step, to first order where blocks start and stop.
+    pub fn error(&self) -> f64 {
+        let put_in = self.work.abs() + self.held_at_start;
+        let missing = self.work - (self.held() - self.held_at_start) - self.friction_loss - self.damping_loss;
+        if put_in > 0.0 { missing / put_in } else { 0.0 }
+    }
+}
+
+/// Powers at one instant.
+#[derive(Clone, Copy, Debug, Default)]
+struct Powers {
+    work: f64,
+    friction: f64,
+    damping: f64,
+}
+
+/// Sums works and losses over the steps, by the trapezoidal rule.
+#[derive(Debug, Default)]
+pub struct Ledger {
+    before: Option<Powers>,
+    totals: Energies,
+}
+
+impl Ledger {
+    /// Adds the step that ends now. To be called at every step.
+    pub(crate) fn add(&mut self, now: &Snapshot) {
+        let powers = powers(now);
+        match self.before {
+            Some(before) => {
+                let half = 0.5 * now.dt_star;
+                self.totals.work += half * (before.work + powers.work);
+                self.totals.friction_loss += half * (before.friction + powers.friction);
+                self.totals.damping_loss += half * (before.damping + powers.damping);
+            }
+            None => self.totals.held_at_start = held(now).held(),
+        }
+        self.before = Some(powers);
+    }
+
+    /// The ledger at this instant.
+    pub(crate) fn energies(&self, now: &Snapshot) -> Energies {
+        let Energies {
+            kinetic,
+            lattice,
+            drive_springs,
+            ..
+        } = held(now);
+        Energies {
+            kinetic,
+            lattice,
+            drive_springs,
+            ..self.totals
+        }
+    }
+}
+
+/// Work of the drive `V . sum F_s`, of friction and of damping per time, with the velocity at t_n taken as the
+/// mean of the half steps around it.
+fn powers(now: &Snapshot) -> Powers {
+    let (model, forces) = (now.model, now.forces);
+    let (before, after) = (&now.state.velocity, &forces.velocity_after);
+    let (mut friction, mut square, mut sum) = (0.0, 0.0, [0.0, 0.0]);
+    for b in 0..before.len() {
+        let v = [0.5 * (before.x[b] + after.x[b]), 0.5 * (before.y[b] + after.y[b])];
+        friction -= dot(forces.friction.at(b), v);
+        square += dot(v, v);
+        sum[0] += v[0];
+        sum[1] += v[1];
+    }
+    let drive = now.point.mu_star * before.len() as f64 * model.drive.v_star;
+    Powers {
+        work: drive + dot(model.drive.constant_force, sum),
+        friction,
+        damping: model.damping * square,
+    }
+}
+
+fn held(now: &Snapshot) -> Energies {
+    let (model, u) = (now.model, &now.state.displacement);
+    let reach = model.drive.reach(now.time_star);
+    let half_squares = |v: &VectorField| 0.5 * v.x.iter().chain(&v.y).map(|v| v * v).sum::<f64>();
+    let stretch = |b: usize| [reach[0] - u.x[b], reach[1] - u.y[b]];
+    let drive_springs =
+        0.5 * model.drive.k_drive * (0..u.len()).map(|b| dot(stretch(b), stretch(b))).sum::<f64>();
+    Energies {
+        kinetic: 0.5 * (half_squares(&now.state.velocity) + half_squares(&now.forces.velocity_after)),
+        lattice: lattice_energy(&model.lattice, u, model.epsilon),
+        drive_springs,
+        ..Energies::default()
+    }
+}
+
+/// Energy of all springs between blocks at displacements `u`.
+fn lattice_energy(lattice: &Lattice, u: &VectorField, epsilon: f64) -> f64 {
+    let mut energy = 0.0;
+    for bond in &Bond::ALL {
+        for j in 0..lattice.ny {
+            for i in 0..lattice.nx {
+                if let Some(n) = lattice.neighbour(i, j, bond.offset) {
+                    let b = lattice.block(i, j);
+                    energy += bond.energy([u.x[n] - u.x[b], u.y[n] - u.y[b]], epsilon);
+                }
+            }
+        }
+    }
+    energy
+}

@@ -1,0 +1,113 @@
+//! Fields over the lattice kept from chosen instants.
+
+use super::{CurvePoint, Observer, stress};
+use crate::{Contact, RunError, Snapshot};
+
+/// A quantity with one value per block. Values are dimensionless, as everywhere in this crate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Field {
+    /// Contact stress tau_c (Eq. 10), in units of `P mu_s`; not yet scaled by its maximum.
+    ContactStress,
+    /// True traction `|F_f|/l^2`, in units of `P mu_s`; not a number over a texture.
+    Traction,
+    /// Displacement along x.
+    DisplacementX,
+    /// Displacement along y.
+    DisplacementY,
+    /// Velocity along x half a step later.
+    VelocityX,
+    /// Velocity along y half a step later.
+    VelocityY,
+    /// 1 for a block that slides, 0 for one that is stuck.
+    Sliding,
+}
+
+impl Field {
+    fn value(self, now: &Snapshot, b: usize) -> f64 {
+        match self {
+            Field::ContactStress => stress::contact_stress(now, b),
+            Field::Traction => stress::traction(now, b),
+            Field::DisplacementX => now.state.displacement.x[b],
+            Field::DisplacementY => now.state.displacement.y[b],
+            Field::VelocityX => now.forces.velocity_after.x[b],
+            Field::VelocityY => now.forces.velocity_after.y[b],
+            Field::Sliding => f64::from(u8::from(now.forces.contact_after[b] == Contact::Sliding)),
+        }
+    }
+}
+
+/// Fields of one instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Step.
+    pub step: u64,
+    /// t*.
+    pub time_star: f64,
+    /// mu* and N*.
+    pub point: CurvePoint,
+    /// One array per field, row by row from y = 0, every `stride`-th block of each axis from the first on.
+    pub values: Vec<Vec<f32>>,
+}
+
+/// Which fields to keep, and of how many blocks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Selection {
+    /// The fields, in this order.
+    pub fields: Vec<Field>,
+    /// Every n-th block along each axis.
+    pub stride: usize,
+}
+
+impl Selection {
+    /// The chosen fields of this instant.
+    pub fn capture(&self, now: &Snapshot) -> Frame {
+        let mut frame = Frame {
+            step: 0,
+            time_star: 0.0,
+            point: now.point,
+            values: Vec::new(),
+        };
+        frame.values.resize(self.fields.len(), Vec::new());
+        self.capture_into(now, &mut frame);
+        frame
+    }
+
+    /// Overwrites a frame of the same selection, without allocating.
+    pub(crate) fn capture_into(&self, now: &Snapshot, frame: &mut Frame) {
+        (frame.step, frame.time_star, frame.point) = (now.step, now.time_star, now.point);
+        let lattice = &now.model.lattice;
+        for (&field, values) in self.fields.iter().zip(&mut frame.values) {
+            values.clear();
+            for j in (0..lattice.ny).step_by(self.stride) {
+                let columns = (0..lattice.nx).step_by(self.stride);
+                values.extend(columns.map(|i| field.value(now, lattice.block(i, j)) as f32));
+            }
+        }
+    }
+}
+
+/// Keeps the selected fields of every instant it is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frames {
+    /// What is kept.
+    pub selection: Selection,
+    /// In the order of time.
+    pub frames: Vec<Frame>,
+}
+
+impl Frames {
+    /// Nothing kept yet.
+    pub fn new(selection: Selection) -> Self {
+        Self {
+            selection,
+            frames: Vec::new(),
+        }
+    }
+}
+
+impl Observer for Frames {
+    fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
+        self.frames.push(self.selection.capture(now));
+        Ok(())
+    }
+}

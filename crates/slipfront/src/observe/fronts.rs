@@ -1,0 +1,43 @@
+//! Slip fronts: when each block first slips.
+
+use super::Observer;
+use crate::{Contact, RunError, Snapshot};
+
+/// First-slip time of every block in contact. To be shown every step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FirstSlip {
+    /// t* of the first slip; not a number where there is none yet, and over a texture.
+    pub time_star: Vec<f64>,
+    /// The earliest of them.
+    pub earliest: Option<f64>,
+    left: usize,
+}
+
+impl FirstSlip {
+    /// Nothing has slipped on a lattice of `n_blocks` blocks.
+    pub fn none(n_blocks: usize) -> Self {
+        Self {
+            time_star: vec![f64::NAN; n_blocks],
+            earliest: None,
+            left: n_blocks,
+        }
+    }
+}
+
+impl Observer for FirstSlip {
+    fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
+        if now.point.n_sliding == 0 || self.left == 0 {
+            return Ok(());
+        }
+        let textured = &now.model.surface.textured;
+        let contacts = now.forces.contact_after.iter().zip(textured);
+        for ((contact, textured), time) in contacts.zip(&mut self.time_star) {
+            if *contact == Contact::Sliding && !textured && time.is_nan() {
+                *time = now.time_star;
+                self.left -= 1;
+                self.earliest.get_or_insert(now.time_star);
+            }
+        }
+        Ok(())
+    }
+}

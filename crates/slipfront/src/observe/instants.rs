@@ -1,0 +1,120 @@
+//! The instants A-F of Fig. 4, found while the run goes on.
+//!
+//! A: t* = 0.5/V*. B: first slip of a block in contact. C: the peak of mu*. D: the largest N* in
+//! [t_s*, t_s* + 2.5/V*]. E: the smallest mu* from D to the start of the kinetic window. F: the middle of that
+//! window. What a later step may prove wrong is kept as a candidate and overwritten.
+
+use super::frames::{Frame, Selection};
+use super::{KineticStart, Observer};
+use crate::{Contact, RunError, Snapshot};
+
+/// Letters of the instants.
+const LETTERS: [char; 6] = ['A', 'B', 'C', 'D', 'E', 'F'];
+const A: usize = 0;
+const B: usize = 1;
+const C: usize = 2;
+const D: usize = 3;
+const E: usize = 4;
+const F: usize = 5;
+
+/// Fields at A-F. To be shown every step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instants {
+    selection: Selection,
+    kinetic: KineticStart,
+    end_time_star: f64,
+    frames: [Option<Frame>; 6],
+    ended: bool,
+}
+
+impl Instants {
+    /// Nothing found yet, in a run that will end at `end_time_star`.
+    pub fn new(selection: Selection, kinetic: KineticStart, end_time_star: f64) -> Self {
+        Self {
+            selection,
+            kinetic,
+            end_time_star,
+            frames: Default::default(),
+            ended: false,
+        }
+    }
+
+    /// The instants that the run had, in the order of their letters. Without a transition there is no D and E.
+    pub fn found(mut self) -> Vec<(char, Frame)> {
+        if !self.ended {
+            self.frames[D] = None;
+            self.frames[E] = None;
+        } else {
+            // A later instant that never differed from the one before it was not captured apart.
+            if self.frames[D].is_none() {
+                self.frames[D] = self.frames[C].clone();
+            }
+            if self.frames[E].is_none() {
+                self.frames[E] = self.frames[D].clone();
+            }
+        }
+        LETTERS
+            .into_iter()
+            .zip(self.frames)
+            .filter_map(|(letter, frame)| Some((letter, frame?)))
+            .collect()
+    }
+
+    fn keep(&mut self, instant: usize, now: &Snapshot) {
+        match &mut self.frames[instant] {
+            Some(frame) => self.selection.capture_into(now, frame),
+            none => *none = Some(self.selection.capture(now)),
+        }
+    }
+
+    /// The candidate for an instant, or for the one before it as long as they coincide.
+    fn candidate(&self, instants: &[usize]) -> Option<&Frame> {
+        instants.iter().find_map(|&instant| self.frames[instant].as_ref())
+    }
+}
+
+impl Observer for Instants {
+    fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
+        let v_star = now.model.drive.v_star;
+        self.ended = now.peak.ended;
+        let passes = |time: f64| now.time_star >= time && now.time_star - now.dt_star < time;
+        if passes(0.5 / v_star) {
+            self.keep(A, now);
+        }
+        if self.frames[B].is_none() && slips(now) {
+            self.keep(B, now);
+        }
+        let kinetic_from = self.kinetic.time_star(&now.peak, v_star);
+        if now.peak.step == now.step {
+            self.keep(C, now);
+            self.frames[D] = None;
+            self.frames[E] = None;
+        } else {
+            let most = self
+                .candidate(&[D, C])
+                .map_or(0.0, |frame| frame.point.sliding_percent);
+            let least = self
+                .candidate(&[E, D, C])
+                .map_or(f64::INFINITY, |frame| frame.point.mu_star);
+            if now.time_star <= now.peak.time_star + 2.5 / v_star && now.point.sliding_percent > most {
+                self.keep(D, now);
+                self.frames[E] = None;
+            } else if now.time_star <= kinetic_from && now.point.mu_star < least {
+                self.keep(E, now);
+            }
+        }
+        if passes(0.5 * (kinetic_from + self.end_time_star)) {
+            self.keep(F, now);
+        }
+        Ok(())
+    }
+}
+
+/// Whether a block in contact slides.
+fn slips(now: &Snapshot) -> bool {
+    let contacts = now.forces.contact_after.iter().zip(&now.model.surface.textured);
+    now.point.n_sliding > 0
+        && contacts
+            .into_iter()
+            .any(|(c, textured)| *c == Contact::Sliding && !textured)
+}

@@ -1,0 +1,258 @@
+//! The kinetic friction coefficient: a mean over a window after the transition, with its uncertainty.
+
+use super::{Observer, Peak};
+use crate::{RunError, Snapshot};
+
+/// Where the kinetic window begins. It ends with the run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum KineticStart {
+    /// At t_s* + 2.5/V*; at 5/V* (twice the usual t_s*, Eq. 12) in a run without a transition.
+    Auto,
+    /// At a given t*.
+    At(f64),
+}
+
+impl KineticStart {
+    /// The beginning of the window as far as `peak` tells.
+    pub fn time_star(&self, peak: &Peak, v_star: f64) -> f64 {
+        match *self {
+            KineticStart::At(time_star) => time_star,
+            KineticStart::Auto if peak.ended => peak.time_star + 2.5 / v_star,
+            KineticStart::Auto => 5.0 / v_star,
+        }
+    }
+}
+
+/// Friction in the kinetic window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kinetic {
+    /// First and last t* of the mean.
+    pub window_star: [f64; 2],
+    /// mu_k*, the mean of mu*.
+    pub mu_star: f64,
+    /// Standard error of mu_k* from blocking, or why there is none to be trusted.
+    pub uncertainty: Result<f64, Doubt>,
+    /// Mean of N*.
+    pub sliding_percent: f64,
+}
+
+/// Why the scatter inside a window says nothing about the mean's uncertainty.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Doubt {
+    /// One half of the window holds fewer than ten independent blocks.
+    TooFewBlocks {
+        /// How many it holds.
+        found: usize,
+        /// t* to which the run should go.
+        needed_time_star: f64,
+    },
+    /// The means of the two halves differ by more than three standard errors: mu* still drifts.
+    Drift {
+        /// Means of the two halves.
+        halves: [f64; 2],
+        /// t* to which the run should go.
+        needed_time_star: f64,
+    },
+}
+
+/// Keeps mu* and N* of the whole run in at most [`KineticHistory::BINS`] means over equal stretches of steps, so
+/// that memory does not grow with the run. To be shown every step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KineticHistory {
+    steps_per_bin: u64,
+    in_bin: u64,
+    bins: Vec<Bin>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Bin {
+    mu_star: f64,
+    sliding_percent: f64,
+}
+
+impl KineticHistory {
+    /// Most stretches kept. A run of fewer steps keeps every step.
+    pub const BINS: u64 = 16_384;
+
+    /// An empty history of a run of `last_step` steps.
+    pub fn new(last_step: u64) -> Self {
+        let steps_per_bin = (last_step + 1).div_ceil(Self::BINS);
+        Self {
+            steps_per_bin,
+            in_bin: 0,
+            bins: Vec::with_capacity((last_step / steps_per_bin + 1) as usize),
+        }
+    }
+
+    /// Means over the window from `from_star` to the end; none if it is empty.
+    pub fn kinetic(&self, from_star: f64, dt_star: f64) -> Option<Kinetic> {
+        let bin_time = self.steps_per_bin as f64 * dt_star;
+        // A bin that the end of the run cut short would weigh too much.
+        let complete = self.bins.len() - usize::from(self.in_bin > 0);
+        let first = (from_star / bin_time).ceil().max(0.0) as usize;
+        let window = self
+            .bins
+            .get(first..complete)
+            .filter(|window| !window.is_empty())?;
+        let mu_star: Vec<f64> = window.iter().map(|bin| bin.mu_star).collect();
+        let window_star = [
+            first as f64 * bin_time,
+            (complete as f64 * self.steps_per_bin as f64 - 1.0) * dt_star,
+        ];
+        Some(Kinetic {
+            window_star,
+            mu_star: mean(&mu_star),
+            uncertainty: uncertainty(&mu_star, window_star),
+            sliding_percent: window.iter().map(|bin| bin.sliding_percent).sum::<f64>() / window.len() as f64,
+        })
+    }
+}
+
+impl Observer for KineticHistory {
+    fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
+        if self.in_bin == 0 {
+            self.bins.push(Bin::default());
+        }
+        let share = 1.0 / self.steps_per_bin as f64;
+        if let Some(bin) = self.bins.last_mut() {
+            bin.mu_star += share * now.point.mu_star;
+            bin.sliding_percent += share * now.point.sliding_percent;
+        }
+        self.in_bin = (self.in_bin + 1) % self.steps_per_bin;
+        Ok(())
+    }
+}
+
+fn mean(x: &[f64]) -> f64 {
+    x.iter().sum::<f64>() / x.len() as f64
+}
+
+/// A difference between the halves below this is no drift: it is less than the error of any time step.
+const NEGLIGIBLE_DRIFT: f64 = 1e-6;
+
+/// Fewest independent blocks in each half of a window.
+const MIN_BLOCKS: usize = 10;
+
+/// Standard error of the mean of a correlated series, if its two halves support one.
+fn uncertainty(x: &[f64], window_star: [f64; 2]) -> Result<f64, Doubt> {
+    let halves = x.split_at(x.len() / 2);
+    let (one, other) = (blocking(halves.0), blocking(halves.1));
+    let found = one.blocks.min(other.blocks);
+    let length = window_star[1] - window_star[0];
+    let longer = |factor: f64| window_star[0] + factor * length;
+    if found < MIN_BLOCKS {
+        let factor = (MIN_BLOCKS as f64 / found.max(1) as f64).max(2.0);
+        return Err(Doubt::TooFewBlocks {
+            found,
+            needed_time_star: longer(factor),
+        });
+    }
+    let means = [mean(halves.0), mean(halves.1)];
+    let difference = (means[0] - means[1]).abs();
+    if difference > NEGLIGIBLE_DRIFT && difference > 3.0 * one.standard_error.hypot(other.standard_error) {
+        return Err(Doubt::Drift {
+            halves: means,
+            needed_time_star: longer(2.0),
+        });
+    }
+    Ok(blocking(x).standard_error)
+}
+
+struct Blocking {
+    standard_error: f64,
+    /// Number of independent blocks; 0 if the series is too short to tell.
+    blocks: usize,
+}
+
+/// Standard error of the mean by blocking (Flyvbjerg and Petersen 1989): neighbours are averaged in pairs until
+/// the blocks are independent. The block length B is the first for which, with n values,
+///
+/// ```text
+/// B^3 > 2 n (se_B/se_1)^4
+/// ```
+///
+/// (Wolff 2004; Lee et al. 2011), which balances the bias of short blocks against the noise of few.
+fn blocking(x: &[f64]) -> Blocking {
+    let n = x.len() as f64;
+    let mut blocks = x.to_vec();
+    let mut length = 1.0_f64;
+    let mut first = None;
+    while blocks.len() >= 2 {
+        let count = blocks.len() as f64;
+        let center = mean(&blocks);
+        let square = blocks.iter().map(|b| (b - center).powi(2)).sum::<f64>() / (count * (count - 1.0));
+        let first = *first.get_or_insert(square);
+        let inflation = if first > 0.0 { square / first } else { 1.0 };
+        if length.powi(3) > 2.0 * n * inflation * inflation || first == 0.0 {
+            return Blocking {
+                standard_error: square.sqrt(),
+                blocks: blocks.len(),
+            };
+        }
+        blocks = blocks
+            .chunks_exact(2)
+            .map(|pair| 0.5 * (pair[0] + pair[1]))
+            .collect();
+        length *= 2.0;
+    }
+    Blocking {
+        standard_error: f64::NAN,
+        blocks: 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Reproducible uniform noise of variance 1/12, from a linear congruential generator.
+    fn noise(n: usize) -> Vec<f64> {
+        let mut state = 1u64;
+        let mut next = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        (0..n).map(|_| next()).collect()
+    }
+
+    #[test]
+    fn white_noise_has_the_plain_standard_error() {
+        let x = noise(4096);
+        let expected = (1.0 / 12.0 / 4096.0_f64).sqrt();
+        let found = uncertainty(&x, [0.0, 1.0]).unwrap();
+        // With blocks of 2 n^(1/3) = 32 values, 128 of them give the error within 2/sqrt(2 128) = 25 %.
+        assert!((found / expected - 1.0).abs() < 0.25, "{found} {expected}");
+    }
+
+    #[test]
+    fn correlated_noise_has_a_larger_one() {
+        // x_k = a x_k-1 + noise has the standard error of white noise times 1/(1 - a).
+        let a = 0.9;
+        let mut x = noise(40_000);
+        for k in 1..x.len() {
+            x[k] += a * x[k - 1];
+        }
+        let expected = (1.0 / 12.0 / 40_000.0_f64).sqrt() / (1.0 - a);
+        let found = uncertainty(&x[1000..], [0.0, 1.0]).unwrap();
+        assert!((found / expected - 1.0).abs() < 0.3, "{found} {expected}");
+    }
+
+    #[test]
+    fn drift_and_short_windows_have_none() {
+        let drifting: Vec<f64> = noise(4096)
+            .iter()
+            .enumerate()
+            .map(|(k, x)| x + k as f64 * 1e-3)
+            .collect();
+        assert!(matches!(
+            uncertainty(&drifting, [0.0, 1.0]),
+            Err(Doubt::Drift { .. } | Doubt::TooFewBlocks { .. })
+        ));
+        assert!(
+            matches!(uncertainty(&noise(30), [10.0, 20.0]), Err(Doubt::TooFewBlocks { needed_time_star, .. }) if needed_time_star >= 30.0)
+        );
+        assert_eq!(uncertainty(&[0.5; 1000], [0.0, 1.0]), Ok(0.0));
+    }
+}

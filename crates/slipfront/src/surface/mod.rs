@@ -1,0 +1,135 @@
+//! The sliding surface: local friction coefficients, texture and load of every block.
+//!
+//! [`Coefficients`] are drawn or given, [`mesh`] finds the textured blocks, the [`Load`] is shared out, and
+//! [`Surface::new`] puts the three together into the thresholds that the friction law compares with.
+
+mod coefficients;
+mod load;
+mod texture;
+
+pub use coefficients::{Coefficients, Distribution};
+pub use load::Load;
+pub use texture::{Cavity, Groove, MaskImage, Meshed, Orientation, Texture, cavity_lambda, mesh};
+
+use crate::{Lattice, SurfaceError};
+
+/// Friction of every block; arrays have one value per block.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    /// Blocks over a texture, which touch nothing.
+    pub textured: Vec<bool>,
+    /// Local static coefficients `mu_si`; 0 over a texture.
+    pub mu_static: Vec<f64>,
+    /// Local kinetic coefficients `mu_ki`; 0 over a texture.
+    pub mu_kinetic: Vec<f64>,
+    /// Normal forces `F_n,i` in units of `P l^2`; 0 over a texture.
+    pub normal_forces: Vec<f64>,
+    /// Static thresholds `mu_si F_n,i` in units of `P mu_s l^2`.
+    pub hold: Vec<f64>,
+    /// Kinetic friction `mu_ki F_n,i` in units of `P mu_s l^2`.
+    pub slide: Vec<f64>,
+}
+
+impl Surface {
+    /// Lays a texture over the coefficients and shares the load out.
+    ///
+    /// `mu_static_mean` is the scale of all forces. Fails when no block is left in contact.
+    pub fn new(
+        coefficients: Coefficients,
+        textured: Vec<bool>,
+        load: Load,
+        mu_static_mean: f64,
+    ) -> Result<Self, SurfaceError> {
+        let Coefficients {
+            mut mu_static,
+            mut mu_kinetic,
+            ..
+        } = coefficients;
+        assert_eq!(
+            mu_static.len(),
+            textured.len(),
+            "coefficients and texture belong to different lattices"
+        );
+        let normal_forces = load.normal_forces(&textured)?;
+        for b in 0..textured.len() {
+            if textured[b] {
+                mu_static[b] = 0.0;
+                mu_kinetic[b] = 0.0;
+            }
+        }
+        let threshold = |mu: &[f64]| -> Vec<f64> {
+            mu.iter()
+                .zip(&normal_forces)
+                .map(|(mu, force)| mu / mu_static_mean * force)
+                .collect()
+        };
+        let (hold, slide) = (threshold(&mu_static), threshold(&mu_kinetic));
+        Ok(Self {
+            textured,
+            mu_static,
+            mu_kinetic,
+            normal_forces,
+            hold,
+            slide,
+        })
+    }
+
+    /// The same coefficients everywhere and no texture, in units of their static mean: `mu_static` is 1 for
+    /// the model of the paper.
+    pub fn uniform(lattice: &Lattice, mu_static: f64, mu_kinetic: f64) -> Self {
+        let n = lattice.n_blocks();
+        Self {
+            textured: vec![false; n],
+            mu_static: vec![mu_static; n],
+            mu_kinetic: vec![mu_kinetic; n],
+            normal_forces: vec![1.0; n],
+            hold: vec![mu_static; n],
+            slide: vec![mu_kinetic; n],
+        }
+    }
+
+    /// Number of blocks.
+    pub fn n_blocks(&self) -> usize {
+        self.textured.len()
+    }
+
+    /// Number of blocks that touch the substrate.
+    pub fn n_contact(&self) -> usize {
+        self.textured.iter().filter(|&&t| !t).count()
+    }
+
+    /// Textured share of the area as meshed, `A*` in % (Eq. 15).
+    pub fn texture_percent(&self) -> f64 {
+        100.0 * (self.n_blocks() - self.n_contact()) as f64 / self.n_blocks() as f64
+    }
+
+    /// The smallest force that breaks a block in contact loose: `min_i max(mu_si, mu_ki) F_n,i` (D12).
+    pub fn weakest(&self) -> f64 {
+        (0..self.n_blocks())
+            .filter(|&b| !self.textured[b])
+            .map(|b| self.hold[b].max(self.slide[b]))
+            .fold(f64::INFINITY, f64::min)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texture_takes_load_and_friction_and_conserves_the_total() {
+        let lattice = Lattice::free(4, 2);
+        let mut textured = vec![false; 8];
+        textured[3] = true;
+        textured[5] = true;
+        let given = Coefficients::given(vec![2.0; 8], vec![1.0; 8]);
+        let surface = Surface::new(given, textured, Load::Redistributed, 2.0).unwrap();
+        assert_eq!(surface.hold[0], 8.0 / 6.0);
+        assert_eq!(
+            (surface.hold[3], surface.slide[5], surface.mu_static[3]),
+            (0.0, 0.0, 0.0)
+        );
+        assert!((surface.normal_forces.iter().sum::<f64>() - lattice.n_blocks() as f64).abs() < 1e-12);
+        assert_eq!(surface.texture_percent(), 25.0);
+    }
+}

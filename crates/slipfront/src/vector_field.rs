@@ -1,0 +1,55 @@
+//! A plane vector at every block, stored as one array per component so that a row is contiguous.
+
+/// A vector per block: `x[b]`, `y[b]` with block index `b = j nx + i`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct VectorField {
+    /// Components along x.
+    pub x: Vec<f64>,
+    /// Components along y.
+    pub y: Vec<f64>,
+}
+
+impl VectorField {
+    /// The zero field over `n_blocks` blocks.
+    pub fn zeros(n_blocks: usize) -> Self {
+        Self {
+            x: vec![0.0; n_blocks],
+            y: vec![0.0; n_blocks],
+        }
+    }
+
+    /// The vector at block `b`.
+    #[inline]
+    pub fn at(&self, b: usize) -> [f64; 2] {
+        [self.x[b], self.y[b]]
+    }
+
+    /// Number of blocks.
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    /// Whether there is no block at all.
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+}
+
+/// Scalar product of two plane vectors.
+#[inline]
+pub(crate) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// Length of a plane vector. Not `hypot`: the square of a scaled force never over- or underflows, and the
+/// plain form is exactly rounded and symmetric in x and y on every machine.
+#[inline]
+pub(crate) fn length(a: [f64; 2]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// Sum of two plane vectors.
+#[inline]
+pub(crate) fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] + b[0], a[1] + b[1]]
+}
