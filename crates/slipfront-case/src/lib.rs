@@ -1,1 +1,20 @@
-//! Case files in, results out.
+//! Case files in, results out: everything between a user's text and the physics of [`slipfront`].
+//!
+//! ```text
+//! text -> CaseFile -> Case (valid by construction) -> Record -> files -> pictures
+//! ```
+//!
+//! Each arrow is one function: [`case_file::CaseFile::load`], [`case::Case::new`], [`run::run`],
+//! [`results::write`], [`results::draw`].
+
+pub mod arrays;
+pub mod case;
+pub mod case_file;
+pub mod fields;
+pub mod folder;
+pub mod pictures;
+pub mod quantity;
+pub mod results;
+pub mod run;
+pub mod series;
+pub mod summary;

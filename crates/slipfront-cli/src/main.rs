@@ -1,2 +1,52 @@
-//! The command.
-fn main() {}
+//! The command `slipfront`: one file per subcommand under `commands/`, each thin.
+//!
+//! Errors go to stderr as sentences, results to stdout. Exit status: 0 done, 1 the run failed, 2 bad input or
+//! usage.
+
+mod commands;
+mod failure;
+mod progress;
+mod report;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use failure::Failure;
+
+/// Friction of micro-textured surfaces: the lattice spring-block model of the transition from static to kinetic
+/// friction.
+#[derive(Parser)]
+#[command(name = "slipfront", version, max_term_width = 100)]
+#[command(after_help = "Examples:
+  slipfront run                                   the embedded baseline (Fig. 3 of the paper)
+  slipfront run cases/circle.toml -o results/a    a case file, results in a folder of your choice
+  slipfront run --set drive.v_star=0.05 --seed 7  any key of the case file, from the command line
+  slipfront plot results/a results/b -o both      friction curves of two runs over each other")]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Run(commands::run::Run),
+    Check(commands::check::Check),
+    Texture(commands::texture::Texture),
+    Plot(commands::plot::Plot),
+    Completions(commands::completions::Completions),
+}
+
+fn main() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Run(run) => run.execute(),
+        Command::Check(check) => check.execute(),
+        Command::Texture(texture) => texture.execute(),
+        Command::Plot(plot) => plot.execute(),
+        Command::Completions(completions) => completions.execute(),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}

@@ -60,6 +60,20 @@ impl Scales {
         self.pressure * self.mu_static_mean / self.young_modulus
     }
 
+    /// A length in m, counted in blocks, to a billionth of a block: "2.5 um" over "1 um" is 2.5, not the
+    /// 2.4999999999999996 of the two roundings, which would move a groove by a block.
+    ///
+    /// ```
+    /// let scales = slipfront::Scales {
+    ///     block_size: 1e-6, young_modulus: 100e9, density: 10e3, pressure: 100e3, mu_static_mean: 1.0,
+    /// };
+    /// assert_eq!(scales.in_blocks(22.5e-6), 22.5);
+    /// ```
+    pub fn in_blocks(&self, length: f64) -> f64 {
+        const GRID: f64 = (1u64 << 30) as f64;
+        (length / self.block_size * GRID).round() / GRID
+    }
+
     /// Damping `Omega*` (Eq. 11a, with `k_1`) of a damping rate `Omega` in 1/s.
     pub fn omega_star(&self, damping_rate: f64) -> f64 {
         damping_rate * self.time() / K_STRAIGHT.sqrt()

@@ -62,6 +62,7 @@ pub struct KineticHistory {
     steps_per_bin: u64,
     in_bin: u64,
     bins: Vec<Bin>,
+    sliding_percent_max: f64,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -81,7 +82,13 @@ impl KineticHistory {
             steps_per_bin,
             in_bin: 0,
             bins: Vec::with_capacity((last_step / steps_per_bin + 1) as usize),
+            sliding_percent_max: 0.0,
         }
+    }
+
+    /// Largest N* of all steps.
+    pub fn sliding_percent_max(&self) -> f64 {
+        self.sliding_percent_max
     }
 
     /// Means over the window from `from_star` to the end; none if it is empty.
@@ -113,6 +120,7 @@ impl Observer for KineticHistory {
         if self.in_bin == 0 {
             self.bins.push(Bin::default());
         }
+        self.sliding_percent_max = self.sliding_percent_max.max(now.point.sliding_percent);
         let share = 1.0 / self.steps_per_bin as f64;
         if let Some(bin) = self.bins.last_mut() {
             bin.mu_star += share * now.point.mu_star;

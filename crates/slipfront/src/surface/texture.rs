@@ -60,6 +60,12 @@ pub fn cavity_lambda(percent: f64, n_blocks: usize, s: u32, w: f64, count: usize
     (n_blocks as f64 * percent / (100.0 * count as f64 * PI * (1.0 - f64::from(s) * w * w))).sqrt()
 }
 
+/// Share of `n_blocks` blocks, in %, that `count` cavities of size `lambda` enclose: the inverse of
+/// [`cavity_lambda`].
+pub fn cavity_percent(lambda: f64, n_blocks: usize, s: u32, w: f64, count: usize) -> f64 {
+    100.0 * count as f64 * PI * lambda * lambda * (1.0 - f64::from(s) * w * w) / n_blocks as f64
+}
+
 /// Which way a groove runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Orientation {

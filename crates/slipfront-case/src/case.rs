@@ -1,0 +1,566 @@
+//! `CaseFile` -> [`Case`]: a case that can be run, with every length counted in blocks and every file read.
+
+use std::path::{Path, PathBuf};
+
+use slipfront::lattice::dt_star_limit;
+use slipfront::observe::KineticStart;
+use slipfront::scales::damping;
+use slipfront::surface::{self, Coefficients, Distribution, Load, mesh};
+use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Scales, Stop, Surface};
+
+use crate::arrays;
+use crate::case_file::{self, AutoOr, CaseError, CaseFile};
+use crate::fields::FieldName;
+
+/// A case, valid by construction.
+#[derive(Debug)]
+pub struct Case {
+    /// Name of the case: what its results are called.
+    pub name: String,
+    /// As written, every default filled in, its files standing in `inputs/`: what a run folder holds.
+    pub file: CaseFile,
+    /// Files that the case reads.
+    pub inputs: Vec<Input>,
+    /// Units.
+    pub scales: Scales,
+    /// Dimensionless groups.
+    pub groups: Groups,
+    /// The slider, ready to run.
+    pub model: Model,
+    /// What the texture has come to.
+    pub texture: TextureReport,
+    /// Negative draws of the coefficients that were set to 0.
+    pub negative_draws: usize,
+    /// Time and its steps.
+    pub schedule: Schedule,
+    /// What is written.
+    pub output: Output,
+}
+
+/// The dimensionless groups on which the model depends (Eq. 11).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Groups {
+    /// V*.
+    pub v_star: f64,
+    /// R*.
+    pub r_star: f64,
+    /// Omega*.
+    pub omega_star: f64,
+    /// sigma_s*.
+    pub sigma_static_star: f64,
+    /// sigma_k*.
+    pub sigma_kinetic_star: f64,
+    /// eps = P mu_s/E.
+    pub epsilon: f64,
+}
+
+/// The texture as asked and as meshed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextureReport {
+    /// A* asked for, %; none where a mask or a polygon says so block by block only.
+    pub asked_percent: Option<f64>,
+    /// A* as meshed, % (Eq. 15).
+    pub meshed_percent: f64,
+    /// Positions in the case file, from 0, of the textures that a free edge clips.
+    pub clipped: Vec<usize>,
+}
+
+/// Time and its steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Schedule {
+    /// dt*.
+    pub dt_star: f64,
+    /// Number of steps.
+    pub last_step: u64,
+    /// When the run ends.
+    pub stop: Stop,
+    /// Where the kinetic window begins.
+    pub kinetic: KineticStart,
+}
+
+impl Schedule {
+    /// t* of the last step.
+    pub fn end_star(&self) -> f64 {
+        self.last_step as f64 * self.dt_star
+    }
+}
+
+/// What is written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// When fields are kept.
+    pub snapshots: Snapshots,
+    /// Which fields.
+    pub fields: Vec<FieldName>,
+    /// Every n-th block of each axis in the fields file.
+    pub stride: usize,
+    /// Steps between rows of the series.
+    pub series_stride: u64,
+}
+
+/// When fields are kept.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Snapshots {
+    /// At the instants A-F.
+    Instants,
+    /// At these steps.
+    At(Vec<u64>),
+    /// Every n-th step from 0.
+    Every(u64),
+}
+
+/// A file that a case reads, kept so that the run folder can hold a copy.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Input {
+    /// Path in the run folder.
+    pub name: String,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+}
+
+/// Longest series that is written unless a spacing is asked for.
+const SERIES_ROWS: u64 = 20_000;
+
+/// Longest run, in steps.
+const MAX_STEPS: f64 = 1e11;
+
+/// Largest strain of the load: beyond it the springs of this model mean nothing.
+const MAX_EPSILON: f64 = 0.5;
+
+/// Most bytes of fields that a run keeps in memory until it ends.
+const MAX_FIELD_BYTES: f64 = 4.0 * 1024.0 * 1024.0 * 1024.0;
+
+impl Case {
+    /// Loads a case file and the files it names, which stand relative to it.
+    ///
+    /// # Errors
+    /// A sentence that names place, value, bound and remedy.
+    pub fn load(path: &Path, overrides: &[String]) -> Result<Self, CaseError> {
+        let file = CaseFile::load(path, overrides)?;
+        let name = path.file_stem().map_or_else(|| "case".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::new(file, &name, folder)
+    }
+
+    /// Makes a case of a case file; the files it names stand relative to `folder`.
+    ///
+    /// # Errors
+    /// A sentence that names place, value, bound and remedy.
+    pub fn new(mut file: CaseFile, name: &str, folder: &Path) -> Result<Self, CaseError> {
+        let scales = scales(&file);
+        let groups = groups(&file, &scales)?;
+        let lattice = lattice(&file);
+        let mut inputs = Inputs::new(folder);
+        let textures = textures(&mut file, &scales, &lattice, &mut inputs)?;
+        let meshed = mesh(&lattice, &textures.shapes);
+        let coefficients = coefficients(&mut file, &groups, &lattice, &mut inputs)?;
+        let negative_draws = coefficients.negative_draws;
+        let load = if file.load.redistribute { Load::Redistributed } else { Load::Kept };
+        let surface = Surface::new(coefficients, meshed.textured, load, scales.mu_static_mean)
+            .map_err(|error| file.error("texture", error.to_string()))?;
+        let texture = TextureReport {
+            asked_percent: textures.asked_percent,
+            meshed_percent: surface.texture_percent(),
+            clipped: meshed.clipped,
+        };
+        let law = match file.friction.law {
+            case_file::Law::Projection => FrictionLaw::Projection,
+            case_file::Law::Reversal => FrictionLaw::Reversal,
+            case_file::Law::Literal => FrictionLaw::Literal,
+        };
+        let drive = Drive::at_angle(groups.v_star, file.drive.direction);
+        let model = Model::new(lattice, surface, drive, damping(groups.omega_star), groups.epsilon, law);
+        let schedule = schedule(&file, &scales, &groups)?;
+        let output = output(&file, &schedule, &lattice)?;
+        Ok(Self {
+            name: name.to_owned(),
+            file,
+            inputs: inputs.read,
+            scales,
+            groups,
+            model,
+            texture,
+            negative_draws,
+            schedule,
+            output,
+        })
+    }
+
+    /// Steps times blocks: what the run costs.
+    pub fn block_steps(&self) -> f64 {
+        self.schedule.last_step as f64 * self.model.lattice.n_blocks() as f64
+    }
+}
+
+fn scales(file: &CaseFile) -> Scales {
+    Scales {
+        block_size: file.slider.block_size.si(),
+        young_modulus: file.slider.young_modulus.si(),
+        density: file.slider.density.si(),
+        pressure: file.load.pressure.si(),
+        mu_static_mean: file.friction.mu_static,
+    }
+}
+
+fn groups(file: &CaseFile, scales: &Scales) -> Result<Groups, CaseError> {
+    let epsilon = scales.epsilon();
+    if epsilon > MAX_EPSILON {
+        let sentence = format!(
+            "the load strains the slider by P mu_s/E = {epsilon:.3}, more than {MAX_EPSILON}: lower `pressure` or raise \
+             `young_modulus`"
+        );
+        return Err(file.error("load.pressure", sentence));
+    }
+    let v_star = match &file.drive.speed {
+        case_file::DriveSpeed::VStar(v_star) => *v_star,
+        case_file::DriveSpeed::Speed(speed) => speed.si() / scales.speed(),
+    };
+    within(file, "drive.speed", "V*", v_star, MIN_V_STAR, MAX_V_STAR)?;
+    let r_star = match file.friction.kinetic {
+        case_file::KineticFriction::RStar(r_star) => r_star,
+        case_file::KineticFriction::MuKinetic(mu) => mu / scales.mu_static_mean,
+    };
+    let omega_star = match &file.slider.damping {
+        case_file::Damping::OmegaStar(omega_star) => *omega_star,
+        case_file::Damping::Rate(rate) => scales.omega_star(rate.si()),
+    };
+    within(file, "slider.damping_rate", "Omega*", omega_star, 0.0, MAX_OMEGA_STAR)?;
+    Ok(Groups {
+        v_star,
+        r_star,
+        omega_star,
+        sigma_static_star: file.friction.sigma_static_star,
+        sigma_kinetic_star: file.friction.sigma_kinetic_star,
+        epsilon,
+    })
+}
+const MIN_V_STAR: f64 = 1e-9;
+const MAX_V_STAR: f64 = 10.0;
+const MAX_OMEGA_STAR: f64 = 1000.0;
+
+fn within(file: &CaseFile, key: &str, symbol: &str, value: f64, low: f64, high: f64) -> Result<(), CaseError> {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    Err(file.error(key, format!("this makes {symbol} = {value:.4}, which must lie between {low} and {high}")))
+}
+
+fn lattice(file: &CaseFile) -> Lattice {
+    let edges = file.slider.edges.map(|edge| match edge {
+        case_file::Edge::Free => Edges::Free,
+        case_file::Edge::Periodic => Edges::Periodic,
+    });
+    let [nx, ny] = file.slider.blocks.map(|count| count as usize);
+    Lattice::with_edges(nx, ny, edges)
+}
+
+struct Textures {
+    shapes: Vec<surface::Texture>,
+    asked_percent: Option<f64>,
+}
+
+fn textures(
+    file: &mut CaseFile,
+    scales: &Scales,
+    lattice: &Lattice,
+    inputs: &mut Inputs,
+) -> Result<Textures, CaseError> {
+    let mut shapes = Vec::new();
+    let mut asked = Some(0.0);
+    for index in 0..file.texture.len() {
+        let (shape, percent) = match &file.texture[index] {
+            case_file::Texture::Cavity(cavity) => cavity_in_blocks(cavity, scales, lattice),
+            case_file::Texture::Groove(groove) => groove_in_blocks(groove, scales, lattice),
+            case_file::Texture::Polygon(polygon) => {
+                let points = polygon.points.iter().map(|point| scales.in_blocks_each(point)).collect();
+                (surface::Texture::Polygon(points), None)
+            }
+            case_file::Texture::Mask(mask) => {
+                let key = format!("texture.{index}.file");
+                let (path, copy) = inputs.read(file, &key, &mask.file)?;
+                let shape = read_mask(&path, mask.threshold, lattice)
+                    .map_err(|error| file.error(&key, error.to_string()))?;
+                if let case_file::Texture::Mask(mask) = &mut file.texture[index] {
+                    mask.file = copy;
+                }
+                (shape, None)
+            }
+        };
+        shapes.push(shape);
+        asked = asked.zip(percent).map(|(sum, percent)| sum + percent);
+    }
+    Ok(Textures { shapes, asked_percent: asked })
+}
+
+fn cavity_in_blocks(
+    cavity: &case_file::Cavity,
+    scales: &Scales,
+    lattice: &Lattice,
+) -> (surface::Texture, Option<f64>) {
+    let n_blocks = lattice.n_blocks();
+    let array = cavity.array.map(|count| count as usize);
+    let count = array[0] * array[1];
+    let (lambda, percent) = match &cavity.size {
+        case_file::CavitySize::Coverage(percent) => {
+            (surface::cavity_lambda(*percent, n_blocks, cavity.s, cavity.w, count), *percent)
+        }
+        case_file::CavitySize::Lambda(lambda) => {
+            let lambda = scales.in_blocks(lambda.si());
+            (lambda, surface::cavity_percent(lambda, n_blocks, cavity.s, cavity.w, count))
+        }
+    };
+    let center = match &cavity.center {
+        case_file::Center::Middle => [0.5 * lattice.nx as f64, 0.5 * lattice.ny as f64],
+        case_file::Center::At(center) => scales.in_blocks_each(center),
+    };
+    let &case_file::Cavity { s, w, across, rotate, .. } = cavity;
+    (surface::Texture::Cavity(surface::Cavity { center, lambda, s, w, across, rotate, array }), Some(percent))
+}
+
+fn groove_in_blocks(
+    groove: &case_file::Groove,
+    scales: &Scales,
+    lattice: &Lattice,
+) -> (surface::Texture, Option<f64>) {
+    let (orientation, breadth) = match groove.orientation {
+        case_file::Orientation::Across => (surface::Orientation::Across, lattice.nx as f64),
+        case_file::Orientation::Along => (surface::Orientation::Along, lattice.ny as f64),
+    };
+    let (width, percent) = match &groove.size {
+        case_file::GrooveSize::Coverage(percent) => (breadth * percent / 100.0, *percent),
+        case_file::GrooveSize::Width(width) => {
+            let width = scales.in_blocks(width.si());
+            (width, 100.0 * width / breadth)
+        }
+    };
+    let offset = scales.in_blocks(groove.offset.si());
+    (surface::Texture::Groove(surface::Groove { orientation, width, offset }), Some(percent))
+}
+
+fn read_mask(path: &Path, threshold: f64, lattice: &Lattice) -> Result<surface::Texture, arrays::ArrayError> {
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("npy")) {
+        return Ok(surface::Texture::Blocks(arrays::read_mask_npy(path, lattice.nx, lattice.ny)?));
+    }
+    Ok(surface::Texture::Image(arrays::read_mask_png(path, threshold)?))
+}
+
+fn coefficients(
+    file: &mut CaseFile,
+    groups: &Groups,
+    lattice: &Lattice,
+    inputs: &mut Inputs,
+) -> Result<Coefficients, CaseError> {
+    let mean = file.friction.mu_static;
+    let mut given = |key: &str, name: &mut Option<String>, file: &CaseFile| -> Result<_, CaseError> {
+        let Some(written) = name.as_ref() else { return Ok(None) };
+        let (path, copy) = inputs.read(file, key, written)?;
+        let field = arrays::read_field(&path, lattice.nx, lattice.ny)
+            .map_err(|error| file.error(key, error.to_string()))?;
+        *name = Some(copy);
+        Ok(Some(field))
+    };
+    let (mut static_name, mut kinetic_name) =
+        (file.friction.mu_static_field.clone(), file.friction.mu_kinetic_field.clone());
+    let mu_static = given("friction.mu_static_field", &mut static_name, file)?;
+    let mu_kinetic = given("friction.mu_kinetic_field", &mut kinetic_name, file)?;
+    file.friction.mu_static_field = static_name;
+    file.friction.mu_kinetic_field = kinetic_name;
+    // A given field takes the place of its draws; the other stream is not shifted by it.
+    let spread = |mean: f64, sigma_star: f64, given: bool| Distribution {
+        mean,
+        deviation: if given { 0.0 } else { sigma_star * mean },
+    };
+    let mut drawn = Coefficients::draw(
+        lattice.n_blocks(),
+        spread(mean, groups.sigma_static_star, mu_static.is_some()),
+        spread(groups.r_star * mean, groups.sigma_kinetic_star, mu_kinetic.is_some()),
+        file.friction.seed,
+    );
+    drawn.mu_static = mu_static.unwrap_or(drawn.mu_static);
+    drawn.mu_kinetic = mu_kinetic.unwrap_or(drawn.mu_kinetic);
+    Ok(drawn)
+}
+
+/// Files read so far.
+struct Inputs {
+    folder: PathBuf,
+    read: Vec<Input>,
+}
+
+impl Inputs {
+    fn new(folder: &Path) -> Self {
+        Self { folder: folder.to_owned(), read: Vec::new() }
+    }
+
+    /// Notes a file; gives its path and the one of its copy in the run folder.
+    fn read(&mut self, file: &CaseFile, key: &str, written: &str) -> Result<(PathBuf, String), CaseError> {
+        let path = self.folder.join(written);
+        let bytes = std::fs::read(&path).map_err(|error| {
+            file.error(key, format!("cannot read {}: {error}; paths are relative to the case file", path.display()))
+        })?;
+        let plain = path.file_name().map_or_else(|| "input".into(), |name| name.to_string_lossy().into_owned());
+        let mut name = format!("inputs/{plain}");
+        let mut copies = 1;
+        // Two files of one name from different folders stay two files.
+        while let Some(other) = self.read.iter().find(|input| input.name == name) {
+            if other.bytes == bytes {
+                return Ok((path, name));
+            }
+            copies += 1;
+            name = format!("inputs/{copies}-{plain}");
+        }
+        self.read.push(Input { name: name.clone(), bytes });
+        Ok((path, name))
+    }
+}
+
+fn schedule(file: &CaseFile, scales: &Scales, groups: &Groups) -> Result<Schedule, CaseError> {
+    let time = &file.time;
+    let dt_star = match time.step {
+        case_file::Step::Auto => 0.1,
+        case_file::Step::Paper => 2.0 / 3.0 * groups.v_star,
+        case_file::Step::Number(dt_star) => dt_star,
+    };
+    if dt_star >= dt_star_limit() {
+        let sentence = format!(
+            "the step dt* = {dt_star:.4} is not stable: it must be less than {:.4}; \"auto\" takes 0.1",
+            dt_star_limit()
+        );
+        return Err(file.error("time.step", sentence));
+    }
+    let end_star = match &time.duration {
+        case_file::RunTime::Auto => 8.0 / groups.v_star,
+        case_file::RunTime::Star(duration) => *duration,
+        case_file::RunTime::Duration(duration) => duration.si() / scales.time(),
+    };
+    // A duration that is a whole number of steps up to rounding must not gain one.
+    let steps = (end_star / dt_star - 1e-6).ceil().max(1.0);
+    if steps > MAX_STEPS {
+        let sentence = format!(
+            "a run to t* = {end_star:.4e} in steps of {dt_star} takes {steps:.2e} steps, more than {MAX_STEPS:.0e}: \
+             shorten it or raise the step"
+        );
+        return Err(file.error("time.duration_star", sentence));
+    }
+    let kinetic = match time.kinetic_from_star {
+        AutoOr::Auto => KineticStart::Auto,
+        AutoOr::Number(from) if from < end_star => KineticStart::At(from),
+        AutoOr::Number(from) => {
+            let sentence = format!("the kinetic window cannot begin at t* = {from}: the run ends at {end_star:.4}");
+            return Err(file.error("time.kinetic_from_star", sentence));
+        }
+    };
+    let last_step = steps as u64;
+    let stop = match time.stop {
+        case_file::Stop::End => Stop::at_step(last_step),
+        case_file::Stop::AfterOnset => Stop::after_onset(last_step),
+    };
+    Ok(Schedule { dt_star, last_step, stop, kinetic })
+}
+
+fn output(file: &CaseFile, schedule: &Schedule, lattice: &Lattice) -> Result<Output, CaseError> {
+    let Schedule { dt_star, last_step, .. } = *schedule;
+    let spacing = |key: &str, time: f64| -> Result<u64, CaseError> {
+        let steps = (time / dt_star).round();
+        if steps >= 1.0 {
+            return Ok(steps as u64);
+        }
+        Err(file.error(key, format!("a spacing of {time} in t* is less than one step of {dt_star}: raise it")))
+    };
+    let snapshots = match &file.output.snapshots {
+        case_file::Snapshots::Auto => Snapshots::Instants,
+        case_file::Snapshots::Every(every) => Snapshots::Every(spacing("output.snapshots", *every)?),
+        case_file::Snapshots::At(times) => {
+            let mut steps: Vec<u64> = times.iter().map(|time| (time / dt_star).round() as u64).collect();
+            if let Some((_, time)) = steps.iter().zip(times).find(|&(&step, _)| step > last_step) {
+                let sentence =
+                    format!("no snapshot can be taken at t* = {time}: the run ends at {:.4}", schedule.end_star());
+                return Err(file.error("output.snapshots", sentence));
+            }
+            steps.dedup();
+            Snapshots::At(steps)
+        }
+    };
+    let series_stride = match file.output.series {
+        AutoOr::Auto => last_step.div_ceil(SERIES_ROWS),
+        AutoOr::Number(time) => spacing("output.series", time)?,
+    };
+    let stride = file.output.stride as usize;
+    let output = Output { snapshots, fields: file.output.fields.clone(), stride, series_stride };
+    let bytes = output.field_bytes(lattice, last_step);
+    if bytes > MAX_FIELD_BYTES {
+        let sentence = format!(
+            "the snapshots take {:.1} GiB, more than {:.0}: take fewer, name fewer `fields`, or raise `stride`",
+            bytes / 1024f64.powi(3),
+            MAX_FIELD_BYTES / 1024f64.powi(3)
+        );
+        return Err(file.error("output.snapshots", sentence));
+    }
+    Ok(output)
+}
+
+impl Output {
+    /// Bytes of all snapshots together.
+    pub fn field_bytes(&self, lattice: &Lattice, last_step: u64) -> f64 {
+        let frames = match &self.snapshots {
+            Snapshots::Instants => 6,
+            Snapshots::At(steps) => steps.len() as u64,
+            Snapshots::Every(every) => last_step / every + 1,
+        };
+        let blocks = lattice.nx.div_ceil(self.stride) * lattice.ny.div_ceil(self.stride);
+        frames as f64 * self.fields.len() as f64 * blocks as f64 * size_of::<f32>() as f64
+    }
+}
+
+/// Strain of the load from which the springs' bending of geometry shows in the third digit.
+const LARGE_EPSILON: f64 = 1e-2;
+/// Speed above which loading is faster than the slip front.
+const LARGE_V_STAR: f64 = 0.2;
+/// Fewest blocks for which the paper calls edge effects small.
+const FEW_BLOCKS: usize = 625;
+
+impl Case {
+    /// Where the case leaves what the model is good for, or what was asked, before it is run.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let mut warn = |wrong: bool, sentence: String| {
+            if wrong {
+                warnings.push(sentence);
+            }
+        };
+        let groups = &self.groups;
+        for texture in &self.texture.clipped {
+            warn(true, format!("texture {} reaches over a free edge and is clipped there", texture + 1));
+        }
+        warn(
+            self.negative_draws > 0,
+            format!("{} negative draws of the friction coefficients were set to 0", self.negative_draws),
+        );
+        warn(
+            groups.epsilon > LARGE_EPSILON,
+            format!(
+                "the load strains the slider by {:.3}, more than {LARGE_EPSILON}: results depend on it",
+                groups.epsilon
+            ),
+        );
+        warn(
+            groups.v_star > LARGE_V_STAR,
+            format!(
+                "V* = {} is above {LARGE_V_STAR}: the slider slips as a whole before any front can cross it",
+                groups.v_star
+            ),
+        );
+        warn(
+            self.schedule.dt_star > 0.5,
+            format!("dt* = {} is stable but coarse: 0.1 keeps mu_s* within 3e-4", self.schedule.dt_star),
+        );
+        warn(
+            self.model.lattice.n_blocks() < FEW_BLOCKS,
+            format!(
+                "{} blocks are few: edges weigh heavily below {FEW_BLOCKS} (Fig. 5 of the paper)",
+                self.model.lattice.n_blocks()
+            ),
+        );
+        warnings
+    }
+}

@@ -1,0 +1,240 @@
+//! The run folder: everything needed to read a run's results and to make them again.
+//!
+//! Files appear whole or not at all, and `manifest.json` comes last: where it stands, the run is complete.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// Names that belong to slipfront in a run folder, besides the files in `inputs/` that a manifest lists.
+const OWN_FILES: [&str; 9] = [
+    MANIFEST,
+    "case.toml",
+    "summary.json",
+    "series.csv",
+    "fields.nc",
+    "friction.svg",
+    "friction.png",
+    "stress.svg",
+    "stress.png",
+];
+const MANIFEST: &str = "manifest.json";
+
+/// What can go wrong with a run folder.
+#[derive(Debug, Error)]
+pub enum FolderError {
+    /// There is something in it already.
+    #[error(
+        "the folder {} is not empty: choose another with --out, or replace slipfront's own files in it with --force",
+        path.display()
+    )]
+    NotEmpty {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A file that is not slipfront's stands where one would be written.
+    #[error("{} is not a file of an earlier run: move it away or choose another folder with --out", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+    },
+    /// It cannot be made or written to.
+    #[error("cannot write to the folder {}: {source}; choose another with --out", path.display())]
+    Unwritable {
+        /// The folder.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A file could not be written.
+    #[error("cannot write {}: {source}; the folder is left without manifest.json, as incomplete", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A file could not be read back.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+}
+
+/// A folder that a run is being written to.
+#[derive(Debug)]
+pub struct RunFolder {
+    path: PathBuf,
+    written: Vec<String>,
+}
+
+/// `manifest.json`: what was written, when and where. All other files of the same case are the same bytes.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of slipfront.
+    pub version: String,
+    /// Name of the machine.
+    pub host: String,
+    /// Operating system and processor.
+    pub platform: String,
+    /// When the run began, UTC.
+    pub started: String,
+    /// When its last file was written, UTC.
+    pub finished: String,
+    /// Seconds in between.
+    pub wall_time_s: f64,
+    /// Threads that it was allowed.
+    pub threads: usize,
+    /// Every other file of the run.
+    pub files: Vec<ManifestFile>,
+}
+
+/// A file and its checksum.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct ManifestFile {
+    /// Path in the folder.
+    pub name: String,
+    /// Length.
+    pub bytes: u64,
+    /// BLAKE3 hash, hexadecimal.
+    pub blake3: String,
+}
+
+impl RunFolder {
+    /// Makes the folder ready: it is created, or empty, or with `force` rid of the files of an earlier run (and of
+    /// nothing else).
+    ///
+    /// # Errors
+    /// When it holds something else, or cannot be written.
+    pub fn prepare(path: &Path, force: bool) -> Result<Self, FolderError> {
+        let unwritable = |source| FolderError::Unwritable { path: path.to_owned(), source };
+        std::fs::create_dir_all(path).map_err(unwritable)?;
+        if std::fs::read_dir(path).map_err(unwritable)?.next().is_some() {
+            if !force {
+                return Err(FolderError::NotEmpty { path: path.to_owned() });
+            }
+            // The manifest goes first: from now on the folder does not look complete.
+            for name in own_files(path) {
+                match std::fs::remove_file(path.join(name)) {
+                    Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(unwritable(error)),
+                    _ => {}
+                }
+            }
+            // Gone if it held our inputs only; a foreign file keeps it.
+            std::fs::remove_dir(path.join("inputs")).ok();
+        }
+        // A folder that cannot be written should say so before the run, not after it.
+        tempfile::Builder::new().prefix(".slipfront").tempfile_in(path).map_err(unwritable)?;
+        Ok(Self { path: path.to_owned(), written: Vec::new() })
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes a file of the run.
+    ///
+    /// # Errors
+    /// When it cannot be written, or a foreign file stands in its place.
+    pub fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
+        let path = self.claim(name)?;
+        write_whole(&path, bytes).map_err(|source| FolderError::Write { path, source })?;
+        Ok(())
+    }
+
+    /// The path of a file that somebody else writes, which is noted as part of the run.
+    ///
+    /// # Errors
+    /// When a foreign file stands in its place, or its folder cannot be made.
+    pub fn claim(&mut self, name: &str) -> Result<PathBuf, FolderError> {
+        let path = self.path.join(name);
+        if path.exists() {
+            return Err(FolderError::Foreign { path });
+        }
+        if let Some(parent) = path.parent() {
+            std::fs::create_dir_all(parent)
+                .map_err(|source| FolderError::Write { path: parent.to_owned(), source })?;
+        }
+        self.written.push(name.to_owned());
+        Ok(path)
+    }
+
+    /// Writes the manifest: the run is complete.
+    ///
+    /// # Errors
+    /// When a file cannot be read back or the manifest cannot be written.
+    pub fn complete(self, started: jiff::Timestamp, threads: usize) -> Result<Manifest, FolderError> {
+        let files = self.written.iter().map(|name| checksum(&self.path, name)).collect::<Result<_, _>>()?;
+        let finished = jiff::Timestamp::now();
+        let manifest = Manifest {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            host: gethostname::gethostname().to_string_lossy().into_owned(),
+            platform: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+            started: started.to_string(),
+            finished: finished.to_string(),
+            wall_time_s: finished.duration_since(started).as_secs_f64(),
+            threads,
+            files,
+        };
+        let path = self.path.join(MANIFEST);
+        write_whole(&path, &json(&manifest)).map_err(|source| FolderError::Write { path, source })?;
+        Ok(manifest)
+    }
+}
+
+/// Files of an earlier run in this folder, its manifest first.
+fn own_files(path: &Path) -> Vec<String> {
+    let mut names: Vec<String> = OWN_FILES.map(str::to_owned).to_vec();
+    let manifest = std::fs::read(path.join(MANIFEST)).ok();
+    let manifest = manifest.and_then(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok());
+    let listed = manifest.into_iter().flat_map(|manifest| manifest.files).map(|file| file.name);
+    // A manifest is only believed about the folder of copies: a damaged one must not make us delete elsewhere.
+    names.extend(listed.filter(|name| name.strip_prefix("inputs/").is_some_and(|plain| !plain.contains(['/', '\\']))));
+    names
+}
+
+fn checksum(folder: &Path, name: &str) -> Result<ManifestFile, FolderError> {
+    let path = folder.join(name);
+    let hash = |path: &Path| -> std::io::Result<ManifestFile> {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update_reader(std::fs::File::open(path)?)?;
+        Ok(ManifestFile {
+            name: name.to_owned(),
+            bytes: hasher.count(),
+            blake3: hasher.finalize().to_hex().to_string(),
+        })
+    };
+    hash(&path).map_err(|source| FolderError::Read { path, source })
+}
+
+/// Writes a file whole or not at all: into a neighbour first, which then takes its name.
+///
+/// # Errors
+/// What the system says; nothing is left behind then.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".slipfront");
+    // Temporary files are private by default; results are not.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder.tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    file.persist(path)?;
+    Ok(())
+}
+
+/// Pretty JSON with a final newline.
+pub(crate) fn json(value: &impl Serialize) -> Vec<u8> {
+    // Our own structs of numbers and strings: serialisation cannot fail.
+    let mut bytes = serde_json::to_vec_pretty(value).unwrap_or_default();
+    bytes.push(b'\n');
+    bytes
+}

@@ -1,0 +1,239 @@
+//! [`Record`] -> files, and files -> pictures.
+//!
+//! Pictures are always drawn from the files, so that those of a run and those of `slipfront plot` are the same.
+
+use std::path::{Path, PathBuf};
+
+use slipfront::observe::Frame;
+use thiserror::Error;
+
+use crate::case::Case;
+use crate::case_file::CaseError;
+use crate::fields::{self, FieldFrame, FieldName, FieldsError, FieldsFile, StaticFields};
+use crate::folder::{self, FolderError, Manifest, RunFolder};
+use crate::pictures::{self, FrictionCurve, Instant, Kinetic, Picture, PictureError, StressMap, StressMaps};
+use crate::run::Record;
+use crate::series::{self, SeriesError, SeriesRow};
+use crate::summary::Summary;
+
+/// What can go wrong with results.
+#[derive(Debug, Error)]
+pub enum ResultsError {
+    /// The folder.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    /// `case.toml`.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// `fields.nc`.
+    #[error(transparent)]
+    Fields(#[from] FieldsError),
+    /// `series.csv`.
+    #[error(transparent)]
+    Series(#[from] SeriesError),
+    /// The series could not be put into words.
+    #[error("cannot write series.csv: {0}")]
+    Csv(#[from] csv::Error),
+    /// `summary.json`.
+    #[error("{} is not the summary of a slipfront run: {source}", path.display())]
+    Summary {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: serde_json::Error,
+    },
+    /// A picture.
+    #[error("cannot draw {name}: {source}")]
+    Picture {
+        /// Which one.
+        name: &'static str,
+        /// What is wrong with it.
+        source: PictureError,
+    },
+}
+
+/// Writes the files of a run and draws its pictures; the manifest completes the folder.
+///
+/// # Errors
+/// When a file cannot be written: the folder is then left without a manifest.
+pub fn write(
+    case: &Case,
+    record: &Record,
+    mut folder: RunFolder,
+    started: jiff::Timestamp,
+    threads: usize,
+) -> Result<Manifest, ResultsError> {
+    folder.write("case.toml", case.file.to_toml()?.as_bytes())?;
+    for input in &case.inputs {
+        folder.write(&input.name, &input.bytes)?;
+    }
+    folder.write("summary.json", &folder::json(&record.summary))?;
+    let rows = record.rows.iter().map(|row| SeriesRow::new(row, &case.scales));
+    folder.write("series.csv", &series::to_csv(rows)?)?;
+    let fields = folder.claim("fields.nc")?;
+    write_fields(case, record, &fields)?;
+    for (name, picture) in draw(folder.path())? {
+        folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
+        folder.write(&format!("{name}.png"), &picture.png)?;
+    }
+    Ok(folder.complete(started, threads)?)
+}
+
+fn write_fields(case: &Case, record: &Record, path: &Path) -> Result<(), FieldsError> {
+    let surface = &case.model.surface;
+    let names = &case.output.fields;
+    let frames: Vec<FieldFrame> = record
+        .frames
+        .iter()
+        .map(|(letter, frame)| FieldFrame {
+            time_star: frame.time_star,
+            label: letter.map(String::from).unwrap_or_default(),
+            step: frame.step,
+            values: dimensional(case, record, frame),
+        })
+        .collect();
+    fields::write_fields(
+        path,
+        &FieldsFile {
+            nx: case.model.lattice.nx,
+            ny: case.model.lattice.ny,
+            stride: case.output.stride,
+            block_size: case.scales.block_size,
+            time_unit_s: case.scales.time(),
+            names,
+            statics: StaticFields {
+                textured: &surface.textured,
+                mu_static: &surface.mu_static,
+                mu_kinetic: &surface.mu_kinetic,
+                first_slip_time_star: &record.first_slip_time_star,
+            },
+            frames: &frames,
+        },
+    )
+}
+
+/// Values of a frame in the units of the fields file.
+fn dimensional(case: &Case, record: &Record, frame: &Frame) -> Vec<Vec<f32>> {
+    let unit = |field: &FieldName| match field {
+        // A run in which nothing was ever pulled has no largest stress to divide by.
+        FieldName::ContactStressStar if record.contact_stress_max > 0.0 => 1.0 / record.contact_stress_max,
+        FieldName::ContactStressStar | FieldName::Sliding => 1.0,
+        FieldName::Traction => case.scales.stress(),
+        FieldName::DisplacementX | FieldName::DisplacementY => case.scales.displacement(),
+        FieldName::VelocityX | FieldName::VelocityY => case.scales.speed(),
+    };
+    let scaled = |(field, values): (&FieldName, &Vec<f32>)| -> Vec<f32> {
+        let unit = unit(field);
+        values.iter().map(|&value| (f64::from(value) * unit) as f32).collect()
+    };
+    case.output.fields.iter().zip(&frame.values).map(scaled).collect()
+}
+
+/// Draws the pictures of a run folder from its files.
+///
+/// # Errors
+/// When a file is missing or damaged.
+pub fn draw(folder: &Path) -> Result<Vec<(&'static str, Picture)>, ResultsError> {
+    let (friction, stress) = rayon::join(|| draw_friction(&[folder.to_owned()]), || draw_stress(folder));
+    let mut drawn = vec![("friction", friction?)];
+    drawn.extend(stress?.map(|picture| ("stress", picture)));
+    Ok(drawn)
+}
+
+/// Draws the friction curves of several run folders over each other.
+///
+/// # Errors
+/// When a file is missing or damaged.
+pub fn draw_friction(folders: &[PathBuf]) -> Result<Picture, ResultsError> {
+    let mut curves = folders.iter().map(|folder| friction_curve(folder)).collect::<Result<Vec<_>, _>>()?;
+    label(&mut curves, folders);
+    pictures::friction(&curves).map_err(|source| ResultsError::Picture { name: "friction", source })
+}
+
+/// Curves of cases of one name are told apart by their folders.
+fn label(curves: &mut [FrictionCurve], folders: &[PathBuf]) {
+    let names: Vec<String> = curves.iter().map(|curve| curve.label.clone()).collect();
+    for (curve, folder) in curves.iter_mut().zip(folders) {
+        if names.iter().filter(|name| **name == curve.label).count() > 1 {
+            curve.label = folder.display().to_string();
+        }
+    }
+}
+
+fn friction_curve(folder: &Path) -> Result<FrictionCurve, ResultsError> {
+    let summary = read_summary(folder)?;
+    let rows = series::read_csv(&folder.join("series.csv"))?;
+    let kinetic = summary.kinetic_window_star.zip(summary.kinetic_friction_star);
+    Ok(FrictionCurve {
+        label: summary.case,
+        time_star: rows.iter().map(|row| row.time_star).collect(),
+        mu_star: rows.iter().map(|row| row.mu_star).collect(),
+        sliding_percent: rows.iter().map(|row| row.sliding_percent).collect(),
+        first_slip_time_star: summary.first_slip_time_star,
+        peak: summary.transition.then_some((summary.onset_time_star, summary.static_friction_star)),
+        kinetic: kinetic.map(|([from, to], mean)| Kinetic {
+            from,
+            to,
+            mean,
+            uncertainty: summary.kinetic_friction_star_uncertainty,
+        }),
+        instants: summary
+            .instants
+            .iter()
+            .map(|instant| Instant {
+                letter: instant.instant,
+                time_star: instant.time_star,
+                mu_star: instant.mu_star,
+            })
+            .collect(),
+    })
+}
+
+/// Reads `summary.json` of a run folder.
+///
+/// # Errors
+/// When it is missing or no summary.
+pub fn read_summary(folder: &Path) -> Result<Summary, ResultsError> {
+    let path = folder.join("summary.json");
+    let bytes = std::fs::read(&path).map_err(|source| FolderError::Read { path: path.clone(), source })?;
+    serde_json::from_slice(&bytes).map_err(|source| ResultsError::Summary { path, source })
+}
+
+/// Most maps in the picture of the stress.
+const MOST_MAPS: usize = 6;
+
+/// Draws the stress maps of a run; none if it kept no contact stress.
+fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
+    let fields = fields::read_fields(&folder.join("fields.nc"))?;
+    let stress = fields.names.iter().position(|&name| name == FieldName::ContactStressStar);
+    let Some(stress) = stress.filter(|_| !fields.frames.is_empty()) else { return Ok(None) };
+    // Of many snapshots, six spread over the run are shown.
+    let shown = fields.frames.len().min(MOST_MAPS);
+    let pick = |k: usize| &fields.frames[k * (fields.frames.len() - 1) / (shown - 1).max(1)];
+    let rows = series::read_csv(&folder.join("series.csv"))?;
+    let instants = read_summary(folder)?.instants;
+    // A snapshot between the rows of a thinned series has no mu* of its own, unless it is an instant.
+    let mu_star = |frame: &FieldFrame| {
+        let instant = instants.iter().find(|instant| instant.time_star == frame.time_star);
+        let row = || rows.iter().find(|row| row.step == frame.step).map(|row| row.mu_star);
+        instant.map(|instant| instant.mu_star).or_else(row).unwrap_or(f64::NAN)
+    };
+    let maps = (0..shown)
+        .map(pick)
+        .map(|frame| StressMap {
+            label: frame.label.clone(),
+            time_star: frame.time_star,
+            mu_star: mu_star(frame),
+            values: frame.values[stress].clone(),
+        })
+        .collect();
+    let maps = StressMaps {
+        nx: fields.nx.div_ceil(fields.stride),
+        ny: fields.ny.div_ceil(fields.stride),
+        block_size: fields.block_size * fields.stride as f64,
+        textured: fields.statics.textured,
+        maps,
+    };
+    let picture = pictures::stress(&maps).map_err(|source| ResultsError::Picture { name: "stress", source })?;
+    Ok(Some(picture))
+}

@@ -1,0 +1,81 @@
+//! [`Case`] -> [`Record`]: one run with all observers that its files need.
+
+use slipfront::observe::frames::Selection;
+use slipfront::observe::{
+    Curve, CurveRow, FirstSlip, Frame, Frames, Instants, KineticHistory, Observer, Schedule, Scheduled, StressMaximum,
+};
+use slipfront::{RunError, Simulation, StopReason};
+
+use crate::case::{Case, Snapshots};
+use crate::summary::Summary;
+
+/// Everything a run leaves behind, in memory.
+#[derive(Debug)]
+pub struct Record {
+    /// The numbers.
+    pub summary: Summary,
+    /// The recorded curve.
+    pub rows: Vec<CurveRow>,
+    /// Fields, in the order of time, with their letters where they are instants A-F.
+    pub frames: Vec<(Option<char>, Frame)>,
+    /// t* of the first slip of every block.
+    pub first_slip_time_star: Vec<f64>,
+    /// tau_c^max, in units of `P mu_s`.
+    pub contact_stress_max: f64,
+}
+
+/// Runs a case to its end. `watcher` is shown every `watch_every`-th step, for a display of progress.
+///
+/// # Errors
+/// [`RunError`] when the run diverges.
+pub fn run(case: &Case, watch_every: u64, watcher: &mut dyn Observer) -> Result<Record, RunError> {
+    let schedule = &case.schedule;
+    let selection = Selection {
+        fields: case.output.fields.iter().map(|field| field.observed()).collect(),
+        stride: case.output.stride,
+    };
+    let mut curve = Curve::every(case.output.series_stride);
+    let mut history = KineticHistory::new(schedule.last_step);
+    let mut first_slip = FirstSlip::none(case.model.lattice.n_blocks());
+    let mut stress_maximum = StressMaximum::default();
+    let mut instants = Instants::new(selection.clone(), schedule.kinetic, schedule.end_star());
+    let mut frames = Frames::new(selection);
+
+    let mut observers = vec![
+        Scheduled::always(&mut curve),
+        Scheduled::always(&mut history),
+        Scheduled::always(&mut first_slip),
+        Scheduled::always(&mut stress_maximum),
+        Scheduled::new(Schedule::Every(watch_every), watcher),
+    ];
+    match &case.output.snapshots {
+        Snapshots::Instants => observers.push(Scheduled::always(&mut instants)),
+        Snapshots::At(steps) => observers.push(Scheduled::new(Schedule::At(steps.clone()), &mut frames)),
+        Snapshots::Every(steps) => observers.push(Scheduled::new(Schedule::Every(*steps), &mut frames)),
+    }
+    let mut simulation = Simulation::at_rest(&case.model, schedule.dt_star);
+    let reason = simulation.run(schedule.stop, &mut observers)?;
+    drop(observers);
+
+    let mut frames: Vec<(Option<char>, Frame)> = match case.output.snapshots {
+        Snapshots::Instants => instants.found().into_iter().map(|(letter, frame)| (Some(letter), frame)).collect(),
+        _ => frames.frames.into_iter().map(|frame| (None, frame)).collect(),
+    };
+    frames.sort_by_key(|(letter, frame)| (frame.step, *letter));
+    let peak = simulation.peak();
+    let kinetic_from = schedule.kinetic.time_star(&peak, case.groups.v_star);
+    // A run that stops at its onset has no kinetic phase, wherever the window was meant to begin.
+    let kinetic = match reason {
+        StopReason::End => history.kinetic(kinetic_from, schedule.dt_star),
+        StopReason::Onset => None,
+    };
+    let last = curve.rows.last().map(|row| (row.step, row.energies)).unwrap_or_default();
+    let summary = Summary::new(case, &peak, kinetic, &first_slip, history.sliding_percent_max(), last, &frames);
+    Ok(Record {
+        summary,
+        rows: curve.rows,
+        frames,
+        first_slip_time_star: first_slip.time_star,
+        contact_stress_max: stress_maximum.value(),
+    })
+}

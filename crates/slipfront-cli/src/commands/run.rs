@@ -1,0 +1,96 @@
+//! `slipfront run`: one case, from the file to the pictures.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use jiff::Timestamp;
+use slipfront_case::case::Case;
+use slipfront_case::folder::RunFolder;
+use slipfront_case::{results, run};
+
+use super::{CaseArgs, print};
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::report;
+
+/// Run a case: print its physics, show progress, write results and pictures
+#[derive(Args)]
+#[command(after_help = "Examples:
+  slipfront run
+  slipfront run cases/groove_across.toml --set texture.0.coverage=5 -o results/groove-5
+  slipfront run results/baseline/case.toml -o results/again    repeats a run bit for bit
+  slipfront run --json --quiet | python3 -c 'import json,sys; print(json.load(sys.stdin)[\"static_friction_star\"])'")]
+pub(crate) struct Run {
+    #[command(flatten)]
+    case: CaseArgs,
+    /// Folder for the results [default: results/<case name>]
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace the files of an earlier run in that folder, and nothing else
+    #[arg(long)]
+    force: bool,
+    /// Most threads to use [default: one per core]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Show neither physics nor progress nor summary
+    #[arg(short, long)]
+    quiet: bool,
+    /// Print the summary as JSON on stdout, and nothing else there
+    #[arg(long)]
+    json: bool,
+}
+
+impl Run {
+    pub(crate) fn execute(self) -> Result<(), Failure> {
+        let started = Timestamp::now();
+        let threads = set_threads(self.threads)?;
+        let case = self.case.load()?;
+        let talks = !self.quiet && !self.json;
+        if talks {
+            print(&report::physics(&case))?;
+        }
+        let out = self.out.unwrap_or_else(|| Path::new("results").join(&case.name));
+        let folder = RunFolder::prepare(&out, self.force).map_err(Failure::input)?;
+
+        let mut progress = Progress::new(&case, self.quiet);
+        let record = run::run(&case, Progress::every(&case), &mut progress).map_err(Failure::running)?;
+        progress.finish();
+        results::write(&case, &record, folder, started, threads).map_err(Failure::running)?;
+
+        if self.json {
+            print(&results::summary_json(&record.summary))?;
+        } else if talks {
+            print(&report::summary(&case, &record.summary))?;
+            print(&files(&case, &out))?;
+        }
+        Ok(())
+    }
+}
+
+/// Bounds the threads of this process; gives their number.
+fn set_threads(threads: Option<u16>) -> Result<usize, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from));
+    pool.build_global().map_err(Failure::running)?;
+    Ok(rayon::current_num_threads())
+}
+
+fn files(case: &Case, out: &Path) -> String {
+    let mut text = format!("files in {}\n", out.display());
+    for (name, what) in [
+        ("friction.svg .png", "friction and sliding blocks against time"),
+        ("stress.svg .png", "maps of the contact stress"),
+        ("series.csv", "the curve, row by row"),
+        ("fields.nc", "the fields, for ParaView, Python, MATLAB"),
+        ("summary.json", "the numbers above"),
+        ("case.toml", "the case, every default filled in"),
+    ] {
+        let exists = out.join(name.split(' ').next().unwrap_or(name)).exists();
+        if exists {
+            text += &format!("  {name:<18} {what}\n");
+        }
+    }
+    if !case.inputs.is_empty() {
+        text += &format!("  {:<18} {}\n", "inputs/", "copies of the files that the case reads");
+    }
+    text
+}

@@ -1,0 +1,39 @@
+//! `slipfront texture`: the textured blocks of a case as a picture.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use slipfront_case::arrays;
+
+use super::{CaseArgs, print};
+use crate::failure::Failure;
+use crate::report;
+
+/// Write the texture of a case as a mask: one pixel per block, textured ones black
+#[derive(Args)]
+#[command(after_help = "Example:
+  slipfront texture cases/circle.toml -o mask.png")]
+pub(crate) struct Texture {
+    #[command(flatten)]
+    case: CaseArgs,
+    /// The picture to write
+    #[arg(short, long, value_name = "MASK.png")]
+    out: PathBuf,
+    /// Replace the picture if it exists
+    #[arg(long)]
+    force: bool,
+}
+
+impl Texture {
+    pub(crate) fn execute(self) -> Result<(), Failure> {
+        let case = self.case.load()?;
+        if self.out.exists() && !self.force {
+            let sentence = format!("{} exists: choose another name, or replace it with --force", self.out.display());
+            return Err(Failure::input(anyhow::anyhow!(sentence)));
+        }
+        let lattice = &case.model.lattice;
+        arrays::write_mask_png(&self.out, lattice.nx, lattice.ny, &case.model.surface.textured)
+            .map_err(Failure::running)?;
+        print(&format!("{}\n{}\n", report::texture(&case), self.out.display()))
+    }
+}

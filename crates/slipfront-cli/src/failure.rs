@@ -1,0 +1,31 @@
+//! How a command fails: by its input, or while running.
+
+use std::process::ExitCode;
+
+/// Why a command ends, which decides its exit status.
+pub(crate) enum Failure {
+    /// Bad input or usage: status 2.
+    Input(anyhow::Error),
+    /// Failed while running: status 1.
+    Running(anyhow::Error),
+}
+
+impl Failure {
+    pub(crate) fn input(error: impl Into<anyhow::Error>) -> Self {
+        Self::Input(error.into())
+    }
+
+    pub(crate) fn running(error: impl Into<anyhow::Error>) -> Self {
+        Self::Running(error.into())
+    }
+
+    /// Says on stderr what is wrong.
+    pub(crate) fn report(self) -> ExitCode {
+        let (error, status) = match self {
+            Self::Input(error) => (error, 2),
+            Self::Running(error) => (error, 1),
+        };
+        eprintln!("error: {error}");
+        ExitCode::from(status)
+    }
+}

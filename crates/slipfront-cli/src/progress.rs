@@ -1,0 +1,95 @@
+//! Progress of a run on stderr: a bar on a terminal, else a plain line every few seconds.
+
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use slipfront::observe::Observer;
+use slipfront::{RunError, Snapshot};
+use slipfront_case::case::Case;
+
+/// Time between plain lines.
+const LINE_EVERY: Duration = Duration::from_secs(5);
+/// Block-steps between two looks at the clock: some milliseconds' worth.
+const BLOCK_STEPS_PER_LOOK: u64 = 200_000;
+
+/// Shows how far a run has come.
+pub(crate) enum Progress {
+    Silent,
+    Bar(ProgressBar),
+    Lines(Lines),
+}
+
+pub(crate) struct Lines {
+    last_step: u64,
+    n_blocks: u64,
+    end_star: f64,
+    began: Instant,
+    next: Instant,
+}
+
+impl Progress {
+    pub(crate) fn new(case: &Case, quiet: bool) -> Self {
+        let last_step = case.schedule.last_step;
+        if quiet {
+            return Self::Silent;
+        }
+        if !std::io::stderr().is_terminal() {
+            let (n_blocks, now) = (case.model.lattice.n_blocks() as u64, Instant::now());
+            let end_star = case.schedule.end_star();
+            return Self::Lines(Lines { last_step, n_blocks, end_star, began: now, next: now + LINE_EVERY });
+        }
+        let bar = ProgressBar::new(last_step);
+        let template = "{bar:32} {percent:>3} %  {msg}  {per_sec}, {eta} left";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        Self::Bar(bar)
+    }
+
+    /// Steps between two looks.
+    pub(crate) fn every(case: &Case) -> u64 {
+        (BLOCK_STEPS_PER_LOOK / case.model.lattice.n_blocks() as u64).max(1)
+    }
+
+    pub(crate) fn finish(&self) {
+        if let Self::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl Observer for Progress {
+    fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
+        match self {
+            Self::Silent => {}
+            Self::Bar(bar) => {
+                bar.set_position(now.step);
+                bar.set_message(format!("t* = {:.1}, mu* = {:.3}", now.time_star, now.point.mu_star));
+            }
+            Self::Lines(lines) => lines.show(now),
+        }
+        Ok(())
+    }
+}
+
+impl Lines {
+    fn show(&mut self, now: &Snapshot) {
+        if Instant::now() < self.next || now.step == 0 {
+            return;
+        }
+        self.next += LINE_EVERY;
+        let passed = self.began.elapsed();
+        let rate = now.step as f64 / passed.as_secs_f64();
+        let left = (self.last_step - now.step) as f64 / rate;
+        eprintln!(
+            "{:3.0} %  t* = {:.1} of {:.1}  mu* = {:.3}  {:.1} million block-steps/s  {} left",
+            100.0 * now.step as f64 / self.last_step as f64,
+            now.time_star,
+            self.end_star,
+            now.point.mu_star,
+            rate * self.n_blocks as f64 / 1e6,
+            HumanDuration(Duration::from_secs_f64(left)),
+        );
+    }
+}
