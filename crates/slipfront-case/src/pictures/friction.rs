@@ -1,0 +1,409 @@
+//! Friction and the share of sliding blocks against time.
+
+use super::axis::{Axis, drawable, range, widened};
+use super::canvas::{Align, Area, Canvas};
+use super::labels::{Candidate, Placer, around};
+use super::style::{
+    BLACK, COLUMN_WIDTH, CURVES, GREY, Rgb, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WIDTH_CURVE, WIDTH_LEADER,
+    WIDTH_MARK, curve_colour,
+};
+use super::text::{Text, number};
+use super::{Picture, PictureError};
+
+/// Longer curves are thinned.
+const POINTS_KEPT: usize = 4000;
+
+const MARGIN: f64 = 14.0;
+const HEIGHT_FRICTION: f64 = 500.0;
+const HEIGHT_SLIDING: f64 = 230.0;
+const GAP: f64 = 34.0;
+const DOT: f64 = 7.0;
+/// The kinetic window's shade.
+const SHADE: Rgb = [0x9a, 0xa5, 0xb1];
+
+/// One run's curve; everything is dimensionless.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FrictionCurve {
+    /// What the legend calls it; shown only beside other curves.
+    pub label: String,
+    /// t*, never falling.
+    pub time_star: Vec<f64>,
+    /// mu* at these times; NaN leaves a gap.
+    pub mu_star: Vec<f64>,
+    /// N* at these times, in percent.
+    pub sliding_percent: Vec<f64>,
+    /// When the first block in contact slips.
+    pub first_slip_time_star: Option<f64>,
+    /// The peak: (`t_s*`, `mu_s*`).
+    pub peak: Option<(f64, f64)>,
+    /// The window of kinetic friction.
+    pub kinetic: Option<Kinetic>,
+    /// Instants to letter.
+    pub instants: Vec<Instant>,
+}
+
+/// Kinetic friction: the mean of mu* over a window of t*.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kinetic {
+    /// Where the window begins.
+    pub from: f64,
+    /// Where the window ends.
+    pub to: f64,
+    /// `mu_k*`.
+    pub mean: f64,
+    /// Its standard uncertainty, if known.
+    pub uncertainty: Option<f64>,
+}
+
+/// A lettered instant of a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instant {
+    /// Its letter.
+    pub letter: char,
+    /// When it is.
+    pub time_star: f64,
+    /// mu* at that time.
+    pub mu_star: f64,
+}
+
+/// Draws mu* and, below it, N* against t*, as wide as a journal's column (85 mm).
+///
+/// One curve is drawn with all it knows: first slip, peak, kinetic window, lettered instants. Several are drawn over each
+/// other with their peaks, and a legend above. Curves of more than 4000 points are thinned to the first, last, lowest and
+/// highest point of every pixel column, which shows the same picture.
+///
+/// # Errors
+///
+/// No curve, or a curve whose columns differ in length.
+pub fn friction(curves: &[FrictionCurve]) -> Result<Picture, PictureError> {
+    if curves.is_empty() {
+        return Err(PictureError::Nothing("curve"));
+    }
+    for curve in curves {
+        let columns = [("mu*", curve.mu_star.len()), ("N*", curve.sliding_percent.len())];
+        if let Some(&(column, values)) = columns.iter().find(|(_, values)| *values != curve.time_star.len()) {
+            let (label, times) = (curve.label.clone(), curve.time_star.len());
+            return Err(PictureError::Columns { label, times, column, values });
+        }
+    }
+    let legend = if curves.len() > 1 { Legend::of(curves) } else { Legend::default() };
+    let panels = Panels::of(curves, MARGIN + legend.height);
+    let mut canvas = Canvas::new(COLUMN_WIDTH, panels.bottom());
+    panels.draw_axes(&mut canvas);
+    legend.draw(&mut canvas);
+    match curves {
+        [curve] => draw_one(&mut canvas, &panels, curve),
+        _ => draw_many(&mut canvas, &panels, curves),
+    }
+    canvas.finish()
+}
+
+/// One curve with its marks.
+fn draw_one(canvas: &mut Canvas, panels: &Panels, curve: &FrictionCurve) {
+    let Panels { time, mu, sliding } = panels;
+    let mut placer = Placer::new(panels.friction());
+    let colour = CURVES[0];
+    let window = curve.kinetic.filter(|window| drawable(window.mean) && window.from < window.to);
+    if let Some(window) = window {
+        let (from, to) = (time.clamped(window.from), time.clamped(window.to));
+        for axis in [mu, sliding] {
+            canvas.fill(between(from, to, axis.start, axis.end), SHADE, 0.25);
+        }
+        if let Some(uncertainty) = window.uncertainty.filter(|&u| drawable(u)) {
+            let (lo, hi) = (mu.clamped(window.mean - uncertainty), mu.clamped(window.mean + uncertainty));
+            canvas.fill(between(from, to, lo, hi), CURVES[1], 0.25);
+        }
+    }
+    if let Some(slip) = curve.first_slip_time_star.filter(|&slip| time.holds(slip)) {
+        let x = time.at(slip);
+        for axis in [mu, sliding] {
+            canvas.line((x, axis.start), (x, axis.end), WIDTH_LEADER, GREY);
+        }
+        placer.avoid(&[(x, mu.start), (x, mu.end)]);
+    }
+    for (axis, values) in [(mu, &curve.mu_star), (sliding, &curve.sliding_percent)] {
+        for piece in pieces(&curve.time_star, values, time, axis) {
+            if axis.start == mu.start {
+                placer.avoid(&piece);
+            }
+            stroke(canvas, piece, colour);
+        }
+    }
+    if let Some(window) = window {
+        // Over the curve, which would hide it.
+        let y = mu.clamped(window.mean);
+        let ends = [(time.clamped(window.from), y), (time.clamped(window.to), y)];
+        canvas.line(ends[0], ends[1], WIDTH_MARK, CURVES[1]);
+        placer.avoid(&ends);
+    }
+    label_one(canvas, panels, &mut placer, curve, window);
+    panels.draw_frames(canvas);
+}
+
+/// The dots and labels of a curve; those that can go in fewest places come first.
+fn label_one(
+    canvas: &mut Canvas,
+    panels: &Panels,
+    placer: &mut Placer,
+    curve: &FrictionCurve,
+    window: Option<Kinetic>,
+) {
+    let Panels { time, mu, .. } = panels;
+    let held = |t: f64, value: f64| time.holds(t) && mu.holds(value);
+    let point = |t: f64, value: f64| (time.at(t), mu.at(value));
+    let instants: Vec<&Instant> = curve.instants.iter().filter(|i| held(i.time_star, i.mu_star)).collect();
+    let peak = curve.peak.filter(|&(t, value)| held(t, value));
+    let mut dots: Vec<(f64, f64)> = instants.iter().map(|i| point(i.time_star, i.mu_star)).collect();
+    dots.extend(peak.map(|(t, value)| point(t, value)));
+    for &(x, y) in &dots {
+        placer.take(Area { x: x - DOT, y: y - DOT, width: 2.0 * DOT, height: 2.0 * DOT });
+    }
+    if let Some(window) = window {
+        let text = Text::math(&format!("\u{3bc}_k* = {}", with_uncertainty(&window)), SIZE_LABEL);
+        let (from, to) = (time.clamped(window.from), time.clamped(window.to));
+        let candidates = along_window(panels, &text, from, to, mu.clamped(window.mean));
+        write(canvas, placer, &text, candidates, CURVES[1]);
+    }
+    if let Some(slip) = curve.first_slip_time_star.filter(|&slip| time.holds(slip)) {
+        let text = Text::plain("first slip", SIZE_LABEL);
+        write(canvas, placer, &text, beside_line(panels, &text, time.at(slip)), GREY);
+    }
+    if let Some((t, value)) = peak {
+        let text = Text::math(&format!("\u{3bc}_s* = {}", number(value, 3)), SIZE_LABEL);
+        write(canvas, placer, &text, around(point(t, value), text.width(), text.height()), BLACK);
+    }
+    for instant in instants {
+        let text = Text::plain(&instant.letter.to_string(), SIZE_LABEL);
+        let place = point(instant.time_star, instant.mu_star);
+        write(canvas, placer, &text, around(place, text.width(), text.height()), BLACK);
+    }
+    for dot in dots {
+        canvas.dot(dot, DOT, BLACK);
+    }
+}
+
+/// Several curves, with their peaks.
+fn draw_many(canvas: &mut Canvas, panels: &Panels, curves: &[FrictionCurve]) {
+    let Panels { time, mu, sliding } = panels;
+    for (index, curve) in curves.iter().enumerate() {
+        for (axis, values) in [(mu, &curve.mu_star), (sliding, &curve.sliding_percent)] {
+            for piece in pieces(&curve.time_star, values, time, axis) {
+                stroke(canvas, piece, curve_colour(index, curves.len()));
+            }
+        }
+    }
+    // Peaks last: no curve may hide one.
+    for (index, curve) in curves.iter().enumerate() {
+        if let Some((t, value)) = curve.peak.filter(|&(t, value)| time.holds(t) && mu.holds(value)) {
+            canvas.dot((time.at(t), mu.at(value)), DOT, curve_colour(index, curves.len()));
+        }
+    }
+    panels.draw_frames(canvas);
+}
+
+/// Writes a text at the best of the places, with its leader.
+fn write(canvas: &mut Canvas, placer: &mut Placer, text: &Text, candidates: Vec<Candidate>, colour: Rgb) {
+    let Some(Candidate { area, leader, .. }) = placer.place(candidates) else { return };
+    if let Some([from, to]) = leader {
+        canvas.line(from, to, WIDTH_LEADER, GREY);
+    }
+    canvas.text(text, (area.x, area.bottom()), Align::Start, colour);
+}
+
+/// Draws a piece of a curve; a piece of one point is a dot.
+fn stroke(canvas: &mut Canvas, piece: Vec<(f64, f64)>, colour: Rgb) {
+    match piece[..] {
+        [point] => canvas.dot(point, 0.6 * DOT, colour),
+        _ => canvas.polyline(piece, WIDTH_CURVE, colour),
+    }
+}
+
+fn between(from: f64, to: f64, start: f64, end: f64) -> Area {
+    Area { x: from, y: start.min(end), width: to - from, height: (end - start).abs() }
+}
+
+/// Places for a label of the window: within it if it is wide enough, rather above the mean than below.
+fn along_window(panels: &Panels, text: &Text, from: f64, to: f64, mean: f64) -> Vec<Candidate> {
+    let panel = panels.friction();
+    let (width, height) = (text.width(), text.height());
+    let room = (panel.x + MARGIN, panel.right() - MARGIN - width);
+    let x = (0.5 * (from + to - width)).min(room.1).max(room.0);
+    let steps = (panel.height / 8.0) as usize;
+    (0..steps)
+        .map(|step| {
+            let area = Area { x, y: panel.y + MARGIN + 8.0 * step as f64, width, height };
+            let distance = mean - area.bottom();
+            Candidate { area, penalty: if distance > 0.0 { distance } else { 80.0 - distance }, leader: None }
+        })
+        .collect()
+}
+
+/// Places for a label of a vertical line: beside its upper end, or further down.
+fn beside_line(panels: &Panels, text: &Text, x: f64) -> Vec<Candidate> {
+    let panel = panels.friction();
+    let (width, height) = (text.width(), text.height());
+    let steps = (panel.height / 10.0) as usize;
+    let sides = [x - MARGIN - width, x + MARGIN];
+    (0..steps)
+        .flat_map(|step| {
+            let down = 10.0 * step as f64;
+            let y = panel.y + MARGIN + down;
+            sides.map(|x| Candidate { area: Area { x, y, width, height }, penalty: down, leader: None })
+        })
+        .collect()
+}
+
+/// The mean and, if known, its uncertainty, with as many digits as that deserves.
+fn with_uncertainty(window: &Kinetic) -> String {
+    match window.uncertainty.filter(|&u| u > 0.0 && drawable(u)) {
+        Some(uncertainty) => {
+            let decimals = (-uncertainty.log10().floor()).clamp(1.0, 5.0) as usize;
+            format!("{} \u{b1} {}", number(window.mean, decimals), number(uncertainty, decimals))
+        }
+        None => number(window.mean, 3),
+    }
+}
+
+/// The two panels.
+struct Panels {
+    time: Axis,
+    mu: Axis,
+    sliding: Axis,
+}
+
+impl Panels {
+    fn of(curves: &[FrictionCurve], top: f64) -> Self {
+        let (from, to) = widened(range(curves.iter().flat_map(|curve| curve.time_star.iter().copied())));
+        let marks = |curve: &FrictionCurve| {
+            let mean = curve.kinetic.map(|window| window.mean);
+            mean.into_iter().chain(curve.peak.map(|(_, value)| value)).collect::<Vec<_>>()
+        };
+        let values = curves.iter().flat_map(|curve| curve.mu_star.iter().copied().chain(marks(curve)));
+        let (mut lo, hi) = widened(range(values));
+        // Friction is read against zero, unless that would flatten it.
+        if lo > 0.0 && lo < 0.9 * hi {
+            lo = 0.0;
+        }
+        let room = 0.1 * (hi - lo);
+        let mu_top = top;
+        let mu_bottom = mu_top + HEIGHT_FRICTION;
+        let sliding_top = mu_bottom + GAP;
+        let mu = Axis { lo: if lo == 0.0 { lo } else { lo - room }, hi: hi + room, start: mu_bottom, end: mu_top };
+        let sliding = Axis { lo: 0.0, hi: 100.0, start: sliding_top + HEIGHT_SLIDING, end: sliding_top };
+        let numbers = [mu.ticks(6), sliding.ticks(2)].concat();
+        let widest = numbers.iter().map(|(_, text)| Text::plain(text, SIZE_TICK).width()).fold(0.0, f64::max);
+        let left = (MARGIN + f64::from(SIZE_LABEL) + 14.0 + widest + TICK_LENGTH + 7.0).round();
+        // The last number on the time axis may stand half beyond its end.
+        let right = COLUMN_WIDTH.round() - 28.0;
+        Self { time: Axis { lo: from, hi: to, start: left, end: right }, mu, sliding }
+    }
+
+    /// The panel of friction.
+    fn friction(&self) -> Area {
+        between(self.time.start, self.time.end, self.mu.start, self.mu.end)
+    }
+
+    /// Where the picture ends.
+    fn bottom(&self) -> f64 {
+        self.sliding.start + TICK_LENGTH + 7.0 + f64::from(SIZE_TICK + SIZE_LABEL) + MARGIN
+    }
+
+    fn draw_axes(&self, canvas: &mut Canvas) {
+        let baseline = MARGIN + 0.8 * f64::from(SIZE_LABEL);
+        let titles = [(&self.mu, 6, "friction \u{3bc}* = \u{3bc}/\u{27e8}\u{3bc}_s\u{27e9}"), (&self.sliding, 2, "sliding N* (%)")];
+        for (axis, most, title) in titles {
+            for (value, text) in axis.ticks(most) {
+                canvas.tick_left((self.time.start, axis.at(value)), &Text::plain(&text, SIZE_TICK));
+            }
+            let middle = 0.5 * (axis.start + axis.end);
+            canvas.text_upwards(&Text::math(title, SIZE_LABEL), (baseline, middle), BLACK);
+        }
+        for (value, text) in self.time.ticks(6) {
+            let x = self.time.at(value);
+            canvas.tick_below((x, self.sliding.start), &Text::plain(&text, SIZE_TICK));
+            canvas.line((x, self.mu.start), (x, self.mu.start + TICK_LENGTH), WIDTH_LEADER, BLACK);
+        }
+        let middle = 0.5 * (self.time.start + self.time.end);
+        let title = Text::plain("dimensionless time t*", SIZE_LABEL);
+        canvas.text(&title, (middle, self.bottom() - MARGIN - 4.0), Align::Middle, BLACK);
+    }
+
+    /// The panels' edges, over everything that ends on them.
+    fn draw_frames(&self, canvas: &mut Canvas) {
+        for axis in [&self.mu, &self.sliding] {
+            canvas.frame(between(self.time.start, self.time.end, axis.start, axis.end));
+        }
+    }
+}
+
+/// The names of several curves, in rows above the panels.
+#[derive(Default)]
+struct Legend {
+    height: f64,
+    entries: Vec<Entry>,
+}
+
+struct Entry {
+    x: f64,
+    y: f64,
+    text: Text,
+    colour: Rgb,
+}
+
+impl Legend {
+    const SAMPLE: f64 = 44.0;
+    const ROW: f64 = 44.0;
+
+    fn of(curves: &[FrictionCurve]) -> Self {
+        let right = COLUMN_WIDTH - 28.0;
+        let left = 4.0 * MARGIN;
+        let room = right - left - Self::SAMPLE - 10.0;
+        let texts: Vec<Text> = curves.iter().map(|c| Text::shortened(&c.label, SIZE_TICK, room)).collect();
+        // Equal columns, so that labels stand under each other.
+        let widest = texts.iter().map(Text::width).fold(0.0, f64::max) + Self::SAMPLE + 10.0 + 30.0;
+        let columns = ((right - left + 30.0) / widest).floor().max(1.0) as usize;
+        let rows = curves.len().div_ceil(columns);
+        let entries = texts.into_iter().enumerate().map(|(index, text)| Entry {
+            x: left + (index % columns) as f64 * widest,
+            y: MARGIN + Self::ROW * ((index / columns) as f64 + 0.5),
+            text,
+            colour: curve_colour(index, curves.len()),
+        });
+        Self { height: Self::ROW * rows as f64 + 6.0, entries: entries.collect() }
+    }
+
+    fn draw(&self, canvas: &mut Canvas) {
+        for Entry { x, y, text, colour } in &self.entries {
+            canvas.line((*x, *y), (x + Self::SAMPLE, *y), WIDTH_CURVE, *colour);
+            canvas.text(text, (x + Self::SAMPLE + 10.0, y + 0.5 * text.height()), Align::Start, BLACK);
+        }
+    }
+}
+
+/// The curve in pixels: one piece for every stretch without a gap.
+fn pieces(times: &[f64], values: &[f64], time: &Axis, axis: &Axis) -> Vec<Vec<(f64, f64)>> {
+    let points: Vec<(f64, f64)> = times.iter().copied().zip(values.iter().copied()).collect();
+    points
+        .split(|&(t, value)| !drawable(t) || !drawable(value))
+        .filter(|piece| !piece.is_empty())
+        .map(|piece| {
+            let pixels = piece.iter().map(|&(t, value)| (time.at(t), axis.clamped(value))).collect();
+            if times.len() > POINTS_KEPT { thinned(pixels) } else { pixels }
+        })
+        .collect()
+}
+
+/// The first, lowest, highest and last point of every pixel column, in their order.
+fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    let mut kept = Vec::new();
+    for column in points.chunk_by(|a, b| a.0.floor() == b.0.floor()) {
+        let by_height = |&a: &usize, &b: &usize| column[a].1.total_cmp(&column[b].1);
+        let lowest = (0..column.len()).min_by(by_height).unwrap_or(0);
+        let highest = (0..column.len()).max_by(by_height).unwrap_or(0);
+        let mut chosen = vec![0, lowest, highest, column.len() - 1];
+        chosen.sort_unstable();
+        chosen.dedup();
+        kept.extend(chosen.into_iter().map(|index| column[index]));
+    }
+    kept
+}
