@@ -40,16 +40,19 @@ impl Axis {
         let step = round_step((self.hi - self.lo) / most.max(2) as f64);
         let first = (self.lo / step - 1e-9).ceil();
         let count = ((self.hi / step + 1e-9).floor() - first).clamp(0.0, 100.0) as usize;
-        let decimals = (-step.log10().floor()).max(0.0);
-        let power = self.lo.abs().max(self.hi.abs()).log10();
+        let (largest, smallest) = (
+            self.lo.abs().max(self.hi.abs()).log10().floor(),
+            step.log10().floor(),
+        );
+        let digits = (largest - smallest).clamp(0.0, 9.0) as usize;
+        let decimals = (-smallest).clamp(0.0, 12.0) as usize;
         (0..=count)
             .map(|index| {
                 let value = (first + index as f64) * step;
-                let written = if decimals > 4.0 || power >= 6.0 {
-                    let digits = (power.floor() - step.log10().floor()).clamp(0.0, 6.0) as usize;
-                    format!("{value:.digits$e}").replace('-', MINUS)
+                let written = if (-4.0..6.0).contains(&largest) {
+                    number(value, decimals)
                 } else {
-                    number(value, decimals as usize)
+                    format!("{value:.digits$e}").replace('-', MINUS)
                 };
                 (value, written)
             })
@@ -60,7 +63,9 @@ impl Axis {
 /// The smallest of 1, 2, 5, 10, ... that is at least `step`.
 fn round_step(step: f64) -> f64 {
     let power = 10f64.powf(step.log10().floor());
-    let digit = [1.0, 2.0, 5.0].into_iter().find(|digit| digit * power >= step * (1.0 - 1e-9));
+    let digit = [1.0, 2.0, 5.0]
+        .into_iter()
+        .find(|digit| digit * power >= step * (1.0 - 1e-9));
     digit.unwrap_or(10.0) * power
 }
 
@@ -68,7 +73,9 @@ fn round_step(step: f64) -> f64 {
 pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (lo, hi) = values
         .filter(|&value| drawable(value))
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), value| (lo.min(value), hi.max(value)));
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), value| {
+            (lo.min(value), hi.max(value))
+        });
     if lo <= hi { (lo, hi) } else { (0.0, 1.0) }
 }
 
@@ -87,7 +94,12 @@ mod tests {
     use super::*;
 
     fn written(lo: f64, hi: f64) -> Vec<String> {
-        let axis = Axis { lo, hi, start: 0.0, end: 100.0 };
+        let axis = Axis {
+            lo,
+            hi,
+            start: 0.0,
+            end: 100.0,
+        };
         axis.ticks(6).into_iter().map(|(_, text)| text).collect()
     }
 
@@ -105,7 +117,12 @@ mod tests {
         assert_eq!(widened((0.0, 0.0)), (-0.5, 0.5));
         let (lo, hi) = widened((1e16, 1e16));
         assert!(lo < 1e16 && hi > 1e16);
-        for (lo, hi) in [(1e16, 1.2e16), (-3e-9, 4e-9), (0.999_999, 1.000_001), (-1e99, 1e99)] {
+        for (lo, hi) in [
+            (1e16, 1.2e16),
+            (-3e-9, 4e-9),
+            (0.999_999, 1.000_001),
+            (-1e99, 1e99),
+        ] {
             let ticks = written(lo, hi);
             assert!((2..=8).contains(&ticks.len()), "{lo} {hi}: {ticks:?}");
         }

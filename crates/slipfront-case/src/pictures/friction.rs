@@ -3,17 +3,15 @@
 use super::axis::{Axis, drawable, range, widened};
 use super::canvas::{Align, Area, Canvas};
 use super::labels::{Candidate, Placer, around};
+use super::legend::Legend;
+use super::series::pieces;
 use super::style::{
-    BLACK, COLUMN_WIDTH, CURVES, GREY, Rgb, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WIDTH_CURVE, WIDTH_LEADER,
-    WIDTH_MARK, curve_colour,
+    BLACK, COLUMN_WIDTH, CURVES, GREY, MARGIN, Rgb, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WIDTH_CURVE,
+    WIDTH_LEADER, WIDTH_MARK, curve_colour,
 };
 use super::text::{Text, number};
 use super::{Picture, PictureError};
 
-/// Longer curves are thinned.
-const POINTS_KEPT: usize = 4000;
-
-const MARGIN: f64 = 14.0;
 const HEIGHT_FRICTION: f64 = 500.0;
 const HEIGHT_SLIDING: f64 = 230.0;
 const GAP: f64 = 34.0;
@@ -81,12 +79,29 @@ pub fn friction(curves: &[FrictionCurve]) -> Result<Picture, PictureError> {
     }
     for curve in curves {
         let columns = [("mu*", curve.mu_star.len()), ("N*", curve.sliding_percent.len())];
-        if let Some(&(column, values)) = columns.iter().find(|(_, values)| *values != curve.time_star.len()) {
+        if let Some(&(column, values)) = columns
+            .iter()
+            .find(|(_, values)| *values != curve.time_star.len())
+        {
             let (label, times) = (curve.label.clone(), curve.time_star.len());
-            return Err(PictureError::Columns { label, times, column, values });
+            return Err(PictureError::Columns {
+                label,
+                times,
+                column,
+                values,
+            });
         }
     }
-    let legend = if curves.len() > 1 { Legend::of(curves) } else { Legend::default() };
+    let legend = if curves.len() > 1 {
+        Legend::of(
+            &curves
+                .iter()
+                .map(|curve| curve.label.as_str())
+                .collect::<Vec<_>>(),
+        )
+    } else {
+        Legend::default()
+    };
     let panels = Panels::of(curves, MARGIN + legend.height);
     let mut canvas = Canvas::new(COLUMN_WIDTH, panels.bottom());
     panels.draw_axes(&mut canvas);
@@ -103,14 +118,19 @@ fn draw_one(canvas: &mut Canvas, panels: &Panels, curve: &FrictionCurve) {
     let Panels { time, mu, sliding } = panels;
     let mut placer = Placer::new(panels.friction());
     let colour = CURVES[0];
-    let window = curve.kinetic.filter(|window| drawable(window.mean) && window.from < window.to);
+    let window = curve
+        .kinetic
+        .filter(|window| drawable(window.mean) && window.from < window.to);
     if let Some(window) = window {
         let (from, to) = (time.clamped(window.from), time.clamped(window.to));
         for axis in [mu, sliding] {
             canvas.fill(between(from, to, axis.start, axis.end), SHADE, 0.25);
         }
         if let Some(uncertainty) = window.uncertainty.filter(|&u| drawable(u)) {
-            let (lo, hi) = (mu.clamped(window.mean - uncertainty), mu.clamped(window.mean + uncertainty));
+            let (lo, hi) = (
+                mu.clamped(window.mean - uncertainty),
+                mu.clamped(window.mean + uncertainty),
+            );
             canvas.fill(between(from, to, lo, hi), CURVES[1], 0.25);
         }
     }
@@ -151,12 +171,21 @@ fn label_one(
     let Panels { time, mu, .. } = panels;
     let held = |t: f64, value: f64| time.holds(t) && mu.holds(value);
     let point = |t: f64, value: f64| (time.at(t), mu.at(value));
-    let instants: Vec<&Instant> = curve.instants.iter().filter(|i| held(i.time_star, i.mu_star)).collect();
+    let instants: Vec<&Instant> = curve
+        .instants
+        .iter()
+        .filter(|i| held(i.time_star, i.mu_star))
+        .collect();
     let peak = curve.peak.filter(|&(t, value)| held(t, value));
     let mut dots: Vec<(f64, f64)> = instants.iter().map(|i| point(i.time_star, i.mu_star)).collect();
     dots.extend(peak.map(|(t, value)| point(t, value)));
     for &(x, y) in &dots {
-        placer.take(Area { x: x - DOT, y: y - DOT, width: 2.0 * DOT, height: 2.0 * DOT });
+        placer.take(Area {
+            x: x - DOT,
+            y: y - DOT,
+            width: 2.0 * DOT,
+            height: 2.0 * DOT,
+        });
     }
     if let Some(window) = window {
         let text = Text::math(&format!("\u{3bc}_k* = {}", with_uncertainty(&window)), SIZE_LABEL);
@@ -166,16 +195,28 @@ fn label_one(
     }
     if let Some(slip) = curve.first_slip_time_star.filter(|&slip| time.holds(slip)) {
         let text = Text::plain("first slip", SIZE_LABEL);
-        write(canvas, placer, &text, beside_line(panels, &text, time.at(slip)), GREY);
+        write(
+            canvas,
+            placer,
+            &text,
+            beside_line(panels, &text, time.at(slip)),
+            GREY,
+        );
     }
     if let Some((t, value)) = peak {
         let text = Text::math(&format!("\u{3bc}_s* = {}", number(value, 3)), SIZE_LABEL);
-        write(canvas, placer, &text, around(point(t, value), text.width(), text.height()), BLACK);
+        write(
+            canvas,
+            placer,
+            &text,
+            around(point(t, value), box_of(&text)),
+            BLACK,
+        );
     }
     for instant in instants {
         let text = Text::plain(&instant.letter.to_string(), SIZE_LABEL);
         let place = point(instant.time_star, instant.mu_star);
-        write(canvas, placer, &text, around(place, text.width(), text.height()), BLACK);
+        write(canvas, placer, &text, around(place, box_of(&text)), BLACK);
     }
     for dot in dots {
         canvas.dot(dot, DOT, BLACK);
@@ -203,11 +244,13 @@ fn draw_many(canvas: &mut Canvas, panels: &Panels, curves: &[FrictionCurve]) {
 
 /// Writes a text at the best of the places, with its leader.
 fn write(canvas: &mut Canvas, placer: &mut Placer, text: &Text, candidates: Vec<Candidate>, colour: Rgb) {
-    let Some(Candidate { area, leader, .. }) = placer.place(candidates) else { return };
+    let Some(Candidate { area, leader, .. }) = placer.place(candidates) else {
+        return;
+    };
     if let Some([from, to]) = leader {
         canvas.line(from, to, WIDTH_LEADER, GREY);
     }
-    canvas.text(text, (area.x, area.bottom()), Align::Start, colour);
+    canvas.text(text, (area.x, area.bottom() - text.depth()), Align::Start, colour);
 }
 
 /// Draws a piece of a curve; a piece of one point is a dot.
@@ -218,22 +261,41 @@ fn stroke(canvas: &mut Canvas, piece: Vec<(f64, f64)>, colour: Rgb) {
     }
 }
 
+/// The width and the full height of a text.
+fn box_of(text: &Text) -> (f64, f64) {
+    (text.width(), text.height() + text.depth())
+}
+
 fn between(from: f64, to: f64, start: f64, end: f64) -> Area {
-    Area { x: from, y: start.min(end), width: to - from, height: (end - start).abs() }
+    Area {
+        x: from,
+        y: start.min(end),
+        width: to - from,
+        height: (end - start).abs(),
+    }
 }
 
 /// Places for a label of the window: within it if it is wide enough, rather above the mean than below.
 fn along_window(panels: &Panels, text: &Text, from: f64, to: f64, mean: f64) -> Vec<Candidate> {
     let panel = panels.friction();
-    let (width, height) = (text.width(), text.height());
+    let (width, height) = box_of(text);
     let room = (panel.x + MARGIN, panel.right() - MARGIN - width);
     let x = (0.5 * (from + to - width)).min(room.1).max(room.0);
     let steps = (panel.height / 8.0) as usize;
     (0..steps)
         .map(|step| {
-            let area = Area { x, y: panel.y + MARGIN + 8.0 * step as f64, width, height };
+            let area = Area {
+                x,
+                y: panel.y + MARGIN + 8.0 * step as f64,
+                width,
+                height,
+            };
             let distance = mean - area.bottom();
-            Candidate { area, penalty: if distance > 0.0 { distance } else { 80.0 - distance }, leader: None }
+            Candidate {
+                area,
+                penalty: if distance > 0.0 { distance } else { 80.0 - distance },
+                leader: None,
+            }
         })
         .collect()
 }
@@ -241,14 +303,18 @@ fn along_window(panels: &Panels, text: &Text, from: f64, to: f64, mean: f64) -> 
 /// Places for a label of a vertical line: beside its upper end, or further down.
 fn beside_line(panels: &Panels, text: &Text, x: f64) -> Vec<Candidate> {
     let panel = panels.friction();
-    let (width, height) = (text.width(), text.height());
+    let (width, height) = box_of(text);
     let steps = (panel.height / 10.0) as usize;
     let sides = [x - MARGIN - width, x + MARGIN];
     (0..steps)
         .flat_map(|step| {
             let down = 10.0 * step as f64;
             let y = panel.y + MARGIN + down;
-            sides.map(|x| Candidate { area: Area { x, y, width, height }, penalty: down, leader: None })
+            sides.map(|x| Candidate {
+                area: Area { x, y, width, height },
+                penalty: down,
+                leader: None,
+            })
         })
         .collect()
 }
@@ -258,7 +324,11 @@ fn with_uncertainty(window: &Kinetic) -> String {
     match window.uncertainty.filter(|&u| u > 0.0 && drawable(u)) {
         Some(uncertainty) => {
             let decimals = (-uncertainty.log10().floor()).clamp(1.0, 5.0) as usize;
-            format!("{} \u{b1} {}", number(window.mean, decimals), number(uncertainty, decimals))
+            format!(
+                "{} \u{b1} {}",
+                number(window.mean, decimals),
+                number(uncertainty, decimals)
+            )
         }
         None => number(window.mean, 3),
     }
@@ -273,12 +343,18 @@ struct Panels {
 
 impl Panels {
     fn of(curves: &[FrictionCurve], top: f64) -> Self {
-        let (from, to) = widened(range(curves.iter().flat_map(|curve| curve.time_star.iter().copied())));
+        let (from, to) = widened(range(
+            curves.iter().flat_map(|curve| curve.time_star.iter().copied()),
+        ));
         let marks = |curve: &FrictionCurve| {
             let mean = curve.kinetic.map(|window| window.mean);
-            mean.into_iter().chain(curve.peak.map(|(_, value)| value)).collect::<Vec<_>>()
+            mean.into_iter()
+                .chain(curve.peak.map(|(_, value)| value))
+                .collect::<Vec<_>>()
         };
-        let values = curves.iter().flat_map(|curve| curve.mu_star.iter().copied().chain(marks(curve)));
+        let values = curves
+            .iter()
+            .flat_map(|curve| curve.mu_star.iter().copied().chain(marks(curve)));
         let (mut lo, hi) = widened(range(values));
         // Friction is read against zero, unless that would flatten it.
         if lo > 0.0 && lo < 0.9 * hi {
@@ -288,14 +364,36 @@ impl Panels {
         let mu_top = top;
         let mu_bottom = mu_top + HEIGHT_FRICTION;
         let sliding_top = mu_bottom + GAP;
-        let mu = Axis { lo: if lo == 0.0 { lo } else { lo - room }, hi: hi + room, start: mu_bottom, end: mu_top };
-        let sliding = Axis { lo: 0.0, hi: 100.0, start: sliding_top + HEIGHT_SLIDING, end: sliding_top };
+        let mu = Axis {
+            lo: if lo == 0.0 { lo } else { lo - room },
+            hi: hi + room,
+            start: mu_bottom,
+            end: mu_top,
+        };
+        let sliding = Axis {
+            lo: 0.0,
+            hi: 100.0,
+            start: sliding_top + HEIGHT_SLIDING,
+            end: sliding_top,
+        };
         let numbers = [mu.ticks(6), sliding.ticks(2)].concat();
-        let widest = numbers.iter().map(|(_, text)| Text::plain(text, SIZE_TICK).width()).fold(0.0, f64::max);
+        let widest = numbers
+            .iter()
+            .map(|(_, text)| Text::plain(text, SIZE_TICK).width())
+            .fold(0.0, f64::max);
         let left = (MARGIN + f64::from(SIZE_LABEL) + 14.0 + widest + TICK_LENGTH + 7.0).round();
         // The last number on the time axis may stand half beyond its end.
         let right = COLUMN_WIDTH.round() - 28.0;
-        Self { time: Axis { lo: from, hi: to, start: left, end: right }, mu, sliding }
+        Self {
+            time: Axis {
+                lo: from,
+                hi: to,
+                start: left,
+                end: right,
+            },
+            mu,
+            sliding,
+        }
     }
 
     /// The panel of friction.
@@ -310,7 +408,14 @@ impl Panels {
 
     fn draw_axes(&self, canvas: &mut Canvas) {
         let baseline = MARGIN + 0.8 * f64::from(SIZE_LABEL);
-        let titles = [(&self.mu, 6, "friction \u{3bc}* = \u{3bc}/\u{27e8}\u{3bc}_s\u{27e9}"), (&self.sliding, 2, "sliding N* (%)")];
+        let titles = [
+            (
+                &self.mu,
+                6,
+                "friction \u{3bc}* = \u{3bc}/\u{27e8}\u{3bc}_s\u{27e9}",
+            ),
+            (&self.sliding, 2, "sliding N* (%)"),
+        ];
         for (axis, most, title) in titles {
             for (value, text) in axis.ticks(most) {
                 canvas.tick_left((self.time.start, axis.at(value)), &Text::plain(&text, SIZE_TICK));
@@ -321,11 +426,21 @@ impl Panels {
         for (value, text) in self.time.ticks(6) {
             let x = self.time.at(value);
             canvas.tick_below((x, self.sliding.start), &Text::plain(&text, SIZE_TICK));
-            canvas.line((x, self.mu.start), (x, self.mu.start + TICK_LENGTH), WIDTH_LEADER, BLACK);
+            canvas.line(
+                (x, self.mu.start),
+                (x, self.mu.start + TICK_LENGTH),
+                WIDTH_LEADER,
+                BLACK,
+            );
         }
         let middle = 0.5 * (self.time.start + self.time.end);
         let title = Text::plain("dimensionless time t*", SIZE_LABEL);
-        canvas.text(&title, (middle, self.bottom() - MARGIN - 4.0), Align::Middle, BLACK);
+        canvas.text(
+            &title,
+            (middle, self.bottom() - MARGIN - 4.0),
+            Align::Middle,
+            BLACK,
+        );
     }
 
     /// The panels' edges, over everything that ends on them.
@@ -336,74 +451,151 @@ impl Panels {
     }
 }
 
-/// The names of several curves, in rows above the panels.
-#[derive(Default)]
-struct Legend {
-    height: f64,
-    entries: Vec<Entry>,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-struct Entry {
-    x: f64,
-    y: f64,
-    text: Text,
-    colour: Rgb,
-}
-
-impl Legend {
-    const SAMPLE: f64 = 44.0;
-    const ROW: f64 = 44.0;
-
-    fn of(curves: &[FrictionCurve]) -> Self {
-        let right = COLUMN_WIDTH - 28.0;
-        let left = 4.0 * MARGIN;
-        let room = right - left - Self::SAMPLE - 10.0;
-        let texts: Vec<Text> = curves.iter().map(|c| Text::shortened(&c.label, SIZE_TICK, room)).collect();
-        // Equal columns, so that labels stand under each other.
-        let widest = texts.iter().map(Text::width).fold(0.0, f64::max) + Self::SAMPLE + 10.0 + 30.0;
-        let columns = ((right - left + 30.0) / widest).floor().max(1.0) as usize;
-        let rows = curves.len().div_ceil(columns);
-        let entries = texts.into_iter().enumerate().map(|(index, text)| Entry {
-            x: left + (index % columns) as f64 * widest,
-            y: MARGIN + Self::ROW * ((index / columns) as f64 + 0.5),
-            text,
-            colour: curve_colour(index, curves.len()),
-        });
-        Self { height: Self::ROW * rows as f64 + 6.0, entries: entries.collect() }
-    }
-
-    fn draw(&self, canvas: &mut Canvas) {
-        for Entry { x, y, text, colour } in &self.entries {
-            canvas.line((*x, *y), (x + Self::SAMPLE, *y), WIDTH_CURVE, *colour);
-            canvas.text(text, (x + Self::SAMPLE + 10.0, y + 0.5 * text.height()), Align::Start, BLACK);
+    /// A curve like a real run's: a ramp, a peak, a fall, sliding.
+    fn run() -> FrictionCurve {
+        let time_star: Vec<f64> = (0..=534).map(|step| 0.5 * f64::from(step)).collect();
+        let mu = |t: f64| match t {
+            ..78.0 => 0.883 * t / 78.0,
+            ..84.0 => 0.883 - 0.08 * (t - 78.0),
+            _ => 0.53 - 0.1 * (-(t - 84.0) / 20.0).exp() + 0.05 * (t / 4.0).sin(),
+        };
+        let letters = [
+            ('A', 16.7),
+            ('B', 71.0),
+            ('C', 78.0),
+            ('D', 80.0),
+            ('E', 84.0),
+            ('F', 214.0),
+        ];
+        FrictionCurve {
+            label: "a < b & $c$".to_string(),
+            mu_star: time_star.iter().map(|&t| mu(t)).collect(),
+            sliding_percent: time_star
+                .iter()
+                .map(|&t| if t < 71.0 { 0.0 } else { 40.0 })
+                .collect(),
+            time_star,
+            first_slip_time_star: Some(71.0),
+            peak: Some((78.0, 0.883)),
+            kinetic: Some(Kinetic {
+                from: 161.0,
+                to: 267.0,
+                mean: 0.53,
+                uncertainty: Some(0.004),
+            }),
+            instants: letters
+                .map(|(letter, t)| Instant {
+                    letter,
+                    time_star: t,
+                    mu_star: mu(t),
+                })
+                .to_vec(),
         }
     }
-}
 
-/// The curve in pixels: one piece for every stretch without a gap.
-fn pieces(times: &[f64], values: &[f64], time: &Axis, axis: &Axis) -> Vec<Vec<(f64, f64)>> {
-    let points: Vec<(f64, f64)> = times.iter().copied().zip(values.iter().copied()).collect();
-    points
-        .split(|&(t, value)| !drawable(t) || !drawable(value))
-        .filter(|piece| !piece.is_empty())
-        .map(|piece| {
-            let pixels = piece.iter().map(|&(t, value)| (time.at(t), axis.clamped(value))).collect();
-            if times.len() > POINTS_KEPT { thinned(pixels) } else { pixels }
-        })
-        .collect()
-}
-
-/// The first, lowest, highest and last point of every pixel column, in their order.
-fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
-    let mut kept = Vec::new();
-    for column in points.chunk_by(|a, b| a.0.floor() == b.0.floor()) {
-        let by_height = |&a: &usize, &b: &usize| column[a].1.total_cmp(&column[b].1);
-        let lowest = (0..column.len()).min_by(by_height).unwrap_or(0);
-        let highest = (0..column.len()).max_by(by_height).unwrap_or(0);
-        let mut chosen = vec![0, lowest, highest, column.len() - 1];
-        chosen.sort_unstable();
-        chosen.dedup();
-        kept.extend(chosen.into_iter().map(|index| column[index]));
+    fn curve(points: &[(f64, f64)]) -> FrictionCurve {
+        let (time_star, mu_star) = points.iter().copied().unzip();
+        FrictionCurve {
+            time_star,
+            mu_star,
+            sliding_percent: vec![0.0; points.len()],
+            ..FrictionCurve::default()
+        }
     }
-    kept
+
+    /// The point at which the SVG writes `text`.
+    fn written_at(svg: &str, text: &str) -> Option<(f64, f64)> {
+        let line = svg
+            .lines()
+            .find(|line| line.ends_with(&format!(">{text}</text>")))?;
+        let value = |name: &str| {
+            line.split_once(&format!(" {name}=\""))?
+                .1
+                .split_once('"')?
+                .0
+                .parse()
+                .ok()
+        };
+        Some((value("x")?, value("y")?))
+    }
+
+    #[test]
+    fn the_same_curve_gives_the_same_bytes() {
+        assert_eq!(friction(&[run()]).unwrap(), friction(&[run()]).unwrap());
+    }
+
+    #[test]
+    fn every_mark_is_written_once_and_apart_from_the_others() {
+        let svg = friction(&[run()]).unwrap().svg;
+        let letters = ["A", "B", "C", "D", "E", "F"].map(|letter| written_at(&svg, letter).unwrap());
+        for (index, a) in letters.iter().enumerate() {
+            for b in &letters[..index] {
+                assert!(
+                    (a.0 - b.0).abs() > 20.0 || (a.1 - b.1).abs() > 25.0,
+                    "{letters:?}"
+                );
+            }
+        }
+        for text in ["first slip", "* = 0.883", "* = 0.530 \u{b1} 0.004"] {
+            assert_eq!(svg.matches(text).count(), 1, "{text}");
+        }
+    }
+
+    #[test]
+    fn several_curves_have_a_legend_and_no_letters() {
+        let svg = friction(&[run(), curve(&[(0.0, 0.0), (300.0, 1.0)])])
+            .unwrap()
+            .svg;
+        assert!(svg.contains(">a &lt; b &amp; $c$</text>"));
+        assert!(written_at(&svg, "A").is_none() && !svg.contains("first slip"));
+    }
+
+    #[test]
+    fn poor_curves_are_drawn_all_the_same() {
+        let odd = [
+            curve(&[]),
+            curve(&[(0.0, 0.3)]),
+            curve(&[(0.0, 0.3), (1.0, 0.3)]),
+            curve(&[(0.0, -0.3), (1.0, -0.1)]),
+            curve(&[(0.0, f64::NAN), (f64::NAN, 1.0)]),
+            curve(&[(0.0, f64::MAX), (f64::INFINITY, f64::MIN), (2.0, 1.0)]),
+            FrictionCurve {
+                peak: Some((9.0, f64::NAN)),
+                first_slip_time_star: Some(f64::NAN),
+                kinetic: Some(Kinetic {
+                    from: f64::NAN,
+                    to: 1.0,
+                    mean: 1.0,
+                    uncertainty: Some(f64::INFINITY),
+                }),
+                instants: vec![Instant {
+                    letter: '\u{0}',
+                    time_star: f64::INFINITY,
+                    mu_star: 0.0,
+                }],
+                ..curve(&[(0.0, 0.0), (1.0, 1.0)])
+            },
+        ];
+        for curve in &odd {
+            let svg = friction(std::slice::from_ref(curve)).unwrap().svg;
+            assert!(!svg.contains("NaN") && !svg.contains("inf\""), "{curve:?}");
+        }
+        friction(&odd).unwrap();
+    }
+
+    #[test]
+    fn columns_of_different_length_are_refused() {
+        let mut bad = curve(&[(0.0, 0.0), (1.0, 1.0)]);
+        bad.sliding_percent.pop();
+        let error = friction(&[bad]).unwrap_err().to_string();
+        assert_eq!(error, "curve `` has 2 times but 1 values of N*");
+        assert_eq!(
+            friction(&[]).unwrap_err().to_string(),
+            "there is no curve to draw"
+        );
+    }
 }

@@ -23,7 +23,11 @@ pub(super) struct Candidate {
 impl Placer {
     /// An empty space.
     pub(super) fn new(bounds: Area) -> Self {
-        Self { bounds, taken: Vec::new(), lines: Vec::new() }
+        Self {
+            bounds,
+            taken: Vec::new(),
+            lines: Vec::new(),
+        }
     }
 
     /// Keeps labels out of an area.
@@ -33,7 +37,8 @@ impl Placer {
 
     /// Asks labels to keep off the line through these points.
     pub(super) fn avoid(&mut self, points: &[(f64, f64)]) {
-        self.lines.extend(points.windows(2).map(|pair| [pair[0], pair[1]]));
+        self.lines
+            .extend(points.windows(2).map(|pair| [pair[0], pair[1]]));
     }
 
     /// The best of the candidates, now taken; none if there is no candidate.
@@ -86,7 +91,7 @@ impl Placer {
 }
 
 /// Places around `point` for a label of this size, near ones first; far ones get a leader.
-pub(super) fn around(point: (f64, f64), width: f64, height: f64) -> Vec<Candidate> {
+pub(super) fn around(point: (f64, f64), (width, height): (f64, f64)) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for gap in [14.0, 22.0, 34.0, 50.0, 70.0, 95.0, 130.0, 180.0] {
         for step in 0..24 {
@@ -94,8 +99,16 @@ pub(super) fn around(point: (f64, f64), width: f64, height: f64) -> Vec<Candidat
             let turn = f64::from((step + 1) / 2) * if step % 2 == 0 { 1.0 } else { -1.0 };
             let (sin, cos) = ((-0.25 + turn / 12.0) * std::f64::consts::PI).sin_cos();
             // The label's edge, not its centre, stays `gap` away from the point.
-            let centre = (point.0 + cos * (gap + 0.5 * width), point.1 + sin * (gap + 0.5 * height));
-            let area = Area { x: centre.0 - 0.5 * width, y: centre.1 - 0.5 * height, width, height };
+            let centre = (
+                point.0 + cos * (gap + 0.5 * width),
+                point.1 + sin * (gap + 0.5 * height),
+            );
+            let area = Area {
+                x: centre.0 - 0.5 * width,
+                y: centre.1 - 0.5 * height,
+                width,
+                height,
+            };
             let end = (
                 point.0.clamp(area.x - 3.0, area.right() + 3.0),
                 point.1.clamp(area.y - 3.0, area.bottom() + 3.0),
@@ -105,14 +118,23 @@ pub(super) fn around(point: (f64, f64), width: f64, height: f64) -> Vec<Candidat
             // The leader starts off its dot, so that it never counts as crossing it.
             let start = (point.0 + dx / distance * 12.0, point.1 + dy / distance * 12.0);
             let leader = (distance > 30.0).then_some([start, end]);
-            candidates.push(Candidate { area, penalty: gap + 2.0 * turn.abs(), leader });
+            candidates.push(Candidate {
+                area,
+                penalty: gap + 2.0 * turn.abs(),
+                leader,
+            });
         }
     }
     candidates
 }
 
 fn grown(area: Area, by: f64) -> Area {
-    Area { x: area.x - by, y: area.y - by, width: area.width + 2.0 * by, height: area.height + 2.0 * by }
+    Area {
+        x: area.x - by,
+        y: area.y - by,
+        width: area.width + 2.0 * by,
+        height: area.height + 2.0 * by,
+    }
 }
 
 /// True when two areas share more than an edge.
@@ -123,9 +145,10 @@ pub(super) fn overlap(a: &Area, b: &Area) -> bool {
 /// True when part of the segment lies in the area (Liang and Barsky's clipping).
 fn crosses([from, to]: [(f64, f64); 2], area: &Area) -> bool {
     let (mut enters, mut leaves) = (0.0f64, 1.0f64);
-    for (start, step, lo, hi) in
-        [(from.0, to.0 - from.0, area.x, area.right()), (from.1, to.1 - from.1, area.y, area.bottom())]
-    {
+    for (start, step, lo, hi) in [
+        (from.0, to.0 - from.0, area.x, area.right()),
+        (from.1, to.1 - from.1, area.y, area.bottom()),
+    ] {
         if step == 0.0 {
             if start < lo || start > hi {
                 return false;
@@ -143,7 +166,12 @@ fn crosses([from, to]: [(f64, f64); 2], area: &Area) -> bool {
 mod tests {
     use super::*;
 
-    const BOUNDS: Area = Area { x: 0.0, y: 0.0, width: 860.0, height: 480.0 };
+    const BOUNDS: Area = Area {
+        x: 0.0,
+        y: 0.0,
+        width: 860.0,
+        height: 480.0,
+    };
 
     #[test]
     fn crowded_labels_do_not_overlap() {
@@ -151,7 +179,9 @@ mod tests {
         // Ten points within 12 pixels, near a corner.
         let areas: Vec<Area> = (0..10)
             .filter_map(|index| {
-                placer.place(around((845.0 - 1.2 * f64::from(index), 10.0), 24.0, 24.0)).map(|c| c.area)
+                placer
+                    .place(around((845.0 - 1.2 * f64::from(index), 10.0), (24.0, 24.0)))
+                    .map(|c| c.area)
             })
             .collect();
         assert_eq!(areas.len(), 10);
@@ -166,13 +196,18 @@ mod tests {
         let mut placer = Placer::new(BOUNDS);
         let curve = [(0.0, 480.0), (430.0, 100.0), (860.0, 480.0)];
         placer.avoid(&curve);
-        let area = placer.place(around(curve[1], 150.0, 30.0)).unwrap().area;
+        let area = placer.place(around(curve[1], (150.0, 30.0))).unwrap().area;
         assert!(!crosses([curve[0], curve[1]], &area) && !crosses([curve[1], curve[2]], &area));
     }
 
     #[test]
     fn a_segment_crosses_an_area_only_inside_it() {
-        let area = Area { x: 10.0, y: 10.0, width: 10.0, height: 10.0 };
+        let area = Area {
+            x: 10.0,
+            y: 10.0,
+            width: 10.0,
+            height: 10.0,
+        };
         assert!(crosses([(0.0, 0.0), (30.0, 30.0)], &area));
         assert!(crosses([(12.0, 0.0), (12.0, 30.0)], &area));
         assert!(!crosses([(0.0, 0.0), (9.0, 30.0)], &area));

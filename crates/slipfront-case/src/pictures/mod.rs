@@ -7,9 +7,12 @@
 
 mod axis;
 mod canvas;
+mod files;
 mod friction;
 mod labels;
+mod legend;
 mod outline;
+mod series;
 mod stress;
 mod style;
 mod text;

@@ -13,7 +13,9 @@ pub(super) fn outline(textured: &[bool], nx: usize, ny: usize) -> Vec<Vec<(usize
         for y in 0..=ny {
             for x in 0..=nx {
                 let starts = |edges: &Edges| (0..4).find(|&way| edges.has((x, y), way));
-                while let Some(way) = starts(&edges).filter(|_| !open || x == 0 || y == 0 || x == nx || y == ny) {
+                while let Some(way) =
+                    starts(&edges).filter(|_| !open || x == 0 || y == 0 || x == nx || y == ny)
+                {
                     chains.push(edges.follow((x, y), way));
                 }
             }
@@ -33,7 +35,10 @@ struct Edges {
 
 impl Edges {
     fn of(textured: &[bool], nx: usize, ny: usize) -> Self {
-        let mut edges = Self { corners_x: nx + 1, ways: vec![0; (nx + 1) * (ny + 1)] };
+        let mut edges = Self {
+            corners_x: nx + 1,
+            ways: vec![0; (nx + 1) * (ny + 1)],
+        };
         let at = |x: usize, y: usize| textured[y * nx + x];
         for y in 0..ny {
             for x in 0..nx {
@@ -74,9 +79,15 @@ impl Edges {
         let (mut corner, mut way) = (start, way);
         loop {
             self.remove(corner, way);
-            corner = (corner.0.wrapping_add_signed(WAYS[way].0), corner.1.wrapping_add_signed(WAYS[way].1));
+            corner = (
+                corner.0.wrapping_add_signed(WAYS[way].0),
+                corner.1.wrapping_add_signed(WAYS[way].1),
+            );
             // Left before straight before right: two textured blocks that meet at a corner only stay two areas.
-            let next = [1, 0, 3].into_iter().map(|turn| (way + turn) % 4).find(|&next| self.has(corner, next));
+            let next = [1, 0, 3]
+                .into_iter()
+                .map(|turn| (way + turn) % 4)
+                .find(|&next| self.has(corner, next));
             if next != Some(way) || corner == start {
                 chain.push(corner);
             }
@@ -94,12 +105,18 @@ mod tests {
 
     /// The outline of a drawing whose first line is y = 0.
     fn traced(rows: &[&str]) -> Vec<Vec<(usize, usize)>> {
-        let textured: Vec<bool> = rows.iter().flat_map(|row| row.bytes().map(|b| b == b'#')).collect();
+        let textured: Vec<bool> = rows
+            .iter()
+            .flat_map(|row| row.bytes().map(|b| b == b'#'))
+            .collect();
         outline(&textured, rows[0].len(), rows.len())
     }
 
     fn length(chain: &[(usize, usize)]) -> usize {
-        chain.windows(2).map(|pair| pair[0].0.abs_diff(pair[1].0) + pair[0].1.abs_diff(pair[1].1)).sum()
+        chain
+            .windows(2)
+            .map(|pair| pair[0].0.abs_diff(pair[1].0) + pair[0].1.abs_diff(pair[1].1))
+            .sum()
     }
 
     #[test]
@@ -115,8 +132,10 @@ mod tests {
 
     #[test]
     fn a_ring_has_an_outer_and_an_inner_chain() {
-        let mut lengths: Vec<_> =
-            traced(&[".....", ".###.", ".#.#.", ".###.", "....."]).iter().map(|c| (c.len(), length(c))).collect();
+        let mut lengths: Vec<_> = traced(&[".....", ".###.", ".#.#.", ".###.", "....."])
+            .iter()
+            .map(|c| (c.len(), length(c)))
+            .collect();
         lengths.sort_unstable();
         assert_eq!(lengths, [(5, 4), (5, 12)]);
     }
@@ -142,6 +161,8 @@ mod tests {
 
     #[test]
     fn nothing_textured_or_everything_has_no_outline() {
-        assert!(traced(&["..", ".."]).is_empty() && traced(&["##", "##"]).is_empty() && traced(&["#"]).is_empty());
+        assert!(
+            traced(&["..", ".."]).is_empty() && traced(&["##", "##"]).is_empty() && traced(&["#"]).is_empty()
+        );
     }
 }

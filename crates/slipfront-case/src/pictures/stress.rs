@@ -3,9 +3,7 @@
 use super::axis::Axis;
 use super::canvas::{Align, Area, Canvas, Image, level};
 use super::outline::outline;
-use super::style::{
-    BLACK, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH, TICK_LENGTH, WHITE, WIDTH_MARK,
-};
+use super::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH, TICK_LENGTH, WHITE, WIDTH_MARK};
 use super::text::{Text, number};
 use super::{Picture, PictureError};
 
@@ -14,7 +12,6 @@ const CELLS: usize = 256;
 /// Maps in a row.
 const COLUMNS: usize = 6;
 
-const MARGIN: f64 = 14.0;
 const GAP: f64 = 30.0;
 /// A single map is no wider than this: 44 mm.
 const WIDEST: f64 = 520.0;
@@ -66,7 +63,12 @@ pub fn stress(maps: &StressMaps) -> Result<Picture, PictureError> {
     check(maps)?;
     let layout = Layout::of(maps);
     let mut canvas = Canvas::new(layout.width, layout.height);
-    let cells = Cells { nx: maps.nx, ny: maps.ny, columns: maps.nx.min(CELLS), rows: maps.ny.min(CELLS) };
+    let cells = Cells {
+        nx: maps.nx,
+        ny: maps.ny,
+        columns: maps.nx.min(CELLS),
+        rows: maps.ny.min(CELLS),
+    };
     let share = cells.mean(|block| if maps.textured[block] { 1.0 } else { 0.0 });
     let textured: Vec<bool> = share.into_iter().map(|share| share > 0.5).collect();
     let lines = outline(&textured, cells.columns, cells.rows);
@@ -74,8 +76,17 @@ pub fn stress(maps: &StressMaps) -> Result<Picture, PictureError> {
         let area = layout.map(index);
         let values = cells.mean(|block| map.values[block]);
         // The image's first row is the uppermost.
-        let levels = values.chunks_exact(cells.columns).rev().flatten().map(|&value| level(value)).collect();
-        canvas.image(Image { area, columns: cells.columns, levels });
+        let levels = values
+            .chunks_exact(cells.columns)
+            .rev()
+            .flatten()
+            .map(|&value| level(value))
+            .collect();
+        canvas.image(Image {
+            area,
+            columns: cells.columns,
+            levels,
+        });
         for line in &lines {
             let corner = |&(x, y): &(usize, usize)| {
                 let (x, y) = (x as f64 / cells.columns as f64, y as f64 / cells.rows as f64);
@@ -92,8 +103,13 @@ pub fn stress(maps: &StressMaps) -> Result<Picture, PictureError> {
 }
 
 fn check(maps: &StressMaps) -> Result<(), PictureError> {
-    let StressMaps { nx, ny, block_size, .. } = *maps;
-    let expected = nx.checked_mul(ny).filter(|&count| count > 0).ok_or(PictureError::Lattice { nx, ny })?;
+    let StressMaps {
+        nx, ny, block_size, ..
+    } = *maps;
+    let expected = nx
+        .checked_mul(ny)
+        .filter(|&count| count > 0)
+        .ok_or(PictureError::Lattice { nx, ny })?;
     if !(block_size > 0.0 && block_size < 1e9) {
         return Err(PictureError::BlockSize(block_size.to_string()));
     }
@@ -101,9 +117,17 @@ fn check(maps: &StressMaps) -> Result<(), PictureError> {
         return Err(PictureError::Nothing("map"));
     }
     let mut lengths = vec![("the texture".to_string(), maps.textured.len())];
-    lengths.extend(maps.maps.iter().map(|map| (format!("map `{}`", map.label), map.values.len())));
+    lengths.extend(
+        maps.maps
+            .iter()
+            .map(|map| (format!("map `{}`", map.label), map.values.len())),
+    );
     match lengths.into_iter().find(|(_, found)| *found != expected) {
-        Some((what, found)) => Err(PictureError::Blocks { what, found, expected }),
+        Some((what, found)) => Err(PictureError::Blocks {
+            what,
+            found,
+            expected,
+        }),
         None => Ok(()),
     }
 }
@@ -187,7 +211,11 @@ impl Layout {
         let map_width = (room - GAP).min(WIDEST).min(TALLEST / ratio).round();
         let map_height = (map_width * ratio).round();
         // A narrow map may have a wider title.
-        let titles = maps.maps.iter().map(|map| title(map).width()).fold(map_width, f64::max);
+        let titles = maps
+            .maps
+            .iter()
+            .map(|map| title(map).width())
+            .fold(map_width, f64::max);
         let pitch_x = (titles + GAP).min(room).max(map_width + GAP).round();
 
         let top = (MARGIN + 2.0 * f64::from(SIZE_LABEL) + 18.0).round();
@@ -242,23 +270,55 @@ impl Layout {
             let area = self.map(index);
             let middle = (area.x + 0.5 * area.width, area.y + 0.5 * area.height);
             if index % self.columns == 0 {
-                let axis = Axis { start: area.bottom(), end: area.y, ..axis_of(self.extent.1) };
+                let axis = Axis {
+                    start: area.bottom(),
+                    end: area.y,
+                    ..axis_of(self.extent.1)
+                };
                 let most = if area.height < 130.0 { 2 } else { 4 };
+                let mut lowest = f64::INFINITY;
                 for (value, text) in axis.ticks(most) {
-                    canvas.tick_left((area.x, axis.at(value)), &Text::plain(&text, SIZE_TICK));
+                    let (at, mut text) = (axis.at(value), Text::plain(&text, SIZE_TICK));
+                    // A number that would touch the one before is left out.
+                    if at + text.height() + 8.0 > lowest {
+                        text = Text::plain("", SIZE_TICK);
+                    } else {
+                        lowest = at;
+                    }
+                    canvas.tick_left((area.x, at), &text);
                 }
                 let title = Text::plain(&format!("y ({})", self.unit), SIZE_LABEL);
-                canvas.text_upwards(&title, (MARGIN + 0.8 * f64::from(SIZE_LABEL), middle.1), BLACK);
+                let baseline = area.x - self.left + MARGIN + 0.8 * f64::from(SIZE_LABEL);
+                canvas.text_upwards(&title, (baseline, middle.1), BLACK);
             }
             if index + self.columns >= count {
-                let axis = Axis { start: area.x, end: area.right(), ..axis_of(self.extent.0) };
+                let axis = Axis {
+                    start: area.x,
+                    end: area.right(),
+                    ..axis_of(self.extent.0)
+                };
                 let most = if area.width < 130.0 { 2 } else { 4 };
+                let mut free = f64::NEG_INFINITY;
+                let limit = middle.0 + 0.5 * self.pitch_x - 4.0;
                 for (value, text) in axis.ticks(most) {
-                    canvas.tick_below((axis.at(value), area.bottom()), &Text::plain(&text, SIZE_TICK));
+                    let (at, mut text) = (axis.at(value), Text::plain(&text, SIZE_TICK));
+                    let half = 0.5 * text.width();
+                    // Nor may it touch the next map's first.
+                    if at - half < free || at + half > limit {
+                        text = Text::plain("", SIZE_TICK);
+                    } else {
+                        free = at + half + 12.0;
+                    }
+                    canvas.tick_below((at, area.bottom()), &text);
                 }
                 let title = Text::plain(&format!("x ({})", self.unit), SIZE_LABEL);
                 let below = TICK_LENGTH + 7.0 + f64::from(SIZE_TICK + SIZE_LABEL);
-                canvas.text(&title, (middle.0, area.bottom() + below - 4.0), Align::Middle, BLACK);
+                canvas.text(
+                    &title,
+                    (middle.0, area.bottom() + below - 4.0),
+                    Align::Middle,
+                    BLACK,
+                );
             }
         }
     }
@@ -267,16 +327,35 @@ impl Layout {
     fn draw_bar(&self, canvas: &mut Canvas) {
         let height = ((self.rows - 1) as f64 * self.pitch_y + self.map_height).max(BAR_SHORTEST);
         let x = self.left + self.columns as f64 * self.pitch_x;
-        let area = Area { x, y: self.top, width: BAR_WIDTH, height };
+        let area = Area {
+            x,
+            y: self.top,
+            width: BAR_WIDTH,
+            height,
+        };
         let levels = (0..=254).rev().collect();
-        canvas.image(Image { area, columns: 1, levels });
+        canvas.image(Image {
+            area,
+            columns: 1,
+            levels,
+        });
         canvas.frame(area);
-        let axis = Axis { lo: 0.0, hi: 1.0, start: area.bottom(), end: area.y };
+        let axis = Axis {
+            lo: 0.0,
+            hi: 1.0,
+            start: area.bottom(),
+            end: area.y,
+        };
         for (value, text) in axis.ticks(5) {
             canvas.tick_right((area.right(), axis.at(value)), &Text::plain(&text, SIZE_TICK));
         }
         let title = Text::math("\u{3c4}_c*", SIZE_LABEL);
-        canvas.text(&title, (area.x + 0.5 * area.width, area.y - 22.0), Align::Middle, BLACK);
+        canvas.text(
+            &title,
+            (area.x + 0.5 * area.width, area.y - 22.0),
+            Align::Middle,
+            BLACK,
+        );
     }
 }
 
@@ -301,14 +380,134 @@ fn unit_of(length: f64) -> (&'static str, f64) {
 }
 
 fn axis_of(extent: f64) -> Axis {
-    Axis { lo: 0.0, hi: extent, start: 0.0, end: 1.0 }
+    Axis {
+        lo: 0.0,
+        hi: extent,
+        start: 0.0,
+        end: 1.0,
+    }
 }
 
 fn widest(ticks: &[(f64, String)]) -> f64 {
-    ticks.iter().map(|(_, text)| Text::plain(text, SIZE_TICK).width()).fold(0.0, f64::max)
+    ticks
+        .iter()
+        .map(|(_, text)| Text::plain(text, SIZE_TICK).width())
+        .fold(0.0, f64::max)
 }
 
 /// The room for the colour bar and its numbers, right of the last map.
 fn bar_room() -> f64 {
     GAP + BAR_WIDTH + TICK_LENGTH + 7.0 + Text::plain("0.0", SIZE_TICK).width() + MARGIN
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn maps(nx: usize, ny: usize, count: usize) -> StressMaps {
+        let map = |index: usize| StressMap {
+            label: ["A", "B", "C", "D", "E", "F", "G"][index].to_string(),
+            time_star: 12.34 * index as f64,
+            mu_star: 0.5,
+            values: (0..nx * ny)
+                .map(|block| block as f32 / (nx * ny) as f32)
+                .collect(),
+        };
+        let textured = (0..nx * ny).map(|block| block % nx == nx / 2 && nx > 2).collect();
+        StressMaps {
+            nx,
+            ny,
+            block_size: 1e-6,
+            textured,
+            maps: (0..count).map(map).collect(),
+        }
+    }
+
+    #[test]
+    fn the_same_maps_give_the_same_bytes() {
+        assert_eq!(
+            stress(&maps(10, 10, 2)).unwrap(),
+            stress(&maps(10, 10, 2)).unwrap()
+        );
+    }
+
+    #[test]
+    fn every_shape_is_drawn_within_the_width_of_a_page() {
+        for (nx, ny, count) in [
+            (50, 50, 6),
+            (50, 50, 7),
+            (200, 1, 6),
+            (1, 200, 6),
+            (1, 1, 1),
+            (300, 20, 2),
+        ] {
+            let maps = maps(nx, ny, count);
+            let layout = Layout::of(&maps);
+            assert!(layout.width <= TEXT_WIDTH + 6.0, "{nx} x {ny}: {}", layout.width);
+            let last = layout.map(count - 1);
+            assert!(last.bottom() < layout.height && last.width >= 40.0 && last.height >= 40.0);
+            stress(&maps).unwrap();
+        }
+    }
+
+    #[test]
+    fn blank_maps_and_unknown_friction_are_drawn() {
+        let mut blank = maps(4, 4, 1);
+        blank.maps[0].values.fill(f32::NAN);
+        blank.maps[0].mu_star = f64::NAN;
+        let svg = stress(&blank).unwrap().svg;
+        assert!(svg.contains(">A: t* = 0.0</text>") && !svg.contains("NaN"));
+    }
+
+    #[test]
+    fn groups_of_blocks_are_averaged_without_the_blank_ones() {
+        let cells = Cells {
+            nx: 4,
+            ny: 2,
+            columns: 2,
+            rows: 1,
+        };
+        let values = [1.0, 2.0, f32::NAN, f32::NAN, 3.0, f32::NAN, f32::NAN, f32::NAN];
+        let means = cells.mean(|block| values[block]);
+        assert!(means[0] == 2.0 && means[1].is_nan());
+    }
+
+    #[test]
+    fn a_large_lattice_stays_a_small_file() {
+        let picture = stress(&maps(1000, 600, 1)).unwrap();
+        assert!(picture.svg.len() < 300_000, "{}", picture.svg.len());
+    }
+
+    #[test]
+    fn what_does_not_fit_the_lattice_is_refused() {
+        let error = |change: &dyn Fn(&mut StressMaps)| {
+            let mut maps = maps(2, 3, 1);
+            change(&mut maps);
+            stress(&maps).unwrap_err().to_string()
+        };
+        assert_eq!(error(&|m| m.nx = 0), "a lattice of 0 x 3 blocks cannot be drawn");
+        assert_eq!(
+            error(&|m| m.nx = usize::MAX),
+            format!("a lattice of {} x 3 blocks cannot be drawn", usize::MAX)
+        );
+        assert_eq!(
+            error(&|m| m.block_size = f64::NAN),
+            "a block size of NaN m cannot be drawn"
+        );
+        assert_eq!(error(&|m| m.maps.clear()), "there is no map to draw");
+        assert_eq!(
+            error(&|m| m.textured.clear()),
+            "the texture has 0 values, but the lattice has 6 blocks"
+        );
+        assert_eq!(
+            error(&|m| m.maps[0].values.push(0.0)),
+            "map `A` has 7 values, but the lattice has 6 blocks"
+        );
+    }
+
+    #[test]
+    fn the_unit_follows_the_length() {
+        let units = [5e-7, 5e-5, 5e-2, 5.0].map(|length| unit_of(length).0);
+        assert_eq!(units, ["nm", "\u{b5}m", "mm", "m"]);
+    }
 }

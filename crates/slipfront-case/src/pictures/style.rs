@@ -24,6 +24,8 @@ pub(super) const WIDTH_MARK: f64 = 2.5;
 pub(super) const WIDTH_FRAME: f64 = 2.0;
 /// Leaders: 0.35 pt.
 pub(super) const WIDTH_LEADER: f64 = 1.5;
+/// Between the picture's edge and what is drawn.
+pub(super) const MARGIN: f64 = 14.0;
 /// How far a tick reaches out of its frame.
 pub(super) const TICK_LENGTH: f64 = 9.0;
 
@@ -59,6 +61,8 @@ pub(super) fn curve_colour(index: usize, count: usize) -> Rgb {
 /// Viridis, perceptually uniform, from 0 (dark) to 1 (bright); the table is the crate `colorous`' (Apache-2.0), which
 /// `kuva` brings.
 pub(super) fn ramp(value: f64) -> Rgb {
-    let (red, green, blue) = ColorMap::Viridis.map_rgb(value).unwrap_or((BLANK[0], BLANK[1], BLANK[2]));
+    let (red, green, blue) = ColorMap::Viridis
+        .map_rgb(value)
+        .unwrap_or((BLANK[0], BLANK[1], BLANK[2]));
     [red, green, blue]
 }

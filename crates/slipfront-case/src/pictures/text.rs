@@ -1,6 +1,6 @@
 //! Short texts with subscripts, and how wide they are.
 
-/// How far a character moves the pen, in 1/2048 of the font size, for DejaVu Sans from space to tilde.
+/// How far a character moves the pen, in 1/2048 of the font size, for `DejaVu` Sans from space to tilde.
 #[rustfmt::skip]
 const ADVANCES: [u16; 95] = [
     651, 821, 942, 1716, 1303, 1946, 1597, 563, 799, 799, 1024, 1716, 651, 739, 651, 690,
@@ -37,9 +37,22 @@ impl Text {
     /// A text taken as it is, for what a user wrote: control characters and doubled spaces, which SVG does not keep,
     /// are dropped.
     pub(super) fn plain(text: &str, size: u32) -> Self {
-        let words: Vec<&str> = text.split(|c: char| c.is_whitespace() || c.is_control()).collect();
-        let text = words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ");
-        Self { runs: vec![Run { text, size, drop: 0.0 }], size }
+        let words: Vec<&str> = text
+            .split(|c: char| c.is_whitespace() || c.is_control())
+            .collect();
+        let text = words
+            .into_iter()
+            .filter(|word| !word.is_empty())
+            .collect::<Vec<_>>()
+            .join(" ");
+        Self {
+            runs: vec![Run {
+                text,
+                size,
+                drop: 0.0,
+            }],
+            size,
+        }
     }
 
     /// A text in which the character after an underscore is a subscript: `mu_s*`.
@@ -47,13 +60,25 @@ impl Text {
         let sub_size = (f64::from(size) * 0.72).round() as u32;
         let mut runs = Vec::new();
         for (index, part) in text.split('_').enumerate() {
-            let first = part.chars().next().filter(|_| index > 0).map_or(0, char::len_utf8);
+            let first = part
+                .chars()
+                .next()
+                .filter(|_| index > 0)
+                .map_or(0, char::len_utf8);
             let (sub, rest) = part.split_at(first);
             if !sub.is_empty() {
-                runs.push(Run { text: sub.to_string(), size: sub_size, drop: 0.16 * f64::from(size) });
+                runs.push(Run {
+                    text: sub.to_string(),
+                    size: sub_size,
+                    drop: 0.16 * f64::from(size),
+                });
             }
             if !rest.is_empty() {
-                runs.push(Run { text: rest.to_string(), size, drop: 0.0 });
+                runs.push(Run {
+                    text: rest.to_string(),
+                    size,
+                    drop: 0.0,
+                });
             }
         }
         Self { runs, size }
@@ -69,6 +94,17 @@ impl Text {
         CAP_HEIGHT * f64::from(self.size)
     }
 
+    /// How far its lowest letter reaches below the line.
+    pub(super) fn depth(&self) -> f64 {
+        let reach = |run: &Run| {
+            let descends = run
+                .text
+                .contains(['g', 'j', 'p', 'q', 'y', '\u{3bc}', '(', ')', ',']);
+            run.drop + if descends { 0.24 * f64::from(run.size) } else { 0.0 }
+        };
+        self.runs.iter().map(reach).fold(0.0, f64::max)
+    }
+
     /// A plain text cut so that it is at most `width` wide, with an ellipsis for what is left out.
     pub(super) fn shortened(text: &str, size: u32, width: f64) -> Self {
         let whole = Self::plain(text, size);
@@ -77,7 +113,10 @@ impl Text {
         }
         let mut kept: Vec<char> = text.chars().collect();
         while kept.pop().is_some() {
-            let cut = Self::plain(&(kept.iter().collect::<String>().trim_end().to_string() + "\u{2026}"), size);
+            let cut = Self::plain(
+                &(kept.iter().collect::<String>().trim_end().to_string() + "\u{2026}"),
+                size,
+            );
             if cut.width() <= width {
                 return cut;
             }
@@ -129,8 +168,19 @@ mod tests {
     #[test]
     fn a_subscript_is_smaller_and_lower() {
         let text = Text::math("\u{3bc}_s* = 1", 30);
-        let parts: Vec<_> = text.runs.iter().map(|r| (r.text.as_str(), r.size < 30, r.drop > 0.0)).collect();
-        assert_eq!(parts, [("\u{3bc}", false, false), ("s", true, true), ("* = 1", false, false)]);
+        let parts: Vec<_> = text
+            .runs
+            .iter()
+            .map(|r| (r.text.as_str(), r.size < 30, r.drop > 0.0))
+            .collect();
+        assert_eq!(
+            parts,
+            [
+                ("\u{3bc}", false, false),
+                ("s", true, true),
+                ("* = 1", false, false)
+            ]
+        );
     }
 
     #[test]
