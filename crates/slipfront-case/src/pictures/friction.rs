@@ -1,20 +1,18 @@
 //! Friction and the share of sliding blocks against time.
 
-use super::axis::{Axis, drawable, range, widened};
+use super::axis::drawable;
 use super::canvas::{Align, Area, Canvas};
 use super::labels::{Candidate, Placer, around};
 use super::legend::Legend;
+use super::panels::{Panels, between};
 use super::series::pieces;
 use super::style::{
-    BLACK, COLUMN_WIDTH, CURVES, GREY, MARGIN, Rgb, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WIDTH_CURVE,
-    WIDTH_LEADER, WIDTH_MARK, curve_colour,
+    BLACK, COLUMN_WIDTH, CURVES, GREY, MARGIN, Rgb, SIZE_LABEL, WIDTH_CURVE, WIDTH_LEADER, WIDTH_MARK,
+    curve_colour,
 };
 use super::text::{Text, number};
 use super::{Picture, PictureError};
 
-const HEIGHT_FRICTION: f64 = 500.0;
-const HEIGHT_SLIDING: f64 = 230.0;
-const GAP: f64 = 34.0;
 const DOT: f64 = 7.0;
 /// The kinetic window's shade.
 const SHADE: Rgb = [0x9a, 0xa5, 0xb1];
@@ -92,17 +90,13 @@ pub fn friction(curves: &[FrictionCurve]) -> Result<Picture, PictureError> {
             });
         }
     }
-    let legend = if curves.len() > 1 {
-        Legend::of(
-            &curves
-                .iter()
-                .map(|curve| curve.label.as_str())
-                .collect::<Vec<_>>(),
-        )
-    } else {
-        Legend::default()
-    };
-    let panels = Panels::of(curves, MARGIN + legend.height);
+    let mut panels = Panels::of(curves);
+    let mut legend = Legend::default();
+    if curves.len() > 1 {
+        let labels: Vec<&str> = curves.iter().map(|curve| curve.label.as_str()).collect();
+        legend = Legend::of(&labels, panels.time.start, panels.time.end);
+        panels = panels.lowered(legend.height);
+    }
     let mut canvas = Canvas::new(COLUMN_WIDTH, panels.bottom());
     panels.draw_axes(&mut canvas);
     legend.draw(&mut canvas);
@@ -203,8 +197,24 @@ fn label_one(
             GREY,
         );
     }
+    // Instants at the peak share its label: several labels of one point would take its neighbours' places.
+    let at_peak = |instant: &Instant| {
+        let (x, y) = point(instant.time_star, instant.mu_star);
+        let near = |(t, value)| (x - time.at(t)).hypot(y - mu.at(value)) < 2.0;
+        peak.is_some_and(near) && instant.letter.is_alphanumeric()
+    };
     if let Some((t, value)) = peak {
-        let text = Text::math(&format!("\u{3bc}_s* = {}", number(value, 3)), SIZE_LABEL);
+        let letters: Vec<String> = instants
+            .iter()
+            .filter(|i| at_peak(i))
+            .map(|i| i.letter.to_string())
+            .collect();
+        let letter = if letters.is_empty() {
+            String::new()
+        } else {
+            letters.join(", ") + ": "
+        };
+        let text = Text::math(&format!("{letter}\u{3bc}_s* = {}", number(value, 3)), SIZE_LABEL);
         write(
             canvas,
             placer,
@@ -213,7 +223,7 @@ fn label_one(
             BLACK,
         );
     }
-    for instant in instants {
+    for instant in instants.into_iter().filter(|i| !at_peak(i)) {
         let text = Text::plain(&instant.letter.to_string(), SIZE_LABEL);
         let place = point(instant.time_star, instant.mu_star);
         write(canvas, placer, &text, around(place, box_of(&text)), BLACK);
@@ -264,15 +274,6 @@ fn stroke(canvas: &mut Canvas, piece: Vec<(f64, f64)>, colour: Rgb) {
 /// The width and the full height of a text.
 fn box_of(text: &Text) -> (f64, f64) {
     (text.width(), text.height() + text.depth())
-}
-
-fn between(from: f64, to: f64, start: f64, end: f64) -> Area {
-    Area {
-        x: from,
-        y: start.min(end),
-        width: to - from,
-        height: (end - start).abs(),
-    }
 }
 
 /// Places for a label of the window: within it if it is wide enough, rather above the mean than below.
@@ -331,123 +332,6 @@ fn with_uncertainty(window: &Kinetic) -> String {
             )
         }
         None => number(window.mean, 3),
-    }
-}
-
-/// The two panels.
-struct Panels {
-    time: Axis,
-    mu: Axis,
-    sliding: Axis,
-}
-
-impl Panels {
-    fn of(curves: &[FrictionCurve], top: f64) -> Self {
-        let (from, to) = widened(range(
-            curves.iter().flat_map(|curve| curve.time_star.iter().copied()),
-        ));
-        let marks = |curve: &FrictionCurve| {
-            let mean = curve.kinetic.map(|window| window.mean);
-            mean.into_iter()
-                .chain(curve.peak.map(|(_, value)| value))
-                .collect::<Vec<_>>()
-        };
-        let values = curves
-            .iter()
-            .flat_map(|curve| curve.mu_star.iter().copied().chain(marks(curve)));
-        let (mut lo, hi) = widened(range(values));
-        // Friction is read against zero, unless that would flatten it.
-        if lo > 0.0 && lo < 0.9 * hi {
-            lo = 0.0;
-        }
-        let room = 0.1 * (hi - lo);
-        let mu_top = top;
-        let mu_bottom = mu_top + HEIGHT_FRICTION;
-        let sliding_top = mu_bottom + GAP;
-        let mu = Axis {
-            lo: if lo == 0.0 { lo } else { lo - room },
-            hi: hi + room,
-            start: mu_bottom,
-            end: mu_top,
-        };
-        let sliding = Axis {
-            lo: 0.0,
-            hi: 100.0,
-            start: sliding_top + HEIGHT_SLIDING,
-            end: sliding_top,
-        };
-        let numbers = [mu.ticks(6), sliding.ticks(2)].concat();
-        let widest = numbers
-            .iter()
-            .map(|(_, text)| Text::plain(text, SIZE_TICK).width())
-            .fold(0.0, f64::max);
-        let left = (MARGIN + f64::from(SIZE_LABEL) + 14.0 + widest + TICK_LENGTH + 7.0).round();
-        // The last number on the time axis may stand half beyond its end.
-        let right = COLUMN_WIDTH.round() - 28.0;
-        Self {
-            time: Axis {
-                lo: from,
-                hi: to,
-                start: left,
-                end: right,
-            },
-            mu,
-            sliding,
-        }
-    }
-
-    /// The panel of friction.
-    fn friction(&self) -> Area {
-        between(self.time.start, self.time.end, self.mu.start, self.mu.end)
-    }
-
-    /// Where the picture ends.
-    fn bottom(&self) -> f64 {
-        self.sliding.start + TICK_LENGTH + 7.0 + f64::from(SIZE_TICK + SIZE_LABEL) + MARGIN
-    }
-
-    fn draw_axes(&self, canvas: &mut Canvas) {
-        let baseline = MARGIN + 0.8 * f64::from(SIZE_LABEL);
-        let titles = [
-            (
-                &self.mu,
-                6,
-                "friction \u{3bc}* = \u{3bc}/\u{27e8}\u{3bc}_s\u{27e9}",
-            ),
-            (&self.sliding, 2, "sliding N* (%)"),
-        ];
-        for (axis, most, title) in titles {
-            for (value, text) in axis.ticks(most) {
-                canvas.tick_left((self.time.start, axis.at(value)), &Text::plain(&text, SIZE_TICK));
-            }
-            let middle = 0.5 * (axis.start + axis.end);
-            canvas.text_upwards(&Text::math(title, SIZE_LABEL), (baseline, middle), BLACK);
-        }
-        for (value, text) in self.time.ticks(6) {
-            let x = self.time.at(value);
-            canvas.tick_below((x, self.sliding.start), &Text::plain(&text, SIZE_TICK));
-            canvas.line(
-                (x, self.mu.start),
-                (x, self.mu.start + TICK_LENGTH),
-                WIDTH_LEADER,
-                BLACK,
-            );
-        }
-        let middle = 0.5 * (self.time.start + self.time.end);
-        let title = Text::plain("dimensionless time t*", SIZE_LABEL);
-        canvas.text(
-            &title,
-            (middle, self.bottom() - MARGIN - 4.0),
-            Align::Middle,
-            BLACK,
-        );
-    }
-
-    /// The panels' edges, over everything that ends on them.
-    fn draw_frames(&self, canvas: &mut Canvas) {
-        for axis in [&self.mu, &self.sliding] {
-            canvas.frame(between(self.time.start, self.time.end, axis.start, axis.end));
-        }
     }
 }
 
@@ -531,7 +415,8 @@ mod tests {
     #[test]
     fn every_mark_is_written_once_and_apart_from_the_others() {
         let svg = friction(&[run()]).unwrap().svg;
-        let letters = ["A", "B", "C", "D", "E", "F"].map(|letter| written_at(&svg, letter).unwrap());
+        // C is the peak and shares its label.
+        let letters = ["A", "B", "C: \u{3bc}", "D", "E", "F"].map(|letter| written_at(&svg, letter).unwrap());
         for (index, a) in letters.iter().enumerate() {
             for b in &letters[..index] {
                 assert!(
@@ -543,6 +428,17 @@ mod tests {
         for text in ["first slip", "* = 0.883", "* = 0.530 \u{b1} 0.004"] {
             assert_eq!(svg.matches(text).count(), 1, "{text}");
         }
+    }
+
+    #[test]
+    fn instants_at_the_peak_share_its_label() {
+        let mut uniform = run();
+        uniform.instants[1] = Instant {
+            letter: 'B',
+            ..uniform.instants[2]
+        };
+        let svg = friction(&[uniform]).unwrap().svg;
+        assert!(written_at(&svg, "B, C: \u{3bc}").is_some() && written_at(&svg, "B").is_none());
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The legend above a panel with several curves.
 
 use super::canvas::{Align, Canvas};
-use super::style::{BLACK, COLUMN_WIDTH, MARGIN, Rgb, SIZE_TICK, WIDTH_CURVE, curve_colour};
+use super::style::{BLACK, MARGIN, Rgb, SIZE_TICK, WIDTH_CURVE, curve_colour};
 use super::text::Text;
 
 /// The names of several curves.
@@ -23,10 +23,8 @@ impl Legend {
     const SAMPLE: f64 = 44.0;
     const ROW: f64 = 44.0;
 
-    /// Places the labels, in rows as wide as a journal's column, from the top of the picture down.
-    pub(super) fn of(labels: &[&str]) -> Self {
-        let right = COLUMN_WIDTH - 28.0;
-        let left = 4.0 * MARGIN;
+    /// Places the labels in rows between `left` and `right`, from the top of the picture down.
+    pub(super) fn of(labels: &[&str], left: f64, right: f64) -> Self {
         let room = right - left - Self::SAMPLE - 10.0;
         let texts: Vec<Text> = labels
             .iter()

@@ -12,6 +12,7 @@ mod friction;
 mod labels;
 mod legend;
 mod outline;
+mod panels;
 mod series;
 mod stress;
 mod style;
