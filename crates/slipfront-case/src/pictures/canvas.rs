@@ -1,8 +1,8 @@
 //! What a picture is drawn on, and how it becomes SVG and PNG.
 //!
-//! Lines and texts go through a `kuva` scene. Images (colour maps) are kept apart: the SVG holds each as one pixelated
-//! image and the PNG as rectangles that end on whole pixels, because neighbouring rectangles in an SVG leave hairline
-//! seams between them in most viewers.
+//! Lines and texts go through a `kuva` scene. Images (colour maps) are kept apart: the SVG holds each as one
+//! pixelated image and the PNG as rectangles that end on whole pixels, because neighbouring rectangles in an
+//! SVG leave hairline seams between them in most viewers.
 
 use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, TextAnchor};

@@ -16,8 +16,9 @@ const FONT: &[u8] = include_bytes!("font/DejaVuSans-subset.woff2");
 /// A PNG of more pixels is refused, and oversampling stops short of a few times that.
 const MOST_PIXELS: f64 = 1e8;
 
-/// How many times larger the PNG is drawn before it is averaged down: `kuva` smooths lines along one direction only, and
-/// sets letters on whole pixels. Very large pictures, which nobody prints, are spared the memory.
+/// How many times larger the PNG is drawn before it is averaged down: `kuva` smooths lines along one
+/// direction only, and sets letters on whole pixels. Very large pictures, which nobody prints, are spared the
+/// memory.
 fn oversampling(width: f64, height: f64) -> u32 {
     let fits = |&times: &u32| width * height * f64::from(times * times) < 0.5 * MOST_PIXELS;
     (1..=3).rev().find(fits).unwrap_or(1)
@@ -54,9 +55,11 @@ pub(super) fn write(
 fn svg(scene: &Scene, images: &[Image]) -> Result<String, PictureError> {
     let (width, height) = (scene.width, scene.height);
     let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.2}mm\" height=\"{:.2}mm\" viewBox=\"0 0 {width} {height}\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.2}mm\" height=\"{:.2}mm\" \
+         viewBox=\"0 0 {width} {height}\" \
          font-family=\"'DejaVu Sans',Verdana,sans-serif\" stroke-linejoin=\"round\">\n\
-         <style>@font-face{{font-family:'DejaVu Sans';src:url('data:font/woff2;base64,{}') format('woff2');}}</style>\n\
+         <style>@font-face{{font-family:'DejaVu Sans';\
+         src:url('data:font/woff2;base64,{}') format('woff2');}}</style>\n\
          <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n",
         width / DPI * 25.4,
         height / DPI * 25.4,
@@ -67,12 +70,14 @@ fn svg(scene: &Scene, images: &[Image]) -> Result<String, PictureError> {
         // Both properties: the second is what browsers know, the first what older viewers know.
         let _ = writeln!(
             svg,
-            "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" \
-             image-rendering=\"optimizeSpeed\" style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>",
+            "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" \
+             preserveAspectRatio=\"none\" image-rendering=\"optimizeSpeed\" style=\"image-rendering:pixelated\" \
+             href=\"data:image/png;base64,{}\"/>",
             base64(&image_png(image)?),
         );
     }
-    // kuva's opening tag knows neither a physical size nor a view box, so that the picture could not be scaled.
+    // kuva's opening tag knows neither a physical size nor a view box, so that the picture could not be
+    // scaled.
     let drawn = SvgBackend::new().with_pretty(true).render_scene(scene);
     svg.push_str(
         drawn
@@ -82,7 +87,8 @@ fn svg(scene: &Scene, images: &[Image]) -> Result<String, PictureError> {
     Ok(svg)
 }
 
-/// An image as a PNG of its own, in which a pixel is repeated so often that a viewer's smoothing blurs its edge only.
+/// An image as a PNG of its own, in which a pixel is repeated so often that a viewer's smoothing blurs its
+/// edge only.
 fn image_png(image: &Image) -> Result<Vec<u8>, PictureError> {
     let rows = image.levels.len() / image.columns;
     let repeat = (400 / image.columns.max(rows)).max(1);
@@ -235,7 +241,8 @@ mod tests {
 
     #[test]
     fn an_image_has_no_seams() {
-        // 7 columns over 50 pixels, all alike but for the level: between them the white ground must not shine through.
+        // 7 columns over 50 pixels, all alike but for the level: between them the white ground must not shine
+        // through.
         let mut canvas = Canvas::new(60.0, 60.0);
         let levels = (0..49).map(|index| (index % 2) as u8).collect();
         canvas.image(Image {

@@ -64,9 +64,9 @@ pub struct Instant {
 
 /// Draws mu* and, below it, N* against t*, as wide as a journal's column (85 mm).
 ///
-/// One curve is drawn with all it knows: first slip, peak, kinetic window, lettered instants. Several are drawn over each
-/// other with their peaks, and a legend above. Curves of more than 4000 points are thinned to the first, last, lowest and
-/// highest point of every pixel column, which shows the same picture.
+/// One curve is drawn with all it knows: first slip, peak, kinetic window, lettered instants. Several are
+/// drawn over each other with their peaks, and a legend above. Curves of more than 4000 points are thinned to
+/// the first, last, lowest and highest point of every pixel column, which shows the same picture.
 ///
 /// # Errors
 ///

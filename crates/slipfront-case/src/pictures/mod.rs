@@ -1,7 +1,8 @@
 //! Pictures of a run, for the eye and for print: friction against time, and maps of contact stress.
 //!
-//! Every picture is drawn once, on a [`canvas`], and comes out as SVG and as PNG of the same physical size: a journal's
-//! column for friction, its text width for maps. Bytes depend on the arguments only: no date, no random identifier.
+//! Every picture is drawn once, on a canvas, and comes out as SVG and as PNG of the same physical size: a
+//! journal's column for friction, its text width for maps. Bytes depend on the arguments only: no date, no
+//! random identifier.
 //!
 //! Read by the run folder writer and by `slipfront plot`.
 

@@ -1,14 +1,14 @@
 //! The outline of a textured area, along the edges of its blocks.
 
-/// The lines between textured and other blocks, in blocks: each a chain of corners joined by straight lines, as long as
-/// possible. A closed chain ends where it starts; one that meets the lattice's edge is open.
+/// The lines between textured and other blocks, in blocks: each a chain of corners joined by straight lines,
+/// as long as possible. A closed chain ends where it starts; one that meets the lattice's edge is open.
 ///
 /// `textured` holds `nx` times `ny` blocks, row 0 at y = 0.
 pub(super) fn outline(textured: &[bool], nx: usize, ny: usize) -> Vec<Vec<(usize, usize)>> {
     let mut edges = Edges::of(textured, nx, ny);
     let mut chains = Vec::new();
-    // Open chains first: they must be entered at an end. A closed one is then entered at its first corner in this order,
-    // which is never in the middle of a straight line.
+    // Open chains first: they must be entered at an end. A closed one is then entered at its first corner in
+    // this order, which is never in the middle of a straight line.
     for open in [true, false] {
         for y in 0..=ny {
             for x in 0..=nx {
@@ -83,7 +83,8 @@ impl Edges {
                 corner.0.wrapping_add_signed(WAYS[way].0),
                 corner.1.wrapping_add_signed(WAYS[way].1),
             );
-            // Left before straight before right: two textured blocks that meet at a corner only stay two areas.
+            // Left before straight before right: two textured blocks that meet at a corner only stay two
+            // areas.
             let next = [1, 0, 3]
                 .into_iter()
                 .map(|turn| (way + turn) % 4)

@@ -50,15 +50,17 @@ pub struct StressMaps {
     pub maps: Vec<StressMap>,
 }
 
-/// Draws the maps in one row (in more, if there are more than six), at most as wide as a journal's text (175 mm), all on
-/// one colour scale from 0 to 1, the textured area outlined.
+/// Draws the maps in one row (in more, if there are more than six), at most as wide as a journal's text (175
+/// mm), all on one colour scale from 0 to 1, the textured area outlined.
 ///
-/// A lattice of more than 256 blocks along a side is averaged in groups of blocks, blank ones left out; a group counts as
-/// textured if most of its blocks are. A lattice more than six times as long as wide is drawn as if it were six times.
+/// A lattice of more than 256 blocks along a side is averaged in groups of blocks, blank ones left out; a
+/// group counts as textured if most of its blocks are. A lattice more than six times as long as wide is drawn
+/// as if it were six times.
 ///
 /// # Errors
 ///
-/// No map, a lattice without blocks, an array of the wrong length, a block size that is not a positive length.
+/// No map, a lattice without blocks, an array of the wrong length, a block size that is not a positive
+/// length.
 pub fn stress(maps: &StressMaps) -> Result<Picture, PictureError> {
     check(maps)?;
     let layout = Layout::of(maps);

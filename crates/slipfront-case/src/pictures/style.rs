@@ -58,8 +58,8 @@ pub(super) fn curve_colour(index: usize, count: usize) -> Rgb {
     ramp(0.9 * index as f64 / (count - 1) as f64)
 }
 
-/// Viridis, perceptually uniform, from 0 (dark) to 1 (bright); the table is the crate `colorous`' (Apache-2.0), which
-/// `kuva` brings.
+/// Viridis, perceptually uniform, from 0 (dark) to 1 (bright); the table is the crate `colorous`'
+/// (Apache-2.0), which `kuva` brings.
 pub(super) fn ramp(value: f64) -> Rgb {
     let (red, green, blue) = ColorMap::Viridis
         .map_rgb(value)

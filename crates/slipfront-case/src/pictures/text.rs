@@ -34,8 +34,8 @@ pub(super) struct Run {
 }
 
 impl Text {
-    /// A text taken as it is, for what a user wrote: control characters and doubled spaces, which SVG does not keep,
-    /// are dropped.
+    /// A text taken as it is, for what a user wrote: control characters and doubled spaces, which SVG does
+    /// not keep, are dropped.
     pub(super) fn plain(text: &str, size: u32) -> Self {
         let words: Vec<&str> = text
             .split(|c: char| c.is_whitespace() || c.is_control())
