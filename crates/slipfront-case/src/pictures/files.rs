@@ -71,7 +71,8 @@ fn svg(scene: &Scene, images: &[Image]) -> Result<String, PictureError> {
         let _ = writeln!(
             svg,
             "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" \
-             preserveAspectRatio=\"none\" image-rendering=\"optimizeSpeed\" style=\"image-rendering:pixelated\" \
+             preserveAspectRatio=\"none\" image-rendering=\"optimizeSpeed\" \
+             style=\"image-rendering:pixelated\" \
              href=\"data:image/png;base64,{}\"/>",
             base64(&image_png(image)?),
         );
