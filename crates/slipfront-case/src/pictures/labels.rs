@@ -1,0 +1,216 @@
+//! Places labels near what they name, clear of each other and, where there is room, of the curve.
+
+use super::canvas::Area;
+
+/// Labels keep so far from each other.
+const CLEARANCE: f64 = 5.0;
+
+/// Where labels may go, and what is there already.
+pub(super) struct Placer {
+    bounds: Area,
+    taken: Vec<Area>,
+    lines: Vec<[(f64, f64); 2]>,
+}
+
+/// A possible place of a label, and how unwelcome it is: pixels away from the best one.
+pub(super) struct Candidate {
+    pub(super) area: Area,
+    pub(super) penalty: f64,
+    /// The line that would join label and point.
+    pub(super) leader: Option<[(f64, f64); 2]>,
+}
+
+impl Placer {
+    /// An empty space.
+    pub(super) fn new(bounds: Area) -> Self {
+        Self {
+            bounds,
+            taken: Vec::new(),
+            lines: Vec::new(),
+        }
+    }
+
+    /// Keeps labels out of an area.
+    pub(super) fn take(&mut self, area: Area) {
+        self.taken.push(area);
+    }
+
+    /// Asks labels to keep off the line through these points.
+    pub(super) fn avoid(&mut self, points: &[(f64, f64)]) {
+        self.lines
+            .extend(points.windows(2).map(|pair| [pair[0], pair[1]]));
+    }
+
+    /// The best of the candidates, now taken; none if there is no candidate.
+    pub(super) fn place(&mut self, candidates: Vec<Candidate>) -> Option<Candidate> {
+        let mut best: Option<(f64, Candidate)> = None;
+        for candidate in candidates {
+            let bound = best.as_ref().map_or(f64::INFINITY, |(cost, _)| *cost);
+            let cost = self.cost(&candidate, bound);
+            if cost < bound {
+                best = Some((cost, candidate));
+            }
+        }
+        let (_, candidate) = best?;
+        self.taken.push(candidate.area);
+        if let Some(leader) = candidate.leader {
+            self.lines.push(leader);
+        }
+        Some(candidate)
+    }
+
+    /// What the candidate costs, or anything above `bound` if it is more than that.
+    fn cost(&self, candidate: &Candidate, bound: f64) -> f64 {
+        let area = grown(candidate.area, CLEARANCE);
+        let mut cost = candidate.penalty;
+        if area.x < self.bounds.x
+            || area.y < self.bounds.y
+            || area.right() > self.bounds.right()
+            || area.bottom() > self.bounds.bottom()
+        {
+            cost += 1e6;
+        }
+        for taken in &self.taken {
+            if overlap(&area, taken) {
+                cost += 1e4;
+            }
+            if candidate.leader.is_some_and(|leader| crosses(leader, taken)) {
+                cost += 100.0;
+            }
+        }
+        for &line in &self.lines {
+            if cost > bound {
+                break;
+            }
+            if crosses(line, &area) {
+                cost += 60.0;
+            }
+        }
+        cost
+    }
+}
+
+/// Places around `point` for a label of this size, near ones first; far ones get a leader.
+pub(super) fn around(point: (f64, f64), (width, height): (f64, f64)) -> Vec<Candidate> {
+    let mut candidates = Vec::new();
+    for gap in [14.0, 22.0, 34.0, 50.0, 70.0, 95.0, 130.0, 180.0] {
+        for step in 0..24 {
+            // From the upper right, where a reader expects it, to both sides in turn.
+            let turn = f64::from((step + 1) / 2) * if step % 2 == 0 { 1.0 } else { -1.0 };
+            let (sin, cos) = ((-0.25 + turn / 12.0) * std::f64::consts::PI).sin_cos();
+            // The label's edge, not its centre, stays `gap` away from the point.
+            let centre = (
+                point.0 + cos * (gap + 0.5 * width),
+                point.1 + sin * (gap + 0.5 * height),
+            );
+            let area = Area {
+                x: centre.0 - 0.5 * width,
+                y: centre.1 - 0.5 * height,
+                width,
+                height,
+            };
+            let end = (
+                point.0.clamp(area.x - 3.0, area.right() + 3.0),
+                point.1.clamp(area.y - 3.0, area.bottom() + 3.0),
+            );
+            let (dx, dy) = (end.0 - point.0, end.1 - point.1);
+            let distance = dx.hypot(dy);
+            // The leader starts off its dot, so that it never counts as crossing it.
+            let start = (point.0 + dx / distance * 12.0, point.1 + dy / distance * 12.0);
+            let leader = (distance > 30.0).then_some([start, end]);
+            candidates.push(Candidate {
+                area,
+                penalty: gap + 2.0 * turn.abs(),
+                leader,
+            });
+        }
+    }
+    candidates
+}
+
+fn grown(area: Area, by: f64) -> Area {
+    Area {
+        x: area.x - by,
+        y: area.y - by,
+        width: area.width + 2.0 * by,
+        height: area.height + 2.0 * by,
+    }
+}
+
+/// True when two areas share more than an edge.
+pub(super) fn overlap(a: &Area, b: &Area) -> bool {
+    a.x < b.right() && b.x < a.right() && a.y < b.bottom() && b.y < a.bottom()
+}
+
+/// True when part of the segment lies in the area (Liang and Barsky's clipping).
+fn crosses([from, to]: [(f64, f64); 2], area: &Area) -> bool {
+    let (mut enters, mut leaves) = (0.0f64, 1.0f64);
+    for (start, step, lo, hi) in [
+        (from.0, to.0 - from.0, area.x, area.right()),
+        (from.1, to.1 - from.1, area.y, area.bottom()),
+    ] {
+        if step == 0.0 {
+            if start < lo || start > hi {
+                return false;
+            }
+        } else {
+            let (a, b) = ((lo - start) / step, (hi - start) / step);
+            enters = enters.max(a.min(b));
+            leaves = leaves.min(a.max(b));
+        }
+    }
+    enters <= leaves
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BOUNDS: Area = Area {
+        x: 0.0,
+        y: 0.0,
+        width: 860.0,
+        height: 480.0,
+    };
+
+    #[test]
+    fn crowded_labels_do_not_overlap() {
+        let mut placer = Placer::new(BOUNDS);
+        // Ten points within 12 pixels, near a corner.
+        let areas: Vec<Area> = (0..10)
+            .filter_map(|index| {
+                placer
+                    .place(around((845.0 - 1.2 * f64::from(index), 10.0), (24.0, 24.0)))
+                    .map(|c| c.area)
+            })
+            .collect();
+        assert_eq!(areas.len(), 10);
+        for (index, a) in areas.iter().enumerate() {
+            assert!(a.x >= 0.0 && a.y >= 0.0 && a.right() <= 860.0 && a.bottom() <= 480.0);
+            assert!(areas[..index].iter().all(|b| !overlap(a, b)));
+        }
+    }
+
+    #[test]
+    fn a_label_leaves_the_curve_free() {
+        let mut placer = Placer::new(BOUNDS);
+        let curve = [(0.0, 480.0), (430.0, 100.0), (860.0, 480.0)];
+        placer.avoid(&curve);
+        let area = placer.place(around(curve[1], (150.0, 30.0))).unwrap().area;
+        assert!(!crosses([curve[0], curve[1]], &area) && !crosses([curve[1], curve[2]], &area));
+    }
+
+    #[test]
+    fn a_segment_crosses_an_area_only_inside_it() {
+        let area = Area {
+            x: 10.0,
+            y: 10.0,
+            width: 10.0,
+            height: 10.0,
+        };
+        assert!(crosses([(0.0, 0.0), (30.0, 30.0)], &area));
+        assert!(crosses([(12.0, 0.0), (12.0, 30.0)], &area));
+        assert!(!crosses([(0.0, 0.0), (9.0, 30.0)], &area));
+        assert!(!crosses([(0.0, 5.0), (30.0, 5.0)], &area));
+    }
+}

@@ -1,0 +1,68 @@
+//! Sizes and colours shared by all pictures. One unit of length is one pixel of the PNG at 300 dots per inch.
+
+use kuva::plot::ColorMap;
+
+/// Pixels in an inch.
+pub(super) const DPI: f64 = 300.0;
+/// Pixels in a millimetre.
+const MM: f64 = DPI / 25.4;
+/// A journal's column, 85 mm.
+pub(super) const COLUMN_WIDTH: f64 = 85.0 * MM;
+/// A journal's text, 175 mm.
+pub(super) const TEXT_WIDTH: f64 = 175.0 * MM;
+
+/// Titles and labels: 8 pt.
+pub(super) const SIZE_LABEL: u32 = 33;
+/// Numbers along an axis: 7 pt.
+pub(super) const SIZE_TICK: u32 = 29;
+
+/// A curve: 0.9 pt.
+pub(super) const WIDTH_CURVE: f64 = 3.75;
+/// A mean or an outline: 0.6 pt.
+pub(super) const WIDTH_MARK: f64 = 2.5;
+/// Frames and ticks: 0.5 pt.
+pub(super) const WIDTH_FRAME: f64 = 2.0;
+/// Leaders: 0.35 pt.
+pub(super) const WIDTH_LEADER: f64 = 1.5;
+/// Between the picture's edge and what is drawn.
+pub(super) const MARGIN: f64 = 14.0;
+/// How far a tick reaches out of its frame.
+pub(super) const TICK_LENGTH: f64 = 9.0;
+
+/// A colour: red, green, blue.
+pub(super) type Rgb = [u8; 3];
+
+pub(super) const BLACK: Rgb = [0x1a, 0x1a, 0x1a];
+pub(super) const GREY: Rgb = [0x77, 0x77, 0x77];
+pub(super) const WHITE: Rgb = [0xff, 0xff, 0xff];
+/// Blocks without a value.
+pub(super) const BLANK: Rgb = [0xd9, 0xd9, 0xd9];
+
+/// Okabe and Ito's palette, told apart with any colour vision; its yellow is left out, too pale for a line.
+pub(super) const CURVES: [Rgb; 7] = [
+    [0x00, 0x72, 0xb2],
+    [0xd5, 0x5e, 0x00],
+    [0x00, 0x9e, 0x73],
+    [0xcc, 0x79, 0xa7],
+    [0xe6, 0x9f, 0x00],
+    [0x56, 0xb4, 0xe9],
+    [0x00, 0x00, 0x00],
+];
+
+/// The colour of curve `index` out of `count`. More curves than the palette holds run through [`ramp`].
+pub(super) fn curve_colour(index: usize, count: usize) -> Rgb {
+    if count <= CURVES.len() {
+        return CURVES[index % CURVES.len()];
+    }
+    // The ramp's last tenth is a yellow too pale for a line.
+    ramp(0.9 * index as f64 / (count - 1) as f64)
+}
+
+/// Viridis, perceptually uniform, from 0 (dark) to 1 (bright); the table is the crate `colorous`'
+/// (Apache-2.0), which `kuva` brings.
+pub(super) fn ramp(value: f64) -> Rgb {
+    let (red, green, blue) = ColorMap::Viridis
+        .map_rgb(value)
+        .unwrap_or((BLANK[0], BLANK[1], BLANK[2]));
+    [red, green, blue]
+}

@@ -1,0 +1,199 @@
+//! Short texts with subscripts, and how wide they are.
+
+/// How far a character moves the pen, in 1/2048 of the font size, for `DejaVu` Sans from space to tilde.
+#[rustfmt::skip]
+const ADVANCES: [u16; 95] = [
+    651, 821, 942, 1716, 1303, 1946, 1597, 563, 799, 799, 1024, 1716, 651, 739, 651, 690,
+    1303, 1303, 1303, 1303, 1303, 1303, 1303, 1303, 1303, 1303, 690, 690, 1716, 1716, 1716, 1087,
+    2048, 1401, 1405, 1430, 1577, 1294, 1178, 1587, 1540, 604, 604, 1343, 1141, 1767, 1532, 1612,
+    1235, 1612, 1423, 1300, 1251, 1499, 1401, 2025, 1403, 1251, 1403, 799, 690, 799, 1716, 1024,
+    1024, 1255, 1300, 1126, 1300, 1260, 721, 1300, 1298, 569, 569, 1186, 569, 1995, 1298, 1253,
+    1300, 1300, 842, 1067, 803, 1298, 1212, 1675, 1212, 1212, 1075, 1303, 690, 1303, 1716,
+];
+const UNITS_PER_EM: f64 = 2048.0;
+/// Height of capitals and digits over the font size.
+pub(super) const CAP_HEIGHT: f64 = 0.729;
+
+/// A true minus sign, as wide as a plus.
+pub(super) const MINUS: &str = "\u{2212}";
+
+/// A line of text.
+#[derive(Clone, Debug)]
+pub(super) struct Text {
+    pub(super) runs: Vec<Run>,
+    pub(super) size: u32,
+}
+
+/// Part of a line, all of one size and height.
+#[derive(Clone, Debug)]
+pub(super) struct Run {
+    pub(super) text: String,
+    pub(super) size: u32,
+    /// How far below the line it stands.
+    pub(super) drop: f64,
+}
+
+impl Text {
+    /// A text taken as it is, for what a user wrote: control characters and doubled spaces, which SVG does
+    /// not keep, are dropped.
+    pub(super) fn plain(text: &str, size: u32) -> Self {
+        let words: Vec<&str> = text
+            .split(|c: char| c.is_whitespace() || c.is_control())
+            .collect();
+        let text = words
+            .into_iter()
+            .filter(|word| !word.is_empty())
+            .collect::<Vec<_>>()
+            .join(" ");
+        Self {
+            runs: vec![Run {
+                text,
+                size,
+                drop: 0.0,
+            }],
+            size,
+        }
+    }
+
+    /// A text in which the character after an underscore is a subscript: `mu_s*`.
+    pub(super) fn math(text: &str, size: u32) -> Self {
+        let sub_size = (f64::from(size) * 0.72).round() as u32;
+        let mut runs = Vec::new();
+        for (index, part) in text.split('_').enumerate() {
+            let first = part
+                .chars()
+                .next()
+                .filter(|_| index > 0)
+                .map_or(0, char::len_utf8);
+            let (sub, rest) = part.split_at(first);
+            if !sub.is_empty() {
+                runs.push(Run {
+                    text: sub.to_string(),
+                    size: sub_size,
+                    drop: 0.16 * f64::from(size),
+                });
+            }
+            if !rest.is_empty() {
+                runs.push(Run {
+                    text: rest.to_string(),
+                    size,
+                    drop: 0.0,
+                });
+            }
+        }
+        Self { runs, size }
+    }
+
+    /// How wide the text is.
+    pub(super) fn width(&self) -> f64 {
+        self.runs.iter().map(Run::width).sum()
+    }
+
+    /// How high its capitals are.
+    pub(super) fn height(&self) -> f64 {
+        CAP_HEIGHT * f64::from(self.size)
+    }
+
+    /// How far its lowest letter reaches below the line.
+    pub(super) fn depth(&self) -> f64 {
+        let reach = |run: &Run| {
+            let descends = run
+                .text
+                .contains(['g', 'j', 'p', 'q', 'y', '\u{3bc}', '(', ')', ',']);
+            run.drop + if descends { 0.24 * f64::from(run.size) } else { 0.0 }
+        };
+        self.runs.iter().map(reach).fold(0.0, f64::max)
+    }
+
+    /// A plain text cut so that it is at most `width` wide, with an ellipsis for what is left out.
+    pub(super) fn shortened(text: &str, size: u32, width: f64) -> Self {
+        let whole = Self::plain(text, size);
+        if whole.width() <= width {
+            return whole;
+        }
+        let mut kept: Vec<char> = text.chars().collect();
+        while kept.pop().is_some() {
+            let cut = Self::plain(
+                &(kept.iter().collect::<String>().trim_end().to_string() + "\u{2026}"),
+                size,
+            );
+            if cut.width() <= width {
+                return cut;
+            }
+        }
+        Self::plain("", size)
+    }
+}
+
+impl Run {
+    /// How wide the run is.
+    pub(super) fn width(&self) -> f64 {
+        self.text.chars().map(advance).sum::<f64>() * f64::from(self.size)
+    }
+}
+
+/// How far `character` moves the pen, over the font size.
+pub(super) fn advance(character: char) -> f64 {
+    let units = match character {
+        ' '..='~' => ADVANCES[character as usize - ' ' as usize],
+        '\u{3bc}' | '\u{b5}' => 1303,
+        '\u{3c4}' => 1233,
+        '\u{3c3}' => 1298,
+        '\u{3a9}' => 1565,
+        '\u{27e8}' | '\u{27e9}' => 799,
+        '\u{2212}' | '\u{b1}' | '\u{d7}' => 1716,
+        '\u{b0}' => 1024,
+        '\u{370}'..='\u{3ff}' => 1300,
+        '\u{c0}'..='\u{24f}' => 1260,
+        // Unknown: an em is wide enough for nearly everything, so nothing collides.
+        _ => 2048,
+    };
+    f64::from(units) / UNITS_PER_EM
+}
+
+/// `value` with `decimals` digits after the point and a true minus sign; never a negative zero.
+pub(super) fn number(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(digits) if digits.bytes().any(|b| b.is_ascii_digit() && b != b'0') => format!("{MINUS}{digits}"),
+        Some(digits) => digits.to_string(),
+        None => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_subscript_is_smaller_and_lower() {
+        let text = Text::math("\u{3bc}_s* = 1", 30);
+        let parts: Vec<_> = text
+            .runs
+            .iter()
+            .map(|r| (r.text.as_str(), r.size < 30, r.drop > 0.0))
+            .collect();
+        assert_eq!(
+            parts,
+            [
+                ("\u{3bc}", false, false),
+                ("s", true, true),
+                ("* = 1", false, false)
+            ]
+        );
+    }
+
+    #[test]
+    fn a_long_label_is_cut_to_its_room() {
+        let text = Text::shortened("a rather long label of a curve", 30, 200.0);
+        assert!(text.width() <= 200.0 && text.runs[0].text.ends_with('\u{2026}'));
+        assert_eq!(Text::shortened("short", 30, 200.0).runs[0].text, "short");
+        assert!(Text::shortened("no room", 30, 1.0).runs[0].text.is_empty());
+    }
+
+    #[test]
+    fn numbers_have_a_true_minus_and_no_negative_zero() {
+        assert_eq!(number(-0.25, 2), "\u{2212}0.25");
+        assert_eq!(number(-0.001, 2), "0.00");
+    }
+}
