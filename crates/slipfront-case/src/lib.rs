@@ -1,1 +1,3 @@
 //! Case files in, results out.
+
+pub mod arrays;
