@@ -69,7 +69,22 @@ pub fn read_mask_png(path: &Path, threshold: f64) -> Result<MaskImage, ArrayErro
     let reader = decoder
         .read_info()
         .map_err(|source| decoding_error(path, source))?;
+    if reader.info().color_type == ColorType::Indexed {
+        check_palette(path, reader.info().palette.as_deref())?;
+    }
     read_rows(reader, threshold).map_err(|source| decoding_error(path, source))
+}
+
+/// The decoder takes a palette of any length and panics on one that is not made of 1 to 256 whole colours.
+fn check_palette(path: &Path, palette: Option<&[u8]>) -> Result<(), ArrayError> {
+    let bytes = palette.map_or(0, <[u8]>::len);
+    if bytes % 3 == 0 && (3..=768).contains(&bytes) {
+        return Ok(());
+    }
+    Err(broken(
+        path,
+        format!("its palette has {bytes} bytes where 3 for each of 1 to 256 colours are wanted"),
+    ))
 }
 
 /// Decodes row by row, so that only one byte per pixel is kept.
