@@ -1,0 +1,216 @@
+//! Masks as PNG images: dark pixels are texture.
+
+use std::fs::File;
+use std::io::{self, BufReader, ErrorKind};
+use std::path::Path;
+
+use png::Transformations;
+use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, InterlaceInfo, Reader};
+
+use super::{ArrayError, open, read_error};
+
+/// More pixels than any lattice has blocks.
+const PIXELS_MAX: u64 = 1 << 28;
+/// Deflate cannot pack more than about 1030 bytes into one.
+const DEFLATE_MAX_RATIO: u64 = 1040;
+
+/// A black and white image.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MaskImage {
+    /// Pixels per row.
+    pub width: usize,
+    /// Number of rows.
+    pub height: usize,
+    /// `width * height` pixels in row-major order; row 0 is the TOP row of the image, that is the largest y.
+    pub dark: Vec<bool>,
+}
+
+/// Reads a PNG image of any colour type and depth and tells its dark pixels.
+///
+/// A pixel is dark when its luminance, in 0 to 1, lies below `threshold`. The luminance is
+///
+/// ```text
+/// 0.2126 R + 0.7152 G + 0.0722 B
+/// ```
+///
+/// (Rec. 709) of the stored values, whatever gamma or colour profile the file names; a transparent pixel is seen
+/// on white.
+///
+/// # Errors
+///
+/// [`ArrayError`] if the file is missing, not a PNG image, corrupt, or has more than 2^28 pixels.
+pub fn read_mask_png(path: &Path, threshold: f64) -> Result<MaskImage, ArrayError> {
+    let (file, file_bytes) = open(path)?;
+    let mut decoder = Decoder::new(BufReader::new(file));
+    decoder.set_transformations(Transformations::EXPAND);
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
+    let info = decoder
+        .read_header_info()
+        .map_err(|source| decoding_error(path, source))?;
+    let pixels = u64::from(info.width) * u64::from(info.height);
+    if pixels > PIXELS_MAX {
+        let (path, width, height) = (path.to_owned(), info.width, info.height);
+        return Err(ArrayError::TooManyPixels {
+            path,
+            width,
+            height,
+            limit: PIXELS_MAX,
+        });
+    }
+    let packed_bytes = pixels * info.bits_per_pixel() as u64 / 8 / DEFLATE_MAX_RATIO;
+    if file_bytes < packed_bytes {
+        let detail = format!(
+            "it has {file_bytes} bytes where its {} x {} pixels take at least {packed_bytes}",
+            info.width, info.height
+        );
+        return Err(broken(path, detail));
+    }
+    let reader = decoder
+        .read_info()
+        .map_err(|source| decoding_error(path, source))?;
+    if reader.info().color_type == ColorType::Indexed {
+        check_palette(path, reader.info().palette.as_deref())?;
+    }
+    read_rows(reader, threshold).map_err(|source| decoding_error(path, source))
+}
+
+/// The decoder takes a palette of any length and panics on one that is not made of 1 to 256 whole colours.
+fn check_palette(path: &Path, palette: Option<&[u8]>) -> Result<(), ArrayError> {
+    let bytes = palette.map_or(0, <[u8]>::len);
+    if bytes.is_multiple_of(3) && (3..=768).contains(&bytes) {
+        return Ok(());
+    }
+    Err(broken(
+        path,
+        format!("its palette has {bytes} bytes where 3 for each of 1 to 256 colours are wanted"),
+    ))
+}
+
+/// Decodes row by row, so that only one byte per pixel is kept.
+fn read_rows(mut reader: Reader<BufReader<File>>, threshold: f64) -> Result<MaskImage, DecodingError> {
+    let (width, height) = (reader.info().width as usize, reader.info().height as usize);
+    let (color, depth) = reader.output_color_type();
+    let mut dark = vec![0; width * height];
+    let mut rows_done = 0;
+    while let Some(row) = reader.next_interlaced_row()? {
+        let row_dark: Vec<u8> = row
+            .data()
+            .chunks_exact(pixel_bytes(color, depth))
+            .map(|pixel| u8::from(luminance(pixel, color, depth) < threshold))
+            .collect();
+        match row.interlace() {
+            InterlaceInfo::Adam7(pass) => png::expand_interlaced_row(&mut dark, width, &row_dark, pass, 8),
+            InterlaceInfo::Null(_) => {
+                dark.iter_mut()
+                    .skip(rows_done * width)
+                    .zip(&row_dark)
+                    .for_each(|(to, from)| *to = *from);
+                rows_done += 1;
+            }
+        }
+    }
+    Ok(MaskImage {
+        width,
+        height,
+        dark: dark.into_iter().map(|byte| byte != 0).collect(),
+    })
+}
+
+/// The bytes of one pixel after expansion to at least 8 bits per sample.
+fn pixel_bytes(color: ColorType, depth: BitDepth) -> usize {
+    color.samples() * sample_bytes(depth)
+}
+
+fn sample_bytes(depth: BitDepth) -> usize {
+    if depth == BitDepth::Sixteen { 2 } else { 1 }
+}
+
+/// The Rec. 709 luminance of one pixel on white, in 0 to 1.
+fn luminance(pixel: &[u8], color: ColorType, depth: BitDepth) -> f64 {
+    let sample = |index: usize| match depth {
+        BitDepth::Sixteen => {
+            f64::from(u16::from_be_bytes([pixel[2 * index], pixel[2 * index + 1]])) / 65535.0
+        }
+        _ => f64::from(pixel[index]) / 255.0,
+    };
+    let (luminance, opacity) = match color {
+        ColorType::Grayscale => (sample(0), 1.0),
+        ColorType::GrayscaleAlpha => (sample(0), sample(1)),
+        ColorType::Rgba => (rec_709(sample(0), sample(1), sample(2)), sample(3)),
+        // Palettes have been expanded.
+        ColorType::Rgb | ColorType::Indexed => (rec_709(sample(0), sample(1), sample(2)), 1.0),
+    };
+    opacity * luminance + (1.0 - opacity)
+}
+
+fn rec_709(red: f64, green: f64, blue: f64) -> f64 {
+    0.2126 * red + 0.7152 * green + 0.0722 * blue
+}
+
+fn broken(path: &Path, detail: String) -> ArrayError {
+    ArrayError::Broken {
+        path: path.to_owned(),
+        format: ".png",
+        detail,
+    }
+}
+
+fn decoding_error(path: &Path, source: DecodingError) -> ArrayError {
+    match source {
+        DecodingError::IoError(source) if source.kind() != ErrorKind::UnexpectedEof => {
+            read_error(path, source)
+        }
+        DecodingError::IoError(_) => broken(path, "it ends before the last pixel".to_owned()),
+        other => broken(path, other.to_string().trim_end_matches('.').to_owned()),
+    }
+}
+
+/// Writes a texture as a black and white PNG image: one pixel per block, textured = black.
+///
+/// `textured` holds `nx * ny` values in row-major order, row j = 0 (the smallest y) first; the top row of the
+/// image is the largest y. [`read_mask_png`] gives the same mask back.
+///
+/// # Errors
+///
+/// [`ArrayError`] if `textured` has another length or the file cannot be written.
+pub fn write_mask_png(path: &Path, nx: usize, ny: usize, textured: &[bool]) -> Result<(), ArrayError> {
+    if textured.len() != nx * ny || textured.is_empty() {
+        return Err(ArrayError::Shape {
+            path: path.to_owned(),
+            found: format!("{} pixels to write", textured.len()),
+            wanted: format!("nx * ny = {nx} * {ny}"),
+            remedy: "hand over one value per block",
+        });
+    }
+    let encoded = encode(nx, ny, textured).map_err(io::Error::other);
+    encoded
+        .and_then(|bytes| std::fs::write(path, bytes))
+        .map_err(|source| ArrayError::Write {
+            path: path.to_owned(),
+            source,
+        })
+}
+
+/// The image in memory: one bit per pixel, 1 = white.
+fn encode(nx: usize, ny: usize, textured: &[bool]) -> Result<Vec<u8>, EncodingError> {
+    let mut rows = Vec::with_capacity(nx.div_ceil(8) * ny);
+    for row in textured.chunks(nx).rev() {
+        for eight in row.chunks(8) {
+            rows.push(
+                eight
+                    .iter()
+                    .enumerate()
+                    .fold(0, |byte, (bit, textured)| byte | u8::from(!textured) << (7 - bit)),
+            );
+        }
+    }
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, nx as u32, ny as u32);
+    encoder.set_color(ColorType::Grayscale);
+    encoder.set_depth(BitDepth::One);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&rows)?;
+    writer.finish()?;
+    Ok(bytes)
+}

@@ -1,0 +1,197 @@
+//! Arrays and images that a user hands over: friction coefficients block by block, and texture masks.
+//!
+//! The files come from strangers, so every reader compares what the header announces with the length of the
+//! file before it reserves memory, and answers with an [`ArrayError`] whatever the bytes are. Arrays are
+//! (ny, nx) and row-major, row j = 0 (the smallest y) first. The case parser reads next.
+
+mod mask;
+mod npy;
+mod table;
+
+use std::fs::{File, Metadata};
+use std::io;
+use std::path::{Path, PathBuf};
+
+pub use mask::{MaskImage, read_mask_png, write_mask_png};
+pub use npy::read_mask_npy;
+
+/// What is wrong with an array or image file: one sentence that ends with the remedy.
+#[derive(Debug, thiserror::Error)]
+pub enum ArrayError {
+    /// The file cannot be opened or read.
+    #[error("cannot read `{}`: {source}; check the path and its permissions", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system said.
+        source: io::Error,
+    },
+    /// The path names a directory or a device.
+    #[error("`{}` is not a regular file; name a file that ends in .npy, .csv or .png", path.display())]
+    NotAFile {
+        /// The path.
+        path: PathBuf,
+    },
+    /// The extension tells nothing about the format.
+    #[error(
+        "cannot tell the format of `{}` from {found}; name a file that ends in {known}",
+        path.display()
+    )]
+    Extension {
+        /// The file.
+        path: PathBuf,
+        /// The extension found, as a phrase.
+        found: String,
+        /// The extensions that are known here.
+        known: &'static str,
+    },
+    /// The bytes are not what the format wants: wrong magic, truncated, corrupt.
+    #[error("`{}` is not a readable {format} file: {detail}; write the file again", path.display())]
+    Broken {
+        /// The file.
+        path: PathBuf,
+        /// The format it should have.
+        format: &'static str,
+        /// What is wrong.
+        detail: String,
+    },
+    /// The array holds something that is not a real number.
+    #[error(
+        "`{}` holds values of type {found} where real numbers, integers or booleans are wanted; \
+         convert the array with `.astype(float)` before saving it",
+        path.display()
+    )]
+    Dtype {
+        /// The file.
+        path: PathBuf,
+        /// The type found, as numpy writes it.
+        found: String,
+    },
+    /// The array has another shape than the lattice.
+    #[error("`{}` has {found} where {wanted} is wanted; {remedy}", path.display())]
+    Shape {
+        /// The file.
+        path: PathBuf,
+        /// The shape found, as a phrase.
+        found: String,
+        /// The shape wanted, as a phrase.
+        wanted: String,
+        /// What to do about it.
+        remedy: &'static str,
+    },
+    /// One value is out of bounds or no number at all.
+    #[error(
+        "`{}` has {value} in row {row}, column {column} (both counted from 0), where {wanted} is wanted; \
+         correct this value",
+        path.display()
+    )]
+    Value {
+        /// The file.
+        path: PathBuf,
+        /// Row j, counted from 0 (the smallest y).
+        row: usize,
+        /// Column i, counted from 0.
+        column: usize,
+        /// The value as it stands in the file.
+        value: String,
+        /// The bound.
+        wanted: &'static str,
+    },
+    /// The image has more pixels than a mask can need.
+    #[error(
+        "the image `{}` has {width} x {height} pixels where at most {limit} pixels are read; scale it down",
+        path.display()
+    )]
+    TooManyPixels {
+        /// The file.
+        path: PathBuf,
+        /// Pixels per row.
+        width: u32,
+        /// Number of rows.
+        height: u32,
+        /// The largest number of pixels that is read.
+        limit: u64,
+    },
+    /// The image cannot be written.
+    #[error("cannot write `{}`: {source}; check that the folder exists, is writable and has room", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system said.
+        source: io::Error,
+    },
+}
+
+/// Reads one number per block from a `.npy` or `.csv` file.
+///
+/// `nx` and `ny` are the numbers of blocks along x and y. A `.npy` file has the shape (ny, nx), any real, integer
+/// or boolean type, either byte order and either memory order. A `.csv` file has `ny` lines of `nx` numbers with
+/// a decimal point, separated by commas, semicolons, tabs or blanks; blank lines and lines that start with `#`
+/// are skipped. Returns `nx * ny` values in row-major order, row j = 0 (the smallest y) first, in the unit of the
+/// file; a friction coefficient has none.
+///
+/// # Errors
+///
+/// [`ArrayError`] if the file is missing, of another format or shape, or has a value that is not finite or is
+/// below zero.
+pub fn read_field(path: &Path, nx: usize, ny: usize) -> Result<Vec<f64>, ArrayError> {
+    let known = ".npy or .csv";
+    let values = match extension(path).as_str() {
+        "npy" => npy::read(path, nx, ny)?,
+        "csv" => table::read(path, nx, ny)?,
+        other => return Err(unknown_extension(path, other, known)),
+    };
+    match values.iter().position(|value| !value.is_finite() || *value < 0.0) {
+        None => Ok(values),
+        Some(at) => Err(ArrayError::Value {
+            path: path.to_owned(),
+            row: at / nx,
+            column: at % nx,
+            value: values[at].to_string(),
+            wanted: "a finite number >= 0",
+        }),
+    }
+}
+
+/// The extension in lower case, empty if there is none.
+fn extension(path: &Path) -> String {
+    path.extension()
+        .map(|text| text.to_string_lossy().to_lowercase())
+        .unwrap_or_default()
+}
+
+fn unknown_extension(path: &Path, extension: &str, known: &'static str) -> ArrayError {
+    let found = match extension {
+        "" => "a name without extension".to_owned(),
+        other => format!("the extension `.{other}`"),
+    };
+    ArrayError::Extension {
+        path: path.to_owned(),
+        found,
+        known,
+    }
+}
+
+/// Opens a regular file and gives its length in bytes.
+///
+/// The check comes before the opening, because opening a named pipe waits for a writer.
+fn open(path: &Path) -> Result<(File, u64), ArrayError> {
+    let metadata = std::fs::metadata(path).map_err(|source| read_error(path, source))?;
+    if !Metadata::is_file(&metadata) {
+        return Err(ArrayError::NotAFile {
+            path: path.to_owned(),
+        });
+    }
+    let file = File::open(path).map_err(|source| read_error(path, source))?;
+    Ok((file, metadata.len()))
+}
+
+fn read_error(path: &Path, source: io::Error) -> ArrayError {
+    ArrayError::Read {
+        path: path.to_owned(),
+        source,
+    }
+}
+
+#[cfg(test)]
+mod tests;

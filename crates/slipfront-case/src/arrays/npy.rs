@@ -1,0 +1,238 @@
+//! The `.npy` files of numpy: the header through `npyz`, the numbers here.
+
+use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
+
+use super::{ArrayError, open, read_error};
+
+/// Numpy itself refuses longer headers.
+const HEADER_MAX_BYTES: usize = 10_000;
+/// A dict that holds a list of tuples that hold a shape: nothing that numpy writes for numbers nests deeper.
+const HEADER_MAX_NESTING: usize = 4;
+/// All numbers of a header together: their product then fits into 64 bits, whatever the radix they are written in.
+const HEADER_MAX_DIGITS: usize = 18;
+
+/// Reads a mask from a `.npy` file of shape (ny, nx): nonzero = textured.
+///
+/// Any real, integer or boolean type is accepted, in either byte and memory order. Returns `nx * ny` values in
+/// row-major order, row j = 0 (the smallest y) first.
+///
+/// # Errors
+///
+/// [`ArrayError`] if the file is missing, not a `.npy` file, of another shape, or has a value that is not finite.
+pub fn read_mask_npy(path: &Path, nx: usize, ny: usize) -> Result<Vec<bool>, ArrayError> {
+    let values = read(path, nx, ny)?;
+    match values.iter().position(|value| !value.is_finite()) {
+        None => Ok(values.iter().map(|value| *value != 0.0).collect()),
+        Some(at) => Err(ArrayError::Value {
+            path: path.to_owned(),
+            row: at / nx,
+            column: at % nx,
+            value: values[at].to_string(),
+            wanted: "a finite number",
+        }),
+    }
+}
+
+/// Reads an array of shape (ny, nx) in row-major order; the values may be anything, NaN included.
+pub(super) fn read(path: &Path, nx: usize, ny: usize) -> Result<Vec<f64>, ArrayError> {
+    let (file, file_bytes) = open(path)?;
+    let mut reader = BufReader::new(file);
+    let (header, data_start) = read_header(&mut reader, path)?;
+
+    let number = Number::of(&header.dtype()).ok_or_else(|| ArrayError::Dtype {
+        path: path.to_owned(),
+        found: header.dtype().descr(),
+    })?;
+    if header.shape() != [ny as u64, nx as u64] {
+        return Err(wrong_shape(path, header.shape(), nx, ny));
+    }
+    let wanted_bytes = data_start as u64 + number.size as u64 * nx as u64 * ny as u64;
+    if file_bytes < wanted_bytes {
+        let detail = format!("it has {file_bytes} bytes where its header asks for {wanted_bytes}");
+        return Err(broken(path, detail));
+    }
+
+    reader
+        .seek(SeekFrom::Start(data_start as u64))
+        .map_err(|source| read_error(path, source))?;
+    let mut values = vec![0.0; nx * ny];
+    let mut bytes = [0; 8];
+    let bytes = &mut bytes[..number.size];
+    for stored in 0..nx * ny {
+        reader
+            .read_exact(bytes)
+            .map_err(|source| read_error(path, source))?;
+        let at = match header.order() {
+            Order::C => stored,
+            Order::Fortran => (stored % ny) * nx + stored / ny,
+        };
+        values[at] = number.decode(bytes);
+    }
+    Ok(values)
+}
+
+/// Reads the header; returns it with the number of bytes before the data.
+///
+/// `npyz` reserves what the header asks for, recurses without bound and overflows on the product of an absurd
+/// shape, hence the checks on the bytes before it sees them.
+fn read_header(reader: &mut impl Read, path: &Path) -> Result<(NpyHeader, usize), ArrayError> {
+    let mut head = Vec::new();
+    reader
+        .take(HEADER_MAX_BYTES as u64)
+        .read_to_end(&mut head)
+        .map_err(|source| read_error(path, source))?;
+    if !head.starts_with(b"\x93NUMPY") {
+        return Err(broken(
+            path,
+            "it does not begin with the signature of numpy".to_owned(),
+        ));
+    }
+    let (text_start, text_bytes) = match head.as_slice() {
+        [_, _, _, _, _, _, 1, _, a, b, ..] => (10, usize::from(u16::from_le_bytes([*a, *b]))),
+        [_, _, _, _, _, _, 2 | 3, _, a, b, c, d, ..] => (12, u32::from_le_bytes([*a, *b, *c, *d]) as usize),
+        [_, _, _, _, _, _, major, minor, ..] if !(1..=3).contains(major) => {
+            return Err(broken(
+                path,
+                format!("its format version is {major}.{minor}, known are 1.0 to 3.0"),
+            ));
+        }
+        _ => return Err(broken(path, "it ends inside the header".to_owned())),
+    };
+    let data_start = text_start + text_bytes;
+    let Some(text) = head.get(text_start..data_start) else {
+        return Err(broken(
+            path,
+            format!("its header of {data_start} bytes is cut short or longer than {HEADER_MAX_BYTES} bytes"),
+        ));
+    };
+    if nesting(text) > HEADER_MAX_NESTING || digits(text) > HEADER_MAX_DIGITS {
+        return Err(broken(
+            path,
+            "its header does not describe a plain array of numbers".to_owned(),
+        ));
+    }
+    let header = NpyHeader::from_reader(&head[..data_start]).map_err(|source| {
+        broken(
+            path,
+            format!("its header is corrupt ({})", one_line(&source.to_string())),
+        )
+    })?;
+    Ok((header, data_start))
+}
+
+/// The depth of brackets of any kind.
+fn nesting(text: &[u8]) -> usize {
+    let mut depth: usize = 0;
+    let mut deepest = 0;
+    for byte in text {
+        match byte {
+            b'(' | b'[' | b'{' => depth += 1,
+            b')' | b']' | b'}' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        deepest = deepest.max(depth);
+    }
+    deepest
+}
+
+/// The total length of the words that begin with a digit, which covers every way to write a number.
+fn digits(text: &[u8]) -> usize {
+    text.split(|byte| !(byte.is_ascii_alphanumeric() || *byte == b'_'))
+        .filter(|word| word.first().is_some_and(u8::is_ascii_digit))
+        .map(<[u8]>::len)
+        .sum()
+}
+
+/// The first line of a message: the parser of the header draws a picture below it.
+fn one_line(message: &str) -> &str {
+    message
+        .lines()
+        .next()
+        .unwrap_or_default()
+        .trim_end_matches(|last: char| !last.is_alphanumeric())
+}
+
+fn broken(path: &Path, detail: String) -> ArrayError {
+    ArrayError::Broken {
+        path: path.to_owned(),
+        format: ".npy",
+        detail,
+    }
+}
+
+fn wrong_shape(path: &Path, found: &[u64], nx: usize, ny: usize) -> ArrayError {
+    let sizes: Vec<String> = found.iter().map(u64::to_string).collect();
+    let remedy = if found == [nx as u64, ny as u64] {
+        "transpose the array before saving it"
+    } else {
+        "save one value per block, or change `blocks`"
+    };
+    ArrayError::Shape {
+        path: path.to_owned(),
+        found: format!("the shape ({})", sizes.join(", ")),
+        wanted: format!("({ny}, {nx}), that is (ny, nx),"),
+        remedy,
+    }
+}
+
+/// How one number is stored.
+struct Number {
+    kind: TypeChar,
+    /// 1, 2, 4 or 8 bytes.
+    size: usize,
+    big_endian: bool,
+}
+
+impl Number {
+    /// `None` for anything but booleans, integers and real numbers of at most 64 bits.
+    fn of(dtype: &DType) -> Option<Number> {
+        let DType::Plain(text) = dtype else { return None };
+        let kind = text.type_char();
+        let size = match (kind, text.size_field()) {
+            (TypeChar::Bool | TypeChar::Int | TypeChar::Uint, 1) => 1,
+            (TypeChar::Int | TypeChar::Uint | TypeChar::Float, 2) => 2,
+            (TypeChar::Int | TypeChar::Uint | TypeChar::Float, 4) => 4,
+            (TypeChar::Int | TypeChar::Uint | TypeChar::Float, 8) => 8,
+            _ => return None,
+        };
+        Some(Number {
+            kind,
+            size,
+            big_endian: text.endianness() == Endianness::Big,
+        })
+    }
+
+    /// The value of `size` bytes; integers beyond 2^53 are rounded.
+    fn decode(&self, bytes: &[u8]) -> f64 {
+        let mut little = [0; 8];
+        little[..self.size].copy_from_slice(bytes);
+        if self.big_endian {
+            little[..self.size].reverse();
+        }
+        let bits = u64::from_le_bytes(little);
+        let unused = 64 - 8 * self.size as u32;
+        match (self.kind, self.size) {
+            (TypeChar::Float, 2) => half(bits as u16),
+            (TypeChar::Float, 4) => f64::from(f32::from_bits(bits as u32)),
+            (TypeChar::Float, _) => f64::from_bits(bits),
+            // Shifting up and back down carries the sign into the unused bytes.
+            (TypeChar::Int, _) => ((bits << unused) as i64 >> unused) as f64,
+            _ => bits as f64,
+        }
+    }
+}
+
+/// The value of an IEEE 754 number of 16 bits: 1 sign, 5 exponent, 10 fraction.
+fn half(bits: u16) -> f64 {
+    let fraction = f64::from(bits & 0x3ff);
+    let magnitude = match i32::from(bits >> 10 & 0x1f) {
+        0 => fraction * 2f64.powi(-24),
+        31 if fraction == 0.0 => f64::INFINITY,
+        31 => f64::NAN,
+        exponent => (1024.0 + fraction) * 2f64.powi(exponent - 25),
+    };
+    if bits >> 15 == 0 { magnitude } else { -magnitude }
+}
