@@ -1,1 +1,4 @@
 //! Case files in, results out.
+
+pub mod case_file;
+pub mod quantity;
