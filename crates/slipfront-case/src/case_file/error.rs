@@ -1,0 +1,153 @@
+//! What can be wrong with a case file, in sentences that name the place and the remedy.
+
+use std::io;
+use std::ops::Range;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use super::keys;
+use super::source::{Place, Source, shortened};
+
+/// A case file that cannot be used.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum CaseError {
+    /// The file cannot be read.
+    #[error("cannot read the case file {}: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The path names a folder.
+    #[error("{} is a folder: name the case file in it", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The file is larger than any case file is.
+    #[error("{} is larger than {limit_mib} MiB, so it is no case file", path.display())]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// The largest size that is read, in MiB.
+        limit_mib: u64,
+    },
+    /// The file is not text.
+    #[error("{}:{line}: the case file is not UTF-8 text", path.display())]
+    NotText {
+        /// The file.
+        path: PathBuf,
+        /// The line of the first byte that is not UTF-8, from 1.
+        line: usize,
+    },
+    /// The case is too large or too odd for TOML to hold, such as a seed of 2^63 or more.
+    #[error("the case cannot be written as TOML: {0}")]
+    Unwritable(#[from] toml::ser::Error),
+    /// Something that is written in the case, or in a `--set`, is wrong.
+    #[error(transparent)]
+    Invalid(Box<Invalid>),
+}
+
+/// Something that is wrong with the contents of a case, and where.
+#[derive(Debug, Error)]
+#[error("{}{sentence}{}", place.as_ref().map(|place| format!("{place}: ")).unwrap_or_default(),
+    place.as_ref().map(Place::excerpt).unwrap_or_default())]
+pub struct Invalid {
+    /// Where it was written; none for values that were set in code.
+    pub place: Option<Place>,
+    /// What is wrong, and what to write instead.
+    pub sentence: String,
+}
+
+impl CaseError {
+    pub(super) fn invalid(place: Option<Place>, sentence: impl Into<String>) -> Self {
+        Self::Invalid(Box::new(Invalid {
+            place,
+            sentence: sentence.into(),
+        }))
+    }
+
+    /// An error of TOML's grammar.
+    pub(super) fn syntax(source: &Source, offset: usize, error: &toml::de::Error) -> Self {
+        let span = error.span().unwrap_or(0..0);
+        let span = span.start + offset..span.end + offset;
+        let message = one_line(error.message());
+        let sentence = if message == "duplicate key" {
+            format!(
+                "duplicate key `{}`: it is already set in this table",
+                source.slice(span.clone())
+            )
+        } else {
+            format!("this is not valid TOML: {message}")
+        };
+        source.error_at(span, sentence)
+    }
+
+    /// An error of serde's, at `span`, while it reads the table under `header`, whose keys are `known`.
+    pub(super) fn value(
+        source: &Source,
+        span: Range<usize>,
+        message: &str,
+        header: &str,
+        known: &[&str],
+    ) -> Self {
+        let message = one_line(message);
+        if let Some((key, _)) = name_and_rest(&message, "unknown field `") {
+            return source.error_at(span, keys::unknown(&shortened(key), header, known));
+        }
+        let complaint = match name_and_rest(&message, "unknown variant `") {
+            Some((word, expected)) => {
+                let words: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
+                unknown_word(&shortened(word), &words)
+            }
+            None => in_plain_words(&message),
+        };
+        let subject = source.key_at(&span).unwrap_or(header);
+        let sentence = format!("`{subject}`: {complaint}");
+        source.error_at(span, sentence)
+    }
+}
+
+/// Takes serde's "unknown field `name`, expected ..." apart.
+fn name_and_rest<'m>(message: &'m str, start: &str) -> Option<(&'m str, &'m str)> {
+    message.strip_prefix(start)?.rsplit_once("`, expected ")
+}
+
+fn unknown_word(word: &str, known: &[&str]) -> String {
+    let list = known
+        .iter()
+        .map(|word| format!("\"{word}\""))
+        .collect::<Vec<_>>()
+        .join(", ");
+    match keys::nearest(word, known) {
+        Some(near) => format!("unknown word {word:?}: did you mean \"{near}\"? It can be {list}"),
+        None => format!("unknown word {word:?}: it can be {list}"),
+    }
+}
+
+fn one_line(message: &str) -> String {
+    message.trim().replace('\n', ", ")
+}
+
+/// Serde speaks of Rust's types; a user knows TOML's.
+fn in_plain_words(message: &str) -> String {
+    const WORDS: [(&str, &str); 8] = [
+        ("missing field", "it needs the key"),
+        ("integer number overflowed", "the whole number is too large"),
+        ("expected f64", "expected a number"),
+        ("expected u32", "expected a whole number from 0 to 4294967295"),
+        (
+            "expected u64",
+            "expected a whole number from 0 to 9223372036854775807",
+        ),
+        ("a sequence", "a list"),
+        ("sequence", "list"),
+        ("floating point", "number"),
+    ];
+    WORDS.iter().fold(message.to_owned(), |text, (rust, plain)| {
+        text.replace(rust, plain)
+    })
+}

@@ -1,0 +1,108 @@
+//! `[output]`: what is written, how often and how finely.
+
+use serde::{Deserialize, Serialize};
+
+use super::values::{AutoOr, words};
+
+/// `[output]`: snapshots, fields and the series.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Output {
+    /// The instants at which fields are written.
+    pub snapshots: Snapshots,
+    /// The fields that are written at these instants.
+    #[serde(deserialize_with = "words")]
+    pub fields: Vec<Field>,
+    /// Every n-th block, along x and along y, is written to the fields file; 1 or more.
+    pub stride: u32,
+    /// Spacing of the rows of the series in t*; `auto` is every step, or as many as give at most 20 000 rows.
+    pub series: AutoOr,
+}
+
+/// The instants at which fields are written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "SnapshotsKey", into = "SnapshotsKey")]
+pub enum Snapshots {
+    /// `"auto"`: the instants A to F of Fig. 4, found by the run itself.
+    Auto,
+    /// A list of t*, increasing; none when empty.
+    At(Vec<f64>),
+    /// `{ every = 5.0 }`: at multiples of that t*.
+    Every(f64),
+}
+
+/// A field over the blocks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Field {
+    /// The contact stress of Eq. 10 over its maximum.
+    ContactStressStar,
+    /// The friction force over the block's area, blank where the surface is textured.
+    Traction,
+    /// Displacement from the rest site along x.
+    DisplacementX,
+    /// Displacement from the rest site along y.
+    DisplacementY,
+    /// Whether the block slides.
+    Sliding,
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Self {
+            snapshots: Snapshots::Auto,
+            fields: vec![
+                Field::ContactStressStar,
+                Field::Traction,
+                Field::DisplacementX,
+                Field::DisplacementY,
+                Field::Sliding,
+            ],
+            stride: 1,
+            series: AutoOr::Auto,
+        }
+    }
+}
+
+/// `snapshots` as it stands in the file.
+#[derive(Serialize, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected \"auto\", a list of times t* such as [10.0, 80.0], or { every = 5.0 }"
+)]
+enum SnapshotsKey {
+    Word(String),
+    At(Vec<f64>),
+    Every(Every),
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Every {
+    every: f64,
+}
+
+impl TryFrom<SnapshotsKey> for Snapshots {
+    type Error = String;
+
+    fn try_from(key: SnapshotsKey) -> Result<Self, String> {
+        match key {
+            SnapshotsKey::Word(word) if word == "auto" => Ok(Self::Auto),
+            SnapshotsKey::Word(word) => Err(format!(
+                "{word:?} is given, \"auto\", a list of times t* or {{ every = 5.0 }} is wanted"
+            )),
+            SnapshotsKey::At(times) => Ok(Self::At(times)),
+            SnapshotsKey::Every(Every { every }) => Ok(Self::Every(every)),
+        }
+    }
+}
+
+impl From<Snapshots> for SnapshotsKey {
+    fn from(snapshots: Snapshots) -> Self {
+        match snapshots {
+            Snapshots::Auto => Self::Word("auto".to_owned()),
+            Snapshots::At(times) => Self::At(times),
+            Snapshots::Every(every) => Self::Every(Every { every }),
+        }
+    }
+}

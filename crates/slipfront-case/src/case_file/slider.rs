@@ -1,0 +1,141 @@
+//! `[slider]`: the lattice of blocks and its material.
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::values::{Pair, pair};
+use crate::quantity::{Density, Length, Pressure, Rate};
+
+/// `[slider]`: the blocks, their material, the damping and the edges.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "SliderKeys", into = "SliderKeys")]
+pub struct Slider {
+    /// Blocks along x and along y (`N_x`, `N_y`): 1 to 100 000 each, at least 3 along a periodic axis.
+    pub blocks: [u32; 2],
+    /// Edge of a block (l), m.
+    pub block_size: Length,
+    /// Young's modulus (E), Pa.
+    pub young_modulus: Pressure,
+    /// Density (rho), kg/m^3.
+    pub density: Density,
+    /// Damping of the blocks' motion: `omega_star` or `damping_rate`.
+    pub damping: Damping,
+    /// The lattice's edges that bound x and those that bound y.
+    pub edges: [Edge; 2],
+}
+
+/// How strongly the motion is damped.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Damping {
+    /// `omega_star`: Omega over the square root of `k_straight/block_mass`, dimensionless, 0 to 1000.
+    OmegaStar(f64),
+    /// `damping_rate`: Omega of Eq. 5, 1/s.
+    Rate(Rate),
+}
+
+/// What happens at the two edges that bound an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Edge {
+    /// The neighbours beyond the edge are absent.
+    Free,
+    /// The blocks of one edge are the neighbours of those of the other.
+    Periodic,
+}
+
+impl Default for Slider {
+    fn default() -> Self {
+        Self {
+            blocks: [25, 25],
+            block_size: Length::from_text("1 um", 1e-6),
+            young_modulus: Pressure::from_text("100 GPa", 1e11),
+            density: Density::from_text("10 g/cm^3", 1e4),
+            damping: Damping::OmegaStar(0.1),
+            edges: [Edge::Free; 2],
+        }
+    }
+}
+
+/// The keys of `[slider]` as they stand in the file.
+#[derive(Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct SliderKeys {
+    #[serde(deserialize_with = "pair")]
+    blocks: [u32; 2],
+    block_size: Length,
+    young_modulus: Pressure,
+    density: Density,
+    omega_star: Option<f64>,
+    damping_rate: Option<Rate>,
+    #[serde(serialize_with = "write_edges", deserialize_with = "read_edges")]
+    edges: [Edge; 2],
+}
+
+impl Default for SliderKeys {
+    fn default() -> Self {
+        // No damping here: either key displaces the default.
+        let mut keys = Self::from(Slider::default());
+        keys.omega_star = None;
+        keys
+    }
+}
+
+impl From<SliderKeys> for Slider {
+    fn from(keys: SliderKeys) -> Self {
+        let damping = match (keys.damping_rate, keys.omega_star) {
+            (Some(rate), _) => Damping::Rate(rate),
+            (None, Some(omega_star)) => Damping::OmegaStar(omega_star),
+            (None, None) => Self::default().damping,
+        };
+        Self {
+            blocks: keys.blocks,
+            block_size: keys.block_size,
+            young_modulus: keys.young_modulus,
+            density: keys.density,
+            damping,
+            edges: keys.edges,
+        }
+    }
+}
+
+impl From<Slider> for SliderKeys {
+    fn from(slider: Slider) -> Self {
+        let (omega_star, damping_rate) = match slider.damping {
+            Damping::OmegaStar(omega_star) => (Some(omega_star), None),
+            Damping::Rate(rate) => (None, Some(rate)),
+        };
+        Self {
+            blocks: slider.blocks,
+            block_size: slider.block_size,
+            young_modulus: slider.young_modulus,
+            density: slider.density,
+            omega_star,
+            damping_rate,
+            edges: slider.edges,
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected \"free\", \"periodic\", or a pair for x and y such as [\"periodic\", \"free\"]"
+)]
+enum EdgesKey {
+    Both(Edge),
+    Each(Pair<Edge>),
+}
+
+fn read_edges<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[Edge; 2], D::Error> {
+    Ok(match EdgesKey::deserialize(deserializer)? {
+        EdgesKey::Both(edge) => [edge; 2],
+        EdgesKey::Each(Pair(edges)) => edges,
+    })
+}
+
+fn write_edges<S: Serializer>(edges: &[Edge; 2], serializer: S) -> Result<S::Ok, S::Error> {
+    if edges[0] == edges[1] {
+        edges[0].serialize(serializer)
+    } else {
+        edges.serialize(serializer)
+    }
+}

@@ -1,0 +1,145 @@
+//! `[time]`: how long the run is, in which steps, and when it may stop.
+
+use serde::{Deserialize, Serialize};
+
+use super::values::{AutoOr, WordOrNumber, word};
+use crate::quantity::Duration;
+
+/// `[time]`: duration, step, end and averaging window of the run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "TimeKeys", into = "TimeKeys")]
+pub struct Time {
+    /// How long the run is: `duration_star` or `duration`.
+    pub duration: RunTime,
+    /// The time step.
+    pub step: Step,
+    /// When the run ends.
+    pub stop: Stop,
+    /// Start of the window that the kinetic friction is averaged over, in t*; `auto` is 2.5/V* after the onset.
+    pub kinetic_from_star: AutoOr,
+}
+
+/// The length of the run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RunTime {
+    /// `duration_star = "auto"`: t* = 8/V*.
+    Auto,
+    /// `duration_star`: in t*, more than 0.
+    Star(f64),
+    /// `duration`: in s.
+    Duration(Duration),
+}
+
+/// The time step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "WordOrNumber", into = "WordOrNumber")]
+pub enum Step {
+    /// `"auto"`: dt* = 0.1.
+    Auto,
+    /// `"paper"`: dt* = (2/3) V* (Eq. 13).
+    Paper,
+    /// dt* itself, more than 0 and less than 0.9058.
+    Number(f64),
+}
+
+/// When a run ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stop {
+    /// At the end of its duration.
+    End,
+    /// As soon as the fall that ends the first peak of mu* is seen.
+    AfterOnset,
+}
+
+impl Default for Time {
+    fn default() -> Self {
+        Self {
+            duration: RunTime::Auto,
+            step: Step::Auto,
+            stop: Stop::End,
+            kinetic_from_star: AutoOr::Auto,
+        }
+    }
+}
+
+/// The keys of `[time]` as they stand in the file.
+#[derive(Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct TimeKeys {
+    duration_star: Option<AutoOr>,
+    duration: Option<Duration>,
+    step: Step,
+    #[serde(deserialize_with = "word")]
+    stop: Stop,
+    kinetic_from_star: AutoOr,
+}
+
+impl Default for TimeKeys {
+    fn default() -> Self {
+        // No duration here: either key displaces the default.
+        let mut keys = Self::from(Time::default());
+        keys.duration_star = None;
+        keys
+    }
+}
+
+impl From<TimeKeys> for Time {
+    fn from(keys: TimeKeys) -> Self {
+        let duration = match (keys.duration, keys.duration_star) {
+            (Some(duration), _) => RunTime::Duration(duration),
+            (None, Some(AutoOr::Number(duration_star))) => RunTime::Star(duration_star),
+            (None, Some(AutoOr::Auto) | None) => RunTime::Auto,
+        };
+        Self {
+            duration,
+            step: keys.step,
+            stop: keys.stop,
+            kinetic_from_star: keys.kinetic_from_star,
+        }
+    }
+}
+
+impl From<Time> for TimeKeys {
+    fn from(time: Time) -> Self {
+        let (duration_star, duration) = match time.duration {
+            RunTime::Auto => (Some(AutoOr::Auto), None),
+            RunTime::Star(duration_star) => (Some(AutoOr::Number(duration_star)), None),
+            RunTime::Duration(duration) => (None, Some(duration)),
+        };
+        Self {
+            duration_star,
+            duration,
+            step: time.step,
+            stop: time.stop,
+            kinetic_from_star: time.kinetic_from_star,
+        }
+    }
+}
+
+impl TryFrom<WordOrNumber> for Step {
+    type Error = String;
+
+    fn try_from(value: WordOrNumber) -> Result<Self, String> {
+        match value {
+            WordOrNumber::Number(dt_star) => Ok(Self::Number(dt_star)),
+            WordOrNumber::Word(word) => match word.as_str() {
+                "auto" => Ok(Self::Auto),
+                "paper" => Ok(Self::Paper),
+                _ => Err(format!(
+                    "{word:?} is given, a number, \"auto\" or \"paper\" is wanted"
+                )),
+            },
+        }
+    }
+}
+
+impl From<Step> for WordOrNumber {
+    fn from(step: Step) -> Self {
+        match step {
+            Step::Auto => Self::Word("auto".to_owned()),
+            Step::Paper => Self::Word("paper".to_owned()),
+            Step::Number(dt_star) => Self::Number(dt_star),
+        }
+    }
+}

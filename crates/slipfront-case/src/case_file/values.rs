@@ -1,0 +1,93 @@
+//! Shapes of values that several tables use: pairs, and words beside numbers.
+
+use serde::de::IntoDeserializer;
+use serde::{Deserialize, Deserializer, Serialize};
+
+/// Exactly two values. (Serde's own `[T; 2]` leaves a third value unread.)
+#[derive(Deserialize)]
+#[serde(try_from = "Vec<T>")]
+#[serde(bound = "T: Deserialize<'de>")]
+pub(super) struct Pair<T>(pub(super) [T; 2]);
+
+impl<T> TryFrom<Vec<T>> for Pair<T> {
+    type Error = String;
+
+    fn try_from(values: Vec<T>) -> Result<Self, String> {
+        let pair = <[T; 2]>::try_from(values);
+        pair.map(Pair)
+            .map_err(|values| format!("{} value(s) given, a pair [x, y] is wanted", values.len()))
+    }
+}
+
+pub(super) fn pair<'de, D, T>(deserializer: D) -> Result<[T; 2], D::Error>
+where
+    D: Deserializer<'de>,
+    T: Deserialize<'de>,
+{
+    Pair::deserialize(deserializer).map(|Pair(values)| values)
+}
+
+/// One of the words of `T`, an enum of unit variants, which serde would also read from a table `{ word = {} }`.
+struct Word<T>(T);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Word<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        T::deserialize(String::deserialize(deserializer)?.into_deserializer()).map(Word)
+    }
+}
+
+pub(super) fn word<'de, D, T>(deserializer: D) -> Result<T, D::Error>
+where
+    D: Deserializer<'de>,
+    T: Deserialize<'de>,
+{
+    Word::deserialize(deserializer).map(|Word(value)| value)
+}
+
+pub(super) fn words<'de, D, T>(deserializer: D) -> Result<Vec<T>, D::Error>
+where
+    D: Deserializer<'de>,
+    T: Deserialize<'de>,
+{
+    let words: Vec<Word<T>> = Vec::deserialize(deserializer)?;
+    Ok(words.into_iter().map(|Word(value)| value).collect())
+}
+
+/// A number, or a word that stands for one.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged, expecting = "expected a number, or a word such as \"auto\"")]
+pub(super) enum WordOrNumber {
+    Number(f64),
+    Word(String),
+}
+
+/// A number that the program chooses unless the user does.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "WordOrNumber", into = "WordOrNumber")]
+pub enum AutoOr {
+    /// `"auto"`: see the key for what that is.
+    Auto,
+    /// The user's number.
+    Number(f64),
+}
+
+impl TryFrom<WordOrNumber> for AutoOr {
+    type Error = String;
+
+    fn try_from(value: WordOrNumber) -> Result<Self, String> {
+        match value {
+            WordOrNumber::Number(number) => Ok(Self::Number(number)),
+            WordOrNumber::Word(word) if word == "auto" => Ok(Self::Auto),
+            WordOrNumber::Word(word) => Err(format!("{word:?} is given, a number or \"auto\" is wanted")),
+        }
+    }
+}
+
+impl From<AutoOr> for WordOrNumber {
+    fn from(value: AutoOr) -> Self {
+        match value {
+            AutoOr::Auto => Self::Word("auto".to_owned()),
+            AutoOr::Number(number) => Self::Number(number),
+        }
+    }
+}

@@ -1,0 +1,575 @@
+//! Physical quantities as a user writes them: a number, a unit, a dimension.
+//!
+//! Every accepted unit is a power of ten of its SI unit. Converting therefore means shifting the decimal exponent of
+//! the number's *text* before it is read, so that the SI value is rounded once, by `f64::from_str`, and is the `f64`
+//! nearest to what was written. Read by the case file; the SI values go to the scales of the model next.
+
+use std::fmt;
+use std::marker::PhantomData;
+use std::str::FromStr;
+
+use serde::de::{Deserialize, Deserializer, Visitor};
+use serde::ser::{Serialize, Serializer};
+use thiserror::Error;
+
+/// The longest text that is read as a quantity, in bytes.
+const MAX_TEXT: usize = 200;
+
+/// Units without prefix: symbol, dimension, power of ten of the SI unit.
+const UNITS: [(&str, Dimension, i32); 7] = [
+    ("m", Dimension::new(0, 1, 0), 0),
+    ("g", Dimension::new(1, 0, 0), -3),
+    ("s", Dimension::new(0, 0, 1), 0),
+    ("Pa", Dimension::new(1, -1, -2), 0),
+    ("N", Dimension::new(1, 1, -2), 0),
+    ("bar", Dimension::new(1, -1, -2), 5),
+    ("Hz", Dimension::new(0, 0, -1), 0),
+];
+
+/// Prefixes: symbol, power of ten. The micro sign and the Greek mu are read as `u`.
+const PREFIXES: [(&str, i32); 12] = [
+    ("f", -15),
+    ("p", -12),
+    ("n", -9),
+    ("u", -6),
+    ("m", -3),
+    ("c", -2),
+    ("d", -1),
+    ("h", 2),
+    ("k", 3),
+    ("M", 6),
+    ("G", 9),
+    ("T", 12),
+];
+
+/// Dimensions that have a name, for messages.
+const NAMED: [(Dimension, &str); 8] = [
+    (Length::DIMENSION, "a length"),
+    (Pressure::DIMENSION, "a pressure"),
+    (Density::DIMENSION, "a density"),
+    (Speed::DIMENSION, "a speed"),
+    (Duration::DIMENSION, "a time"),
+    (Rate::DIMENSION, "a rate"),
+    (Dimension::new(1, 0, 0), "a mass"),
+    (Dimension::new(1, 1, -2), "a force"),
+];
+
+/// The exponents of kilogram, metre and second.
+///
+/// ```
+/// use slipfront_case::quantity::Pressure;
+/// assert_eq!(Pressure::DIMENSION.to_string(), "kg m^-1 s^-2");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dimension {
+    kilogram: i32,
+    metre: i32,
+    second: i32,
+}
+
+impl Dimension {
+    /// The dimension kg^`kilogram` m^`metre` s^`second`.
+    pub const fn new(kilogram: i32, metre: i32, second: i32) -> Self {
+        Self {
+            kilogram,
+            metre,
+            second,
+        }
+    }
+
+    fn times(self, other: Self, power: i32) -> Self {
+        Self {
+            kilogram: self.kilogram + power * other.kilogram,
+            metre: self.metre + power * other.metre,
+            second: self.second + power * other.second,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        NAMED
+            .iter()
+            .find(|(dimension, _)| *dimension == self)
+            .map_or("another quantity", |(_, name)| name)
+    }
+}
+
+impl fmt::Display for Dimension {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut separator = "";
+        for (unit, power) in [("kg", self.kilogram), ("m", self.metre), ("s", self.second)] {
+            match power {
+                0 => continue,
+                1 => write!(f, "{separator}{unit}")?,
+                _ => write!(f, "{separator}{unit}^{power}")?,
+            }
+            separator = " ";
+        }
+        if separator.is_empty() {
+            f.write_str("1")
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// Why a text is not the quantity that is wanted.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum QuantityError {
+    /// A bare number, as a TOML number or as a string.
+    #[error("{value} has no unit; {wanted} is written as a string with its unit, such as {example:?}")]
+    NoUnit {
+        /// The number as written.
+        value: String,
+        /// What is wanted, with its article.
+        wanted: &'static str,
+        /// A correct quantity.
+        example: &'static str,
+    },
+    /// The text does not begin with a number.
+    #[error("{text:?} does not begin with a number; {wanted} is wanted, such as {example:?}")]
+    NoNumber {
+        /// The text as written.
+        text: String,
+        /// What is wanted, with its article.
+        wanted: &'static str,
+        /// A correct quantity.
+        example: &'static str,
+    },
+    /// A unit that is not known.
+    #[error("unknown unit `{unit}` in {text:?}: {advice}")]
+    UnknownUnit {
+        /// The text as written.
+        text: String,
+        /// The unit that is not known.
+        unit: String,
+        /// The nearest unit, or the list of units.
+        advice: String,
+    },
+    /// The unit cannot be read.
+    #[error("the unit of {text:?} cannot be read: {why}")]
+    Unit {
+        /// The text as written.
+        text: String,
+        /// What is wrong with it.
+        why: &'static str,
+    },
+    /// A quantity of another dimension.
+    #[error("{text:?} is {given} ({dimension}); {wanted} is wanted, such as {example:?}")]
+    Dimension {
+        /// The text as written.
+        text: String,
+        /// What it is, with its article.
+        given: &'static str,
+        /// Its dimension.
+        dimension: Dimension,
+        /// What is wanted, with its article.
+        wanted: &'static str,
+        /// A correct quantity.
+        example: &'static str,
+    },
+    /// A number too large or too small for an `f64`.
+    #[error("{text:?} is too {what} a number to compute with")]
+    Range {
+        /// The text as written.
+        text: String,
+        /// `large` or `small`.
+        what: &'static str,
+    },
+    /// A text of more than 200 bytes.
+    #[error("a text of {bytes} bytes is too long for a quantity such as {example:?}")]
+    TooLong {
+        /// The length of the text.
+        bytes: usize,
+        /// A correct quantity.
+        example: &'static str,
+    },
+}
+
+/// What a [`Quantity`] measures: implemented by the markers in [`kind`] only.
+pub trait Kind: Clone + fmt::Debug + PartialEq {
+    /// The dimension of the quantity.
+    const DIMENSION: Dimension;
+    /// Its name with its article, for messages.
+    const NAME: &'static str;
+    /// A quantity as it should be written, for messages.
+    const EXAMPLE: &'static str;
+    /// Its SI unit, as it can be read back.
+    const SI_UNIT: &'static str;
+}
+
+/// The markers that tell quantities of different dimension apart.
+pub mod kind {
+    use super::{Dimension, Kind};
+
+    macro_rules! kinds {
+        ($($(#[$doc:meta])* $name:ident: $dimension:expr, $label:literal, $example:literal, $unit:literal;)*) => {$(
+            $(#[$doc])*
+            #[derive(Clone, Debug, PartialEq, Eq)]
+            pub enum $name {}
+            impl Kind for $name {
+                const DIMENSION: Dimension = $dimension;
+                const NAME: &'static str = $label;
+                const EXAMPLE: &'static str = $example;
+                const SI_UNIT: &'static str = $unit;
+            }
+        )*};
+    }
+
+    kinds! {
+        /// Lengths, in m.
+        Length: Dimension::new(0, 1, 0), "a length", "1 um", "m";
+        /// Pressures and elastic moduli, in Pa.
+        Pressure: Dimension::new(1, -1, -2), "a pressure", "100 kPa", "Pa";
+        /// Densities, in kg/m^3.
+        Density: Dimension::new(1, -3, 0), "a density", "10 g/cm^3", "kg/m^3";
+        /// Speeds, in m/s.
+        Speed: Dimension::new(0, 1, -1), "a speed", "0.0949 mm/s", "m/s";
+        /// Durations, in s.
+        Duration: Dimension::new(0, 0, 1), "a time", "84 ns", "s";
+        /// Rates, in 1/s.
+        Rate: Dimension::new(0, 0, -1), "a rate", "3e8 1/s", "1/s";
+    }
+}
+
+/// A length, read into m.
+pub type Length = Quantity<kind::Length>;
+/// A pressure or an elastic modulus, read into Pa.
+pub type Pressure = Quantity<kind::Pressure>;
+/// A density, read into kg/m^3.
+pub type Density = Quantity<kind::Density>;
+/// A speed, read into m/s.
+pub type Speed = Quantity<kind::Speed>;
+/// A duration, read into s.
+pub type Duration = Quantity<kind::Duration>;
+/// A rate, read into 1/s.
+pub type Rate = Quantity<kind::Rate>;
+
+/// A quantity that remembers how it was written.
+///
+/// Two quantities are equal when text and value are. The sign and the size are not judged here.
+///
+/// ```
+/// use slipfront_case::quantity::{Density, Length};
+/// let block_size: Length = "25 um".parse()?;
+/// assert_eq!(block_size.si(), 25e-6);
+/// assert_eq!(block_size.to_string(), "25 um");
+/// assert_eq!("10 g/cm^3".parse::<Density>()?.si(), 1e4);
+/// assert_eq!(Length::from_si(25e-6).to_string(), "2.5e-5 m");
+/// # Ok::<(), slipfront_case::quantity::QuantityError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity<K: Kind> {
+    text: String,
+    si: f64,
+    kind: PhantomData<K>,
+}
+
+impl<K: Kind> Quantity<K> {
+    /// The dimension of every quantity of this type.
+    pub const DIMENSION: Dimension = K::DIMENSION;
+
+    /// The value in SI units: the `f64` nearest to what was written.
+    pub fn si(&self) -> f64 {
+        self.si
+    }
+
+    /// The quantity of that SI value, written with the fewest digits that read back to the same `f64`.
+    ///
+    /// A value that is not finite makes a quantity that is refused wherever a case file is checked or read.
+    pub fn from_si(si: f64) -> Self {
+        Self {
+            text: format!("{si:?} {}", K::SI_UNIT),
+            si,
+            kind: PhantomData,
+        }
+    }
+
+    /// A quantity whose text is known to read as `si`: for defaults, which tests hold against their text.
+    pub(crate) fn from_text(text: &str, si: f64) -> Self {
+        Self {
+            text: text.to_owned(),
+            si,
+            kind: PhantomData,
+        }
+    }
+
+    fn no_unit(value: impl ToString) -> QuantityError {
+        QuantityError::NoUnit {
+            value: value.to_string(),
+            wanted: K::NAME,
+            example: K::EXAMPLE,
+        }
+    }
+}
+
+impl<K: Kind> From<f64> for Quantity<K> {
+    fn from(si: f64) -> Self {
+        Self::from_si(si)
+    }
+}
+
+impl<K: Kind> fmt::Display for Quantity<K> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+impl<K: Kind> FromStr for Quantity<K> {
+    type Err = QuantityError;
+
+    fn from_str(text: &str) -> Result<Self, QuantityError> {
+        if text.len() > MAX_TEXT {
+            return Err(QuantityError::TooLong {
+                bytes: text.len(),
+                example: K::EXAMPLE,
+            });
+        }
+        let number = Number::split(text.trim()).ok_or_else(|| QuantityError::NoNumber {
+            text: text.to_owned(),
+            wanted: K::NAME,
+            example: K::EXAMPLE,
+        })?;
+        if number.rest.trim().is_empty() {
+            return Err(Self::no_unit(text.trim()));
+        }
+        let unit = read_unit(text, number.rest)?;
+        if unit.dimension != K::DIMENSION {
+            return Err(QuantityError::Dimension {
+                text: text.to_owned(),
+                given: unit.dimension.name(),
+                dimension: unit.dimension,
+                wanted: K::NAME,
+                example: K::EXAMPLE,
+            });
+        }
+        let si = number
+            .shifted(unit.power_of_ten)
+            .ok_or_else(|| QuantityError::Range {
+                text: text.to_owned(),
+                what: if number.exponent > 0 { "large" } else { "small" },
+            })?;
+        Ok(Self {
+            text: text.to_owned(),
+            si,
+            kind: PhantomData,
+        })
+    }
+}
+
+impl<K: Kind> Serialize for Quantity<K> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.text)
+    }
+}
+
+impl<'de, K: Kind> Deserialize<'de> for Quantity<K> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(QuantityVisitor(PhantomData))
+    }
+}
+
+struct QuantityVisitor<K>(PhantomData<K>);
+
+impl<K: Kind> Visitor<'_> for QuantityVisitor<K> {
+    type Value = Quantity<K>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} as a string with its unit, such as {:?}",
+            K::NAME,
+            K::EXAMPLE
+        )
+    }
+
+    fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Self::Value, E> {
+        text.parse().map_err(E::custom)
+    }
+
+    fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Self::Value, E> {
+        Err(E::custom(Quantity::<K>::no_unit(value)))
+    }
+
+    fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<Self::Value, E> {
+        Err(E::custom(Quantity::<K>::no_unit(value)))
+    }
+
+    fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Self::Value, E> {
+        Err(E::custom(Quantity::<K>::no_unit(format!("{value:?}"))))
+    }
+}
+
+/// A decimal number cut out of the front of a text, not yet rounded.
+struct Number<'a> {
+    /// Sign, digits and decimal point.
+    mantissa: &'a str,
+    exponent: i32,
+    rest: &'a str,
+}
+
+impl<'a> Number<'a> {
+    fn split(text: &'a str) -> Option<Self> {
+        let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
+        let after_digits = unsigned.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
+        let mantissa = &text[..text.len() - after_digits.len()];
+        // Digits and at most one point: "1.2.3", "." and "" are none of std's numbers.
+        mantissa.parse::<f64>().ok()?;
+        let (exponent, rest) = split_exponent(after_digits)?;
+        Some(Self {
+            mantissa,
+            exponent,
+            rest,
+        })
+    }
+
+    /// The number times 10^`power`, rounded once; `None` when it overflows, or underflows to zero.
+    fn shifted(&self, power: i32) -> Option<f64> {
+        let exponent = self.exponent.saturating_add(power);
+        let value: f64 = format!("{}e{exponent}", self.mantissa).parse().ok()?;
+        let is_zero = !self.mantissa.contains(|c: char| c.is_ascii_digit() && c != '0');
+        (value.is_finite() && (value != 0.0 || is_zero)).then_some(value)
+    }
+}
+
+/// Splits "e-3 mm" into -3 and " mm". An `e` that no digit follows belongs to the unit.
+fn split_exponent(text: &str) -> Option<(i32, &str)> {
+    let Some(after_e) = text.strip_prefix(['e', 'E']) else {
+        return Some((0, text));
+    };
+    let unsigned = after_e.strip_prefix(['+', '-']).unwrap_or(after_e);
+    let rest = unsigned.trim_start_matches(|c: char| c.is_ascii_digit());
+    if rest.len() == unsigned.len() {
+        return Some((0, text));
+    }
+    let digits = &after_e[..after_e.len() - rest.len()];
+    // Only the digits can be too many: such a number overflows or underflows in any case.
+    let limit = if digits.starts_with('-') {
+        i32::MIN
+    } else {
+        i32::MAX
+    };
+    Some((digits.parse().unwrap_or(limit), rest))
+}
+
+/// A product of powers of units: its dimension and the power of ten of its SI unit.
+struct Unit {
+    dimension: Dimension,
+    power_of_ten: i32,
+}
+
+fn read_unit(text: &str, unit_text: &str) -> Result<Unit, QuantityError> {
+    let wrong = |why| QuantityError::Unit {
+        text: text.to_owned(),
+        why,
+    };
+    let unit_text = with_ascii_signs(unit_text);
+    let mut unit = Unit {
+        dimension: Dimension::new(0, 0, 0),
+        power_of_ten: 0,
+    };
+    for (place, part) in unit_text.split('/').enumerate() {
+        let factors: Vec<&str> = part
+            .split(['*', ' '])
+            .filter(|factor| !factor.is_empty())
+            .collect();
+        let sign = if place == 0 { 1 } else { -1 };
+        match factors.as_slice() {
+            // "1/s" after the number, or "5/s" without the 1.
+            [] | ["1"] if place == 0 && unit_text.contains('/') => continue,
+            [] => return Err(wrong("a unit is missing beside `/` or `*`")),
+            [_, _, ..] if place > 0 => {
+                return Err(wrong(
+                    "a product after `/` is ambiguous: write `/` or `^-1` for every factor below the line",
+                ));
+            }
+            _ => {}
+        }
+        for factor in factors {
+            let (symbol, power) = split_power(factor)
+                .ok_or_else(|| wrong("a power is a whole number from -9 to 9, as in `m^-3`"))?;
+            let (dimension, power_of_ten) = find_symbol(symbol).ok_or_else(|| unknown_unit(text, symbol))?;
+            unit.dimension = unit.dimension.times(dimension, sign * power);
+            unit.power_of_ten += sign * power * power_of_ten;
+        }
+    }
+    Ok(unit)
+}
+
+/// Writes the signs that have an ASCII spelling in that spelling: micro, middle dot, superscripts.
+fn with_ascii_signs(text: &str) -> String {
+    const SUPERSCRIPTS: [char; 10] = [
+        '\u{2070}', '\u{b9}', '\u{b2}', '\u{b3}', '\u{2074}', '\u{2075}', '\u{2076}', '\u{2077}', '\u{2078}',
+        '\u{2079}',
+    ];
+    let mut ascii = String::new();
+    let mut in_superscript = false;
+    for c in text.chars() {
+        let raised = match c {
+            '\u{207b}' => Some('-'),
+            _ => (('0'..='9').zip(SUPERSCRIPTS)).find_map(|(digit, sign)| (sign == c).then_some(digit)),
+        };
+        match (raised, c) {
+            (Some(raised), _) if in_superscript => ascii.push(raised),
+            (Some(raised), _) => ascii.extend(['^', raised]),
+            (None, '\u{b5}' | '\u{3bc}') => ascii.push('u'),
+            (None, '\u{b7}' | '\u{22c5}') => ascii.push('*'),
+            (None, c) if c.is_whitespace() => ascii.push(' '),
+            (None, c) => ascii.push(c),
+        }
+        in_superscript = raised.is_some();
+    }
+    ascii
+}
+
+fn split_power(factor: &str) -> Option<(&str, i32)> {
+    match factor.split_once('^') {
+        None => Some((factor, 1)),
+        Some((symbol, power)) => {
+            let power = power.parse().ok().filter(|power| (-9..=9).contains(power))?;
+            Some((symbol, power))
+        }
+    }
+}
+
+/// The dimension and power of ten of a symbol: a unit as it stands, or else a prefix and a unit.
+fn find_symbol(symbol: &str) -> Option<(Dimension, i32)> {
+    let bare = |name: &str| {
+        UNITS
+            .iter()
+            .find(|(unit, ..)| *unit == name)
+            .map(|&(_, dimension, power)| (dimension, power))
+    };
+    bare(symbol).or_else(|| {
+        PREFIXES.iter().find_map(|(prefix, power_of_prefix)| {
+            let (dimension, power) = bare(symbol.strip_prefix(prefix)?)?;
+            Some((dimension, power + power_of_prefix))
+        })
+    })
+}
+
+fn unknown_unit(text: &str, symbol: &str) -> QuantityError {
+    let prefixes = PREFIXES.iter().map(|(prefix, _)| *prefix).chain([""]);
+    let candidates =
+        prefixes.flat_map(|prefix| UNITS.iter().map(move |(unit, ..)| format!("{prefix}{unit}")));
+    let distance = |unit: &str| {
+        // "KPA" is nearer to "kPa" than to any unit of other letters.
+        let folded = strsim::damerau_levenshtein(&unit.to_lowercase(), &symbol.to_lowercase());
+        (folded, strsim::damerau_levenshtein(unit, symbol))
+    };
+    let nearest = candidates.map(|unit| (distance(&unit), unit)).min();
+    let advice = match nearest {
+        Some(((distance, _), unit)) if distance == 0 || distance == 1 && symbol.len() > 1 => {
+            format!("did you mean `{unit}`?")
+        }
+        _ => "the units are m, g, s, Pa, N, bar and Hz, with the prefixes f p n u m c d h k M G T".to_owned(),
+    };
+    QuantityError::UnknownUnit {
+        text: text.to_owned(),
+        unit: symbol.to_owned(),
+        advice,
+    }
+}
+
+#[cfg(test)]
+mod tests;
