@@ -11,6 +11,7 @@ use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Scales, Stop, Surface
 use crate::arrays;
 use crate::case_file::{self, AutoOr, CaseError, CaseFile};
 use crate::fields::FieldName;
+use crate::quantity::Length;
 
 /// A case, valid by construction.
 #[derive(Debug)]
@@ -137,9 +138,19 @@ impl Case {
     /// A sentence that names place, value, bound and remedy.
     pub fn load(path: &Path, overrides: &[String]) -> Result<Self, CaseError> {
         let file = CaseFile::load(path, overrides)?;
-        let name = path.file_stem().map_or_else(|| "case".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let name = path
+            .file_stem()
+            .map_or_else(|| "case".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let folder = path.parent().unwrap_or(Path::new(""));
         Self::new(file, &name, folder)
+    }
+
+    /// Makes a case of text that stands in no folder; files it names stand in the working directory.
+    ///
+    /// # Errors
+    /// A sentence that names place, value, bound and remedy.
+    pub fn parse(text: &str, name: &str, overrides: &[String]) -> Result<Self, CaseError> {
+        Self::new(CaseFile::parse(text, name, overrides)?, name, Path::new(""))
     }
 
     /// Makes a case of a case file; the files it names stand relative to `folder`.
@@ -155,9 +166,13 @@ impl Case {
         let meshed = mesh(&lattice, &textures.shapes);
         let coefficients = coefficients(&mut file, &groups, &lattice, &mut inputs)?;
         let negative_draws = coefficients.negative_draws;
-        let load = if file.load.redistribute { Load::Redistributed } else { Load::Kept };
+        let load = if file.load.redistribute {
+            Load::Redistributed
+        } else {
+            Load::Kept
+        };
         let surface = Surface::new(coefficients, meshed.textured, load, scales.mu_static_mean)
-            .map_err(|error| file.error("texture", error.to_string()))?;
+            .map_err(|error| file.source.error("texture", error.to_string()))?;
         let texture = TextureReport {
             asked_percent: textures.asked_percent,
             meshed_percent: surface.texture_percent(),
@@ -169,7 +184,14 @@ impl Case {
             case_file::Law::Literal => FrictionLaw::Literal,
         };
         let drive = Drive::at_angle(groups.v_star, file.drive.direction);
-        let model = Model::new(lattice, surface, drive, damping(groups.omega_star), groups.epsilon, law);
+        let model = Model::new(
+            lattice,
+            surface,
+            drive,
+            damping(groups.omega_star),
+            groups.epsilon,
+            law,
+        );
         let schedule = schedule(&file, &scales, &groups)?;
         let output = output(&file, &schedule, &lattice)?;
         Ok(Self {
@@ -209,7 +231,7 @@ fn groups(file: &CaseFile, scales: &Scales) -> Result<Groups, CaseError> {
             "the load strains the slider by P mu_s/E = {epsilon:.3}, more than {MAX_EPSILON}: lower `pressure` or raise \
              `young_modulus`"
         );
-        return Err(file.error("load.pressure", sentence));
+        return Err(file.source.error("load.pressure", sentence));
     }
     let v_star = match &file.drive.speed {
         case_file::DriveSpeed::VStar(v_star) => *v_star,
@@ -224,7 +246,14 @@ fn groups(file: &CaseFile, scales: &Scales) -> Result<Groups, CaseError> {
         case_file::Damping::OmegaStar(omega_star) => *omega_star,
         case_file::Damping::Rate(rate) => scales.omega_star(rate.si()),
     };
-    within(file, "slider.damping_rate", "Omega*", omega_star, 0.0, MAX_OMEGA_STAR)?;
+    within(
+        file,
+        "slider.damping_rate",
+        "Omega*",
+        omega_star,
+        0.0,
+        MAX_OMEGA_STAR,
+    )?;
     Ok(Groups {
         v_star,
         r_star,
@@ -238,11 +267,21 @@ const MIN_V_STAR: f64 = 1e-9;
 const MAX_V_STAR: f64 = 10.0;
 const MAX_OMEGA_STAR: f64 = 1000.0;
 
-fn within(file: &CaseFile, key: &str, symbol: &str, value: f64, low: f64, high: f64) -> Result<(), CaseError> {
+fn within(
+    file: &CaseFile,
+    key: &str,
+    symbol: &str,
+    value: f64,
+    low: f64,
+    high: f64,
+) -> Result<(), CaseError> {
     if (low..=high).contains(&value) {
         return Ok(());
     }
-    Err(file.error(key, format!("this makes {symbol} = {value:.4}, which must lie between {low} and {high}")))
+    Err(file.source.error(
+        key,
+        format!("this makes {symbol} = {value:.4}, which must lie between {low} and {high}"),
+    ))
 }
 
 fn lattice(file: &CaseFile) -> Lattice {
@@ -272,14 +311,18 @@ fn textures(
             case_file::Texture::Cavity(cavity) => cavity_in_blocks(cavity, scales, lattice),
             case_file::Texture::Groove(groove) => groove_in_blocks(groove, scales, lattice),
             case_file::Texture::Polygon(polygon) => {
-                let points = polygon.points.iter().map(|point| scales.in_blocks_each(point)).collect();
+                let points = polygon
+                    .points
+                    .iter()
+                    .map(|point| in_blocks(scales, point))
+                    .collect();
                 (surface::Texture::Polygon(points), None)
             }
             case_file::Texture::Mask(mask) => {
                 let key = format!("texture.{index}.file");
                 let (path, copy) = inputs.read(file, &key, &mask.file)?;
                 let shape = read_mask(&path, mask.threshold, lattice)
-                    .map_err(|error| file.error(&key, error.to_string()))?;
+                    .map_err(|error| file.source.error(&key, error.to_string()))?;
                 if let case_file::Texture::Mask(mask) = &mut file.texture[index] {
                     mask.file = copy;
                 }
@@ -289,7 +332,14 @@ fn textures(
         shapes.push(shape);
         asked = asked.zip(percent).map(|(sum, percent)| sum + percent);
     }
-    Ok(Textures { shapes, asked_percent: asked })
+    Ok(Textures {
+        shapes,
+        asked_percent: asked,
+    })
+}
+
+fn in_blocks(scales: &Scales, [x, y]: &[Length; 2]) -> [f64; 2] {
+    [scales.in_blocks(x.si()), scales.in_blocks(y.si())]
 }
 
 fn cavity_in_blocks(
@@ -301,20 +351,37 @@ fn cavity_in_blocks(
     let array = cavity.array.map(|count| count as usize);
     let count = array[0] * array[1];
     let (lambda, percent) = match &cavity.size {
-        case_file::CavitySize::Coverage(percent) => {
-            (surface::cavity_lambda(*percent, n_blocks, cavity.s, cavity.w, count), *percent)
-        }
+        case_file::CavitySize::Coverage(percent) => (
+            surface::cavity_lambda(*percent, n_blocks, cavity.s, cavity.w, count),
+            *percent,
+        ),
         case_file::CavitySize::Lambda(lambda) => {
             let lambda = scales.in_blocks(lambda.si());
-            (lambda, surface::cavity_percent(lambda, n_blocks, cavity.s, cavity.w, count))
+            (
+                lambda,
+                surface::cavity_percent(lambda, n_blocks, cavity.s, cavity.w, count),
+            )
         }
     };
     let center = match &cavity.center {
         case_file::Center::Middle => [0.5 * lattice.nx as f64, 0.5 * lattice.ny as f64],
-        case_file::Center::At(center) => scales.in_blocks_each(center),
+        case_file::Center::At(center) => in_blocks(scales, center),
     };
-    let &case_file::Cavity { s, w, across, rotate, .. } = cavity;
-    (surface::Texture::Cavity(surface::Cavity { center, lambda, s, w, across, rotate, array }), Some(percent))
+    let &case_file::Cavity {
+        s, w, across, rotate, ..
+    } = cavity;
+    (
+        surface::Texture::Cavity(surface::Cavity {
+            center,
+            lambda,
+            s,
+            w,
+            across,
+            rotate,
+            array,
+        }),
+        Some(percent),
+    )
 }
 
 fn groove_in_blocks(
@@ -334,12 +401,24 @@ fn groove_in_blocks(
         }
     };
     let offset = scales.in_blocks(groove.offset.si());
-    (surface::Texture::Groove(surface::Groove { orientation, width, offset }), Some(percent))
+    (
+        surface::Texture::Groove(surface::Groove {
+            orientation,
+            width,
+            offset,
+        }),
+        Some(percent),
+    )
 }
 
 fn read_mask(path: &Path, threshold: f64, lattice: &Lattice) -> Result<surface::Texture, arrays::ArrayError> {
-    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("npy")) {
-        return Ok(surface::Texture::Blocks(arrays::read_mask_npy(path, lattice.nx, lattice.ny)?));
+    if path
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("npy"))
+    {
+        return Ok(surface::Texture::Blocks(arrays::read_mask_npy(
+            path, lattice.nx, lattice.ny,
+        )?));
     }
     Ok(surface::Texture::Image(arrays::read_mask_png(path, threshold)?))
 }
@@ -352,15 +431,19 @@ fn coefficients(
 ) -> Result<Coefficients, CaseError> {
     let mean = file.friction.mu_static;
     let mut given = |key: &str, name: &mut Option<String>, file: &CaseFile| -> Result<_, CaseError> {
-        let Some(written) = name.as_ref() else { return Ok(None) };
+        let Some(written) = name.as_ref() else {
+            return Ok(None);
+        };
         let (path, copy) = inputs.read(file, key, written)?;
         let field = arrays::read_field(&path, lattice.nx, lattice.ny)
-            .map_err(|error| file.error(key, error.to_string()))?;
+            .map_err(|error| file.source.error(key, error.to_string()))?;
         *name = Some(copy);
         Ok(Some(field))
     };
-    let (mut static_name, mut kinetic_name) =
-        (file.friction.mu_static_field.clone(), file.friction.mu_kinetic_field.clone());
+    let (mut static_name, mut kinetic_name) = (
+        file.friction.mu_static_field.clone(),
+        file.friction.mu_kinetic_field.clone(),
+    );
     let mu_static = given("friction.mu_static_field", &mut static_name, file)?;
     let mu_kinetic = given("friction.mu_kinetic_field", &mut kinetic_name, file)?;
     file.friction.mu_static_field = static_name;
@@ -373,7 +456,11 @@ fn coefficients(
     let mut drawn = Coefficients::draw(
         lattice.n_blocks(),
         spread(mean, groups.sigma_static_star, mu_static.is_some()),
-        spread(groups.r_star * mean, groups.sigma_kinetic_star, mu_kinetic.is_some()),
+        spread(
+            groups.r_star * mean,
+            groups.sigma_kinetic_star,
+            mu_kinetic.is_some(),
+        ),
         file.friction.seed,
     );
     drawn.mu_static = mu_static.unwrap_or(drawn.mu_static);
@@ -389,16 +476,27 @@ struct Inputs {
 
 impl Inputs {
     fn new(folder: &Path) -> Self {
-        Self { folder: folder.to_owned(), read: Vec::new() }
+        Self {
+            folder: folder.to_owned(),
+            read: Vec::new(),
+        }
     }
 
     /// Notes a file; gives its path and the one of its copy in the run folder.
     fn read(&mut self, file: &CaseFile, key: &str, written: &str) -> Result<(PathBuf, String), CaseError> {
         let path = self.folder.join(written);
         let bytes = std::fs::read(&path).map_err(|error| {
-            file.error(key, format!("cannot read {}: {error}; paths are relative to the case file", path.display()))
+            file.source.error(
+                key,
+                format!(
+                    "cannot read {}: {error}; paths are relative to the case file",
+                    path.display()
+                ),
+            )
         })?;
-        let plain = path.file_name().map_or_else(|| "input".into(), |name| name.to_string_lossy().into_owned());
+        let plain = path
+            .file_name()
+            .map_or_else(|| "input".into(), |name| name.to_string_lossy().into_owned());
         let mut name = format!("inputs/{plain}");
         let mut copies = 1;
         // Two files of one name from different folders stay two files.
@@ -409,7 +507,10 @@ impl Inputs {
             copies += 1;
             name = format!("inputs/{copies}-{plain}");
         }
-        self.read.push(Input { name: name.clone(), bytes });
+        self.read.push(Input {
+            name: name.clone(),
+            bytes,
+        });
         Ok((path, name))
     }
 }
@@ -426,7 +527,7 @@ fn schedule(file: &CaseFile, scales: &Scales, groups: &Groups) -> Result<Schedul
             "the step dt* = {dt_star:.4} is not stable: it must be less than {:.4}; \"auto\" takes 0.1",
             dt_star_limit()
         );
-        return Err(file.error("time.step", sentence));
+        return Err(file.source.error("time.step", sentence));
     }
     let end_star = match &time.duration {
         case_file::RunTime::Auto => 8.0 / groups.v_star,
@@ -440,14 +541,15 @@ fn schedule(file: &CaseFile, scales: &Scales, groups: &Groups) -> Result<Schedul
             "a run to t* = {end_star:.4e} in steps of {dt_star} takes {steps:.2e} steps, more than {MAX_STEPS:.0e}: \
              shorten it or raise the step"
         );
-        return Err(file.error("time.duration_star", sentence));
+        return Err(file.source.error("time.duration_star", sentence));
     }
     let kinetic = match time.kinetic_from_star {
         AutoOr::Auto => KineticStart::Auto,
         AutoOr::Number(from) if from < end_star => KineticStart::At(from),
         AutoOr::Number(from) => {
-            let sentence = format!("the kinetic window cannot begin at t* = {from}: the run ends at {end_star:.4}");
-            return Err(file.error("time.kinetic_from_star", sentence));
+            let sentence =
+                format!("the kinetic window cannot begin at t* = {from}: the run ends at {end_star:.4}");
+            return Err(file.source.error("time.kinetic_from_star", sentence));
         }
     };
     let last_step = steps as u64;
@@ -455,17 +557,27 @@ fn schedule(file: &CaseFile, scales: &Scales, groups: &Groups) -> Result<Schedul
         case_file::Stop::End => Stop::at_step(last_step),
         case_file::Stop::AfterOnset => Stop::after_onset(last_step),
     };
-    Ok(Schedule { dt_star, last_step, stop, kinetic })
+    Ok(Schedule {
+        dt_star,
+        last_step,
+        stop,
+        kinetic,
+    })
 }
 
 fn output(file: &CaseFile, schedule: &Schedule, lattice: &Lattice) -> Result<Output, CaseError> {
-    let Schedule { dt_star, last_step, .. } = *schedule;
+    let Schedule {
+        dt_star, last_step, ..
+    } = *schedule;
     let spacing = |key: &str, time: f64| -> Result<u64, CaseError> {
         let steps = (time / dt_star).round();
         if steps >= 1.0 {
             return Ok(steps as u64);
         }
-        Err(file.error(key, format!("a spacing of {time} in t* is less than one step of {dt_star}: raise it")))
+        Err(file.source.error(
+            key,
+            format!("a spacing of {time} in t* is less than one step of {dt_star}: raise it"),
+        ))
     };
     let snapshots = match &file.output.snapshots {
         case_file::Snapshots::Auto => Snapshots::Instants,
@@ -473,9 +585,11 @@ fn output(file: &CaseFile, schedule: &Schedule, lattice: &Lattice) -> Result<Out
         case_file::Snapshots::At(times) => {
             let mut steps: Vec<u64> = times.iter().map(|time| (time / dt_star).round() as u64).collect();
             if let Some((_, time)) = steps.iter().zip(times).find(|&(&step, _)| step > last_step) {
-                let sentence =
-                    format!("no snapshot can be taken at t* = {time}: the run ends at {:.4}", schedule.end_star());
-                return Err(file.error("output.snapshots", sentence));
+                let sentence = format!(
+                    "no snapshot can be taken at t* = {time}: the run ends at {:.4}",
+                    schedule.end_star()
+                );
+                return Err(file.source.error("output.snapshots", sentence));
             }
             steps.dedup();
             Snapshots::At(steps)
@@ -486,7 +600,12 @@ fn output(file: &CaseFile, schedule: &Schedule, lattice: &Lattice) -> Result<Out
         AutoOr::Number(time) => spacing("output.series", time)?,
     };
     let stride = file.output.stride as usize;
-    let output = Output { snapshots, fields: file.output.fields.clone(), stride, series_stride };
+    let output = Output {
+        snapshots,
+        fields: file.output.fields.iter().map(field_name).collect(),
+        stride,
+        series_stride,
+    };
     let bytes = output.field_bytes(lattice, last_step);
     if bytes > MAX_FIELD_BYTES {
         let sentence = format!(
@@ -494,9 +613,19 @@ fn output(file: &CaseFile, schedule: &Schedule, lattice: &Lattice) -> Result<Out
             bytes / 1024f64.powi(3),
             MAX_FIELD_BYTES / 1024f64.powi(3)
         );
-        return Err(file.error("output.snapshots", sentence));
+        return Err(file.source.error("output.snapshots", sentence));
     }
     Ok(output)
+}
+
+fn field_name(field: &case_file::Field) -> FieldName {
+    match field {
+        case_file::Field::ContactStressStar => FieldName::ContactStressStar,
+        case_file::Field::Traction => FieldName::Traction,
+        case_file::Field::DisplacementX => FieldName::DisplacementX,
+        case_file::Field::DisplacementY => FieldName::DisplacementY,
+        case_file::Field::Sliding => FieldName::Sliding,
+    }
 }
 
 impl Output {
@@ -530,11 +659,20 @@ impl Case {
         };
         let groups = &self.groups;
         for texture in &self.texture.clipped {
-            warn(true, format!("texture {} reaches over a free edge and is clipped there", texture + 1));
+            warn(
+                true,
+                format!(
+                    "texture {} reaches over a free edge and is clipped there",
+                    texture + 1
+                ),
+            );
         }
         warn(
             self.negative_draws > 0,
-            format!("{} negative draws of the friction coefficients were set to 0", self.negative_draws),
+            format!(
+                "{} negative draws of the friction coefficients were set to 0",
+                self.negative_draws
+            ),
         );
         warn(
             groups.epsilon > LARGE_EPSILON,
@@ -552,7 +690,10 @@ impl Case {
         );
         warn(
             self.schedule.dt_star > 0.5,
-            format!("dt* = {} is stable but coarse: 0.1 keeps mu_s* within 3e-4", self.schedule.dt_star),
+            format!(
+                "dt* = {} is stable but coarse: 0.1 keeps mu_s* within 3e-4",
+                self.schedule.dt_star
+            ),
         );
         warn(
             self.model.lattice.n_blocks() < FEW_BLOCKS,

@@ -112,16 +112,23 @@ impl RunFolder {
     /// # Errors
     /// When it holds something else, or cannot be written.
     pub fn prepare(path: &Path, force: bool) -> Result<Self, FolderError> {
-        let unwritable = |source| FolderError::Unwritable { path: path.to_owned(), source };
+        let unwritable = |source| FolderError::Unwritable {
+            path: path.to_owned(),
+            source,
+        };
         std::fs::create_dir_all(path).map_err(unwritable)?;
         if std::fs::read_dir(path).map_err(unwritable)?.next().is_some() {
             if !force {
-                return Err(FolderError::NotEmpty { path: path.to_owned() });
+                return Err(FolderError::NotEmpty {
+                    path: path.to_owned(),
+                });
             }
             // The manifest goes first: from now on the folder does not look complete.
             for name in own_files(path) {
                 match std::fs::remove_file(path.join(name)) {
-                    Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(unwritable(error)),
+                    Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                        return Err(unwritable(error));
+                    }
                     _ => {}
                 }
             }
@@ -129,8 +136,14 @@ impl RunFolder {
             std::fs::remove_dir(path.join("inputs")).ok();
         }
         // A folder that cannot be written should say so before the run, not after it.
-        tempfile::Builder::new().prefix(".slipfront").tempfile_in(path).map_err(unwritable)?;
-        Ok(Self { path: path.to_owned(), written: Vec::new() })
+        tempfile::Builder::new()
+            .prefix(".slipfront")
+            .tempfile_in(path)
+            .map_err(unwritable)?;
+        Ok(Self {
+            path: path.to_owned(),
+            written: Vec::new(),
+        })
     }
 
     /// The folder.
@@ -158,8 +171,10 @@ impl RunFolder {
             return Err(FolderError::Foreign { path });
         }
         if let Some(parent) = path.parent() {
-            std::fs::create_dir_all(parent)
-                .map_err(|source| FolderError::Write { path: parent.to_owned(), source })?;
+            std::fs::create_dir_all(parent).map_err(|source| FolderError::Write {
+                path: parent.to_owned(),
+                source,
+            })?;
         }
         self.written.push(name.to_owned());
         Ok(path)
@@ -170,7 +185,11 @@ impl RunFolder {
     /// # Errors
     /// When a file cannot be read back or the manifest cannot be written.
     pub fn complete(self, started: jiff::Timestamp, threads: usize) -> Result<Manifest, FolderError> {
-        let files = self.written.iter().map(|name| checksum(&self.path, name)).collect::<Result<_, _>>()?;
+        let files = self
+            .written
+            .iter()
+            .map(|name| checksum(&self.path, name))
+            .collect::<Result<_, _>>()?;
         let finished = jiff::Timestamp::now();
         let manifest = Manifest {
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -193,9 +212,15 @@ fn own_files(path: &Path) -> Vec<String> {
     let mut names: Vec<String> = OWN_FILES.map(str::to_owned).to_vec();
     let manifest = std::fs::read(path.join(MANIFEST)).ok();
     let manifest = manifest.and_then(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok());
-    let listed = manifest.into_iter().flat_map(|manifest| manifest.files).map(|file| file.name);
+    let listed = manifest
+        .into_iter()
+        .flat_map(|manifest| manifest.files)
+        .map(|file| file.name);
     // A manifest is only believed about the folder of copies: a damaged one must not make us delete elsewhere.
-    names.extend(listed.filter(|name| name.strip_prefix("inputs/").is_some_and(|plain| !plain.contains(['/', '\\']))));
+    names.extend(listed.filter(|name| {
+        name.strip_prefix("inputs/")
+            .is_some_and(|plain| !plain.contains(['/', '\\']))
+    }));
     names
 }
 
@@ -218,7 +243,10 @@ fn checksum(folder: &Path, name: &str) -> Result<ManifestFile, FolderError> {
 /// # Errors
 /// What the system says; nothing is left behind then.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = path
+        .parent()
+        .filter(|parent| !parent.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(".slipfront");
     // Temporary files are private by default; results are not.

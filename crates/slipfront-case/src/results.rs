@@ -124,7 +124,10 @@ fn dimensional(case: &Case, record: &Record, frame: &Frame) -> Vec<Vec<f32>> {
     };
     let scaled = |(field, values): (&FieldName, &Vec<f32>)| -> Vec<f32> {
         let unit = unit(field);
-        values.iter().map(|&value| (f64::from(value) * unit) as f32).collect()
+        values
+            .iter()
+            .map(|&value| (f64::from(value) * unit) as f32)
+            .collect()
     };
     case.output.fields.iter().zip(&frame.values).map(scaled).collect()
 }
@@ -145,19 +148,14 @@ pub fn draw(folder: &Path) -> Result<Vec<(&'static str, Picture)>, ResultsError>
 /// # Errors
 /// When a file is missing or damaged.
 pub fn draw_friction(folders: &[PathBuf]) -> Result<Picture, ResultsError> {
-    let mut curves = folders.iter().map(|folder| friction_curve(folder)).collect::<Result<Vec<_>, _>>()?;
-    label(&mut curves, folders);
-    pictures::friction(&curves).map_err(|source| ResultsError::Picture { name: "friction", source })
-}
-
-/// Curves of cases of one name are told apart by their folders.
-fn label(curves: &mut [FrictionCurve], folders: &[PathBuf]) {
-    let names: Vec<String> = curves.iter().map(|curve| curve.label.clone()).collect();
-    for (curve, folder) in curves.iter_mut().zip(folders) {
-        if names.iter().filter(|name| **name == curve.label).count() > 1 {
-            curve.label = folder.display().to_string();
-        }
-    }
+    let curves = folders
+        .iter()
+        .map(|folder| friction_curve(folder))
+        .collect::<Result<Vec<_>, _>>()?;
+    pictures::friction(&curves).map_err(|source| ResultsError::Picture {
+        name: "friction",
+        source,
+    })
 }
 
 fn friction_curve(folder: &Path) -> Result<FrictionCurve, ResultsError> {
@@ -165,12 +163,14 @@ fn friction_curve(folder: &Path) -> Result<FrictionCurve, ResultsError> {
     let rows = series::read_csv(&folder.join("series.csv"))?;
     let kinetic = summary.kinetic_window_star.zip(summary.kinetic_friction_star);
     Ok(FrictionCurve {
-        label: summary.case,
+        label: folder.display().to_string(),
         time_star: rows.iter().map(|row| row.time_star).collect(),
         mu_star: rows.iter().map(|row| row.mu_star).collect(),
         sliding_percent: rows.iter().map(|row| row.sliding_percent).collect(),
         first_slip_time_star: summary.first_slip_time_star,
-        peak: summary.transition.then_some((summary.onset_time_star, summary.static_friction_star)),
+        peak: summary
+            .transition
+            .then_some((summary.onset_time_star, summary.static_friction_star)),
         kinetic: kinetic.map(|([from, to], mean)| Kinetic {
             from,
             to,
@@ -195,7 +195,10 @@ fn friction_curve(folder: &Path) -> Result<FrictionCurve, ResultsError> {
 /// When it is missing or no summary.
 pub fn read_summary(folder: &Path) -> Result<Summary, ResultsError> {
     let path = folder.join("summary.json");
-    let bytes = std::fs::read(&path).map_err(|source| FolderError::Read { path: path.clone(), source })?;
+    let bytes = std::fs::read(&path).map_err(|source| FolderError::Read {
+        path: path.clone(),
+        source,
+    })?;
     serde_json::from_slice(&bytes).map_err(|source| ResultsError::Summary { path, source })
 }
 
@@ -205,8 +208,13 @@ const MOST_MAPS: usize = 6;
 /// Draws the stress maps of a run; none if it kept no contact stress.
 fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
     let fields = fields::read_fields(&folder.join("fields.nc"))?;
-    let stress = fields.names.iter().position(|&name| name == FieldName::ContactStressStar);
-    let Some(stress) = stress.filter(|_| !fields.frames.is_empty()) else { return Ok(None) };
+    let stress = fields
+        .names
+        .iter()
+        .position(|&name| name == FieldName::ContactStressStar);
+    let Some(stress) = stress.filter(|_| !fields.frames.is_empty()) else {
+        return Ok(None);
+    };
     // Of many snapshots, six spread over the run are shown.
     let shown = fields.frames.len().min(MOST_MAPS);
     let pick = |k: usize| &fields.frames[k * (fields.frames.len() - 1) / (shown - 1).max(1)];
@@ -214,9 +222,18 @@ fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
     let instants = read_summary(folder)?.instants;
     // A snapshot between the rows of a thinned series has no mu* of its own, unless it is an instant.
     let mu_star = |frame: &FieldFrame| {
-        let instant = instants.iter().find(|instant| instant.time_star == frame.time_star);
-        let row = || rows.iter().find(|row| row.step == frame.step).map(|row| row.mu_star);
-        instant.map(|instant| instant.mu_star).or_else(row).unwrap_or(f64::NAN)
+        let instant = instants
+            .iter()
+            .find(|instant| instant.time_star == frame.time_star);
+        let row = || {
+            rows.iter()
+                .find(|row| row.step == frame.step)
+                .map(|row| row.mu_star)
+        };
+        instant
+            .map(|instant| instant.mu_star)
+            .or_else(row)
+            .unwrap_or(f64::NAN)
     };
     let maps = (0..shown)
         .map(pick)
@@ -228,12 +245,20 @@ fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
         })
         .collect();
     let maps = StressMaps {
-        nx: fields.nx.div_ceil(fields.stride),
-        ny: fields.ny.div_ceil(fields.stride),
+        nx: fields.columns(),
+        ny: fields.rows(),
         block_size: fields.block_size * fields.stride as f64,
-        textured: fields.statics.textured,
+        textured: fields.textured,
         maps,
     };
-    let picture = pictures::stress(&maps).map_err(|source| ResultsError::Picture { name: "stress", source })?;
+    let picture = pictures::stress(&maps).map_err(|source| ResultsError::Picture {
+        name: "stress",
+        source,
+    })?;
     Ok(Some(picture))
+}
+
+/// The summary as it stands in `summary.json`.
+pub fn summary_json(summary: &Summary) -> String {
+    String::from_utf8_lossy(&folder::json(summary)).into_owned()
 }

@@ -2,7 +2,8 @@
 
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{
-    Curve, CurveRow, FirstSlip, Frame, Frames, Instants, KineticHistory, Observer, Schedule, Scheduled, StressMaximum,
+    Curve, CurveRow, FirstSlip, Frame, Frames, Instants, KineticHistory, Observer, Schedule, Scheduled,
+    StressMaximum,
 };
 use slipfront::{RunError, Simulation, StopReason};
 
@@ -58,7 +59,11 @@ pub fn run(case: &Case, watch_every: u64, watcher: &mut dyn Observer) -> Result<
     drop(observers);
 
     let mut frames: Vec<(Option<char>, Frame)> = match case.output.snapshots {
-        Snapshots::Instants => instants.found().into_iter().map(|(letter, frame)| (Some(letter), frame)).collect(),
+        Snapshots::Instants => instants
+            .found()
+            .into_iter()
+            .map(|(letter, frame)| (Some(letter), frame))
+            .collect(),
         _ => frames.frames.into_iter().map(|frame| (None, frame)).collect(),
     };
     frames.sort_by_key(|(letter, frame)| (frame.step, *letter));
@@ -69,8 +74,20 @@ pub fn run(case: &Case, watch_every: u64, watcher: &mut dyn Observer) -> Result<
         StopReason::End => history.kinetic(kinetic_from, schedule.dt_star),
         StopReason::Onset => None,
     };
-    let last = curve.rows.last().map(|row| (row.step, row.energies)).unwrap_or_default();
-    let summary = Summary::new(case, &peak, kinetic, &first_slip, history.sliding_percent_max(), last, &frames);
+    let last = curve
+        .rows
+        .last()
+        .map(|row| (row.step, row.energies))
+        .unwrap_or_default();
+    let summary = Summary::new(
+        case,
+        &peak,
+        kinetic,
+        &first_slip,
+        history.sliding_percent_max(),
+        last,
+        &frames,
+    );
     Ok(Record {
         summary,
         rows: curve.rows,

@@ -82,6 +82,9 @@ pub fn to_csv(rows: impl Iterator<Item = SeriesRow>) -> Result<Vec<u8>, csv::Err
 /// # Errors
 /// When the file is missing or is no series.
 pub fn read_csv(path: &Path) -> Result<Vec<SeriesRow>, SeriesError> {
-    let read = || csv::Reader::from_path(path)?.deserialize().collect();
-    read().map_err(|source| SeriesError { path: path.to_owned(), source })
+    let read = || -> Result<_, csv::Error> { csv::Reader::from_path(path)?.deserialize().collect() };
+    read().map_err(|source| SeriesError {
+        path: path.to_owned(),
+        source,
+    })
 }

@@ -9,8 +9,6 @@ use crate::case::Case;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Summary {
-    /// Name of the case.
-    pub case: String,
     /// mu_s*, the first peak of mu* (or its largest value where there is no transition).
     pub static_friction_star: f64,
     /// mu_s.
@@ -120,7 +118,6 @@ impl Summary {
             .collect();
         instants.sort_by_key(|instant| instant.instant);
         Self {
-            case: case.name.clone(),
             static_friction_star: peak.mu_star,
             static_friction: peak.mu_star * mean,
             onset_time_star: peak.time_star,

@@ -12,8 +12,6 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use failure::Failure;
-
 /// Friction of micro-textured surfaces: the lattice spring-block model of the transition from static to kinetic
 /// friction.
 #[derive(Parser)]

@@ -37,7 +37,13 @@ impl Progress {
         if !std::io::stderr().is_terminal() {
             let (n_blocks, now) = (case.model.lattice.n_blocks() as u64, Instant::now());
             let end_star = case.schedule.end_star();
-            return Self::Lines(Lines { last_step, n_blocks, end_star, began: now, next: now + LINE_EVERY });
+            return Self::Lines(Lines {
+                last_step,
+                n_blocks,
+                end_star,
+                began: now,
+                next: now + LINE_EVERY,
+            });
         }
         let bar = ProgressBar::new(last_step);
         let template = "{bar:32} {percent:>3} %  {msg}  {per_sec}, {eta} left";
@@ -65,7 +71,10 @@ impl Observer for Progress {
             Self::Silent => {}
             Self::Bar(bar) => {
                 bar.set_position(now.step);
-                bar.set_message(format!("t* = {:.1}, mu* = {:.3}", now.time_star, now.point.mu_star));
+                bar.set_message(format!(
+                    "t* = {:.1}, mu* = {:.3}",
+                    now.time_star, now.point.mu_star
+                ));
             }
             Self::Lines(lines) => lines.show(now),
         }

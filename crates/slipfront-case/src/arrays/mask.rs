@@ -7,23 +7,14 @@ use std::path::Path;
 use png::Transformations;
 use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, InterlaceInfo, Reader};
 
+use slipfront::surface::MaskImage;
+
 use super::{ArrayError, open, read_error};
 
 /// More pixels than any lattice has blocks.
 const PIXELS_MAX: u64 = 1 << 28;
 /// Deflate cannot pack more than about 1030 bytes into one.
 const DEFLATE_MAX_RATIO: u64 = 1040;
-
-/// A black and white image.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct MaskImage {
-    /// Pixels per row.
-    pub width: usize,
-    /// Number of rows.
-    pub height: usize,
-    /// `width * height` pixels in row-major order; row 0 is the TOP row of the image, that is the largest y.
-    pub dark: Vec<bool>,
-}
 
 /// Reads a PNG image of any colour type and depth and tells its dark pixels.
 ///

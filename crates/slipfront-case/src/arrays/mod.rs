@@ -12,7 +12,7 @@ use std::fs::{File, Metadata};
 use std::io;
 use std::path::{Path, PathBuf};
 
-pub use mask::{MaskImage, read_mask_png, write_mask_png};
+pub use mask::{read_mask_png, write_mask_png};
 pub use npy::read_mask_npy;
 
 /// What is wrong with an array or image file: one sentence that ends with the remedy.

@@ -13,6 +13,7 @@ use std::io;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
+use slipfront::observe::Field;
 
 pub use read::read_fields;
 pub use write::write_fields;
@@ -59,6 +60,19 @@ impl FieldName {
             FieldName::VelocityX => "velocity_x",
             FieldName::VelocityY => "velocity_y",
             FieldName::Sliding => "sliding",
+        }
+    }
+
+    /// What is observed in a run to fill it.
+    pub fn observed(self) -> Field {
+        match self {
+            FieldName::ContactStressStar => Field::ContactStress,
+            FieldName::Traction => Field::Traction,
+            FieldName::DisplacementX => Field::DisplacementX,
+            FieldName::DisplacementY => Field::DisplacementY,
+            FieldName::VelocityX => Field::VelocityX,
+            FieldName::VelocityY => Field::VelocityY,
+            FieldName::Sliding => Field::Sliding,
         }
     }
 

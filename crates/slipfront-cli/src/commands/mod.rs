@@ -51,9 +51,9 @@ fn baseline(overrides: &[String]) -> Result<Case, CaseError> {
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut stdout = std::io::stdout().lock();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::running(anyhow::anyhow!("cannot write to standard output: {error}")))
-        }
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::running(
+            anyhow::anyhow!("cannot write to standard output: {error}"),
+        )),
         _ => Ok(()),
     }
 }

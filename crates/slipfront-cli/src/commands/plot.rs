@@ -35,7 +35,10 @@ impl Plot {
         };
         let out = self.out.unwrap_or(out);
         let failed = |error: std::io::Error| {
-            Failure::running(anyhow::anyhow!("cannot write pictures to {}: {error}", out.display()))
+            Failure::running(anyhow::anyhow!(
+                "cannot write pictures to {}: {error}",
+                out.display()
+            ))
         };
         std::fs::create_dir_all(&out).map_err(failed)?;
         let mut written = String::new();

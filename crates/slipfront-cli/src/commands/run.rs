@@ -90,7 +90,10 @@ fn files(case: &Case, out: &Path) -> String {
         }
     }
     if !case.inputs.is_empty() {
-        text += &format!("  {:<18} {}\n", "inputs/", "copies of the files that the case reads");
+        text += &format!(
+            "  {:<18} {}\n",
+            "inputs/", "copies of the files that the case reads"
+        );
     }
     text
 }

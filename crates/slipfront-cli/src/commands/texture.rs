@@ -28,7 +28,10 @@ impl Texture {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let case = self.case.load()?;
         if self.out.exists() && !self.force {
-            let sentence = format!("{} exists: choose another name, or replace it with --force", self.out.display());
+            let sentence = format!(
+                "{} exists: choose another name, or replace it with --force",
+                self.out.display()
+            );
             return Err(Failure::input(anyhow::anyhow!(sentence)));
         }
         let lattice = &case.model.lattice;

@@ -9,7 +9,9 @@ mod texture;
 
 pub use coefficients::{Coefficients, Distribution};
 pub use load::Load;
-pub use texture::{Cavity, Groove, MaskImage, Meshed, Orientation, Texture, cavity_lambda, cavity_percent, mesh};
+pub use texture::{
+    Cavity, Groove, MaskImage, Meshed, Orientation, Texture, cavity_lambda, cavity_percent, mesh,
+};
 
 use crate::{Lattice, SurfaceError};
 

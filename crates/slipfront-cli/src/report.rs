@@ -1,0 +1,250 @@
+//! What the commands print: the physics of a case as a tree, its cost, the summary of a run.
+
+use slipfront::lattice::dt_star_limit;
+use slipfront_case::case::Case;
+use slipfront_case::case_file::Law;
+use slipfront_case::summary::Summary;
+
+/// The resolved physics of a case.
+pub(crate) fn physics(case: &Case) -> String {
+    let (groups, scales, file) = (&case.groups, &case.scales, &case.file);
+    let lattice = &case.model.lattice;
+    let [edges_x, edges_y] = lattice.edges.map(|edges| format!("{edges:?}").to_lowercase());
+    let edges = if edges_x == edges_y {
+        edges_x
+    } else {
+        format!("{edges_x} in x, {edges_y} in y")
+    };
+    let law = match file.friction.law {
+        Law::Projection => "projection",
+        Law::Reversal => "reversal (for comparison)",
+        Law::Literal => "literal (for comparison)",
+    };
+    let (schedule, time) = (&case.schedule, scales.time());
+    let mut tree = vec![
+        (
+            "slider",
+            format!(
+                "{} x {} blocks of {}, {edges} edges",
+                lattice.nx,
+                lattice.ny,
+                si(scales.block_size, "m")
+            ),
+        ),
+        (
+            "material",
+            format!(
+                "E = {}, rho = {} kg/m^3, Omega* = {}",
+                si(scales.young_modulus, "Pa"),
+                plain(scales.density),
+                plain(groups.omega_star)
+            ),
+        ),
+        (
+            "load",
+            format!("P = {}, strain {:.2e}", si(scales.pressure, "Pa"), groups.epsilon),
+        ),
+        (
+            "drive",
+            format!(
+                "V* = {} ({}) at {} degrees",
+                plain(groups.v_star),
+                si(groups.v_star * scales.speed(), "m/s"),
+                file.drive.direction
+            ),
+        ),
+        ("friction", friction(case, law)),
+        ("texture", texture(case)),
+        (
+            "time",
+            format!(
+                "to t* = {} ({}) in {} steps of dt* = {}",
+                plain(schedule.end_star()),
+                si(schedule.end_star() * time, "s"),
+                schedule.last_step,
+                plain(schedule.dt_star)
+            ),
+        ),
+    ];
+    let last = tree.pop();
+    let mut text = format!("{}\n", case.name);
+    for (name, what) in tree {
+        text += &format!("\u{251c}\u{2500} {name:<9} {what}\n");
+    }
+    if let Some((name, what)) = last {
+        text += &format!("\u{2514}\u{2500} {name:<9} {what}\n");
+    }
+    text
+}
+
+fn friction(case: &Case, law: &str) -> String {
+    let (groups, friction) = (&case.groups, &case.file.friction);
+    let spread = |field: &Option<String>, sigma: f64| match field {
+        Some(file) => format!("from {file}"),
+        None => format!("sigma* = {}", plain(sigma)),
+    };
+    format!(
+        "{law}; mu_s = {} ({}), R* = {} ({}), seed {}",
+        plain(friction.mu_static),
+        spread(&friction.mu_static_field, groups.sigma_static_star),
+        plain(groups.r_star),
+        spread(&friction.mu_kinetic_field, groups.sigma_kinetic_star),
+        friction.seed
+    )
+}
+
+/// The texture as asked and as meshed, in a line.
+pub(crate) fn texture(case: &Case) -> String {
+    if case.file.texture.is_empty() {
+        return "none".to_owned();
+    }
+    let asked = case
+        .texture
+        .asked_percent
+        .map_or(String::new(), |asked| format!(", {} % asked", plain(asked)));
+    format!("{} % of the blocks{asked}", plain(case.texture.meshed_percent))
+}
+
+/// What `check` adds to the physics: the expected onset, the cost, the warnings.
+pub(crate) fn cost(case: &Case, seconds: f64) -> String {
+    let (lattice, schedule) = (&case.model.lattice, &case.schedule);
+    let v_star = case.groups.v_star;
+    let onset = |star: f64| format!("t* = {} ({})", plain(star), si(star * case.scales.time(), "s"));
+    let mut text = String::new();
+    if case.file.texture.is_empty() {
+        text += &format!(
+            "first slip        {}, exactly\n",
+            onset(case.model.first_slip_estimate())
+        );
+    }
+    text += &format!("onset expected    about {} (Eq. 12)\n", onset(2.5 / v_star));
+    text += &format!("steady level      mu* = {}\n", plain(case.model.steady_level()));
+    text += &format!(
+        "scales            time {}, displacement {}, stress {}\n",
+        si(case.scales.time(), "s"),
+        si(case.scales.displacement(), "m"),
+        si(case.scales.stress(), "Pa")
+    );
+    text += &format!(
+        "stability         dt* = {} of at most {:.4}\n",
+        plain(schedule.dt_star),
+        dt_star_limit()
+    );
+    text += &format!(
+        "cost              {:.3e} block-steps, about {} on this machine; fields {}\n",
+        case.block_steps(),
+        duration(seconds),
+        bytes(case.output.field_bytes(lattice, schedule.last_step))
+    );
+    text + &warnings(&case.warnings())
+}
+
+/// The summary of a run, to be read at a glance.
+pub(crate) fn summary(case: &Case, summary: &Summary) -> String {
+    let time = case.scales.time();
+    let at = |star: f64| format!("t* = {} ({})", plain(star), si(star * time, "s"));
+    let mut text = String::from("\n");
+    let mut line = |name: &str, value: String| text += &format!("{name:<18}{value}\n");
+    line(
+        "static friction",
+        format!(
+            "mu_s* = {:.4}   mu_s = {:.4}   at {}",
+            summary.static_friction_star,
+            summary.static_friction,
+            at(summary.onset_time_star)
+        ),
+    );
+    if let Some(first) = summary.first_slip_time_star {
+        line("first slip", format!("at {}", at(first)));
+    }
+    let kinetic = summary
+        .kinetic_friction_star
+        .zip(summary.kinetic_friction)
+        .zip(summary.kinetic_window_star);
+    match kinetic {
+        Some(((star, mu), [from, to])) => {
+            let uncertainty = |scale: f64| match summary.kinetic_friction_star_uncertainty {
+                Some(error) => format!(" \u{b1} {:.1e}", error * scale),
+                None => String::new(),
+            };
+            let scale = case.scales.mu_static_mean;
+            line(
+                "kinetic friction",
+                format!(
+                    "mu_k* = {star:.4}{}   mu_k = {mu:.4}{}   over t* = {} to {}",
+                    uncertainty(1.0),
+                    uncertainty(scale),
+                    plain(from),
+                    plain(to)
+                ),
+            );
+        }
+        None => line(
+            "kinetic friction",
+            "none: the run has no kinetic window".to_owned(),
+        ),
+    }
+    line(
+        "sliding blocks",
+        match summary.sliding_percent_kinetic {
+            Some(kinetic) => format!(
+                "N* = {:.1} % at most, {kinetic:.1} % in that window",
+                summary.sliding_percent_max
+            ),
+            None => format!("N* = {:.1} % at most", summary.sliding_percent_max),
+        },
+    );
+    line(
+        "energy",
+        format!(
+            "{} put in, the ledger closes to {:.1e}",
+            si(summary.work_j, "J"),
+            summary.energy_error.abs()
+        ),
+    );
+    text + &warnings(&summary.warnings)
+}
+
+fn warnings(warnings: &[String]) -> String {
+    warnings
+        .iter()
+        .map(|warning| format!("note: {warning}\n"))
+        .collect()
+}
+
+/// A number to four digits, without trailing zeros.
+fn plain(value: f64) -> String {
+    if value != 0.0 && !(1e-3..1e6).contains(&value.abs()) {
+        return format!("{value:.3e}");
+    }
+    let digits = (3 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 6) as usize;
+    let text = format!("{value:.digits$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// A quantity with the SI prefix that suits it.
+fn si(value: f64, unit: &str) -> String {
+    const PREFIXES: [&str; 13] = ["a", "f", "p", "n", "u", "m", "", "k", "M", "G", "T", "P", "E"];
+    let magnitude = value.abs();
+    if !magnitude.is_normal() {
+        return format!("{value} {unit}");
+    }
+    let step = (magnitude.log10() / 3.0 + 1e-9).floor().clamp(-6.0, 6.0);
+    format!(
+        "{} {}{unit}",
+        plain(value / 1000f64.powf(step)),
+        PREFIXES[(step + 6.0) as usize]
+    )
+}
+
+fn duration(seconds: f64) -> String {
+    indicatif::HumanDuration(std::time::Duration::from_secs_f64(seconds.clamp(0.0, 1e15))).to_string()
+}
+
+fn bytes(bytes: f64) -> String {
+    indicatif::HumanBytes(bytes as u64).to_string()
+}
