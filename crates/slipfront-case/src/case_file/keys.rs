@@ -94,8 +94,10 @@ pub(super) fn refuse_both(root: &DeTable<'_>, source: &Source) -> Result<(), Cas
             if let [first, second] = spans.as_slice() {
                 let later = if first.start > second.start { first } else { second };
                 let [first, second] = pair;
-                let sentence =
-                    format!("`{first}` and `{second}` in [{table}] set the same thing: keep one of them");
+                let sentence = format!(
+                    "`{first}` and `{second}` in {} set the same thing: keep one of them",
+                    header(table)
+                );
                 return Err(source.error_at(later.clone(), sentence));
             }
         }

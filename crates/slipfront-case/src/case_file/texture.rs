@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::values::{Pair, pair, word};
-use crate::quantity::Length;
+use crate::quantity::{Length, QuantityError};
 
 /// One `[[texture]]` of the file; a block is textured when its centre lies inside any of them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -253,7 +253,8 @@ impl From<Groove> for GrooveKeys {
 )]
 enum CenterKey {
     Word(String),
-    At(Vec<String>),
+    /// Texts, so that a length that cannot be read keeps its own message.
+    At(Pair<String>),
 }
 
 impl TryFrom<CenterKey> for Center {
@@ -265,10 +266,9 @@ impl TryFrom<CenterKey> for Center {
             CenterKey::Word(word) => Err(format!(
                 "{word:?} is given, \"middle\" or a pair of lengths is wanted"
             )),
-            CenterKey::At(lengths) => {
-                let lengths: Result<Vec<Length>, _> = lengths.iter().map(|length| length.parse()).collect();
-                let Pair(center) = Pair::try_from(lengths.map_err(|error| error.to_string())?)?;
-                Ok(Self::At(center))
+            CenterKey::At(Pair([x, y])) => {
+                let length = |text: String| text.parse().map_err(|error: QuantityError| error.to_string());
+                Ok(Self::At([length(x)?, length(y)?]))
             }
         }
     }
@@ -278,7 +278,7 @@ impl From<Center> for CenterKey {
     fn from(center: Center) -> Self {
         match center {
             Center::Middle => Self::Word("middle".to_owned()),
-            Center::At(center) => Self::At(center.iter().map(Length::to_string).collect()),
+            Center::At(center) => Self::At(Pair(center.map(|length| length.to_string()))),
         }
     }
 }
