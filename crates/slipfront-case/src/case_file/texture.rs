@@ -23,13 +23,13 @@ pub enum Texture {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "CavityKeys", into = "CavityKeys")]
 pub struct Cavity {
-    /// Number of lobes (s), 1 to 64.
+    /// Kind of outline (s), 1 to 64: an ellipse for 1, else a polygon of s + 1 curved edges.
     pub s: u32,
-    /// How far the outline is from a circle (w): |w| < 1 for s = 1, |w| <= 1/s otherwise.
+    /// How far the outline is from a circle (w): |w| < 1 for s = 1, |w| <= 1/s, where vertices are sharp, otherwise.
     pub w: f64,
     /// The size: `coverage` or `lambda`.
     pub size: CavitySize,
-    /// Whether x and y are swapped, so that a cavity of s = 1 and w > 0 is elongated across the x axis.
+    /// Whether x and y of the outline are swapped: an ellipse of w > 0 is then elongated along y, not x.
     pub across: bool,
     /// The centre, or the centre of the grid.
     pub center: Center,
@@ -44,7 +44,7 @@ pub struct Cavity {
 pub enum CavitySize {
     /// `coverage`: percent of the whole area (Eq. 18), all cavities of the grid together; more than 0, less than 100.
     Coverage(f64),
-    /// `lambda`: the mean radius of Eq. 17, m.
+    /// `lambda`: the length of Eq. 17, the radius of the circle that w = 0 gives, m.
     Lambda(Length),
 }
 
