@@ -152,8 +152,9 @@ impl CaseFile {
     /// Writes the case with every default filled in, in the order of the design; reading it back gives an equal case.
     ///
     /// # Errors
-    /// [`CaseError::Unwritable`] for a seed of 2^63 or more, which TOML cannot hold and no parsed case has.
+    /// Those of [`check`](Self::check) for a case that was changed in code: what is written can be read.
     pub fn to_toml(&self) -> Result<String, CaseError> {
+        self.check()?;
         Ok(toml::to_string(self)?)
     }
 }
