@@ -78,7 +78,7 @@ pub fn read_mask_png(path: &Path, threshold: f64) -> Result<MaskImage, ArrayErro
 /// The decoder takes a palette of any length and panics on one that is not made of 1 to 256 whole colours.
 fn check_palette(path: &Path, palette: Option<&[u8]>) -> Result<(), ArrayError> {
     let bytes = palette.map_or(0, <[u8]>::len);
-    if bytes % 3 == 0 && (3..=768).contains(&bytes) {
+    if bytes.is_multiple_of(3) && (3..=768).contains(&bytes) {
         return Ok(());
     }
     Err(broken(

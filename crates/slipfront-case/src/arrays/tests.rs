@@ -344,24 +344,34 @@ fn png_interlaced() {
     }
 }
 
-/// The header of a PNG image with the size replaced and its checksum made good.
+/// A PNG image that claims another size than it has.
 fn png_claiming(width: u32, height: u32) -> Vec<u8> {
     let mut bytes = png_bytes(ColorType::Rgba, BitDepth::Sixteen, &[0; 32], None);
     bytes[16..20].copy_from_slice(&width.to_be_bytes());
     bytes[20..24].copy_from_slice(&height.to_be_bytes());
-    let mut crc = u32::MAX;
-    for byte in &bytes[12..29] {
-        crc ^= u32::from(*byte);
-        for _ in 0..8 {
-            crc = if crc & 1 == 0 {
-                crc >> 1
-            } else {
-                crc >> 1 ^ 0xedb8_8320
-            };
-        }
-    }
-    bytes[29..33].copy_from_slice(&(!crc).to_be_bytes());
+    repair_checksums(&mut bytes);
     bytes
+}
+
+/// Makes the checksum of every chunk good, so that the decoder looks at damaged chunks too.
+fn repair_checksums(png: &mut [u8]) {
+    let mut start = 8;
+    while let Some(length) = png.get(start..start + 4) {
+        let length = u32::from_be_bytes(length.try_into().unwrap()) as usize;
+        let end = start + 8 + length;
+        if end + 4 > png.len() {
+            return;
+        }
+        let mut crc = u32::MAX;
+        for byte in &png[start + 4..end] {
+            crc ^= u32::from(*byte);
+            for _ in 0..8 {
+                crc = (crc >> 1) ^ (0xedb8_8320 * (crc & 1));
+            }
+        }
+        png[end..end + 4].copy_from_slice(&(!crc).to_be_bytes());
+        start = end + 4;
+    }
 }
 
 #[rstest]
@@ -376,6 +386,23 @@ fn png_claiming(width: u32, height: u32) -> Vec<u8> {
 #[case(2, 3, "does not have enough data")]
 fn png_that_claims_too_much(#[case] width: u32, #[case] height: u32, #[case] wanted: &str) {
     let (_folder, path) = file("mask.png", &png_claiming(width, height));
+    let text = message(read_mask_png(&path, 0.5));
+    assert!(text.contains(wanted), "{text}");
+}
+
+#[rstest]
+#[case(&[1, 2], "PLTE")]
+#[case(&[0; 4], "its palette has 4 bytes where 3 for each of 1 to 256 colours are wanted")]
+#[case(&[0; 3 * 257], "PLTE")]
+fn png_with_a_bad_palette(#[case] palette: &[u8], #[case] wanted: &str) {
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, 1, 1);
+    encoder.set_color(ColorType::Indexed);
+    encoder.set_palette(palette);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&[0]).unwrap();
+    writer.finish().unwrap();
+    let (_folder, path) = file("mask.png", &bytes);
     let text = message(read_mask_png(&path, 0.5));
     assert!(text.contains(wanted), "{text}");
 }
@@ -443,6 +470,24 @@ fn damaged_files_are_refused_or_read() {
             "e.png",
             png_bytes(ColorType::Indexed, BitDepth::Eight, &[2, 1, 1, 0], Some(&[9, 9])),
         ),
+        (
+            "f.png",
+            png_bytes(
+                ColorType::Grayscale,
+                BitDepth::Two,
+                &[0b1101_0000, 0b0111_0000],
+                Some(&[0, 3]),
+            ),
+        ),
+        (
+            "g.png",
+            png_bytes(
+                ColorType::Rgb,
+                BitDepth::Eight,
+                &[7; 12],
+                Some(&[0, 7, 0, 7, 0, 7]),
+            ),
+        ),
     ];
     // A linear congruential generator (Knuth's constants): the same damage on every run.
     let mut state: u64 = 1;
@@ -462,6 +507,9 @@ fn damaged_files_are_refused_or_read() {
             }
             if below(4) == 0 {
                 bytes.truncate(below(whole.len()));
+            }
+            if name.ends_with("png") && below(4) != 0 {
+                repair_checksums(&mut bytes);
             }
             fs::write(&path, &bytes).unwrap();
             if name.ends_with("png") {
