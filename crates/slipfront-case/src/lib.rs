@@ -1,3 +1,4 @@
 //! Case files in, results out.
 
 pub mod arrays;
+pub mod fields;

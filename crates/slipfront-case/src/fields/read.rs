@@ -1,0 +1,122 @@
+//! Reading what `write_fields` has written.
+
+use std::path::Path;
+
+use super::classic::{Classic, Fault};
+use super::names::{
+    BLOCK_SIZE, BLOCKS, FIRST_SLIP, LABEL, LABEL_LENGTH, MU_KINETIC, MU_STATIC, STEP, STRIDE, TEXTURED, TIME,
+    TIME_STAR, TIME_UNIT, X, Y,
+};
+use super::{FieldFrame, FieldName, FieldsData, FieldsError};
+
+/// Reads a `fields.nc` that [`write_fields`](super::write_fields) has written.
+///
+/// Variables that slipfront does not know are skipped.
+///
+/// # Errors
+///
+/// [`FieldsError`] if the file is missing, cut short, damaged, or not a fields file.
+pub fn read_fields(path: &Path) -> Result<FieldsData, FieldsError> {
+    read(path).map_err(|fault| match fault {
+        Fault::Io(source) => FieldsError::Read {
+            path: path.to_owned(),
+            source,
+        },
+        Fault::Broken(detail) => FieldsError::Broken {
+            path: path.to_owned(),
+            detail,
+        },
+    })
+}
+
+fn read(path: &Path) -> Result<FieldsData, Fault> {
+    let mut file = Classic::open(path)?;
+    let [nx, ny] = counts(&file, BLOCKS)?;
+    let [stride] = counts(&file, STRIDE)?;
+    let [block_size] = numbers(&file, BLOCK_SIZE)?;
+    let [time_unit_s] = numbers(&file, TIME_UNIT)?;
+    for (name, blocks) in [(X, nx), (Y, ny)] {
+        let (found, wanted) = (file.dimension(name)?, blocks.div_ceil(stride));
+        if found != wanted {
+            return Err(Fault::Broken(format!(
+                "`{name}` has the length {found} where {wanted} is wanted"
+            )));
+        }
+    }
+    if file.dimension(TIME)? != 0 {
+        return Err(Fault::Broken(format!("`{TIME}` is not the record dimension")));
+    }
+
+    let names: Vec<FieldName> = file
+        .variables_over(&[TIME, Y, X])
+        .filter_map(FieldName::from_name)
+        .collect();
+    let frames = (0..file.records())
+        .map(|record| read_frame(&mut file, &names, record))
+        .collect::<Result<_, _>>()?;
+    Ok(FieldsData {
+        nx,
+        ny,
+        stride,
+        block_size,
+        time_unit_s,
+        names,
+        textured: file
+            .values(TEXTURED, &[Y, X], 0)?
+            .iter()
+            .map(|value| *value != 0.0)
+            .collect(),
+        mu_static: file.values(MU_STATIC, &[Y, X], 0)?,
+        mu_kinetic: file.values(MU_KINETIC, &[Y, X], 0)?,
+        first_slip_time_star: file.values(FIRST_SLIP, &[Y, X], 0)?,
+        frames,
+    })
+}
+
+fn read_frame(file: &mut Classic, names: &[FieldName], record: usize) -> Result<FieldFrame, Fault> {
+    let time_star = only(TIME_STAR, &file.values(TIME_STAR, &[TIME], record)?)?;
+    let step = only(STEP, &file.values(STEP, &[TIME], record)?)? as u64;
+    let label = file.values(LABEL, &[TIME, LABEL_LENGTH], record)?;
+    let label: Vec<u8> = label
+        .iter()
+        .map(|byte| *byte as u8)
+        .take_while(|byte| *byte != 0)
+        .collect();
+    let mut values = Vec::with_capacity(names.len());
+    for name in names {
+        let field = file.values(name.as_str(), &[TIME, Y, X], record)?;
+        values.push(field.iter().map(|value| *value as f32).collect());
+    }
+    Ok(FieldFrame {
+        time_star,
+        label: String::from_utf8_lossy(&label).into_owned(),
+        step,
+        values,
+    })
+}
+
+/// A global attribute of N positive numbers.
+fn numbers<const N: usize>(file: &Classic, name: &str) -> Result<[f64; N], Fault> {
+    match <[f64; N]>::try_from(file.attribute(name)?) {
+        Ok(values) if values.iter().all(|value| value.is_finite() && *value > 0.0) => Ok(values),
+        _ => Err(Fault::Broken(format!(
+            "the attribute `{name}` does not hold positive numbers, {N} in all"
+        ))),
+    }
+}
+
+/// The same for whole numbers; they fit, because the file stores them with 32 bits.
+fn counts<const N: usize>(file: &Classic, name: &str) -> Result<[usize; N], Fault> {
+    let values = numbers::<N>(file, name)?.map(|value| value as usize);
+    if values.contains(&0) {
+        return Err(Fault::Broken(format!("the attribute `{name}` is below 1")));
+    }
+    Ok(values)
+}
+
+fn only(name: &str, values: &[f64]) -> Result<f64, Fault> {
+    values
+        .first()
+        .copied()
+        .ok_or_else(|| Fault::Broken(format!("`{name}` is empty")))
+}

@@ -1,0 +1,434 @@
+use std::fs;
+use std::io::{Cursor, Seek, SeekFrom, Write};
+use std::path::PathBuf;
+
+use tempfile::TempDir;
+
+use super::write::write_to;
+use super::*;
+
+const NX: usize = 5;
+const NY: usize = 3;
+
+/// The arrays of a lattice of 5 x 3 blocks that is told apart from its mirror images.
+struct Lattice {
+    textured: Vec<bool>,
+    mu_static: Vec<f64>,
+    mu_kinetic: Vec<f64>,
+    first_slip: Vec<f64>,
+}
+
+fn lattice() -> Lattice {
+    let blocks = 0..NX * NY;
+    let textured = |block: usize| block == 1 || block == 7;
+    Lattice {
+        textured: blocks.clone().map(textured).collect(),
+        mu_static: blocks
+            .clone()
+            .map(|block| {
+                if textured(block) {
+                    0.0
+                } else {
+                    1.0 + 0.1 * block as f64
+                }
+            })
+            .collect(),
+        mu_kinetic: blocks.clone().map(|block| 0.5 + 0.01 * block as f64).collect(),
+        first_slip: blocks
+            .map(|block| {
+                if block % 4 == 0 {
+                    -f64::NAN
+                } else {
+                    80.0 + block as f64 / 3.0
+                }
+            })
+            .collect(),
+    }
+}
+
+impl Lattice {
+    fn file<'a>(&'a self, stride: usize, names: &'a [FieldName], frames: &'a [FieldFrame]) -> FieldsFile<'a> {
+        let statics = StaticFields {
+            textured: &self.textured,
+            mu_static: &self.mu_static,
+            mu_kinetic: &self.mu_kinetic,
+            first_slip_time_star: &self.first_slip,
+        };
+        let (block_size, time_unit_s) = (1e-6, 3.162e-10);
+        FieldsFile {
+            nx: NX,
+            ny: NY,
+            stride,
+            block_size,
+            time_unit_s,
+            names,
+            statics,
+            frames,
+        }
+    }
+}
+
+fn frames(names: &[FieldName], stride: usize) -> Vec<FieldFrame> {
+    let labels = ["A", "", "CD"];
+    let field = |seed: usize| {
+        (0..NX * NY)
+            .map(|block| (seed * 100 + block) as f32 / 7.0)
+            .collect::<Vec<f32>>()
+    };
+    (0..3)
+        .map(|frame| FieldFrame {
+            time_star: 16.7 * (frame + 1) as f64,
+            label: labels[frame].to_owned(),
+            step: 167 * (frame as u64 + 1),
+            values: (0..names.len())
+                .map(|name| thin(&field(10 * frame + name), NX, stride))
+                .collect(),
+        })
+        .collect()
+}
+
+fn folder() -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fields.nc");
+    (folder, path)
+}
+
+/// NaN equals NaN here.
+fn same(left: &[f64], right: &[f64]) -> bool {
+    left.len() == right.len()
+        && left
+            .iter()
+            .zip(right)
+            .all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
+}
+
+#[test]
+fn names_are_those_of_the_case_file() {
+    for name in FieldName::ALL {
+        assert_eq!(
+            serde_json::to_string(&name).unwrap(),
+            format!("\"{}\"", name.as_str())
+        );
+        assert_eq!(FieldName::from_name(name.as_str()), Some(name));
+        assert!(!name.long_name().is_empty() && !name.unit().is_empty());
+    }
+    assert_eq!(FieldName::from_name("contact_stress"), None);
+}
+
+#[test]
+fn what_is_written_is_read() {
+    let lattice = lattice();
+    for stride in [1, 2, 3, 9] {
+        let frames = frames(&FieldName::ALL, stride);
+        let file = lattice.file(stride, &FieldName::ALL, &frames);
+        let (_folder, path) = folder();
+        write_fields(&path, &file).unwrap();
+        let data = read_fields(&path).unwrap();
+        assert_eq!((data.nx, data.ny, data.stride), (NX, NY, stride));
+        assert_eq!((data.block_size, data.time_unit_s), (1e-6, 3.162e-10));
+        assert_eq!(data.columns() * data.rows(), data.mu_static.len());
+        assert_eq!(data.names, FieldName::ALL);
+        assert_eq!(data.textured, thin(&lattice.textured, NX, stride));
+        assert_eq!(data.mu_static, thin(&lattice.mu_static, NX, stride));
+        assert_eq!(data.mu_kinetic, thin(&lattice.mu_kinetic, NX, stride));
+        assert!(same(
+            &data.first_slip_time_star,
+            &thin(&lattice.first_slip, NX, stride)
+        ));
+        assert_eq!(data.frames, frames);
+    }
+}
+
+#[test]
+fn thinning_starts_at_block_0() {
+    let blocks: Vec<usize> = (0..15).collect();
+    assert_eq!(thin(&blocks, 5, 1), blocks);
+    assert_eq!(thin(&blocks, 5, 2), [0, 2, 4, 10, 12, 14]);
+    assert_eq!(thin(&blocks, 5, 3), [0, 3]);
+    assert_eq!(thin(&blocks, 5, 100), [0]);
+    assert!(thin::<f64>(&[], 0, 0).is_empty());
+}
+
+#[test]
+fn a_run_without_instants_or_fields_still_has_its_surface() {
+    let lattice = lattice();
+    let (_folder, path) = folder();
+    write_fields(&path, &lattice.file(1, &FieldName::ALL, &[])).unwrap();
+    let data = read_fields(&path).unwrap();
+    assert!(data.frames.is_empty());
+    assert_eq!(data.names, FieldName::ALL);
+    assert_eq!(data.mu_static, lattice.mu_static);
+
+    let frames = frames(&[], 1);
+    write_fields(&path, &lattice.file(1, &[], &frames)).unwrap();
+    assert_eq!(read_fields(&path).unwrap().frames, frames);
+}
+
+#[test]
+fn equal_input_gives_equal_bytes() {
+    let lattice = lattice();
+    let mut frames = frames(&[FieldName::Traction], 1);
+    let (_folder, path) = folder();
+    let mut bytes_with = |nan: f32| {
+        frames[1].values[0][7] = nan;
+        write_fields(&path, &lattice.file(1, &[FieldName::Traction], &frames)).unwrap();
+        fs::read(&path).unwrap()
+    };
+    let first = bytes_with(f32::NAN);
+    assert_eq!(first, bytes_with(f32::NAN));
+    assert_eq!(
+        first,
+        bytes_with(f32::from_bits(0xffc0_1234)),
+        "one NaN is like another"
+    );
+    assert_ne!(first, bytes_with(0.0));
+}
+
+/// The beginning of the file, as the format document has it.
+#[test]
+fn the_header_is_netcdf_3() {
+    let lattice = lattice();
+    let (_folder, path) = folder();
+    write_fields(
+        &path,
+        &lattice.file(1, &FieldName::ALL, &frames(&FieldName::ALL, 1)),
+    )
+    .unwrap();
+    let bytes = fs::read(&path).unwrap();
+    let dimensions =
+        b"CDF\x02\0\0\0\x03\0\0\0\x0a\0\0\0\x04\0\0\0\x04time\0\0\0\0\0\0\0\x01y\0\0\0\0\0\0\x03";
+    assert_eq!(&bytes[..dimensions.len()], dimensions);
+    assert_eq!(bytes.len() % 4, 0);
+}
+
+#[test]
+fn arrays_of_another_length_are_refused() {
+    let lattice = lattice();
+    let names = [FieldName::Traction, FieldName::Sliding];
+    let good = frames(&names, 1);
+    let (_folder, path) = folder();
+    let refused = |file: &FieldsFile, wanted: &str| {
+        let text = write_fields(&path, file).unwrap_err().to_string();
+        assert!(text.contains(wanted), "{text}");
+        assert!(!path.exists());
+    };
+    let file = lattice.file(1, &names, &good);
+    refused(&FieldsFile { nx: 0, ..file }, "x has 0 values where 1 are wanted");
+    refused(&FieldsFile { stride: 0, ..file }, "`output.stride` has 0 values");
+    refused(
+        &FieldsFile { nx: 6, ..file },
+        "textured has 15 values where 18 are wanted",
+    );
+    refused(
+        &FieldsFile { stride: 2, ..file },
+        "traction has 15 values where 6 are wanted",
+    );
+    refused(
+        &FieldsFile {
+            names: &names[..1],
+            ..file
+        },
+        "a frame has 2 values where 1 are wanted",
+    );
+    let statics = StaticFields {
+        mu_kinetic: &lattice.mu_kinetic[1..],
+        ..file.statics
+    };
+    refused(
+        &FieldsFile { statics, ..file },
+        "mu_kinetic has 14 values where 15 are wanted",
+    );
+    let twice = [FieldName::Sliding, FieldName::Sliding];
+    refused(
+        &FieldsFile {
+            names: &twice,
+            ..file
+        },
+        "VariableAlreadyExists(\"sliding\")",
+    );
+}
+
+#[test]
+fn fields_beyond_the_format_are_refused_with_the_stride_to_set() {
+    let text = super::write::check_size(&PathBuf::from("fields.nc"), 40_000, 20_000, 1)
+        .unwrap_err()
+        .to_string();
+    assert!(text.contains("one field of 40000 x 20000 values"), "{text}");
+    assert!(text.ends_with("set `output.stride` to 2 or more"), "{text}");
+    assert!(super::write::check_size(&PathBuf::from("fields.nc"), 40_000, 20_000, 2).is_ok());
+    assert!(super::write::check_size(&PathBuf::from("fields.nc"), 16_384, 16_383, 1).is_ok());
+    assert!(super::write::check_size(&PathBuf::from("fields.nc"), 16_384, 16_384, 1).is_err());
+}
+
+/// An output that is full after some bytes, or that fails when it is flushed.
+struct Full {
+    output: Cursor<Vec<u8>>,
+    room: u64,
+    flushes: bool,
+}
+
+impl Write for Full {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        if self.output.position() + bytes.len() as u64 > self.room {
+            return Err(std::io::Error::other("no space left"));
+        }
+        self.output.write(bytes)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        if self.flushes {
+            Ok(())
+        } else {
+            Err(std::io::Error::other("no flush"))
+        }
+    }
+}
+
+impl Seek for Full {
+    fn seek(&mut self, position: SeekFrom) -> std::io::Result<u64> {
+        self.output.seek(position)
+    }
+}
+
+#[test]
+fn a_full_disk_is_reported_wherever_it_happens() {
+    let lattice = lattice();
+    let frames = frames(&FieldName::ALL, 1);
+    let file = lattice.file(1, &FieldName::ALL, &frames);
+    let whole = write_to(Cursor::new(Vec::new()), &file).unwrap().into_inner();
+    for room in 0..whole.len() as u64 {
+        let full = Full {
+            output: Cursor::new(Vec::new()),
+            room,
+            flushes: true,
+        };
+        let error = write_to(full, &file).map(|_| room).unwrap_err();
+        assert_eq!(error.to_string(), "no space left", "with room for {room} bytes");
+    }
+    let room = whole.len() as u64;
+    let enough = Full {
+        output: Cursor::new(Vec::new()),
+        room,
+        flushes: true,
+    };
+    assert_eq!(
+        write_to(enough, &file)
+            .map(|full| full.output.into_inner())
+            .unwrap(),
+        whole
+    );
+    let stuck = Full {
+        output: Cursor::new(Vec::new()),
+        room,
+        flushes: false,
+    };
+    assert_eq!(
+        write_to(stuck, &file).map(|_| ()).unwrap_err().to_string(),
+        "no flush"
+    );
+}
+
+#[test]
+fn folders_that_take_no_file_are_reported() {
+    let lattice = lattice();
+    let (folder, _) = folder();
+    let nowhere = folder.path().join("missing").join("fields.nc");
+    let text = write_fields(&nowhere, &lattice.file(1, &[], &[]))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        text.contains("missing/fields.nc`: ") && text.contains("check that the folder exists"),
+        "{text}"
+    );
+
+    let occupied = folder.path().join("occupied");
+    fs::create_dir(&occupied).unwrap();
+    fs::write(occupied.join("file"), "").unwrap();
+    assert!(matches!(
+        write_fields(&occupied, &lattice.file(1, &[], &[])),
+        Err(FieldsError::Write { .. })
+    ));
+    assert_eq!(
+        fs::read_dir(folder.path()).unwrap().count(),
+        1,
+        "no temporary file is left"
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn the_file_is_as_readable_as_any_other_and_replaces_an_older_one() {
+    use std::os::unix::fs::PermissionsExt;
+    let lattice = lattice();
+    let (folder, path) = folder();
+    fs::write(&path, "older").unwrap();
+    let other = folder.path().join("other");
+    fs::write(&other, "").unwrap();
+    write_fields(&path, &lattice.file(1, &[], &[])).unwrap();
+    let mode = |path| fs::metadata(path).unwrap().permissions().mode();
+    assert_eq!(mode(&path), mode(&other));
+    assert!(read_fields(&path).is_ok());
+}
+
+#[test]
+fn files_of_another_kind_are_refused() {
+    let lattice = lattice();
+    let (folder, path) = folder();
+    let message = |path: &PathBuf| read_fields(path).unwrap_err().to_string();
+    assert!(message(&path).starts_with("cannot read `"));
+    assert!(message(&folder.path().to_owned()).contains("is not a regular file"));
+
+    fs::write(&path, b"\x89HDF\r\n\x1a\n and so on").unwrap();
+    assert!(message(&path).contains("does not begin like NetCDF-3"));
+    fs::write(
+        &path,
+        b"CDF\x02\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0",
+    )
+    .unwrap();
+    assert!(
+        message(&path).contains("it has no attribute `blocks`"),
+        "{}",
+        message(&path)
+    );
+
+    write_fields(
+        &path,
+        &lattice.file(1, &FieldName::ALL, &frames(&FieldName::ALL, 1)),
+    )
+    .unwrap();
+    let whole = fs::read(&path).unwrap();
+    for length in 0..whole.len() {
+        fs::write(&path, &whole[..length]).unwrap();
+        assert!(
+            matches!(read_fields(&path), Err(FieldsError::Broken { .. })),
+            "cut after {length} bytes"
+        );
+    }
+}
+
+/// Whatever happens to the bytes, the reader answers without a panic and without reserving what is not there.
+#[test]
+fn damaged_files_are_refused_or_read() {
+    let lattice = lattice();
+    let (_folder, path) = folder();
+    let names = [FieldName::Traction, FieldName::Sliding];
+    write_fields(&path, &lattice.file(2, &names, &frames(&names, 2))).unwrap();
+    let whole = fs::read(&path).unwrap();
+    // A linear congruential generator (Knuth's constants): the same damage on every run.
+    let mut state: u64 = 1;
+    let mut below = |bound: usize| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % bound
+    };
+    for _ in 0..2000 {
+        let mut bytes = whole.clone();
+        for _ in 0..=below(3) {
+            let at = below(bytes.len());
+            bytes[at] = [0, 1, 0x0c, 0x7f, 0x80, 0xff][below(6)];
+        }
+        fs::write(&path, &bytes).unwrap();
+        let _ = read_fields(&path);
+    }
+}
