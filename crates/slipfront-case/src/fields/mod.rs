@@ -152,7 +152,7 @@ pub struct FieldsData {
     pub block_size: f64,
     /// Duration of one unit of t*, in s.
     pub time_unit_s: f64,
-    /// The fields of every frame, in the order of [`FieldFrame::values`].
+    /// The fields of every frame, in the order of [`FieldFrame::values`]; none if there are no frames.
     pub names: Vec<FieldName>,
     /// Whether the block is texture.
     pub textured: Vec<bool>,
