@@ -81,7 +81,7 @@ impl FieldName {
     pub fn long_name(self) -> &'static str {
         match self {
             FieldName::ContactStressStar => "contact stress over its maximum",
-            FieldName::Traction => "friction force over block area, NaN in cavities",
+            FieldName::Traction => "friction force over block area",
             FieldName::DisplacementX => "displacement along x from rest",
             FieldName::DisplacementY => "displacement along y from rest",
             FieldName::VelocityX => "velocity along x",

@@ -248,7 +248,8 @@ fn define_statics(set: &mut DataSet, file: &FieldsFile) -> Result<(), InvalidDat
     set.add_var_f64(MU_KINETIC, &[Y, X])?;
     describe(set, MU_KINETIC, "kinetic friction coefficient", "1")?;
     set.add_var_f64(FIRST_SLIP, &[Y, X])?;
-    describe(set, FIRST_SLIP, "time t* of the first slip, NaN = never", "1")
+    describe(set, FIRST_SLIP, "time t* of the first slip", "1")?;
+    set.add_var_attr_string(FIRST_SLIP, "comment", "NaN where a block never slips")
 }
 
 fn define_frames(set: &mut DataSet, file: &FieldsFile) -> Result<(), InvalidDataSet> {
@@ -268,9 +269,13 @@ fn define_frames(set: &mut DataSet, file: &FieldsFile) -> Result<(), InvalidData
         set.add_var_f32(text, &[TIME, Y, X])?;
         describe(set, text, name.long_name(), name.unit())?;
         set.add_var_attr_string(text, "coordinates", "time_star instant")?;
-        if *name == FieldName::Sliding {
-            set.add_var_attr_f32(text, "flag_values", vec![0.0, 1.0])?;
-            set.add_var_attr_string(text, "flag_meanings", "stuck sliding")?;
+        match name {
+            FieldName::Traction => set.add_var_attr_string(text, "comment", "NaN in cavities")?,
+            FieldName::Sliding => {
+                set.add_var_attr_f32(text, "flag_values", vec![0.0, 1.0])?;
+                set.add_var_attr_string(text, "flag_meanings", "stuck sliding")?;
+            }
+            _ => {}
         }
     }
     Ok(())
