@@ -26,7 +26,7 @@ use toml::de::{DeTable, DeValue, ValueDeserializer};
 
 pub use error::{CaseError, Invalid};
 pub use motion::{Drive, DriveSpeed, Friction, KineticFriction, Law, Load};
-pub use output::{Field, Output, Snapshots};
+pub use output::{Output, Snapshots};
 pub use slider::{Damping, Edge, Slider};
 pub use source::{Place, Source};
 pub use texture::{Cavity, CavitySize, Center, Groove, GrooveSize, Mask, Orientation, Polygon, Texture};

@@ -2,10 +2,11 @@ use proptest::prelude::*;
 use proptest::sample::{select, subsequence};
 
 use slipfront_case::case_file::{
-    AutoOr, CaseFile, Cavity, CavitySize, Center, Damping, Drive, DriveSpeed, Edge, Field, Friction, Groove,
+    AutoOr, CaseFile, Cavity, CavitySize, Center, Damping, Drive, DriveSpeed, Edge, Friction, Groove,
     GrooveSize, KineticFriction, Law, Load, Mask, Orientation, Output, Polygon, RunTime, Slider, Snapshots,
     Source, Step, Stop, Texture, Time,
 };
+use slipfront_case::fields::FieldName;
 use slipfront_case::quantity::{Kind, Length, Quantity};
 
 /// Quantities of many sizes, some as a user writes them and some printed from their value.
@@ -205,7 +206,7 @@ fn output() -> impl Strategy<Value = Output> {
     ];
     let fields = subsequence(Output::default().fields, 0..=5).prop_shuffle();
     (snapshots, fields, 1..=100_000_u32, auto_or(1e-6..1e6)).prop_map(
-        |(snapshots, fields, stride, series): (_, Vec<Field>, _, _)| Output {
+        |(snapshots, fields, stride, series): (_, Vec<FieldName>, _, _)| Output {
             snapshots,
             fields,
             stride,
