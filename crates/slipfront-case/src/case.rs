@@ -9,7 +9,7 @@ use slipfront::surface::{self, Coefficients, Distribution, Load, mesh};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Scales, Stop, Surface};
 
 use crate::arrays;
-use crate::case_file::{self, AutoOr, CaseError, CaseFile};
+use crate::case_file::{self, AutoOr, CaseError, CaseFile, Source};
 use crate::fields::FieldName;
 use crate::quantity::Length;
 
@@ -468,6 +468,17 @@ fn coefficients(
     Ok(drawn)
 }
 
+/// The bytes of a file that a case names.
+pub(crate) fn read_input(source: &Source, key: &str, path: &Path) -> Result<Vec<u8>, CaseError> {
+    std::fs::read(path).map_err(|error| {
+        let sentence = format!(
+            "cannot read {}: {error}; paths are relative to the case file",
+            path.display()
+        );
+        source.error(key, sentence)
+    })
+}
+
 /// Files read so far.
 struct Inputs {
     folder: PathBuf,
@@ -485,15 +496,7 @@ impl Inputs {
     /// Notes a file; gives its path and the one of its copy in the run folder.
     fn read(&mut self, file: &CaseFile, key: &str, written: &str) -> Result<(PathBuf, String), CaseError> {
         let path = self.folder.join(written);
-        let bytes = std::fs::read(&path).map_err(|error| {
-            file.source.error(
-                key,
-                format!(
-                    "cannot read {}: {error}; paths are relative to the case file",
-                    path.display()
-                ),
-            )
-        })?;
+        let bytes = read_input(&file.source, key, &path)?;
         let plain = path
             .file_name()
             .map_or_else(|| "input".into(), |name| name.to_string_lossy().into_owned());

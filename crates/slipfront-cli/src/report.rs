@@ -1,8 +1,11 @@
 //! What the commands print: the physics of a case as a tree, its cost, the summary of a run.
 
+use std::path::Path;
+
 use slipfront::lattice::dt_star_limit;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Law;
+use slipfront_case::study::{self, Findings, Plan};
 use slipfront_case::summary::Summary;
 
 /// The resolved physics of a case.
@@ -204,6 +207,88 @@ pub(crate) fn summary(case: &Case, summary: &Summary) -> String {
     );
     text + &warnings(&summary.warnings)
 }
+
+/// The plan of a study and what it will cost.
+pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) -> String {
+    let settings = &plan.settings;
+    let mut text = format!("{}\n", plan.name);
+    for axis in &plan.axes {
+        let levels: Vec<String> = axis.levels.iter().map(|level| level.labels.join(" & ")).collect();
+        text += &format!("  {}: {}\n", axis.columns.join(" & "), levels.join(", "));
+    }
+    let replicates = match &settings.until {
+        None => format!("{} replicates", settings.replicates),
+        Some(until) => format!(
+            "{} to {} replicates, until {} is known within {}",
+            until.min, until.max, until.key, until.half_width
+        ),
+    };
+    let reference = if plan.has_reference() {
+        ", each with its reference"
+    } else {
+        ""
+    };
+    let runs = |replicates| plan.runs(replicates);
+    let (least, most) = (runs(settings.min_replicates()), runs(settings.max_replicates()));
+    let count = if least == most {
+        format!("{least}")
+    } else {
+        format!("{least} to {most}")
+    };
+    text += &format!(
+        "  {} points, {replicates}{reference}: at most {count} runs\n",
+        plan.points.len()
+    );
+    text + &format!(
+        "  {block_steps:.2e} block-steps, about {} on {threads} threads of this machine\n",
+        duration(seconds)
+    )
+}
+
+/// What a study has found, and where it stands.
+pub(crate) fn study(plan: &Plan, findings: &Findings, folder: &Path) -> String {
+    let mut text = String::new();
+    let name = study::main_quantity(plan);
+    text += &format!("{name}\n");
+    let rows: Vec<(String, String)> = (0..plan.points.len())
+        .take(MOST_ROWS)
+        .map(|position| {
+            let value = study::sample(plan, findings, position, name).map_or("failed".to_owned(), |sample| {
+                let half = sample
+                    .half_width
+                    .map_or(String::new(), |half| format!(" \u{b1} {half:.1e}"));
+                let wide = findings.points[position].narrow == Some(false);
+                let note = if wide { "   (interval still too wide)" } else { "" };
+                format!("{:.4}{half}   n = {}{note}", sample.mean, sample.n)
+            });
+            (plan.describe(&plan.points[position]), value)
+        })
+        .collect();
+    let width = rows
+        .iter()
+        .map(|(point, _)| point.chars().count())
+        .max()
+        .unwrap_or_default();
+    for (point, value) in rows {
+        text += &format!("  {point:<width$}   {value}\n");
+    }
+    if plan.points.len() > MOST_ROWS {
+        text += &format!(
+            "  and {} more points in points.csv\n",
+            plan.points.len() - MOST_ROWS
+        );
+    }
+    if findings.strangers > 0 {
+        text += &format!(
+            "note: {} recorded runs are not part of the study as it is now; they stay in records.jsonl\n",
+            findings.strangers
+        );
+    }
+    text + &format!("runs.csv, points.csv and pictures in {}\n", folder.display())
+}
+
+/// Most points that are printed.
+const MOST_ROWS: usize = 40;
 
 fn warnings(warnings: &[String]) -> String {
     warnings

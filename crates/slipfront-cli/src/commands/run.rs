@@ -8,7 +8,7 @@ use slipfront_case::case::Case;
 use slipfront_case::folder::RunFolder;
 use slipfront_case::{results, run};
 
-use super::{CaseArgs, print};
+use super::{CaseArgs, print, set_threads};
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::report;
@@ -65,13 +65,6 @@ impl Run {
         }
         Ok(())
     }
-}
-
-/// Bounds the threads of this process; gives their number.
-fn set_threads(threads: Option<u16>) -> Result<usize, Failure> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from));
-    pool.build_global().map_err(Failure::running)?;
-    Ok(rayon::current_num_threads())
 }
 
 fn files(case: &Case, out: &Path) -> String {
