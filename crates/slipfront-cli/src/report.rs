@@ -166,17 +166,14 @@ pub(crate) fn summary(case: &Case, summary: &Summary) -> String {
         .zip(summary.kinetic_window_star);
     match kinetic {
         Some(((star, mu), [from, to])) => {
-            let uncertainty = |scale: f64| match summary.kinetic_friction_star_uncertainty {
-                Some(error) => format!(" \u{b1} {:.1e}", error * scale),
-                None => String::new(),
-            };
-            let scale = case.scales.mu_static_mean;
+            let uncertainty = summary.kinetic_friction_star_uncertainty;
+            let dimensional = uncertainty.map(|error| error * case.scales.mu_static_mean);
             line(
                 "kinetic friction",
                 format!(
-                    "mu_k* = {star:.4}{}   mu_k = {mu:.4}{}   over t* = {} to {}",
-                    uncertainty(1.0),
-                    uncertainty(scale),
+                    "mu_k* = {}   mu_k = {}   over t* = {} to {}",
+                    with_uncertainty(star, uncertainty),
+                    with_uncertainty(mu, dimensional),
                     plain(from),
                     plain(to)
                 ),
@@ -254,12 +251,13 @@ pub(crate) fn study(plan: &Plan, findings: &Findings, folder: &Path) -> String {
         .take(MOST_ROWS)
         .map(|position| {
             let value = study::sample(plan, findings, position, name).map_or("failed".to_owned(), |sample| {
-                let half = sample
-                    .half_width
-                    .map_or(String::new(), |half| format!(" \u{b1} {half:.1e}"));
                 let wide = findings.points[position].narrow == Some(false);
                 let note = if wide { "   (interval still too wide)" } else { "" };
-                format!("{:.4}{half}   n = {}{note}", sample.mean, sample.n)
+                format!(
+                    "{}   n = {}{note}",
+                    with_uncertainty(sample.mean, sample.half_width),
+                    sample.n
+                )
             });
             (plan.describe(&plan.points[position]), value)
         })
@@ -308,6 +306,18 @@ fn plain(value: f64) -> String {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
         text
+    }
+}
+
+/// A value and its uncertainty, both to the second digit of the uncertainty; to four places where there is none.
+fn with_uncertainty(value: f64, uncertainty: Option<f64>) -> String {
+    match uncertainty {
+        Some(error) if error > 0.0 => {
+            let places = (1 - error.log10().floor() as i32).clamp(0, 12) as usize;
+            format!("{value:.places$} \u{b1} {error:.places$}")
+        }
+        Some(_) => format!("{value:.4} \u{b1} 0"),
+        None => format!("{value:.4}"),
     }
 }
 
