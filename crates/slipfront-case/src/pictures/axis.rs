@@ -37,26 +37,52 @@ impl Axis {
 
     /// At most `most` (but at least two) round values and how they are written.
     pub(super) fn ticks(&self, most: usize) -> Vec<(f64, String)> {
+        let (step, values) = self.round_values(most);
+        let (largest, smallest) = (self.power(), step.log10().floor());
+        let digits = (largest - smallest).clamp(0.0, 9.0) as usize;
+        let decimals = (-smallest).clamp(0.0, 12.0) as usize;
+        let written = |&value: &f64| {
+            if (-4.0..6.0).contains(&largest) {
+                number(value, decimals)
+            } else {
+                format!("{value:.digits$e}").replace('-', MINUS)
+            }
+        };
+        values.iter().map(|value| (*value, written(value))).collect()
+    }
+
+    /// The same, very large and very small values as multiples of one power of ten: `0.5e-9`, `1.0e-9`.
+    pub(super) fn scaled_ticks(&self, most: usize) -> Vec<(f64, String)> {
+        let power = self.power();
+        if (-4.0..6.0).contains(&power) {
+            return self.ticks(most);
+        }
+        let (step, values) = self.round_values(most);
+        let decimals = (power - step.log10().floor()).clamp(0.0, 9.0) as usize;
+        let exponent = number(power, 0);
+        // Divided in two steps: the power of the smallest values has no finite inverse.
+        let half = 10f64.powf(0.5 * power);
+        let written = |value: f64| match value {
+            0.0 => "0".to_string(),
+            _ => format!("{}e{exponent}", number(value / half / half, decimals)),
+        };
+        values.into_iter().map(|value| (value, written(value))).collect()
+    }
+
+    /// The distance of the ticks and where they are.
+    fn round_values(&self, most: usize) -> (f64, Vec<f64>) {
         let step = round_step((self.hi - self.lo) / most.max(2) as f64);
         let first = (self.lo / step - 1e-9).ceil();
         let count = ((self.hi / step + 1e-9).floor() - first).clamp(0.0, 100.0) as usize;
-        let (largest, smallest) = (
-            self.lo.abs().max(self.hi.abs()).log10().floor(),
-            step.log10().floor(),
-        );
-        let digits = (largest - smallest).clamp(0.0, 9.0) as usize;
-        let decimals = (-smallest).clamp(0.0, 12.0) as usize;
-        (0..=count)
-            .map(|index| {
-                let value = (first + index as f64) * step;
-                let written = if (-4.0..6.0).contains(&largest) {
-                    number(value, decimals)
-                } else {
-                    format!("{value:.digits$e}").replace('-', MINUS)
-                };
-                (value, written)
-            })
-            .collect()
+        (
+            step,
+            (0..=count).map(|index| (first + index as f64) * step).collect(),
+        )
+    }
+
+    /// The power of ten of the largest value.
+    fn power(&self) -> f64 {
+        self.lo.abs().max(self.hi.abs()).log10().floor()
     }
 }
 

@@ -15,6 +15,7 @@ mod legend;
 mod outline;
 mod panels;
 mod series;
+mod sides;
 mod stress;
 mod style;
 mod text;
