@@ -2,7 +2,8 @@
 
 use super::axis::Axis;
 use super::canvas::{Align, Area, Canvas, Image};
-use super::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TICK_LENGTH};
+use super::scale::Way;
+use super::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WIDTH_FRAME};
 use super::text::Text;
 
 /// How wide a colour bar is.
@@ -67,5 +68,17 @@ pub(super) fn colour_bar(canvas: &mut Canvas, area: Area, ticks: &[Tick]) {
     canvas.frame(area);
     for (y, text) in ticks {
         canvas.tick_right((area.right(), *y), text);
+    }
+}
+
+/// Draws ticks without numbers on the lower or the left side of `area`, half as long as the others.
+pub(super) fn short_ticks(canvas: &mut Canvas, area: Area, way: Way, ticks: &[f64]) {
+    let length = 0.5 * TICK_LENGTH;
+    for &at in ticks {
+        let ends = match way {
+            Way::X => [(at, area.bottom()), (at, area.bottom() + length)],
+            Way::Y => [(area.x, at), (area.x - length, at)],
+        };
+        canvas.line(ends[0], ends[1], WIDTH_FRAME, BLACK);
     }
 }
