@@ -5,6 +5,9 @@ use super::text::{MINUS, number};
 /// Larger values are taken as blank: their differences might not be finite.
 const LARGEST: f64 = 1e100;
 
+/// Smaller differences are taken as none: their parts might be zero.
+const SMALLEST: f64 = 1e-290;
+
 /// True when a value can be placed on an axis.
 pub(super) fn drawable(value: f64) -> bool {
     value.abs() < LARGEST
@@ -108,10 +111,10 @@ pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
 /// The same range, or one around it when it is too narrow to be an axis.
 pub(super) fn widened((lo, hi): (f64, f64)) -> (f64, f64) {
     let size = lo.abs().max(hi.abs());
-    if hi - lo > 1e-9 * size {
+    if hi - lo > 1e-9 * size && hi - lo > SMALLEST {
         return (lo, hi);
     }
-    let margin = if size > 0.0 { 0.1 * size } else { 0.5 };
+    let margin = if size > SMALLEST { 0.1 * size } else { 0.5 };
     (lo - margin, hi + margin)
 }
 

@@ -6,7 +6,7 @@ use super::legend::{Legend, Sample};
 use super::names::Names;
 use super::scale::{Scale, Way};
 use super::sides::{left_room, left_side};
-use super::style::{BLACK, COLUMN_WIDTH, MARGIN, Rgb, WIDTH_FRAME, WIDTH_MARK, curve_colour};
+use super::style::{BLACK, COLUMN_WIDTH, MARGIN, OPACITY_BAR, Rgb, WIDTH_FRAME, WIDTH_MARK, curve_colour};
 use super::text::Text;
 use super::whisker::{Interval, whisker};
 use super::{Picture, PictureError};
@@ -45,7 +45,7 @@ pub struct BarGroup {
 /// One bar.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bar {
-    /// Its name; bars of the same name are coloured alike.
+    /// Its name, different from the others' of its group; bars of the same name are coloured alike.
     pub label: String,
     /// How high it is; NaN leaves its place free.
     pub mean: f64,
@@ -126,7 +126,7 @@ fn draw_bar(canvas: &mut Canvas, y: &Scale, bar: &Bar, (middle, width): (f64, f6
         width: width - 2.0,
         height: (foot - head).abs(),
     };
-    canvas.fill(area, colour, 1.0);
+    canvas.fill(area, colour, OPACITY_BAR);
     if let Some(Interval { low, high }) = Interval::of(bar.mean, bar.low, bar.high) {
         whisker(canvas, middle, (y.at(low), y.at(high)), WIDTH_MARK, BLACK);
     }
@@ -222,5 +222,112 @@ impl<'a> Places<'a> {
             count => SHARE_GROUP * slot / count as f64,
         };
         width.min(WIDEST)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bar(label: &str, mean: f64) -> Bar {
+        Bar {
+            label: label.to_string(),
+            mean,
+            low: mean - 1.0,
+            high: mean + 1.0,
+        }
+    }
+
+    fn chart(groups: &[(&str, &[Bar])]) -> BarChart {
+        let group = |&(label, bars): &(&str, &[Bar])| BarGroup {
+            label: label.to_string(),
+            bars: bars.to_vec(),
+        };
+        BarChart {
+            y_title: "y".to_string(),
+            legend_title: "V*".to_string(),
+            groups: groups.iter().map(group).collect(),
+            ..BarChart::default()
+        }
+    }
+
+    fn limits(means: &[f64]) -> (f64, f64) {
+        let chart = chart(&[("", &means.iter().map(|&mean| bar("", mean)).collect::<Vec<_>>())]);
+        let y = scale(&Places::of(&chart).bars);
+        (y.axis().lo, y.axis().hi)
+    }
+
+    #[test]
+    fn bars_start_at_zero() {
+        let (lo, hi) = limits(&[20.0, 21.0]);
+        assert!(lo == 0.0 && hi > 22.0);
+        let (lo, hi) = limits(&[-20.0]);
+        assert!(lo < -21.0 && hi == 0.0);
+        let (lo, hi) = limits(&[-20.0, 5.0]);
+        assert!(lo < -21.0 && hi > 6.0);
+        // A whisker may reach below.
+        assert!(limits(&[0.5]).0 < -0.5);
+    }
+
+    #[test]
+    fn one_group_names_its_bars_and_several_have_a_legend() {
+        let pair = [bar("slow", 3.0), bar("fast", 4.0)];
+        let one = bars(&chart(&[("circle", &pair)])).unwrap().svg;
+        assert!(
+            one.contains(">slow</text>") && !one.contains(">circle</text>") && !one.contains(">V*</text>")
+        );
+        let two = bars(&chart(&[("circle", &pair), ("square", &pair[1..])]))
+            .unwrap()
+            .svg;
+        for text in ["circle", "square", "slow", "fast", "V*"] {
+            assert_eq!(two.matches(&format!(">{text}</text>")).count(), 1, "{text}");
+        }
+    }
+
+    #[test]
+    fn bars_of_one_name_are_coloured_and_placed_alike() {
+        let chart = chart(&[
+            ("a", &[bar("slow", 1.0), bar("fast", 2.0)]),
+            ("b", &[bar("fast", 3.0)]),
+        ]);
+        let places = Places::of(&chart);
+        let [first, second, third] = &places.bars[..] else {
+            panic!("three bars")
+        };
+        assert!(first.colour != second.colour && first.step == -second.step);
+        assert!(second.colour == third.colour && second.step == third.step);
+    }
+
+    #[test]
+    fn poor_bars_are_drawn_all_the_same() {
+        let odd = [
+            bar("nothing", f64::NAN),
+            bar("no interval", 0.0),
+            bar("huge", f64::MAX),
+            bar("", 1e-320),
+            bar("one endless name ".repeat(20).as_str(), -9e99),
+        ];
+        for bar in &odd {
+            bars(&chart(&[("", std::slice::from_ref(bar))])).unwrap();
+        }
+        let svg = bars(&chart(&[("a", &odd), ("", &[]), ("c", &odd)])).unwrap().svg;
+        assert!(!svg.contains("NaN") && !svg.contains("inf\""));
+        assert_eq!(
+            bars(&chart(&[("a", &[]), ("b", &[])])).unwrap_err().to_string(),
+            "there is no bar to draw"
+        );
+    }
+
+    #[test]
+    fn many_bars_make_a_wider_picture_rather_than_thinner_names() {
+        let many: Vec<Bar> = (0..60)
+            .map(|i| bar("some variant's name", f64::from(i)))
+            .collect();
+        let svg = bars(&chart(&[("", &many)])).unwrap().svg;
+        let width = svg
+            .split_once("viewBox=\"0 0 ")
+            .and_then(|(_, rest)| rest.split_once(' '));
+        let width: f64 = width.and_then(|(width, _)| width.parse().ok()).unwrap();
+        assert!(width > 60.0 * Names::NARROWEST);
     }
 }

@@ -6,11 +6,13 @@ use super::scale::{Scale, Way, apart};
 use super::sides::{
     BAR_WIDTH, LOWER_ROOM, Tick, colour_bar, left_room, left_side, lower_side, short_ticks, widest,
 };
-use super::style::{BLACK, COLUMN_WIDTH, MARGIN, Rgb, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WHITE};
+use super::style::{BLACK, BLANK, COLUMN_WIDTH, MARGIN, Rgb, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WHITE};
 use super::text::{MINUS, Text, number};
 use super::{Picture, PictureError};
 
 const HEIGHT: f64 = 560.0;
+/// A number at the bar's upper end stands half beyond it.
+const TOP: f64 = MARGIN + 8.0;
 /// Between the map and its colour bar.
 const GAP: f64 = 30.0;
 /// Numbers are written in the cells of a map of at most so many columns and rows.
@@ -70,9 +72,9 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
         .collect();
     let colours = Colours::of(&values);
 
-    let (top, bottom) = (MARGIN, MARGIN + HEIGHT);
+    let (top, bottom) = (TOP, TOP + HEIGHT);
     y.place(bottom, top);
-    let y_ticks = y.ticks(Way::Y);
+    let (y_ticks, y_short) = y.ticks(Way::Y);
     let bar_ticks = colours.scale.from_to(bottom, top).ticks(Way::Y);
     let left = left_room(&y_ticks);
     let bar_room = BAR_WIDTH + TICK_LENGTH + 7.0 + widest(&bar_ticks) + 14.0 + f64::from(SIZE_LABEL) + MARGIN;
@@ -83,23 +85,27 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
         height: HEIGHT,
     };
     x.place(area.x, area.right());
+    let (x_ticks, x_short) = x.ticks(Way::X);
 
     let mut canvas = Canvas::new(COLUMN_WIDTH, bottom + LOWER_ROOM);
     canvas.image(image(area, &x, &y, &values, &colours));
     draw_numbers(&mut canvas, &x, &y, &values, &colours);
     canvas.frame(area);
-    short_ticks(&mut canvas, area, Way::Y, &y.scale.short_ticks());
+    short_ticks(&mut canvas, area, Way::Y, &y_short);
     let title = Text::fitted(&map.y.title, area.height);
     left_side(&mut canvas, area, 0.0, &y_ticks, &title);
-    short_ticks(&mut canvas, area, Way::X, &x.scale.short_ticks());
+    short_ticks(&mut canvas, area, Way::X, &x_short);
     let title = Text::fitted(&map.x.title, area.width);
-    lower_side(&mut canvas, area, &x.ticks(Way::X), &title);
+    lower_side(&mut canvas, area, &x_ticks, &title);
     let bar = Area {
         x: area.right() + GAP,
         width: BAR_WIDTH,
         ..area
     };
     colour_bar(&mut canvas, bar, &bar_ticks);
+    if values.iter().any(|value| value.is_nan()) {
+        draw_blank(&mut canvas, bar);
+    }
     let baseline = COLUMN_WIDTH - MARGIN - 0.24 * f64::from(SIZE_LABEL);
     let title = Text::fitted(&map.value_title, area.height);
     let middle = area.y + 0.5 * area.height;
@@ -191,44 +197,56 @@ impl Cells {
             .collect()
     }
 
-    /// The values themselves if they are few and have room, else round ones.
-    fn ticks(&self, way: Way) -> Vec<Tick> {
-        if self.values.len() > MOST_NAMED {
-            return self.scale.ticks(way);
+    /// Numbered and short ticks: the values themselves if they are few and have room, else round ones.
+    fn ticks(&self, way: Way) -> (Vec<Tick>, Vec<f64>) {
+        let named = |digits: usize| {
+            let written: Option<Vec<String>> = self.values.iter().map(|&v| short(v, digits)).collect();
+            let written = written.filter(|texts| texts.windows(2).all(|pair| pair[0] != pair[1]))?;
+            let numbers = written.iter().map(|text| Text::number(text, SIZE_TICK));
+            let pixels = self.values.iter().map(|&value| self.scale.at(value));
+            let ticks: Vec<Tick> = pixels.zip(numbers).collect();
+            apart(&ticks, way).then_some(ticks)
+        };
+        let few = self.values.len() <= MOST_NAMED;
+        match [4, 3, 2].into_iter().filter(|_| few).find_map(named) {
+            Some(ticks) => (ticks, Vec::new()),
+            None => (self.scale.ticks(way), self.scale.short_ticks()),
         }
-        let written: Vec<String> = self.values.iter().map(|&value| short(value)).collect();
-        let ticks: Vec<Tick> = self
-            .values
-            .iter()
-            .zip(&written)
-            .map(|(&value, text)| (self.scale.at(value), Text::number(text, SIZE_TICK)))
-            .collect();
-        let alike = written.windows(2).any(|pair| pair[0] == pair[1]);
-        if alike || !apart(&ticks, way) {
-            return self.scale.ticks(way);
-        }
-        ticks
     }
 }
 
-/// A value with three digits that count, none of them a needless zero.
-fn short(value: f64) -> String {
-    let rounded = format!("{value:.2e}");
-    let Some((digits, power)) = rounded.split_once('e') else {
-        return rounded;
-    };
-    let power: i32 = power.parse().unwrap_or(0);
+/// A value with so many digits that count and no needless zero, unless that is more than 2 % off.
+fn short(value: f64, digits: usize) -> Option<String> {
+    let rounded = format!("{value:.*e}", digits.saturating_sub(1));
+    if (rounded.parse::<f64>().ok()? - value).abs() > 0.02 * value.abs() {
+        return None;
+    }
+    let (mantissa, power) = rounded.split_once('e')?;
     let trimmed = |text: &str| match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
         false => text.to_string(),
     };
-    if value == 0.0 {
-        return "0".to_string();
+    let exponent: i32 = power.parse().ok()?;
+    if (-4..6).contains(&exponent) {
+        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+        return Some(trimmed(&number(value, decimals)));
     }
-    if (-4..6).contains(&power) {
-        return trimmed(&number(value, (2 - power).max(0) as usize));
-    }
-    format!("{}e{power}", trimmed(digits)).replace('-', MINUS)
+    Some(format!("{}e{power}", trimmed(mantissa)).replace('-', MINUS))
+}
+
+/// Tells below the colour bar what grey is.
+fn draw_blank(canvas: &mut Canvas, bar: Area) {
+    let text = Text::plain("none", SIZE_TICK);
+    // Beside the axis' title: a number may reach as far as the bar.
+    let baseline = bar.bottom() + LOWER_ROOM - MARGIN - 4.0;
+    let patch = Area {
+        y: baseline - text.height() - 3.0,
+        height: text.height() + 6.0,
+        ..bar
+    };
+    canvas.fill(patch, BLANK, 1.0);
+    canvas.frame(patch);
+    canvas.text(&text, (patch.right() + 10.0, baseline), Align::Start, BLACK);
 }
 
 /// The cells as an image with a pixel for every pixel of the picture: an image's own columns are all alike.
@@ -265,29 +283,22 @@ fn draw_numbers(canvas: &mut Canvas, x: &Cells, y: &Cells, values: &[f64], colou
     if !(1e-4..1e6).contains(&size) {
         return;
     }
-    // Two digits or so of the range.
-    let decimals = (50.0 / (colours.hi - colours.lo)).log10().ceil().clamp(0.0, 9.0) as usize;
-    let texts: Vec<Text> = values
-        .iter()
-        .map(|&value| {
-            if value.is_nan() {
-                String::new()
-            } else {
-                number(value, decimals)
-            }
-        })
-        .map(|text| Text::plain(&text, SIZE_TICK))
-        .collect();
     let smallest = |edges: &[f64]| {
         let sizes = edges.windows(2).map(|pair| (pair[1] - pair[0]).abs());
         sizes.fold(f64::INFINITY, f64::min)
     };
     let (edges_x, edges_y) = (x.edges(), y.edges());
-    let widest = texts.iter().map(Text::width).fold(0.0, f64::max);
+    let (room_x, room_y) = (smallest(&edges_x) - 12.0, smallest(&edges_y) - 12.0);
     let height = Text::plain("0", SIZE_TICK).height();
-    if widest + 12.0 > smallest(&edges_x) || height + 12.0 > smallest(&edges_y) {
+    // Two digits or so of the range, or one less.
+    let decimals = (50.0 / (colours.hi - colours.lo)).log10().ceil().clamp(0.0, 9.0) as usize;
+    let texts = [decimals, decimals.saturating_sub(1)]
+        .map(|decimals| written(values, decimals))
+        .into_iter()
+        .find(|texts| texts.iter().all(|text| text.width() <= room_x) && height <= room_y);
+    let Some(texts) = texts else {
         return;
-    }
+    };
     for (index, (text, &value)) in texts.iter().zip(values).enumerate() {
         let (row, column) = (index / x.values.len(), index % x.values.len());
         let middle = (
@@ -299,6 +310,17 @@ fn draw_numbers(canvas: &mut Canvas, x: &Cells, y: &Cells, values: &[f64], colou
     }
 }
 
+fn written(values: &[f64], decimals: usize) -> Vec<Text> {
+    let text = |value: &f64| match value.is_nan() {
+        true => String::new(),
+        false => number(*value, decimals),
+    };
+    values
+        .iter()
+        .map(|value| Text::plain(&text(value), SIZE_TICK))
+        .collect()
+}
+
 /// Black or white, whichever stands out more.
 fn readable_on(ground: Rgb) -> Rgb {
     let [red, green, blue] = ground.map(|channel| (f64::from(channel) / 255.0).powf(2.2));
@@ -308,5 +330,121 @@ fn readable_on(ground: Rgb) -> Rgb {
         WHITE
     } else {
         BLACK
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn axis(values: &[f64], log: bool) -> HeatAxis {
+        HeatAxis {
+            title: "axis".to_string(),
+            values: values.to_vec(),
+            log,
+        }
+    }
+
+    fn map(columns: usize, rows: usize) -> HeatMap {
+        let values = |count: usize| (1..=count).map(|i| i as f64).collect::<Vec<_>>();
+        HeatMap {
+            x: axis(&values(columns), false),
+            y: axis(&values(rows), true),
+            value_title: "value".to_string(),
+            values: (0..columns * rows).map(|cell| 0.5 * cell as f64).collect(),
+        }
+    }
+
+    #[test]
+    fn cells_reach_half_way_to_their_neighbours() {
+        let cells = Cells::of(&axis(&[4.0, 1.0, 2.0], false)).unwrap();
+        assert_eq!(cells.order, [1, 2, 0]);
+        assert_eq!(cells.edges, [0.5, 1.5, 3.0, 5.0]);
+        let cells = Cells::of(&axis(&[1.0, 100.0], true)).unwrap();
+        assert_eq!(cells.edges, [-1.0, 1.0, 3.0]);
+    }
+
+    #[test]
+    fn the_order_of_the_values_does_not_matter() {
+        let map = map(3, 2);
+        let mut turned = map.clone();
+        turned.x.values.reverse();
+        turned.y.values.reverse();
+        turned.values.reverse();
+        assert_eq!(heat_map(&map).unwrap(), heat_map(&turned).unwrap());
+    }
+
+    #[test]
+    fn few_cells_have_numbers_and_many_have_none() {
+        assert!(heat_map(&map(6, 6)).unwrap().svg.contains(">17.5</text>"));
+        assert!(!heat_map(&map(6, 9)).unwrap().svg.contains(">17.5</text>"));
+    }
+
+    #[test]
+    fn grey_is_explained_where_there_is_any() {
+        let mut map = map(6, 6);
+        assert!(!heat_map(&map).unwrap().svg.contains(">none</text>"));
+        map.values[7] = f64::NAN;
+        assert!(heat_map(&map).unwrap().svg.contains(">none</text>"));
+        map.values.fill(f64::INFINITY);
+        assert!(!heat_map(&map).unwrap().svg.contains("NaN"));
+    }
+
+    #[test]
+    fn odd_maps_are_drawn_all_the_same() {
+        for (columns, rows) in [(1, 1), (1, 40), (40, 1), (300, 700)] {
+            heat_map(&map(columns, rows)).unwrap();
+        }
+        let mut odd = map(2, 2);
+        odd.x.values = vec![1e-9, 12345.0];
+        odd.y.values = vec![5e-324, 9e99];
+        odd.values = vec![-9e99, 9e99, 5e-324, 0.0];
+        assert!(!heat_map(&odd).unwrap().svg.contains("NaN"));
+    }
+
+    #[test]
+    fn an_axis_value_keeps_the_digits_that_matter() {
+        let written = |value, digits| short(value, digits).unwrap_or_default();
+        assert_eq!(written(0.05, 4), "0.05");
+        assert_eq!(written(0.018_205_6, 3), "0.0182");
+        assert_eq!(written(12345.0, 4), "12345");
+        assert_eq!(written(-1.5e-9, 3), "\u{2212}1.5e\u{2212}9");
+        assert_eq!(written(0.0, 2), "0");
+        // 12 would not be 12.5.
+        assert_eq!(short(12.5, 2), None);
+    }
+
+    #[test]
+    fn what_cannot_be_divided_into_cells_is_refused() {
+        let error = |change: &dyn Fn(&mut HeatMap)| {
+            let mut map = map(2, 3);
+            change(&mut map);
+            heat_map(&map).unwrap_err().to_string()
+        };
+        let reasons = [
+            error(&|m| m.x.values.clear()),
+            error(&|m| m.x.values[1] = f64::NAN),
+            error(&|m| m.y.values[1] = m.y.values[0]),
+        ];
+        for (error, reason) in reasons.iter().zip([
+            "it has no value",
+            "a value is not a number",
+            "two values are the same",
+        ]) {
+            assert_eq!(
+                *error,
+                format!("the axis `axis` cannot be divided into cells: {reason}")
+            );
+        }
+        assert_eq!(
+            error(&|m| m.values.push(0.0)),
+            "a map of 2 x 3 cells has 7 values"
+        );
+    }
+
+    #[test]
+    fn numbers_stand_out_from_their_cells() {
+        assert_eq!(readable_on(level_colour(0)), WHITE);
+        assert_eq!(readable_on(level_colour(254)), BLACK);
     }
 }

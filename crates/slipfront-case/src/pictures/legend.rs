@@ -2,7 +2,7 @@
 
 use super::canvas::{Align, Area, Canvas};
 use super::markers::marker;
-use super::style::{BLACK, MARGIN, RADIUS_MARKER, Rgb, SIZE_TICK, WIDTH_CURVE, curve_colour};
+use super::style::{BLACK, MARGIN, OPACITY_BAR, RADIUS_MARKER, Rgb, SIZE_TICK, WIDTH_CURVE, curve_colour};
 use super::text::Text;
 
 /// The names of several curves or bars.
@@ -91,12 +91,12 @@ impl Legend {
                 }
                 Sample::Patch => {
                     let area = Area {
-                        x: x + 0.5 * Self::SAMPLE - 14.0,
+                        x: middle - 14.0,
                         y: y - 12.0,
                         width: 28.0,
                         height: 24.0,
                     };
-                    canvas.fill(area, *colour, 1.0);
+                    canvas.fill(area, *colour, OPACITY_BAR);
                 }
             }
             if let Sample::Marker = self.sample {

@@ -7,8 +7,8 @@ use super::text::{CAP_HEIGHT, Text};
 /// Names are broken into at most so many lines, and stand upright if that is not enough.
 const MOST_LINES: usize = 3;
 const LINE: f64 = 1.25 * SIZE_TICK as f64;
-/// Upright names are cut at this length.
-const LONGEST: f64 = 320.0;
+/// Upright names are broken at the first of these lengths if they can, and cut at the last.
+const LENGTHS: [f64; 2] = [320.0, 480.0];
 /// Between the panel and the names.
 const GAP: f64 = 14.0;
 /// Between two names.
@@ -25,7 +25,7 @@ pub(super) struct Names {
 
 enum Lines {
     Across(Vec<Vec<Text>>),
-    Upright(Vec<Text>),
+    Upright(Vec<Vec<Text>>),
 }
 
 impl Names {
@@ -45,11 +45,15 @@ impl Names {
                 (Lines::Across(names), LINE * most as f64)
             }
             None => {
-                let names: Vec<Text> = names
-                    .iter()
-                    .map(|name| Text::shortened(name, SIZE_TICK, LONGEST))
-                    .collect();
-                let longest = names.iter().map(Text::width).fold(0.0, f64::max);
+                let most = ((room + APART) / LINE).floor().clamp(1.0, MOST_LINES as f64) as usize;
+                let upright = |name: &&str| {
+                    LENGTHS
+                        .into_iter()
+                        .find_map(|length| Text::wrapped(name, SIZE_TICK, length, most))
+                        .unwrap_or_else(|| vec![Text::shortened(name, SIZE_TICK, LENGTHS[1])])
+                };
+                let names: Vec<Vec<Text>> = names.iter().map(upright).collect();
+                let longest = names.iter().flatten().map(Text::width).fold(0.0, f64::max);
                 (Lines::Upright(names), longest)
             }
         };
@@ -81,9 +85,12 @@ impl Names {
                 }
             }
             Lines::Upright(names) => {
-                for (index, text) in names.iter().enumerate() {
-                    let at = (self.middle(index, names.len()) + 0.5 * cap, top);
-                    canvas.text_upwards(text, at, Align::End, BLACK);
+                for (index, lines) in names.iter().enumerate() {
+                    let first = self.middle(index, names.len()) - 0.5 * LINE * (lines.len() as f64 - 1.0);
+                    for (line, text) in lines.iter().enumerate() {
+                        let at = (first + LINE * line as f64 + 0.5 * cap, top);
+                        canvas.text_upwards(text, at, Align::End, BLACK);
+                    }
                 }
             }
         }
@@ -95,5 +102,33 @@ impl Names {
     /// The middle of a name's place.
     fn middle(&self, index: usize, count: usize) -> f64 {
         self.area.x + self.area.width * (index as f64 + 0.5) / count as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines(names: &[&str], width: f64) -> (bool, Vec<usize>) {
+        let area = Area {
+            x: 0.0,
+            y: 0.0,
+            width,
+            height: 100.0,
+        };
+        let (upright, lines) = match Names::of(names, "", area).lines {
+            Lines::Across(lines) => (false, lines),
+            Lines::Upright(lines) => (true, lines),
+        };
+        (upright, lines.iter().map(Vec::len).collect())
+    }
+
+    #[test]
+    fn names_are_broken_and_then_turned() {
+        let names = ["circle", "groove across", "groove along"];
+        assert_eq!(lines(&names, 900.0), (false, vec![1, 1, 1]));
+        assert_eq!(lines(&names, 450.0), (false, vec![1, 2, 2]));
+        assert_eq!(lines(&names, 200.0), (true, vec![1, 1, 1]));
+        assert_eq!(lines(&["", " "], 200.0), (false, vec![0, 0]));
     }
 }

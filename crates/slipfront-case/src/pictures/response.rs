@@ -192,3 +192,111 @@ impl Curve {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A curve with intervals of 0.1 to both sides.
+    fn curve(label: &str, points: &[(f64, f64)]) -> Response {
+        let (x, mean): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+        Response {
+            label: label.to_string(),
+            x,
+            low: mean.iter().map(|mean| mean - 0.1).collect(),
+            high: mean.iter().map(|mean| mean + 0.1).collect(),
+            mean,
+        }
+    }
+
+    fn responses(curves: &[Response], log_x: bool) -> Responses {
+        Responses {
+            x_title: "x".to_string(),
+            y_title: "y".to_string(),
+            legend_title: "size".to_string(),
+            log_x,
+            curves: curves.to_vec(),
+        }
+    }
+
+    fn svg(curves: &[Response]) -> String {
+        let svg = response(&responses(curves, false)).unwrap().svg;
+        assert!(!svg.contains("NaN") && !svg.contains("inf\""), "{curves:?}");
+        svg
+    }
+
+    /// How many bands there are: nothing else is a polygon through so opaque a fill.
+    fn bands(svg: &str) -> usize {
+        svg.matches("fill-opacity=\"0.2\"").count()
+    }
+
+    #[test]
+    fn the_same_curves_give_the_same_bytes_in_any_order_of_points() {
+        let there = responses(&[curve("a", &[(1.0, 0.3), (2.0, 0.5), (4.0, 0.1)])], true);
+        let back = responses(&[curve("a", &[(4.0, 0.1), (2.0, 0.5), (1.0, 0.3)])], true);
+        assert_eq!(response(&there).unwrap(), response(&back).unwrap());
+    }
+
+    #[test]
+    fn only_several_curves_have_a_legend() {
+        let one = curve("first", &[(1.0, 0.3), (2.0, 0.5)]);
+        let two = curve("second", &[(1.0, 0.4), (2.0, 0.6)]);
+        assert!(!svg(std::slice::from_ref(&one)).contains(">first</text>"));
+        let both = svg(&[one, two]);
+        for text in ["size", "first", "second"] {
+            assert!(both.contains(&format!(">{text}</text>")), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_band_ends_where_an_interval_or_a_mean_is_missing() {
+        let points: Vec<(f64, f64)> = (0..7).map(|i| (f64::from(i), 0.1 * f64::from(i))).collect();
+        let mut curve = curve("", &points);
+        assert_eq!(bands(&svg(std::slice::from_ref(&curve))), 1);
+        curve.mean[3] = f64::NAN;
+        assert_eq!(bands(&svg(std::slice::from_ref(&curve))), 2);
+        // The last point alone has a whisker.
+        curve.low[5] = f64::NAN;
+        assert_eq!(bands(&svg(std::slice::from_ref(&curve))), 1);
+        curve.high.fill(f64::NAN);
+        assert_eq!(bands(&svg(&[curve])), 0);
+    }
+
+    #[test]
+    fn an_interval_is_held_whole() {
+        let mut wide = curve("", &[(1.0, 0.5)]);
+        (wide.low[0], wide.high[0]) = (-3.0, 7.0);
+        let curve = Curve::of(&wide);
+        assert!(curve.values().any(|v| v == -3.0) && curve.values().any(|v| v == 7.0));
+    }
+
+    #[test]
+    fn poor_curves_are_drawn_all_the_same() {
+        let odd = [
+            curve("", &[]),
+            curve("", &[(0.03, 0.88)]),
+            curve("", &[(1.0, f64::NAN), (f64::NAN, 1.0)]),
+            curve("", &[(-1.0, 0.3), (0.0, 0.3)]),
+            curve("", &[(f64::INFINITY, 0.3), (1.0, f64::MAX), (2.0, f64::MIN)]),
+            curve("", &[(1e-9, 1e-9), (2e-9, 3e-9)]),
+            curve("", &[(5e-324, 5e-324), (1e-310, 2e-310)]),
+            curve("", &[(1.0, -9e99), (9e99, 9e99)]),
+            curve("", &[(1.0, 12345.0), (1.0 + 1e-12, 12345.0)]),
+        ];
+        for curve in &odd {
+            svg(std::slice::from_ref(curve));
+            response(&responses(std::slice::from_ref(curve), true)).unwrap();
+        }
+        svg(&odd);
+    }
+
+    #[test]
+    fn columns_of_different_length_are_refused() {
+        let mut bad = curve("a", &[(0.0, 0.0), (1.0, 1.0)]);
+        bad.high.pop();
+        let error = response(&responses(&[bad], false)).unwrap_err().to_string();
+        assert_eq!(error, "curve `a` has 2 points but 1 values of its high");
+        let error = response(&responses(&[], false)).unwrap_err().to_string();
+        assert_eq!(error, "there is no curve to draw");
+    }
+}

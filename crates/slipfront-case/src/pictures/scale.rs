@@ -159,3 +159,47 @@ pub(super) fn apart(ticks: &[Tick], way: Way) -> bool {
         (a.0 - b.0).abs() >= extent + gap
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written(values: &[f64], log: bool, length: f64) -> Vec<String> {
+        let scale = Scale::around(values, log, 0.0).from_to(0.0, length);
+        let ticks = scale.ticks(Way::X);
+        assert!(apart(&ticks, Way::X), "{values:?}");
+        let text = |(_, text): Tick| text.runs.into_iter().map(|run| run.text).collect();
+        ticks.into_iter().map(text).collect()
+    }
+
+    #[test]
+    fn a_logarithmic_axis_is_numbered_as_densely_as_fits() {
+        assert_eq!(
+            written(&[0.01, 0.2], true, 800.0),
+            ["0.01", "0.02", "0.05", "0.1", "0.2"]
+        );
+        assert_eq!(written(&[1e-3, 1.0], true, 600.0), ["0.001", "0.01", "0.1", "1"]);
+        assert_eq!(
+            written(&[1e-9, 1.0], true, 500.0),
+            ["10\u{2212}8", "10\u{2212}6", "10\u{2212}4", "10\u{2212}2", "100"]
+        );
+        // Too short for 1, 2, 5.
+        assert_eq!(written(&[0.3, 0.4], true, 500.0)[1], "0.32");
+    }
+
+    #[test]
+    fn an_axis_through_zero_is_never_logarithmic() {
+        assert!(!Scale::around(&[0.0, 1.0], true, 0.0).is_log());
+        assert!(Scale::around(&[f64::NAN, 1.0], true, 0.0).is_log());
+    }
+
+    #[test]
+    fn small_and_large_numbers_share_a_power_of_ten() {
+        assert_eq!(
+            written(&[0.0, 1e-9], false, 800.0)[..2],
+            ["0", "0.2\u{d7}10\u{2212}9"]
+        );
+        assert_eq!(written(&[12345.0, 12349.0], false, 800.0)[0], "12345");
+        assert_eq!(written(&[0.003, 0.0035], false, 800.0)[0], "0.0030");
+    }
+}

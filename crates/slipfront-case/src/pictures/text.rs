@@ -224,6 +224,7 @@ pub(super) fn advance(character: char) -> f64 {
         '\u{27e8}' | '\u{27e9}' => 799,
         '\u{2212}' | '\u{b1}' | '\u{d7}' => 1716,
         '\u{b0}' => 1024,
+        '\u{b2}' | '\u{b3}' => 821,
         '\u{370}'..='\u{3ff}' => 1300,
         '\u{c0}'..='\u{24f}' => 1260,
         // Unknown: an em is wide enough for nearly everything, so nothing collides.
@@ -262,6 +263,45 @@ mod tests {
                 ("* = 1", false, false)
             ]
         );
+    }
+
+    #[test]
+    fn subscript_letters_and_powers_become_small_digits() {
+        let parts = |text: Text| -> Vec<(String, f64)> {
+            let height = |run: Run| (run.text, run.drop.signum() * f64::from(u8::from(run.size < 30)));
+            text.runs.into_iter().map(height).collect()
+        };
+        let of = |list: &[(&str, f64)]| -> Vec<(String, f64)> {
+            list.iter()
+                .map(|(text, drop)| ((*text).to_string(), *drop))
+                .collect()
+        };
+        assert_eq!(
+            parts(Text::plain("\u{3bc}\u{209b}* (%)", 30)),
+            of(&[("\u{3bc}", 0.0), ("s", 1.0), ("* (%)", 0.0)])
+        );
+        assert_eq!(
+            parts(Text::number("1.2e\u{2212}9", 30)),
+            of(&[("1.2\u{d7}10", 0.0), ("\u{2212}9", -1.0)])
+        );
+        assert_eq!(parts(Text::number("1e4", 30)), of(&[("10", 0.0), ("4", -1.0)]));
+    }
+
+    #[test]
+    fn words_are_kept_whole_in_their_lines() {
+        let lines = |room: f64, most: usize| {
+            let lines = Text::wrapped("groove across  it", 30, room, most)?;
+            Some(
+                lines
+                    .iter()
+                    .map(|line| line.runs[0].text.clone())
+                    .collect::<Vec<_>>(),
+            )
+        };
+        assert_eq!(lines(400.0, 1).unwrap(), ["groove across it"]);
+        assert_eq!(lines(150.0, 2).unwrap(), ["groove", "across it"]);
+        assert_eq!(lines(120.0, 2), None);
+        assert_eq!(lines(30.0, 9), None);
     }
 
     #[test]
