@@ -193,14 +193,25 @@ fn named(name: String, variants: &toml::Table) -> Result<Axis, String> {
 fn level(keys: &[&str], values: &[&Value]) -> Level {
     Level {
         labels: values.iter().map(|value| label(value)).collect(),
-        number: values
-            .first()
-            .and_then(|value| value.as_float().or_else(|| value.as_integer().map(|n| n as f64))),
+        number: values.first().and_then(|value| number(value)),
         overrides: keys
             .iter()
             .zip(values)
             .map(|(key, value)| format!("{key}={value}"))
             .collect(),
+    }
+}
+
+/// The number of a level. A pair of equal ones counts as one: the blocks along each side of a square.
+fn number(value: &Value) -> Option<f64> {
+    match value {
+        Value::Integer(number) => Some(*number as f64),
+        Value::Float(number) => Some(*number),
+        Value::Array(pair) => match pair.as_slice() {
+            [one, other] if one == other => number(one),
+            _ => None,
+        },
+        _ => None,
     }
 }
 
@@ -293,7 +304,7 @@ mod tests {
             axis.levels[1].overrides,
             ["slider.blocks=[50, 50]", "friction.seed=2"]
         );
-        assert_eq!(axis.spacing, Spacing::Named);
+        assert_eq!(axis.levels[1].number, Some(50.0));
         assert!(super::Axis::new(toml::from_str("zip = { a = [1], b = [1, 2] }").unwrap()).is_err());
     }
 

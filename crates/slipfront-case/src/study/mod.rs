@@ -9,6 +9,7 @@
 mod axis;
 mod error;
 mod execute;
+mod figures;
 mod file;
 mod folder;
 mod plan;
@@ -47,5 +48,9 @@ pub fn main_quantity(plan: &Plan) -> &'static str {
 pub fn write(plan: &Plan, findings: &Findings, folder: &StudyFolder) -> Result<(), StudyError> {
     folder.write("runs.csv", &tables::runs(plan, findings)?)?;
     folder.write("points.csv", &tables::points(plan, findings)?)?;
+    for (name, picture) in figures::draw(plan, findings)? {
+        folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
+        folder.write(&format!("{name}.png"), &picture.png)?;
+    }
     Ok(())
 }
