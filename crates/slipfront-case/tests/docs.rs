@@ -9,8 +9,8 @@ fn repository() -> PathBuf {
 }
 
 fn add_pages(folder: &Path, pages: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
+    for entry in std::fs::read_dir(folder).expect("the book can be listed") {
+        let path = entry.expect("the book can be listed").path();
         if path.is_dir() {
             add_pages(&path, pages);
         } else if path.extension().is_some_and(|extension| extension == "md") {
@@ -39,7 +39,10 @@ fn toml_blocks(page: &str) -> Vec<Block> {
                 };
                 open = Some((info.trim() == "toml", block));
             }
-            (Some(_), Some(_)) => blocks.extend(open.take().filter(|(toml, _)| *toml).map(|(_, block)| block)),
+            (Some(_), Some(_)) => {
+                let closed = open.take().filter(|(toml, _)| *toml);
+                blocks.extend(closed.map(|(_, block)| block));
+            }
             (Some((_, block)), None) => {
                 block.text += line;
                 block.text += "\n";
@@ -68,7 +71,11 @@ fn every_case_in_the_book_can_be_read() {
         }
     }
     assert!(refused.is_empty(), "{refused}");
-    assert!(read >= 10, "only {read} cases were found in {} pages", pages.len());
+    assert!(
+        read >= 10,
+        "only {read} cases were found in {} pages",
+        pages.len()
+    );
 }
 
 #[test]
