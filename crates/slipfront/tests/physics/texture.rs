@@ -171,7 +171,7 @@ fn two_readings_agree_beside_a_groove() {
 #[case::textured(textured(), KineticStart::Auto)]
 #[case::fast(Slider { v_star: 0.2, dt_star: 0.02, ..Slider::default() }, KineticStart::Auto)]
 #[case::given_start(Slider::default(), KineticStart::At(200.0))]
-#[case::half_the_time_is_a_step(Slider { v_star: 0.05, dt_star: 2.0 / 3.0 * 0.05, ..Slider::default() }, KineticStart::Auto)]
+#[case::a_falls_on_a_step(Slider { v_star: 0.125, dt_star: 2.0 / 3.0 * 0.125, ..Slider::default() }, KineticStart::Auto)]
 fn instants_are_those_of_their_definitions(#[case] slider: Slider, #[case] kinetic: KineticStart) {
     let model = slider.model();
     let steps = slider.steps(8.0);
