@@ -20,16 +20,20 @@ fn energies(model: &Model, dt: f64, steps: u64, state: State) -> Vec<Energies> {
 }
 
 /// Through onset and far beyond. What is missing is the motion that the last step of a slip takes from a block that
-/// stops, at most (mu_k F_n dt)^2/2 = 5e-5 of energy, in slips that take R V T = 1 each: a few 1e-5. A slider that
-/// only slides closes to rounding.
+/// stops, at most (mu_k F_n dt)^2/2 = 5e-5 of energy, in slips that take R V T = 1 each: a few 1e-5. Where
+/// damping lets hardly a block stop, less.
 #[rstest]
 #[case::baseline(Slider { dt_star: 0.02, ..Slider::default() }, 5e-5)]
 #[case::undamped(Slider { dt_star: 0.02, omega_star: 0.0, ..Slider::default() }, 5e-5)]
-#[case::steady(Slider { dt_star: 0.02, omega_star: 3.0, ..Slider::default() }, 1e-12)]
-#[case::textured(Slider { dt_star: 0.02, textures: vec![cavity([25, 25], 10.0, 1, 0.0, false)], ..Slider::default() }, 5e-5)]
+#[case::steady(Slider { dt_star: 0.02, omega_star: 3.0, ..Slider::default() }, 1e-5)]
+#[case::textured(Slider { dt_star: 0.02, textures: vec![cavity([12, 14], 10.0, 1, 0.0, false)], ..Slider::default() }, 5e-5)]
 #[case::periodic_and_oblique(Slider { dt_star: 0.02, edges: [Edges::Periodic; 2], degrees: 30.0, ..Slider::default() }, 5e-5)]
 #[case::large_strain(Slider { dt_star: 0.02, epsilon: 0.03, ..Slider::default() }, 5e-5)]
 fn the_ledger_closes(#[case] slider: Slider, #[case] bound: f64) {
+    let slider = Slider {
+        blocks: [12, 14],
+        ..slider
+    };
     let model = slider.model();
     let at_rest = State::at_rest(model.lattice.n_blocks());
     let found = energies(&model, slider.dt_star, slider.steps(8.0), at_rest);

@@ -6,7 +6,7 @@ use slipfront::lattice::K_STRAIGHT;
 use slipfront::observe::{FirstSlip, Scheduled};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, Stop, Surface};
 
-const COLUMNS: usize = 120;
+const COLUMNS: usize = 80;
 const KINETIC: f64 = 0.25;
 
 /// A strip of `COLUMNS` columns under a constant force per block of prestress `tau`; its first column holds nothing.
