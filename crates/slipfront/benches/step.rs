@@ -1,5 +1,7 @@
 //! Cost of a step of the reference kernel, in block-steps per second, on the baseline of Fig. 3 once it slides.
 
+#![allow(missing_docs)] // Criterion's macros make public functions without a word.
+
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use slipfront::known_answers::first_slip_time_star;
 use slipfront::surface::{Coefficients, Distribution, Load};

@@ -1,7 +1,7 @@
 //! What the test binaries share: a slider described by the paper's groups.
 #![allow(dead_code)] // Each binary uses its own part of this.
 
-use slipfront::observe::{Curve, CurveRow, Kinetic, KineticHistory, KineticStart, Peak, Scheduled};
+use slipfront::observe::{Curve, CurveRow, Kinetic, KineticHistory, KineticStart, Observer, Peak, Scheduled};
 use slipfront::surface::{
     Cavity, Coefficients, Distribution, Groove, Load, Orientation, Texture, cavity_lambda, mesh,
 };
@@ -112,21 +112,33 @@ impl Slider {
         simulation.peak()
     }
 
-    /// Runs to t* = `turns`/V*, every step recorded.
+    /// Runs to t* = `turns`/V*: first peak and kinetic friction.
+    pub(crate) fn summary(&self, turns: f64) -> (Peak, Option<Kinetic>) {
+        self.observed(turns, &mut [])
+    }
+
+    /// The same with every step recorded.
     pub(crate) fn run(&self, turns: f64) -> Outcome {
+        let mut curve = Curve::every(1);
+        let (peak, kinetic) = self.observed(turns, &mut [&mut curve]);
+        Outcome {
+            peak,
+            kinetic,
+            rows: curve.rows,
+        }
+    }
+
+    fn observed(&self, turns: f64, others: &mut [&mut dyn Observer]) -> (Peak, Option<Kinetic>) {
         let model = self.model();
         let steps = self.steps(turns);
         let mut simulation = Simulation::at_rest(&model, self.dt_star);
-        let (mut curve, mut history) = (Curve::every(1), KineticHistory::new(steps));
-        let observers = &mut [Scheduled::always(&mut curve), Scheduled::always(&mut history)];
-        simulation.run(Stop::at_step(steps), observers).unwrap();
+        let mut history = KineticHistory::new(steps);
+        let mut observers = vec![Scheduled::always(&mut history)];
+        observers.extend(others.iter_mut().map(|o| Scheduled::always(*o)));
+        simulation.run(Stop::at_step(steps), &mut observers).unwrap();
         let peak = simulation.peak();
         let from = KineticStart::Auto.time_star(&peak, self.v_star);
-        Outcome {
-            peak,
-            kinetic: history.kinetic(from, self.dt_star),
-            rows: curve.rows,
-        }
+        (peak, history.kinetic(from, self.dt_star))
     }
 }
 

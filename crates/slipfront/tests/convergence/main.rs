@@ -1,5 +1,7 @@
 //! Orders of convergence in the time step, asserted: 2 where the motion is smooth, 1 where blocks start and stop.
 
+#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
+
 #[path = "../common/mod.rs"]
 mod common;
 

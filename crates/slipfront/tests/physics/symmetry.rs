@@ -57,9 +57,9 @@ fn models(slider: &Slider, operation: Operation) -> [Model; 2] {
     let drawn = slider.coefficients();
     let textured = mesh(&lattice, &slider.textures).textured;
     let (mut mu_static, mut mu_kinetic, mut cut) = (vec![0.0; n], vec![0.0; n], vec![false; n]);
-    for b in 0..n {
+    for (b, &over) in textured.iter().enumerate() {
         let to = image(operation, slider.blocks, &turned, &lattice, b);
-        (mu_static[to], mu_kinetic[to], cut[to]) = (drawn.mu_static[b], drawn.mu_kinetic[b], textured[b]);
+        (mu_static[to], mu_kinetic[to], cut[to]) = (drawn.mu_static[b], drawn.mu_kinetic[b], over);
     }
     let drive = Drive::at_angle(slider.v_star, slider.degrees);
     let turned_drive = Drive {
