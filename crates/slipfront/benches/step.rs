@@ -1,4 +1,5 @@
-//! Cost of a step of the reference kernel, in block-steps per second, on the baseline of Fig. 3 once it slides.
+//! Cost of a step of the reference kernel, in block-steps per second, on the baseline of Fig. 3 once it
+//! slides.
 
 #![allow(missing_docs)] // Criterion's macros make public functions without a word.
 

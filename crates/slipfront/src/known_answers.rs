@@ -6,7 +6,8 @@
 use crate::lattice::{K_DIAGONAL, K_DRIVE, K_STRAIGHT};
 use crate::scales::damping;
 
-/// Time of the first slip on a surface without texture, whatever the direction of the drive (Eqs. 1, 2, 4, D12).
+/// Time of the first slip on a surface without texture, whatever the direction of the drive (Eqs. 1, 2, 4,
+/// D12).
 ///
 /// Until then no block has moved, so that no lattice spring pulls:
 ///
@@ -44,7 +45,8 @@ pub fn steady_level(mean_kinetic_star: f64, omega_star: f64, v_star: f64) -> f64
     mean_kinetic_star + damping(omega_star) * v_star
 }
 
-/// Stick and slip of one block on its drive spring, and of a uniform lattice without texture, which moves as one.
+/// Stick and slip of one block on its drive spring, and of a uniform lattice without texture, which moves as
+/// one.
 ///
 /// The extension `e = V t - u` obeys, from the moment of slip on,
 ///
@@ -189,7 +191,8 @@ impl SlipCycle {
         self.slip_duration + (1.0 - self.force_at_stop()) / (K_DRIVE * self.v_star)
     }
 
-    /// Mean force over a period. The momentum of a slip that begins and ends at rest gives, over the period T,
+    /// Mean force over a period. The momentum of a slip that begins and ends at rest gives, over the period
+    /// T,
     ///
     /// ```text
     /// integral over slip = R t_slip + Omega V T,   integral over stick = (1 - F_stop^2)/(2 k_s V)
@@ -206,7 +209,8 @@ impl SlipCycle {
         self.r_star * self.v_star * self.period()
     }
 
-    /// Lost to damping in one slip: the work of the drive, `V T` times the mean force, less the loss to friction.
+    /// Lost to damping in one slip: the work of the drive, `V T` times the mean force, less the loss to
+    /// friction.
     pub fn damping_loss(&self) -> f64 {
         self.v_star * self.period() * self.mean_force() - self.friction_loss()
     }
@@ -289,8 +293,9 @@ impl Facing {
     }
 }
 
-/// How much more than its own drive spring pulls on a row at the edge of a straight groove, before anything slips,
-/// on periodic edges: `n` rows of the groove, each held by its drive springs and by stiffness K to the next,
+/// How much more than its own drive spring pulls on a row at the edge of a straight groove, before anything
+/// slips, on periodic edges: `n` rows of the groove, each held by its drive springs and by stiffness K to the
+/// next,
 ///
 /// ```text
 /// F_edge = k_s V t [1 + (K/k_s)(1 - r)],   cosh q = 1 + k_s/(2 K),   r = cosh(q (n-1)/2)/cosh(q (n+1)/2)
@@ -309,8 +314,8 @@ pub fn groove_edge_factor(facing: Facing, n: usize) -> f64 {
     1.0 + k / K_DRIVE * (1.0 - r)
 }
 
-/// Speed of a slip front into blocks under a uniform prestress `tau = (F - F_k)/(F_s - F_k)`, without drive springs
-/// and damping:
+/// Speed of a slip front into blocks under a uniform prestress `tau = (F - F_k)/(F_s - F_k)`, without drive
+/// springs and damping:
 ///
 /// ```text
 /// v = c/sqrt(1 - tau^2),   tau >= 1/2

@@ -100,8 +100,8 @@ fn a_step_allocates_nothing() {
     }
 }
 
-/// Sliding counts, sums, first slips, means and maxima keep what they have; the curve grows by doubling (16 times for
-/// 2670 rows and more); A-F allocate once per field when first kept.
+/// Sliding counts, sums, first slips, means and maxima keep what they have; the curve grows by doubling (16
+/// times for 2670 rows and more); A-F allocate once per field when first kept.
 #[test]
 fn watching_allocates_only_what_is_kept() {
     let model = model(FrictionLaw::Projection);

@@ -1,4 +1,5 @@
-//! Orders of convergence in the time step, asserted: 2 where the motion is smooth, 1 where blocks start and stop.
+//! Orders of convergence in the time step, asserted: 2 where the motion is smooth, 1 where blocks start and
+//! stop.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -33,8 +34,8 @@ fn assert_order(steps: &[f64], errors: &[f64], expected: f64, tolerance: f64) {
     println!("order {found:.3} of {expected}; errors {errors:?}");
 }
 
-/// Displacement and velocity at `time`, the velocity as the mean of the half steps around it, of a lattice without
-/// friction that starts from rest, bent.
+/// Displacement and velocity at `time`, the velocity as the mean of the half steps around it, of a lattice
+/// without friction that starts from rest, bent.
 fn smooth_motion(model: &Model, time: f64, steps: u32) -> (VectorField, VectorField) {
     let dt = time / f64::from(steps);
     let n = model.lattice.n_blocks();
@@ -126,8 +127,9 @@ fn first_slip(v_star: f64, dt_star: f64) -> (u64, u64) {
     (start, simulation.snapshot().step)
 }
 
-/// Events fall on steps: their times err in proportion to the step. Averaged over 300 phases of the first slip against
-/// the steps, which slightly different speeds give: a mean of that many is good to 0.6/sqrt(300) = 3 % of itself.
+/// Events fall on steps: their times err in proportion to the step. Averaged over 300 phases of the first
+/// slip against the steps, which slightly different speeds give: a mean of that many is good to 0.6/sqrt(300)
+/// = 3 % of itself.
 #[test]
 fn times_of_slip_and_stop_are_of_first_order() {
     let steps = [0.1, 0.05, 0.025, 0.0125, 0.00625];
@@ -174,8 +176,8 @@ fn in_transition(seed: u64, steps: u32) -> VectorField {
 
 const TRANSITION: f64 = 27.0;
 
-/// With friction whole trajectories are of first order, since blocks start and stop on steps. The median over 24
-/// surfaces: on some of them a slip that just happens at one step just fails at another.
+/// With friction whole trajectories are of first order, since blocks start and stop on steps. The median over
+/// 24 surfaces: on some of them a slip that just happens at one step just fails at another.
 #[test]
 fn motion_with_friction_is_of_first_order() {
     let counts = [270, 540, 1080, 2160];
@@ -195,8 +197,8 @@ fn motion_with_friction_is_of_first_order() {
     assert_order(&steps, &errors, 1.0, 0.15);
 }
 
-/// What the ledger of energies misses: the last step of every slip takes at most (mu_k F_n dt)^2/2 from the block that
-/// stops, so that it closes to second order although the events themselves are of first.
+/// What the ledger of energies misses: the last step of every slip takes at most (mu_k F_n dt)^2/2 from the
+/// block that stops, so that it closes to second order although the events themselves are of first.
 #[test]
 fn energy_closes_to_second_order() {
     let steps = [0.1, 0.05, 0.025, 0.0125];

@@ -1,7 +1,8 @@
 //! Claims of the paper (doi 10.1016/j.triboint.2023.108866) that one run or a few can show.
 //!
-//! Numbers beside a claim are those of model.md, section 5, which come from one surface of an independent program.
-//! Tolerances are three standard deviations of the same quantity over ten surfaces of this one, unless they say else.
+//! Numbers beside a claim are those of model.md, section 5, which come from one surface of an independent
+//! program. Tolerances are three standard deviations of the same quantity over ten surfaces of this one,
+//! unless they say else.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -50,8 +51,8 @@ fn scatter(x: &[f64]) -> f64 {
     (x.iter().map(|x| (x - center).powi(2)).sum::<f64>() / (x.len() - 1) as f64).sqrt()
 }
 
-/// Sections 3.2 and 3.3. With sigma_s* = 0 only kinetic coefficients scatter, and reductions by 0.04 to 0.13; 0.33 for the
-/// smallest cavity. The step, 0.1 here and 0.02 there, moves them by as much again.
+/// Sections 3.2 and 3.3. With sigma_s* = 0 only kinetic coefficients scatter, and reductions by 0.04 to 0.13;
+/// 0.33 for the smallest cavity. The step, 0.1 here and 0.02 there, moves them by as much again.
 #[rstest]
 #[case::circle(middle(10.0, 1, 0.0, false), 31.1, 0.5)]
 #[case::small_circle_is_already_remarkable(middle(1.0, 1, 0.0, false), 22.7, 1.2)]
@@ -70,7 +71,8 @@ fn textures_reduce_static_friction(#[case] texture: Texture, #[case] claimed: f6
     }
 }
 
-/// Elongation across the sliding direction improves a cavity, along it slightly worsens it: by many times the scatter.
+/// Elongation across the sliding direction improves a cavity, along it slightly worsens it: by many times the
+/// scatter.
 #[test]
 fn elongation_across_improves_and_along_worsens() {
     let [across, circle, along] = [(0.6, true), (0.0, false), (0.6, false)]
@@ -83,7 +85,8 @@ fn elongation_across_improves_and_along_worsens() {
     assert!(steps.is_sorted() && steps[0] > circle - 0.4, "{steps:?}");
 }
 
-/// Fig. 18: neither the number nor the sharpness of vertices matters much: 30.7 to 33.7 in model.md, scatter 0.13.
+/// Fig. 18: neither the number nor the sharpness of vertices matters much: 30.7 to 33.7 in model.md, scatter
+/// 0.13.
 #[rstest]
 fn shapes_make_no_notable_difference(#[values(2, 3, 4)] s: u32, #[values(1.0, 0.2)] sharpness: f64) {
     let found = reduction(&textured(
@@ -93,7 +96,8 @@ fn shapes_make_no_notable_difference(#[values(2, 3, 4)] s: u32, #[values(1.0, 0.
     assert!((30.3..34.1).contains(&found), "s = {s}: {found} %");
 }
 
-/// Without scatter of kinetic coefficients nothing is random; model.md's 37.4 is rounded, and read off at another step.
+/// Without scatter of kinetic coefficients nothing is random; model.md's 37.4 is rounded, and read off at
+/// another step.
 #[test]
 fn a_groove_without_any_scatter() {
     let slider = Slider {
@@ -105,9 +109,9 @@ fn a_groove_without_any_scatter() {
     assert!((found - 37.4).abs() < 0.15, "{found} %");
 }
 
-/// Grooves on periodic edges climb again, higher than the first peak, in the next cycle, so that the rule of the first
-/// peak matters. By how much hangs on the step, since nothing breaks the symmetry along the groove: 1.3 % at 0.02, 2.3 %
-/// at 0.1, 4 % in model.md.
+/// Grooves on periodic edges climb again, higher than the first peak, in the next cycle, so that the rule of
+/// the first peak matters. By how much hangs on the step, since nothing breaks the symmetry along the groove:
+/// 1.3 % at 0.02, 2.3 % at 0.1, 4 % in model.md.
 #[test]
 fn a_groove_on_periodic_edges_climbs_higher_later() {
     let slider = Slider {
@@ -174,8 +178,8 @@ fn over_seeds(slider: &Slider, quantity: impl Fn(&Slider) -> f64) -> Vec<f64> {
         .collect()
 }
 
-/// Fig. 5 and 6: mu_s* rises with V* towards 1, and t_s* = (5/2)/V* nearly. `scatter`: of mu_s* over ten seeds; the mean of
-/// six differs from a single one by 1.08 of it.
+/// Fig. 5 and 6: mu_s* rises with V* towards 1, and t_s* = (5/2)/V* nearly. `scatter`: of mu_s* over ten
+/// seeds; the mean of six differs from a single one by 1.08 of it.
 #[rstest]
 #[case(0.01, 0.859, 0.0164, 2.28)]
 #[case(0.02, 0.872, 0.0142, 2.33)]
@@ -237,8 +241,8 @@ fn static_friction_rises_with_speed_on_every_surface() {
     }
 }
 
-/// Fig. 10: mu_s* falls with sigma_s*. At sigma_s* = 0 all slip at once, and the slip's own k_s V^2/(2 (1 - R)) and a step's
-/// k_s V dt are all there is beyond 1.
+/// Fig. 10: mu_s* falls with sigma_s*. At sigma_s* = 0 all slip at once, and the slip's own k_s V^2/(2 (1 -
+/// R)) and a step's k_s V dt are all there is beyond 1.
 #[rstest]
 #[case(0.0, 1.000, 0.0004)]
 #[case(0.01, 0.980, 0.0020)]
@@ -262,8 +266,8 @@ fn static_friction_falls_with_scatter(
     );
 }
 
-/// Over five random surfaces the paper finds a deviation of less than 0.015. True of the standard deviation, 0.013 here; the
-/// farthest of five may lie 0.024 from their mean.
+/// Over five random surfaces the paper finds a deviation of less than 0.015. True of the standard deviation,
+/// 0.013 here; the farthest of five may lie 0.024 from their mean.
 #[test]
 fn five_surfaces_deviate_by_less_than_0_015() {
     let found: Vec<f64> = (1..=5)
@@ -301,8 +305,8 @@ fn kinetic_friction_is_about_r_star(#[case] r_star: f64, #[case] claimed: f64, #
     }
 }
 
-/// Fig. 8: at Omega* >= 1 stick-slip ends and all slide. At Omega* = 1 exactly, one block in 600 still sticks on some
-/// surfaces; at 2 and 3 none does. Below, a tenth slides at a time.
+/// Fig. 8: at Omega* >= 1 stick-slip ends and all slide. At Omega* = 1 exactly, one block in 600 still sticks
+/// on some surfaces; at 2 and 3 none does. Below, a tenth slides at a time.
 #[rstest]
 #[case(0.1, 10.0, 20.0)]
 #[case(1.0, 99.0, 100.0)]
@@ -329,7 +333,8 @@ fn strong_damping_ends_stick_slip(#[case] omega_star: f64, #[case] least: f64, #
     }
 }
 
-/// Eq. 14: steps before slip with the paper's step (2/3) V*, within the few % by which t_s* V* differs from 5/2.
+/// Eq. 14: steps before slip with the paper's step (2/3) V*, within the few % by which t_s* V* differs from
+/// 5/2.
 #[rstest]
 fn steps_before_slip(#[values(0.05, 0.1, 0.2)] v_star: f64) {
     let slider = Slider {
@@ -344,8 +349,8 @@ fn steps_before_slip(#[values(0.05, 0.1, 0.2)] v_star: f64) {
     );
 }
 
-/// mu_s* of the same surface at steps from 0.002 to 0.05 agrees within 3e-4, and so does 0.1 on two surfaces of three (on
-/// the first by 4e-4): there a step is k_s V dt = 1.1e-3 of mu*, on which events fall.
+/// mu_s* of the same surface at steps from 0.002 to 0.05 agrees within 3e-4, and so does 0.1 on two surfaces
+/// of three (on the first by 4e-4): there a step is k_s V dt = 1.1e-3 of mu*, on which events fall.
 #[rstest]
 #[case(1, 4.5e-4)]
 #[case(2, 3e-4)]
@@ -371,9 +376,9 @@ fn static_friction_does_not_depend_on_the_step(#[case] seed: u64, #[case] at_a_t
     assert!((at(0.1) - exact).abs() < at_a_tenth, "{}, {exact}", at(0.1));
 }
 
-/// Eq. 4 to the letter cannot be what the paper ran: at its step of 0.02, mu_k* = 0.97, all blocks slide for ever, and there
-/// is no transition. (It is 0.64 at a step of 0.1, with a transition, 0.90 at 0.05, and 0.998 at
-/// 0.005: it tends to 1.)
+/// Eq. 4 to the letter cannot be what the paper ran: at its step of 0.02, mu_k* = 0.97, all blocks slide for
+/// ever, and there is no transition. (It is 0.64 at a step of 0.1, with a transition, 0.90 at 0.05, and 0.998
+/// at 0.005: it tends to 1.)
 #[test]
 fn the_literal_law_never_comes_down() {
     let slider = Slider {
@@ -388,8 +393,8 @@ fn the_literal_law_never_comes_down() {
     assert!(!peak.ended);
 }
 
-/// The two readings with memory agree on mu_s* to 1e-6 on most surfaces, and to 3e-5 on all of these; on mu_k* within
-/// its scatter of 0.002.
+/// The two readings with memory agree on mu_s* to 1e-6 on most surfaces, and to 3e-5 on all of these; on
+/// mu_k* within its scatter of 0.002.
 #[test]
 fn implicit_and_explicit_friction_agree() {
     let with = |law, seed| {
@@ -501,8 +506,8 @@ fn difference_from_case_8(case: usize, corrected: bool) -> f64 {
     largest
 }
 
-/// Fig. 3: the eight cases coincide before and through the transition. All have V* = 0.03001 to every digit, so that only the
-/// strain differs: eps = 1e-6 to 2e-4 moves mu* by 1e-4 eps, the 0.04 of case 3 by 0.01 eps.
+/// Fig. 3: the eight cases coincide before and through the transition. All have V* = 0.03001 to every digit,
+/// so that only the strain differs: eps = 1e-6 to 2e-4 moves mu* by 1e-4 eps, the 0.04 of case 3 by 0.01 eps.
 #[rstest]
 fn the_cases_of_table_1_coincide(#[values(0, 1, 2, 3, 4, 5, 6)] case: usize) {
     let model = table_1(case, true);

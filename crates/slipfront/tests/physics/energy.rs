@@ -1,5 +1,5 @@
-//! Energy: the work of the drive is held by blocks and springs or lost to friction and damping, each loss by itself
-//! an exact figure for one block.
+//! Energy: the work of the drive is held by blocks and springs or lost to friction and damping, each loss by
+//! itself an exact figure for one block.
 
 use rstest::rstest;
 use slipfront::known_answers::SlipCycle;
@@ -19,9 +19,9 @@ fn energies(model: &Model, dt: f64, steps: u64, state: State) -> Vec<Energies> {
     curve.rows.iter().map(|row| row.energies).collect()
 }
 
-/// Through onset and far beyond. What is missing is the motion that the last step of a slip takes from a block that
-/// stops, at most (mu_k F_n dt)^2/2 = 5e-5 of energy, in slips that take R V T = 1 each: a few 1e-5. Where
-/// damping lets hardly a block stop, less.
+/// Through onset and far beyond. What is missing is the motion that the last step of a slip takes from a
+/// block that stops, at most (mu_k F_n dt)^2/2 = 5e-5 of energy, in slips that take R V T = 1 each: a few
+/// 1e-5. Where damping lets hardly a block stop, less.
 #[rstest]
 #[case::baseline(Slider { dt_star: 0.02, ..Slider::default() }, 5e-5)]
 #[case::undamped(Slider { dt_star: 0.02, omega_star: 0.0, ..Slider::default() }, 5e-5)]
@@ -47,8 +47,8 @@ fn the_ledger_closes(#[case] slider: Slider, #[case] bound: f64) {
     assert!(worst < bound, "closes to {worst}");
 }
 
-/// Before the first slip all work is in the drive springs: N (1/2) k_s (V t)^2, exact, and equal to the work, which the
-/// trapezoidal rule integrates exactly.
+/// Before the first slip all work is in the drive springs: N (1/2) k_s (V t)^2, exact, and equal to the work,
+/// which the trapezoidal rule integrates exactly.
 #[test]
 fn before_the_first_slip_all_work_is_in_the_drive_springs() {
     let slider = Slider::default();
@@ -95,8 +95,8 @@ fn losses_of_one_slip(#[values(0.0, 0.1, 0.3)] omega_star: f64, #[values(0.03, 0
     }
 }
 
-/// A block with nothing but friction runs v^2/(2 mu_k) far and loses all of (1/2) v^2 to it; one with nothing but damping
-/// runs v/Omega far and loses (1/2) v^2 to that.
+/// A block with nothing but friction runs v^2/(2 mu_k) far and loses all of (1/2) v^2 to it; one with nothing
+/// but damping runs v/Omega far and loses (1/2) v^2 to that.
 #[rstest]
 #[case::friction(0.5, 0.0)]
 #[case::damping(0.0, 0.4)]
@@ -158,7 +158,8 @@ fn a_constant_force_does_work() {
     );
     let dt = 0.01;
     let last = *energies(&model, dt, 1000, State::at_rest(1)).last().unwrap();
-    // Uniformly accelerated by 0.5 - 0.2 from t = -dt/2 on: way a t^2/2, work 0.5 per way, 0.2 of it to friction.
+    // Uniformly accelerated by 0.5 - 0.2 from t = -dt/2 on: way a t^2/2, work 0.5 per way, 0.2 of it to
+    // friction.
     let way = 0.5 * 0.3 * 10.0_f64.powi(2);
     assert!(
         (last.work / (0.5 * way) - 1.0).abs() < 2.0 * dt

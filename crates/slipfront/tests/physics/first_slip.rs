@@ -17,8 +17,8 @@ fn first_slip(model: &Model, dt_star: f64) -> FirstSlip {
     first
 }
 
-/// The first instant at which the force exceeds the threshold: at most one step late, never early; rounding of
-/// a force and of its threshold moves an instant by 1e-12 at most.
+/// The first instant at which the force exceeds the threshold: at most one step late, never early; rounding
+/// of a force and of its threshold moves an instant by 1e-12 at most.
 fn assert_is_first_instant_after(found: f64, exact: f64, dt_star: f64) {
     let late = found - exact;
     assert!(

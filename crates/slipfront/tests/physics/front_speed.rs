@@ -9,7 +9,8 @@ use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, Stop, Sur
 const COLUMNS: usize = 80;
 const KINETIC: f64 = 0.25;
 
-/// A strip of `COLUMNS` columns under a constant force per block of prestress `tau`; its first column holds nothing.
+/// A strip of `COLUMNS` columns under a constant force per block of prestress `tau`; its first column holds
+/// nothing.
 fn strip(rows: usize, direction: [f64; 2], tau: f64) -> Model {
     let edges = if rows == 1 { Edges::Free } else { Edges::Periodic };
     let lattice = Lattice::with_edges(COLUMNS, rows, [Edges::Free, edges]);
@@ -38,8 +39,8 @@ fn measured_delay(model: &Model, dt: f64, expected: f64) -> f64 {
     (first.time_star[to] - first.time_star[from]) / (to - from) as f64
 }
 
-/// A front that runs steadily takes a whole number of steps from one column to the next, the nearest one to the exact
-/// time: hence half a step, 0.2 to 0.6 % of that time.
+/// A front that runs steadily takes a whole number of steps from one column to the next, the nearest one to
+/// the exact time: hence half a step, 0.2 to 0.6 % of that time.
 #[rstest]
 fn a_front_runs_at_its_speed(
     #[values(0.6, 0.8, 0.9)] tau: f64,

@@ -71,7 +71,8 @@ fn amplitudes(model: &Model, shape: &VectorField, dt: f64, steps: usize, frequen
     (found, stray)
 }
 
-/// Rounding accumulates like the number of steps times 1e-16 times the phase per step: 1e-10 is ample for 2000.
+/// Rounding accumulates like the number of steps times 1e-16 times the phase per step: 1e-10 is ample for
+/// 2000.
 #[rstest]
 fn a_wave_swings_at_leapfrogs_own_frequency(
     #[values((1, 0), (0, 1), (2, 1), (3, 5), (6, 0), (6, 4), (5, 4))] mode: (u32, u32),
@@ -114,8 +115,8 @@ fn a_damped_wave_obeys_the_scheme(#[values(0.1, 1.0, 10.0)] omega_star: f64) {
     }
 }
 
-/// Long waves: c_P^2 = 9/8 and c_S^2 = 3/8 in every direction, those of plane stress at nu = 1/3. Checked on the
-/// simulation's own frequency, whose deviation is O(a^2 + b^2), below 1e-4 here.
+/// Long waves: c_P^2 = 9/8 and c_S^2 = 3/8 in every direction, those of plane stress at nu = 1/3. Checked on
+/// the simulation's own frequency, whose deviation is O(a^2 + b^2), below 1e-4 here.
 #[rstest]
 fn long_waves_are_those_of_an_isotropic_sheet(
     #[values((1, 0), (1, 1), (2, 1), (0, 1), (1, 3))] mode: (u32, u32),
@@ -170,8 +171,8 @@ fn growth(dt: f64, omega_star: f64, steps: usize) -> f64 {
     found[steps - 20..].iter().map(size).fold(0.0, f64::max)
 }
 
-/// dt* < 2/sqrt(6.5 k_1) = 0.9058 is stable and dt* above it is not, at any damping. At large damping the unstable
-/// wave gains only (w^2 dt^2 - 4)/(2 Omega dt) per step, hence the 1 % and the many steps.
+/// dt* < 2/sqrt(6.5 k_1) = 0.9058 is stable and dt* above it is not, at any damping. At large damping the
+/// unstable wave gains only (w^2 dt^2 - 4)/(2 Omega dt) per step, hence the 1 % and the many steps.
 #[rstest]
 fn stability_does_not_depend_on_damping(#[values(0.0, 0.1, 1.0, 3.0, 30.0)] omega_star: f64) {
     assert!((dt_star_limit() - 0.9058).abs() < 5e-5);

@@ -1,5 +1,5 @@
-//! Scale invariance: at equal groups V*, R*, Omega*, sigma* the dimensional quantities do not matter (Eqs. 11, 12),
-//! but for the load's strain eps = P mu_s/E, which bends the springs' law a little.
+//! Scale invariance: at equal groups V*, R*, Omega*, sigma* the dimensional quantities do not matter (Eqs.
+//! 11, 12), but for the load's strain eps = P mu_s/E, which bends the springs' law a little.
 
 use rstest::rstest;
 use slipfront::surface::{Coefficients, Distribution, Load};
@@ -73,17 +73,17 @@ fn difference(one: &Model, other: &Model) -> f64 {
     largest
 }
 
-/// With linear springs (eps = 0) only the rounding of the conversions differs, 1e-16 each, and no event comes a step
-/// earlier or later for that.
+/// With linear springs (eps = 0) only the rounding of the conversions differs, 1e-16 each, and no event comes
+/// a step earlier or later for that.
 #[rstest]
 fn without_strain_the_groups_alone_decide(#[values(1, 2, 3)] slider: usize) {
     let found = difference(&model(&SLIDERS[0], 0.0), &model(&SLIDERS[slider], 0.0));
     assert!(found < 1e-12, "{found}");
 }
 
-/// Each with its own strain, from 1e-6 to 9e-6: to first order in it. The stretch between neighbours, e = 0.1 to 1, bends
-/// a spring's force by eps e^2, and mu* by the mean of that over slipping and stuck ones: 1e-4 eps here, bounded by
-/// 1e-3 of the strain.
+/// Each with its own strain, from 1e-6 to 9e-6: to first order in it. The stretch between neighbours, e = 0.1
+/// to 1, bends a spring's force by eps e^2, and mu* by the mean of that over slipping and stuck ones: 1e-4
+/// eps here, bounded by 1e-3 of the strain.
 #[rstest]
 fn a_small_strain_changes_little(#[values(1, 2, 3)] slider: usize) {
     let (one, other) = (&SLIDERS[0], &SLIDERS[slider]);

@@ -92,7 +92,8 @@ fn lattice_forces_are_eq_3_to_the_letter(
     }
 }
 
-/// At linear springs the forces of a plane wave are -(D - k_s) u: an independent check of stiffnesses and signs.
+/// At linear springs the forces of a plane wave are -(D - k_s) u: an independent check of stiffnesses and
+/// signs.
 #[test]
 fn forces_of_a_plane_wave_are_those_of_the_dynamical_matrix() {
     let lattice = Lattice::with_edges(9, 7, [Edges::Periodic; 2]);
@@ -141,7 +142,8 @@ fn chains_along_x_and_along_y_are_the_same() {
     );
 }
 
-/// Across a chain the straight springs give way to first order, so that blocks slip one by one, each as if alone.
+/// Across a chain the straight springs give way to first order, so that blocks slip one by one, each as if
+/// alone.
 #[test]
 fn a_chain_pulled_across_is_a_row_of_single_blocks() {
     let slider = Slider {

@@ -1,5 +1,5 @@
-//! Quarter turns and mirrors of lattice, drive, surface and texture together turn the motion, to the last bit,
-//! through onset and far beyond.
+//! Quarter turns and mirrors of lattice, drive, surface and texture together turn the motion, to the last
+//! bit, through onset and far beyond.
 
 use rstest::rstest;
 use slipfront::surface::{Coefficients, Load, Texture, mesh};

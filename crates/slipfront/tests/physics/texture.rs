@@ -46,8 +46,8 @@ fn blocks_in_contact_carry_the_whole_load() {
     }
 }
 
-/// A textured block holds nothing, so that it moves as soon as any force acts: in the first step after t = 0. N* counts it,
-/// first-slip times do not.
+/// A textured block holds nothing, so that it moves as soon as any force acts: in the first step after t = 0.
+/// N* counts it, first-slip times do not.
 #[rstest]
 fn textured_blocks_move_at_once(#[values(FrictionLaw::Projection, FrictionLaw::Reversal)] law: FrictionLaw) {
     let slider = Slider { law, ..textured() };
@@ -83,7 +83,8 @@ fn textured_blocks_move_at_once(#[values(FrictionLaw::Projection, FrictionLaw::R
     assert!(earliest < model.first_slip_estimate());
 }
 
-/// Eq. 10 for a stuck block is the pull of its own drive spring; the traction shows the concentration at the rim.
+/// Eq. 10 for a stuck block is the pull of its own drive spring; the traction shows the concentration at the
+/// rim.
 #[test]
 fn contact_stress_and_traction_of_stuck_blocks() {
     let slider = textured().uniform();
@@ -149,7 +150,8 @@ fn two_readings_of_the_law_agree_and_the_literal_one_does_not() {
     assert!(!literal.peak.ended);
 }
 
-/// A peak beside a frictionless groove, where a block stops and starts often, does not hang on the reading either.
+/// A peak beside a frictionless groove, where a block stops and starts often, does not hang on the reading
+/// either.
 #[test]
 fn two_readings_agree_beside_a_groove() {
     let with = |law| {
@@ -241,8 +243,8 @@ fn instants_are_those_of_their_definitions(#[case] slider: Slider, #[case] kinet
     }
 }
 
-/// A run that stays up (R* = 1, strong damping) has no transition: the largest value is reported, and there is no D and
-/// no E.
+/// A run that stays up (R* = 1, strong damping) has no transition: the largest value is reported, and there
+/// is no D and no E.
 #[test]
 fn without_a_fall_there_is_no_transition() {
     let slider = Slider {

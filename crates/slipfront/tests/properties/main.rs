@@ -1,4 +1,5 @@
-//! Laws that hold for any valid slider: random lattices, edges, textures, laws, dampings, directions, surfaces.
+//! Laws that hold for any valid slider: random lattices, edges, textures, laws, dampings, directions,
+//! surfaces.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -135,11 +136,10 @@ proptest! {
         let load: f64 = surface.normal_forces.iter().sum();
         let carried = if slider.load == Load::Kept { n - n_textured } else { n };
         prop_assert!((load / carried as f64 - 1.0).abs() < 1e-12);
-        for b in 0..n {
-            prop_assert!(surface.hold[b] >= 0.0 && surface.slide[b] >= 0.0);
-            if textured[b] {
-                prop_assert!(surface.hold[b] == 0.0 && surface.slide[b] == 0.0 && surface.normal_forces[b] == 0.0);
-            }
+        for (b, &over) in textured.iter().enumerate() {
+            let felt = [surface.hold[b], surface.slide[b], surface.normal_forces[b]];
+            let nothing = felt == [0.0; 3];
+            prop_assert!(felt.iter().all(|&f| f >= 0.0) && (!over || nothing));
         }
     }
 
@@ -174,10 +174,10 @@ proptest! {
         let here = mesh(&lattice, &[cavity(center)]).textured;
         let moved = [center[0] + shift[0] as f64, center[1] + shift[1] as f64];
         let there = mesh(&lattice, &[cavity(moved)]).textured;
-        for b in 0..here.len() {
+        for (b, &over) in here.iter().enumerate() {
             let (i, j) = lattice.column_row(b);
             let to = lattice.block((i + shift[0]) % lattice.nx, (j + shift[1]) % lattice.ny);
-            prop_assert_eq!(here[b], there[to]);
+            prop_assert_eq!(over, there[to]);
         }
     }
 
@@ -217,8 +217,8 @@ proptest! {
         }
     }
 
-    /// What friction may do: a sliding block feels mu_k F_n against its motion, a stuck one what balances the rest and
-    /// never more than max(mu_s, mu_k) F_n unless it has just stopped.
+    /// What friction may do: a sliding block feels mu_k F_n against its motion, a stuck one what balances the
+    /// rest and never more than max(mu_s, mu_k) F_n unless it has just stopped.
     #[test]
     fn friction_stays_in_its_bounds(slider in slider()) {
         prop_assume!(has_contact(&slider));
@@ -244,8 +244,8 @@ proptest! {
         }
     }
 
-    /// Newton's third law: the forces between blocks add up to nothing, and so do their moments about any point when
-    /// edges are free.
+    /// Newton's third law: the forces between blocks add up to nothing, and so do their moments about any
+    /// point when edges are free.
     #[test]
     fn forces_between_blocks_cancel(lattice in lattice(), seed in any::<u64>(), epsilon in prop_oneof![Just(0.0), 1e-6..0.2_f64]) {
         let n = lattice.n_blocks();
@@ -265,7 +265,8 @@ proptest! {
             }).sum();
             prop_assert!(moment.abs() < 30.0 * tolerance, "moment {moment}");
         }
-        // Springs pull back: to first order the work of the forces over the displacement is minus twice the energy.
+        // Springs pull back: to first order the work of the forces over the displacement is minus twice the
+        // energy.
         if epsilon == 0.0 {
             let work: f64 = (0..n).map(|b| force.x[b] * u.x[b] + force.y[b] * u.y[b]).sum();
             prop_assert!(work <= tolerance);
