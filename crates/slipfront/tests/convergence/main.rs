@@ -116,7 +116,10 @@ fn first_slip(v_star: f64, dt_star: f64) -> (u64, u64) {
     };
     let model = slider.model();
     let mut simulation = Simulation::at_rest(&model, dt_star);
-    let slides = |simulation: &Simulation| simulation.snapshot().point.n_sliding > 0;
+    let slides = |simulation: &Simulation| {
+        assert!(simulation.time_star() * v_star < 8.0, "neither slips nor stops");
+        simulation.snapshot().point.n_sliding > 0
+    };
     while !slides(&simulation) {
         simulation.step();
     }

@@ -9,6 +9,7 @@ mod energy;
 mod first_slip;
 mod front_speed;
 mod lattice_waves;
+mod observables;
 mod scale_invariance;
 mod shapes;
 mod slip_cycle;

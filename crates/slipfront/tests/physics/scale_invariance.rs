@@ -65,6 +65,7 @@ fn difference(one: &Model, other: &Model) -> f64 {
     let (mut one, mut other) = (Simulation::at_rest(one, dt), Simulation::at_rest(other, dt));
     let mut largest = 0.0_f64;
     while !one.peak().ended {
+        assert!(one.time_star() < 200.0, "no transition");
         one.step();
         other.step();
         largest = largest.max((one.snapshot().point.mu_star - other.snapshot().point.mu_star).abs());

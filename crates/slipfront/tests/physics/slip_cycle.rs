@@ -74,6 +74,7 @@ fn first_slip(slider: &Slider) -> Slip {
     let (mut start, mut largest) = (None, 0.0_f64);
     loop {
         let now = simulation.snapshot();
+        assert!(now.time_star * slider.v_star < 8.0, "neither slips nor stops");
         let sliding = now.point.n_sliding == model.lattice.n_blocks();
         assert!(
             sliding || now.point.n_sliding == 0,
@@ -152,6 +153,7 @@ fn the_mean_force_over_a_cycle(
     let (mut starts, mut sum, mut slid) = (Vec::new(), 0.0, false);
     while starts.len() < 4 {
         let now = simulation.snapshot();
+        assert!(now.time_star * slider.v_star < 20.0, "the cycle does not repeat");
         let slides = now.point.n_sliding > 0;
         if slides && !slid {
             starts.push(now.step);

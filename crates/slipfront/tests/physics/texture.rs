@@ -1,8 +1,7 @@
 //! What a texture does to load, friction, counts and times; and the three readings of the friction law.
 
 use rstest::rstest;
-use slipfront::observe::frames::{Field, Selection};
-use slipfront::observe::{FirstSlip, Instants, KineticStart, Scheduled, StressMaximum, stress};
+use slipfront::observe::{FirstSlip, Scheduled, StressMaximum, stress};
 use slipfront::surface::{Load, Orientation};
 use slipfront::{Contact, FrictionLaw, Simulation, Stop};
 
@@ -165,106 +164,4 @@ fn two_readings_agree_beside_a_groove() {
     };
     let difference = (with(FrictionLaw::Projection) - with(FrictionLaw::Reversal)).abs();
     assert!(difference < 1e-3, "{difference}");
-}
-
-/// A-F of Fig. 4 against their definitions, on the recorded curve.
-#[rstest]
-#[case::baseline(Slider::default(), KineticStart::Auto)]
-#[case::textured(textured(), KineticStart::Auto)]
-#[case::fast(Slider { v_star: 0.2, dt_star: 0.02, ..Slider::default() }, KineticStart::Auto)]
-#[case::given_start(Slider::default(), KineticStart::At(200.0))]
-#[case::a_falls_on_a_step(Slider { v_star: 0.125, dt_star: 2.0 / 3.0 * 0.125, ..Slider::default() }, KineticStart::Auto)]
-fn instants_are_those_of_their_definitions(#[case] slider: Slider, #[case] kinetic: KineticStart) {
-    let model = slider.model();
-    let steps = slider.steps(8.0);
-    let end = steps as f64 * slider.dt_star;
-    let selection = Selection {
-        fields: vec![Field::Sliding, Field::DisplacementX, Field::Traction],
-        stride: 3,
-    };
-    let mut instants = Instants::new(selection.clone(), kinetic, end);
-    let mut first = FirstSlip::none(625);
-    let mut simulation = Simulation::at_rest(&model, slider.dt_star);
-    simulation
-        .run(
-            Stop::at_step(steps),
-            &mut [Scheduled::always(&mut instants), Scheduled::always(&mut first)],
-        )
-        .unwrap();
-    let peak = simulation.peak();
-    let found = instants.found();
-    let letters: String = found.iter().map(|(letter, _)| *letter).collect();
-    assert_eq!(letters, "ABCDEF");
-    let rows = slider.run(8.0).rows;
-    let v = slider.v_star;
-    let kinetic_from = kinetic.time_star(&peak, v);
-    let first_at = |time: f64| rows.iter().position(|row| row.time_star >= time).unwrap() as u64;
-    let after = |from: u64, to: f64| {
-        rows.iter()
-            .filter(move |row| row.step >= from && row.time_star <= to)
-    };
-    let most = after(peak.step, peak.time_star + 2.5 / v)
-        .map(|row| row.point.n_sliding)
-        .max()
-        .unwrap();
-    let d = after(peak.step, f64::INFINITY)
-        .find(|row| row.point.n_sliding == most)
-        .unwrap()
-        .step;
-    let least = after(d, kinetic_from)
-        .map(|row| row.point.mu_star)
-        .fold(f64::INFINITY, f64::min);
-    let e = after(d, f64::INFINITY)
-        .find(|row| row.point.mu_star == least)
-        .unwrap()
-        .step;
-    let b = first_at(first.earliest.unwrap());
-    let expected = [
-        first_at(0.5 / v),
-        b,
-        peak.step,
-        d,
-        e,
-        first_at(0.5 * (kinetic_from + end)),
-    ];
-    let steps: Vec<u64> = found.iter().map(|(_, frame)| frame.step).collect();
-    assert_eq!(steps, expected);
-    for (letter, frame) in &found {
-        assert_eq!(frame.point, rows[frame.step as usize].point, "{letter}");
-        assert_eq!(frame.values.len(), 3);
-        assert!(frame.values.iter().all(|field| field.len() == 9 * 9));
-        // The fields belong to the same step as the curve: the run repeated up to it shows the same.
-        let mut again = Simulation::at_rest(&model, slider.dt_star);
-        again.run(Stop::at_step(frame.step), &mut []).unwrap();
-        let exact = selection.capture(&again.snapshot());
-        for (one, other) in frame.values.iter().flatten().zip(exact.values.iter().flatten()) {
-            assert!(one == other || (one.is_nan() && other.is_nan()), "{letter}");
-        }
-    }
-}
-
-/// A run that stays up (R* = 1, strong damping) has no transition: the largest value is reported, and there
-/// is no D and no E.
-#[test]
-fn without_a_fall_there_is_no_transition() {
-    let slider = Slider {
-        r_star: 1.0,
-        omega_star: 3.0,
-        ..Slider::default()
-    };
-    let model = slider.model();
-    let steps = slider.steps(8.0);
-    let selection = Selection {
-        fields: vec![Field::Sliding],
-        stride: 1,
-    };
-    let mut instants = Instants::new(selection, KineticStart::Auto, steps as f64 * slider.dt_star);
-    let mut simulation = Simulation::at_rest(&model, slider.dt_star);
-    simulation
-        .run(Stop::at_step(steps), &mut [Scheduled::always(&mut instants)])
-        .unwrap();
-    let peak = simulation.peak();
-    assert!(!peak.ended && peak.mu_star == peak.mu_star_max);
-    let letters: String = instants.found().iter().map(|(letter, _)| *letter).collect();
-    assert_eq!(letters, "ABCF");
 }
