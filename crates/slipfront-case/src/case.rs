@@ -541,7 +541,12 @@ fn schedule(file: &CaseFile, scales: &Scales, groups: &Groups) -> Result<Schedul
             "a run to t* = {end_star:.4e} in steps of {dt_star} takes {steps:.2e} steps, more than {MAX_STEPS:.0e}: \
              shorten it or raise the step"
         );
-        return Err(file.source.error("time.duration_star", sentence));
+        let key = if file.source.has("time.duration") {
+            "time.duration"
+        } else {
+            "time.duration_star"
+        };
+        return Err(file.source.error(key, sentence));
     }
     let kinetic = match time.kinetic_from_star {
         AutoOr::Auto => KineticStart::Auto,
@@ -602,7 +607,7 @@ fn output(file: &CaseFile, schedule: &Schedule, lattice: &Lattice) -> Result<Out
     let stride = file.output.stride as usize;
     let output = Output {
         snapshots,
-        fields: file.output.fields.iter().map(field_name).collect(),
+        fields: file.output.fields.clone(),
         stride,
         series_stride,
     };
@@ -616,16 +621,6 @@ fn output(file: &CaseFile, schedule: &Schedule, lattice: &Lattice) -> Result<Out
         return Err(file.source.error("output.snapshots", sentence));
     }
     Ok(output)
-}
-
-fn field_name(field: &case_file::Field) -> FieldName {
-    match field {
-        case_file::Field::ContactStressStar => FieldName::ContactStressStar,
-        case_file::Field::Traction => FieldName::Traction,
-        case_file::Field::DisplacementX => FieldName::DisplacementX,
-        case_file::Field::DisplacementY => FieldName::DisplacementY,
-        case_file::Field::Sliding => FieldName::Sliding,
-    }
 }
 
 impl Output {

@@ -26,7 +26,7 @@ use toml::de::{DeTable, DeValue, ValueDeserializer};
 
 pub use error::{CaseError, Invalid};
 pub use motion::{Drive, DriveSpeed, Friction, KineticFriction, Law, Load};
-pub use output::{Field, Output, Snapshots};
+pub use output::{Output, Snapshots};
 pub use slider::{Damping, Edge, Slider};
 pub use source::{Place, Source};
 pub use texture::{Cavity, CavitySize, Center, Groove, GrooveSize, Mask, Orientation, Polygon, Texture};
@@ -152,8 +152,9 @@ impl CaseFile {
     /// Writes the case with every default filled in, in the order of the design; reading it back gives an equal case.
     ///
     /// # Errors
-    /// [`CaseError::Unwritable`] for a seed of 2^63 or more, which TOML cannot hold and no parsed case has.
+    /// Those of [`check`](Self::check) for a case that was changed in code: what is written can be read.
     pub fn to_toml(&self) -> Result<String, CaseError> {
+        self.check()?;
         Ok(toml::to_string(self)?)
     }
 }

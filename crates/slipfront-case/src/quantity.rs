@@ -294,9 +294,9 @@ impl<K: Kind> Quantity<K> {
         }
     }
 
-    fn no_unit(value: impl ToString) -> QuantityError {
+    fn no_unit(value: String) -> QuantityError {
         QuantityError::NoUnit {
-            value: value.to_string(),
+            value,
             wanted: K::NAME,
             example: K::EXAMPLE,
         }
@@ -331,7 +331,7 @@ impl<K: Kind> FromStr for Quantity<K> {
             example: K::EXAMPLE,
         })?;
         if number.rest.trim().is_empty() {
-            return Err(Self::no_unit(text.trim()));
+            return Err(Self::no_unit(text.trim().to_owned()));
         }
         let unit = read_unit(text, number.rest)?;
         if unit.dimension != K::DIMENSION {
@@ -388,11 +388,11 @@ impl<K: Kind> Visitor<'_> for QuantityVisitor<K> {
     }
 
     fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<Self::Value, E> {
-        Err(E::custom(Quantity::<K>::no_unit(value)))
+        Err(E::custom(Quantity::<K>::no_unit(value.to_string())))
     }
 
     fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<Self::Value, E> {
-        Err(E::custom(Quantity::<K>::no_unit(value)))
+        Err(E::custom(Quantity::<K>::no_unit(value.to_string())))
     }
 
     fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Self::Value, E> {

@@ -85,9 +85,9 @@ fn write_fields(case: &Case, record: &Record, path: &Path) -> Result<(), FieldsE
     let frames: Vec<FieldFrame> = record
         .frames
         .iter()
-        .map(|(letter, frame)| FieldFrame {
+        .map(|(label, frame)| FieldFrame {
             time_star: frame.time_star,
-            label: letter.map(String::from).unwrap_or_default(),
+            label: label.clone(),
             step: frame.step,
             values: dimensional(case, record, frame),
         })

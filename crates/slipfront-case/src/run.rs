@@ -17,8 +17,8 @@ pub struct Record {
     pub summary: Summary,
     /// The recorded curve.
     pub rows: Vec<CurveRow>,
-    /// Fields, in the order of time, with their letters where they are instants A-F.
-    pub frames: Vec<(Option<char>, Frame)>,
+    /// Fields in the order of time, each with the letters of the instants A-F that it shows.
+    pub frames: Vec<(String, Frame)>,
     /// t* of the first slip of every block.
     pub first_slip_time_star: Vec<f64>,
     /// tau_c^max, in units of `P mu_s`.
@@ -58,15 +58,10 @@ pub fn run(case: &Case, watch_every: u64, watcher: &mut dyn Observer) -> Result<
     let reason = simulation.run(schedule.stop, &mut observers)?;
     drop(observers);
 
-    let mut frames: Vec<(Option<char>, Frame)> = match case.output.snapshots {
-        Snapshots::Instants => instants
-            .found()
-            .into_iter()
-            .map(|(letter, frame)| (Some(letter), frame))
-            .collect(),
-        _ => frames.frames.into_iter().map(|frame| (None, frame)).collect(),
+    let instants = match case.output.snapshots {
+        Snapshots::Instants => instants.found(),
+        Snapshots::At(_) | Snapshots::Every(_) => Vec::new(),
     };
-    frames.sort_by_key(|(letter, frame)| (frame.step, *letter));
     let peak = simulation.peak();
     let kinetic_from = schedule.kinetic.time_star(&peak, case.groups.v_star);
     // A run that stops at its onset has no kinetic phase, wherever the window was meant to begin.
@@ -86,13 +81,34 @@ pub fn run(case: &Case, watch_every: u64, watcher: &mut dyn Observer) -> Result<
         &first_slip,
         history.sliding_percent_max(),
         last,
-        &frames,
+        &instants,
     );
     Ok(Record {
         summary,
         rows: curve.rows,
-        frames,
+        frames: if instants.is_empty() {
+            unlettered(frames.frames)
+        } else {
+            merged(instants)
+        },
         first_slip_time_star: first_slip.time_star,
         contact_stress_max: stress_maximum.value(),
     })
+}
+
+fn unlettered(frames: Vec<Frame>) -> Vec<(String, Frame)> {
+    frames.into_iter().map(|frame| (String::new(), frame)).collect()
+}
+
+/// Instants that coincide, as on a uniform lattice, are one frame with several letters: times of a file must rise.
+fn merged(mut instants: Vec<(char, Frame)>) -> Vec<(String, Frame)> {
+    instants.sort_by_key(|(letter, frame)| (frame.step, *letter));
+    let mut frames: Vec<(String, Frame)> = Vec::new();
+    for (letter, frame) in instants {
+        match frames.last_mut() {
+            Some((letters, last)) if last.step == frame.step => letters.push(letter),
+            _ => frames.push((letter.to_string(), frame)),
+        }
+    }
+    frames
 }

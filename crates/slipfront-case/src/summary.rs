@@ -101,22 +101,19 @@ impl Summary {
         first_slip: &FirstSlip,
         sliding_percent_max: f64,
         (steps, energies): (u64, Energies),
-        frames: &[(Option<char>, Frame)],
+        instants: &[(char, Frame)],
     ) -> Self {
         let (mean, time) = (case.scales.mu_static_mean, case.scales.time());
         let energy = case.scales.energy();
-        let mut instants: Vec<InstantSummary> = frames
+        let instants = instants
             .iter()
-            .filter_map(|(letter, frame)| {
-                Some(InstantSummary {
-                    instant: (*letter)?,
-                    time_star: frame.time_star,
-                    mu_star: frame.point.mu_star,
-                    sliding_percent: frame.point.sliding_percent,
-                })
+            .map(|(letter, frame)| InstantSummary {
+                instant: *letter,
+                time_star: frame.time_star,
+                mu_star: frame.point.mu_star,
+                sliding_percent: frame.point.sliding_percent,
             })
             .collect();
-        instants.sort_by_key(|instant| instant.instant);
         Self {
             static_friction_star: peak.mu_star,
             static_friction: peak.mu_star * mean,

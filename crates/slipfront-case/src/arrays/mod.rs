@@ -8,7 +8,7 @@ mod mask;
 mod npy;
 mod table;
 
-use std::fs::{File, Metadata};
+use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -177,7 +177,7 @@ fn unknown_extension(path: &Path, extension: &str, known: &'static str) -> Array
 /// The check comes before the opening, because opening a named pipe waits for a writer.
 fn open(path: &Path) -> Result<(File, u64), ArrayError> {
     let metadata = std::fs::metadata(path).map_err(|source| read_error(path, source))?;
-    if !Metadata::is_file(&metadata) {
+    if !metadata.is_file() {
         return Err(ArrayError::NotAFile {
             path: path.to_owned(),
         });

@@ -357,16 +357,17 @@ impl CaseFile {
                 }
                 if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {
                     let sentence = format!(
-                        "`output.snapshots` has {:?} after {:?}: list the times in increasing order, each once",
-                        pair[1], pair[0]
+                        "`output.snapshots` has {} after {}: list the times in increasing order, each once",
+                        shown(pair[1]),
+                        shown(pair[0])
                     );
                     return Err(self.source.error("output.snapshots", sentence));
                 }
             }
         }
         let mut seen = BTreeSet::new();
-        if let Some(field) = output.fields.iter().find(|field| !seen.insert(**field)) {
-            let sentence = format!("`output.fields` names {field:?} twice: keep one of them");
+        if !output.fields.iter().all(|field| seen.insert(field)) {
+            let sentence = "`output.fields` names a field twice: name each once";
             return Err(self.source.error("output.fields", sentence));
         }
         if !(1..=MAX_BLOCKS).contains(&output.stride) {

@@ -9,6 +9,9 @@ use thiserror::Error;
 use super::keys;
 use super::source::{Place, Source, shortened};
 
+/// The longest sentence of an error, in characters.
+const MAX_SENTENCE: usize = 1000;
+
 /// A case file that cannot be used.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -43,7 +46,7 @@ pub enum CaseError {
         /// The line of the first byte that is not UTF-8, from 1.
         line: usize,
     },
-    /// The case is too large or too odd for TOML to hold, such as a seed of 2^63 or more.
+    /// The case cannot be expressed in TOML.
     #[error("the case cannot be written as TOML: {0}")]
     Unwritable(#[from] toml::ser::Error),
     /// Something that is written in the case, or in a `--set`, is wrong.
@@ -64,10 +67,13 @@ pub struct Invalid {
 
 impl CaseError {
     pub(super) fn invalid(place: Option<Place>, sentence: impl Into<String>) -> Self {
-        Self::Invalid(Box::new(Invalid {
-            place,
-            sentence: sentence.into(),
-        }))
+        let mut sentence: String = sentence.into();
+        // A text of the user's, repeated in a sentence, may be as long as the file.
+        if let Some((end, _)) = sentence.char_indices().nth(MAX_SENTENCE) {
+            sentence.truncate(end);
+            sentence.push_str("...");
+        }
+        Self::Invalid(Box::new(Invalid { place, sentence }))
     }
 
     /// An error of TOML's grammar.
@@ -143,7 +149,7 @@ fn in_plain_words(message: &str) -> String {
             "expected u64",
             "expected a whole number from 0 to 9223372036854775807",
         ),
-        ("a sequence", "a list"),
+        ("type: map", "type: table"),
         ("sequence", "list"),
         ("floating point", "number"),
     ];

@@ -11,6 +11,9 @@ use super::error::CaseError;
 use super::source::Source;
 use super::{Cavity, Drive, Friction, Groove, Load, Mask, Output, Polygon, Slider, Time};
 
+/// The longest name that is compared with the known ones, in bytes.
+const MAX_NAME: usize = 100;
+
 /// Keys of a table that set the same thing: one of the two, never both.
 const PAIRS: [(&str, [&str; 2]); 6] = [
     ("slider", ["omega_star", "damping_rate"]),
@@ -94,8 +97,10 @@ pub(super) fn refuse_both(root: &DeTable<'_>, source: &Source) -> Result<(), Cas
             if let [first, second] = spans.as_slice() {
                 let later = if first.start > second.start { first } else { second };
                 let [first, second] = pair;
-                let sentence =
-                    format!("`{first}` and `{second}` in [{table}] set the same thing: keep one of them");
+                let sentence = format!(
+                    "`{first}` and `{second}` in {} set the same thing: keep one of them",
+                    header(table)
+                );
                 return Err(source.error_at(later.clone(), sentence));
             }
         }
@@ -145,6 +150,10 @@ pub(super) fn unknown_shape(shape: Option<&str>) -> String {
 
 /// The one of `known` that `word` was probably meant to be.
 pub(super) fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
+    // The distance takes time and memory in proportion to the word, which may be as long as the file.
+    if word.len() > MAX_NAME {
+        return None;
+    }
     let distances = known
         .iter()
         .map(|key| (strsim::damerau_levenshtein(word, key), *key));

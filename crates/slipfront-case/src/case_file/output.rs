@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::values::{AutoOr, words};
+use crate::fields::FieldName;
 
 /// `[output]`: snapshots, fields and the series.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -12,7 +13,7 @@ pub struct Output {
     pub snapshots: Snapshots,
     /// The fields that are written at these instants.
     #[serde(deserialize_with = "words")]
-    pub fields: Vec<Field>,
+    pub fields: Vec<FieldName>,
     /// Every n-th block, along x and along y, is written to the fields file; 1 or more.
     pub stride: u32,
     /// Spacing of the rows of the series in t*; `auto` is every step, or as many as give at most 20 000 rows.
@@ -31,32 +32,16 @@ pub enum Snapshots {
     Every(f64),
 }
 
-/// A field over the blocks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Field {
-    /// The contact stress of Eq. 10 over its maximum.
-    ContactStressStar,
-    /// The friction force over the block's area, blank where the surface is textured.
-    Traction,
-    /// Displacement from the rest site along x.
-    DisplacementX,
-    /// Displacement from the rest site along y.
-    DisplacementY,
-    /// Whether the block slides.
-    Sliding,
-}
-
 impl Default for Output {
     fn default() -> Self {
         Self {
             snapshots: Snapshots::Auto,
             fields: vec![
-                Field::ContactStressStar,
-                Field::Traction,
-                Field::DisplacementX,
-                Field::DisplacementY,
-                Field::Sliding,
+                FieldName::ContactStressStar,
+                FieldName::Traction,
+                FieldName::DisplacementX,
+                FieldName::DisplacementY,
+                FieldName::Sliding,
             ],
             stride: 1,
             series: AutoOr::Auto,

@@ -10,7 +10,7 @@ use super::error::CaseError;
 use super::keys;
 use super::source::Source;
 
-/// No key of a case file has more parts than `texture.0.center`.
+/// Most parts of a key: `texture.0.center.1` is one number of a pair.
 const MAX_PARTS: usize = 4;
 
 /// Applies the override that stands at `span` of `text` to the parsed file.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::values::{Pair, pair, word};
-use crate::quantity::Length;
+use crate::quantity::{Length, QuantityError};
 
 /// One `[[texture]]` of the file; a block is textured when its centre lies inside any of them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -23,13 +23,13 @@ pub enum Texture {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "CavityKeys", into = "CavityKeys")]
 pub struct Cavity {
-    /// Number of lobes (s), 1 to 64.
+    /// Kind of outline (s), 1 to 64: an ellipse for 1, else a polygon of s + 1 curved edges.
     pub s: u32,
-    /// How far the outline is from a circle (w): |w| < 1 for s = 1, |w| <= 1/s otherwise.
+    /// How far the outline is from a circle (w): |w| < 1 for s = 1, |w| <= 1/s, where vertices are sharp, otherwise.
     pub w: f64,
     /// The size: `coverage` or `lambda`.
     pub size: CavitySize,
-    /// Whether x and y are swapped, so that a cavity of s = 1 and w > 0 is elongated across the x axis.
+    /// Whether x and y of the outline are swapped: an ellipse of w > 0 is then elongated along y, not x.
     pub across: bool,
     /// The centre, or the centre of the grid.
     pub center: Center,
@@ -44,7 +44,7 @@ pub struct Cavity {
 pub enum CavitySize {
     /// `coverage`: percent of the whole area (Eq. 18), all cavities of the grid together; more than 0, less than 100.
     Coverage(f64),
-    /// `lambda`: the mean radius of Eq. 17, m.
+    /// `lambda`: the length of Eq. 17, the radius of the circle that w = 0 gives, m.
     Lambda(Length),
 }
 
@@ -253,7 +253,8 @@ impl From<Groove> for GrooveKeys {
 )]
 enum CenterKey {
     Word(String),
-    At(Vec<String>),
+    /// Texts, so that a length that cannot be read keeps its own message.
+    At(Pair<String>),
 }
 
 impl TryFrom<CenterKey> for Center {
@@ -265,10 +266,9 @@ impl TryFrom<CenterKey> for Center {
             CenterKey::Word(word) => Err(format!(
                 "{word:?} is given, \"middle\" or a pair of lengths is wanted"
             )),
-            CenterKey::At(lengths) => {
-                let lengths: Result<Vec<Length>, _> = lengths.iter().map(|length| length.parse()).collect();
-                let Pair(center) = Pair::try_from(lengths.map_err(|error| error.to_string())?)?;
-                Ok(Self::At(center))
+            CenterKey::At(Pair([x, y])) => {
+                let length = |text: String| text.parse().map_err(|error: QuantityError| error.to_string());
+                Ok(Self::At([length(x)?, length(y)?]))
             }
         }
     }
@@ -278,7 +278,7 @@ impl From<Center> for CenterKey {
     fn from(center: Center) -> Self {
         match center {
             Center::Middle => Self::Word("middle".to_owned()),
-            Center::At(center) => Self::At(center.iter().map(Length::to_string).collect()),
+            Center::At(center) => Self::At(Pair(center.map(|length| length.to_string()))),
         }
     }
 }

@@ -1,21 +1,44 @@
 //! Shapes of values that several tables use: pairs, and words beside numbers.
 
-use serde::de::IntoDeserializer;
-use serde::{Deserialize, Deserializer, Serialize};
+use std::fmt;
+use std::marker::PhantomData;
+
+use serde::de::{Error as _, IntoDeserializer, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Exactly two values. (Serde's own `[T; 2]` leaves a third value unread.)
-#[derive(Deserialize)]
-#[serde(try_from = "Vec<T>")]
-#[serde(bound = "T: Deserialize<'de>")]
 pub(super) struct Pair<T>(pub(super) [T; 2]);
 
-impl<T> TryFrom<Vec<T>> for Pair<T> {
-    type Error = String;
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Pair<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_seq(PairVisitor(PhantomData))
+    }
+}
 
-    fn try_from(values: Vec<T>) -> Result<Self, String> {
+/// Counts inside the visit, where an error still gets the place of the pair.
+struct PairVisitor<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for PairVisitor<T> {
+    type Value = Pair<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a pair [x, y]")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut elements: A) -> Result<Pair<T>, A::Error> {
+        let mut values = Vec::new();
+        while let Some(value) = elements.next_element()? {
+            values.push(value);
+        }
         let pair = <[T; 2]>::try_from(values);
         pair.map(Pair)
-            .map_err(|values| format!("{} value(s) given, a pair [x, y] is wanted", values.len()))
+            .map_err(|values| A::Error::invalid_length(values.len(), &self))
+    }
+}
+
+impl<T: Serialize> Serialize for Pair<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.serialize(serializer)
     }
 }
 
@@ -32,7 +55,22 @@ struct Word<T>(T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Word<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        T::deserialize(String::deserialize(deserializer)?.into_deserializer()).map(Word)
+        deserializer.deserialize_str(WordVisitor(PhantomData))
+    }
+}
+
+/// Looks the word up inside the visit, where an error still gets the place of the word.
+struct WordVisitor<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for WordVisitor<T> {
+    type Value = Word<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a word in quotes")
+    }
+
+    fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<Word<T>, E> {
+        T::deserialize(word.to_owned().into_deserializer()).map(Word)
     }
 }
 

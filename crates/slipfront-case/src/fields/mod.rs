@@ -19,7 +19,7 @@ pub use read::read_fields;
 pub use write::write_fields;
 
 /// A field that changes with time, named as in `output.fields` of a case file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, PartialOrd, Ord)]
 #[serde(rename_all = "snake_case")]
 pub enum FieldName {
     /// Contact stress over its maximum.
@@ -95,7 +95,7 @@ impl FieldName {
     pub fn long_name(self) -> &'static str {
         match self {
             FieldName::ContactStressStar => "contact stress over its maximum",
-            FieldName::Traction => "friction force over block area, NaN in cavities",
+            FieldName::Traction => "friction force over block area",
             FieldName::DisplacementX => "displacement along x from rest",
             FieldName::DisplacementY => "displacement along y from rest",
             FieldName::VelocityX => "velocity along x",
@@ -166,7 +166,7 @@ pub struct FieldsData {
     pub block_size: f64,
     /// Duration of one unit of t*, in s.
     pub time_unit_s: f64,
-    /// The fields of every frame, in the order of [`FieldFrame::values`].
+    /// The fields of every frame, in the order of [`FieldFrame::values`]; none if there are no frames.
     pub names: Vec<FieldName>,
     /// Whether the block is texture.
     pub textured: Vec<bool>,

@@ -43,10 +43,7 @@ fn read(path: &Path) -> Result<FieldsData, Fault> {
             )));
         }
     }
-    if file.dimension(TIME)? != 0 {
-        return Err(Fault::Broken(format!("`{TIME}` is not the record dimension")));
-    }
-
+    // A file without instants has no dimension `time`.
     let names: Vec<FieldName> = file
         .variables_over(&[TIME, Y, X])
         .filter_map(FieldName::from_name)

@@ -212,14 +212,10 @@ fn label_length(file: &FieldsFile) -> usize {
 /// Every dimension, attribute and variable, without the numbers.
 ///
 /// Blanks are NaN, which every reader knows; there is no `_FillValue`, because `netcdf3` finds its variables by
-/// comparing them with all their attributes, and NaN equals nothing.
+/// comparing them with all their attributes, and NaN equals nothing. Nor have x and y an `axis`: ParaView would
+/// take them for longitude and latitude.
 fn define(file: &FieldsFile) -> Result<DataSet, InvalidDataSet> {
     let mut set = DataSet::new();
-    set.set_unlimited_dim(TIME, file.frames.len())?;
-    set.add_fixed_dim(Y, file.rows())?;
-    set.add_fixed_dim(X, file.columns())?;
-    set.add_fixed_dim(LABEL_LENGTH, label_length(file))?;
-
     set.add_global_attr_string("Conventions", "CF-1.8")?;
     set.add_global_attr_string("title", "Fields of a spring-block model of friction")?;
     set.add_global_attr_string("source", concat!("slipfront ", env!("CARGO_PKG_VERSION")))?;
@@ -227,51 +223,62 @@ fn define(file: &FieldsFile) -> Result<DataSet, InvalidDataSet> {
     set.add_global_attr_i32(STRIDE, vec![file.stride as i32])?;
     set.add_global_attr_f64(BLOCK_SIZE, vec![file.block_size])?;
     set.add_global_attr_f64(TIME_UNIT, vec![file.time_unit_s])?;
+    define_statics(&mut set, file)?;
+    // A record dimension without records makes ParaView crash.
+    if !file.frames.is_empty() {
+        define_frames(&mut set, file)?;
+    }
+    Ok(set)
+}
 
-    set.add_var_f64(TIME, &[TIME])?;
-    describe(&mut set, TIME, "time since the start of the drive", "s")?;
-    set.add_var_attr_string(TIME, "axis", "T")?;
+fn define_statics(set: &mut DataSet, file: &FieldsFile) -> Result<(), InvalidDataSet> {
+    set.add_fixed_dim(Y, file.rows())?;
+    set.add_fixed_dim(X, file.columns())?;
     set.add_var_f64(Y, &[Y])?;
-    describe(&mut set, Y, "y of the block centre", "m")?;
-    set.add_var_attr_string(Y, "axis", "Y")?;
+    describe(set, Y, "y of the block centre", "m")?;
     set.add_var_f64(X, &[X])?;
-    describe(&mut set, X, "x of the block centre", "m")?;
-    set.add_var_attr_string(X, "axis", "X")?;
-    set.add_var_f64(TIME_STAR, &[TIME])?;
-    describe(&mut set, TIME_STAR, "dimensionless time t*", "1")?;
-    set.add_var_f64(STEP, &[TIME])?;
-    describe(&mut set, STEP, "number of the time step", "1")?;
-    set.add_var_u8(LABEL, &[TIME, LABEL_LENGTH])?;
-    set.add_var_attr_string(LABEL, "long_name", "name of the instant")?;
-
+    describe(set, X, "x of the block centre", "m")?;
     // 16 bits, because the padding after a pair of bytes is not zero as the format wants it.
     set.add_var_i16(TEXTURED, &[Y, X])?;
-    describe(&mut set, TEXTURED, "texture", "1")?;
+    describe(set, TEXTURED, "texture", "1")?;
     set.add_var_attr_i16(TEXTURED, "flag_values", vec![0, 1])?;
     set.add_var_attr_string(TEXTURED, "flag_meanings", "contact cavity")?;
     set.add_var_f64(MU_STATIC, &[Y, X])?;
-    describe(&mut set, MU_STATIC, "static friction coefficient", "1")?;
+    describe(set, MU_STATIC, "static friction coefficient", "1")?;
     set.add_var_f64(MU_KINETIC, &[Y, X])?;
-    describe(&mut set, MU_KINETIC, "kinetic friction coefficient", "1")?;
+    describe(set, MU_KINETIC, "kinetic friction coefficient", "1")?;
     set.add_var_f64(FIRST_SLIP, &[Y, X])?;
-    describe(
-        &mut set,
-        FIRST_SLIP,
-        "dimensionless time t* of the first slip, NaN = never",
-        "1",
-    )?;
+    describe(set, FIRST_SLIP, "time t* of the first slip", "1")?;
+    set.add_var_attr_string(FIRST_SLIP, "comment", "NaN where a block never slips")
+}
 
+fn define_frames(set: &mut DataSet, file: &FieldsFile) -> Result<(), InvalidDataSet> {
+    set.set_unlimited_dim(TIME, file.frames.len())?;
+    set.add_fixed_dim(LABEL_LENGTH, label_length(file))?;
+    set.add_var_f64(TIME, &[TIME])?;
+    describe(set, TIME, "time since the start of the drive", "s")?;
+    set.add_var_attr_string(TIME, "axis", "T")?;
+    set.add_var_f64(TIME_STAR, &[TIME])?;
+    describe(set, TIME_STAR, "dimensionless time t*", "1")?;
+    set.add_var_f64(STEP, &[TIME])?;
+    describe(set, STEP, "number of the time step", "1")?;
+    set.add_var_u8(LABEL, &[TIME, LABEL_LENGTH])?;
+    set.add_var_attr_string(LABEL, "long_name", "name of the instant")?;
     for name in file.names {
         let text = name.as_str();
         set.add_var_f32(text, &[TIME, Y, X])?;
-        describe(&mut set, text, name.long_name(), name.unit())?;
+        describe(set, text, name.long_name(), name.unit())?;
         set.add_var_attr_string(text, "coordinates", "time_star instant")?;
-        if *name == FieldName::Sliding {
-            set.add_var_attr_f32(text, "flag_values", vec![0.0, 1.0])?;
-            set.add_var_attr_string(text, "flag_meanings", "stuck sliding")?;
+        match name {
+            FieldName::Traction => set.add_var_attr_string(text, "comment", "NaN in cavities")?,
+            FieldName::Sliding => {
+                set.add_var_attr_f32(text, "flag_values", vec![0.0, 1.0])?;
+                set.add_var_attr_string(text, "flag_meanings", "stuck sliding")?;
+            }
+            _ => {}
         }
     }
-    Ok(set)
+    Ok(())
 }
 
 fn describe(set: &mut DataSet, variable: &str, long_name: &str, units: &str) -> Result<(), InvalidDataSet> {

@@ -1,0 +1,84 @@
+use std::fs;
+use std::path::Path;
+
+use slipfront_case::case_file::{CaseError, CaseFile};
+
+fn refused(text: &str, overrides: &[&str]) -> String {
+    let overrides: Vec<String> = overrides.iter().map(|&entry| entry.to_owned()).collect();
+    let message = CaseFile::parse(text, "hostile.toml", &overrides)
+        .unwrap_err()
+        .to_string();
+    assert!(message.len() < 2000, "a message of {} bytes", message.len());
+    message
+}
+
+#[test]
+fn deep_nesting_is_refused_without_overflow() {
+    const DEPTH: usize = 100_000;
+    for (open, close) in [("[", "]"), ("{ a = ", "}")] {
+        let nested = format!("{}1{}", open.repeat(DEPTH), close.repeat(DEPTH));
+        assert!(refused(&format!("a = {nested}"), &[]).contains("this is not valid TOML"));
+        assert!(refused("", &[&format!("a={nested}")]).contains("this is not valid TOML"));
+        assert!(refused("", &[&format!("a={}", open.repeat(DEPTH))]).contains("this is not valid TOML"));
+    }
+    let dotted = vec!["a"; DEPTH].join(".");
+    for text in [
+        format!("{dotted} = 1"),
+        format!("[{dotted}]"),
+        format!("[[{dotted}]]"),
+    ] {
+        refused(&text, &[]);
+    }
+    refused("", &[&format!("{dotted}=1")]);
+    refused(
+        &format!("[slider]\nblocks = {}1{}", "[".repeat(60), "]".repeat(60)),
+        &[],
+    );
+}
+
+#[test]
+fn long_lines_and_odd_characters_make_short_messages() {
+    let long = "x".repeat(1_000_000);
+    refused(&format!("[load]\n{long} = 3"), &[]);
+    refused(&format!("[load]\npressure = \"{long}\""), &[]);
+    refused(&format!("[friction]\nlaw = \"{long}\""), &[]);
+    refused(&format!("[[texture]]\nshape = \"{long}\""), &[]);
+    refused(&format!("{long} = 3"), &[]);
+    refused("", &[&format!("load.{long}=3")]);
+    refused("", &[&format!("load.pressure={long}")]);
+    refused("[load]\n\"pres\\nsure\" = 3", &[]);
+    refused("[load]\n\"\\u0007\" = \"\u{1f600}\" # \u{1f600}", &[]);
+    refused("\u{1f600}", &[]);
+    refused("[load]\npressure = \"\u{1f600}", &[]);
+    refused("a = 1979-05-27T07:32:00Z", &[]);
+    refused("[load]\npressure = 1979-05-27", &[]);
+    refused("[time]\nstep = 1979-05-27", &[]);
+}
+
+#[test]
+fn files_that_cannot_be_read_say_why() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("case.toml");
+    let load = |path: &Path| CaseFile::load(path, &[]).unwrap_err();
+    assert!(matches!(load(&path), CaseError::Unreadable { .. }));
+    assert!(load(&path).to_string().starts_with("cannot read the case file "));
+    assert!(
+        load(folder.path())
+            .to_string()
+            .ends_with("is a folder: name the case file in it")
+    );
+    fs::write(&path, b"[load]\n# \xff\n").unwrap();
+    assert!(
+        load(&path)
+            .to_string()
+            .ends_with("case.toml:2: the case file is not UTF-8 text")
+    );
+    fs::write(&path, vec![b'\n'; (16 << 20) + 1]).unwrap();
+    assert!(load(&path).to_string().contains("is larger than 16 MiB"));
+    fs::write(&path, "[load]\npressure = 3\n").unwrap();
+    assert!(
+        load(&path)
+            .to_string()
+            .starts_with(&format!("{}:2:12: ", path.display()))
+    );
+}

@@ -1,0 +1,35 @@
+//! Case files that are read, and case files that are refused with the sentence that they carry themselves.
+
+// Helpers of tests are not tests by themselves to clippy.
+#![allow(clippy::unwrap_used)]
+
+mod bad;
+mod good;
+mod hostile;
+mod reference;
+mod round_trip;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The `.toml` files of a folder beside this file, in order.
+fn files(folder: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(folder);
+    let mut files: Vec<PathBuf> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    files.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    files.sort();
+    files
+}
+
+/// What follows `# name: ` in the comments that open a file.
+fn notes(text: &str, name: &str) -> Vec<String> {
+    let start = format!("# {name}: ");
+    let comments = text.lines().take_while(|line| line.starts_with('#'));
+    comments
+        .filter_map(|line| line.strip_prefix(&start))
+        .map(str::to_owned)
+        .collect()
+}

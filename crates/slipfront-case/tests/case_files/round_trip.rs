@@ -1,0 +1,254 @@
+use proptest::prelude::*;
+use proptest::sample::{select, subsequence};
+
+use slipfront_case::case_file::{
+    AutoOr, CaseFile, Cavity, CavitySize, Center, Damping, Drive, DriveSpeed, Edge, Friction, Groove,
+    GrooveSize, KineticFriction, Law, Load, Mask, Orientation, Output, Polygon, RunTime, Slider, Snapshots,
+    Source, Step, Stop, Texture, Time,
+};
+use slipfront_case::fields::FieldName;
+use slipfront_case::quantity::{Kind, Length, Quantity};
+
+/// Quantities of many sizes, some as a user writes them and some printed from their value.
+fn quantity<K: Kind + 'static>(
+    low: i32,
+    high: i32,
+    units: &'static [&'static str],
+) -> BoxedStrategy<Quantity<K>> {
+    let written =
+        (1..=999_u32, select(units)).prop_map(|(digits, unit)| format!("{digits} {unit}").parse().unwrap());
+    let printed =
+        (1.0..10.0_f64, low..high).prop_map(|(digits, power)| Quantity::from_si(digits * 10_f64.powi(power)));
+    prop_oneof![written, printed].boxed()
+}
+
+fn length() -> BoxedStrategy<Length> {
+    quantity(-12, 2, &["um", "\u{b5}m", "nm", "mm"])
+}
+
+fn auto_or(number: impl Strategy<Value = f64> + 'static) -> BoxedStrategy<AutoOr> {
+    prop_oneof![Just(AutoOr::Auto), number.prop_map(AutoOr::Number)].boxed()
+}
+
+fn file(endings: &'static [&'static str]) -> BoxedStrategy<String> {
+    ("[a-z][a-z\"' \u{e9}\\\\/]{0,8}[a-z]", select(endings))
+        .prop_map(|(name, ending)| format!("{name}.{ending}"))
+        .boxed()
+}
+
+fn slider() -> impl Strategy<Value = Slider> {
+    let damping = prop_oneof![
+        (0.0..1e3).prop_map(Damping::OmegaStar),
+        quantity(0, 23, &["1/s", "MHz"]).prop_map(Damping::Rate)
+    ];
+    let edge = || select(vec![Edge::Free, Edge::Periodic]);
+    (
+        (3..60_000_u32, 3..60_000_u32),
+        length(),
+        quantity(-3, 14, &["GPa", "bar", "N/mm^2"]),
+        quantity(-6, 8, &["g/cm^3", "kg m^-3"]),
+        damping,
+        [edge(), edge()],
+    )
+        .prop_map(
+            |((nx, ny), block_size, young_modulus, density, damping, edges)| Slider {
+                blocks: [nx, ny],
+                block_size,
+                young_modulus,
+                density,
+                damping,
+                edges,
+            },
+        )
+}
+
+fn load() -> impl Strategy<Value = Load> {
+    (quantity(-9, 14, &["kPa", "Pa"]), any::<bool>()).prop_map(|(pressure, redistribute)| Load {
+        pressure,
+        redistribute,
+    })
+}
+
+fn drive() -> impl Strategy<Value = Drive> {
+    let speed = prop_oneof![
+        (1e-6..1.35).prop_map(DriveSpeed::VStar),
+        quantity(-18, 5, &["mm/s", "m s^-1"]).prop_map(DriveSpeed::Speed)
+    ];
+    (speed, -360.0..360.0).prop_map(|(speed, direction)| Drive { speed, direction })
+}
+
+fn friction() -> impl Strategy<Value = Friction> {
+    let kinetic = prop_oneof![
+        (0.0..10.0).prop_map(KineticFriction::RStar),
+        (0.0..1.0).prop_map(KineticFriction::MuKinetic)
+    ];
+    let law = select(vec![Law::Projection, Law::Reversal, Law::Literal]);
+    let field = || prop::option::of(file(&["npy", "csv"]));
+    (
+        law,
+        0.1..100.0,
+        kinetic,
+        0.0..1.0,
+        0.0..1.0,
+        0..=i64::MAX as u64,
+        field(),
+        field(),
+    )
+        .prop_map(
+            |(
+                law,
+                mu_static,
+                kinetic,
+                sigma_static_star,
+                sigma_kinetic_star,
+                seed,
+                mu_static_field,
+                mu_kinetic_field,
+            )| {
+                Friction {
+                    law,
+                    mu_static,
+                    kinetic,
+                    sigma_static_star,
+                    sigma_kinetic_star,
+                    seed,
+                    mu_static_field,
+                    mu_kinetic_field,
+                }
+            },
+        )
+}
+
+fn cavity() -> impl Strategy<Value = Texture> {
+    let size = prop_oneof![
+        (0.001..99.9).prop_map(CavitySize::Coverage),
+        length().prop_map(CavitySize::Lambda)
+    ];
+    let center = prop_oneof![Just(Center::Middle), [length(), length()].prop_map(Center::At)];
+    let array = [1..=1000_u32, 1..=1000_u32];
+    (
+        1..=64_u32,
+        -0.99..0.99,
+        size,
+        any::<bool>(),
+        center,
+        -360.0..360.0,
+        array,
+    )
+        .prop_map(|(s, share, size, across, center, rotate, array)| {
+            Texture::Cavity(Cavity {
+                s,
+                w: share / f64::from(s),
+                size,
+                across,
+                center,
+                rotate,
+                array,
+            })
+        })
+}
+
+fn texture() -> impl Strategy<Value = Texture> {
+    let size = prop_oneof![
+        (0.001..99.9).prop_map(GrooveSize::Coverage),
+        length().prop_map(GrooveSize::Width)
+    ];
+    let groove = (
+        select(vec![Orientation::Across, Orientation::Along]),
+        size,
+        length(),
+    )
+        .prop_map(|(orientation, size, offset)| {
+            Texture::Groove(Groove {
+                orientation,
+                size,
+                offset,
+            })
+        });
+    let polygon = prop::collection::vec([length(), length()], 3..8)
+        .prop_map(|points| Texture::Polygon(Polygon { points }));
+    let mask = (file(&["png", "npy"]), 0.01..0.99)
+        .prop_map(|(file, threshold)| Texture::Mask(Mask { file, threshold }));
+    prop_oneof![cavity(), groove, polygon, mask]
+}
+
+fn time() -> impl Strategy<Value = Time> {
+    let duration = prop_oneof![
+        Just(RunTime::Auto),
+        (10.0..1e9).prop_map(RunTime::Star),
+        quantity(-24, 12, &["ns", "s"]).prop_map(RunTime::Duration)
+    ];
+    let step = prop_oneof![
+        Just(Step::Auto),
+        Just(Step::Paper),
+        (1e-9..0.9057).prop_map(Step::Number)
+    ];
+    (
+        duration,
+        step,
+        select(vec![Stop::End, Stop::AfterOnset]),
+        auto_or(0.0..5.0),
+    )
+        .prop_map(|(duration, step, stop, kinetic_from_star)| Time {
+            duration,
+            step,
+            stop,
+            kinetic_from_star,
+        })
+}
+
+fn output() -> impl Strategy<Value = Output> {
+    let snapshots = prop_oneof![
+        Just(Snapshots::Auto),
+        prop::collection::btree_set(0..1_000_000_u32, 0..6)
+            .prop_map(|times| Snapshots::At(times.into_iter().map(|time| f64::from(time) / 7.0).collect())),
+        (1e-3..1e6).prop_map(Snapshots::Every)
+    ];
+    let fields = subsequence(Output::default().fields, 0..=5).prop_shuffle();
+    (snapshots, fields, 1..=100_000_u32, auto_or(1e-6..1e6)).prop_map(
+        |(snapshots, fields, stride, series): (_, Vec<FieldName>, _, _)| Output {
+            snapshots,
+            fields,
+            stride,
+            series,
+        },
+    )
+}
+
+fn case_file() -> impl Strategy<Value = CaseFile> {
+    let textures = prop::collection::vec(texture(), 0..4);
+    (slider(), load(), drive(), friction(), textures, time(), output()).prop_map(
+        |(slider, load, drive, friction, texture, time, output)| {
+            let source = Source::default();
+            CaseFile {
+                slider,
+                load,
+                drive,
+                friction,
+                texture,
+                time,
+                output,
+                source,
+            }
+        },
+    )
+}
+
+proptest! {
+    #[test]
+    fn printing_and_reading_is_the_identity(case in case_file()) {
+        let printed = case.to_toml().unwrap();
+        let read = CaseFile::parse(&printed, "printed", &[]);
+        prop_assert!(read.is_ok(), "{}\n{printed}", read.unwrap_err());
+        let read = read.unwrap();
+        prop_assert_eq!(read.to_toml().unwrap(), printed);
+        prop_assert_eq!(read, case);
+    }
+
+    #[test]
+    fn no_text_panics(text in "\\PC{0,40}", table in "\\[[a-z]{0,8}\\]\n[a-z_]{0,9} ?= ?\\PC{0,12}\n", set in "\\PC{0,20}") {
+        let _ = CaseFile::parse(&text, "x", &[]);
+        let _ = CaseFile::parse(&table, "x", std::slice::from_ref(&set));
+        let _ = CaseFile::parse("", "x", &[format!("slider.blocks={set}")]);
+    }
+}
