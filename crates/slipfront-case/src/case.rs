@@ -689,7 +689,7 @@ impl Case {
         warn(
             self.schedule.dt_star > 0.5,
             format!(
-                "dt* = {} is stable but coarse: 0.1 keeps mu_s* within 3e-4",
+                "dt* = {} is stable but coarse: with 0.1, mu_s* is good to 1e-3",
                 self.schedule.dt_star
             ),
         );

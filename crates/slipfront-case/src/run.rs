@@ -76,6 +76,7 @@ pub fn run(case: &Case, watch_every: u64, watcher: &mut dyn Observer) -> Result<
         .unwrap_or_default();
     let summary = Summary::new(
         case,
+        reason,
         &peak,
         kinetic,
         &first_slip,

@@ -1,6 +1,7 @@
 //! The numbers of a run: what `summary.json` holds.
 
 use serde::{Deserialize, Serialize};
+use slipfront::StopReason;
 use slipfront::observe::{Doubt, Energies, FirstSlip, Frame, Kinetic, Peak};
 
 use crate::case::Case;
@@ -96,6 +97,7 @@ pub struct InstantSummary {
 impl Summary {
     pub(crate) fn new(
         case: &Case,
+        reason: StopReason,
         peak: &Peak,
         kinetic: Option<Kinetic>,
         first_slip: &FirstSlip,
@@ -147,14 +149,14 @@ impl Summary {
             work_j: energies.work * energy,
             friction_loss_j: energies.friction_loss * energy,
             damping_loss_j: energies.damping_loss * energy,
-            warnings: [case.warnings(), after_run(peak, kinetic.as_ref())].concat(),
+            warnings: [case.warnings(), after_run(reason, peak, kinetic.as_ref())].concat(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
         }
     }
 }
 
 /// What the run itself gives reason to warn of.
-fn after_run(peak: &Peak, kinetic: Option<&Kinetic>) -> Vec<String> {
+fn after_run(reason: StopReason, peak: &Peak, kinetic: Option<&Kinetic>) -> Vec<String> {
     let mut warnings = Vec::new();
     if !peak.ended {
         warnings.push(
@@ -164,6 +166,7 @@ fn after_run(peak: &Peak, kinetic: Option<&Kinetic>) -> Vec<String> {
         );
     }
     match kinetic.map(|kinetic| kinetic.uncertainty) {
+        None if reason == StopReason::Onset => {}
         None => warnings.push(
             "the run ended before the kinetic window began: kinetic_friction_star is empty; lengthen \
              time.duration_star or set time.kinetic_from_star"

@@ -27,6 +27,8 @@ pub struct Instants {
     /// Which of `frames` count; one that was dropped is kept for its memory.
     held: [bool; 6],
     ended: bool,
+    /// Whether the run has gone on long enough to know D, and E.
+    known: [bool; 2],
 }
 
 impl Instants {
@@ -39,13 +41,15 @@ impl Instants {
             frames: Default::default(),
             held: [false; 6],
             ended: false,
+            known: [false; 2],
         }
     }
 
-    /// The instants that the run had, in the order of their letters. Without a transition there is no D and E.
+    /// The instants that the run had, in the order of their letters. Without a transition there is no D and E, nor
+    /// when the run ends before the times among which they are chosen.
     pub fn found(mut self) -> Vec<(char, Frame)> {
-        for instant in [D, E] {
-            if !self.ended {
+        for (instant, known) in [(D, self.known[0]), (E, self.known[1])] {
+            if !(self.ended && known) {
                 self.held[instant] = false;
             } else if !self.held[instant] {
                 // A later instant that never differed from the one before it was not captured apart.
@@ -102,6 +106,8 @@ impl Observer for Instants {
         let mut counted = now.peak;
         counted.ended = true;
         let fall_until = self.kinetic.time_star(&counted, v_star);
+        let most_until = now.peak.time_star + 2.5 / v_star;
+        self.known = [most_until, fall_until].map(|until| now.time_star >= until);
         if now.peak.step == now.step {
             self.keep(C, now);
             self.held[D] = false;
@@ -113,7 +119,7 @@ impl Observer for Instants {
             let least = self
                 .candidate(&[E, D, C])
                 .map_or(f64::INFINITY, |frame| frame.point.mu_star);
-            if now.time_star <= now.peak.time_star + 2.5 / v_star && now.point.sliding_percent > most {
+            if now.time_star <= most_until && now.point.sliding_percent > most {
                 self.keep(D, now);
                 self.held[E] = false;
             } else if now.time_star <= fall_until && now.point.mu_star < least {
