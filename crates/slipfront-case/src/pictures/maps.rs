@@ -21,7 +21,7 @@ const MARK: Rgb = [0xd5, 0x2b, 0x1e];
 /// Maps on one colour scale.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FieldMaps {
-    /// What the values are, along the colour bar.
+    /// What the values are, over the colour bar; the letter after an underscore is a subscript.
     pub value_title: String,
     /// The values at the ends of the colour bar; what lies beyond is drawn as they are.
     pub range: [f64; 2],
@@ -85,7 +85,7 @@ pub fn field_maps(maps: &FieldMaps) -> Result<Picture, PictureError> {
         width: BAR_WIDTH,
         height: (lowest - MARGIN - titles).max(BAR_SHORTEST),
     };
-    let title = Text::plain(&maps.value_title, SIZE_LABEL);
+    let title = Text::math(&maps.value_title, SIZE_LABEL);
     let right = (bar.x + bar_room - MARGIN).max(bar.x + title.width());
     let mut canvas = Canvas::new(right + MARGIN, lowest.max(bar.bottom()) + MARGIN);
     for (index, map) in maps.maps.iter().enumerate() {
