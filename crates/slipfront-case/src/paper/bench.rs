@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 use slipfront::observe::{CurvePoint, Frame, Observer};
-use slipfront::{RunError, Snapshot};
+use slipfront::{RunError, Snapshot, Stop};
 
 use super::error::PaperError;
 use super::files::FILES;
@@ -358,7 +358,7 @@ impl Sweep {
         Number::of(&self.values(levels, quantity))
     }
 
-    /// The case of a run of a point, to be run again with its curve and fields.
+    /// The case of a run of a point, to be run to its end with its curve and fields.
     pub(super) fn case(&self, levels: &[usize], replicate: usize) -> Result<Case, PaperError> {
         let run = RunKey {
             point: self.point(levels),
@@ -367,7 +367,10 @@ impl Sweep {
         };
         let file = self.plan.case_file(run)?;
         let name = format!("{} {}", self.plan.name, run.name());
-        Ok(Case::new(file, &name, Path::new(""))?)
+        let mut case = Case::new(file, &name, Path::new(""))?;
+        // The largest contact stress of all, which maps are scaled by, may come late.
+        case.schedule.stop = Stop::at_step(case.schedule.last_step);
+        Ok(case)
     }
 
     /// Cases of all surfaces of a point.

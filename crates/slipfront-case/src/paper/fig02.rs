@@ -41,6 +41,7 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let bins = bins(1.0, groups.sigma_static_star);
     let sigma = groups.sigma_static_star;
     let density = |x: f64| libm::exp(-0.5 * ((x - 1.0) / sigma).powi(2)) / (sigma * std::f64::consts::TAU.sqrt());
+    let fine: Vec<f64> = (-60..=60).map(|k| 1.0 + 0.05 * sigma * f64::from(k)).collect();
     found.panel(
         "fig02_distribution",
         "The same coefficients as densities, beside the Gaussian of Eq. 1.",
@@ -50,16 +51,21 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
             curves: vec![
                 histogram("static", &bins, &mu_static),
                 histogram("kinetic", &bins, &mu_kinetic),
-                formula("Eq. 1", &bins.iter().map(|bin| bin[0]).chain([bins[bins.len() - 1][1]]).collect::<Vec<_>>(), density),
+                formula("Eq. 1", &fine, density),
             ],
             ..Responses::default()
         }),
     );
-    let distances = [
-        distance_to_normal(&mu_static, groups.sigma_static_star),
-        distance_to_normal(&mu_kinetic, groups.sigma_kinetic_star),
-    ];
-    found.value("fig02.distance_to_gaussian", largest(distances));
+    let mut scores = Vec::new();
+    for seed in 1..=bench.surfaces() {
+        let case = bench.case("fig02", &[&format!("friction.seed={seed}")])?;
+        let (surface, groups) = (&case.model.surface, &case.groups);
+        let score = |mu: f64, mean: f64, sigma: f64| (mu / mean - 1.0) / sigma;
+        scores.extend(surface.mu_static.iter().map(|&mu| score(mu, mean, groups.sigma_static_star)));
+        let mean = groups.r_star * mean;
+        scores.extend(surface.mu_kinetic.iter().map(|&mu| score(mu, mean, groups.sigma_kinetic_star)));
+    }
+    found.value("fig02.distance_to_gaussian", distance_to_normal(scores));
     Ok(found)
 }
 
@@ -86,14 +92,10 @@ fn histogram(label: &str, bins: &[[f64; 2]], values: &[f64]) -> Response {
     }
 }
 
-/// Distance of Kolmogorov and Smirnov between a sample and the Gaussian around 1, times sqrt(n): below 1.36 with 95 %
+/// Distance of Kolmogorov and Smirnov between a sample and the standard Gaussian, times sqrt(n): below 1.36 with 95 %
 /// confidence if it is one.
-fn distance_to_normal(values: &[f64], sigma: f64) -> f64 {
-    // The deviation is that of a case, more than zero here.
-    let Ok(normal) = Normal::new(1.0, sigma) else {
-        return f64::NAN;
-    };
-    let mut sorted = values.to_vec();
+fn distance_to_normal(mut sorted: Vec<f64>) -> f64 {
+    let normal = Normal::standard();
     sorted.sort_by(f64::total_cmp);
     let n = sorted.len() as f64;
     let gaps = sorted.iter().enumerate().map(|(k, &value)| {
@@ -109,11 +111,12 @@ mod tests {
 
     #[test]
     fn a_gaussian_is_near_and_a_uniform_sample_far() {
-        let normal = Normal::new(1.0, 0.05).unwrap();
+        let normal = Normal::standard();
         let at = |k: usize| (k as f64 + 0.5) / 400.0;
         let gaussian: Vec<f64> = (0..400).map(|k| normal.inverse_cdf(at(k))).collect();
-        let uniform: Vec<f64> = (0..400).map(|k| 0.9 + 0.2 * at(k)).collect();
-        assert!(distance_to_normal(&gaussian, 0.05) < 0.1);
-        assert!(distance_to_normal(&uniform, 0.05) > 1.36);
+        // Of the same mean and deviation.
+        let uniform: Vec<f64> = (0..400).map(|k| 12f64.sqrt() * (at(k) - 0.5)).collect();
+        assert!(distance_to_normal(gaussian) < 0.1);
+        assert!(distance_to_normal(uniform) > 1.0);
     }
 }

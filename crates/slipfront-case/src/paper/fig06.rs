@@ -72,6 +72,14 @@ fn material(sweep: &Sweep, found: &mut Found) {
     let named = |name: &str| names.iter().position(|other| other == name).map_or(Number::exact(f64::NAN), factor);
     found.number("fig06.factor_of_young_modulus", named("E x 4"));
     found.number("fig06.factor_of_density", named("rho x 4"));
+    let star = |name: &str| {
+        let times = |k: usize| sweep.values(&[k], "onset_time_star");
+        let place = names.iter().position(|other| other == name);
+        let ratios = place.map(|k| times(k).iter().zip(times(0)).map(|(after, before)| after / before).collect::<Vec<f64>>());
+        Number::of(&ratios.unwrap_or_default())
+    };
+    found.number("fig06.onset_star_factor_of_young_modulus", star("E x 4"));
+    found.number("fig06.onset_star_factor_of_low_density", star("rho / 4"));
     let load = [named("P x 2"), named("mu_s x 2")].map(|number| number.value);
     found.value("fig06.least_factor_of_load", smallest(load));
     found.number("fig06.factor_of_speed", named("V x 2"));

@@ -30,7 +30,7 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     }
     found.panel(
         "fig08_maps",
-        "Contact stress at the peak of friction: the faster the drive, the less of the slider has slipped by then.",
+        "Contact stress at the peak of friction: the faster the drive, the more blocks slip before it comes.",
         stress_maps(maps, 3),
     );
     let means: Vec<f64> = numbers.iter().map(|number| number.value).collect();

@@ -3,7 +3,8 @@
 use super::bench::Bench;
 use super::drawing::Drawing;
 use super::error::PaperError;
-use super::found::{Found, Number, largest, mean, rises};
+use super::claims::with_interval;
+use super::found::{Found, Number, Table, largest, mean, rises};
 
 pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let mut found = Found::default();
@@ -44,5 +45,18 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     found.values("fig10.early_excess_of_lowest", &early);
     let long = bench.study("fig10_long")?.values(&[], "kinetic_friction_star");
     found.values("fig10.long_excess_of_lowest", &long.iter().map(|mu| mu - ratios[0]).collect::<Vec<_>>());
+    let windows = [
+        ("from t_s* to t_s* + 2.5/V*: the first swing", "fig10.early_excess_of_lowest"),
+        ("from t_s* + 2.5/V* to 8/V*: as everywhere else here", "fig10.excess_of_lowest"),
+        ("from 12/V* to 60/V*", "fig10.long_excess_of_lowest"),
+    ];
+    let row = |(window, name): (&str, &str)| vec![window.to_owned(), with_interval(&found.numbers[name], 3)];
+    let rows = windows.map(row).to_vec();
+    found.tables.push(Table {
+        name: "fig10_windows".to_owned(),
+        caption: "Kinetic friction above R* at R* = 0.25, by the window over which it is averaged (D8).".to_owned(),
+        header: ["window", "mu_k* - R*"].map(str::to_owned).to_vec(),
+        rows,
+    });
     Ok(found)
 }

@@ -23,6 +23,7 @@ pub(super) const FILES: &[(&str, &str)] = files![
     "fig11",
     "fig12",
     "fig12_kinetic",
+    "fig12_surfaces",
     "fig13",
     "fig14",
     "fig15",

@@ -40,7 +40,7 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     found.tables.push(table);
 
     let place = |names: &[String], start: &str| names.iter().position(|name| name.starts_with(start)).unwrap_or(0);
-    let literal = place(&names, "friction: literal");
+    let literal = place(&names, "friction: literal (Eq. 4 as printed), dt* = 0.02");
     let kinetic = |k: usize| baseline.values(&[k], "kinetic_friction_star");
     found.values("sensitivity.literal_kinetic_friction", &kinetic(literal));
     let reversal = place(&names, "friction: reversal");

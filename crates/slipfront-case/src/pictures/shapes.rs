@@ -32,18 +32,26 @@ pub fn shapes(shapes: &[Shape]) -> Result<Picture, PictureError> {
     }
     let room = ((COLUMN_WIDTH - 2.0 * MARGIN + GAP) / COLUMNS as f64 - GAP).round();
     let label_room = 1.9 * f64::from(SIZE_TICK);
-    let rows = shapes.len().div_ceil(COLUMNS);
-    let pitch = room + label_room;
-    let mut canvas = Canvas::new(COLUMN_WIDTH, 2.0 * MARGIN + rows as f64 * pitch);
+    let scale = 0.47 * room / reach;
+    // A row is no higher than its highest outline.
+    let rows: Vec<f64> = shapes
+        .chunks(COLUMNS)
+        .map(|row| {
+            let heights = row.iter().flat_map(|shape| &shape.points).map(|[_, y]| y.abs());
+            (2.0 * scale * heights.fold(0.0, f64::max)).round() + GAP
+        })
+        .collect();
+    let height = rows.iter().map(|row| row + label_room).sum::<f64>();
+    let mut canvas = Canvas::new(COLUMN_WIDTH, 2.0 * MARGIN + height);
     for (index, shape) in shapes.iter().enumerate() {
+        let row = index / COLUMNS;
         let area = Area {
             x: MARGIN + (index % COLUMNS) as f64 * (room + GAP),
-            y: MARGIN + (index / COLUMNS) as f64 * pitch,
+            y: MARGIN + rows[..row].iter().map(|above| above + label_room).sum::<f64>(),
             width: room,
-            height: room,
+            height: rows[row],
         };
-        let (x, y) = (area.x + 0.5 * room, area.y + 0.5 * room);
-        let scale = 0.47 * room / reach;
+        let (x, y) = (area.x + 0.5 * room, area.y + 0.5 * area.height);
         let mut points: Vec<(f64, f64)> = shape
             .points
             .iter()
