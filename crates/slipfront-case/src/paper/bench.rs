@@ -91,7 +91,14 @@ impl Bench<'_> {
     pub(super) fn study(&mut self, name: &str) -> Result<Sweep, PaperError> {
         let plan = self.plan(name)?.plan;
         // Nothing is kept of the runs but their records: the folder is not used.
-        let findings = study::execute(&plan, self.records, Path::new(""), self.threads, self.stop, self.watch)?;
+        let findings = study::execute(
+            &plan,
+            self.records,
+            Path::new(""),
+            self.threads,
+            self.stop,
+            self.watch,
+        )?;
         if let Some((_, reason)) = findings.failures().next() {
             return Err(PaperError::StudyRun {
                 study: name.to_owned(),
@@ -170,8 +177,14 @@ pub(super) struct Run {
 impl Run {
     /// The frame of one of the instants A-F.
     pub(super) fn instant(&self, letter: char) -> Result<&Frame, PaperError> {
-        let found = self.record.frames.iter().find(|(letters, _)| letters.contains(letter));
-        found.map(|(_, frame)| frame).ok_or_else(|| self.lacks(&format!("instant {letter}")))
+        let found = self
+            .record
+            .frames
+            .iter()
+            .find(|(letters, _)| letters.contains(letter));
+        found
+            .map(|(_, frame)| frame)
+            .ok_or_else(|| self.lacks(&format!("instant {letter}")))
     }
 
     /// The values of a field in a frame of this run.
@@ -188,7 +201,10 @@ impl Run {
         let textured = &self.case.model.surface.textured;
         let scaled = values.iter().zip(textured);
         Ok(FieldMap {
-            note: format!("t* = {:.1}, \u{3bc}* = {:.3}", frame.time_star, frame.point.mu_star),
+            note: format!(
+                "t* = {:.1}, \u{3bc}* = {:.3}",
+                frame.time_star, frame.point.mu_star
+            ),
             values: scaled
                 .map(|(value, &textured)| if textured { f32::NAN } else { value / largest })
                 .collect(),
@@ -249,10 +265,16 @@ impl Run {
     /// A quantity of the curve at a time, between two rows on the straight line.
     pub(super) fn at(&self, time_star: f64, value: fn(&CurvePoint) -> f64) -> f64 {
         let rows = &self.record.rows;
-        let after = rows.partition_point(|row| row.time_star < time_star).min(rows.len() - 1);
+        let after = rows
+            .partition_point(|row| row.time_star < time_star)
+            .min(rows.len() - 1);
         let (a, b) = (&rows[after.saturating_sub(1)], &rows[after]);
         let span = b.time_star - a.time_star;
-        let share = if span > 0.0 { (time_star - a.time_star) / span } else { 0.0 };
+        let share = if span > 0.0 {
+            (time_star - a.time_star) / span
+        } else {
+            0.0
+        };
         value(&a.point) + share.clamp(0.0, 1.0) * (value(&b.point) - value(&a.point))
     }
 
@@ -326,7 +348,9 @@ impl Sweep {
     /// Numbers of an axis, or their places on one of names.
     pub(super) fn axis(&self, axis: usize) -> Vec<f64> {
         let levels = self.plan.axes[axis].levels.iter().enumerate();
-        levels.map(|(place, level)| level.number.unwrap_or(place as f64)).collect()
+        levels
+            .map(|(place, level)| level.number.unwrap_or(place as f64))
+            .collect()
     }
 
     /// Names of the levels of an axis.
@@ -376,7 +400,9 @@ impl Sweep {
     /// Cases of all surfaces of a point.
     pub(super) fn cases(&self, levels: &[usize]) -> Result<Vec<Case>, PaperError> {
         let replicates = self.findings.points[self.point(levels)].replicates;
-        (0..replicates).map(|replicate| self.case(levels, replicate)).collect()
+        (0..replicates)
+            .map(|replicate| self.case(levels, replicate))
+            .collect()
     }
 }
 

@@ -87,7 +87,9 @@ impl Drawing {
                 }
             }
         }
-        table.into_inner().map_err(|error| csv::Error::from(error.into_error()).into())
+        table
+            .into_inner()
+            .map_err(|error| csv::Error::from(error.into_error()).into())
     }
 }
 

@@ -40,7 +40,8 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     );
     let bins = bins(1.0, groups.sigma_static_star);
     let sigma = groups.sigma_static_star;
-    let density = |x: f64| libm::exp(-0.5 * ((x - 1.0) / sigma).powi(2)) / (sigma * std::f64::consts::TAU.sqrt());
+    let density =
+        |x: f64| libm::exp(-0.5 * ((x - 1.0) / sigma).powi(2)) / (sigma * std::f64::consts::TAU.sqrt());
     let fine: Vec<f64> = (-60..=60).map(|k| 1.0 + 0.05 * sigma * f64::from(k)).collect();
     found.panel(
         "fig02_distribution",
@@ -61,9 +62,19 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
         let case = bench.case("fig02", &[&format!("friction.seed={seed}")])?;
         let (surface, groups) = (&case.model.surface, &case.groups);
         let score = |mu: f64, mean: f64, sigma: f64| (mu / mean - 1.0) / sigma;
-        scores.extend(surface.mu_static.iter().map(|&mu| score(mu, mean, groups.sigma_static_star)));
+        scores.extend(
+            surface
+                .mu_static
+                .iter()
+                .map(|&mu| score(mu, mean, groups.sigma_static_star)),
+        );
         let mean = groups.r_star * mean;
-        scores.extend(surface.mu_kinetic.iter().map(|&mu| score(mu, mean, groups.sigma_kinetic_star)));
+        scores.extend(
+            surface
+                .mu_kinetic
+                .iter()
+                .map(|&mu| score(mu, mean, groups.sigma_kinetic_star)),
+        );
     }
     found.value("fig02.distance_to_gaussian", distance_to_normal(scores));
     Ok(found)
@@ -78,7 +89,10 @@ fn bins(mean: f64, sigma: f64) -> Vec<[f64; 2]> {
 
 fn histogram(label: &str, bins: &[[f64; 2]], values: &[f64]) -> Response {
     let share = |&[low, high]: &[f64; 2]| {
-        let inside = values.iter().filter(|&&value| value >= low && value < high).count();
+        let inside = values
+            .iter()
+            .filter(|&&value| value >= low && value < high)
+            .count();
         inside as f64 / values.len() as f64 / (high - low)
     };
     let blank = vec![f64::NAN; bins.len()];

@@ -18,14 +18,24 @@ fn files(corrected: bool) -> Vec<String> {
             ""
         }
     };
-    (1..=8).map(|case| format!("table1/case{case}{}", suffix(case))).collect()
+    (1..=8)
+        .map(|case| format!("table1/case{case}{}", suffix(case)))
+        .collect()
 }
 
 /// Table 1: what its parameters make of V*.
 pub(super) fn find_table(bench: &mut Bench) -> Result<Found, PaperError> {
     let mut found = Found::default();
     let header = [
-        "case", "V (mm/s)", "P (kPa)", "E (MPa)", "rho (g/cm^3)", "mu_s", "V* as printed", "V (mm/s) for V* = 0.03", "epsilon",
+        "case",
+        "V (mm/s)",
+        "P (kPa)",
+        "E (MPa)",
+        "rho (g/cm^3)",
+        "mu_s",
+        "V* as printed",
+        "V (mm/s) for V* = 0.03",
+        "epsilon",
     ];
     let mut table = Table {
         name: "table1".to_owned(),
@@ -41,7 +51,12 @@ pub(super) fn find_table(bench: &mut Bench) -> Result<Found, PaperError> {
         printed_error = printed_error.max(error(printed.groups.v_star));
         corrected_error = corrected_error.max(error(corrected.groups.v_star));
         let speed = |v_star: f64| format!("{:.4}", v_star * printed.scales.speed() * 1e3);
-        let number = |value: f64| format!("{:.4}", value).trim_end_matches('0').trim_end_matches('.').to_owned();
+        let number = |value: f64| {
+            format!("{value:.4}")
+                .trim_end_matches('0')
+                .trim_end_matches('.')
+                .to_owned()
+        };
         table.rows.push(vec![
             (table.rows.len() + 1).to_string(),
             speed(printed.groups.v_star),
@@ -72,14 +87,21 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let until = main.instant('E')?.time_star;
     for (name, runs) in [("corrected", &corrected), ("printed", &printed)] {
         let spread = |value| {
-            let differences = runs.iter().map(|run| main.largest_difference(run, [0.0, until], value));
+            let differences = runs
+                .iter()
+                .map(|run| main.largest_difference(run, [0.0, until], value));
             largest(differences)
         };
         found.value(&format!("fig03.spread_{name}"), spread(mu_star));
-        found.value(&format!("fig03.sliding_spread_{name}_percent"), spread(sliding_percent));
+        found.value(
+            &format!("fig03.sliding_spread_{name}_percent"),
+            spread(sliding_percent),
+        );
     }
     let window = main.kinetic_window()?;
-    let pointwise = corrected.iter().map(|run| main.largest_difference(run, window, mu_star));
+    let pointwise = corrected
+        .iter()
+        .map(|run| main.largest_difference(run, window, mu_star));
     found.value("fig03.kinetic_spread", largest(pointwise));
     let means: Vec<f64> = corrected
         .iter()
@@ -112,6 +134,9 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
 }
 
 fn runs(bench: &Bench, corrected: bool) -> Result<Vec<Run>, PaperError> {
-    let cases = files(corrected).iter().map(|file| bench.case(file, &[])).collect::<Result<_, _>>()?;
+    let cases = files(corrected)
+        .iter()
+        .map(|file| bench.case(file, &[]))
+        .collect::<Result<_, _>>()?;
     bench.run(cases)
 }

@@ -13,7 +13,8 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let seeds = (1..=bench.surfaces()).map(|seed| bench.case("fig04", &[&format!("friction.seed={seed}")]));
     let runs = bench.run(seeds.collect::<Result<_, _>>()?)?;
     let [main, ..] = &runs[..] else { return Ok(found) };
-    let maps = ['A', 'B', 'C', 'D', 'E', 'F'].map(|letter| main.stress_map(main.instant(letter)?, &letter.to_string()));
+    let maps = ['A', 'B', 'C', 'D', 'E', 'F']
+        .map(|letter| main.stress_map(main.instant(letter)?, &letter.to_string()));
     found.panel(
         "fig04",
         "Contact stress at the instants A-F of Fig. 3: loading, first slip, peak, most blocks sliding, least friction, \
@@ -26,17 +27,32 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     };
     let ranks = over(&first_slip_rank)?;
     found.value("fig04.worst_rank_of_first_slip", largest(ranks));
-    found.values("fig04.stress_left_after_slip_percent", &over(&|run| stress_left(bench, run))?);
+    found.values(
+        "fig04.stress_left_after_slip_percent",
+        &over(&|run| stress_left(bench, run))?,
+    );
     found.values("fig04.slipped_at_peak_percent", &over(&slipped_at_peak)?);
     found.values("fig04.rest_slips_within_percent", &over(&rest_slips_within)?);
-    found.values("fig04.sliding_jump_percent", &over(&|run| Ok(run.instant('D')?.point.sliding_percent))?);
-    found.values("fig04.stress_falls_from_d_to_e_percent", &over(&falls_from_d_to_e)?);
-    found.values("fig04.kinetic_minimum_over_e", &over(&|run| {
-        let [from, until] = run.kinetic_window()?;
-        Ok(smallest(run.friction_between(from, until)) - run.instant('E')?.point.mu_star)
-    })?);
+    found.values(
+        "fig04.sliding_jump_percent",
+        &over(&|run| Ok(run.instant('D')?.point.sliding_percent))?,
+    );
+    found.values(
+        "fig04.stress_falls_from_d_to_e_percent",
+        &over(&falls_from_d_to_e)?,
+    );
+    found.values(
+        "fig04.kinetic_minimum_over_e",
+        &over(&|run| {
+            let [from, until] = run.kinetic_window()?;
+            Ok(smallest(run.friction_between(from, until)) - run.instant('E')?.point.mu_star)
+        })?,
+    );
     let sliding = |run: &Run| run.record.summary.sliding_percent_kinetic;
-    found.values("fig04.kinetic_sliding_percent", &runs.iter().filter_map(sliding).collect::<Vec<_>>());
+    found.values(
+        "fig04.kinetic_sliding_percent",
+        &runs.iter().filter_map(sliding).collect::<Vec<_>>(),
+    );
     Ok(found)
 }
 
@@ -92,9 +108,16 @@ fn stress_left(bench: &Bench, run: &Run) -> Result<f64, PaperError> {
     let seed = format!("friction.seed={}", run.case.file.friction.seed);
     let again = bench.run_one(seen_at(bench.case("fig04", &[&seed])?, &times))?;
     let stress = |(_, frame): &(String, Frame)| -> Result<f64, PaperError> {
-        Ok(f64::from(again.field(frame, FieldName::ContactStressStar)?[block]))
+        Ok(f64::from(
+            again.field(frame, FieldName::ContactStressStar)?[block],
+        ))
     };
-    let stresses = again.record.frames.iter().map(stress).collect::<Result<Vec<f64>, _>>()?;
+    let stresses = again
+        .record
+        .frames
+        .iter()
+        .map(stress)
+        .collect::<Result<Vec<f64>, _>>()?;
     let [before, after @ ..] = &stresses[..] else {
         return Ok(f64::NAN);
     };

@@ -8,7 +8,9 @@ use super::found::{Found, mean};
 pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let mut found = Found::default();
     let sweep = bench.study("fig05")?;
-    let cases = (0..3).map(|size| sweep.case(&[size], 0)).collect::<Result<_, _>>()?;
+    let cases = (0..3)
+        .map(|size| sweep.case(&[size], 0))
+        .collect::<Result<_, _>>()?;
     let runs = bench.run(cases)?;
     let sides = sweep.axis(0);
     let name = |size: usize| format!("{0} \u{d7} {0} blocks", sides[size]);
@@ -40,7 +42,10 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
         let (small, middle) = (errors(0), errors(1));
         found.values(&format!("fig05.{quantity}_error_5"), &small);
         found.values(&format!("fig05.{quantity}_error_25"), &middle);
-        found.value(&format!("fig05.{quantity}_error_ratio"), mean(&middle) / mean(&small));
+        found.value(
+            &format!("fig05.{quantity}_error_ratio"),
+            mean(&middle) / mean(&small),
+        );
     }
     Ok(found)
 }

@@ -10,11 +10,16 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let mut found = Found::default();
     let sweep = bench.study("fig06")?;
     let speeds = sweep.axis(0);
-    let onsets: Vec<Number> = (0..speeds.len()).map(|k| sweep.number(&[k], "onset_time_star")).collect();
+    let onsets: Vec<Number> = (0..speeds.len())
+        .map(|k| sweep.number(&[k], "onset_time_star"))
+        .collect();
     // Steps up to the onset, in the paper's step.
     let steps: Vec<Number> = (0..speeds.len())
         .map(|k| {
-            let (times, steps) = (sweep.values(&[k], "onset_time_star"), sweep.values(&[k], "dt_star"));
+            let (times, steps) = (
+                sweep.values(&[k], "onset_time_star"),
+                sweep.values(&[k], "dt_star"),
+            );
             let counts: Vec<f64> = times.iter().zip(&steps).map(|(time, step)| time / step).collect();
             Number::of(&counts)
         })
@@ -25,7 +30,10 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
             log_x: true,
             log_y: true,
             y_title: title.to_owned(),
-            curves: vec![measured("measured", &speeds, numbers), formula(label, &speeds, fit)],
+            curves: vec![
+                measured("measured", &speeds, numbers),
+                formula(label, &speeds, fit),
+            ],
             ..Responses::default()
         })
     };
@@ -37,16 +45,26 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     found.panel(
         "fig06_steps",
         "Time steps up to the onset with dt* = (2/3) V*, beside Eq. 14.",
-        curves("steps to the onset n\u{209b}*", &steps, "(15/4)/V*\u{b2}", |v| 3.75 / (v * v)),
+        curves("steps to the onset n\u{209b}*", &steps, "(15/4)/V*\u{b2}", |v| {
+            3.75 / (v * v)
+        }),
     );
     let errors = |numbers: &[Number], fit: fn(f64) -> f64| {
-        let errors = numbers.iter().zip(&speeds).map(|(number, &v)| 100.0 * (number.value / fit(v) - 1.0).abs());
+        let errors = numbers
+            .iter()
+            .zip(&speeds)
+            .map(|(number, &v)| 100.0 * (number.value / fit(v) - 1.0).abs());
         largest(errors)
     };
     found.value("fig06.onset_error_percent", errors(&onsets, |v| 2.5 / v));
     found.value("fig06.steps_error_percent", errors(&steps, |v| 3.75 / (v * v)));
     found.value("fig06.slope", slope(&speeds, &onsets));
-    let at = |v: f64| speeds.iter().position(|&speed| speed == v).map_or(f64::NAN, |k| steps[k].value);
+    let at = |v: f64| {
+        speeds
+            .iter()
+            .position(|&speed| speed == v)
+            .map_or(f64::NAN, |k| steps[k].value)
+    };
     found.value("fig06.steps_ratio", at(0.01) / at(0.05));
     material(&bench.study("fig06_material")?, &mut found);
     Ok(found)
@@ -66,16 +84,31 @@ fn material(sweep: &Sweep, found: &mut Found) {
     let times = |k: usize| sweep.values(&[k], "onset_time_s");
     let before = times(0);
     let factor = |k: usize| {
-        let ratios: Vec<f64> = times(k).iter().zip(&before).map(|(after, before)| after / before).collect();
+        let ratios: Vec<f64> = times(k)
+            .iter()
+            .zip(&before)
+            .map(|(after, before)| after / before)
+            .collect();
         Number::of(&ratios)
     };
-    let named = |name: &str| names.iter().position(|other| other == name).map_or(Number::exact(f64::NAN), factor);
+    let named = |name: &str| {
+        names
+            .iter()
+            .position(|other| other == name)
+            .map_or(Number::exact(f64::NAN), factor)
+    };
     found.number("fig06.factor_of_young_modulus", named("E x 4"));
     found.number("fig06.factor_of_density", named("rho x 4"));
     let star = |name: &str| {
         let times = |k: usize| sweep.values(&[k], "onset_time_star");
         let place = names.iter().position(|other| other == name);
-        let ratios = place.map(|k| times(k).iter().zip(times(0)).map(|(after, before)| after / before).collect::<Vec<f64>>());
+        let ratios = place.map(|k| {
+            times(k)
+                .iter()
+                .zip(times(0))
+                .map(|(after, before)| after / before)
+                .collect::<Vec<f64>>()
+        });
         Number::of(&ratios.unwrap_or_default())
     };
     found.number("fig06.onset_star_factor_of_young_modulus", star("E x 4"));

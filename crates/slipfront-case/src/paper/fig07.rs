@@ -9,9 +9,13 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let mut found = Found::default();
     let sweep = bench.study("fig07")?;
     let names = sweep.names(0);
-    let cases = (0..names.len()).map(|k| sweep.case(&[k], 0)).collect::<Result<_, _>>()?;
+    let cases = (0..names.len())
+        .map(|k| sweep.case(&[k], 0))
+        .collect::<Result<_, _>>()?;
     let runs = bench.run(cases)?;
-    let [paper, .., finest] = &runs[..] else { return Ok(found) };
+    let [paper, .., finest] = &runs[..] else {
+        return Ok(found);
+    };
     found.panel(
         "fig07",
         "V* = 0.2 in the paper's time step and in one 27 times finer: the fluctuation is the same, and so is no instability.",
@@ -27,11 +31,19 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let amplitudes = runs.iter().map(amplitude).collect::<Result<Vec<f64>, _>>()?;
     let slow = bench.run_one(bench.case("fig04", &[])?)?;
     found.value("fig07.fluctuation", amplitudes[amplitudes.len() - 1]);
-    found.value("fig07.fluctuation_over_slow", amplitudes[amplitudes.len() - 1] / amplitude(&slow)?);
+    found.value(
+        "fig07.fluctuation_over_slow",
+        amplitudes[amplitudes.len() - 1] / amplitude(&slow)?,
+    );
     let spread = largest(amplitudes.iter().copied()) - smallest(amplitudes.iter().copied());
-    found.value("fig07.fluctuation_spread_percent", 100.0 * spread / amplitudes[amplitudes.len() - 1]);
+    found.value(
+        "fig07.fluctuation_spread_percent",
+        100.0 * spread / amplitudes[amplitudes.len() - 1],
+    );
     let until = finest.record.summary.onset_time_star + 2.5 / finest.case.groups.v_star;
-    let differences = runs.iter().map(|run| run.largest_difference(finest, [0.0, until], mu_star));
+    let differences = runs
+        .iter()
+        .map(|run| run.largest_difference(finest, [0.0, until], mu_star));
     found.value("fig07.difference_between_steps", largest(differences));
     // D11: how far do fine steps lead from coarse ones, at low and at high speed?
     let steps = bench.study("fig07_steps")?;

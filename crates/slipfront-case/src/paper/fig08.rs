@@ -23,7 +23,9 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
             ..Responses::default()
         }),
     );
-    let cases = (0..speeds.len()).map(|k| sweep.case(&[k], 0)).collect::<Result<_, _>>()?;
+    let cases = (0..speeds.len())
+        .map(|k| sweep.case(&[k], 0))
+        .collect::<Result<_, _>>()?;
     let mut maps = Vec::new();
     for (run, speed) in bench.run(cases)?.iter().zip(&speeds) {
         maps.push(run.stress_map(run.instant('C')?, &format!("V* = {speed}"))?);

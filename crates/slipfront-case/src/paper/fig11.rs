@@ -23,7 +23,9 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let shares: Vec<f64> = runs.iter().map(nucleations_at_minima).collect();
     found.values("fig11.nucleations_at_minima_percent", &shares);
     let places = runs.iter().map(first_block).collect::<Result<Vec<usize>, _>>()?;
-    let repeated = (0..places.len()).filter(|&k| places[..k].contains(&places[k])).count();
+    let repeated = (0..places.len())
+        .filter(|&k| places[..k].contains(&places[k]))
+        .count();
     found.value("fig11.repeated_first_places", repeated as f64);
     // The same draw with another spread: the place of the first slip stays, its time moves.
     let mut times = Vec::new();
@@ -34,7 +36,10 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
         times.push(run.first_slip()?);
     }
     found.value("fig11.first_places_moved_by_sigma", moved as f64);
-    found.value("fig11.largest_rise_of_first_slip", largest(super::found::rises(&times)));
+    found.value(
+        "fig11.largest_rise_of_first_slip",
+        largest(super::found::rises(&times)),
+    );
     Ok(found)
 }
 
@@ -42,7 +47,10 @@ fn draw(bench: &Bench, main: &Run, found: &mut Found) -> Result<(), PaperError> 
     let (lattice, surface) = (&main.case.model.lattice, &main.case.model.surface);
     let mut minima = minima(lattice, &surface.mu_static);
     minima.truncate(MARKED);
-    let marks: Vec<[usize; 2]> = minima.iter().map(|&block| lattice.column_row(block).into()).collect();
+    let marks: Vec<[usize; 2]> = minima
+        .iter()
+        .map(|&block| lattice.column_row(block).into())
+        .collect();
     let reach = 3.0 * main.case.groups.sigma_static_star;
     let mean = main.case.scales.mu_static_mean;
     found.panel(
@@ -100,7 +108,9 @@ fn nucleations_at_minima(run: &Run) -> f64 {
     let (lattice, surface) = (&run.case.model.lattice, &run.case.model.surface);
     let times = &run.record.first_slip_time_star;
     let minima = minima(lattice, &surface.mu_static);
-    let before_all = |block: usize| neighbours(lattice, block).all(|other| times[other].is_nan() || times[other] > times[block]);
+    let before_all = |block: usize| {
+        neighbours(lattice, block).all(|other| times[other].is_nan() || times[other] > times[block])
+    };
     let starts: Vec<usize> = (0..times.len())
         .filter(|&block| times[block] <= run.record.summary.onset_time_star && before_all(block))
         .collect();

@@ -84,15 +84,28 @@ fn kinetic(bench: &mut Bench, found: &mut Found) -> Result<(), PaperError> {
         let none = sweep.values(&[0], quantity);
         let changes = (1..levels).flat_map(|k| {
             let values = sweep.values(&[k], quantity);
-            let pairs: Vec<f64> = values.iter().zip(&none).map(|(value, none)| (value - none).abs()).collect();
+            let pairs: Vec<f64> = values
+                .iter()
+                .zip(&none)
+                .map(|(value, none)| (value - none).abs())
+                .collect();
             pairs
         });
         largest(changes)
     };
-    found.value("fig12.static_friction_moved_by_sigma_k", change("static_friction_star"));
+    found.value(
+        "fig12.static_friction_moved_by_sigma_k",
+        change("static_friction_star"),
+    );
     let onset = mean(&sweep.values(&[0], "onset_time_star"));
-    found.value("fig12.onset_moved_by_sigma_k_percent", 100.0 * change("onset_time_star") / onset);
-    found.value("fig12.first_slip_moved_by_sigma_k", change("first_slip_time_star"));
+    found.value(
+        "fig12.onset_moved_by_sigma_k_percent",
+        100.0 * change("onset_time_star") / onset,
+    );
+    found.value(
+        "fig12.first_slip_moved_by_sigma_k",
+        change("first_slip_time_star"),
+    );
     let fluctuation = |run: &Run| -> Result<f64, PaperError> {
         let [from, until] = run.kinetic_window()?;
         Ok(deviation(&run.friction_between(from, until)))

@@ -32,7 +32,8 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
         if let CavitySize::Coverage(percent) = cavity.size {
             // Eq. 18 as printed has N^2 where the area is N l^2.
             let n = case.model.lattice.n_blocks() as f64;
-            let lambda_square = n * n * percent / (100.0 * 0.5 * TAU * (1.0 - f64::from(cavity.s) * cavity.w.powi(2)));
+            let lambda_square =
+                n * n * percent / (100.0 * 0.5 * TAU * (1.0 - f64::from(cavity.s) * cavity.w.powi(2)));
             let area = 0.5 * TAU * lambda_square * (1.0 - f64::from(cavity.s) * cavity.w.powi(2));
             printed.push(100.0 * area / n / asked);
         }
@@ -70,7 +71,9 @@ fn farthest(points: &[[f64; 2]]) -> usize {
         libm::hypot(x, y)
     };
     let n = points.len();
-    (0..n).filter(|&k| radius(k) > radius(k + n - 1) && radius(k) >= radius(k + 1)).count()
+    (0..n)
+        .filter(|&k| radius(k) > radius(k + n - 1) && radius(k) >= radius(k + 1))
+        .count()
 }
 
 #[cfg(test)]

@@ -66,8 +66,15 @@ fn nearness(run: &Run, share: f64) -> f64 {
         let [x, y] = place(run, block);
         (libm::hypot(x, y) - radius).max(0.0)
     };
-    let all: Vec<f64> = (0..textured.len()).filter(|&block| !textured[block]).map(distance).collect();
-    let first: Vec<f64> = slipped(run, share).unwrap_or_default().into_iter().map(distance).collect();
+    let all: Vec<f64> = (0..textured.len())
+        .filter(|&block| !textured[block])
+        .map(distance)
+        .collect();
+    let first: Vec<f64> = slipped(run, share)
+        .unwrap_or_default()
+        .into_iter()
+        .map(distance)
+        .collect();
     mean(&first) / mean(&all)
 }
 
@@ -76,11 +83,17 @@ fn first_at_rim(run: &Run) -> f64 {
     let (lattice, textured) = (&run.case.model.lattice, &run.case.model.surface.textured);
     let times = &run.record.first_slip_time_star;
     let earliest = run.record.summary.first_slip_time_star;
-    let first: Vec<usize> = (0..times.len()).filter(|&block| Some(times[block]) == earliest).collect();
+    let first: Vec<usize> = (0..times.len())
+        .filter(|&block| Some(times[block]) == earliest)
+        .collect();
     let touches = |&&block: &&usize| {
         let (i, j) = lattice.column_row(block);
         let mut around = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| [dx, dy]));
-        around.any(|offset| lattice.neighbour(i, j, offset).is_some_and(|other| textured[other]))
+        around.any(|offset| {
+            lattice
+                .neighbour(i, j, offset)
+                .is_some_and(|other| textured[other])
+        })
     };
     100.0 * first.iter().filter(touches).count() as f64 / first.len() as f64
 }
@@ -98,7 +111,10 @@ fn asymmetry(run: &Run) -> f64 {
         .filter(|difference| !difference.is_nan())
         .collect();
     let range = run.slip_times();
-    let span = range.last().zip(range.first()).map_or(f64::NAN, |(last, first)| last - first);
+    let span = range
+        .last()
+        .zip(range.first())
+        .map_or(f64::NAN, |(last, first)| last - first);
     100.0 * mean(&differences) / span
 }
 

@@ -12,10 +12,15 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let sweep = bench.study("fig15")?;
     let (areas, spreads) = (sweep.axis(0), sweep.axis(1));
     let curve = |spread: usize| -> Vec<Number> {
-        (0..areas.len()).map(|area| sweep.number(&[area, spread], REDUCTION)).collect()
+        (0..areas.len())
+            .map(|area| sweep.number(&[area, spread], REDUCTION))
+            .collect()
     };
     let numbers: Vec<Vec<Number>> = (0..spreads.len()).map(curve).collect();
-    let curves = numbers.iter().zip(&spreads).map(|(numbers, spread)| measured(&spread.to_string(), &areas, numbers));
+    let curves = numbers
+        .iter()
+        .zip(&spreads)
+        .map(|(numbers, spread)| measured(&spread.to_string(), &areas, numbers));
     found.panel(
         "fig15",
         "Reduction of static friction by a circular cavity against its area, for four spreads of the local static \
@@ -41,13 +46,19 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let beyond = (means[0][last] - means[0][ten]) / (areas[last] - areas[ten]);
     found.value("fig15.slope_beyond_ten_over_before", beyond / first);
     let from_one_to_ten = (means[0][ten] - means[0][one]) / (areas[ten] - areas[one]);
-    found.value("fig15.slope_to_ten_over_to_one", from_one_to_ten / (means[0][one] / areas[one]));
+    found.value(
+        "fig15.slope_to_ten_over_to_one",
+        from_one_to_ten / (means[0][one] / areas[one]),
+    );
     found.value("fig15.largest_reduction", largest(means[0].iter().copied()));
     let with_roughness = (0..areas.len()).flat_map(|area| {
         let over_spread: Vec<f64> = means.iter().map(|means| means[area]).collect();
         rises(&over_spread)
     });
     found.value("fig15.largest_rise_with_roughness", largest(with_roughness));
-    found.value("fig15.roughest_over_smooth", means[spreads.len() - 1][ten] / means[0][ten]);
+    found.value(
+        "fig15.roughest_over_smooth",
+        means[spreads.len() - 1][ten] / means[0][ten],
+    );
     Ok(found)
 }

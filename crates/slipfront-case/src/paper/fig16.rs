@@ -16,7 +16,9 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let sweep = bench.study("fig16")?;
     let elongations = sweep.axis(0);
     let curve = |way: usize| -> Vec<Number> {
-        (0..elongations.len()).map(|k| sweep.number(&[k, way], REDUCTION)).collect()
+        (0..elongations.len())
+            .map(|k| sweep.number(&[k, way], REDUCTION))
+            .collect()
     };
     let (across, along) = (curve(ACROSS), curve(ALONG));
     let grooves = bench.study("fig16_grooves")?;
@@ -45,15 +47,25 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let means = |numbers: &[Number]| -> Vec<f64> { numbers.iter().map(|number| number.value).collect() };
     found.value("fig16.least_rise_across", smallest(rises(&means(&across))));
     found.value("fig16.gain_across", largest(means(&across)) - circle.value);
-    let losses: Vec<f64> = means(&along)[1..].iter().map(|reduction| circle.value - reduction).collect();
+    let losses: Vec<f64> = means(&along)[1..]
+        .iter()
+        .map(|reduction| circle.value - reduction)
+        .collect();
     found.value("fig16.mean_loss_along", mean(&losses));
     found.value("fig16.largest_loss_along", largest(losses));
-    found.value("fig16.groove_along_beside_circle", (groove(ALONG).value - circle.value).abs());
+    found.value(
+        "fig16.groove_along_beside_circle",
+        (groove(ALONG).value - circle.value).abs(),
+    );
 
     let general = bench.study("fig16_generality")?;
     let names = general.names(0);
-    let reductions: Vec<Number> = (0..names.len()).map(|k| general.number(&[k], REDUCTION)).collect();
-    let others = reductions.iter().map(|number| (number.value - reductions[0].value).abs());
+    let reductions: Vec<Number> = (0..names.len())
+        .map(|k| general.number(&[k], REDUCTION))
+        .collect();
+    let others = reductions
+        .iter()
+        .map(|number| (number.value - reductions[0].value).abs());
     found.value("fig16.circle_moved_by_size_and_speed", largest(others));
     found.tables.push(Table {
         name: "fig16_generality".to_owned(),

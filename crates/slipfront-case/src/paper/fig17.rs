@@ -9,7 +9,9 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let mut found = Found::default();
     let sweep = bench.plan("fig17")?;
     let names = sweep.names(0);
-    let cases = (0..names.len()).map(|k| sweep.case(&[k], 0)).collect::<Result<_, _>>()?;
+    let cases = (0..names.len())
+        .map(|k| sweep.case(&[k], 0))
+        .collect::<Result<_, _>>()?;
     let mut maps = Vec::new();
     for (run, name) in bench.run(cases)?.iter().zip(&names) {
         maps.push(run.stress_map(run.instant('C')?, name)?);

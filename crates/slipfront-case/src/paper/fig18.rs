@@ -34,7 +34,9 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
             ..BarChart::default()
         }),
     );
-    let cases = (1..names.len()).map(|k| sweep.case(&[k], 0)).collect::<Result<_, _>>()?;
+    let cases = (1..names.len())
+        .map(|k| sweep.case(&[k], 0))
+        .collect::<Result<_, _>>()?;
     let mut maps = Vec::new();
     for (run, name) in bench.run(cases)?.iter().zip(&names[1..]) {
         maps.push(run.stress_map(run.instant('C')?, name)?);
@@ -46,7 +48,10 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     );
     let means: Vec<f64> = reductions.iter().map(|number| number.value).collect();
     let polygons = means[1..].iter().copied();
-    found.value("fig18.spread_percent", largest(polygons.clone()) - smallest(polygons));
+    found.value(
+        "fig18.spread_percent",
+        largest(polygons.clone()) - smallest(polygons),
+    );
     found.value(
         "fig18.farthest_from_circle_percent",
         largest(means.iter().map(|mean| (mean - means[0]).abs())),

@@ -20,7 +20,10 @@ pub struct Number {
 impl Number {
     /// A single value.
     pub fn exact(value: f64) -> Self {
-        Self { value, interval: None }
+        Self {
+            value,
+            interval: None,
+        }
     }
 
     /// The mean over random surfaces; not a number of none.

@@ -92,7 +92,10 @@ pub fn figures(names: &[String]) -> Result<Vec<Figure>, PaperError> {
         Some(number) if number.len() == 1 => format!("fig0{number}"),
         _ => name.to_owned(),
     };
-    if let Some(given) = names.iter().find(|name| !FIGURES.iter().any(|figure| figure.name == full(name))) {
+    if let Some(given) = names
+        .iter()
+        .find(|name| !FIGURES.iter().any(|figure| figure.name == full(name)))
+    {
         return Err(PaperError::Figure {
             given: given.clone(),
             known: FIGURES.map(|figure| figure.name).join(", "),
@@ -204,7 +207,10 @@ pub fn run(
         passes.push(pass);
     }
     let judge = |pass: &[(Figure, Found)]| judge(pass, options.reduced);
-    let judged = passes.iter().map(|pass| judge(pass)).collect::<Result<Vec<_>, _>>()?;
+    let judged = passes
+        .iter()
+        .map(|pass| judge(pass))
+        .collect::<Result<Vec<_>, _>>()?;
     let mut judged = judged.into_iter();
     Ok(Paper {
         judged: judged.next().unwrap_or_default(),

@@ -86,19 +86,36 @@ fn csv<'a>(rows: impl Iterator<Item = &'a Vec<String>>) -> Result<Vec<u8>, Paper
     for row in rows {
         table.write_record(row)?;
     }
-    table.into_inner().map_err(|error| csv::Error::from(error.into_error()).into())
+    table
+        .into_inner()
+        .map_err(|error| csv::Error::from(error.into_error()).into())
 }
 
 fn claims_csv(paper: &Paper) -> Result<Vec<u8>, PaperError> {
     let header = [
-        "number", "place", "claim", "measured", "value", "low", "high", "unit", "criterion", "verdict", "expected",
-        "value_by_paper_step", "verdict_by_paper_step", "deviation", "remark",
+        "number",
+        "place",
+        "claim",
+        "measured",
+        "value",
+        "low",
+        "high",
+        "unit",
+        "criterion",
+        "verdict",
+        "expected",
+        "value_by_paper_step",
+        "verdict_by_paper_step",
+        "deviation",
+        "remark",
     ];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     for (index, judged) in paper.judged.iter().enumerate() {
         let Judged { claim, number, .. } = judged;
         let other = paper.judged_by_paper_step.get(index);
-        let [low, high] = number.interval.map_or_else(Default::default, |ends| ends.map(|end| format!("{end:?}")));
+        let [low, high] = number
+            .interval
+            .map_or_else(Default::default, |ends| ends.map(|end| format!("{end:?}")));
         rows.push(vec![
             claim.number.to_string(),
             claim.place.clone(),
@@ -125,8 +142,20 @@ fn numbers_csv(paper: &Paper) -> Result<Vec<u8>, PaperError> {
     let mut rows = vec![["quantity", "value", "low", "high"].map(str::to_owned).to_vec()];
     for (name, number) in paper.figures.iter().flat_map(|(_, found)| &found.numbers) {
         let [_, low, high] = number.ends();
-        let interval = [low, high].map(|end| if end.is_nan() { String::new() } else { format!("{end:?}") });
-        rows.push([vec![name.clone(), format!("{:?}", number.value)], interval.to_vec()].concat());
+        let interval = [low, high].map(|end| {
+            if end.is_nan() {
+                String::new()
+            } else {
+                format!("{end:?}")
+            }
+        });
+        rows.push(
+            [
+                vec![name.clone(), format!("{:?}", number.value)],
+                interval.to_vec(),
+            ]
+            .concat(),
+        );
     }
     csv(rows.iter())
 }
@@ -142,8 +171,15 @@ pub fn summary(paper: &Paper) -> String {
     let mut text = String::new();
     for judged in &paper.judged {
         let Judged { claim, verdict, .. } = judged;
-        let deviation = claim.deviation.as_ref().map_or(String::new(), |deviation| format!(" ({deviation})"));
-        let odd = if judged.as_expected() { "" } else { "  <- not as expected" };
+        let deviation = claim
+            .deviation
+            .as_ref()
+            .map_or(String::new(), |deviation| format!(" ({deviation})"));
+        let odd = if judged.as_expected() {
+            ""
+        } else {
+            "  <- not as expected"
+        };
         text += &format!(
             "{:>3}  {:<22}  {:<18}  {}{deviation}{odd}\n",
             claim.number,
@@ -179,6 +215,12 @@ fn step_name(rule: StepRule) -> &'static str {
 
 /// The claims about a figure, with those of the other step rule beside.
 fn claims_of<'p>(paper: &'p Paper, figure: &Figure) -> Vec<(&'p Judged, Option<&'p Judged>)> {
-    let pairs = paper.judged.iter().enumerate().map(|(k, judged)| (judged, paper.judged_by_paper_step.get(k)));
-    pairs.filter(|(judged, _)| judged.claim.figure() == figure.name).collect()
+    let pairs = paper
+        .judged
+        .iter()
+        .enumerate()
+        .map(|(k, judged)| (judged, paper.judged_by_paper_step.get(k)));
+    pairs
+        .filter(|(judged, _)| judged.claim.figure() == figure.name)
+        .collect()
 }

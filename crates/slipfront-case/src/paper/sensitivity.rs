@@ -22,7 +22,9 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let mut variants = names.clone();
     variants.extend(textured.iter().filter(|name| !names.contains(name)).cloned());
     for variant in variants {
-        let cell = |number: Option<Number>, digits| number.map_or(String::new(), |number| with_interval(&number, digits));
+        let cell = |number: Option<Number>, digits| {
+            number.map_or(String::new(), |number| with_interval(&number, digits))
+        };
         let of_baseline = |quantity: &str| {
             let place = names.iter().position(|name| *name == variant)?;
             let number = baseline.number(&[place], quantity);
@@ -39,13 +41,17 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     }
     found.tables.push(table);
 
-    let place = |names: &[String], start: &str| names.iter().position(|name| name.starts_with(start)).unwrap_or(0);
+    let place =
+        |names: &[String], start: &str| names.iter().position(|name| name.starts_with(start)).unwrap_or(0);
     let literal = place(&names, "friction: literal (Eq. 4 as printed), dt* = 0.02");
     let kinetic = |k: usize| baseline.values(&[k], "kinetic_friction_star");
     found.values("sensitivity.literal_kinetic_friction", &kinetic(literal));
     let reversal = place(&names, "friction: reversal");
     let statics = |k: usize| baseline.values(&[k], "static_friction_star");
-    let apart = statics(0).into_iter().zip(statics(reversal)).map(|(one, other)| (one - other).abs());
+    let apart = statics(0)
+        .into_iter()
+        .zip(statics(reversal))
+        .map(|(one, other)| (one - other).abs());
     found.value("sensitivity.reversal_moves_static_friction", largest(apart));
     let reduction = |k: usize| mean(&texture.values(&[k], REDUCTION));
     let shifted = (0..textured.len()).filter(|&k| textured[k].starts_with("centre"));

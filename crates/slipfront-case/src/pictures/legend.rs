@@ -95,7 +95,13 @@ impl Legend {
             canvas.text(title, (*x, y + 0.5 * title.height()), Align::Start, BLACK);
         }
         for (index, entry) in self.entries.iter().enumerate() {
-            let Entry { x, y, text, colour, line } = entry;
+            let Entry {
+                x,
+                y,
+                text,
+                colour,
+                line,
+            } = entry;
             let middle = x + 0.5 * Self::SAMPLE;
             match self.sample {
                 Sample::Line | Sample::Marker => {

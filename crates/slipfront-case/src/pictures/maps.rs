@@ -5,7 +5,9 @@ use super::canvas::{Align, Area, Canvas, Image, level};
 use super::outline::outline;
 use super::sides::{BAR_WIDTH, colour_bar, placed, widest};
 use super::stress::draw_outline;
-use super::style::{BLACK, MARGIN, RADIUS_MARKER, Rgb, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH, TICK_LENGTH, WHITE, WIDTH_MARK};
+use super::style::{
+    BLACK, MARGIN, RADIUS_MARKER, Rgb, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH, TICK_LENGTH, WHITE, WIDTH_MARK,
+};
 use super::text::Text;
 use super::{Picture, PictureError};
 
@@ -116,7 +118,13 @@ fn check(map: &FieldMap) -> Result<(), PictureError> {
 fn draw_map(canvas: &mut Canvas, map: &FieldMap, area: Area, [lo, hi]: [f64; 2]) {
     let share = |&value: &f32| level(((f64::from(value) - lo) / (hi - lo)) as f32);
     // The image's first row is the uppermost.
-    let levels = map.values.chunks_exact(map.nx).rev().flatten().map(share).collect();
+    let levels = map
+        .values
+        .chunks_exact(map.nx)
+        .rev()
+        .flatten()
+        .map(share)
+        .collect();
     canvas.image(Image {
         area,
         columns: map.nx,
@@ -140,10 +148,20 @@ fn draw_map(canvas: &mut Canvas, map: &FieldMap, area: Area, [lo, hi]: [f64; 2])
     let fitted = |text: &str, size| Text::shortened(text, size, area.width + 0.6 * GAP);
     let mut baseline = area.y - 14.0;
     if !map.note.is_empty() {
-        canvas.text(&fitted(&map.note, SIZE_TICK), (middle, baseline), Align::Middle, BLACK);
+        canvas.text(
+            &fitted(&map.note, SIZE_TICK),
+            (middle, baseline),
+            Align::Middle,
+            BLACK,
+        );
         baseline -= f64::from(SIZE_TICK) + 8.0;
     }
-    canvas.text(&fitted(&map.label, SIZE_LABEL), (middle, baseline), Align::Middle, BLACK);
+    canvas.text(
+        &fitted(&map.label, SIZE_LABEL),
+        (middle, baseline),
+        Align::Middle,
+        BLACK,
+    );
 }
 
 /// A circle with a pale rim, seen on every colour of the ramp.
@@ -184,7 +202,9 @@ mod tests {
 
     #[test]
     fn lattices_of_different_sizes_stand_side_by_side() {
-        let svg = field_maps(&maps(&[(5, 5), (25, 25), (75, 75), (5, 5)])).unwrap().svg;
+        let svg = field_maps(&maps(&[(5, 5), (25, 25), (75, 75), (5, 5)]))
+            .unwrap()
+            .svg;
         // Four maps and the bar.
         assert_eq!(svg.matches("<image").count(), 5);
         for text in ["5 x 5", "25 x 25", "75 x 75", "value"] {
@@ -211,7 +231,10 @@ mod tests {
             field_maps(&maps).unwrap_err().to_string()
         };
         assert_eq!(error(&|m| m.maps.clear()), "there is no map to draw");
-        assert_eq!(error(&|m| m.maps[0].nx = 0), "a lattice of 0 x 3 blocks cannot be drawn");
+        assert_eq!(
+            error(&|m| m.maps[0].nx = 0),
+            "a lattice of 0 x 3 blocks cannot be drawn"
+        );
         assert_eq!(
             error(&|m| m.maps[0].values.push(0.0)),
             "map `2 x 3`, values, has 7 values, but the lattice has 6 blocks"

@@ -77,7 +77,8 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
     if curves.len() > 1 {
         let labels: Vec<&str> = responses.curves.iter().map(|c| c.label.as_str()).collect();
         let lines: Vec<bool> = curves.iter().map(|curve| curve.line).collect();
-        legend = Legend::titled(&responses.legend_title, &labels, Sample::Marker, left, right).with_lines(&lines);
+        legend =
+            Legend::titled(&responses.legend_title, &labels, Sample::Marker, left, right).with_lines(&lines);
     }
     let area = Area {
         x: left,
@@ -109,14 +110,26 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
         curve.draw_band(&mut canvas, &x, &y, *colour, opacity);
     }
     for (curve, colour) in &coloured {
-        for piece in pieces(&measured(&curve.x, &x), &measured(&curve.mean, &y), x.axis(), y.axis()) {
+        for piece in pieces(
+            &measured(&curve.x, &x),
+            &measured(&curve.mean, &y),
+            x.axis(),
+            y.axis(),
+        ) {
             if piece.len() > 1 {
                 canvas.polyline(piece, WIDTH_CURVE, *colour);
             }
         }
     }
     for (index, (curve, colour)) in coloured.iter().enumerate().filter(|(_, (curve, _))| !curve.line) {
-        for point in pieces(&measured(&curve.x, &x), &measured(&curve.mean, &y), x.axis(), y.axis()).concat() {
+        for point in pieces(
+            &measured(&curve.x, &x),
+            &measured(&curve.mean, &y),
+            x.axis(),
+            y.axis(),
+        )
+        .concat()
+        {
             marker(&mut canvas, index, point, RADIUS_MARKER, *colour);
         }
     }
@@ -275,7 +288,13 @@ mod tests {
         let measured = svg(std::slice::from_ref(&formula));
         formula.line = true;
         let drawn = svg(std::slice::from_ref(&formula));
-        assert_eq!((measured.matches("<circle").count(), drawn.matches("<circle").count()), (4, 0));
+        assert_eq!(
+            (
+                measured.matches("<circle").count(),
+                drawn.matches("<circle").count()
+            ),
+            (4, 0)
+        );
         let mut both = responses(&[formula], true);
         both.log_y = true;
         let logarithmic = response(&both).unwrap().svg;

@@ -61,7 +61,12 @@ pub fn shapes(shapes: &[Shape]) -> Result<Picture, PictureError> {
         points.extend(points.first().copied());
         canvas.polyline(points, WIDTH_MARK, CURVES[0]);
         let label = Text::shortened(&shape.label, SIZE_TICK, room + GAP);
-        canvas.text(&label, (x, area.bottom() + f64::from(SIZE_TICK)), Align::Middle, BLACK);
+        canvas.text(
+            &label,
+            (x, area.bottom() + f64::from(SIZE_TICK)),
+            Align::Middle,
+            BLACK,
+        );
     }
     canvas.finish()
 }
@@ -77,7 +82,10 @@ mod tests {
             points: vec![[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]],
         };
         let svg = shapes(&[square("a"), square("b")]).unwrap().svg;
-        assert_eq!((svg.matches("<path").count(), svg.matches("<polyline").count()), (2, 2));
+        assert_eq!(
+            (svg.matches("<path").count(), svg.matches("<polyline").count()),
+            (2, 2)
+        );
         assert!(svg.contains(">a</text>") && svg.contains(">b</text>"));
         assert!(shapes(&[]).is_err() && shapes(&[Shape::default()]).is_err());
     }

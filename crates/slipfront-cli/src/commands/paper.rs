@@ -54,10 +54,14 @@ impl Paper {
             reduced: self.reduced,
         };
         let progress = Progress::new(self.quiet);
-        let done = paper::run(&figures, &mut records, &options, &mut |stage| progress.show(stage));
+        let done = paper::run(&figures, &mut records, &options, &mut |stage| {
+            progress.show(stage)
+        });
         progress.finish();
         let paper = match done {
-            Err(error) if error.is_interruption() => return Err(Failure::Stopped(signal.load(Ordering::Relaxed))),
+            Err(error) if error.is_interruption() => {
+                return Err(Failure::Stopped(signal.load(Ordering::Relaxed)));
+            }
             done => done.map_err(Failure::running)?,
         };
         paper::write(&paper, &self.out).map_err(Failure::running)?;
@@ -81,7 +85,10 @@ impl Paper {
 /// Opens the records of an earlier call, or begins them in a folder that holds nothing else.
 fn open(folder: &Path) -> Result<Records, Failure> {
     std::fs::create_dir_all(folder).map_err(|error| {
-        Failure::input(anyhow::anyhow!("cannot make the folder {}: {error}", folder.display()))
+        Failure::input(anyhow::anyhow!(
+            "cannot make the folder {}: {error}",
+            folder.display()
+        ))
     })?;
     Records::open(folder).map_err(Failure::input)
 }
@@ -116,16 +123,21 @@ impl Progress {
         match self {
             Self::Silent => {}
             Self::Bar(bar) => {
-                let runs = stage
-                    .study
-                    .map_or(String::new(), |study| format!(", {} of {} runs", study.done, study.total));
+                let runs = stage.study.map_or(String::new(), |study| {
+                    format!(", {} of {} runs", study.done, study.total)
+                });
                 bar.set_length(stage.total as u64);
                 bar.set_position(stage.done as u64);
                 bar.set_message(format!("{}{step}{runs}", stage.figure.name));
             }
             Self::Lines => {
                 if stage.study.is_none() {
-                    eprintln!("{:>2} of {}: {}{step}", stage.done + 1, stage.total, stage.figure.title);
+                    eprintln!(
+                        "{:>2} of {}: {}{step}",
+                        stage.done + 1,
+                        stage.total,
+                        stage.figure.title
+                    );
                 }
             }
         }

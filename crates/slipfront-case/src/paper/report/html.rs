@@ -138,7 +138,9 @@ fn section(paper: &Paper, figure: &Figure, found: &Found, pictures: &[Drawn]) ->
 
 /// The physical width that the picture is made for.
 fn width(svg: &str) -> String {
-    let width = svg.split_once("width=\"").and_then(|(_, rest)| rest.split_once('"'));
+    let width = svg
+        .split_once("width=\"")
+        .and_then(|(_, rest)| rest.split_once('"'));
     width.map_or(String::new(), |(width, _)| format!("width:{width}"))
 }
 

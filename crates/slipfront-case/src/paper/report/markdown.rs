@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{counts, step_name};
-use crate::paper::{Paper, StepRule, Verdict};
+use crate::paper::{Judged, Paper, StepRule, Verdict};
 
 /// The pictures that the page shows.
 pub(super) const SHOWN: [&str; 8] = [
@@ -36,7 +36,10 @@ pub(super) fn page(paper: &Paper) -> String {
         if let Some(deviation) = &claim.deviation {
             let _ = write!(verdict, " ({deviation})");
         }
-        let other = paper.judged_by_paper_step.get(k).map_or(String::new(), |other| other.measured());
+        let other = paper
+            .judged_by_paper_step
+            .get(k)
+            .map_or(String::new(), Judged::measured);
         let remark = if claim.remark.is_empty() {
             String::new()
         } else {
@@ -51,10 +54,18 @@ pub(super) fn page(paper: &Paper) -> String {
             verdict,
             other,
         ];
-        let _ = writeln!(text, "| {} |", cells.map(|cell| cell.replace('|', "\\|")).join(" | "));
+        let _ = writeln!(
+            text,
+            "| {} |",
+            cells.map(|cell| cell.replace('|', "\\|")).join(" | ")
+        );
     }
     for (figure, found) in &paper.figures {
-        for panel in found.panels.iter().filter(|panel| SHOWN.contains(&panel.name.as_str())) {
+        for panel in found
+            .panels
+            .iter()
+            .filter(|panel| SHOWN.contains(&panel.name.as_str()))
+        {
             let _ = write!(
                 text,
                 "\n## {}\n\n{}\n\n![{}](images/paper-{}.png)\n",
