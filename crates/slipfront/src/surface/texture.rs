@@ -355,7 +355,9 @@ fn fill(outline: &Outline, lattice: &Lattice, textured: &mut [bool]) {
         outline.cut(row as f64 + 0.5, &mut crossings);
         let j = row.rem_euclid(lattice.ny as isize) as usize;
         for inside in crossings.chunks_exact(2) {
-            for column in blocks_between(inside[0], inside[1], lattice.nx, lattice.edges[0]) {
+            let columns = blocks_between(inside[0], inside[1], lattice.nx, lattice.edges[0]);
+            // Columns beyond once round are covered already; rows are not, as the outline changes from row to row.
+            for column in columns.take(lattice.nx + 1) {
                 if !outline.contains([column as f64 + 0.5, row as f64 + 0.5]) {
                     continue;
                 }
@@ -371,9 +373,6 @@ fn blocks_between(from: f64, to: f64, count: usize, edges: Edges) -> std::ops::R
     if from.is_infinite() || to.is_infinite() || edges == Edges::Free {
         first = first.max(0.0);
         end = end.min(count as f64);
-    } else {
-        // More than once round covers nothing new.
-        end = end.min(first + count as f64);
     }
     first as isize..end.max(first) as isize
 }

@@ -168,3 +168,25 @@ fn a_diverging_run_is_reported() {
     assert!(step < 100_000 && !value.is_finite());
     assert!(found.unwrap_err().to_string().contains("has diverged"));
 }
+
+/// Eq. 9 as printed: the sum of the drive springs' forces over the load, along the drive and a quarter turn to its left.
+#[test]
+fn mu_star_is_the_mean_pull_along_and_across_the_drive() {
+    let slider = Slider {
+        degrees: 30.0,
+        ..textured()
+    };
+    let model = slider.model();
+    let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+    let mut lateral = 0.0_f64;
+    for _ in 0..1500 {
+        simulation.step();
+        let now = simulation.snapshot();
+        let pull = [&now.forces.drive.x, &now.forces.drive.y].map(|f| f.iter().sum::<f64>() / 625.0);
+        let (s, c) = 30.0_f64.to_radians().sin_cos();
+        assert!((now.point.mu_star - (pull[0] * c + pull[1] * s)).abs() < 1e-13);
+        assert!((now.point.mu_lateral_star - (pull[1] * c - pull[0] * s)).abs() < 1e-13);
+        lateral = lateral.max(now.point.mu_lateral_star.abs());
+    }
+    assert!(lateral > 1e-4, "there is something across to be seen: {lateral}");
+}

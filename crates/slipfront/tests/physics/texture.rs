@@ -32,6 +32,10 @@ fn blocks_in_contact_carry_the_whole_load() {
                 (share, share * drawn.mu_static[b], share * drawn.mu_kinetic[b])
             };
             assert_eq!(surface.normal_forces[b], load);
+            let over = surface.textured[b];
+            let kept = |mu: f64| if over { 0.0 } else { mu };
+            assert_eq!(surface.mu_static[b], kept(drawn.mu_static[b]));
+            assert_eq!(surface.mu_kinetic[b], kept(drawn.mu_kinetic[b]));
             assert!((surface.hold[b] - hold).abs() < 1e-15 && (surface.slide[b] - slide).abs() < 1e-15);
         }
         let kept = Slider {

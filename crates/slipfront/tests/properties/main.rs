@@ -181,6 +181,34 @@ proptest! {
         }
     }
 
+    /// On periodic axes an outline covers what its copies in a sheet of many sliders cover, folded back onto one: also
+    /// where it is larger than the slider.
+    #[test]
+    fn periodic_meshes_are_folded_sheets(
+        blocks in [3..9_usize, 3..9_usize],
+        center in [0.0..8.0_f64, 0.0..8.0_f64],
+        lambda in 0.4..9.0_f64,
+        s in 1..5_u32,
+        w in -0.9..0.9_f64,
+        rotate in 0.0..360.0_f64,
+    ) {
+        const COPIES: usize = 15;
+        let periodic = Lattice::with_edges(blocks[0], blocks[1], [Edges::Periodic; 2]);
+        let sheet = Lattice::free(COPIES * blocks[0], COPIES * blocks[1]);
+        let cavity = |center| Texture::Cavity(Cavity {
+            center, lambda, s, w: w / f64::from(s), across: false, rotate, array: [1, 1],
+        });
+        let found = mesh(&periodic, &[cavity(center)]).textured;
+        let to_middle = |axis: usize| center[axis] + ((COPIES / 2) * blocks[axis]) as f64;
+        let copies = mesh(&sheet, &[cavity([to_middle(0), to_middle(1)])]).textured;
+        let mut folded = vec![false; periodic.n_blocks()];
+        for (b, &over) in copies.iter().enumerate() {
+            let (i, j) = sheet.column_row(b);
+            folded[periodic.block(i % blocks[0], j % blocks[1])] |= over;
+        }
+        prop_assert_eq!(found, folded);
+    }
+
     #[test]
     fn any_slider_runs_its_first_steps(slider in slider()) {
         prop_assume!(has_contact(&slider));
