@@ -180,8 +180,8 @@ fn outlines(texture: &Texture, lattice: &Lattice) -> Vec<Outline> {
     }
 }
 
-/// Vertices by which a semi-polygon's outline is drawn: they lie on the curve, and its chords leave it by less
-/// than `lambda (1 + s) (2 pi/4096)^2/8`, a ten-thousandth of a block at `lambda` = 100.
+/// Vertices by which a semi-polygon's outline is drawn: they lie on the curve, and its chords leave it by
+/// less than `lambda (1 + s) (2 pi/4096)^2/8`, a ten-thousandth of a block at `lambda` = 100.
 const OUTLINE_VERTICES: usize = 4096;
 
 impl Cavity {
@@ -272,8 +272,8 @@ impl Outline {
         }
     }
 
-    /// Whether a point between two crossings is inside. An ellipse excludes its outline, and rounds alike on all
-    /// sides of it, so that its mesh is as symmetric as the ellipse; other outlines are half-open.
+    /// Whether a point between two crossings is inside. An ellipse excludes its outline, and rounds alike on
+    /// all sides of it, so that its mesh is as symmetric as the ellipse; other outlines are half-open.
     fn contains(&self, [x, y]: [f64; 2]) -> bool {
         match self {
             Outline::Ellipse {
@@ -356,7 +356,8 @@ fn fill(outline: &Outline, lattice: &Lattice, textured: &mut [bool]) {
         let j = row.rem_euclid(lattice.ny as isize) as usize;
         for inside in crossings.chunks_exact(2) {
             let columns = blocks_between(inside[0], inside[1], lattice.nx, lattice.edges[0]);
-            // Columns beyond once round are covered already; rows are not, as the outline changes from row to row.
+            // Columns beyond once round are covered already; rows are not, as the outline changes from row to
+            // row.
             for column in columns.take(lattice.nx + 1) {
                 if !outline.contains([column as f64 + 0.5, row as f64 + 0.5]) {
                     continue;

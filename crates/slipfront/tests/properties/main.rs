@@ -181,8 +181,8 @@ proptest! {
         }
     }
 
-    /// On periodic axes an outline covers what its copies in a sheet of many sliders cover, folded back onto one: also
-    /// where it is larger than the slider.
+    /// On periodic axes an outline covers what its copies in a sheet of many sliders cover, folded back onto
+    /// one: also where it is larger than the slider.
     #[test]
     fn periodic_meshes_are_folded_sheets(
         blocks in [3..9_usize, 3..9_usize],
