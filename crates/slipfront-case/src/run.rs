@@ -37,7 +37,7 @@ pub fn run(case: &Case, watch_every: u64, watcher: &mut dyn Observer) -> Result<
     };
     let mut curve = Curve::every(case.output.series_stride);
     let mut history = KineticHistory::new(schedule.last_step);
-    let mut first_slip = FirstSlip::none(case.model.lattice.n_blocks());
+    let mut first_slip = FirstSlip::none(&case.model.surface);
     let mut stress_maximum = StressMaximum::default();
     let mut instants = Instants::new(selection.clone(), schedule.kinetic, schedule.end_star());
     let mut frames = Frames::new(selection);

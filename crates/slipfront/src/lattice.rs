@@ -49,9 +49,17 @@ impl Lattice {
         }
     }
 
-    /// A lattice with the given ends along x and along y; a periodic axis needs at least
-    /// [`Lattice::MIN_PERIODIC`] blocks, or a block would be its own neighbour twice.
+    /// A lattice with the given ends along x and along y.
+    ///
+    /// # Panics
+    /// If a periodic axis has fewer than [`Lattice::MIN_PERIODIC`] blocks: two would be joined twice.
     pub fn with_edges(nx: usize, ny: usize, edges: [Edges; 2]) -> Self {
+        for (count, edges) in [nx, ny].into_iter().zip(edges) {
+            assert!(
+                edges == Edges::Free || count >= Self::MIN_PERIODIC,
+                "{count} blocks along a periodic axis"
+            );
+        }
         Self { nx, ny, edges }
     }
 
