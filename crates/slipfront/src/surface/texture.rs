@@ -340,7 +340,8 @@ fn reaches_over(outline: &Outline, lattice: &Lattice) -> bool {
 fn fill(outline: &Outline, lattice: &Lattice, textured: &mut [bool]) {
     let [low, high] = outline.bounds();
     let mut crossings = Vec::new();
-    for row in blocks_between(low[1], high[1], lattice.ny, lattice.edges[1]) {
+    // Every row meets another part of the outline, also the second time round.
+    for row in all_blocks_between(low[1], high[1], lattice.ny, lattice.edges[1]) {
         outline.cut(row as f64 + 0.5, &mut crossings);
         let j = row.rem_euclid(lattice.ny as isize) as usize;
         for inside in crossings.chunks_exact(2) {
@@ -351,15 +352,18 @@ fn fill(outline: &Outline, lattice: &Lattice, textured: &mut [bool]) {
     }
 }
 
-/// Blocks along one axis whose centre k + 1/2 lies in [from, to); beyond the ends only where they wrap.
+/// Blocks along one axis whose centre k + 1/2 lies in [from, to), once round at most.
 fn blocks_between(from: f64, to: f64, count: usize, edges: Edges) -> std::ops::Range<isize> {
+    let all = all_blocks_between(from, to, count, edges);
+    all.start..all.end.min(all.start + count as isize)
+}
+
+/// The same, as often round as [from, to) reaches; beyond the ends only where they wrap.
+fn all_blocks_between(from: f64, to: f64, count: usize, edges: Edges) -> std::ops::Range<isize> {
     let (mut first, mut end) = ((from - 0.5).ceil(), (to - 0.5).ceil());
     if from.is_infinite() || to.is_infinite() || edges == Edges::Free {
         first = first.max(0.0);
         end = end.min(count as f64);
-    } else {
-        // More than once round covers nothing new.
-        end = end.min(first + count as f64);
     }
     first as isize..end.max(first) as isize
 }
@@ -475,6 +479,18 @@ mod tests {
         assert_eq!(free.clipped, [0]);
         assert!(wrapped.clipped.is_empty());
         assert_eq!(4 * blocks(&free), blocks(&wrapped));
+    }
+
+    #[test]
+    fn an_outline_larger_than_a_periodic_slider_covers_all_of_it() {
+        let lattice = Lattice::with_edges(25, 25, [Edges::Periodic; 2]);
+        for s in [1, 3] {
+            let large = Cavity {
+                center: [12.5, 12.5],
+                ..cavity(s, 0.2, 100.0)
+            };
+            assert_eq!(count(&lattice, Texture::Cavity(large)), 625, "s = {s}");
+        }
     }
 
     #[test]
