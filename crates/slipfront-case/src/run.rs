@@ -64,8 +64,10 @@ pub fn run(case: &Case, watch_every: u64, watcher: &mut dyn Observer) -> Result<
     };
     let peak = simulation.peak();
     let kinetic_from = schedule.kinetic.time_star(&peak, case.groups.v_star);
-    // A run that stops at its onset has no kinetic phase, wherever the window was meant to begin.
+    // A run that stops at its onset has no kinetic phase, wherever the window was meant to begin, and neither has one in
+    // which nothing slipped.
     let kinetic = match reason {
+        StopReason::End if first_slip.earliest.is_none() => None,
         StopReason::End => history.kinetic(kinetic_from, schedule.dt_star),
         StopReason::Onset => None,
     };

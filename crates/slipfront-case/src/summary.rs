@@ -147,21 +147,47 @@ impl Summary {
             work_j: energies.work * energy,
             friction_loss_j: energies.friction_loss * energy,
             damping_loss_j: energies.damping_loss * energy,
-            warnings: [case.warnings(), after_run(peak, kinetic.as_ref())].concat(),
+            warnings: [
+                case.warnings(),
+                after_run(peak, kinetic.as_ref(), first_slip, &energies),
+            ]
+            .concat(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
         }
     }
 }
 
+/// Share of the energy that the ledger may miss; a step of 0.1 stays a factor of ten below.
+const LARGE_ENERGY_ERROR: f64 = 0.01;
+
 /// What the run itself gives reason to warn of.
-fn after_run(peak: &Peak, kinetic: Option<&Kinetic>) -> Vec<String> {
+fn after_run(
+    peak: &Peak,
+    kinetic: Option<&Kinetic>,
+    first_slip: &FirstSlip,
+    energies: &Energies,
+) -> Vec<String> {
     let mut warnings = Vec::new();
+    if energies.error().abs() > LARGE_ENERGY_ERROR {
+        warnings.push(format!(
+            "the ledger of energies misses {:.0} % of what was put in: the time step is too coarse for this case",
+            100.0 * energies.error().abs()
+        ));
+    }
     if !peak.ended {
         warnings.push(
             "mu* never fell half-way to its steady level: there was no transition, and static_friction_star is the \
              largest mu* of the run"
                 .to_owned(),
         );
+    }
+    if first_slip.earliest.is_none() {
+        warnings.push(
+            "no block in contact slipped before the run ended: kinetic_friction_star is empty; lengthen \
+             time.duration_star"
+                .to_owned(),
+        );
+        return warnings;
     }
     match kinetic.map(|kinetic| kinetic.uncertainty) {
         None => warnings.push(
