@@ -9,7 +9,7 @@ use slipfront::surface::{self, Coefficients, Distribution, Load, mesh};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Scales, Stop, Surface};
 
 use crate::arrays;
-use crate::case_file::{self, AutoOr, CaseError, CaseFile};
+use crate::case_file::{self, AutoOr, CaseError, CaseFile, Source};
 use crate::fields::FieldName;
 use crate::quantity::Length;
 
@@ -514,6 +514,23 @@ fn coefficients(
     Ok(drawn)
 }
 
+/// The bytes of a file that a case names.
+pub(crate) fn read_input(source: &Source, key: &str, path: &Path) -> Result<Vec<u8>, CaseError> {
+    let unreadable = |error: std::io::Error| {
+        let sentence = format!(
+            "cannot read {}: {error}; paths are relative to the case file",
+            path.display()
+        );
+        source.error(key, sentence)
+    };
+    // A pipe would be waited for, and a device such as /dev/zero never ends.
+    if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
+        let sentence = format!("{} is not a regular file: name a file that is", path.display());
+        return Err(source.error(key, sentence));
+    }
+    std::fs::read(path).map_err(unreadable)
+}
+
 /// Files read so far.
 struct Inputs {
     folder: PathBuf,
@@ -531,21 +548,7 @@ impl Inputs {
     /// Notes a file; gives its path and the one of its copy in the run folder.
     fn read(&mut self, file: &CaseFile, key: &str, written: &str) -> Result<(PathBuf, String), CaseError> {
         let path = self.folder.join(written);
-        let unreadable = |error: std::io::Error| {
-            file.source.error(
-                key,
-                format!(
-                    "cannot read {}: {error}; paths are relative to the case file",
-                    path.display()
-                ),
-            )
-        };
-        // A pipe would be waited for, and a device such as /dev/zero never ends.
-        if !std::fs::metadata(&path).map_err(unreadable)?.is_file() {
-            let sentence = format!("{} is not a regular file: name a file that is", path.display());
-            return Err(file.source.error(key, sentence));
-        }
-        let bytes = std::fs::read(&path).map_err(unreadable)?;
+        let bytes = read_input(&file.source, key, &path)?;
         let plain = path
             .file_name()
             .map_or_else(|| "input".into(), |name| name.to_string_lossy().into_owned());

@@ -11,6 +11,7 @@ mod output;
 mod overrides;
 mod slider;
 mod source;
+mod tables;
 mod texture;
 mod time;
 mod values;
@@ -22,13 +23,15 @@ use std::path::Path;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue, ValueDeserializer};
+use toml::de::{DeTable, DeValue};
 
 pub use error::{CaseError, Invalid};
+pub(crate) use keys::keys_of;
 pub use motion::{Drive, DriveSpeed, Friction, KineticFriction, Law, Load};
 pub use output::{Output, Snapshots};
 pub use slider::{Damping, Edge, Slider};
 pub use source::{Place, Source};
+pub(crate) use tables::Tables;
 pub use texture::{Cavity, CavitySize, Center, Groove, GrooveSize, Mask, Orientation, Polygon, Texture};
 pub use time::{RunTime, Step, Stop, Time};
 pub use values::AutoOr;
@@ -117,36 +120,29 @@ impl CaseFile {
     /// # Errors
     /// As for `parse`, and when the path is missing, a folder, too large or not UTF-8 text.
     pub fn load(path: &Path, overrides: &[String]) -> Result<Self, CaseError> {
-        let unreadable = |source| CaseError::Unreadable {
-            path: path.to_owned(),
-            source,
-        };
-        if path.is_dir() {
-            return Err(CaseError::Folder {
-                path: path.to_owned(),
-            });
-        }
-        let limit = MAX_MIB << 20;
-        let mut bytes = Vec::new();
-        // The limit holds for what is read, since a device or a pipe tells no size.
-        File::open(path)
-            .and_then(|file| file.take(limit + 1).read_to_end(&mut bytes))
-            .map_err(unreadable)?;
-        if bytes.len() as u64 > limit {
-            return Err(CaseError::TooLarge {
-                path: path.to_owned(),
-                limit_mib: MAX_MIB,
-            });
-        }
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-            let line = good.iter().filter(|byte| **byte == b'\n').count() + 1;
-            CaseError::NotText {
-                path: path.to_owned(),
-                line,
-            }
-        })?;
+        let text = read_text(path)?;
         Self::parse(&text, &path.display().to_string(), overrides)
+    }
+
+    /// Every file that the case names, relative to the case file, and the key that names it.
+    pub fn files_mut(&mut self) -> impl Iterator<Item = (String, &mut String)> {
+        let masks = self
+            .texture
+            .iter_mut()
+            .enumerate()
+            .filter_map(|(index, texture)| match texture {
+                Texture::Mask(mask) => Some((format!("texture.{index}.file"), &mut mask.file)),
+                Texture::Cavity(_) | Texture::Groove(_) | Texture::Polygon(_) => None,
+            });
+        let fields = [
+            ("friction.mu_static_field", &mut self.friction.mu_static_field),
+            ("friction.mu_kinetic_field", &mut self.friction.mu_kinetic_field),
+        ];
+        masks.chain(
+            fields
+                .into_iter()
+                .filter_map(|(key, name)| Some((key.to_owned(), name.as_mut()?))),
+        )
     }
 
     /// Writes the case with every default filled in, in the order of the design; reading it back gives an equal case.
@@ -159,41 +155,43 @@ impl CaseFile {
     }
 }
 
-/// The tables of a parsed file that are still to be read.
-struct Tables<'a, 'i> {
-    root: DeTable<'i>,
-    source: &'a Source,
+/// Reads a case or study file of at most 16 MiB.
+///
+/// # Errors
+/// When the path is missing, a folder, too large or not UTF-8 text.
+pub(crate) fn read_text(path: &Path) -> Result<String, CaseError> {
+    let unreadable = |source| CaseError::Unreadable {
+        path: path.to_owned(),
+        source,
+    };
+    if path.is_dir() {
+        return Err(CaseError::Folder {
+            path: path.to_owned(),
+        });
+    }
+    let limit = MAX_MIB << 20;
+    let mut bytes = Vec::new();
+    // The limit holds for what is read, since a device or a pipe tells no size.
+    File::open(path)
+        .and_then(|file| file.take(limit + 1).read_to_end(&mut bytes))
+        .map_err(unreadable)?;
+    if bytes.len() as u64 > limit {
+        return Err(CaseError::TooLarge {
+            path: path.to_owned(),
+            limit_mib: MAX_MIB,
+        });
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = good.iter().filter(|byte| **byte == b'\n').count() + 1;
+        CaseError::NotText {
+            path: path.to_owned(),
+            line,
+        }
+    })
 }
 
 impl<'i> Tables<'_, 'i> {
-    fn read<T: Default + DeserializeOwned>(&mut self, name: &str) -> Result<T, CaseError> {
-        match self.root.remove(name) {
-            None => Ok(T::default()),
-            Some(value) if value.get_ref().is_table() => {
-                self.read_table(value, &keys::header(name), keys::keys_of::<T>())
-            }
-            Some(value) => {
-                let sentence = format!("`{name}` must be a table: write its keys below a line [{name}]");
-                Err(self.source.error_at(value.span(), sentence))
-            }
-        }
-    }
-
-    fn read_table<T: DeserializeOwned>(
-        &self,
-        table: Spanned<DeValue<'i>>,
-        header: &str,
-        known: &[&str],
-    ) -> Result<T, CaseError> {
-        let span = table.span();
-        let read = T::deserialize(ValueDeserializer::from(table));
-        read.map_err(|error| {
-            // An error about the table as a whole, such as a size that is missing, comes without a span.
-            let span = error.span().unwrap_or(span);
-            CaseError::value(self.source, span, error.message(), header, known)
-        })
-    }
-
     fn read_textures(&mut self) -> Result<Vec<Texture>, CaseError> {
         let Some(value) = self.root.remove("texture") else {
             return Ok(Vec::new());

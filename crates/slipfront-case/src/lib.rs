@@ -17,4 +17,5 @@ pub mod quantity;
 pub mod results;
 pub mod run;
 pub mod series;
+pub mod study;
 pub mod summary;

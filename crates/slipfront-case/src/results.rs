@@ -63,10 +63,7 @@ pub fn write(
     started: jiff::Timestamp,
     threads: usize,
 ) -> Result<Manifest, ResultsError> {
-    folder.write("case.toml", case.file.to_toml()?.as_bytes())?;
-    for input in &case.inputs {
-        folder.write(&input.name, &input.bytes)?;
-    }
+    write_case(case, &mut folder)?;
     folder.write("summary.json", &folder::json(&record.summary))?;
     let rows = record.rows.iter().map(|row| SeriesRow::new(row, &case.scales));
     folder.write("series.csv", &series::to_csv(rows)?)?;
@@ -77,6 +74,18 @@ pub fn write(
         folder.write(&format!("{name}.png"), &picture.png)?;
     }
     Ok(folder.complete(started, threads)?)
+}
+
+/// Writes the case and copies of the files that it reads: enough to run it again.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write_case(case: &Case, folder: &mut RunFolder) -> Result<(), ResultsError> {
+    folder.write("case.toml", case.file.to_toml()?.as_bytes())?;
+    for input in &case.inputs {
+        folder.write(&input.name, &input.bytes)?;
+    }
+    Ok(())
 }
 
 fn write_fields(case: &Case, record: &Record, path: &Path) -> Result<(), FieldsError> {

@@ -6,7 +6,7 @@ use slipfront::observe::{Doubt, Energies, FirstSlip, Frame, Kinetic, Peak};
 use crate::case::Case;
 
 /// The numbers of a run. Starred quantities are dimensionless (Eq. 11); times without a star are in s.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Summary {
     /// mu_s*, the first peak of mu* (or its largest value where there is no transition).

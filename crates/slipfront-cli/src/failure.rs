@@ -2,12 +2,16 @@
 
 use std::process::ExitCode;
 
+use slipfront_case::study::StudyError;
+
 /// Why a command ends, which decides its exit status.
 pub(crate) enum Failure {
     /// Bad input or usage: status 2.
     Input(anyhow::Error),
     /// Failed while running: status 1.
     Running(anyhow::Error),
+    /// Stopped by this signal, with everything saved: status 128 + signal.
+    Stopped(usize),
 }
 
 impl Failure {
@@ -24,6 +28,7 @@ impl Failure {
         let (error, status) = match self {
             Self::Input(error) => (error, 2),
             Self::Running(error) => (error, 1),
+            Self::Stopped(signal) => (StudyError::Interrupted.into(), 128 + signal as u8),
         };
         eprintln!("error: {error}");
         ExitCode::from(status)

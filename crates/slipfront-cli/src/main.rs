@@ -1,7 +1,7 @@
 //! The command `slipfront`: one file per subcommand under `commands/`, each thin.
 //!
-//! Errors go to stderr as sentences, results to stdout. Exit status: 0 done, 1 the run failed, 2 bad input or
-//! usage.
+//! Errors go to stderr as sentences, results to stdout. Exit status: 0 done, 1 a run failed, 2 bad input or
+//! usage, 130 and 143 stopped by SIGINT and SIGTERM.
 
 mod commands;
 mod failure;
@@ -30,6 +30,7 @@ struct Cli {
 enum Command {
     Run(commands::run::Run),
     Check(commands::check::Check),
+    Study(commands::study::Study),
     Texture(commands::texture::Texture),
     Plot(commands::plot::Plot),
     Completions(commands::completions::Completions),
@@ -39,6 +40,7 @@ fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Run(run) => run.execute(),
         Command::Check(check) => check.execute(),
+        Command::Study(study) => study.execute(),
         Command::Texture(texture) => texture.execute(),
         Command::Plot(plot) => plot.execute(),
         Command::Completions(completions) => completions.execute(),

@@ -7,6 +7,7 @@ use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use slipfront::observe::Observer;
 use slipfront::{RunError, Snapshot};
 use slipfront_case::case::Case;
+use slipfront_case::study::Progress as StudyState;
 
 /// Time between plain lines.
 const LINE_EVERY: Duration = Duration::from_secs(5);
@@ -100,5 +101,79 @@ impl Lines {
             rate * self.n_blocks as f64 / 1e6,
             HumanDuration(Duration::from_secs_f64(left)),
         );
+    }
+}
+
+/// Shows how far a study has come.
+pub(crate) enum StudyProgress {
+    Silent,
+    Bar(ProgressBar),
+    Lines { began: Instant, next: Instant },
+}
+
+impl StudyProgress {
+    pub(crate) fn new(quiet: bool) -> Self {
+        if quiet {
+            return Self::Silent;
+        }
+        if !std::io::stderr().is_terminal() {
+            let now = Instant::now();
+            return Self::Lines {
+                began: now,
+                next: now + LINE_EVERY,
+            };
+        }
+        let bar = ProgressBar::new(0);
+        if let Ok(style) =
+            ProgressStyle::with_template("{bar:32} {pos}/{len} runs  {per_sec}, {eta} left  {msg}")
+        {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        Self::Bar(bar)
+    }
+
+    pub(crate) fn show(&mut self, now: &StudyState) {
+        let failed = if now.failed > 0 {
+            format!("  {} failed", now.failed)
+        } else {
+            String::new()
+        };
+        let worst = now.worst.map_or(String::new(), |worst| {
+            format!("  widest interval \u{b1} {worst:.1e}")
+        });
+        match self {
+            Self::Silent => {}
+            Self::Bar(bar) => {
+                if now.here == 0 {
+                    // What was done before says nothing of the rate.
+                    bar.set_length(now.total as u64);
+                    bar.set_position(now.done as u64);
+                    bar.reset_eta();
+                }
+                bar.set_length(now.total as u64);
+                bar.set_position(now.done as u64);
+                bar.set_message(format!("{failed}{worst}"));
+            }
+            Self::Lines { began, next } => {
+                if Instant::now() < *next {
+                    return;
+                }
+                *next = Instant::now() + LINE_EVERY;
+                let rate = now.here as f64 / began.elapsed().as_secs_f64();
+                let left = (now.total - now.done) as f64 / rate;
+                eprintln!(
+                    "{} of {} runs  {rate:.1} runs/s  {} left{failed}{worst}",
+                    now.done,
+                    now.total,
+                    HumanDuration(Duration::from_secs_f64(left.clamp(0.0, 1e15))),
+                );
+            }
+        }
+    }
+
+    pub(crate) fn finish(&self) {
+        if let Self::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
     }
 }

@@ -1,8 +1,11 @@
 //! What the commands print: the physics of a case as a tree, its cost, the summary of a run.
 
+use std::path::Path;
+
 use slipfront::lattice::dt_star_limit;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Law;
+use slipfront_case::study::{self, Findings, Plan};
 use slipfront_case::summary::Summary;
 
 /// The resolved physics of a case.
@@ -131,7 +134,7 @@ pub(crate) fn cost(case: &Case, seconds: f64) -> String {
         dt_star_limit()
     );
     text += &format!(
-        "cost              {:.3e} block-steps, about {} on this machine; fields {}\n",
+        "cost              {:.3e} block-steps, {} on this machine; fields {}\n",
         case.block_steps(),
         duration(seconds),
         bytes(case.output.field_bytes(lattice, schedule.last_step))
@@ -163,17 +166,14 @@ pub(crate) fn summary(case: &Case, summary: &Summary) -> String {
         .zip(summary.kinetic_window_star);
     match kinetic {
         Some(((star, mu), [from, to])) => {
-            let uncertainty = |scale: f64| match summary.kinetic_friction_star_uncertainty {
-                Some(error) => format!(" \u{b1} {:.1e}", error * scale),
-                None => String::new(),
-            };
-            let scale = case.scales.mu_static_mean;
+            let uncertainty = summary.kinetic_friction_star_uncertainty;
+            let dimensional = uncertainty.map(|error| error * case.scales.mu_static_mean);
             line(
                 "kinetic friction",
                 format!(
-                    "mu_k* = {star:.4}{}   mu_k = {mu:.4}{}   over t* = {} to {}",
-                    uncertainty(1.0),
-                    uncertainty(scale),
+                    "mu_k* = {}   mu_k = {}   over t* = {} to {}",
+                    with_uncertainty(star, uncertainty),
+                    with_uncertainty(mu, dimensional),
                     plain(from),
                     plain(to)
                 ),
@@ -205,6 +205,89 @@ pub(crate) fn summary(case: &Case, summary: &Summary) -> String {
     text + &warnings(&summary.warnings)
 }
 
+/// The plan of a study and what it will cost.
+pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) -> String {
+    let settings = &plan.settings;
+    let mut text = format!("{}\n", plan.name);
+    for axis in &plan.axes {
+        let levels: Vec<String> = axis.levels.iter().map(|level| level.labels.join(" & ")).collect();
+        text += &format!("  {}: {}\n", axis.columns.join(" & "), levels.join(", "));
+    }
+    let replicates = match &settings.until {
+        None => format!("{} replicates", settings.replicates),
+        Some(until) => format!(
+            "{} to {} replicates, until {} is known within {}",
+            until.min, until.max, until.key, until.half_width
+        ),
+    };
+    let reference = if plan.has_reference() {
+        ", each with its reference"
+    } else {
+        ""
+    };
+    let runs = |replicates| plan.runs(replicates);
+    let (least, most) = (runs(settings.min_replicates()), runs(settings.max_replicates()));
+    let count = if least == most {
+        format!("{least}")
+    } else {
+        format!("{least} to {most}")
+    };
+    text += &format!(
+        "  {} points, {replicates}{reference}: at most {count} runs\n",
+        plan.points.len()
+    );
+    text + &format!(
+        "  {block_steps:.2e} block-steps, about {} on {threads} threads of this machine\n",
+        duration(seconds)
+    )
+}
+
+/// What a study has found, and where it stands.
+pub(crate) fn study(plan: &Plan, findings: &Findings, folder: &Path) -> String {
+    let mut text = String::new();
+    let name = study::main_quantity(plan);
+    text += &format!("{name}\n");
+    let rows: Vec<(String, String)> = (0..plan.points.len())
+        .take(MOST_ROWS)
+        .map(|position| {
+            let value = study::sample(plan, findings, position, name).map_or("failed".to_owned(), |sample| {
+                let wide = findings.points[position].narrow == Some(false);
+                let note = if wide { "   (interval still too wide)" } else { "" };
+                format!(
+                    "{}   n = {}{note}",
+                    with_uncertainty(sample.mean, sample.half_width),
+                    sample.n
+                )
+            });
+            (plan.describe(&plan.points[position]), value)
+        })
+        .collect();
+    let width = rows
+        .iter()
+        .map(|(point, _)| point.chars().count())
+        .max()
+        .unwrap_or_default();
+    for (point, value) in rows {
+        text += &format!("  {point:<width$}   {value}\n");
+    }
+    if plan.points.len() > MOST_ROWS {
+        text += &format!(
+            "  and {} more points in points.csv\n",
+            plan.points.len() - MOST_ROWS
+        );
+    }
+    if findings.strangers > 0 {
+        text += &format!(
+            "note: {} recorded runs are not part of the study as it is now; they stay in records.jsonl\n",
+            findings.strangers
+        );
+    }
+    text + &format!("runs.csv, points.csv and pictures in {}\n", folder.display())
+}
+
+/// Most points that are printed.
+const MOST_ROWS: usize = 40;
+
 fn warnings(warnings: &[String]) -> String {
     warnings
         .iter()
@@ -226,6 +309,18 @@ fn plain(value: f64) -> String {
     }
 }
 
+/// A value and its uncertainty, both to the second digit of the uncertainty; to four places where there is none.
+fn with_uncertainty(value: f64, uncertainty: Option<f64>) -> String {
+    match uncertainty {
+        Some(error) if error > 0.0 => {
+            let places = (1 - error.log10().floor() as i32).clamp(0, 12) as usize;
+            format!("{value:.places$} \u{b1} {error:.places$}")
+        }
+        Some(_) => format!("{value:.4} \u{b1} 0"),
+        None => format!("{value:.4}"),
+    }
+}
+
 /// A quantity with the SI prefix that suits it.
 fn si(value: f64, unit: &str) -> String {
     const PREFIXES: [&str; 13] = ["a", "f", "p", "n", "u", "m", "", "k", "M", "G", "T", "P", "E"];
@@ -242,7 +337,11 @@ fn si(value: f64, unit: &str) -> String {
 }
 
 fn duration(seconds: f64) -> String {
-    indicatif::HumanDuration(std::time::Duration::from_secs_f64(seconds.clamp(0.0, 1e15))).to_string()
+    if seconds < 1.0 {
+        return "less than a second".to_owned();
+    }
+    let rounded = std::time::Duration::from_secs_f64(seconds.min(1e15));
+    format!("about {}", indicatif::HumanDuration(rounded))
 }
 
 fn bytes(bytes: f64) -> String {

@@ -77,7 +77,7 @@ impl CaseError {
     }
 
     /// An error of TOML's grammar.
-    pub(super) fn syntax(source: &Source, offset: usize, error: &toml::de::Error) -> Self {
+    pub(crate) fn syntax(source: &Source, offset: usize, error: &toml::de::Error) -> Self {
         let span = error.span().unwrap_or(0..0);
         let span = span.start + offset..span.end + offset;
         let message = one_line(error.message());

@@ -164,7 +164,7 @@ pub(super) fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
 }
 
 /// The fields that `T` reads, in their order.
-pub(super) fn keys_of<T: DeserializeOwned>() -> &'static [&'static str] {
+pub(crate) fn keys_of<T: DeserializeOwned>() -> &'static [&'static str] {
     let mut fields: &'static [&'static str] = &[];
     // The probe gives nothing to read, so this always ends in an error: after the fields were noted.
     let _ = T::deserialize(Probe(&mut fields));

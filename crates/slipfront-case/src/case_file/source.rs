@@ -33,7 +33,7 @@ impl PartialEq for Source {
 }
 
 impl Source {
-    pub(super) fn new(name: &str, file: &str, overrides: &[String]) -> Self {
+    pub(crate) fn new(name: &str, file: &str, overrides: &[String]) -> Self {
         let mut text = file.to_owned();
         let mut spans = Vec::new();
         for entry in overrides {
@@ -74,7 +74,7 @@ impl Source {
     }
 
     /// Notes the place of every value of a parsed file.
-    pub(super) fn note_places(&mut self, root: &DeTable<'_>) {
+    pub(crate) fn note_places(&mut self, root: &DeTable<'_>) {
         note_table(&mut self.places, "", root);
     }
 
@@ -108,7 +108,7 @@ impl Source {
     }
 
     /// An error at a place in the text.
-    pub(super) fn error_at(&self, span: Range<usize>, sentence: impl Into<String>) -> CaseError {
+    pub(crate) fn error_at(&self, span: Range<usize>, sentence: impl Into<String>) -> CaseError {
         CaseError::invalid(Some(self.place(span)), sentence)
     }
 

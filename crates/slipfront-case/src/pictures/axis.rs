@@ -5,6 +5,9 @@ use super::text::{MINUS, number};
 /// Larger values are taken as blank: their differences might not be finite.
 const LARGEST: f64 = 1e100;
 
+/// Smaller differences are taken as none: their parts might be zero.
+const SMALLEST: f64 = 1e-290;
+
 /// True when a value can be placed on an axis.
 pub(super) fn drawable(value: f64) -> bool {
     value.abs() < LARGEST
@@ -37,26 +40,52 @@ impl Axis {
 
     /// At most `most` (but at least two) round values and how they are written.
     pub(super) fn ticks(&self, most: usize) -> Vec<(f64, String)> {
+        let (step, values) = self.round_values(most);
+        let (largest, smallest) = (self.power(), step.log10().floor());
+        let digits = (largest - smallest).clamp(0.0, 9.0) as usize;
+        let decimals = (-smallest).clamp(0.0, 12.0) as usize;
+        let written = |&value: &f64| {
+            if (-4.0..6.0).contains(&largest) {
+                number(value, decimals)
+            } else {
+                format!("{value:.digits$e}").replace('-', MINUS)
+            }
+        };
+        values.iter().map(|value| (*value, written(value))).collect()
+    }
+
+    /// The same, very large and very small values as multiples of one power of ten: `0.5e-9`, `1.0e-9`.
+    pub(super) fn scaled_ticks(&self, most: usize) -> Vec<(f64, String)> {
+        let power = self.power();
+        if (-4.0..6.0).contains(&power) {
+            return self.ticks(most);
+        }
+        let (step, values) = self.round_values(most);
+        let decimals = (power - step.log10().floor()).clamp(0.0, 9.0) as usize;
+        let exponent = number(power, 0);
+        // Divided in two steps: the power of the smallest values has no finite inverse.
+        let half = 10f64.powf(0.5 * power);
+        let written = |value: f64| match value {
+            0.0 => "0".to_string(),
+            _ => format!("{}e{exponent}", number(value / half / half, decimals)),
+        };
+        values.into_iter().map(|value| (value, written(value))).collect()
+    }
+
+    /// The distance of the ticks and where they are.
+    fn round_values(&self, most: usize) -> (f64, Vec<f64>) {
         let step = round_step((self.hi - self.lo) / most.max(2) as f64);
         let first = (self.lo / step - 1e-9).ceil();
         let count = ((self.hi / step + 1e-9).floor() - first).clamp(0.0, 100.0) as usize;
-        let (largest, smallest) = (
-            self.lo.abs().max(self.hi.abs()).log10().floor(),
-            step.log10().floor(),
-        );
-        let digits = (largest - smallest).clamp(0.0, 9.0) as usize;
-        let decimals = (-smallest).clamp(0.0, 12.0) as usize;
-        (0..=count)
-            .map(|index| {
-                let value = (first + index as f64) * step;
-                let written = if (-4.0..6.0).contains(&largest) {
-                    number(value, decimals)
-                } else {
-                    format!("{value:.digits$e}").replace('-', MINUS)
-                };
-                (value, written)
-            })
-            .collect()
+        (
+            step,
+            (0..=count).map(|index| (first + index as f64) * step).collect(),
+        )
+    }
+
+    /// The power of ten of the largest value.
+    fn power(&self) -> f64 {
+        self.lo.abs().max(self.hi.abs()).log10().floor()
     }
 }
 
@@ -82,10 +111,10 @@ pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
 /// The same range, or one around it when it is too narrow to be an axis.
 pub(super) fn widened((lo, hi): (f64, f64)) -> (f64, f64) {
     let size = lo.abs().max(hi.abs());
-    if hi - lo > 1e-9 * size {
+    if hi - lo > 1e-9 * size && hi - lo > SMALLEST {
         return (lo, hi);
     }
-    let margin = if size > 0.0 { 0.1 * size } else { 0.5 };
+    let margin = if size > SMALLEST { 0.1 * size } else { 0.5 };
     (lo - margin, hi + margin)
 }
 

@@ -138,6 +138,19 @@ impl Canvas {
         });
     }
 
+    /// Fills a polygon.
+    pub(super) fn polygon(&mut self, points: &[(f64, f64)], colour: Rgb, opacity: f64) {
+        let corners: Vec<String> = points.iter().map(|(x, y)| format!("{x:.2} {y:.2}")).collect();
+        self.elements.push(Primitive::Path(Box::new(PathData {
+            d: format!("M {} Z", corners.join(" L ")),
+            fill: Some(color(colour)),
+            stroke: Color::None,
+            stroke_width: 0.0,
+            opacity: Some(opacity),
+            stroke_dasharray: None,
+        })));
+    }
+
     /// Draws the edge of a rectangle.
     pub(super) fn frame(&mut self, area: Area) {
         let (left, right, top, bottom) = (area.x, area.right(), area.y, area.bottom());
@@ -175,9 +188,9 @@ impl Canvas {
         }
     }
 
-    /// Adds a text that reads upwards, centred on `at`, its baseline the vertical through `at`.
-    pub(super) fn text_upwards(&mut self, text: &Text, at: (f64, f64), colour: Rgb) {
-        let mut along = -Align::Middle.before(text.width());
+    /// Adds a text that reads upwards, its baseline the vertical through `at`.
+    pub(super) fn text_upwards(&mut self, text: &Text, at: (f64, f64), align: Align, colour: Rgb) {
+        let mut along = -align.before(text.width());
         for run in &text.runs {
             self.run(
                 run,

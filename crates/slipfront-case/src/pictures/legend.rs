@@ -1,15 +1,31 @@
-//! The legend above a panel with several curves.
+//! The legend above a panel with several curves or bars.
 
-use super::canvas::{Align, Canvas};
-use super::style::{BLACK, MARGIN, Rgb, SIZE_TICK, WIDTH_CURVE, curve_colour};
+use super::canvas::{Align, Area, Canvas};
+use super::markers::marker;
+use super::style::{BLACK, MARGIN, OPACITY_BAR, RADIUS_MARKER, Rgb, SIZE_TICK, WIDTH_CURVE, curve_colour};
 use super::text::Text;
 
-/// The names of several curves.
+/// The names of several curves or bars.
 #[derive(Default)]
 pub(super) struct Legend {
     /// How much room it takes above the panels.
     pub(super) height: f64,
+    sample: Sample,
+    /// What the names are values of, and where it stands.
+    title: Option<(Text, (f64, f64))>,
     entries: Vec<Entry>,
+}
+
+/// What stands before a name.
+#[derive(Clone, Copy, Default)]
+pub(super) enum Sample {
+    /// A line.
+    #[default]
+    Line,
+    /// A line with the curve's marker.
+    Marker,
+    /// A patch of colour.
+    Patch,
 }
 
 struct Entry {
@@ -25,6 +41,18 @@ impl Legend {
 
     /// Places the labels in rows between `left` and `right`, from the top of the picture down.
     pub(super) fn of(labels: &[&str], left: f64, right: f64) -> Self {
+        Self::titled("", labels, Sample::Line, left, right)
+    }
+
+    /// The same with a title before the labels, or above them if it is long.
+    pub(super) fn titled(title: &str, labels: &[&str], sample: Sample, left: f64, right: f64) -> Self {
+        let title = Text::shortened(title, SIZE_TICK, right - left);
+        let width = title.width();
+        let (left, first) = match width {
+            0.0 => (left, 0),
+            ..150.0 => (left + width + 30.0, 0),
+            _ => (left, 1),
+        };
         let room = right - left - Self::SAMPLE - 10.0;
         let texts: Vec<Text> = labels
             .iter()
@@ -33,23 +61,47 @@ impl Legend {
         // Equal columns, so that labels stand under each other.
         let widest = texts.iter().map(Text::width).fold(0.0, f64::max) + Self::SAMPLE + 10.0 + 30.0;
         let columns = ((right - left + 30.0) / widest).floor().max(1.0) as usize;
-        let rows = labels.len().div_ceil(columns);
+        let rows = first + labels.len().div_ceil(columns);
+        let middle = |row: usize| MARGIN + Self::ROW * (row as f64 + 0.5);
         let entries = texts.into_iter().enumerate().map(|(index, text)| Entry {
             x: left + (index % columns) as f64 * widest,
-            y: MARGIN + Self::ROW * ((index / columns) as f64 + 0.5),
+            y: middle(first + index / columns),
             text,
             colour: curve_colour(index, labels.len()),
         });
+        let title_x = if first == 0 { left - width - 30.0 } else { left };
         Self {
             height: Self::ROW * rows as f64 + 6.0,
+            sample,
             entries: entries.collect(),
+            title: (width > 0.0).then_some((title, (title_x, middle(0)))),
         }
     }
 
     /// Draws it.
     pub(super) fn draw(&self, canvas: &mut Canvas) {
-        for Entry { x, y, text, colour } in &self.entries {
-            canvas.line((*x, *y), (x + Self::SAMPLE, *y), WIDTH_CURVE, *colour);
+        if let Some((title, (x, y))) = &self.title {
+            canvas.text(title, (*x, y + 0.5 * title.height()), Align::Start, BLACK);
+        }
+        for (index, Entry { x, y, text, colour }) in self.entries.iter().enumerate() {
+            let middle = x + 0.5 * Self::SAMPLE;
+            match self.sample {
+                Sample::Line | Sample::Marker => {
+                    canvas.line((*x, *y), (x + Self::SAMPLE, *y), WIDTH_CURVE, *colour);
+                }
+                Sample::Patch => {
+                    let area = Area {
+                        x: middle - 14.0,
+                        y: y - 12.0,
+                        width: 28.0,
+                        height: 24.0,
+                    };
+                    canvas.fill(area, *colour, OPACITY_BAR);
+                }
+            }
+            if let Sample::Marker = self.sample {
+                marker(canvas, index, (middle, *y), RADIUS_MARKER, *colour);
+            }
             canvas.text(
                 text,
                 (x + Self::SAMPLE + 10.0, y + 0.5 * text.height()),

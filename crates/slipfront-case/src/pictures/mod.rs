@@ -1,26 +1,40 @@
-//! Pictures of a run, for the eye and for print: friction against time, and maps of contact stress.
+//! Pictures for the eye and for print. Of a run: friction against time, and maps of contact stress. Of a
+//! parametric study: response curves, heat maps, bars, all with their confidence intervals.
 //!
 //! Every picture is drawn once, on a canvas, and comes out as SVG and as PNG of the same physical size: a
-//! journal's column for friction, its text width for maps. Bytes depend on the arguments only: no date, no
+//! journal's column for curves, heat maps and bars, its text width for maps of stress. Bytes depend on the arguments only: no date, no
 //! random identifier.
 //!
 //! Read by the run folder writer and by `slipfront plot`.
 
 mod axis;
+mod bars;
 mod canvas;
 mod files;
 mod friction;
+mod heat_map;
 mod labels;
 mod legend;
+mod markers;
+mod names;
 mod outline;
 mod panels;
+mod response;
+mod scale;
 mod series;
+mod sides;
 mod stress;
 mod style;
 mod text;
+mod titles;
+mod whisker;
 
+pub use bars::{Bar, BarChart, BarGroup, bars};
 pub use friction::{FrictionCurve, Instant, Kinetic, friction};
+pub use heat_map::{HeatAxis, HeatMap, heat_map};
+pub use response::{Response, Responses, response};
 pub use stress::{StressMap, StressMaps, stress};
+pub use titles::{symbol, title};
 
 /// One picture in both formats, ready to be written to files.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -48,6 +62,36 @@ pub enum PictureError {
         column: &'static str,
         /// How many values it has.
         values: usize,
+    },
+    /// The columns of a response curve differ in length.
+    #[error("curve `{label}` has {points} points but {values} values of its {column}")]
+    Points {
+        /// The curve's label.
+        label: String,
+        /// How many points the curve has.
+        points: usize,
+        /// The column that differs.
+        column: &'static str,
+        /// How many values it has.
+        values: usize,
+    },
+    /// A map does not have one value for every cell.
+    #[error("a map of {columns} x {rows} cells has {values} values")]
+    Cells {
+        /// Cells along x.
+        columns: usize,
+        /// Cells along y.
+        rows: usize,
+        /// How many values it has.
+        values: usize,
+    },
+    /// A map's axis cannot be divided into cells.
+    #[error("the axis `{title}` cannot be divided into cells: {reason}")]
+    CellAxis {
+        /// The axis' title.
+        title: String,
+        /// Why.
+        reason: &'static str,
     },
     /// The lattice has no block, or more than can be counted.
     #[error("a lattice of {nx} x {ny} blocks cannot be drawn")]

@@ -1,9 +1,10 @@
 //! The two panels of a friction picture: mu* above, N* below, on one time axis.
 
 use super::axis::{Axis, range, widened};
-use super::canvas::{Align, Area, Canvas};
+use super::canvas::{Area, Canvas};
 use super::friction::FrictionCurve;
-use super::style::{BLACK, COLUMN_WIDTH, MARGIN, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WIDTH_LEADER};
+use super::sides::{LOWER_ROOM, left_room, left_side, lower_title, placed};
+use super::style::{BLACK, COLUMN_WIDTH, MARGIN, SIZE_LABEL, TICK_LENGTH, WIDTH_LEADER};
 use super::text::Text;
 
 const HEIGHT_FRICTION: f64 = 500.0;
@@ -53,12 +54,7 @@ impl Panels {
             start: sliding_top + HEIGHT_SLIDING,
             end: sliding_top,
         };
-        let numbers = [mu.ticks(6), sliding.ticks(2)].concat();
-        let widest = numbers
-            .iter()
-            .map(|(_, text)| Text::plain(text, SIZE_TICK).width())
-            .fold(0.0, f64::max);
-        let left = (MARGIN + f64::from(SIZE_LABEL) + 14.0 + widest + TICK_LENGTH + 7.0).round();
+        let left = left_room(&[placed(&mu, 6), placed(&sliding, 2)].concat());
         // The last number on the time axis may stand half beyond its end.
         let right = COLUMN_WIDTH.round() - 28.0;
         Self {
@@ -84,17 +80,20 @@ impl Panels {
 
     /// The panel of friction.
     pub(super) fn friction(&self) -> Area {
-        between(self.time.start, self.time.end, self.mu.start, self.mu.end)
+        self.of_axis(&self.mu)
+    }
+
+    fn of_axis(&self, axis: &Axis) -> Area {
+        between(self.time.start, self.time.end, axis.start, axis.end)
     }
 
     /// Where the picture ends.
     pub(super) fn bottom(&self) -> f64 {
-        self.sliding.start + TICK_LENGTH + 7.0 + f64::from(SIZE_TICK + SIZE_LABEL) + MARGIN
+        self.sliding.start + LOWER_ROOM
     }
 
     /// Ticks, numbers and titles.
     pub(super) fn draw_axes(&self, canvas: &mut Canvas) {
-        let baseline = MARGIN + 0.8 * f64::from(SIZE_LABEL);
         let titles = [
             (
                 &self.mu,
@@ -104,36 +103,22 @@ impl Panels {
             (&self.sliding, 2, "sliding N* (%)"),
         ];
         for (axis, most, title) in titles {
-            for (value, text) in axis.ticks(most) {
-                canvas.tick_left((self.time.start, axis.at(value)), &Text::plain(&text, SIZE_TICK));
-            }
-            let middle = 0.5 * (axis.start + axis.end);
-            canvas.text_upwards(&Text::math(title, SIZE_LABEL), (baseline, middle), BLACK);
+            let title = Text::math(title, SIZE_LABEL);
+            left_side(canvas, self.of_axis(axis), 0.0, &placed(axis, most), &title);
         }
-        for (value, text) in self.time.ticks(6) {
-            let x = self.time.at(value);
-            canvas.tick_below((x, self.sliding.start), &Text::plain(&text, SIZE_TICK));
-            canvas.line(
-                (x, self.mu.start),
-                (x, self.mu.start + TICK_LENGTH),
-                WIDTH_LEADER,
-                BLACK,
-            );
+        for (x, text) in placed(&self.time, 6) {
+            canvas.tick_below((x, self.sliding.start), &text);
+            let foot = self.mu.start;
+            canvas.line((x, foot), (x, foot + TICK_LENGTH), WIDTH_LEADER, BLACK);
         }
-        let middle = 0.5 * (self.time.start + self.time.end);
         let title = Text::plain("dimensionless time t*", SIZE_LABEL);
-        canvas.text(
-            &title,
-            (middle, self.bottom() - MARGIN - 4.0),
-            Align::Middle,
-            BLACK,
-        );
+        lower_title(canvas, self.of_axis(&self.sliding), &title);
     }
 
     /// The panels' edges, over everything that ends on them.
     pub(super) fn draw_frames(&self, canvas: &mut Canvas) {
         for axis in [&self.mu, &self.sliding] {
-            canvas.frame(between(self.time.start, self.time.end, axis.start, axis.end));
+            canvas.frame(self.of_axis(axis));
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::axis::Axis;
 use super::canvas::{Align, Area, Canvas, Image, level};
 use super::outline::outline;
+use super::sides::{BAR_WIDTH, LOWER_ROOM, colour_bar, left_side, lower_side, placed, widest};
 use super::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH, TICK_LENGTH, WHITE, WIDTH_MARK};
 use super::text::{Text, number};
 use super::{Picture, PictureError};
@@ -18,7 +19,6 @@ const WIDEST: f64 = 520.0;
 const TALLEST: f64 = 620.0;
 /// The colour bar is no shorter than this.
 const BAR_SHORTEST: f64 = 180.0;
-const BAR_WIDTH: f64 = 30.0;
 /// A strip is drawn no thinner than this share of its length.
 const THINNEST: f64 = 1.0 / 6.0;
 
@@ -206,7 +206,7 @@ impl Layout {
         let rows = maps.maps.len().div_ceil(COLUMNS);
         let ratio = (length_y / length_x).clamp(THINNEST, 1.0 / THINNEST);
 
-        let numbers_y = widest(&axis_of(extent.1).ticks(4));
+        let numbers_y = widest(&placed(&axis_of(extent.1), 4));
         let left = (MARGIN + f64::from(SIZE_LABEL) + 12.0 + numbers_y + TICK_LENGTH + 7.0).round();
         let right = bar_room();
         let room = (TEXT_WIDTH - left - right + GAP) / columns as f64;
@@ -221,9 +221,8 @@ impl Layout {
         let pitch_x = (titles + GAP).min(room).max(map_width + GAP).round();
 
         let top = (MARGIN + 2.0 * f64::from(SIZE_LABEL) + 18.0).round();
-        let below = TICK_LENGTH + 7.0 + f64::from(SIZE_TICK) + f64::from(SIZE_LABEL) + MARGIN;
-        let pitch_y = map_height + below + top - MARGIN;
-        let lowest = (rows - 1) as f64 * pitch_y + map_height + below;
+        let pitch_y = map_height + LOWER_ROOM + top - MARGIN;
+        let lowest = (rows - 1) as f64 * pitch_y + map_height + LOWER_ROOM;
         Self {
             width: left + columns as f64 * pitch_x - GAP + right,
             height: top + lowest.max(BAR_SHORTEST + 2.0 * MARGIN),
@@ -270,7 +269,6 @@ impl Layout {
     fn draw_axes(&self, canvas: &mut Canvas, count: usize) {
         for index in 0..count {
             let area = self.map(index);
-            let middle = (area.x + 0.5 * area.width, area.y + 0.5 * area.height);
             if index % self.columns == 0 {
                 let axis = Axis {
                     start: area.bottom(),
@@ -279,19 +277,17 @@ impl Layout {
                 };
                 let most = if area.height < 130.0 { 2 } else { 4 };
                 let mut lowest = f64::INFINITY;
-                for (value, text) in axis.ticks(most) {
-                    let (at, mut text) = (axis.at(value), Text::plain(&text, SIZE_TICK));
+                let mut ticks = placed(&axis, most);
+                for (at, text) in &mut ticks {
                     // A number that would touch the one before is left out.
-                    if at + text.height() + 8.0 > lowest {
-                        text = Text::plain("", SIZE_TICK);
+                    if *at + text.height() + 8.0 > lowest {
+                        *text = Text::plain("", SIZE_TICK);
                     } else {
-                        lowest = at;
+                        lowest = *at;
                     }
-                    canvas.tick_left((area.x, at), &text);
                 }
                 let title = Text::plain(&format!("y ({})", self.unit), SIZE_LABEL);
-                let baseline = area.x - self.left + MARGIN + 0.8 * f64::from(SIZE_LABEL);
-                canvas.text_upwards(&title, (baseline, middle.1), BLACK);
+                left_side(canvas, area, area.x - self.left, &ticks, &title);
             }
             if index + self.columns >= count {
                 let axis = Axis {
@@ -301,26 +297,19 @@ impl Layout {
                 };
                 let most = if area.width < 130.0 { 2 } else { 4 };
                 let mut free = f64::NEG_INFINITY;
-                let limit = middle.0 + 0.5 * self.pitch_x - 4.0;
-                for (value, text) in axis.ticks(most) {
-                    let (at, mut text) = (axis.at(value), Text::plain(&text, SIZE_TICK));
+                let limit = area.x + 0.5 * (area.width + self.pitch_x) - 4.0;
+                let mut ticks = placed(&axis, most);
+                for (at, text) in &mut ticks {
                     let half = 0.5 * text.width();
                     // Nor may it touch the next map's first.
-                    if at - half < free || at + half > limit {
-                        text = Text::plain("", SIZE_TICK);
+                    if *at - half < free || *at + half > limit {
+                        *text = Text::plain("", SIZE_TICK);
                     } else {
-                        free = at + half + 12.0;
+                        free = *at + half + 12.0;
                     }
-                    canvas.tick_below((at, area.bottom()), &text);
                 }
                 let title = Text::plain(&format!("x ({})", self.unit), SIZE_LABEL);
-                let below = TICK_LENGTH + 7.0 + f64::from(SIZE_TICK + SIZE_LABEL);
-                canvas.text(
-                    &title,
-                    (middle.0, area.bottom() + below - 4.0),
-                    Align::Middle,
-                    BLACK,
-                );
+                lower_side(canvas, area, &ticks, &title);
             }
         }
     }
@@ -335,22 +324,13 @@ impl Layout {
             width: BAR_WIDTH,
             height,
         };
-        let levels = (0..=254).rev().collect();
-        canvas.image(Image {
-            area,
-            columns: 1,
-            levels,
-        });
-        canvas.frame(area);
         let axis = Axis {
             lo: 0.0,
             hi: 1.0,
             start: area.bottom(),
             end: area.y,
         };
-        for (value, text) in axis.ticks(5) {
-            canvas.tick_right((area.right(), axis.at(value)), &Text::plain(&text, SIZE_TICK));
-        }
+        colour_bar(canvas, area, &placed(&axis, 5));
         let title = Text::math("\u{3c4}_c*", SIZE_LABEL);
         canvas.text(
             &title,
@@ -388,13 +368,6 @@ fn axis_of(extent: f64) -> Axis {
         start: 0.0,
         end: 1.0,
     }
-}
-
-fn widest(ticks: &[(f64, String)]) -> f64 {
-    ticks
-        .iter()
-        .map(|(_, text)| Text::plain(text, SIZE_TICK).width())
-        .fold(0.0, f64::max)
 }
 
 /// The room for the colour bar and its numbers, right of the last map.

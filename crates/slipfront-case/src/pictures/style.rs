@@ -24,6 +24,10 @@ pub(super) const WIDTH_MARK: f64 = 2.5;
 pub(super) const WIDTH_FRAME: f64 = 2.0;
 /// Leaders: 0.35 pt.
 pub(super) const WIDTH_LEADER: f64 = 1.5;
+/// How opaque bars are: the whisker before a bar must be seen.
+pub(super) const OPACITY_BAR: f64 = 0.65;
+/// The points of a curve.
+pub(super) const RADIUS_MARKER: f64 = 8.0;
 /// Between the picture's edge and what is drawn.
 pub(super) const MARGIN: f64 = 14.0;
 /// How far a tick reaches out of its frame.

@@ -1,5 +1,7 @@
 //! Short texts with subscripts, and how wide they are.
 
+use super::style::{SIZE_LABEL, SIZE_TICK};
+
 /// How far a character moves the pen, in 1/2048 of the font size, for `DejaVu` Sans from space to tilde.
 #[rustfmt::skip]
 const ADVANCES: [u16; 95] = [
@@ -35,7 +37,7 @@ pub(super) struct Run {
 
 impl Text {
     /// A text taken as it is, for what a user wrote: control characters and doubled spaces, which SVG does
-    /// not keep, are dropped.
+    /// not keep, are dropped. Unicode's subscript letters, which the font lacks, become small letters.
     pub(super) fn plain(text: &str, size: u32) -> Self {
         let words: Vec<&str> = text
             .split(|c: char| c.is_whitespace() || c.is_control())
@@ -45,43 +47,90 @@ impl Text {
             .filter(|word| !word.is_empty())
             .collect::<Vec<_>>()
             .join(" ");
-        Self {
-            runs: vec![Run {
+        let letter = |c| subscript(c).map_or((c, Height::Line), |letter| (letter, Height::Below));
+        let mut set = Self::set(text.chars().map(letter), size);
+        if set.runs.is_empty() {
+            set.runs.push(Run {
                 text,
                 size,
                 drop: 0.0,
-            }],
-            size,
+            });
         }
+        set
     }
 
     /// A text in which the character after an underscore is a subscript: `mu_s*`.
     pub(super) fn math(text: &str, size: u32) -> Self {
-        let sub_size = (f64::from(size) * 0.72).round() as u32;
-        let mut runs = Vec::new();
-        for (index, part) in text.split('_').enumerate() {
-            let first = part
-                .chars()
-                .next()
-                .filter(|_| index > 0)
-                .map_or(0, char::len_utf8);
-            let (sub, rest) = part.split_at(first);
-            if !sub.is_empty() {
-                runs.push(Run {
-                    text: sub.to_string(),
-                    size: sub_size,
-                    drop: 0.16 * f64::from(size),
-                });
+        let mut height = Height::Line;
+        let letters = text.chars().filter_map(|c| {
+            if c == '_' && height == Height::Line {
+                height = Height::Below;
+                return None;
             }
-            if !rest.is_empty() {
-                runs.push(Run {
-                    text: rest.to_string(),
-                    size,
-                    drop: 0.0,
-                });
+            Some((c, std::mem::replace(&mut height, Height::Line)))
+        });
+        Self::set(letters, size)
+    }
+
+    /// A number as it is written in source, its power of ten set as one: `1.2e-9`.
+    pub(super) fn number(written: &str, size: u32) -> Self {
+        let Some((digits, power)) = written.split_once('e') else {
+            return Self::plain(written, size);
+        };
+        let base = match digits {
+            "1" => "10".to_string(),
+            _ => format!("{digits}\u{d7}10"),
+        };
+        let line = base.chars().map(|c| (c, Height::Line)).collect::<Vec<_>>();
+        let above = power.chars().map(|c| (c, Height::Above));
+        Self::set(line.into_iter().chain(above), size)
+    }
+
+    /// Gathers neighbouring letters of one height into runs.
+    fn set(letters: impl Iterator<Item = (char, Height)>, size: u32) -> Self {
+        let letters: Vec<(char, Height)> = letters.collect();
+        let runs = letters.chunk_by(|a, b| a.1 == b.1).map(|run| {
+            let (small, drop) = match run[0].1 {
+                Height::Line => (1.0, 0.0),
+                Height::Below => (0.72, 0.16),
+                Height::Above => (0.72, -0.38),
+            };
+            Run {
+                text: run.iter().map(|(c, _)| c).collect(),
+                size: (f64::from(size) * small).round() as u32,
+                drop: drop * f64::from(size),
+            }
+        });
+        Self {
+            runs: runs.collect(),
+            size,
+        }
+    }
+
+    /// A text no wider than `room`: as a label, else in the size of numbers, else cut.
+    pub(super) fn fitted(text: &str, room: f64) -> Self {
+        let label = Self::plain(text, SIZE_LABEL);
+        if label.width() <= room {
+            return label;
+        }
+        Self::shortened(text, SIZE_TICK, room)
+    }
+
+    /// The words of a text in at most `most` lines no wider than `room`, if they fit.
+    pub(super) fn wrapped(text: &str, size: u32, room: f64, most: usize) -> Option<Vec<Self>> {
+        let mut lines: Vec<String> = Vec::new();
+        for word in text.split_whitespace() {
+            let longer = lines.last().map(|line| format!("{line} {word}"));
+            match longer.filter(|longer| Self::plain(longer, size).width() <= room) {
+                Some(longer) => {
+                    lines.pop();
+                    lines.push(longer);
+                }
+                None => lines.push(word.to_string()),
             }
         }
-        Self { runs, size }
+        let lines: Vec<Self> = lines.iter().map(|line| Self::plain(line, size)).collect();
+        (lines.len() <= most && lines.iter().all(|line| line.width() <= room)).then_some(lines)
     }
 
     /// How wide the text is.
@@ -125,6 +174,38 @@ impl Text {
     }
 }
 
+/// Where a letter stands.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Height {
+    Line,
+    Below,
+    Above,
+}
+
+/// The letter of one of Unicode's subscript letters.
+fn subscript(character: char) -> Option<char> {
+    let letter = match character {
+        '\u{2090}' => 'a',
+        '\u{2091}' => 'e',
+        '\u{2092}' => 'o',
+        '\u{2093}' => 'x',
+        '\u{2095}' => 'h',
+        '\u{2096}' => 'k',
+        '\u{2097}' => 'l',
+        '\u{2098}' => 'm',
+        '\u{2099}' => 'n',
+        '\u{209a}' => 'p',
+        '\u{209b}' => 's',
+        '\u{209c}' => 't',
+        '\u{1d62}' => 'i',
+        '\u{1d63}' => 'r',
+        '\u{1d64}' => 'u',
+        '\u{1d65}' => 'v',
+        _ => return None,
+    };
+    Some(letter)
+}
+
 impl Run {
     /// How wide the run is.
     pub(super) fn width(&self) -> f64 {
@@ -143,6 +224,7 @@ pub(super) fn advance(character: char) -> f64 {
         '\u{27e8}' | '\u{27e9}' => 799,
         '\u{2212}' | '\u{b1}' | '\u{d7}' => 1716,
         '\u{b0}' => 1024,
+        '\u{b2}' | '\u{b3}' => 821,
         '\u{370}'..='\u{3ff}' => 1300,
         '\u{c0}'..='\u{24f}' => 1260,
         // Unknown: an em is wide enough for nearly everything, so nothing collides.
@@ -181,6 +263,45 @@ mod tests {
                 ("* = 1", false, false)
             ]
         );
+    }
+
+    #[test]
+    fn subscript_letters_and_powers_become_small_digits() {
+        let parts = |text: Text| -> Vec<(String, f64)> {
+            let height = |run: Run| (run.text, run.drop.signum() * f64::from(u8::from(run.size < 30)));
+            text.runs.into_iter().map(height).collect()
+        };
+        let of = |list: &[(&str, f64)]| -> Vec<(String, f64)> {
+            list.iter()
+                .map(|(text, drop)| ((*text).to_string(), *drop))
+                .collect()
+        };
+        assert_eq!(
+            parts(Text::plain("\u{3bc}\u{209b}* (%)", 30)),
+            of(&[("\u{3bc}", 0.0), ("s", 1.0), ("* (%)", 0.0)])
+        );
+        assert_eq!(
+            parts(Text::number("1.2e\u{2212}9", 30)),
+            of(&[("1.2\u{d7}10", 0.0), ("\u{2212}9", -1.0)])
+        );
+        assert_eq!(parts(Text::number("1e4", 30)), of(&[("10", 0.0), ("4", -1.0)]));
+    }
+
+    #[test]
+    fn words_are_kept_whole_in_their_lines() {
+        let lines = |room: f64, most: usize| {
+            let lines = Text::wrapped("groove across  it", 30, room, most)?;
+            Some(
+                lines
+                    .iter()
+                    .map(|line| line.runs[0].text.clone())
+                    .collect::<Vec<_>>(),
+            )
+        };
+        assert_eq!(lines(400.0, 1).unwrap(), ["groove across it"]);
+        assert_eq!(lines(150.0, 2).unwrap(), ["groove", "across it"]);
+        assert_eq!(lines(120.0, 2), None);
+        assert_eq!(lines(30.0, 9), None);
     }
 
     #[test]

@@ -4,6 +4,7 @@ pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod plot;
 pub(crate) mod run;
+pub(crate) mod study;
 pub(crate) mod texture;
 
 use std::io::Write;
@@ -61,4 +62,11 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
         )),
         _ => Ok(()),
     }
+}
+
+/// Bounds the threads of this process; gives their number.
+pub(crate) fn set_threads(threads: Option<u16>) -> Result<usize, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from));
+    pool.build_global().map_err(Failure::running)?;
+    Ok(rayon::current_num_threads())
 }

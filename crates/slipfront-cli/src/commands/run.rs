@@ -8,7 +8,7 @@ use slipfront_case::case::Case;
 use slipfront_case::folder::RunFolder;
 use slipfront_case::{results, run};
 
-use super::{CaseArgs, print};
+use super::{CaseArgs, print, set_threads};
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::report;
@@ -23,7 +23,7 @@ use crate::report;
 pub(crate) struct Run {
     #[command(flatten)]
     case: CaseArgs,
-    /// Folder for the results [default: results/<case name>]
+    /// Folder for the results [default: results/ and the name of the case]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Replace the files of an earlier run in that folder, and nothing else
@@ -47,15 +47,15 @@ impl Run {
         let case_path = self.case.path().map(Path::to_owned);
         let case = self.case.load()?;
         let talks = !self.quiet && !self.json;
-        if talks {
-            print(&report::physics(&case))?;
-        }
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&case.name));
         refuse_to_replace(case_path.as_deref(), &out)?;
         let folder = RunFolder::prepare(&out, self.force).map_err(Failure::input)?;
         let inputs = case.inputs.iter().map(|input| input.name.as_str());
         folder.expect_free(inputs).map_err(Failure::input)?;
 
+        if talks {
+            print(&report::physics(&case))?;
+        }
         let mut progress = Progress::new(&case, self.quiet);
         let record = run::run(&case, Progress::every(&case), &mut progress).map_err(Failure::running)?;
         progress.finish();
@@ -84,13 +84,6 @@ fn refuse_to_replace(case: Option<&Path>, out: &Path) -> Result<(), Failure> {
         out.join("case.toml").display()
     );
     Err(Failure::input(anyhow::anyhow!(sentence)))
-}
-
-/// Bounds the threads of this process; gives their number.
-fn set_threads(threads: Option<u16>) -> Result<usize, Failure> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from));
-    pool.build_global().map_err(Failure::running)?;
-    Ok(rayon::current_num_threads())
 }
 
 fn files(case: &Case, out: &Path) -> String {

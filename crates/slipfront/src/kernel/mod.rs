@@ -1,6 +1,6 @@
 //! What advances a [`State`](crate::State) by one step.
 //!
-//! [`reference`] reads like the paper, one pass per equation. Observers see what a kernel leaves in [`Forces`].
+//! [`mod@reference`] reads like the paper, one pass per equation. Observers see what a kernel leaves in [`Forces`].
 
 pub mod reference;
 

@@ -174,6 +174,11 @@ mod tests {
     }
 
     #[test]
+    fn of_equal_values_the_first_is_the_peak() {
+        assert_eq!(watch(0.5, &[0.0, 1.0, 0.9, 1.0, 0.2]).step, 1);
+    }
+
+    #[test]
     fn without_a_fall_the_largest_value_is_taken() {
         let peak = watch(1.0, &[0.0, 0.5, 0.9, 0.95, 0.94]);
         assert_eq!((peak.mu_star, peak.ended), (0.95, false));

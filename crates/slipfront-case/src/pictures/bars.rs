@@ -1,0 +1,333 @@
+//! Bars of the named variants of a parametric study.
+
+use super::axis::drawable;
+use super::canvas::{Area, Canvas};
+use super::legend::{Legend, Sample};
+use super::names::Names;
+use super::scale::{Scale, Way};
+use super::sides::{left_room, left_side};
+use super::style::{BLACK, COLUMN_WIDTH, MARGIN, OPACITY_BAR, Rgb, WIDTH_FRAME, WIDTH_MARK, curve_colour};
+use super::text::Text;
+use super::whisker::{Interval, whisker};
+use super::{Picture, PictureError};
+
+const HEIGHT: f64 = 560.0;
+/// Bars narrower than this make the picture wider.
+const NARROWEST: f64 = 14.0;
+/// A bar on its own takes this share of its place, bars of a group together this one.
+const SHARE_ALONE: f64 = 0.6;
+const SHARE_GROUP: f64 = 0.8;
+/// No bar is wider than this.
+const WIDEST: f64 = 130.0;
+
+/// Bars of named variants.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BarChart {
+    /// What the bars show.
+    pub y_title: String,
+    /// What is varied from name to name below the bars; may be empty.
+    pub x_title: String,
+    /// What is varied within a group, for the legend; may be empty.
+    pub legend_title: String,
+    /// The groups, from the left.
+    pub groups: Vec<BarGroup>,
+}
+
+/// Bars beside each other.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BarGroup {
+    /// The group's name; not shown if there is one group only.
+    pub label: String,
+    /// Its bars, from the left.
+    pub bars: Vec<Bar>,
+}
+
+/// One bar.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bar {
+    /// Its name, different from the others' of its group; bars of the same name are coloured alike.
+    pub label: String,
+    /// How high it is; NaN leaves its place free.
+    pub mean: f64,
+    /// The lower end of the confidence interval; NaN where there is none.
+    pub low: f64,
+    /// The upper end.
+    pub high: f64,
+}
+
+/// Draws bars from zero with their confidence intervals as whiskers, as wide as a journal's column (85 mm)
+/// unless there are too many.
+///
+/// One group is drawn as bars of one colour, each with its name below. Of several groups, each has its name
+/// below, and a legend names the bars.
+///
+/// # Errors
+///
+/// No bar.
+pub fn bars(chart: &BarChart) -> Result<Picture, PictureError> {
+    let places = Places::of(chart);
+    if places.bars.is_empty() {
+        return Err(PictureError::Nothing("bar"));
+    }
+    let y = scale(&places.bars);
+    let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Way::Y));
+    let room = COLUMN_WIDTH.round() - MARGIN - left;
+    let width = room.max(places.narrowest() * places.names.len() as f64).round();
+    let mut legend = Legend::default();
+    if !places.legend.is_empty() {
+        legend = Legend::titled(
+            &chart.legend_title,
+            &places.legend,
+            Sample::Patch,
+            left,
+            left + width,
+        );
+    }
+    let area = Area {
+        x: left,
+        y: MARGIN + legend.height,
+        width,
+        height: HEIGHT,
+    };
+    let y = y.placed(area.bottom(), area.y);
+    let names = Names::of(&places.names, &chart.x_title, area);
+
+    let mut canvas = Canvas::new(area.right() + MARGIN, area.bottom() + names.height);
+    let title = Text::fitted(&chart.y_title, HEIGHT);
+    left_side(&mut canvas, area, 0.0, &y.ticks(Way::Y), &title);
+    legend.draw(&mut canvas);
+    names.draw(&mut canvas);
+    let slot = area.width / places.names.len() as f64;
+    let bar_width = places.bar_width(slot);
+    for Placed {
+        bar,
+        name,
+        step,
+        colour,
+    } in &places.bars
+    {
+        let middle = area.x + slot * (*name as f64 + 0.5) + bar_width * step;
+        draw_bar(&mut canvas, &y, bar, (middle, bar_width), *colour);
+    }
+    canvas.line((area.x, y.at(0.0)), (area.right(), y.at(0.0)), WIDTH_FRAME, BLACK);
+    canvas.frame(area);
+    canvas.finish()
+}
+
+fn draw_bar(canvas: &mut Canvas, y: &Scale, bar: &Bar, (middle, width): (f64, f64), colour: Rgb) {
+    if !drawable(bar.mean) {
+        return;
+    }
+    let (foot, head) = (y.at(0.0), y.at(bar.mean));
+    let area = Area {
+        // Bars of a group do not touch.
+        x: middle - 0.5 * width + 1.0,
+        y: foot.min(head),
+        width: width - 2.0,
+        height: (foot - head).abs(),
+    };
+    canvas.fill(area, colour, OPACITY_BAR);
+    if let Some(Interval { low, high }) = Interval::of(bar.mean, bar.low, bar.high) {
+        whisker(canvas, middle, (y.at(low), y.at(high)), WIDTH_MARK, BLACK);
+    }
+}
+
+/// y from zero, with all bars and whiskers.
+fn scale(bars: &[Placed]) -> Scale {
+    let values: Vec<f64> = bars
+        .iter()
+        .flat_map(|Placed { bar, .. }| {
+            let interval = Interval::of(bar.mean, bar.low, bar.high);
+            let ends = interval.map_or([bar.mean; 2], |interval| [interval.low, interval.high]);
+            [0.0, bar.mean, ends[0], ends[1]]
+        })
+        .collect();
+    let whole = Scale::around(&values, false, 0.06);
+    // Beyond zero no margin, unless bars lie on that side.
+    let (mut lo, mut hi) = (whole.axis().lo, whole.axis().hi);
+    let beyond = |side: f64| values.iter().any(|&value| drawable(value) && value * side > 0.0);
+    match (beyond(-1.0), beyond(1.0)) {
+        (false, true) => lo = 0.0,
+        (true, false) => hi = 0.0,
+        _ => {}
+    }
+    Scale::between(lo, hi, false)
+}
+
+/// Which bar stands where.
+struct Places<'a> {
+    names: Vec<&'a str>,
+    legend: Vec<&'a str>,
+    bars: Vec<Placed<'a>>,
+}
+
+struct Placed<'a> {
+    bar: &'a Bar,
+    /// The index of the name below it.
+    name: usize,
+    /// How many bars right of the middle of that name's place.
+    step: f64,
+    colour: Rgb,
+}
+
+impl<'a> Places<'a> {
+    fn of(chart: &'a BarChart) -> Self {
+        if let [group] = &chart.groups[..] {
+            let placed = |(name, bar)| Placed {
+                bar,
+                name,
+                step: 0.0,
+                colour: curve_colour(0, 1),
+            };
+            return Self {
+                names: group.bars.iter().map(|bar| bar.label.as_str()).collect(),
+                legend: Vec::new(),
+                bars: group.bars.iter().enumerate().map(placed).collect(),
+            };
+        }
+        let mut legend: Vec<&str> = Vec::new();
+        for bar in chart.groups.iter().flat_map(|group| &group.bars) {
+            if !legend.contains(&bar.label.as_str()) {
+                legend.push(&bar.label);
+            }
+        }
+        let mut bars = Vec::new();
+        for (name, group) in chart.groups.iter().enumerate() {
+            for bar in &group.bars {
+                let index = legend.iter().position(|label| *label == bar.label).unwrap_or(0);
+                bars.push(Placed {
+                    bar,
+                    name,
+                    step: index as f64 - 0.5 * (legend.len() - 1) as f64,
+                    colour: curve_colour(index, legend.len()),
+                });
+            }
+        }
+        Self {
+            names: chart.groups.iter().map(|group| group.label.as_str()).collect(),
+            legend,
+            bars,
+        }
+    }
+
+    /// How narrow the place of a name may be.
+    fn narrowest(&self) -> f64 {
+        let bars = NARROWEST * self.legend.len() as f64 / SHARE_GROUP;
+        bars.max(Names::NARROWEST)
+    }
+
+    fn bar_width(&self, slot: f64) -> f64 {
+        let width = match self.legend.len() {
+            0 => SHARE_ALONE * slot,
+            count => SHARE_GROUP * slot / count as f64,
+        };
+        width.min(WIDEST)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bar(label: &str, mean: f64) -> Bar {
+        Bar {
+            label: label.to_string(),
+            mean,
+            low: mean - 1.0,
+            high: mean + 1.0,
+        }
+    }
+
+    fn chart(groups: &[(&str, &[Bar])]) -> BarChart {
+        let group = |&(label, bars): &(&str, &[Bar])| BarGroup {
+            label: label.to_string(),
+            bars: bars.to_vec(),
+        };
+        BarChart {
+            y_title: "y".to_string(),
+            legend_title: "V*".to_string(),
+            groups: groups.iter().map(group).collect(),
+            ..BarChart::default()
+        }
+    }
+
+    fn limits(means: &[f64]) -> (f64, f64) {
+        let chart = chart(&[("", &means.iter().map(|&mean| bar("", mean)).collect::<Vec<_>>())]);
+        let y = scale(&Places::of(&chart).bars);
+        (y.axis().lo, y.axis().hi)
+    }
+
+    #[test]
+    fn bars_start_at_zero() {
+        let (lo, hi) = limits(&[20.0, 21.0]);
+        assert!(lo == 0.0 && hi > 22.0);
+        let (lo, hi) = limits(&[-20.0]);
+        assert!(lo < -21.0 && hi == 0.0);
+        let (lo, hi) = limits(&[-20.0, 5.0]);
+        assert!(lo < -21.0 && hi > 6.0);
+        // A whisker may reach below.
+        assert!(limits(&[0.5]).0 < -0.5);
+    }
+
+    #[test]
+    fn one_group_names_its_bars_and_several_have_a_legend() {
+        let pair = [bar("slow", 3.0), bar("fast", 4.0)];
+        let one = bars(&chart(&[("circle", &pair)])).unwrap().svg;
+        assert!(
+            one.contains(">slow</text>") && !one.contains(">circle</text>") && !one.contains(">V*</text>")
+        );
+        let two = bars(&chart(&[("circle", &pair), ("square", &pair[1..])]))
+            .unwrap()
+            .svg;
+        for text in ["circle", "square", "slow", "fast", "V*"] {
+            assert_eq!(two.matches(&format!(">{text}</text>")).count(), 1, "{text}");
+        }
+    }
+
+    #[test]
+    fn bars_of_one_name_are_coloured_and_placed_alike() {
+        let chart = chart(&[
+            ("a", &[bar("slow", 1.0), bar("fast", 2.0)]),
+            ("b", &[bar("fast", 3.0)]),
+        ]);
+        let places = Places::of(&chart);
+        let [first, second, third] = &places.bars[..] else {
+            panic!("three bars")
+        };
+        assert!(first.colour != second.colour && first.step == -second.step);
+        assert!(second.colour == third.colour && second.step == third.step);
+    }
+
+    #[test]
+    fn poor_bars_are_drawn_all_the_same() {
+        let odd = [
+            bar("nothing", f64::NAN),
+            bar("no interval", 0.0),
+            bar("huge", f64::MAX),
+            bar("", 1e-320),
+            bar("one endless name ".repeat(20).as_str(), -9e99),
+        ];
+        for bar in &odd {
+            bars(&chart(&[("", std::slice::from_ref(bar))])).unwrap();
+        }
+        let svg = bars(&chart(&[("a", &odd), ("", &[]), ("c", &odd)])).unwrap().svg;
+        assert!(!svg.contains("NaN") && !svg.contains("inf\""));
+        assert_eq!(
+            bars(&chart(&[("a", &[]), ("b", &[])])).unwrap_err().to_string(),
+            "there is no bar to draw"
+        );
+    }
+
+    #[test]
+    fn many_bars_make_a_wider_picture_rather_than_thinner_names() {
+        let many: Vec<Bar> = (0..60)
+            .map(|i| bar("some variant's name", f64::from(i)))
+            .collect();
+        let svg = bars(&chart(&[("", &many)])).unwrap().svg;
+        let width = svg
+            .split_once("viewBox=\"0 0 ")
+            .and_then(|(_, rest)| rest.split_once(' '));
+        let width: f64 = width.and_then(|(width, _)| width.parse().ok()).unwrap();
+        assert!(width > 60.0 * Names::NARROWEST);
+    }
+}

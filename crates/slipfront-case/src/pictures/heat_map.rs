@@ -1,0 +1,447 @@
+//! A quantity over two axes of a parametric study.
+
+use super::axis::{drawable, range, widened};
+use super::canvas::{Align, Area, Canvas, Image, level, level_colour};
+use super::scale::{Scale, Way, apart};
+use super::sides::{
+    BAR_WIDTH, LOWER_ROOM, Tick, colour_bar, left_room, left_side, lower_side, short_ticks, widest,
+};
+use super::style::{BLACK, BLANK, COLUMN_WIDTH, MARGIN, Rgb, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WHITE};
+use super::text::{MINUS, Text, number};
+use super::{Picture, PictureError};
+
+const HEIGHT: f64 = 560.0;
+/// A number at the bar's upper end stands half beyond it.
+const TOP: f64 = MARGIN + 8.0;
+/// Between the map and its colour bar.
+const GAP: f64 = 30.0;
+/// Numbers are written in the cells of a map of at most so many columns and rows.
+const MOST_NUMBERED: usize = 8;
+/// An axis of more cells is numbered at round values.
+const MOST_NAMED: usize = 12;
+
+/// A map of cells over two axes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct HeatMap {
+    /// The axis of the columns.
+    pub x: HeatAxis,
+    /// The axis of the rows.
+    pub y: HeatAxis,
+    /// What the values are.
+    pub value_title: String,
+    /// One value for every cell: all of the first y, then all of the second; NaN is left grey.
+    pub values: Vec<f64>,
+}
+
+/// An axis of a map.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct HeatAxis {
+    /// What the axis is; see [`title`](super::title).
+    pub title: String,
+    /// Where its cells are, in any order, all different.
+    pub values: Vec<f64>,
+    /// Whether it is logarithmic; without effect if a value is not positive.
+    pub log: bool,
+}
+
+/// Draws a map, as wide as a journal's column (85 mm).
+///
+/// A cell reaches half-way to its neighbours, so uneven values give uneven cells. The colours span the values'
+/// own range. A map of up to 8 x 8 cells has its numbers in the cells, if they are wide enough.
+///
+/// # Errors
+///
+/// An axis without values, with one that is not a number, or with the same one twice; as many values as there
+/// are cells are needed.
+pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
+    let (mut x, mut y) = (Cells::of(&map.x)?, Cells::of(&map.y)?);
+    let (columns, rows) = (x.values.len(), y.values.len());
+    if columns.checked_mul(rows) != Some(map.values.len()) {
+        let values = map.values.len();
+        return Err(PictureError::Cells {
+            columns,
+            rows,
+            values,
+        });
+    }
+    let at = |row: usize, column: usize| map.values[y.order[row] * columns + x.order[column]];
+    let values = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+    let values: Vec<f64> = values
+        .map(|(row, column)| at(row, column))
+        .map(|value| if drawable(value) { value } else { f64::NAN })
+        .collect();
+    let colours = Colours::of(&values);
+
+    let (top, bottom) = (TOP, TOP + HEIGHT);
+    y.place(bottom, top);
+    let (y_ticks, y_short) = y.ticks(Way::Y);
+    let bar_ticks = colours.scale.placed(bottom, top).ticks(Way::Y);
+    let left = left_room(&y_ticks);
+    let bar_room = BAR_WIDTH + TICK_LENGTH + 7.0 + widest(&bar_ticks) + 14.0 + f64::from(SIZE_LABEL) + MARGIN;
+    let area = Area {
+        x: left,
+        y: top,
+        width: (COLUMN_WIDTH - left - GAP - bar_room).max(100.0).round(),
+        height: HEIGHT,
+    };
+    x.place(area.x, area.right());
+    let (x_ticks, x_short) = x.ticks(Way::X);
+
+    let mut canvas = Canvas::new(COLUMN_WIDTH, bottom + LOWER_ROOM);
+    canvas.image(image(area, &x, &y, &values, &colours));
+    draw_numbers(&mut canvas, &x, &y, &values, &colours);
+    canvas.frame(area);
+    short_ticks(&mut canvas, area, Way::Y, &y_short);
+    let title = Text::fitted(&map.y.title, area.height);
+    left_side(&mut canvas, area, 0.0, &y_ticks, &title);
+    short_ticks(&mut canvas, area, Way::X, &x_short);
+    let title = Text::fitted(&map.x.title, area.width);
+    lower_side(&mut canvas, area, &x_ticks, &title);
+    let bar = Area {
+        x: area.right() + GAP,
+        width: BAR_WIDTH,
+        ..area
+    };
+    colour_bar(&mut canvas, bar, &bar_ticks);
+    if values.iter().any(|value| value.is_nan()) {
+        draw_blank(&mut canvas, bar);
+    }
+    let baseline = COLUMN_WIDTH - MARGIN - 0.24 * f64::from(SIZE_LABEL);
+    let title = Text::fitted(&map.value_title, area.height);
+    let middle = area.y + 0.5 * area.height;
+    canvas.text_upwards(&title, (baseline, middle), Align::Middle, BLACK);
+    canvas.finish()
+}
+
+/// From values to colours.
+struct Colours {
+    scale: Scale,
+    lo: f64,
+    hi: f64,
+}
+
+impl Colours {
+    fn of(values: &[f64]) -> Self {
+        let (lo, hi) = widened(range(values.iter().copied()));
+        let scale = Scale::between(lo, hi, false);
+        Self { scale, lo, hi }
+    }
+
+    fn level(&self, value: f64) -> u8 {
+        level(((value - self.lo) / (self.hi - self.lo)) as f32)
+    }
+}
+
+/// The cells along an axis, in rising order.
+struct Cells {
+    scale: Scale,
+    /// The index of every cell among the axis' values.
+    order: Vec<usize>,
+    values: Vec<f64>,
+    /// Where the cells meet, as the scale measures it: one more than there are cells.
+    edges: Vec<f64>,
+}
+
+impl Cells {
+    fn of(axis: &HeatAxis) -> Result<Self, PictureError> {
+        let error = |reason| PictureError::CellAxis {
+            title: axis.title.clone(),
+            reason,
+        };
+        if axis.values.is_empty() {
+            return Err(error("it has no value"));
+        }
+        if !axis.values.iter().all(|&value| drawable(value)) {
+            return Err(error("a value is not a number"));
+        }
+        let mut order: Vec<usize> = (0..axis.values.len()).collect();
+        order.sort_by(|&a, &b| axis.values[a].total_cmp(&axis.values[b]));
+        let values: Vec<f64> = order.iter().map(|&index| axis.values[index]).collect();
+        let whole = Scale::around(&values, axis.log, 0.0);
+        let measured: Vec<f64> = values.iter().map(|&value| whole.measure(value)).collect();
+        if measured.windows(2).any(|pair| pair[0] >= pair[1]) {
+            return Err(error("two values are the same"));
+        }
+        let middles = measured.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+        let (first, last) = (measured[0], measured[measured.len() - 1]);
+        let mut edges: Vec<f64> = middles.collect();
+        // The outermost cells reach as far out as in.
+        let (lo, hi) = match edges[..] {
+            [] => widened((first, last)),
+            [inner, ..] => (2.0 * first - inner, 2.0 * last - edges[edges.len() - 1]),
+        };
+        edges.insert(0, lo);
+        edges.push(hi);
+        let scale = Scale::between(lo, hi, whole.is_log());
+        Ok(Self {
+            scale,
+            order,
+            values,
+            edges,
+        })
+    }
+
+    /// Places the axis between two pixels.
+    fn place(&mut self, start: f64, end: f64) {
+        self.scale = self.scale.placed(start, end);
+    }
+
+    /// The pixels where the cells meet, in rising order of value.
+    fn edges(&self) -> Vec<f64> {
+        self.edges
+            .iter()
+            .map(|&edge| self.scale.axis().at(edge).round())
+            .collect()
+    }
+
+    /// Numbered and short ticks: the values themselves if they are few and have room, else round ones.
+    fn ticks(&self, way: Way) -> (Vec<Tick>, Vec<f64>) {
+        let named = |digits: usize| {
+            let written: Option<Vec<String>> = self.values.iter().map(|&v| short(v, digits)).collect();
+            let written = written.filter(|texts| texts.windows(2).all(|pair| pair[0] != pair[1]))?;
+            let numbers = written.iter().map(|text| Text::number(text, SIZE_TICK));
+            let pixels = self.values.iter().map(|&value| self.scale.at(value));
+            let ticks: Vec<Tick> = pixels.zip(numbers).collect();
+            apart(&ticks, way).then_some(ticks)
+        };
+        let few = self.values.len() <= MOST_NAMED;
+        match [4, 3, 2].into_iter().filter(|_| few).find_map(named) {
+            Some(ticks) => (ticks, Vec::new()),
+            None => (self.scale.ticks(way), self.scale.short_ticks()),
+        }
+    }
+}
+
+/// A value with so many digits that count and no needless zero, unless that is more than 2 % off.
+fn short(value: f64, digits: usize) -> Option<String> {
+    let rounded = format!("{value:.*e}", digits.saturating_sub(1));
+    if (rounded.parse::<f64>().ok()? - value).abs() > 0.02 * value.abs() {
+        return None;
+    }
+    let (mantissa, power) = rounded.split_once('e')?;
+    let trimmed = |text: &str| match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
+        false => text.to_string(),
+    };
+    let exponent: i32 = power.parse().ok()?;
+    if (-4..6).contains(&exponent) {
+        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+        return Some(trimmed(&number(value, decimals)));
+    }
+    Some(format!("{}e{power}", trimmed(mantissa)).replace('-', MINUS))
+}
+
+/// Tells below the colour bar what grey is.
+fn draw_blank(canvas: &mut Canvas, bar: Area) {
+    let text = Text::plain("none", SIZE_TICK);
+    // Beside the axis' title: a number may reach as far as the bar.
+    let baseline = bar.bottom() + LOWER_ROOM - MARGIN - 4.0;
+    let patch = Area {
+        y: baseline - text.height() - 3.0,
+        height: text.height() + 6.0,
+        ..bar
+    };
+    canvas.fill(patch, BLANK, 1.0);
+    canvas.frame(patch);
+    canvas.text(&text, (patch.right() + 10.0, baseline), Align::Start, BLACK);
+}
+
+/// The cells as an image with a pixel for every pixel of the picture: an image's own columns are all alike.
+fn image(area: Area, x: &Cells, y: &Cells, values: &[f64], colours: &Colours) -> Image {
+    let (columns, rows) = (area.width as usize, area.height as usize);
+    let (edges_x, edges_y) = (x.edges(), y.edges());
+    // The cell is the last one that starts before the pixel's middle.
+    let cell_x = |column: usize| {
+        let middle = area.x + column as f64 + 0.5;
+        edges_x[1..edges_x.len() - 1].partition_point(|&edge| edge < middle)
+    };
+    let cell_y = |row: usize| {
+        let middle = area.y + row as f64 + 0.5;
+        edges_y[1..edges_y.len() - 1].partition_point(|&edge| edge > middle)
+    };
+    let cells_x: Vec<usize> = (0..columns).map(cell_x).collect();
+    let levels = (0..rows).map(cell_y).flat_map(|row| {
+        let values = &values[row * x.values.len()..];
+        cells_x.iter().map(move |&column| colours.level(values[column]))
+    });
+    Image {
+        area,
+        columns,
+        levels: levels.collect(),
+    }
+}
+
+/// Writes every value into its cell, if all have room.
+fn draw_numbers(canvas: &mut Canvas, x: &Cells, y: &Cells, values: &[f64], colours: &Colours) {
+    if x.values.len().max(y.values.len()) > MOST_NUMBERED {
+        return;
+    }
+    let size = colours.lo.abs().max(colours.hi.abs());
+    if !(1e-4..1e6).contains(&size) {
+        return;
+    }
+    let smallest = |edges: &[f64]| {
+        let sizes = edges.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        sizes.fold(f64::INFINITY, f64::min)
+    };
+    let (edges_x, edges_y) = (x.edges(), y.edges());
+    let (room_x, room_y) = (smallest(&edges_x) - 12.0, smallest(&edges_y) - 12.0);
+    let height = Text::plain("0", SIZE_TICK).height();
+    // Two digits or so of the range, or one less.
+    let decimals = (50.0 / (colours.hi - colours.lo)).log10().ceil().clamp(0.0, 9.0) as usize;
+    let texts = [decimals, decimals.saturating_sub(1)]
+        .map(|decimals| written(values, decimals))
+        .into_iter()
+        .find(|texts| texts.iter().all(|text| text.width() <= room_x) && height <= room_y);
+    let Some(texts) = texts else {
+        return;
+    };
+    for (index, (text, &value)) in texts.iter().zip(values).enumerate() {
+        let (row, column) = (index / x.values.len(), index % x.values.len());
+        let middle = (
+            0.5 * (edges_x[column] + edges_x[column + 1]),
+            0.5 * (edges_y[row] + edges_y[row + 1] + height),
+        );
+        let colour = readable_on(level_colour(colours.level(value)));
+        canvas.text(text, middle, Align::Middle, colour);
+    }
+}
+
+fn written(values: &[f64], decimals: usize) -> Vec<Text> {
+    let text = |value: &f64| match value.is_nan() {
+        true => String::new(),
+        false => number(*value, decimals),
+    };
+    values
+        .iter()
+        .map(|value| Text::plain(&text(value), SIZE_TICK))
+        .collect()
+}
+
+/// Black or white, whichever stands out more.
+fn readable_on(ground: Rgb) -> Rgb {
+    let [red, green, blue] = ground.map(|channel| (f64::from(channel) / 255.0).powf(2.2));
+    let luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+    // Contrast with white against contrast with black (WCAG 2).
+    if 1.05 / (luminance + 0.05) > (luminance + 0.05) / 0.05 {
+        WHITE
+    } else {
+        BLACK
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn axis(values: &[f64], log: bool) -> HeatAxis {
+        HeatAxis {
+            title: "axis".to_string(),
+            values: values.to_vec(),
+            log,
+        }
+    }
+
+    fn map(columns: usize, rows: usize) -> HeatMap {
+        let values = |count: usize| (1..=count).map(|i| i as f64).collect::<Vec<_>>();
+        HeatMap {
+            x: axis(&values(columns), false),
+            y: axis(&values(rows), true),
+            value_title: "value".to_string(),
+            values: (0..columns * rows).map(|cell| 0.5 * cell as f64).collect(),
+        }
+    }
+
+    #[test]
+    fn cells_reach_half_way_to_their_neighbours() {
+        let cells = Cells::of(&axis(&[4.0, 1.0, 2.0], false)).unwrap();
+        assert_eq!(cells.order, [1, 2, 0]);
+        assert_eq!(cells.edges, [0.5, 1.5, 3.0, 5.0]);
+        let cells = Cells::of(&axis(&[1.0, 100.0], true)).unwrap();
+        assert_eq!(cells.edges, [-1.0, 1.0, 3.0]);
+    }
+
+    #[test]
+    fn the_order_of_the_values_does_not_matter() {
+        let map = map(3, 2);
+        let mut turned = map.clone();
+        turned.x.values.reverse();
+        turned.y.values.reverse();
+        turned.values.reverse();
+        assert_eq!(heat_map(&map).unwrap(), heat_map(&turned).unwrap());
+    }
+
+    #[test]
+    fn few_cells_have_numbers_and_many_have_none() {
+        assert!(heat_map(&map(6, 6)).unwrap().svg.contains(">17.5</text>"));
+        assert!(!heat_map(&map(6, 9)).unwrap().svg.contains(">17.5</text>"));
+    }
+
+    #[test]
+    fn grey_is_explained_where_there_is_any() {
+        let mut map = map(6, 6);
+        assert!(!heat_map(&map).unwrap().svg.contains(">none</text>"));
+        map.values[7] = f64::NAN;
+        assert!(heat_map(&map).unwrap().svg.contains(">none</text>"));
+        map.values.fill(f64::INFINITY);
+        assert!(!heat_map(&map).unwrap().svg.contains("NaN"));
+    }
+
+    #[test]
+    fn odd_maps_are_drawn_all_the_same() {
+        for (columns, rows) in [(1, 1), (1, 40), (40, 1), (300, 700)] {
+            heat_map(&map(columns, rows)).unwrap();
+        }
+        let mut odd = map(2, 2);
+        odd.x.values = vec![1e-9, 12345.0];
+        odd.y.values = vec![5e-324, 9e99];
+        odd.values = vec![-9e99, 9e99, 5e-324, 0.0];
+        assert!(!heat_map(&odd).unwrap().svg.contains("NaN"));
+    }
+
+    #[test]
+    fn an_axis_value_keeps_the_digits_that_matter() {
+        let written = |value, digits| short(value, digits).unwrap_or_default();
+        assert_eq!(written(0.05, 4), "0.05");
+        assert_eq!(written(0.018_205_6, 3), "0.0182");
+        assert_eq!(written(12345.0, 4), "12345");
+        assert_eq!(written(-1.5e-9, 3), "\u{2212}1.5e\u{2212}9");
+        assert_eq!(written(0.0, 2), "0");
+        // 12 would not be 12.5.
+        assert_eq!(short(12.5, 2), None);
+    }
+
+    #[test]
+    fn what_cannot_be_divided_into_cells_is_refused() {
+        let error = |change: &dyn Fn(&mut HeatMap)| {
+            let mut map = map(2, 3);
+            change(&mut map);
+            heat_map(&map).unwrap_err().to_string()
+        };
+        let reasons = [
+            error(&|m| m.x.values.clear()),
+            error(&|m| m.x.values[1] = f64::NAN),
+            error(&|m| m.y.values[1] = m.y.values[0]),
+        ];
+        for (error, reason) in reasons.iter().zip([
+            "it has no value",
+            "a value is not a number",
+            "two values are the same",
+        ]) {
+            assert_eq!(
+                *error,
+                format!("the axis `axis` cannot be divided into cells: {reason}")
+            );
+        }
+        assert_eq!(
+            error(&|m| m.values.push(0.0)),
+            "a map of 2 x 3 cells has 7 values"
+        );
+    }
+
+    #[test]
+    fn numbers_stand_out_from_their_cells() {
+        assert_eq!(readable_on(level_colour(0)), WHITE);
+        assert_eq!(readable_on(level_colour(254)), BLACK);
+    }
+}

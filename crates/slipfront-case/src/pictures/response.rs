@@ -1,0 +1,302 @@
+//! Response curves of a parametric study, with confidence bands.
+
+use super::axis::drawable;
+use super::canvas::{Area, Canvas};
+use super::legend::{Legend, Sample};
+use super::markers::marker;
+use super::scale::{Scale, Way};
+use super::series::pieces;
+use super::sides::{LOWER_ROOM, left_room, left_side, lower_side, short_ticks};
+use super::style::{
+    COLUMN_WIDTH, GREY, MARGIN, RADIUS_MARKER, Rgb, WIDTH_CURVE, WIDTH_LEADER, WIDTH_MARK, curve_colour,
+};
+use super::text::Text;
+use super::whisker::{Interval, whisker};
+use super::{Picture, PictureError};
+
+const HEIGHT: f64 = 560.0;
+/// Between the last number below the panel, half of which may stand beyond it, and the picture's edge.
+const RIGHT: f64 = 34.0;
+
+/// Response curves over one axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Responses {
+    /// What x is; see [`title`](super::title).
+    pub x_title: String,
+    /// Whether x is logarithmic; without effect if an x is not positive.
+    pub log_x: bool,
+    /// What the curves show.
+    pub y_title: String,
+    /// What the curves' labels are values of, for the legend; see [`symbol`](super::symbol).
+    pub legend_title: String,
+    /// The curves.
+    pub curves: Vec<Response>,
+}
+
+/// One response curve, a point for every value of an axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Response {
+    /// What the legend calls it; shown only beside other curves.
+    pub label: String,
+    /// Where its points are, in any order.
+    pub x: Vec<f64>,
+    /// The mean at every point; NaN leaves a gap.
+    pub mean: Vec<f64>,
+    /// The lower end of every mean's confidence interval; NaN where there is none.
+    pub low: Vec<f64>,
+    /// The upper end.
+    pub high: Vec<f64>,
+}
+
+/// Draws means with their confidence bands, as wide as a journal's column (85 mm).
+///
+/// y starts where the values do, not at zero. A point without neighbours has a whisker in place of a band.
+/// Several curves have a legend above, and markers of different shapes.
+///
+/// # Errors
+///
+/// No curve, or a curve whose columns differ in length.
+pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
+    let curves = &responses.curves;
+    if curves.is_empty() {
+        return Err(PictureError::Nothing("curve"));
+    }
+    curves.iter().try_for_each(check)?;
+    let curves: Vec<Curve> = curves.iter().map(Curve::of).collect();
+    let xs: Vec<f64> = curves.iter().flat_map(|curve| curve.x.clone()).collect();
+    let x = Scale::around(&xs, responses.log_x, 0.04);
+    let y = Scale::around(
+        &curves.iter().flat_map(Curve::values).collect::<Vec<_>>(),
+        false,
+        0.06,
+    );
+    let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Way::Y));
+    let right = COLUMN_WIDTH.round() - RIGHT;
+    let mut legend = Legend::default();
+    if curves.len() > 1 {
+        let labels: Vec<&str> = responses.curves.iter().map(|c| c.label.as_str()).collect();
+        legend = Legend::titled(&responses.legend_title, &labels, Sample::Marker, left, right);
+    }
+    let area = Area {
+        x: left,
+        y: MARGIN + legend.height,
+        width: right - left,
+        height: HEIGHT,
+    };
+    let (x, y) = (x.placed(left, right), y.placed(area.bottom(), area.y));
+
+    let mut canvas = Canvas::new(COLUMN_WIDTH, area.bottom() + LOWER_ROOM);
+    let title = Text::fitted(&responses.y_title, HEIGHT);
+    left_side(&mut canvas, area, 0.0, &y.ticks(Way::Y), &title);
+    short_ticks(&mut canvas, area, Way::X, &x.short_ticks());
+    let title = Text::fitted(&responses.x_title, area.width);
+    lower_side(&mut canvas, area, &x.ticks(Way::X), &title);
+    legend.draw(&mut canvas);
+    if y.axis().lo < 0.0 && y.axis().hi > 0.0 {
+        canvas.line((area.x, y.at(0.0)), (area.right(), y.at(0.0)), WIDTH_LEADER, GREY);
+    }
+    // All bands, then all curves, then all points: nothing hides a point.
+    let opacity = if curves.len() > 4 { 0.13 } else { 0.2 };
+    let coloured: Vec<(&Curve, Rgb)> = curves
+        .iter()
+        .enumerate()
+        .map(|(index, curve)| (curve, curve_colour(index, curves.len())))
+        .collect();
+    for (curve, colour) in &coloured {
+        curve.draw_band(&mut canvas, &x, &y, *colour, opacity);
+    }
+    for (curve, colour) in &coloured {
+        for piece in pieces(&curve.measured(&x), &curve.mean, x.axis(), y.axis()) {
+            if piece.len() > 1 {
+                canvas.polyline(piece, WIDTH_CURVE, *colour);
+            }
+        }
+    }
+    for (index, (curve, colour)) in coloured.iter().enumerate() {
+        for point in pieces(&curve.measured(&x), &curve.mean, x.axis(), y.axis()).concat() {
+            marker(&mut canvas, index, point, RADIUS_MARKER, *colour);
+        }
+    }
+    canvas.frame(area);
+    canvas.finish()
+}
+
+fn check(curve: &Response) -> Result<(), PictureError> {
+    let columns = [
+        ("mean", curve.mean.len()),
+        ("low", curve.low.len()),
+        ("high", curve.high.len()),
+    ];
+    let points = curve.x.len();
+    match columns.into_iter().find(|(_, values)| *values != points) {
+        Some((column, values)) => Err(PictureError::Points {
+            label: curve.label.clone(),
+            points,
+            column,
+            values,
+        }),
+        None => Ok(()),
+    }
+}
+
+/// A curve whose points run along x; an interval is whole or NaN.
+struct Curve {
+    x: Vec<f64>,
+    mean: Vec<f64>,
+    low: Vec<f64>,
+    high: Vec<f64>,
+}
+
+impl Curve {
+    fn of(response: &Response) -> Self {
+        let mut order: Vec<usize> = (0..response.x.len())
+            .filter(|&index| drawable(response.x[index]))
+            .collect();
+        order.sort_by(|&a, &b| response.x[a].total_cmp(&response.x[b]));
+        let interval = |&index: &usize| {
+            let (low, high) = (response.low[index], response.high[index]);
+            match Interval::of(response.mean[index], low, high) {
+                Some(interval) => (interval.low, interval.high),
+                None => (f64::NAN, f64::NAN),
+            }
+        };
+        let (low, high) = order.iter().map(interval).unzip();
+        Self {
+            x: order.iter().map(|&index| response.x[index]).collect(),
+            mean: order.iter().map(|&index| response.mean[index]).collect(),
+            low,
+            high,
+        }
+    }
+
+    /// Everything that y must hold.
+    fn values(&self) -> impl Iterator<Item = f64> {
+        [&self.mean, &self.low, &self.high].into_iter().flatten().copied()
+    }
+
+    fn measured(&self, x: &Scale) -> Vec<f64> {
+        self.x.iter().map(|&value| x.measure(value)).collect()
+    }
+
+    fn draw_band(&self, canvas: &mut Canvas, x: &Scale, y: &Scale, colour: Rgb, opacity: f64) {
+        let xs = self.measured(x);
+        let lows = pieces(&xs, &self.low, x.axis(), y.axis());
+        let highs = pieces(&xs, &self.high, x.axis(), y.axis());
+        for (low, high) in lows.into_iter().zip(highs) {
+            if let ([low], [high]) = (&low[..], &high[..]) {
+                whisker(canvas, low.0, (low.1, high.1), WIDTH_MARK, colour);
+                continue;
+            }
+            let edge: Vec<(f64, f64)> = low.into_iter().chain(high.into_iter().rev()).collect();
+            canvas.polygon(&edge, colour, opacity);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A curve with intervals of 0.1 to both sides.
+    fn curve(label: &str, points: &[(f64, f64)]) -> Response {
+        let (x, mean): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+        Response {
+            label: label.to_string(),
+            x,
+            low: mean.iter().map(|mean| mean - 0.1).collect(),
+            high: mean.iter().map(|mean| mean + 0.1).collect(),
+            mean,
+        }
+    }
+
+    fn responses(curves: &[Response], log_x: bool) -> Responses {
+        Responses {
+            x_title: "x".to_string(),
+            y_title: "y".to_string(),
+            legend_title: "size".to_string(),
+            log_x,
+            curves: curves.to_vec(),
+        }
+    }
+
+    fn svg(curves: &[Response]) -> String {
+        let svg = response(&responses(curves, false)).unwrap().svg;
+        assert!(!svg.contains("NaN") && !svg.contains("inf\""), "{curves:?}");
+        svg
+    }
+
+    /// How many bands there are: nothing else is a polygon through so opaque a fill.
+    fn bands(svg: &str) -> usize {
+        svg.matches("fill-opacity=\"0.2\"").count()
+    }
+
+    #[test]
+    fn the_same_curves_give_the_same_bytes_in_any_order_of_points() {
+        let there = responses(&[curve("a", &[(1.0, 0.3), (2.0, 0.5), (4.0, 0.1)])], true);
+        let back = responses(&[curve("a", &[(4.0, 0.1), (2.0, 0.5), (1.0, 0.3)])], true);
+        assert_eq!(response(&there).unwrap(), response(&back).unwrap());
+    }
+
+    #[test]
+    fn only_several_curves_have_a_legend() {
+        let one = curve("first", &[(1.0, 0.3), (2.0, 0.5)]);
+        let two = curve("second", &[(1.0, 0.4), (2.0, 0.6)]);
+        assert!(!svg(std::slice::from_ref(&one)).contains(">first</text>"));
+        let both = svg(&[one, two]);
+        for text in ["size", "first", "second"] {
+            assert!(both.contains(&format!(">{text}</text>")), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_band_ends_where_an_interval_or_a_mean_is_missing() {
+        let points: Vec<(f64, f64)> = (0..7).map(|i| (f64::from(i), 0.1 * f64::from(i))).collect();
+        let mut curve = curve("", &points);
+        assert_eq!(bands(&svg(std::slice::from_ref(&curve))), 1);
+        curve.mean[3] = f64::NAN;
+        assert_eq!(bands(&svg(std::slice::from_ref(&curve))), 2);
+        // The last point alone has a whisker.
+        curve.low[5] = f64::NAN;
+        assert_eq!(bands(&svg(std::slice::from_ref(&curve))), 1);
+        curve.high.fill(f64::NAN);
+        assert_eq!(bands(&svg(&[curve])), 0);
+    }
+
+    #[test]
+    fn an_interval_is_held_whole() {
+        let mut wide = curve("", &[(1.0, 0.5)]);
+        (wide.low[0], wide.high[0]) = (-3.0, 7.0);
+        let curve = Curve::of(&wide);
+        assert!(curve.values().any(|v| v == -3.0) && curve.values().any(|v| v == 7.0));
+    }
+
+    #[test]
+    fn poor_curves_are_drawn_all_the_same() {
+        let odd = [
+            curve("", &[]),
+            curve("", &[(0.03, 0.88)]),
+            curve("", &[(1.0, f64::NAN), (f64::NAN, 1.0)]),
+            curve("", &[(-1.0, 0.3), (0.0, 0.3)]),
+            curve("", &[(f64::INFINITY, 0.3), (1.0, f64::MAX), (2.0, f64::MIN)]),
+            curve("", &[(1e-9, 1e-9), (2e-9, 3e-9)]),
+            curve("", &[(5e-324, 5e-324), (1e-310, 2e-310)]),
+            curve("", &[(1.0, -9e99), (9e99, 9e99)]),
+            curve("", &[(1.0, 12345.0), (1.0 + 1e-12, 12345.0)]),
+        ];
+        for curve in &odd {
+            svg(std::slice::from_ref(curve));
+            response(&responses(std::slice::from_ref(curve), true)).unwrap();
+        }
+        svg(&odd);
+    }
+
+    #[test]
+    fn columns_of_different_length_are_refused() {
+        let mut bad = curve("a", &[(0.0, 0.0), (1.0, 1.0)]);
+        bad.high.pop();
+        let error = response(&responses(&[bad], false)).unwrap_err().to_string();
+        assert_eq!(error, "curve `a` has 2 points but 1 values of its high");
+        let error = response(&responses(&[], false)).unwrap_err().to_string();
+        assert_eq!(error, "there is no curve to draw");
+    }
+}

@@ -1,0 +1,84 @@
+//! The numbered sides of a panel: ticks, their numbers, a title.
+
+use super::axis::Axis;
+use super::canvas::{Align, Area, Canvas, Image};
+use super::scale::Way;
+use super::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WIDTH_FRAME};
+use super::text::Text;
+
+/// How wide a colour bar is.
+pub(super) const BAR_WIDTH: f64 = 30.0;
+
+/// A tick: its pixel along the side, and its number.
+pub(super) type Tick = (f64, Text);
+
+/// The ticks of an axis.
+pub(super) fn placed(axis: &Axis, most: usize) -> Vec<Tick> {
+    axis.ticks(most)
+        .into_iter()
+        .map(|(value, text)| (axis.at(value), Text::plain(&text, SIZE_TICK)))
+        .collect()
+}
+
+/// How wide the widest number is.
+pub(super) fn widest(ticks: &[Tick]) -> f64 {
+    ticks.iter().map(|(_, text)| text.width()).fold(0.0, f64::max)
+}
+
+/// The room left of a panel for a title and these numbers.
+pub(super) fn left_room(ticks: &[Tick]) -> f64 {
+    (MARGIN + f64::from(SIZE_LABEL) + 14.0 + widest(ticks) + TICK_LENGTH + 7.0).round()
+}
+
+/// The room below a panel for numbers and a title.
+pub(super) const LOWER_ROOM: f64 = TICK_LENGTH + 7.0 + SIZE_TICK as f64 + SIZE_LABEL as f64 + MARGIN;
+
+/// Draws the left side of `area`, its title along `edge`, where the room left of it begins.
+pub(super) fn left_side(canvas: &mut Canvas, area: Area, edge: f64, ticks: &[Tick], title: &Text) {
+    for (y, text) in ticks {
+        canvas.tick_left((area.x, *y), text);
+    }
+    let baseline = edge + MARGIN + 0.8 * f64::from(SIZE_LABEL);
+    let middle = area.y + 0.5 * area.height;
+    canvas.text_upwards(title, (baseline, middle), Align::Middle, BLACK);
+}
+
+/// Draws the lower side of `area`.
+pub(super) fn lower_side(canvas: &mut Canvas, area: Area, ticks: &[Tick], title: &Text) {
+    for (x, text) in ticks {
+        canvas.tick_below((*x, area.bottom()), text);
+    }
+    lower_title(canvas, area, title);
+}
+
+/// Writes a title under the numbers below `area`.
+pub(super) fn lower_title(canvas: &mut Canvas, area: Area, title: &Text) {
+    let baseline = area.bottom() + LOWER_ROOM - MARGIN - 4.0;
+    canvas.text(title, (area.x + 0.5 * area.width, baseline), Align::Middle, BLACK);
+}
+
+/// Draws a bar of all colours, dark at its foot.
+pub(super) fn colour_bar(canvas: &mut Canvas, area: Area, ticks: &[Tick]) {
+    let levels = (0..=254).rev().collect();
+    canvas.image(Image {
+        area,
+        columns: 1,
+        levels,
+    });
+    canvas.frame(area);
+    for (y, text) in ticks {
+        canvas.tick_right((area.right(), *y), text);
+    }
+}
+
+/// Draws ticks without numbers on the lower or the left side of `area`, half as long as the others.
+pub(super) fn short_ticks(canvas: &mut Canvas, area: Area, way: Way, ticks: &[f64]) {
+    let length = 0.5 * TICK_LENGTH;
+    for &at in ticks {
+        let ends = match way {
+            Way::X => [(at, area.bottom()), (at, area.bottom() + length)],
+            Way::Y => [(area.x, at), (area.x - length, at)],
+        };
+        canvas.line(ends[0], ends[1], WIDTH_FRAME, BLACK);
+    }
+}

@@ -1,0 +1,32 @@
+//! Confidence intervals as whiskers.
+
+use super::axis::drawable;
+use super::canvas::Canvas;
+use super::style::Rgb;
+
+/// How far the ends of a whisker reach to both sides.
+const CAP: f64 = 9.0;
+
+/// A confidence interval that can be drawn.
+pub(super) struct Interval {
+    pub(super) low: f64,
+    pub(super) high: f64,
+}
+
+impl Interval {
+    /// The interval around a mean, if all three are numbers.
+    pub(super) fn of(mean: f64, low: f64, high: f64) -> Option<Self> {
+        [mean, low, high].into_iter().all(drawable).then(|| Self {
+            low: low.min(high),
+            high: low.max(high),
+        })
+    }
+}
+
+/// Draws an interval from one pixel of y to another.
+pub(super) fn whisker(canvas: &mut Canvas, x: f64, (low, high): (f64, f64), width: f64, colour: Rgb) {
+    canvas.line((x, low), (x, high), width, colour);
+    for y in [low, high] {
+        canvas.line((x - CAP, y), (x + CAP, y), width, colour);
+    }
+}

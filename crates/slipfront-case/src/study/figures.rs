@@ -1,0 +1,269 @@
+//! Which pictures a study gets: curves over numbers, maps over two of them, bars for names.
+
+use super::axis::{Axis, Spacing};
+use super::error::StudyError;
+use super::execute::Findings;
+use super::plan::{Plan, Point};
+use super::quantities::REDUCTION;
+use super::tables::sample;
+use crate::pictures::{
+    self, Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Response, Responses, symbol,
+    title,
+};
+
+/// Most curves in one picture.
+const MOST_CURVES: usize = 9;
+
+/// Draws the pictures of a study, each with the name of its files.
+///
+/// # Errors
+/// When one cannot be drawn.
+pub(super) fn draw(plan: &Plan, findings: &Findings) -> Result<Vec<(String, Picture)>, StudyError> {
+    let mut quantities = vec!["static_friction_star", "kinetic_friction_star"];
+    if plan.has_reference() {
+        quantities.push(REDUCTION);
+    }
+    let mut drawn = Vec::new();
+    for quantity in quantities {
+        let values = Values::of(plan, findings, quantity);
+        // A study that stops at the onset knows no kinetic friction: nothing to draw.
+        if values.0.iter().all(|(_, [mean, ..])| mean.is_nan()) {
+            continue;
+        }
+        for (name, picture) in draw_quantity(plan, quantity, &values) {
+            let picture = picture.map_err(|source| StudyError::Picture {
+                name: name.clone(),
+                source,
+            })?;
+            drawn.push((name, picture));
+        }
+    }
+    Ok(drawn)
+}
+
+/// Mean and interval of a quantity at every point; not a number where it has none.
+struct Values<'a>(Vec<(&'a Point, [f64; 3])>);
+
+impl<'a> Values<'a> {
+    fn of(plan: &'a Plan, findings: &Findings, quantity: &str) -> Self {
+        let value = |position| match sample(plan, findings, position, quantity) {
+            Some(sample) => {
+                let [low, high] = sample.interval().unwrap_or([f64::NAN; 2]);
+                [sample.mean, low, high]
+            }
+            None => [f64::NAN; 3],
+        };
+        Self(
+            plan.points
+                .iter()
+                .enumerate()
+                .map(|(position, point)| (point, value(position)))
+                .collect(),
+        )
+    }
+
+    /// At the point with these levels; a shard lacks most of them.
+    fn at(&self, levels: &[usize]) -> [f64; 3] {
+        self.0
+            .iter()
+            .find(|(point, _)| point.levels == levels)
+            .map_or([f64::NAN; 3], |(_, value)| *value)
+    }
+}
+
+type Drawn = (String, Result<Picture, PictureError>);
+
+fn draw_quantity(plan: &Plan, quantity: &str, values: &Values) -> Vec<Drawn> {
+    let axes = &plan.axes;
+    let numeric: Vec<usize> = (0..axes.len())
+        .filter(|&axis| axes[axis].spacing != Spacing::Named)
+        .collect();
+    match (numeric.first(), axes.len()) {
+        (_, 0) => Vec::new(),
+        (None, 1 | 2) => vec![(quantity.to_owned(), bars(axes, quantity, values))],
+        // Names alone on three axes or more: the tables serve better.
+        (None, _) => Vec::new(),
+        (Some(&x), _) => {
+            let mut drawn = curves(axes, x, quantity, values);
+            if let ([x, y], 2) = (numeric.as_slice(), axes.len()) {
+                drawn.push((format!("{quantity}_map"), map(axes, *x, *y, quantity, values)));
+            }
+            drawn
+        }
+    }
+}
+
+/// Curves over axis `x`, one for each combination of levels of the others; more pictures where these are many.
+fn curves(axes: &[Axis], x: usize, quantity: &str, values: &Values) -> Vec<Drawn> {
+    let others: Vec<usize> = (0..axes.len()).filter(|&axis| axis != x).collect();
+    let count: usize = others.iter().map(|&axis| axes[axis].levels.len()).product();
+    // The axes in front are split off into pictures of their own until one picture can hold the rest.
+    let mut held = count;
+    let mut split = 0;
+    while held > MOST_CURVES && split + 1 < others.len() {
+        held /= axes[others[split]].levels.len();
+        split += 1;
+    }
+    if held > MOST_CURVES {
+        return Vec::new();
+    }
+    let (front, back) = others.split_at(split);
+    combinations(axes, front)
+        .into_iter()
+        .map(|fixed| {
+            let curves = combinations(axes, back)
+                .into_iter()
+                .map(|varied| curve(axes, x, &[fixed.clone(), varied].concat(), back, values))
+                .collect();
+            let responses = Responses {
+                x_title: title(axes[x].title()),
+                log_x: axes[x].spacing == Spacing::Logarithmic,
+                y_title: title(quantity),
+                legend_title: match back {
+                    [axis] => symbol(axes[*axis].title()),
+                    _ => String::new(),
+                },
+                curves,
+            };
+            let suffix: String = fixed
+                .iter()
+                .map(|&(axis, level)| format!("-{}", file_word(&axes[axis].levels[level].labels.join("-"))))
+                .collect();
+            (format!("{quantity}{suffix}"), pictures::response(&responses))
+        })
+        .collect()
+}
+
+/// Levels of some axes: pairs of axis and level.
+type Levels = Vec<(usize, usize)>;
+
+/// Every combination of levels of these axes, the last fastest.
+fn combinations(axes: &[Axis], of: &[usize]) -> Vec<Levels> {
+    of.iter().fold(vec![Vec::new()], |combinations, &axis| {
+        let with = |level| {
+            combinations
+                .iter()
+                .map(move |levels| [levels.as_slice(), &[(axis, level)]].concat())
+        };
+        let mut all: Vec<Levels> = (0..axes[axis].levels.len()).flat_map(with).collect();
+        all.sort();
+        all
+    })
+}
+
+fn curve(axes: &[Axis], x: usize, fixed: &[(usize, usize)], labelled: &[usize], values: &Values) -> Response {
+    let label: Vec<String> = fixed
+        .iter()
+        .filter(|(axis, _)| labelled.contains(axis))
+        .map(|&(axis, level)| axes[axis].levels[level].labels.join(" "))
+        .collect();
+    let mut response = Response {
+        label: label.join(", "),
+        x: vec![],
+        mean: vec![],
+        low: vec![],
+        high: vec![],
+    };
+    let mut levels: Vec<(f64, usize)> = axes[x]
+        .levels
+        .iter()
+        .enumerate()
+        .filter_map(|(level, at)| Some((at.number?, level)))
+        .collect();
+    levels.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (at, level) in levels {
+        let mut place = vec![0; axes.len()];
+        place[x] = level;
+        fixed.iter().for_each(|&(axis, level)| place[axis] = level);
+        let [mean, low, high] = values.at(&place);
+        response.x.push(at);
+        response.mean.push(mean);
+        response.low.push(low);
+        response.high.push(high);
+    }
+    response
+}
+
+fn map(axes: &[Axis], x: usize, y: usize, quantity: &str, values: &Values) -> Result<Picture, PictureError> {
+    let sorted = |axis: usize| -> Vec<(f64, usize)> {
+        let mut levels: Vec<(f64, usize)> = axes[axis]
+            .levels
+            .iter()
+            .enumerate()
+            .filter_map(|(level, at)| Some((at.number?, level)))
+            .collect();
+        levels.sort_by(|a, b| a.0.total_cmp(&b.0));
+        levels
+    };
+    let (columns, rows) = (sorted(x), sorted(y));
+    let mut means = Vec::new();
+    for &(_, row) in &rows {
+        for &(_, column) in &columns {
+            let mut place = vec![0; axes.len()];
+            (place[x], place[y]) = (column, row);
+            means.push(values.at(&place)[0]);
+        }
+    }
+    let heat_axis = |axis: usize, levels: &[(f64, usize)]| HeatAxis {
+        title: title(axes[axis].title()),
+        values: levels.iter().map(|(at, _)| *at).collect(),
+        log: axes[axis].spacing == Spacing::Logarithmic,
+    };
+    pictures::heat_map(&HeatMap {
+        x: heat_axis(x, &columns),
+        y: heat_axis(y, &rows),
+        value_title: title(quantity),
+        values: means,
+    })
+}
+
+/// Bars for the names of one axis, or in groups for two.
+fn bars(axes: &[Axis], quantity: &str, values: &Values) -> Result<Picture, PictureError> {
+    let bar = |label: &str, levels: &[usize]| {
+        let [mean, low, high] = values.at(levels);
+        Bar {
+            label: label.to_owned(),
+            mean,
+            low,
+            high,
+        }
+    };
+    let name = |axis: usize, level: usize| axes[axis].levels[level].labels.join(" ");
+    let levels = |axis: usize| 0..axes[axis].levels.len();
+    let groups = if axes.len() == 1 {
+        let bars = levels(0).map(|level| bar(&name(0, level), &[level])).collect();
+        vec![BarGroup {
+            label: String::new(),
+            bars,
+        }]
+    } else {
+        let group = |one: usize| BarGroup {
+            label: name(0, one),
+            bars: levels(1)
+                .map(|other| bar(&name(1, other), &[one, other]))
+                .collect(),
+        };
+        levels(0).map(group).collect()
+    };
+    let legend_title = axes.get(1).map_or(String::new(), |axis| symbol(axis.title()));
+    pictures::bars(&BarChart {
+        y_title: title(quantity),
+        x_title: title(axes[0].title()),
+        legend_title,
+        groups,
+    })
+}
+
+/// A word that every file system takes.
+fn file_word(label: &str) -> String {
+    label
+        .chars()
+        .map(|c| {
+            if c.is_ascii_alphanumeric() || "._-".contains(c) {
+                c
+            } else {
+                '_'
+            }
+        })
+        .collect()
+}

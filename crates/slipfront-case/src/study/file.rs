@@ -1,0 +1,326 @@
+//! The study file: a base case, what varies in it, and how often it is repeated.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::axis::{Axis, AxisKeys};
+use super::error::StudyError;
+use crate::case_file::{CaseError, CaseFile, Source, Tables, keys_of};
+
+/// A study file.
+#[derive(Clone, Debug)]
+pub struct StudyFile {
+    /// Name of the study: what its results are called.
+    pub name: String,
+    /// The case that everything varies.
+    pub base: Base,
+    /// `[study]`.
+    pub settings: Settings,
+    /// `[[axes]]`, in the order of the file.
+    pub axes: Vec<Axis>,
+    /// The file as a table, for the copy in the results folder.
+    pub(super) table: toml::Table,
+}
+
+/// The case that a study varies.
+#[derive(Clone, Debug)]
+pub struct Base {
+    /// Text of the case file.
+    pub text: String,
+    /// Its name in messages.
+    pub name: String,
+    /// The folder that the files it names are relative to.
+    pub folder: PathBuf,
+}
+
+impl Base {
+    /// The base case with `overrides`.
+    ///
+    /// # Errors
+    /// As for any case file.
+    pub fn with(&self, overrides: &[String]) -> Result<CaseFile, CaseError> {
+        CaseFile::parse(&self.text, &self.name, overrides)
+    }
+}
+
+/// `[study]`: repetition, reference and what is kept.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// Runs per point; replicate r uses the seed of the case + r.
+    pub replicates: u32,
+    /// Keys of the case that reductions are measured against, at the same seed (Eq. 16).
+    pub reference: Option<toml::Table>,
+    /// Which run folders are kept.
+    pub keep: Keep,
+    /// Adaptive replication, in place of `replicates`.
+    pub until: Option<Until>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            replicates: 1,
+            reference: None,
+            keep: Keep::None,
+            until: None,
+        }
+    }
+}
+
+/// Which run folders are kept beside the tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Keep {
+    /// Of every run, with fields and pictures.
+    All,
+    /// Of none.
+    None,
+    /// Of a run that failed, its case file.
+    Failed,
+}
+
+/// Replication until a confidence interval is narrow enough.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Until {
+    /// Quantity of the summary, or `static_reduction_percent`.
+    pub key: String,
+    /// Half width that the interval must not exceed.
+    pub half_width: f64,
+    /// Its confidence.
+    #[serde(default = "default_confidence")]
+    pub confidence: f64,
+    /// Fewest replicates.
+    #[serde(default = "default_min")]
+    pub min: u32,
+    /// Most replicates.
+    pub max: u32,
+}
+
+fn default_confidence() -> f64 {
+    CONFIDENCE
+}
+
+fn default_min() -> u32 {
+    3
+}
+
+/// Confidence of intervals where the study asks for no other.
+pub(super) const CONFIDENCE: f64 = 0.95;
+
+/// Most replicates of a point.
+const MAX_REPLICATES: u32 = 100_000;
+
+impl Settings {
+    /// Confidence of all intervals.
+    pub fn confidence(&self) -> f64 {
+        self.until.as_ref().map_or(CONFIDENCE, |until| until.confidence)
+    }
+
+    /// Replicates that every point has at the least.
+    pub fn min_replicates(&self) -> usize {
+        self.until.as_ref().map_or(self.replicates, |until| until.min) as usize
+    }
+
+    /// Replicates that a point has at the most.
+    pub fn max_replicates(&self) -> usize {
+        self.until.as_ref().map_or(self.replicates, |until| until.max) as usize
+    }
+
+    fn check(&self, source: &Source) -> Result<(), CaseError> {
+        let refuse = |key: &str, sentence: String| Err(source.error(key, sentence));
+        if !(1..=MAX_REPLICATES).contains(&self.replicates) {
+            let sentence = format!(
+                "`replicates` = {} must lie between 1 and {MAX_REPLICATES}",
+                self.replicates
+            );
+            return refuse("study.replicates", sentence);
+        }
+        let Some(until) = &self.until else { return Ok(()) };
+        if source.has("study.replicates") {
+            return refuse(
+                "study.replicates",
+                "`replicates` and `until` exclude each other: keep one".to_owned(),
+            );
+        }
+        if !(until.half_width > 0.0 && until.half_width.is_finite()) {
+            let sentence = format!("`half_width` = {} must be more than 0", until.half_width);
+            return refuse("study.until.half_width", sentence);
+        }
+        if !(until.confidence > 0.0 && until.confidence < 1.0) {
+            let sentence = format!(
+                "`confidence` = {} must lie between 0 and 1, such as 0.95",
+                until.confidence
+            );
+            return refuse("study.until.confidence", sentence);
+        }
+        if !(2..=until.max).contains(&until.min) || until.max > MAX_REPLICATES {
+            let sentence = format!(
+                "`min` = {} and `max` = {} must rise from 2 to at most {MAX_REPLICATES}: one run has no interval",
+                until.min, until.max
+            );
+            return refuse("study.until.min", sentence);
+        }
+        if until.key == super::REDUCTION && self.reference.is_none() {
+            let sentence = format!("`{}` needs a `reference` to be reduced from", until.key);
+            return refuse("study.until.key", sentence);
+        }
+        if !super::quantities::known().contains(&until.key) {
+            let sentence = format!(
+                "`{}` is no number of a summary: take one such as static_friction_star, kinetic_friction_star or {}",
+                until.key,
+                super::REDUCTION
+            );
+            return refuse("study.until.key", sentence);
+        }
+        Ok(())
+    }
+}
+
+/// Tables of a study file.
+const TABLES: [&str; 3] = ["base", "study", "axes"];
+
+impl StudyFile {
+    /// The study with its base case inside, for the results folder.
+    ///
+    /// # Errors
+    /// When it is too odd for TOML.
+    pub fn resolved(&self) -> Result<String, StudyError> {
+        let mut table = toml::Table::new();
+        let base: toml::Table = self.base.text.parse().map_err(|error: toml::de::Error| {
+            CaseError::syntax(&Source::new(&self.base.name, &self.base.text, &[]), 0, &error)
+        })?;
+        table.insert("base".to_owned(), base.into());
+        table.extend(
+            self.table
+                .iter()
+                .filter(|(key, _)| *key != "base")
+                .map(|(key, value)| (key.clone(), value.clone())),
+        );
+        Ok(toml::to_string(&table).map_err(CaseError::from)?)
+    }
+
+    /// Loads a study file; a base case that it names stands relative to it.
+    ///
+    /// # Errors
+    /// A sentence that names place, value, bound and remedy.
+    pub fn load(path: &Path) -> Result<Self, StudyError> {
+        let text = crate::case_file::read_text(path)?;
+        let name = path
+            .file_stem()
+            .map_or_else(|| "study".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse(&text, &path.display().to_string(), &name, folder)
+    }
+
+    /// Reads a study file called `file` in messages; a base case that it names stands relative to `folder`.
+    ///
+    /// # Errors
+    /// A sentence that names place, value, bound and remedy.
+    pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
+        let mut source = Source::new(file, text, &[]);
+        let root = DeTable::parse(text)
+            .map_err(|error| CaseError::syntax(&source, 0, &error))?
+            .into_inner();
+        source.note_places(&root);
+        let mut tables = Tables {
+            root,
+            source: &source,
+        };
+        let base = read_base(&mut tables, file, folder)?;
+        let settings: Settings = tables.read("study")?;
+        settings.check(&source)?;
+        let axes = read_axes(&mut tables)?;
+        if let Some(key) = tables.root.keys().min_by_key(|key| key.span().start) {
+            let list = TABLES.join(", ");
+            let sentence = format!("unknown key `{}` in a study: the keys are {list}", key.get_ref());
+            Err(source.error_at(key.span(), sentence))?;
+        }
+        refuse_twice(&axes, &source)?;
+        // The text has been read as TOML once, so that it is a table.
+        let table = text
+            .parse()
+            .map_err(|error| CaseError::syntax(&source, 0, &error))?;
+        Ok(Self {
+            name: name.to_owned(),
+            base,
+            settings,
+            axes,
+            table,
+        })
+    }
+}
+
+fn read_base(tables: &mut Tables, file: &str, folder: &Path) -> Result<Base, StudyError> {
+    let Some(value) = tables.root.remove("base") else {
+        // Without a base the baseline is varied.
+        return Ok(Base {
+            text: String::new(),
+            name: format!("{file} [base]"),
+            folder: folder.to_owned(),
+        });
+    };
+    let span = value.span();
+    match value.into_inner() {
+        DeValue::String(path) => {
+            let path = folder.join(path.as_ref());
+            let text = crate::case_file::read_text(&path)
+                .map_err(|error| tables.source.error_at(span, error.to_string()))?;
+            let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+            Ok(Base {
+                text,
+                name: path.display().to_string(),
+                folder,
+            })
+        }
+        table @ DeValue::Table(_) => {
+            let table: toml::Table = tables.read_table(Spanned::new(span, table), "[base]", &[])?;
+            let text = toml::to_string(&table).map_err(CaseError::from)?;
+            Ok(Base {
+                text,
+                name: format!("[base] of {file}"),
+                folder: folder.to_owned(),
+            })
+        }
+        _ => {
+            let sentence = "`base` must be the path of a case file, or a table [base] that holds its keys";
+            Err(tables.source.error_at(span, sentence))?
+        }
+    }
+}
+
+fn read_axes(tables: &mut Tables) -> Result<Vec<Axis>, StudyError> {
+    let Some(value) = tables.root.remove("axes") else {
+        return Ok(Vec::new());
+    };
+    let span = value.span();
+    let DeValue::Array(values) = value.into_inner() else {
+        let sentence = "`axes` must be a list of tables: write [[axes]] above the keys of each";
+        return Err(tables.source.error_at(span, sentence))?;
+    };
+    values
+        .into_iter()
+        .map(|value| {
+            let span = value.span();
+            let keys: AxisKeys = tables.read_table(value, "[[axes]]", keys_of::<AxisKeys>())?;
+            Axis::new(keys).map_err(|sentence| tables.source.error_at(span, sentence).into())
+        })
+        .collect()
+}
+
+/// Two axes over one key would overwrite each other.
+fn refuse_twice(axes: &[Axis], source: &Source) -> Result<(), CaseError> {
+    for (k, axis) in axes.iter().enumerate() {
+        for column in &axis.columns {
+            if axes[..k].iter().any(|other| other.columns.contains(column)) {
+                let key = format!("axes.{k}");
+                return Err(source.error(&key, format!("`{column}` stands on two axes: keep one of them")));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,136 @@
+//! The study folder: the study itself, the records, the tables and the pictures.
+
+use std::path::{Path, PathBuf};
+
+use super::error::StudyError;
+use super::file::StudyFile;
+use super::plan::{Plan, RunKey};
+use super::record::{RECORDS, Records};
+use crate::folder::{FolderError, write_whole};
+
+/// The study as a table with its base inside: what `slipfront study DIR/study.toml` repeats.
+const STUDY: &str = "study.toml";
+
+/// A study folder with its records open.
+#[derive(Debug)]
+pub struct StudyFolder {
+    path: PathBuf,
+    /// What has been run.
+    pub records: Records,
+    /// Whether the study was another one when the folder was last used.
+    pub changed: bool,
+}
+
+impl StudyFolder {
+    /// Makes the folder ready: new, empty, or one that a study has used before.
+    ///
+    /// # Errors
+    /// When it holds other things, cannot be written, or another process works in it.
+    pub fn open(path: &Path, study: &StudyFile) -> Result<Self, StudyError> {
+        let unwritable = |source| FolderError::Unwritable {
+            path: path.to_owned(),
+            source,
+        };
+        std::fs::create_dir_all(path).map_err(unwritable)?;
+        let used = path.join(RECORDS).exists();
+        let empty = std::fs::read_dir(path).map_err(unwritable)?.next().is_none();
+        if !used && !empty {
+            return Err(StudyError::NotAStudy {
+                path: path.to_owned(),
+            });
+        }
+        let records = Records::open(path)?;
+        let text = study.resolved()?;
+        let before = std::fs::read_to_string(path.join(STUDY)).ok();
+        let changed = before.is_some_and(|before| before != text);
+        let folder = Self {
+            path: path.to_owned(),
+            records,
+            changed,
+        };
+        folder.write(STUDY, text.as_bytes())?;
+        Ok(folder)
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes a file, whole or not at all.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), StudyError> {
+        let path = self.path.join(name);
+        let folder = path.parent().unwrap_or(&self.path);
+        let written = std::fs::create_dir_all(folder).and_then(|()| write_whole(&path, bytes));
+        written.map_err(|source| FolderError::Write { path, source }.into())
+    }
+
+    /// Copies the files that the cases of the plan read, so that the folder can repeat the study on its own.
+    /// Files outside the base's folder stay where they are.
+    ///
+    /// # Errors
+    /// When a file cannot be read or written.
+    pub fn copy_inputs(&self, plan: &Plan, study: &StudyFile) -> Result<(), StudyError> {
+        for point in &plan.points {
+            for role in plan.roles() {
+                let run = RunKey {
+                    point: point.index,
+                    replicate: 0,
+                    role,
+                };
+                for (_, name) in plan.case_file(run)?.files_mut() {
+                    let inside = Path::new(&*name)
+                        .components()
+                        .all(|part| matches!(part, std::path::Component::Normal(_)));
+                    if !inside || self.path.join(&*name).exists() {
+                        continue;
+                    }
+                    let from = study.base.folder.join(&*name);
+                    let bytes =
+                        std::fs::read(&from).map_err(|source| FolderError::Read { path: from, source })?;
+                    self.write(name, &bytes)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Loads the study of a folder that has run one.
+///
+/// # Errors
+/// As for any study file.
+pub fn study_of(folder: &Path) -> Result<StudyFile, StudyError> {
+    let mut study = StudyFile::load(&folder.join(STUDY))?;
+    study.name = folder
+        .file_name()
+        .map_or(study.name, |name| name.to_string_lossy().into_owned());
+    Ok(study)
+}
+
+/// Refuses folders whose studies differ.
+///
+/// # Errors
+/// [`StudyError::Foreign`] names the first that differs from the first of all.
+pub fn refuse_foreign(folders: &[PathBuf]) -> Result<(), StudyError> {
+    let read = |folder: &Path| {
+        let path = folder.join(STUDY);
+        std::fs::read(&path).map_err(|source| FolderError::Read { path, source })
+    };
+    let Some((first, others)) = folders.split_first() else {
+        return Ok(());
+    };
+    let text = read(first)?;
+    for other in others {
+        if read(other)? != text {
+            return Err(StudyError::Foreign {
+                first: first.clone(),
+                other: other.clone(),
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,56 @@
+//! Studies: a case turned into a designed experiment whose answer is a table and a picture with error bars.
+//!
+//! ```text
+//! text -> StudyFile -> Plan (every point a valid case) -> Findings -> tables -> pictures
+//! ```
+//!
+//! Every finished run is one line of a record file; a study that was stopped goes on from there.
+
+mod axis;
+mod error;
+mod execute;
+mod figures;
+mod file;
+mod folder;
+mod plan;
+mod quantities;
+mod record;
+mod shard;
+pub mod slurm;
+mod statistics;
+mod tables;
+
+pub use axis::{Axis, Level, Spacing};
+pub use error::StudyError;
+pub use execute::{Findings, PointFindings, Progress, execute};
+pub use file::{Base, Keep, Settings, StudyFile, Until};
+pub use folder::{StudyFolder, refuse_foreign, study_of};
+pub use plan::{Plan, Point, Role, RunKey};
+pub use quantities::{REDUCTION, known as quantities};
+pub use record::{Outcome, Record, Records};
+pub use shard::Shard;
+pub use statistics::Sample;
+pub use tables::sample;
+
+/// The quantity that a study is mostly about: the reduction if it has a reference, else mu_s*.
+pub fn main_quantity(plan: &Plan) -> &'static str {
+    if plan.has_reference() {
+        REDUCTION
+    } else {
+        "static_friction_star"
+    }
+}
+
+/// Writes tables and pictures of a study to its folder.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write(plan: &Plan, findings: &Findings, folder: &StudyFolder) -> Result<(), StudyError> {
+    folder.write("runs.csv", &tables::runs(plan, findings)?)?;
+    folder.write("points.csv", &tables::points(plan, findings)?)?;
+    for (name, picture) in figures::draw(plan, findings)? {
+        folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
+        folder.write(&format!("{name}.png"), &picture.png)?;
+    }
+    Ok(())
+}

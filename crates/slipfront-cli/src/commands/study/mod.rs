@@ -1,0 +1,43 @@
+//! `slipfront study`: sweeps, ensembles and error bars.
+
+mod merge;
+mod run;
+mod slurm;
+
+use clap::{Args, Subcommand};
+
+use crate::failure::Failure;
+
+/// Run a study: vary a case over axes and seeds, and answer with tables and pictures
+#[derive(Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+#[command(after_help = "Examples:
+  slipfront study cases/studies/coverage.toml
+  slipfront study cases/studies/coverage.toml --dry-run
+  slipfront study cases/studies/coverage.toml --shard 1/4 -o part1    a quarter of the points
+  slipfront study merge part1 part2 part3 part4 -o results/whole
+  slipfront study slurm cases/studies/coverage.toml --tasks 4 > coverage.sbatch
+
+Stopped in any way, the same command goes on where it was: finished runs are never repeated.")]
+pub(crate) struct Study {
+    #[command(subcommand)]
+    other: Option<Other>,
+    #[command(flatten)]
+    run: run::StudyRun,
+}
+
+#[derive(Subcommand)]
+enum Other {
+    Merge(merge::Merge),
+    Slurm(slurm::Slurm),
+}
+
+impl Study {
+    pub(crate) fn execute(self) -> Result<(), Failure> {
+        match self.other {
+            None => self.run.execute(),
+            Some(Other::Merge(merge)) => merge.execute(),
+            Some(Other::Slurm(slurm)) => slurm.execute(),
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! `slipfront study slurm`: a batch script.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use slipfront_case::study::slurm::{Batch, script};
+use slipfront_case::study::{Plan, StudyFile};
+
+use crate::commands::print;
+use crate::failure::Failure;
+
+/// Print a batch script for Slurm: few tasks, each using all cores of its node, that can be requeued
+#[derive(Args)]
+pub(crate) struct Slurm {
+    /// Study file
+    #[arg(value_name = "STUDY.toml")]
+    study: PathBuf,
+    /// Number of tasks, each on a node of its own
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..))]
+    tasks: u16,
+    /// Folder for the results of all tasks [default: results/ and the name of the study]
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+impl Slurm {
+    pub(crate) fn execute(self) -> Result<(), Failure> {
+        let study = StudyFile::load(&self.study).map_err(Failure::input)?;
+        // A study that cannot run should not reach the queue.
+        let points = Plan::new(&study, None).map_err(Failure::input)?.points.len();
+        let out = self
+            .out
+            .unwrap_or_else(|| PathBuf::from("results").join(&study.name));
+        let absolute = |path: PathBuf| std::path::absolute(path).map_err(Failure::input);
+        print(&script(&Batch {
+            name: study.name.clone(),
+            study: absolute(self.study)?.display().to_string(),
+            out: absolute(out)?.display().to_string(),
+            // More tasks than points would have nothing to do.
+            tasks: usize::from(self.tasks).min(points),
+        }))
+    }
+}
