@@ -111,7 +111,7 @@ fn watching_allocates_only_what_is_kept() {
     let n_fields = fields.len() as u64;
     let selection = Selection { fields, stride: 1 };
     let mut instants = Instants::new(selection, KineticStart::Auto, 267.0);
-    let (mut first, mut history) = (FirstSlip::none(625), KineticHistory::new(steps));
+    let (mut first, mut history) = (FirstSlip::none(&model.surface), KineticHistory::new(steps));
     let (mut largest, mut every_step) = (StressMaximum::default(), Curve::every(1));
     let mut sparse = Curve::every(10);
     let mut observers = [

@@ -57,6 +57,32 @@ fn a_case_that_is_no_file_is_refused() {
     assert!(bench.refused("run binary.toml", 2).contains("not UTF-8"));
 }
 
+/// A pipe would be waited for, and a device never ends.
+#[cfg(unix)]
+#[test]
+fn inputs_are_files() {
+    let bench = Bench::new();
+    std::fs::create_dir(bench.path().join("folder.csv")).unwrap();
+    std::os::unix::fs::symlink("/dev/zero", bench.path().join("device.csv")).unwrap();
+    for name in ["folder.csv", "device.csv"] {
+        let said = bench.refused(
+            &format!("run small.toml --set friction.mu_static_field={name}"),
+            2,
+        );
+        assert!(said.contains(&format!("{name} is not a regular file")), "{said}");
+    }
+}
+
+#[test]
+fn what_no_machine_holds_is_refused_in_a_sentence() {
+    let bench = Bench::new();
+    let said = bench.refused("check small.toml --set slider.blocks=[100000,40000]", 2);
+    assert!(said.contains("GiB of memory"), "{said}");
+    let groove = "texture.0={shape=\"groove\",width=\"1um\",offset=\"1m\"}";
+    let said = bench.refused(&format!("check small.toml --set {groove}"), 2);
+    assert!(said.contains("look at its units"), "{said}");
+}
+
 #[test]
 fn bad_overrides_are_refused() {
     let bench = Bench::new();

@@ -90,6 +90,16 @@ fn check_warns_where_the_model_leaves_its_validity() {
     ] {
         assert!(said.contains(words), "{words:?} is missing:\n{said}");
     }
+    // A texture that the blocks cannot show, and coefficients that are not what mu_static says.
+    let fine = "texture.0={shape=\"cavity\",coverage=50,array=[1000,1000]}";
+    let said = bench.done(&format!("check small.toml --set {fine}"));
+    assert!(
+        said.contains("covers 0.00 % of the blocks instead of 50.00 %"),
+        "{said}"
+    );
+    bench.write("mu.csv", "0.4,0.5,0.6\n0.4,0.5,0.6\n");
+    let given = "check small.toml --set slider.blocks=[3,2] --set friction.mu_static_field=mu.csv";
+    assert!(bench.done(given).contains("a mean of 0.5000, mu_static is 1:"));
     // Of these only the size remains where nothing is odd.
     let calm = bench.done("check small.toml");
     assert_eq!(calm.matches("note:").count(), 1, "{calm}");
@@ -110,4 +120,16 @@ fn run_prints_physics_summary_and_where_everything_is() {
     ] {
         assert!(said.contains(words), "{words:?} is missing:\n{said}");
     }
+}
+
+#[test]
+fn a_run_says_what_its_numbers_are_worth() {
+    let bench = Bench::new();
+    let stuck = bench.done("run small.toml -o stuck --set time.duration_star=5");
+    assert!(stuck.contains("no block in contact slipped"), "{stuck}");
+    assert!(bench.summary("stuck")["kinetic_friction_star"].is_null());
+    let coarse = bench.done("run small.toml -o coarse --set time.step=0.9");
+    assert!(coarse.contains("the ledger of energies misses"), "{coarse}");
+    let fine = bench.done("run small.toml -o fine");
+    assert!(!fine.contains("the ledger of energies misses"), "{fine}");
 }

@@ -1,5 +1,8 @@
 //! The command from outside: what a user types, sees, and finds on disk.
 
+// Helpers of tests are not tests by themselves to clippy.
+#![allow(clippy::unwrap_used)]
+
 mod broken;
 mod folder;
 mod input;

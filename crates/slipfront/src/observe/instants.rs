@@ -109,7 +109,10 @@ impl Observer for Instants {
         let most_until = now.peak.time_star + 2.5 / v_star;
         self.known = [most_until, fall_until].map(|until| now.time_star >= until);
         if now.peak.step == now.step {
-            self.keep(C, now);
+            // While everything in contact sticks, mu* rises at every step: none of these is the peak yet.
+            if self.held[B] || now.last {
+                self.keep(C, now);
+            }
             self.held[D] = false;
             self.held[E] = false;
         } else {

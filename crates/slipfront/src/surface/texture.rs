@@ -526,6 +526,18 @@ mod tests {
     }
 
     #[test]
+    fn an_outline_larger_than_a_periodic_slider_covers_all_of_it() {
+        let lattice = Lattice::with_edges(25, 25, [Edges::Periodic; 2]);
+        for s in [1, 3] {
+            let large = Cavity {
+                center: [12.5, 12.5],
+                ..cavity(s, 0.2, 100.0)
+            };
+            assert_eq!(count(&lattice, Texture::Cavity(large)), 625, "s = {s}");
+        }
+    }
+
+    #[test]
     fn an_array_covers_as_much_as_one() {
         let lattice = Lattice::free(60, 60);
         let lambda = cavity_lambda(20.0, 3600, 1, 0.0, 6);

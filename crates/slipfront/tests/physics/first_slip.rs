@@ -9,7 +9,7 @@ use slipfront::{Contact, Drive, FrictionLaw, Lattice, Model, Simulation, Stop, S
 use crate::common::Slider;
 
 fn first_slip(model: &Model, dt_star: f64) -> FirstSlip {
-    let mut first = FirstSlip::none(model.lattice.n_blocks());
+    let mut first = FirstSlip::none(&model.surface);
     let steps = (4.0 / model.drive.v_star / dt_star) as u64;
     Simulation::at_rest(model, dt_star)
         .run(Stop::at_step(steps), &mut [Scheduled::always(&mut first)])

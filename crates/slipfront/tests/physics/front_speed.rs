@@ -30,7 +30,7 @@ fn strip(rows: usize, direction: [f64; 2], tau: f64) -> Model {
 
 /// Time for which the front stays at a column, over the second half of the strip.
 fn measured_delay(model: &Model, dt: f64, expected: f64) -> f64 {
-    let mut first = FirstSlip::none(model.lattice.n_blocks());
+    let mut first = FirstSlip::none(&model.surface);
     let steps = (1.2 * COLUMNS as f64 * expected / dt) as u64;
     Simulation::at_rest(model, dt)
         .run(Stop::at_step(steps), &mut [Scheduled::always(&mut first)])

@@ -2,7 +2,7 @@
 
 use rstest::rstest;
 use slipfront::observe::frames::{Field, Selection};
-use slipfront::observe::{FirstSlip, Instants, KineticStart, Scheduled};
+use slipfront::observe::{FirstSlip, Instants, KineticStart, Observer, Scheduled};
 use slipfront::{RunError, Simulation, Stop, StopReason};
 
 use crate::common::{Slider, cavity};
@@ -30,7 +30,7 @@ fn instants_are_those_of_their_definitions(#[case] slider: Slider, #[case] kinet
         stride: 3,
     };
     let mut instants = Instants::new(selection.clone(), kinetic, end);
-    let mut first = FirstSlip::none(625);
+    let mut first = FirstSlip::none(&model.surface);
     let mut simulation = Simulation::at_rest(&model, slider.dt_star);
     simulation
         .run(
@@ -169,7 +169,8 @@ fn a_diverging_run_is_reported() {
     assert!(found.unwrap_err().to_string().contains("has diverged"));
 }
 
-/// Eq. 9 as printed: the sum of the drive springs' forces over the load, along the drive and a quarter turn to its left.
+/// Eq. 9 as printed: the sum of the drive springs' forces over the load, along the drive and a quarter turn
+/// to its left.
 #[test]
 fn mu_star_is_the_mean_pull_along_and_across_the_drive() {
     let slider = Slider {
@@ -189,4 +190,62 @@ fn mu_star_is_the_mean_pull_along_and_across_the_drive() {
         lateral = lateral.max(now.point.mu_lateral_star.abs());
     }
     assert!(lateral > 1e-4, "there is something across to be seen: {lateral}");
+}
+
+/// D is sought up to t_s* + 2.5/V* and E up to the kinetic window, whatever comes later. On a run whose later
+/// curve is made up, since N* and mu* of a real one seldom reach that far again.
+#[test]
+fn what_comes_after_the_windows_is_neither_d_nor_e() {
+    let slider = Slider {
+        blocks: [5, 5],
+        ..Slider::default()
+    };
+    let model = slider.model();
+    let selection = Selection {
+        fields: vec![],
+        stride: 1,
+    };
+    for (kinetic, e_until) in [(KineticStart::Auto, 2.5), (KineticStart::At(220.0), 220.0)] {
+        let mut instants = Instants::new(selection.clone(), kinetic, 267.0);
+        let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+        simulation
+            .run(
+                Stop::after_onset(slider.steps(8.0)),
+                &mut [Scheduled::always(&mut instants)],
+            )
+            .unwrap();
+        let peak = simulation.peak();
+        assert!(peak.ended);
+        let d_until = peak.time_star + 2.5 / slider.v_star;
+        let e_until = if kinetic == KineticStart::Auto {
+            d_until
+        } else {
+            e_until
+        };
+        // Just inside each window something stands out, and more so ever after.
+        for step in simulation.snapshot().step + 1..=2670 {
+            let mut now = simulation.snapshot();
+            now.step = step;
+            now.time_star = step as f64 * slider.dt_star;
+            now.point.sliding_percent = if now.time_star <= d_until - 20.0 {
+                0.0
+            } else {
+                100.0 + step as f64
+            };
+            now.point.mu_star = -0.001 * step as f64;
+            instants.observe(&now).unwrap();
+        }
+        let found = instants.found();
+        let time = |letter| found.iter().find(|(l, _)| *l == letter).unwrap().1.time_star;
+        assert!(
+            (d_until - 0.11..=d_until).contains(&time('D')),
+            "{} {d_until}",
+            time('D')
+        );
+        assert!(
+            (e_until - 0.11..=e_until).contains(&time('E')),
+            "{} {e_until}",
+            time('E')
+        );
+    }
 }

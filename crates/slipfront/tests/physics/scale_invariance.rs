@@ -104,3 +104,29 @@ fn the_change_is_of_first_order_in_the_strain() {
         "{found:?}"
     );
 }
+
+/// Units of case 8 in SI, with a pencil: E = 1e11, rho = 1e4, P = 1e5, mu_s = 1, l = 1e-6.
+#[test]
+fn units_of_case_8() {
+    let case8 = &SLIDERS[0];
+    let close = |found: f64, exact: f64| assert!((found / exact - 1.0).abs() < 1e-14, "{found} {exact}");
+    close(case8.epsilon(), 1e-6);
+    close(case8.displacement(), 1e-12);
+    close(case8.stress(), 1e5);
+    close(case8.time(), 1e-6 * 1e-7_f64.sqrt());
+    close(case8.energy(), 1e5 * 1e-12 * 1e-12);
+    // Omega* = Omega sqrt(m/k_1): k_1 = (3/4) E l = 7.5e4, m = rho l^3 = 1e-14.
+    close(case8.omega_star(1e9), 1e9 * (1e-14_f64 / 7.5e4).sqrt());
+}
+
+/// Units agree with each other: speed is displacement over time, energy is mass times its square.
+#[test]
+fn units_agree_with_each_other() {
+    for scales in &SLIDERS {
+        let close = |found: f64, exact: f64| assert!((found / exact - 1.0).abs() < 1e-14, "{found} {exact}");
+        close(scales.speed(), scales.displacement() / scales.time());
+        let mass = scales.density * scales.block_size.powi(3);
+        close(scales.energy(), mass * scales.speed().powi(2));
+        close(scales.damping_rate(scales.omega_star(123.0)), 123.0);
+    }
+}

@@ -85,7 +85,7 @@ fn the_first_slip_beside_a_groove_comes_as_much_earlier(
         ..Slider::default().uniform()
     };
     let model = slider.model();
-    let mut first = slipfront::observe::FirstSlip::none(400);
+    let mut first = slipfront::observe::FirstSlip::none(&model.surface);
     Simulation::at_rest(&model, slider.dt_star)
         .run(
             slipfront::Stop::at_step(slider.steps(2.5)),

@@ -1,9 +1,9 @@
 //! What a texture does to load, friction, counts and times; and the three readings of the friction law.
 
 use rstest::rstest;
-use slipfront::observe::{FirstSlip, Scheduled, StressMaximum, stress};
+use slipfront::observe::{FirstSlip, Observer, Scheduled, StressMaximum, stress};
 use slipfront::surface::{Load, Orientation};
-use slipfront::{Contact, FrictionLaw, Simulation, Stop};
+use slipfront::{Contact, FrictionLaw, Simulation, State, Stop, VectorField};
 
 use crate::common::{Slider, cavity, groove};
 
@@ -56,7 +56,7 @@ fn textured_blocks_move_at_once(#[values(FrictionLaw::Projection, FrictionLaw::R
     let slider = Slider { law, ..textured() };
     let model = slider.model();
     let n_textured = 625 - model.surface.n_contact();
-    let mut first = FirstSlip::none(625);
+    let mut first = FirstSlip::none(&model.surface);
     let mut simulation = Simulation::at_rest(&model, slider.dt_star);
     assert_eq!(simulation.snapshot().point.n_sliding, 0, "no force acts at t = 0");
     for _ in 0..20 {
@@ -168,4 +168,25 @@ fn two_readings_agree_beside_a_groove() {
     };
     let difference = (with(FrictionLaw::Projection) - with(FrictionLaw::Reversal)).abs();
     assert!(difference < 1e-3, "{difference}");
+}
+
+/// A block over a texture may be torn about as it will: it does not scale the stress of those in contact.
+#[test]
+fn the_largest_contact_stress_leaves_textured_blocks_out() {
+    let slider = textured();
+    let model = slider.model();
+    let mut u = VectorField::zeros(625);
+    let middle = model.lattice.block(12, 12);
+    u.x[middle] = 100.0;
+    assert!(model.surface.textured[middle]);
+    let simulation = Simulation::from_state(&model, 0.1, State::moving(u, VectorField::zeros(625)));
+    let now = simulation.snapshot();
+    let mut largest = StressMaximum::default();
+    largest.observe(&now).unwrap();
+    assert!(stress::contact_stress(&now, middle) > 100.0);
+    assert!(
+        largest.value() < 1e-12,
+        "all others rest without a pull: {}",
+        largest.value()
+    );
 }

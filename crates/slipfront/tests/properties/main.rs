@@ -181,8 +181,8 @@ proptest! {
         }
     }
 
-    /// On periodic axes an outline covers what its copies in a sheet of many sliders cover, folded back onto one: also
-    /// where it is larger than the slider.
+    /// On periodic axes an outline covers what its copies in a sheet of many sliders cover, folded back onto
+    /// one: also where it is larger than the slider.
     #[test]
     fn periodic_meshes_are_folded_sheets(
         blocks in [3..9_usize, 3..9_usize],
@@ -217,7 +217,7 @@ proptest! {
         let mut simulation = Simulation::at_rest(&model, slider.dt_star);
         let selection = Selection { fields: vec![Field::ContactStress, Field::Traction, Field::Sliding], stride: 2 };
         let mut instants = Instants::new(selection, KineticStart::Auto, 30.0 * slider.dt_star);
-        let (mut curve, mut first) = (Curve::every(1), FirstSlip::none(n));
+        let (mut curve, mut first) = (Curve::every(1), FirstSlip::none(&model.surface));
         let (mut history, mut largest) = (KineticHistory::new(30), StressMaximum::default());
         simulation.run(Stop::at_step(30), &mut [
             Scheduled::always(&mut instants),
