@@ -213,6 +213,28 @@ fn step_name(rule: StepRule) -> &'static str {
     }
 }
 
+/// What is written in words in the sources, and how a reader sees it.
+const SYMBOLS: [(&str, &str); 11] = [
+    ("sqrt(", "\u{221a}("),
+    ("square root of ", "\u{221a}"),
+    ("sigma_", "\u{3c3}_"),
+    ("mu_", "\u{3bc}_"),
+    ("mu*", "\u{3bc}*"),
+    ("Omega*", "\u{3a9}*"),
+    ("lambda", "\u{3bb}"),
+    ("epsilon", "\u{3b5}"),
+    ("rho", "\u{3c1}"),
+    ("dt*", "\u{394}t*"),
+    ("^2", "\u{b2}"),
+];
+
+/// A text with its Greek letters; subscripts still stand behind an underscore.
+fn greek(text: &str) -> String {
+    SYMBOLS
+        .iter()
+        .fold(text.to_owned(), |text, (word, symbol)| text.replace(word, symbol))
+}
+
 /// The claims about a figure, with those of the other step rule beside.
 fn claims_of<'p>(paper: &'p Paper, figure: &Figure) -> Vec<(&'p Judged, Option<&'p Judged>)> {
     let pairs = paper
@@ -223,4 +245,19 @@ fn claims_of<'p>(paper: &'p Paper, figure: &Figure) -> Vec<(&'p Judged, Option<&
     pairs
         .filter(|(judged, _)| judged.claim.figure() == figure.name)
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_become_letters() {
+        let seen = greek("dt* = (2/3) V*, sqrt(E/rho), mu_s* and sigma_s*");
+        assert_eq!(
+            seen,
+            "\u{394}t* = (2/3) V*, \u{221a}(E/\u{3c1}), \u{3bc}_s* and \u{3c3}_s*"
+        );
+        assert_eq!(greek("the throughput"), "the throughput");
+    }
 }

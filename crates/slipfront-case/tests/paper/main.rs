@@ -17,7 +17,7 @@ fn options(stop: &AtomicBool) -> Options<'_> {
 
 fn run(names: &[&str], folder: &Path, stop: &AtomicBool) -> Result<Paper, paper::PaperError> {
     let names: Vec<String> = names.iter().map(|&name| name.to_owned()).collect();
-    let mut records = Records::open(folder).unwrap();
+    let mut records = Records::open(folder)?;
     paper::run(
         &paper::figures(&names)?,
         &mut records,

@@ -2,7 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::{Drawn, claims_of, counts, step_name};
+use super::{Drawn, claims_of, counts, greek, step_name};
 use crate::paper::{Figure, Found, Judged, Paper, StepRule, Table, Verdict};
 use crate::pictures::base64;
 
@@ -43,9 +43,11 @@ pub(super) fn page(paper: &Paper, drawn: &[Vec<Drawn>]) -> String {
                         h2 { "Claims" }
                         p {
                             "Intervals are 95 % confidence intervals of the mean over random surfaces. Numbers D1 to D12 are \
-                             the deviations from the paper's print that the documentation of the model explains. Each claim \
-                             was measured twice: with " (step_name(StepRule::Auto)) ", and with the paper's "
-                            (step_name(StepRule::Paper)) " (Eq. 13)."
+                             the deviations from the paper's print that the documentation of the model explains."
+                            @if !paper.judged_by_paper_step.is_empty() {
+                                " Each claim was measured twice: with " (text(step_name(StepRule::Auto)))
+                                ", and with the paper's " (text(step_name(StepRule::Paper))) " (Eq. 13)."
+                            }
                         }
                         (claims_table(paper))
                     }
@@ -66,7 +68,8 @@ fn claims_table(paper: &Paper) -> Markup {
     html! {
         table.claims {
             thead { tr {
-                th { "" } th { "Claim" } th { "Verdict" } th { "Measured" } th { "Holds if" } th { "With the paper's step" }
+                th { "" } th { "Claim" } th { "Verdict" } th { "Measured" } th { "Holds if" }
+                @if !paper.judged_by_paper_step.is_empty() { th { "With the paper's step" } }
             } }
             tbody { @for (k, judged) in paper.judged.iter().enumerate() {
                 (claim_row(judged, paper.judged_by_paper_step.get(k)))
@@ -81,27 +84,41 @@ fn claim_row(judged: &Judged, other: Option<&Judged>) -> Markup {
         tr id={ "claim-" (claim.number) } {
             td.number { (claim.number) }
             td {
-                (claim.claim) " "
+                (text(&claim.claim)) " "
                 a.place href={ "#" (claim.figure()) } { (claim.place) }
-                @if !claim.remark.is_empty() { p.remark { (claim.remark) } }
+                @if !claim.remark.is_empty() { p.remark { (text(&claim.remark)) } }
             }
             td class=(class(judged.verdict)) {
                 (judged.verdict.words())
                 @if let (Verdict::HoldsWithCondition, Some(condition)) = (judged.verdict, &claim.condition) {
-                    ": " (condition.only)
+                    ": " (text(&condition.only))
                 }
                 @if let Some(deviation) = &claim.deviation { " (" (deviation) ")" }
                 @if !judged.as_expected() { strong { " not as expected" } }
             }
-            td data-label="measured" { span.value { (judged.measured()) } " " span.what { (claim.measured) } }
+            td data-label="measured" { span.value { (judged.measured()) } " " span.what { (text(&claim.measured)) } }
             td data-label="holds if" { (claim.criterion()) }
-            td data-label="with the paper's step" {
-                @if let Some(other) = other {
+            @if let Some(other) = other {
+                td data-label="with the paper's step" {
                     span.value { (other.measured()) }
                     @if other.verdict == judged.verdict { ", same verdict" }
                     @else { strong { ", " (other.verdict.words()) } }
                 }
             }
+        }
+    }
+}
+
+/// A text with its Greek letters and subscripts.
+fn text(text: &str) -> Markup {
+    let text = greek(text);
+    let mut parts = text.split('_');
+    let first = parts.next().unwrap_or_default();
+    html! {
+        (first)
+        @for part in parts {
+            @let (subscript, rest) = part.split_at(part.find(|c: char| !c.is_ascii_lowercase()).unwrap_or(part.len()));
+            sub { (subscript) } (rest)
         }
     }
 }
@@ -129,7 +146,7 @@ fn section(paper: &Paper, figure: &Figure, found: &Found, pictures: &[Drawn]) ->
             @if !claims.is_empty() {
                 ul.verdicts { @for (judged, _) in claims {
                     li { a href={ "#claim-" (judged.claim.number) } { "Claim " (judged.claim.number) } ": "
-                        (judged.claim.claim) " " span class=(class(judged.verdict)) { (judged.verdict.words()) } }
+                        (text(&judged.claim.claim)) " " span class=(class(judged.verdict)) { (judged.verdict.words()) } }
                 } }
             }
         }
@@ -147,9 +164,23 @@ fn width(svg: &str) -> String {
 fn plain_table(table: &Table) -> Markup {
     html! {
         div.wide { table {
-            caption { (table.caption) }
-            thead { tr { @for name in &table.header { th { (name) } } } }
-            tbody { @for row in &table.rows { tr { @for cell in row { td { (cell) } } } } }
+            caption { (text(&table.caption)) }
+            thead { tr { @for name in &table.header { th { (text(name)) } } } }
+            tbody { @for row in &table.rows { tr { @for cell in row { td { (text(cell)) } } } } }
         } }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn subscripts_are_lowered_and_markup_is_escaped() {
+        let seen = text("mu_s* < 1 at sigma_s* & t_s*").into_string();
+        assert_eq!(
+            seen,
+            "\u{3bc}<sub>s</sub>* &lt; 1 at \u{3c3}<sub>s</sub>* &amp; t<sub>s</sub>*"
+        );
     }
 }

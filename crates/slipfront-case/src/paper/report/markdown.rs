@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{counts, step_name};
+use super::{counts, greek, step_name};
 use crate::paper::{Judged, Paper, StepRule, Verdict};
 
 /// The pictures that the page shows.
@@ -23,8 +23,8 @@ pub(super) fn page(paper: &Paper) -> String {
          {} claims: {holds} hold, {conditioned} hold with a condition, {fails} do not hold.\n\n\
          | | claim | place | measured | holds if | verdict | paper's step |\n\
          |---:|---|---|---|---|---|---|\n",
-        step_name(StepRule::Auto),
-        step_name(StepRule::Paper),
+        greek(step_name(StepRule::Auto)),
+        greek(step_name(StepRule::Paper)),
         paper.judged.len()
     );
     for (k, judged) in paper.judged.iter().enumerate() {
@@ -57,7 +57,7 @@ pub(super) fn page(paper: &Paper) -> String {
         let _ = writeln!(
             text,
             "| {} |",
-            cells.map(|cell| cell.replace('|', "\\|")).join(" | ")
+            cells.map(|cell| greek(&cell).replace('|', "\\|")).join(" | ")
         );
     }
     for (figure, found) in &paper.figures {
@@ -73,11 +73,11 @@ pub(super) fn page(paper: &Paper) -> String {
             );
         }
         for table in &found.tables {
-            let _ = write!(text, "\n## {}\n\n{}\n\n", figure.title, table.caption);
-            let _ = writeln!(text, "| {} |", table.header.join(" | "));
+            let _ = write!(text, "\n## {}\n\n{}\n\n", figure.title, greek(&table.caption));
+            let _ = writeln!(text, "| {} |", greek(&table.header.join(" | ")));
             let _ = writeln!(text, "|{}", "---|".repeat(table.header.len()));
             for row in &table.rows {
-                let _ = writeln!(text, "| {} |", row.join(" | "));
+                let _ = writeln!(text, "| {} |", greek(&row.join(" | ")));
             }
         }
     }
