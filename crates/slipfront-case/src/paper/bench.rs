@@ -399,8 +399,7 @@ impl Sweep {
 
     /// Cases of all surfaces of a point.
     pub(super) fn cases(&self, levels: &[usize]) -> Result<Vec<Case>, PaperError> {
-        let replicates = self.findings.points[self.point(levels)].replicates;
-        (0..replicates)
+        (0..self.plan.settings.max_replicates())
             .map(|replicate| self.case(levels, replicate))
             .collect()
     }

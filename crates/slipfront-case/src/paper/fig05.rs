@@ -33,7 +33,8 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
         stress_maps(maps, 3),
     );
     // Each surface against the mean of the largest size: scatter counts as much as bias, as for one run.
-    for quantity in ["static_friction_star", "kinetic_friction_star"] {
+    let long = bench.study("fig05_long")?;
+    for (sweep, quantity) in [(&sweep, "static_friction_star"), (&long, "kinetic_friction_star")] {
         let largest_size = mean(&sweep.values(&[2], quantity));
         let errors = |size: usize| -> Vec<f64> {
             let values = sweep.values(&[size], quantity);

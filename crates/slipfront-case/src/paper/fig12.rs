@@ -110,9 +110,10 @@ fn kinetic(bench: &mut Bench, found: &mut Found) -> Result<(), PaperError> {
         let [from, until] = run.kinetic_window()?;
         Ok(deviation(&run.friction_between(from, until)))
     };
+    let long = bench.plan("fig12_fluctuations")?;
     let mut means = Vec::new();
-    for k in [0, levels - 1] {
-        let runs = bench.run(sweep.cases(&[k])?)?;
+    for k in 0..long.axis(0).len() {
+        let runs = bench.run(long.cases(&[k])?)?;
         means.push(runs.iter().map(fluctuation).collect::<Result<Vec<f64>, _>>()?);
     }
     let [none, most] = &means[..] else { return Ok(()) };

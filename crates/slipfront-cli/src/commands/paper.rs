@@ -55,7 +55,7 @@ impl Paper {
         };
         let progress = Progress::new(self.quiet);
         let done = paper::run(&figures, &mut records, &options, &mut |stage| {
-            progress.show(stage)
+            progress.show(stage);
         });
         progress.finish();
         let paper = match done {

@@ -15,16 +15,18 @@ pub(super) fn page(paper: &Paper) -> String {
     let [holds, conditioned, fails] = counts(&paper.judged);
     let mut text = format!(
         "# The paper, claim by claim\n\n\
-         Made by `slipfront paper --docs docs/validation`, which runs every figure of the paper again and judges what its text\n\
-         says. Criteria and expected verdicts stand in [cases/paper/claims.toml](../../cases/paper/claims.toml); numbers D… are\n\
+         What becomes of every claim of the paper's text when its figures are run again:\n\n\
+         ```console\n$ slipfront paper --docs docs/validation\n```\n\n\
+         Criteria and expected verdicts stand in [cases/paper/claims.toml](../../cases/paper/claims.toml). Numbers D1 to D12 are\n\
          the [deviations from the paper's print](../model.md#deviations-from-the-papers-print). Intervals are 95 % confidence\n\
-         intervals of the mean over five random surfaces. Measured with {}; the last column says what comes of the paper's own\n\
-         step, {}.\n\n\
+         intervals of the mean over five random surfaces. Measured with {}; the last column holds what the paper's own step,\n\
+         {}, gives in its place; {}.\n\n\
          {} claims: {holds} hold, {conditioned} hold with a condition, {fails} do not hold.\n\n\
          | | claim | place | measured | holds if | verdict | paper's step |\n\
          |---:|---|---|---|---|---|---|\n",
         greek(step_name(StepRule::Auto)),
         greek(step_name(StepRule::Paper)),
+        other_verdicts(paper),
         paper.judged.len()
     );
     for (k, judged) in paper.judged.iter().enumerate() {
@@ -60,6 +62,22 @@ pub(super) fn page(paper: &Paper) -> String {
             cells.map(|cell| greek(&cell).replace('|', "\\|")).join(" | ")
         );
     }
+    write_figures(paper, &mut text);
+    text
+}
+
+/// In how many verdicts the paper's step differs.
+fn other_verdicts(paper: &Paper) -> String {
+    let pairs = paper.judged.iter().zip(&paper.judged_by_paper_step);
+    match pairs.filter(|(one, other)| one.verdict != other.verdict).count() {
+        0 => "no verdict differs".to_owned(),
+        1 => "one verdict differs".to_owned(),
+        count => format!("{count} verdicts differ"),
+    }
+}
+
+/// Some of the pictures, and all tables.
+fn write_figures(paper: &Paper, text: &mut String) {
     for (figure, found) in &paper.figures {
         for panel in found
             .panels
@@ -81,5 +99,4 @@ pub(super) fn page(paper: &Paper) -> String {
             }
         }
     }
-    text
 }
