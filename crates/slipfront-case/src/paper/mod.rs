@@ -42,7 +42,7 @@ pub use claims::{Claim, Condition, Judged, Verdict, claims};
 pub use drawing::Drawing;
 pub use error::PaperError;
 pub use found::{Found, Number, Panel, Table};
-pub use report::{summary, write, write_docs};
+pub use report::{docs_page, summary, write, write_docs};
 
 use crate::study::{self, Records};
 

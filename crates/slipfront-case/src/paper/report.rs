@@ -56,7 +56,12 @@ pub fn write_docs(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
             }
         }
     }
-    write_file(folder, "paper.md", markdown::page(paper).as_bytes())
+    write_file(folder, "paper.md", docs_page(paper).as_bytes())
+}
+
+/// The text of `paper.md`.
+pub fn docs_page(paper: &Paper) -> String {
+    markdown::page(paper)
 }
 
 fn draw(found: &Found) -> Result<Vec<Drawn>, PaperError> {
