@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use rayon::prelude::*;
+
 use super::axis::{Axis, Spacing};
 use super::error::StudyError;
 use super::execute::Findings;
@@ -24,22 +26,23 @@ const MOST_CURVES: usize = 9;
 /// # Errors
 /// When one cannot be drawn.
 pub(super) fn draw(plan: &Plan, findings: &Findings) -> Result<Vec<(String, Picture)>, StudyError> {
-    let mut drawn = Vec::new();
-    for quantity in QUANTITIES {
+    let of_quantity = |quantity: &&str| {
         let values = Values::of(plan, findings, quantity);
         // A study that stops at the onset knows no kinetic friction, one without reference no reduction.
         if values.0.values().all(|[mean, ..]| mean.is_nan()) {
-            continue;
+            return Vec::new();
         }
-        for (name, picture) in draw_quantity(plan, quantity, &values) {
-            let picture = picture.map_err(|source| StudyError::Picture {
-                name: name.clone(),
-                source,
-            })?;
-            drawn.push((name, picture));
-        }
-    }
-    Ok(drawn)
+        draw_quantity(plan, quantity, &values)
+    };
+    let drawn: Vec<Vec<Drawn>> = QUANTITIES.par_iter().map(of_quantity).collect();
+    drawn
+        .into_iter()
+        .flatten()
+        .map(|(name, picture)| match picture {
+            Ok(picture) => Ok((name, picture)),
+            Err(source) => Err(StudyError::Picture { name, source }),
+        })
+        .collect()
 }
 
 /// Mean and interval of a quantity by the levels of a point; not a number where it has none.
