@@ -29,6 +29,16 @@ pub struct Level {
     pub overrides: Vec<String>,
 }
 
+impl Level {
+    /// How pictures name it: a square's pair of blocks by one number.
+    pub(super) fn shown(&self) -> String {
+        match (self.labels.as_slice(), self.number) {
+            ([_], Some(number)) => number.to_string(),
+            (labels, _) => labels.join(" "),
+        }
+    }
+}
+
 /// How the levels of an axis are spaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spacing {
@@ -141,8 +151,23 @@ impl Axis {
         let mut differs = |level: &Level| level.number.is_some_and(|number| seen.insert(number.to_bits()));
         if !self.levels.iter().all(&mut differs) {
             self.spacing = Spacing::Named;
+        } else if self.spacing == Spacing::Linear && self.is_nearer_to_ratios() {
+            self.spacing = Spacing::Logarithmic;
         }
         self
+    }
+
+    /// Whether the numbers of a list, such as 0.01, 0.03, 0.1, are better shown in equal ratios: they span a decade,
+    /// and their median lies nearer to the geometric mean of their ends than to the arithmetic one.
+    fn is_nearer_to_ratios(&self) -> bool {
+        let mut numbers: Vec<f64> = self.levels.iter().filter_map(|level| level.number).collect();
+        numbers.sort_by(f64::total_cmp);
+        let (Some(&least), Some(&most)) = (numbers.first(), numbers.last()) else {
+            return false;
+        };
+        let median = 0.5 * (numbers[(numbers.len() - 1) / 2] + numbers[numbers.len() / 2]);
+        let ratio = |mean: f64| (median / mean).ln().abs();
+        least > 0.0 && most >= 10.0 * least && ratio((least * most).sqrt()) < ratio(0.5 * (least + most))
     }
 
     /// Keys of the case that its levels set.
@@ -363,6 +388,25 @@ mod tests {
             labels("key = 'a.b'\nlogspace = [1, 100, 3]").join(" "),
             "1 10 100"
         );
+    }
+
+    #[test]
+    fn lists_are_spaced_as_they_look() {
+        for (list, spacing) in [
+            ("[0.005, 0.01, 0.03, 0.05, 0.1]", Spacing::Logarithmic),
+            ("[1, 10]", Spacing::Linear),
+            ("[1, 10, 100]", Spacing::Logarithmic),
+            ("[1, 2, 5, 10, 20, 30, 40, 50]", Spacing::Linear),
+            ("[0, 1, 10]", Spacing::Linear),
+            ("[1, 2, 4]", Spacing::Linear),
+            ("[[25, 25], [50, 50]]", Spacing::Linear),
+            ("[1, 'two']", Spacing::Named),
+        ] {
+            let axis = axis(&format!("key = 'a.b'\nlist = {list}")).unwrap();
+            assert_eq!(axis.spacing, spacing, "{list}");
+        }
+        let square = axis("key = 'slider.blocks'\nlist = [[25, 25]]").unwrap();
+        assert_eq!(square.levels[0].shown(), "25");
     }
 
     #[test]

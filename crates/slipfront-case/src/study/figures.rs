@@ -155,7 +155,7 @@ fn curve(axes: &[Axis], x: usize, fixed: &[(usize, usize)], labelled: &[usize], 
     let label: Vec<String> = fixed
         .iter()
         .filter(|(axis, _)| labelled.contains(axis))
-        .map(|&(axis, level)| axes[axis].levels[level].labels.join(" "))
+        .map(|&(axis, level)| axes[axis].levels[level].shown())
         .collect();
     let mut response = Response {
         label: label.join(", "),
@@ -228,7 +228,7 @@ fn bars(axes: &[Axis], quantity: &str, values: &Values) -> Result<Picture, Pictu
             high,
         }
     };
-    let name = |axis: usize, level: usize| axes[axis].levels[level].labels.join(" ");
+    let name = |axis: usize, level: usize| axes[axis].levels[level].shown();
     let levels = |axis: usize| 0..axes[axis].levels.len();
     let groups = if axes.len() == 1 {
         let bars = levels(0).map(|level| bar(&name(0, level), &[level])).collect();
