@@ -92,7 +92,7 @@ fn complete(plan: &Plan, folder: &mut StudyFolder, threads: usize, quiet: bool) 
     }
     let path = folder.path().to_owned();
     let done = study::execute(plan, &mut folder.records, &path, threads, &stop, &mut |now| {
-        progress.show(now)
+        progress.show(now);
     });
     progress.finish();
     let findings = match done {
