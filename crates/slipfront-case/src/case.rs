@@ -161,6 +161,7 @@ impl Case {
         let scales = scales(&file);
         let groups = groups(&file, &scales)?;
         let lattice = lattice(&file);
+        memory(&lattice).map_err(|sentence| file.source.error("slider.blocks", sentence))?;
         let mut inputs = Inputs::new(folder);
         let textures = textures(&mut file, &scales, &lattice, &mut inputs)?;
         let meshed = mesh(&lattice, &textures.shapes);
@@ -280,7 +281,7 @@ fn within(
     }
     Err(file.source.error(
         key,
-        format!("this makes {symbol} = {value:.4}, which must lie between {low} and {high}"),
+        format!("this makes {symbol} = {value:?}, which must lie between {low:?} and {high:?}"),
     ))
 }
 
@@ -291,6 +292,21 @@ fn lattice(file: &CaseFile) -> Lattice {
     });
     let [nx, ny] = file.slider.blocks.map(|count| count as usize);
     Lattice::with_edges(nx, ny, edges)
+}
+
+/// Bytes that a run keeps per block, roughly: 24 numbers for state, forces, springs and surface.
+const BYTES_PER_BLOCK: usize = 24 * size_of::<f64>();
+
+/// Asks for the memory of a run all at once, while it can still be refused in a sentence.
+fn memory(lattice: &Lattice) -> Result<(), String> {
+    let bytes = lattice.n_blocks().saturating_mul(BYTES_PER_BLOCK);
+    Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| {
+        format!(
+            "{} blocks take about {:.0} GiB of memory, more than this machine gives: take fewer",
+            lattice.n_blocks(),
+            bytes as f64 / 1024f64.powi(3)
+        )
+    })
 }
 
 struct Textures {
@@ -329,6 +345,10 @@ fn textures(
                 (shape, None)
             }
         };
+        within_reach(&shape, lattice).map_err(|sentence| {
+            let key = format!("texture.{index}");
+            file.source.error(&key, sentence)
+        })?;
         shapes.push(shape);
         asked = asked.zip(percent).map(|(sum, percent)| sum + percent);
     }
@@ -336,6 +356,32 @@ fn textures(
         shapes,
         asked_percent: asked,
     })
+}
+
+/// How far a texture may reach, in slider lengths: farther off it is a slip of the pen, and where edges wrap, its place
+/// is lost to rounding.
+const REACH: f64 = 100.0;
+
+fn within_reach(shape: &surface::Texture, lattice: &Lattice) -> Result<(), String> {
+    let farthest = |lengths: &[f64]| {
+        lengths
+            .iter()
+            .fold(0.0, |most: f64, length| most.max(length.abs()))
+    };
+    let reach = match shape {
+        surface::Texture::Cavity(cavity) => farthest(&cavity.center) + 2.0 * cavity.lambda,
+        surface::Texture::Groove(groove) => groove.offset.abs() + groove.width,
+        surface::Texture::Polygon(points) => farthest(points.as_flattened()),
+        surface::Texture::Image(_) | surface::Texture::Blocks(_) => 0.0,
+    };
+    let slider = lattice.nx.max(lattice.ny) as f64;
+    if reach <= REACH * slider {
+        return Ok(());
+    }
+    Err(format!(
+        "the texture reaches {reach:.1e} blocks far, more than {REACH} times the slider's {slider} blocks: look at its \
+         units, and at `slider.block_size`"
+    ))
 }
 
 fn in_blocks(scales: &Scales, [x, y]: &[Length; 2]) -> [f64; 2] {
@@ -470,13 +516,19 @@ fn coefficients(
 
 /// The bytes of a file that a case names.
 pub(crate) fn read_input(source: &Source, key: &str, path: &Path) -> Result<Vec<u8>, CaseError> {
-    std::fs::read(path).map_err(|error| {
+    let unreadable = |error: std::io::Error| {
         let sentence = format!(
             "cannot read {}: {error}; paths are relative to the case file",
             path.display()
         );
         source.error(key, sentence)
-    })
+    };
+    // A pipe would be waited for, and a device such as /dev/zero never ends.
+    if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
+        let sentence = format!("{} is not a regular file: name a file that is", path.display());
+        return Err(source.error(key, sentence));
+    }
+    std::fs::read(path).map_err(unreadable)
 }
 
 /// Files read so far.
@@ -639,6 +691,10 @@ impl Output {
     }
 }
 
+/// Difference between the texture as asked and as meshed, relative to what was asked, that deserves a word.
+const LARGE_MISFIT: f64 = 0.25;
+/// Relative difference between `mu_static` and the mean of given coefficients that deserves a word.
+const LARGE_MISMATCH: f64 = 0.1;
 /// Strain of the load from which the springs' bending of geometry shows in the third digit.
 const LARGE_EPSILON: f64 = 1e-2;
 /// Speed above which loading is faster than the slip front.
@@ -665,11 +721,33 @@ impl Case {
                 ),
             );
         }
+        let meshed = self.texture.meshed_percent;
+        match self.texture.asked_percent {
+            Some(asked) => warn(
+                (meshed - asked).abs() > LARGE_MISFIT * asked,
+                format!(
+                    "the texture covers {meshed:.2} % of the blocks instead of {asked:.2} %: it is clipped, overlaps, or is \
+                     too fine for the blocks"
+                ),
+            ),
+            None => warn(meshed == 0.0, "the texture covers no block".to_owned()),
+        }
         warn(
             self.negative_draws > 0,
             format!(
                 "{} negative draws of the friction coefficients were set to 0",
                 self.negative_draws
+            ),
+        );
+        let surface = &self.model.surface;
+        let mean = surface.mu_static.iter().sum::<f64>() / surface.n_contact() as f64;
+        let given = self.file.friction.mu_static_field.is_some();
+        warn(
+            given && (mean / self.scales.mu_static_mean - 1.0).abs() > LARGE_MISMATCH,
+            format!(
+                "the given static coefficients have a mean of {mean:.4}, mu_static is {}: what is starred is relative to \
+                 mu_static",
+                self.scales.mu_static_mean
             ),
         );
         warn(
@@ -687,9 +765,13 @@ impl Case {
             ),
         );
         warn(
+            self.model.law == FrictionLaw::Literal,
+            "law = \"literal\" is for comparison only: its results depend on the time step".to_owned(),
+        );
+        warn(
             self.schedule.dt_star > 0.5,
             format!(
-                "dt* = {} is stable but coarse: 0.1 keeps mu_s* within 3e-4",
+                "dt* = {} is stable but coarse: with 0.1, mu_s* is good to 1e-3",
                 self.schedule.dt_star
             ),
         );

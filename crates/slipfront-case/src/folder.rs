@@ -149,6 +149,25 @@ impl RunFolder {
         })
     }
 
+    /// Refuses foreign files that stand where `names` will be written: better now than after the run.
+    ///
+    /// # Errors
+    /// [`FolderError::Foreign`], with the first of them.
+    pub fn expect_free<'n>(&self, names: impl Iterator<Item = &'n str>) -> Result<(), FolderError> {
+        for path in names.map(|name| self.path.join(name)) {
+            let parent = path.parent().filter(|parent| parent.exists() && !parent.is_dir());
+            if let Some(parent) = parent {
+                let path = parent.to_owned();
+                return Err(FolderError::Foreign { path });
+            }
+            // A link counts even if it leads nowhere.
+            if path.symlink_metadata().is_ok() {
+                return Err(FolderError::Foreign { path });
+            }
+        }
+        Ok(())
+    }
+
     /// The folder.
     pub fn path(&self) -> &Path {
         &self.path

@@ -8,7 +8,7 @@ use slipfront::observe::{
 use slipfront::{RunError, Simulation, StopReason};
 
 use crate::case::{Case, Snapshots};
-use crate::summary::Summary;
+use crate::summary::{Observed, Summary};
 
 /// Everything a run leaves behind, in memory.
 #[derive(Debug)]
@@ -37,7 +37,7 @@ pub fn run(case: &Case, watch_every: u64, watcher: &mut dyn Observer) -> Result<
     };
     let mut curve = Curve::every(case.output.series_stride);
     let mut history = KineticHistory::new(schedule.last_step);
-    let mut first_slip = FirstSlip::none(case.model.lattice.n_blocks());
+    let mut first_slip = FirstSlip::none(&case.model.surface);
     let mut stress_maximum = StressMaximum::default();
     let mut instants = Instants::new(selection.clone(), schedule.kinetic, schedule.end_star());
     let mut frames = Frames::new(selection);
@@ -64,25 +64,29 @@ pub fn run(case: &Case, watch_every: u64, watcher: &mut dyn Observer) -> Result<
     };
     let peak = simulation.peak();
     let kinetic_from = schedule.kinetic.time_star(&peak, case.groups.v_star);
-    // A run that stops at its onset has no kinetic phase, wherever the window was meant to begin.
+    // A run that stops at its onset has no kinetic phase, wherever the window was meant to begin, and neither has one in
+    // which nothing slipped.
     let kinetic = match reason {
+        StopReason::End if first_slip.earliest.is_none() => None,
         StopReason::End => history.kinetic(kinetic_from, schedule.dt_star),
         StopReason::Onset => None,
     };
-    let last = curve
+    let (steps, energies) = curve
         .rows
         .last()
         .map(|row| (row.step, row.energies))
         .unwrap_or_default();
-    let summary = Summary::new(
-        case,
-        &peak,
+    let found = Observed {
+        reason,
+        steps,
+        peak,
         kinetic,
-        &first_slip,
-        history.sliding_percent_max(),
-        last,
-        &instants,
-    );
+        first_slip: first_slip.earliest,
+        sliding_percent_max: history.sliding_percent_max(),
+        energies,
+        instants: &instants,
+    };
+    let summary = Summary::new(case, &found);
     Ok(Record {
         summary,
         rows: curve.rows,

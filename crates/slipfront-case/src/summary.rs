@@ -1,7 +1,8 @@
 //! The numbers of a run: what `summary.json` holds.
 
 use serde::{Deserialize, Serialize};
-use slipfront::observe::{Doubt, Energies, FirstSlip, Frame, Kinetic, Peak};
+use slipfront::StopReason;
+use slipfront::observe::{Doubt, Energies, Frame, Kinetic, Peak};
 
 use crate::case::Case;
 
@@ -93,19 +94,31 @@ pub struct InstantSummary {
     pub sliding_percent: f64,
 }
 
+/// What the observers of a run have found.
+pub(crate) struct Observed<'a> {
+    pub reason: StopReason,
+    pub steps: u64,
+    pub peak: Peak,
+    pub kinetic: Option<Kinetic>,
+    pub first_slip: Option<f64>,
+    pub sliding_percent_max: f64,
+    pub energies: Energies,
+    pub instants: &'a [(char, Frame)],
+}
+
 impl Summary {
-    pub(crate) fn new(
-        case: &Case,
-        peak: &Peak,
-        kinetic: Option<Kinetic>,
-        first_slip: &FirstSlip,
-        sliding_percent_max: f64,
-        (steps, energies): (u64, Energies),
-        instants: &[(char, Frame)],
-    ) -> Self {
+    pub(crate) fn new(case: &Case, found: &Observed) -> Self {
+        let Observed {
+            peak,
+            kinetic,
+            first_slip,
+            energies,
+            ..
+        } = found;
         let (mean, time) = (case.scales.mu_static_mean, case.scales.time());
         let energy = case.scales.energy();
-        let instants = instants
+        let instants = found
+            .instants
             .iter()
             .map(|(letter, frame)| InstantSummary {
                 instant: *letter,
@@ -119,14 +132,14 @@ impl Summary {
             static_friction: peak.mu_star * mean,
             onset_time_star: peak.time_star,
             onset_time_s: peak.time_star * time,
-            first_slip_time_star: first_slip.earliest,
-            first_slip_time_s: first_slip.earliest.map(|star| star * time),
+            first_slip_time_star: *first_slip,
+            first_slip_time_s: first_slip.map(|star| star * time),
             kinetic_friction_star: kinetic.map(|k| k.mu_star),
             kinetic_friction_star_uncertainty: kinetic.and_then(|k| k.uncertainty.ok()),
             kinetic_friction: kinetic.map(|k| k.mu_star * mean),
             kinetic_window_star: kinetic.map(|k| k.window_star),
             sliding_percent_kinetic: kinetic.map(|k| k.sliding_percent),
-            sliding_percent_max,
+            sliding_percent_max: found.sliding_percent_max,
             mu_star_max: peak.mu_star_max,
             transition: peak.ended,
             instants,
@@ -140,30 +153,48 @@ impl Summary {
             texture_percent: case.texture.meshed_percent,
             texture_percent_asked: case.texture.asked_percent,
             dt_star: case.schedule.dt_star,
-            steps,
+            steps: found.steps,
             seed: case.file.friction.seed,
             negative_draws: case.negative_draws,
             energy_error: energies.error(),
             work_j: energies.work * energy,
             friction_loss_j: energies.friction_loss * energy,
             damping_loss_j: energies.damping_loss * energy,
-            warnings: [case.warnings(), after_run(peak, kinetic.as_ref())].concat(),
+            warnings: [case.warnings(), after_run(found)].concat(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
         }
     }
 }
 
+/// Share of the energy that the ledger may miss; a step of 0.1 stays a factor of ten below.
+const LARGE_ENERGY_ERROR: f64 = 0.01;
+
 /// What the run itself gives reason to warn of.
-fn after_run(peak: &Peak, kinetic: Option<&Kinetic>) -> Vec<String> {
+fn after_run(run: &Observed) -> Vec<String> {
     let mut warnings = Vec::new();
-    if !peak.ended {
+    if run.energies.error().abs() > LARGE_ENERGY_ERROR {
+        warnings.push(format!(
+            "the ledger of energies misses {:.0} % of what was put in: the time step is too coarse for this case",
+            100.0 * run.energies.error().abs()
+        ));
+    }
+    if !run.peak.ended {
         warnings.push(
             "mu* never fell half-way to its steady level: there was no transition, and static_friction_star is the \
              largest mu* of the run"
                 .to_owned(),
         );
     }
-    match kinetic.map(|kinetic| kinetic.uncertainty) {
+    if run.first_slip.is_none() {
+        warnings.push(
+            "no block in contact slipped before the run ended: kinetic_friction_star is empty; lengthen \
+             time.duration_star"
+                .to_owned(),
+        );
+        return warnings;
+    }
+    match run.kinetic.map(|kinetic| kinetic.uncertainty) {
+        None if run.reason == StopReason::Onset => {}
         None => warnings.push(
             "the run ended before the kinetic window began: kinetic_friction_star is empty; lengthen \
              time.duration_star or set time.kinetic_from_star"

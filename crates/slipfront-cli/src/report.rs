@@ -134,7 +134,7 @@ pub(crate) fn cost(case: &Case, seconds: f64) -> String {
         dt_star_limit()
     );
     text += &format!(
-        "cost              {:.3e} block-steps, about {} on this machine; fields {}\n",
+        "cost              {:.3e} block-steps, {} on this machine; fields {}\n",
         case.block_steps(),
         duration(seconds),
         bytes(case.output.field_bytes(lattice, schedule.last_step))
@@ -344,7 +344,11 @@ fn si(value: f64, unit: &str) -> String {
 }
 
 fn duration(seconds: f64) -> String {
-    indicatif::HumanDuration(std::time::Duration::from_secs_f64(seconds.clamp(0.0, 1e15))).to_string()
+    if seconds < 1.0 {
+        return "less than a second".to_owned();
+    }
+    let rounded = std::time::Duration::from_secs_f64(seconds.min(1e15));
+    format!("about {}", indicatif::HumanDuration(rounded))
 }
 
 fn bytes(bytes: f64) -> String {

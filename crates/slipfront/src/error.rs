@@ -7,7 +7,7 @@ use thiserror::Error;
 pub enum RunError {
     /// A displacement is infinite or not a number.
     #[error(
-        "the displacement of block ({i}, {j}) is {value} at step {step}, t* = {time_star}: the run has diverged; \
+        "the displacement of block ({i}, {j}) is {value} at step {step}, t* = {time_star:.4}: the run has diverged; \
          lower the load's strain epsilon or the time step"
     )]
     NotFinite {

@@ -20,10 +20,8 @@ pub enum FrictionLaw {
 
 /// A block at t_n, as its friction law sees it.
 pub(crate) struct Block {
-    /// Velocity at `t - dt/2`.
+    /// Velocity at `t - dt/2`; its memory of sticking, as a block is stuck if and only if it is zero (D12).
     pub velocity: [f64; 2],
-    /// Memory: stuck or sliding in the step before.
-    pub contact: Contact,
     /// `F_s + F_c`, and any constant force.
     pub force: [f64; 2],
     /// Static threshold `mu_s F_n`.
@@ -64,7 +62,7 @@ impl Integrator {
     }
 
     /// Velocity at `t + dt/2` under a force alone (Eqs. 5-8): `(c- v + dt F/m)/c+`.
-    #[inline]
+    #[inline(always)]
     fn push(&self, velocity: [f64; 2], force: [f64; 2]) -> [f64; 2] {
         let one = |v: f64, f: f64| self.before * v * self.inverse_after + self.impulse * f;
         [one(velocity[0], force[0]), one(velocity[1], force[1])]
@@ -77,7 +75,7 @@ pub(crate) trait Law {
 }
 
 /// At rest, or stopped: friction balances all other forces.
-#[inline]
+#[inline(always)]
 fn at_rest(force: [f64; 2]) -> Update {
     Update {
         velocity: [0.0, 0.0],
@@ -87,7 +85,7 @@ fn at_rest(force: [f64; 2]) -> Update {
 }
 
 /// Friction of magnitude `slide` against the direction of `motion`.
-#[inline]
+#[inline(always)]
 fn against(motion: [f64; 2], slide: f64) -> [f64; 2] {
     let speed = length(motion);
     if speed > 0.0 {
@@ -102,37 +100,46 @@ fn against(motion: [f64; 2], slide: f64) -> [f64; 2] {
 pub(crate) struct Projection;
 
 impl Law for Projection {
-    #[inline]
+    /// Every block takes the same path, and the outcome is selected: the loop over blocks has no branch.
+    #[inline(always)]
     fn update(&self, block: &Block, integrator: &Integrator) -> Update {
-        if block.contact == Contact::Stuck && length(block.force) <= block.hold {
-            return at_rest(block.force);
-        }
-        let free = integrator.push(block.velocity, block.force);
+        let force = block.force;
+        let stays = is_zero(block.velocity) & (length(force) <= block.hold);
+        let free = integrator.push(block.velocity, force);
         let speed = length(free);
         let q = integrator.impulse * block.slide;
-        if speed <= q {
-            return at_rest(block.force);
-        }
         let keep = 1.0 - q / speed;
-        let velocity = [free[0] * keep, free[1] * keep];
-        // A velocity that rounds to zero has stopped.
-        if contact_of(velocity) == Contact::Stuck {
-            return at_rest(block.force);
-        }
+        let moving = [free[0] * keep, free[1] * keep];
+        // Where nothing moves, speed and q may both be 0 and `keep` no number: it is not selected. A velocity that
+        // rounds to zero has stopped.
+        let rests = stays | (speed <= q) | is_zero(moving);
         let pull = block.slide / speed;
         Update {
-            velocity,
-            friction: [-pull * free[0], -pull * free[1]],
-            contact: Contact::Sliding,
+            velocity: select(rests, [0.0, 0.0], moving),
+            friction: select(rests, [-force[0], -force[1]], [-pull * free[0], -pull * free[1]]),
+            contact: if rests { Contact::Stuck } else { Contact::Sliding },
         }
     }
+}
+
+#[inline(always)]
+fn is_zero(vector: [f64; 2]) -> bool {
+    (vector[0] == 0.0) & (vector[1] == 0.0)
+}
+
+#[inline(always)]
+fn select(first: bool, one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
+    [
+        if first { one[0] } else { other[0] },
+        if first { one[1] } else { other[1] },
+    ]
 }
 
 /// Explicit kinetic friction against the old velocity (the force's direction for a block that breaks loose).
 pub(crate) struct Reversal;
 
 impl Law for Reversal {
-    #[inline]
+    #[inline(always)]
     fn update(&self, block: &Block, integrator: &Integrator) -> Update {
         let total = length(block.force);
         let starts = contact_of(block.velocity) == Contact::Stuck;
@@ -156,7 +163,7 @@ impl Law for Reversal {
 pub(crate) struct Literal;
 
 impl Law for Literal {
-    #[inline]
+    #[inline(always)]
     fn update(&self, block: &Block, integrator: &Integrator) -> Update {
         let starts = contact_of(block.velocity) == Contact::Stuck;
         let friction = if length(block.force) <= block.hold {

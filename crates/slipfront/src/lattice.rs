@@ -49,9 +49,17 @@ impl Lattice {
         }
     }
 
-    /// A lattice with the given ends along x and along y; a periodic axis needs at least
-    /// [`Lattice::MIN_PERIODIC`] blocks, or a block would be its own neighbour twice.
+    /// A lattice with the given ends along x and along y.
+    ///
+    /// # Panics
+    /// If a periodic axis has fewer than [`Lattice::MIN_PERIODIC`] blocks: two would be joined twice.
     pub fn with_edges(nx: usize, ny: usize, edges: [Edges; 2]) -> Self {
+        for (count, edges) in [nx, ny].into_iter().zip(edges) {
+            assert!(
+                edges == Edges::Free || count >= Self::MIN_PERIODIC,
+                "{count} blocks along a periodic axis"
+            );
+        }
         Self { nx, ny, edges }
     }
 
@@ -73,14 +81,9 @@ impl Lattice {
         (b % self.nx, b / self.nx)
     }
 
-    /// Index range of row `j`.
-    pub(crate) fn row(&self, j: usize) -> std::ops::Range<usize> {
-        j * self.nx..(j + 1) * self.nx
-    }
-
-    /// The row `offset` (-1, 0, 1) above row `j`, or none beyond a free edge.
-    pub(crate) fn row_beside(&self, j: usize, offset: isize) -> Option<usize> {
-        beside(j, offset, self.ny, self.edges[1])
+    /// How much further the neighbour along `bond` stands in the order of blocks, away from the ends of rows.
+    pub(crate) fn shift(&self, bond: &Bond) -> usize {
+        (bond.offset[1] as usize * self.nx).wrapping_add_signed(bond.offset[0])
     }
 
     /// The block `[di, dj]` away from block (i, j), each -1, 0 or 1, or none beyond a free edge.
@@ -159,7 +162,7 @@ impl Bond {
     /// // Small strain: only the part of e along the spring counts.
     /// assert_eq!(Bond::EAST.force([2.0, 5.0], 0.0), [0.75 * 2.0, 0.0]);
     /// ```
-    #[inline]
+    #[inline(always)]
     pub fn force(&self, e: [f64; 2], epsilon: f64) -> [f64; 2] {
         let [dx, dy] = self.rest;
         let (rx, ry) = (dx + epsilon * e[0], dy + epsilon * e[1]);
@@ -169,7 +172,7 @@ impl Bond {
     }
 
     /// Energy of this spring, `(k/2) ((r - d)/eps)^2`, for the same `e` and `epsilon` as [`Bond::force`].
-    #[inline]
+    #[inline(always)]
     pub fn energy(&self, e: [f64; 2], epsilon: f64) -> f64 {
         let [dx, dy] = self.rest;
         let (rx, ry) = (dx + epsilon * e[0], dy + epsilon * e[1]);
@@ -179,7 +182,7 @@ impl Bond {
     }
 
     /// `(r^2 - d^2)/eps = 2 d.e + eps e^2`.
-    #[inline]
+    #[inline(always)]
     fn stretch(&self, e: [f64; 2], epsilon: f64) -> f64 {
         2.0 * (self.rest[0] * e[0] + self.rest[1] * e[1]) + epsilon * (e[0] * e[0] + e[1] * e[1])
     }

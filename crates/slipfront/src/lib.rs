@@ -31,10 +31,12 @@ pub mod surface;
 
 mod error;
 mod friction;
+mod lanes;
 mod model;
 mod simulation;
 mod state;
 mod vector_field;
+mod width;
 
 pub use error::{RunError, SurfaceError};
 pub use friction::FrictionLaw;

@@ -46,7 +46,7 @@ impl State {
 }
 
 /// Sliding means a velocity that is not zero (D12).
-#[inline]
+#[inline(always)]
 pub(crate) fn contact_of(velocity: [f64; 2]) -> Contact {
     if velocity == [0.0, 0.0] {
         Contact::Stuck

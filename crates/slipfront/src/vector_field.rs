@@ -19,7 +19,7 @@ impl VectorField {
     }
 
     /// The vector at block `b`.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, b: usize) -> [f64; 2] {
         [self.x[b], self.y[b]]
     }
@@ -36,20 +36,20 @@ impl VectorField {
 }
 
 /// Scalar product of two plane vectors.
-#[inline]
+#[inline(always)]
 pub(crate) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
 /// Length of a plane vector. Not `hypot`: the square of a scaled force never over- or underflows, and the
 /// plain form is exactly rounded and symmetric in x and y on every machine.
-#[inline]
+#[inline(always)]
 pub(crate) fn length(a: [f64; 2]) -> f64 {
     dot(a, a).sqrt()
 }
 
 /// Sum of two plane vectors.
-#[inline]
+#[inline(always)]
 pub(crate) fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] + b[0], a[1] + b[1]]
 }

@@ -10,6 +10,7 @@ use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, I
 use slipfront::surface::MaskImage;
 
 use super::{ArrayError, open, read_error};
+use crate::folder::write_whole;
 
 /// More pixels than any lattice has blocks.
 const PIXELS_MAX: u64 = 1 << 28;
@@ -176,7 +177,7 @@ pub fn write_mask_png(path: &Path, nx: usize, ny: usize, textured: &[bool]) -> R
     }
     let encoded = encode(nx, ny, textured).map_err(io::Error::other);
     encoded
-        .and_then(|bytes| std::fs::write(path, bytes))
+        .and_then(|bytes| write_whole(path, &bytes))
         .map_err(|source| ArrayError::Write {
             path: path.to_owned(),
             source,

@@ -70,7 +70,7 @@ pub fn bars(chart: &BarChart) -> Result<Picture, PictureError> {
         return Err(PictureError::Nothing("bar"));
     }
     let y = scale(&places.bars);
-    let left = left_room(&y.from_to(HEIGHT, 0.0).ticks(Way::Y));
+    let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Way::Y));
     let room = COLUMN_WIDTH.round() - MARGIN - left;
     let width = room.max(places.narrowest() * places.names.len() as f64).round();
     let mut legend = Legend::default();
@@ -89,7 +89,7 @@ pub fn bars(chart: &BarChart) -> Result<Picture, PictureError> {
         width,
         height: HEIGHT,
     };
-    let y = y.from_to(area.bottom(), area.y);
+    let y = y.placed(area.bottom(), area.y);
     let names = Names::of(&places.names, &chart.x_title, area);
 
     let mut canvas = Canvas::new(area.right() + MARGIN, area.bottom() + names.height);

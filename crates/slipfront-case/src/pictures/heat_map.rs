@@ -75,7 +75,7 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
     let (top, bottom) = (TOP, TOP + HEIGHT);
     y.place(bottom, top);
     let (y_ticks, y_short) = y.ticks(Way::Y);
-    let bar_ticks = colours.scale.from_to(bottom, top).ticks(Way::Y);
+    let bar_ticks = colours.scale.placed(bottom, top).ticks(Way::Y);
     let left = left_room(&y_ticks);
     let bar_room = BAR_WIDTH + TICK_LENGTH + 7.0 + widest(&bar_ticks) + 14.0 + f64::from(SIZE_LABEL) + MARGIN;
     let area = Area {
@@ -157,11 +157,8 @@ impl Cells {
         let mut order: Vec<usize> = (0..axis.values.len()).collect();
         order.sort_by(|&a, &b| axis.values[a].total_cmp(&axis.values[b]));
         let values: Vec<f64> = order.iter().map(|&index| axis.values[index]).collect();
-        let log = Scale::around(&values, axis.log, 0.0).is_log();
-        let measured: Vec<f64> = values
-            .iter()
-            .map(|&value| Scale::between(0.0, 1.0, log).measure(value))
-            .collect();
+        let whole = Scale::around(&values, axis.log, 0.0);
+        let measured: Vec<f64> = values.iter().map(|&value| whole.measure(value)).collect();
         if measured.windows(2).any(|pair| pair[0] >= pair[1]) {
             return Err(error("two values are the same"));
         }
@@ -175,7 +172,7 @@ impl Cells {
         };
         edges.insert(0, lo);
         edges.push(hi);
-        let scale = Scale::between(lo, hi, log);
+        let scale = Scale::between(lo, hi, whole.is_log());
         Ok(Self {
             scale,
             order,
@@ -186,7 +183,7 @@ impl Cells {
 
     /// Places the axis between two pixels.
     fn place(&mut self, start: f64, end: f64) {
-        self.scale = self.scale.from_to(start, end);
+        self.scale = self.scale.placed(start, end);
     }
 
     /// The pixels where the cells meet, in rising order of value.

@@ -70,7 +70,7 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
         false,
         0.06,
     );
-    let left = left_room(&y.from_to(HEIGHT, 0.0).ticks(Way::Y));
+    let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Way::Y));
     let right = COLUMN_WIDTH.round() - RIGHT;
     let mut legend = Legend::default();
     if curves.len() > 1 {
@@ -83,7 +83,7 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
         width: right - left,
         height: HEIGHT,
     };
-    let (x, y) = (x.from_to(left, right), y.from_to(area.bottom(), area.y));
+    let (x, y) = (x.placed(left, right), y.placed(area.bottom(), area.y));
 
     let mut canvas = Canvas::new(COLUMN_WIDTH, area.bottom() + LOWER_ROOM);
     let title = Text::fitted(&responses.y_title, HEIGHT);

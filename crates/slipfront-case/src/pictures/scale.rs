@@ -8,7 +8,7 @@ use super::text::{MINUS, Text, number};
 /// A number keeps so far from the next one along its side.
 const APART_X: f64 = 20.0;
 const APART_Y: f64 = 14.0;
-/// Half the length of a long tick's neighbours is too much for more decades than this.
+/// Over more decades than this, short ticks would be too dense.
 const SHORT_TICK_DECADES: f64 = 4.0;
 
 /// An axis of values, or of their logarithms.
@@ -26,7 +26,7 @@ pub(super) enum Way {
 }
 
 impl Scale {
-    /// A scale around `values` with a margin of `pad` times its length at both ends, placed by [`Self::from_to`].
+    /// A scale around `values` with a margin of `pad` times its length at both ends, yet to be placed.
     ///
     /// It is logarithmic if `log` says so and every value that can be drawn is positive.
     pub(super) fn around(values: &[f64], log: bool, pad: f64) -> Self {
@@ -46,7 +46,7 @@ impl Scale {
     }
 
     /// The same scale from one pixel to another.
-    pub(super) fn from_to(mut self, start: f64, end: f64) -> Self {
+    pub(super) fn placed(mut self, start: f64, end: f64) -> Self {
         (self.axis.start, self.axis.end) = (start, end);
         self
     }
@@ -56,6 +56,7 @@ impl Scale {
         &self.axis
     }
 
+    /// Whether it measures logarithms.
     pub(super) fn is_log(&self) -> bool {
         self.log
     }
@@ -86,8 +87,12 @@ impl Scale {
             choices.extend((2..=6).rev().map(|most| self.linear(most)));
         }
         let fits = |ticks: &&Vec<Tick>| apart(ticks, way);
-        let chosen = choices.iter().find(fits).or(choices.last());
-        chosen.cloned().unwrap_or_default()
+        if let Some(chosen) = choices.iter().find(fits) {
+            return chosen.clone();
+        }
+        // One number touches no other.
+        let sparsest = choices.pop().unwrap_or_default();
+        sparsest.into_iter().take(1).collect()
     }
 
     /// The pixels of ticks without a number, which tell that a scale is logarithmic.
@@ -130,7 +135,7 @@ impl Scale {
             .collect()
     }
 
-    /// Digits times every so manieth power of ten within the scale, and their pixels.
+    /// Digits times powers of ten within the scale, of which only multiples of `every`, and their pixels.
     fn round_logarithms(&self, digits: &[f64], every: i32) -> Vec<(f64, i32, f64)> {
         let tolerance = 1e-9 * (self.axis.hi - self.axis.lo);
         let (from, to) = (self.axis.lo - tolerance, self.axis.hi + tolerance);
@@ -165,7 +170,7 @@ mod tests {
     use super::*;
 
     fn written(values: &[f64], log: bool, length: f64) -> Vec<String> {
-        let scale = Scale::around(values, log, 0.0).from_to(0.0, length);
+        let scale = Scale::around(values, log, 0.0).placed(0.0, length);
         let ticks = scale.ticks(Way::X);
         assert!(apart(&ticks, Way::X), "{values:?}");
         let text = |(_, text): Tick| text.runs.into_iter().map(|run| run.text).collect();

@@ -8,7 +8,7 @@ pub(crate) mod study;
 pub(crate) mod texture;
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use slipfront_case::case::Case;
@@ -31,6 +31,11 @@ pub(crate) struct CaseArgs {
 }
 
 impl CaseArgs {
+    /// The case file, if one was named.
+    pub(crate) fn path(&self) -> Option<&Path> {
+        self.case.as_deref()
+    }
+
     pub(crate) fn load(self) -> Result<Case, Failure> {
         let mut overrides = self.overrides;
         overrides.extend(self.seed.map(|seed| format!("friction.seed={seed}")));

@@ -23,7 +23,7 @@ use crate::report;
 pub(crate) struct Run {
     #[command(flatten)]
     case: CaseArgs,
-    /// Folder for the results [default: results/<case name>]
+    /// Folder for the results [default: results/ and the name of the case]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Replace the files of an earlier run in that folder, and nothing else
@@ -44,14 +44,18 @@ impl Run {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let started = Timestamp::now();
         let threads = set_threads(self.threads)?;
+        let case_path = self.case.path().map(Path::to_owned);
         let case = self.case.load()?;
         let talks = !self.quiet && !self.json;
+        let out = self.out.unwrap_or_else(|| Path::new("results").join(&case.name));
+        refuse_to_replace(case_path.as_deref(), &out)?;
+        let folder = RunFolder::prepare(&out, self.force).map_err(Failure::input)?;
+        let inputs = case.inputs.iter().map(|input| input.name.as_str());
+        folder.expect_free(inputs).map_err(Failure::input)?;
+
         if talks {
             print(&report::physics(&case))?;
         }
-        let out = self.out.unwrap_or_else(|| Path::new("results").join(&case.name));
-        let folder = RunFolder::prepare(&out, self.force).map_err(Failure::input)?;
-
         let mut progress = Progress::new(&case, self.quiet);
         let record = run::run(&case, Progress::every(&case), &mut progress).map_err(Failure::running)?;
         progress.finish();
@@ -65,6 +69,21 @@ impl Run {
         }
         Ok(())
     }
+}
+
+/// Refuses a folder whose `case.toml` is the case to be run: with `--force` it would be gone, and lost if the run fails.
+fn refuse_to_replace(case: Option<&Path>, out: &Path) -> Result<(), Failure> {
+    let Some(case) = case.and_then(|case| case.canonicalize().ok()) else {
+        return Ok(());
+    };
+    if out.join("case.toml").canonicalize().ok() != Some(case) {
+        return Ok(());
+    }
+    let sentence = format!(
+        "the results would replace the case itself, {}: choose another folder with --out",
+        out.join("case.toml").display()
+    );
+    Err(Failure::input(anyhow::anyhow!(sentence)))
 }
 
 fn files(case: &Case, out: &Path) -> String {

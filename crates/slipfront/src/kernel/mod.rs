@@ -1,6 +1,7 @@
 //! What advances a [`State`](crate::State) by one step.
 //!
-//! [`reference`] reads like the paper, one pass per equation. Observers see what a kernel leaves in [`Forces`].
+//! [`mod@reference`] reads like the paper, one pass per equation. Observers see what a kernel leaves in
+//! [`Forces`].
 
 pub mod reference;
 
@@ -19,8 +20,8 @@ pub struct Forces {
     pub velocity_after: VectorField,
     /// Stuck or sliding from t_n on.
     pub contact_after: Vec<Contact>,
-    /// Force of the springs to two neighbours, on their way into `lattice`.
-    springs: [VectorField; 2],
+    /// Force of the spring along each bond, on its way into `lattice`.
+    springs: [VectorField; 4],
 }
 
 impl Forces {
@@ -33,7 +34,7 @@ impl Forces {
             friction: zeros(),
             velocity_after: zeros(),
             contact_after: vec![Contact::Stuck; n_blocks],
-            springs: [zeros(), zeros()],
+            springs: [zeros(), zeros(), zeros(), zeros()],
         }
     }
 }

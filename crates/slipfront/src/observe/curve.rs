@@ -3,7 +3,9 @@
 use super::Observer;
 use super::energy::{Energies, Ledger};
 use crate::kernel::Forces;
+use crate::lanes;
 use crate::vector_field::dot;
+use crate::width::widest;
 use crate::{Contact, Model, RunError, Snapshot, State};
 
 /// The whole slider at one instant.
@@ -26,12 +28,8 @@ impl CurvePoint {
     /// mu* = (1/N) sum_i F_s,i . d = k_s (V* t* - mean(u . d))
     /// ```
     pub(crate) fn measure(model: &Model, state: &State, forces: &Forces, time_star: f64) -> Self {
-        let (drive, n) = (&model.drive, model.lattice.n_blocks() as f64);
-        let sum = |u: &[f64]| {
-            u.chunks(model.lattice.nx)
-                .map(|row| row.iter().sum::<f64>())
-                .sum::<f64>()
-        };
+        let (drive, n, nx) = (&model.drive, model.lattice.n_blocks() as f64, model.lattice.nx);
+        let sum = |u: &[f64]| widest!(sum_of_rows(u: &[f64], nx: usize) -> f64);
         let mean = [sum(&state.displacement.x) / n, sum(&state.displacement.y) / n];
         let reach = drive.reach(time_star);
         let pull = [
@@ -51,6 +49,12 @@ impl CurvePoint {
             sliding_percent: 100.0 * n_sliding as f64 / n,
         }
     }
+}
+
+/// Sum row by row, so that a lattice can be shared out by rows without changing it.
+#[inline(always)]
+fn sum_of_rows(u: &[f64], nx: usize) -> f64 {
+    u.chunks(nx).map(|row| lanes::sum(row.len(), |k| row[k])).sum()
 }
 
 /// The first peak of mu* that is followed by a fall of at least half-way to the steady level L, found while the
@@ -171,6 +175,11 @@ mod tests {
     fn a_dip_of_less_than_half_way_does_not_end_the_climb() {
         let peak = watch(0.5, &[0.0, 0.8, 0.7, 0.9, 0.6]);
         assert_eq!((peak.mu_star, peak.step, peak.ended), (0.9, 3, true));
+    }
+
+    #[test]
+    fn of_equal_values_the_first_is_the_peak() {
+        assert_eq!(watch(0.5, &[0.0, 1.0, 0.9, 1.0, 0.2]).step, 1);
     }
 
     #[test]

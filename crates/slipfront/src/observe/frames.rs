@@ -61,13 +61,14 @@ pub struct Selection {
 impl Selection {
     /// The chosen fields of this instant.
     pub fn capture(&self, now: &Snapshot) -> Frame {
+        let [columns, rows] = [now.model.lattice.nx, now.model.lattice.ny].map(|n| n.div_ceil(self.stride));
+        let room = || Vec::with_capacity(columns * rows);
         let mut frame = Frame {
             step: 0,
             time_star: 0.0,
             point: now.point,
-            values: Vec::new(),
+            values: self.fields.iter().map(|_| room()).collect(),
         };
-        frame.values.resize(self.fields.len(), Vec::new());
         self.capture_into(now, &mut frame);
         frame
     }

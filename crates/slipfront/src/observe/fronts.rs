@@ -1,7 +1,7 @@
 //! Slip fronts: when each block first slips.
 
 use super::Observer;
-use crate::{Contact, RunError, Snapshot};
+use crate::{Contact, RunError, Snapshot, Surface};
 
 /// First-slip time of every block in contact. To be shown every step.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,16 +10,17 @@ pub struct FirstSlip {
     pub time_star: Vec<f64>,
     /// The earliest of them.
     pub earliest: Option<f64>,
+    /// Blocks in contact that have not slipped.
     left: usize,
 }
 
 impl FirstSlip {
-    /// Nothing has slipped on a lattice of `n_blocks` blocks.
-    pub fn none(n_blocks: usize) -> Self {
+    /// Nothing has slipped yet on this surface.
+    pub fn none(surface: &Surface) -> Self {
         Self {
-            time_star: vec![f64::NAN; n_blocks],
+            time_star: vec![f64::NAN; surface.n_blocks()],
             earliest: None,
-            left: n_blocks,
+            left: surface.n_contact(),
         }
     }
 }

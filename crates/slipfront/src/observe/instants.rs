@@ -24,7 +24,11 @@ pub struct Instants {
     kinetic: KineticStart,
     end_time_star: f64,
     frames: [Option<Frame>; 6],
+    /// Which of `frames` count; one that was dropped is kept for its memory.
+    held: [bool; 6],
     ended: bool,
+    /// Whether the run has gone on long enough to know D, and E.
+    known: [bool; 2],
 }
 
 impl Instants {
@@ -35,32 +39,35 @@ impl Instants {
             kinetic,
             end_time_star,
             frames: Default::default(),
+            held: [false; 6],
             ended: false,
+            known: [false; 2],
         }
     }
 
-    /// The instants that the run had, in the order of their letters. Without a transition there is no D and E.
+    /// The instants that the run had, in the order of their letters. Without a transition there is no D and E, nor
+    /// when the run ends before the times among which they are chosen.
     pub fn found(mut self) -> Vec<(char, Frame)> {
-        if !self.ended {
-            self.frames[D] = None;
-            self.frames[E] = None;
-        } else {
-            // A later instant that never differed from the one before it was not captured apart.
-            if self.frames[D].is_none() {
-                self.frames[D] = self.frames[C].clone();
-            }
-            if self.frames[E].is_none() {
-                self.frames[E] = self.frames[D].clone();
+        for (instant, known) in [(D, self.known[0]), (E, self.known[1])] {
+            if !(self.ended && known) {
+                self.held[instant] = false;
+            } else if !self.held[instant] {
+                // A later instant that never differed from the one before it was not captured apart.
+                self.frames[instant] = self.frames[instant - 1].clone();
+                self.held[instant] = self.held[instant - 1];
             }
         }
+        let held = self.held;
         LETTERS
             .into_iter()
             .zip(self.frames)
-            .filter_map(|(letter, frame)| Some((letter, frame?)))
+            .zip(held)
+            .filter_map(|((letter, frame), held)| Some((letter, frame.filter(|_| held)?)))
             .collect()
     }
 
     fn keep(&mut self, instant: usize, now: &Snapshot) {
+        self.held[instant] = true;
         match &mut self.frames[instant] {
             Some(frame) => self.selection.capture_into(now, frame),
             none => *none = Some(self.selection.capture(now)),
@@ -69,26 +76,45 @@ impl Instants {
 
     /// The candidate for an instant, or for the one before it as long as they coincide.
     fn candidate(&self, instants: &[usize]) -> Option<&Frame> {
-        instants.iter().find_map(|&instant| self.frames[instant].as_ref())
+        instants
+            .iter()
+            .filter(|&&instant| self.held[instant])
+            .find_map(|&instant| self.frames[instant].as_ref())
     }
 }
 
 impl Observer for Instants {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
         let v_star = now.model.drive.v_star;
-        self.ended = now.peak.ended;
-        let passes = |time: f64| now.time_star >= time && now.time_star - now.dt_star < time;
+        // The step before, as its own product: n dt - dt need not be (n - 1) dt to the last bit.
+        let before = (now.step as f64 - 1.0) * now.dt_star;
+        let passes = |time: f64| now.time_star >= time && before < time;
         if passes(0.5 / v_star) {
             self.keep(A, now);
         }
-        if self.frames[B].is_none() && slips(now) {
+        if !self.held[B] && slips(now) {
             self.keep(B, now);
         }
         let kinetic_from = self.kinetic.time_star(&now.peak, v_star);
+        let middle = 0.5 * (kinetic_from + self.end_time_star);
+        if now.peak.ended && !self.ended && middle > now.time_star {
+            // Until now the window was that of a run without a transition.
+            self.held[F] = false;
+        }
+        self.ended = now.peak.ended;
+        // What follows the peak is judged as if it were the one that counts.
+        let mut counted = now.peak;
+        counted.ended = true;
+        let fall_until = self.kinetic.time_star(&counted, v_star);
+        let most_until = now.peak.time_star + 2.5 / v_star;
+        self.known = [most_until, fall_until].map(|until| now.time_star >= until);
         if now.peak.step == now.step {
-            self.keep(C, now);
-            self.frames[D] = None;
-            self.frames[E] = None;
+            // While everything in contact sticks, mu* rises at every step: none of these is the peak yet.
+            if self.held[B] || now.last {
+                self.keep(C, now);
+            }
+            self.held[D] = false;
+            self.held[E] = false;
         } else {
             let most = self
                 .candidate(&[D, C])
@@ -96,14 +122,14 @@ impl Observer for Instants {
             let least = self
                 .candidate(&[E, D, C])
                 .map_or(f64::INFINITY, |frame| frame.point.mu_star);
-            if now.time_star <= now.peak.time_star + 2.5 / v_star && now.point.sliding_percent > most {
+            if now.time_star <= most_until && now.point.sliding_percent > most {
                 self.keep(D, now);
-                self.frames[E] = None;
-            } else if now.time_star <= kinetic_from && now.point.mu_star < least {
+                self.held[E] = false;
+            } else if now.time_star <= fall_until && now.point.mu_star < least {
                 self.keep(E, now);
             }
         }
-        if passes(0.5 * (kinetic_from + self.end_time_star)) {
+        if passes(middle) {
             self.keep(F, now);
         }
         Ok(())

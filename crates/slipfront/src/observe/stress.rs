@@ -4,7 +4,10 @@
 //! concentration beside a cavity; the traction shows it.
 
 use super::Observer;
+use crate::kernel::Forces;
+use crate::lanes;
 use crate::vector_field::{add, length};
+use crate::width::widest;
 use crate::{RunError, Snapshot};
 
 /// Contact stress of block `b`, `tau_c = |F_f + F_c|/l^2` (Eq. 10), in units of `P mu_s`.
@@ -39,12 +42,21 @@ impl StressMaximum {
 
 impl Observer for StressMaximum {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
-        let (friction, lattice) = (&now.forces.friction, &now.forces.lattice);
-        for (b, &textured) in now.model.surface.textured.iter().enumerate() {
-            let (x, y) = (friction.x[b] + lattice.x[b], friction.y[b] + lattice.y[b]);
-            let square = if textured { 0.0 } else { x * x + y * y };
-            self.square = if square > self.square { square } else { self.square };
-        }
+        let (forces, textured) = (now.forces, now.model.surface.textured.as_slice());
+        let square = widest!(largest_square(forces: &Forces, textured: &[bool]) -> f64);
+        self.square = self.square.max(square);
         Ok(())
     }
+}
+
+/// Largest `tau_c^2` over the blocks in contact.
+#[inline(always)]
+fn largest_square(forces: &Forces, textured: &[bool]) -> f64 {
+    let n = textured.len();
+    let (friction_x, friction_y) = (&forces.friction.x[..n], &forces.friction.y[..n]);
+    let (lattice_x, lattice_y) = (&forces.lattice.x[..n], &forces.lattice.y[..n]);
+    lanes::largest(n, |b| {
+        let (x, y) = (friction_x[b] + lattice_x[b], friction_y[b] + lattice_y[b]);
+        if textured[b] { 0.0 } else { x * x + y * y }
+    })
 }

@@ -278,6 +278,22 @@ impl Outline {
         }
     }
 
+    /// Whether a point between two crossings is inside. An ellipse excludes its outline, and rounds alike on all
+    /// sides of it, so that its mesh is as symmetric as the ellipse; other outlines are half-open.
+    fn contains(&self, [x, y]: [f64; 2]) -> bool {
+        match self {
+            Outline::Ellipse {
+                center,
+                semi_axes: [a, b],
+                axis: [c, s],
+            } => {
+                let (dx, dy) = (x - center[0], y - center[1]);
+                ((dx * c + dy * s) / a).powi(2) + ((dy * c - dx * s) / b).powi(2) < 1.0
+            }
+            Outline::Polygon(_) | Outline::Strip { .. } => true,
+        }
+    }
+
     /// Where the line at height `y` runs inside: pairs of x, each in [enter, leave).
     fn cut(&self, y: f64, crossings: &mut Vec<f64>) {
         crossings.clear();
@@ -297,8 +313,9 @@ impl Outline {
                 if root > 0.0 {
                     let root = root.sqrt();
                     let (enter, leave) = ((-half - root) / square, (-half + root) / square);
-                    // A centre on the outline itself is outside, left and right alike.
-                    crossings.extend([(center[0] + enter).next_up(), center[0] + leave]);
+                    // A little too far: `contains` has the last word on a centre that lies on the outline.
+                    let margin = 1e-9 * a.abs().max(b.abs());
+                    crossings.extend([center[0] + enter - margin, center[0] + leave + margin]);
                 }
             }
             Outline::Polygon(points) => {
@@ -344,7 +361,12 @@ fn fill(outline: &Outline, lattice: &Lattice, textured: &mut [bool]) {
         outline.cut(row as f64 + 0.5, &mut crossings);
         let j = row.rem_euclid(lattice.ny as isize) as usize;
         for inside in crossings.chunks_exact(2) {
-            for column in blocks_between(inside[0], inside[1], lattice.nx, lattice.edges[0]) {
+            let columns = blocks_between(inside[0], inside[1], lattice.nx, lattice.edges[0]);
+            // Columns beyond once round are covered already; rows are not, as the outline changes from row to row.
+            for column in columns.take(lattice.nx + 1) {
+                if !outline.contains([column as f64 + 0.5, row as f64 + 0.5]) {
+                    continue;
+                }
                 textured[lattice.block(column.rem_euclid(lattice.nx as isize) as usize, j)] = true;
             }
         }
@@ -357,9 +379,6 @@ fn blocks_between(from: f64, to: f64, count: usize, edges: Edges) -> std::ops::R
     if from.is_infinite() || to.is_infinite() || edges == Edges::Free {
         first = first.max(0.0);
         end = end.min(count as f64);
-    } else {
-        // More than once round covers nothing new.
-        end = end.min(first + count as f64);
     }
     first as isize..end.max(first) as isize
 }
@@ -398,6 +417,35 @@ mod tests {
             assert_eq!(meshed.textured[b], (22..=26).contains(&(b % 50)), "block {b}");
         }
         assert!(meshed.clipped.is_empty());
+    }
+
+    /// At these radii centres lie on the outline: 19, 21 and 35 are given exactly, and 35^2 = 28^2 + 21^2.
+    #[test]
+    fn the_mesh_of_a_circle_is_as_symmetric_as_the_circle() {
+        for (n, lambda) in [
+            (51, 19.0),
+            (51, 21.0),
+            (101, 35.0),
+            (101, 41.0),
+            (101, 49.0),
+            (50, 12.5),
+        ] {
+            let lattice = Lattice::free(n, n);
+            let circle = Cavity {
+                center: [0.5 * n as f64; 2],
+                lambda,
+                ..cavity(1, 0.0, 1.0)
+            };
+            let t = mesh(&lattice, &[Texture::Cavity(circle)]).textured;
+            for j in 0..n {
+                for i in 0..n {
+                    let here = t[lattice.block(i, j)];
+                    let mirrored = [(n - 1 - i, j), (i, n - 1 - j), (j, i)];
+                    let all = mirrored.iter().all(|&(i, j)| t[lattice.block(i, j)] == here);
+                    assert!(all, "lambda = {lambda}: block ({i}, {j})");
+                }
+            }
+        }
     }
 
     #[test]
@@ -475,6 +523,18 @@ mod tests {
         assert_eq!(free.clipped, [0]);
         assert!(wrapped.clipped.is_empty());
         assert_eq!(4 * blocks(&free), blocks(&wrapped));
+    }
+
+    #[test]
+    fn an_outline_larger_than_a_periodic_slider_covers_all_of_it() {
+        let lattice = Lattice::with_edges(25, 25, [Edges::Periodic; 2]);
+        for s in [1, 3] {
+            let large = Cavity {
+                center: [12.5, 12.5],
+                ..cavity(s, 0.2, 100.0)
+            };
+            assert_eq!(count(&lattice, Texture::Cavity(large)), 625, "s = {s}");
+        }
     }
 
     #[test]

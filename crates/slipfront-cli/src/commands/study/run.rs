@@ -24,7 +24,7 @@ pub(crate) struct StudyRun {
     /// Study file
     #[arg(value_name = "STUDY.toml", required = true)]
     study: Option<PathBuf>,
-    /// Folder for the results [default: results/<study name>]
+    /// Folder for the results [default: results/ and the name of the study]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Most runs at once [default: one per core]; results do not depend on it

@@ -19,7 +19,7 @@ pub(crate) struct Slurm {
     /// Number of tasks, each on a node of its own
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..))]
     tasks: u16,
-    /// Folder for the results of all tasks [default: results/<study name>]
+    /// Folder for the results of all tasks [default: results/ and the name of the study]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Make a script for more than 10 000 runs without asking

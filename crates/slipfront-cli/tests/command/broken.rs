@@ -1,0 +1,160 @@
+//! Runs that cannot end well: diverged, interrupted, on a full disk, with nobody left to read what they say.
+
+use std::process::{Command, Stdio};
+
+use super::{Bench, RUN_FILES, program};
+
+#[test]
+fn a_run_that_diverges_says_where_and_leaves_no_results() {
+    let bench = Bench::new();
+    // A step just below the limit of the linear lattice, and strains that stiffen its springs beyond it.
+    bench.write(
+        "wild.toml",
+        "[slider]\nomega_star = 0\n[load]\npressure = '50 GPa'\n[drive]\nv_star = 10\n[friction]\nr_star = 0\n\
+         sigma_static_star = 1\n[time]\nstep = 0.9\nduration_star = 2000\n",
+    );
+    let said = bench.refused("run wild.toml --quiet -o a", 1);
+    let words = ["displacement of block (", "at step ", "t* = ", "diverged"];
+    assert!(words.iter().all(|word| said.contains(word)), "{said}");
+    assert!(bench.files("a").is_empty());
+}
+
+/// A reader such as `head -1` that closes the pipe early.
+#[test]
+fn a_closed_pipe_is_no_failure() {
+    let bench = Bench::new();
+    for line in ["run small.toml", "check small.toml", "completions zsh", "--help"] {
+        let mut child = Command::new(program())
+            .args(line.split_whitespace())
+            .current_dir(bench.path())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(
+            output.status.success() && said.is_empty(),
+            "{line}: {} {said}",
+            output.status
+        );
+    }
+    assert!(bench.exists("results/small/manifest.json"));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_the_run_and_leaves_it_incomplete() {
+    use std::os::unix::process::ExitStatusExt;
+    let bench = Bench::new();
+    let long =
+        "run --quiet -o a --set slider.blocks=[100,100] --set time.duration_star=1e6 --set output.series=1e3";
+    let mut child = Command::new(program())
+        .args(long.split_whitespace())
+        .current_dir(bench.path())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut waited = 0;
+    while !bench.exists("a") {
+        assert!(waited < 1000, "the run does not begin");
+        assert!(child.try_wait().unwrap().is_none(), "the run has ended");
+        std::thread::sleep(std::time::Duration::from_millis(10));
+        waited += 1;
+    }
+    std::thread::sleep(std::time::Duration::from_millis(100));
+    let kill = format!("kill -INT {}", child.id());
+    assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
+    let status = child.wait().unwrap();
+    // A shell shows a death by signal as 128 + its number.
+    let seen = status.code().or(status.signal().map(|signal| 128 + signal));
+    assert_eq!(seen, Some(130));
+    assert!(!bench.exists("a/manifest.json"));
+}
+
+/// Every file is either not there, or whole.
+fn assert_incomplete_but_sound(bench: &Bench, whole: &str, broken: &str) {
+    let whole = bench.files(whole);
+    for (name, bytes) in bench.files(broken) {
+        assert_ne!(name, "manifest.json", "an incomplete run looks complete");
+        assert!(
+            whole.get(&name) == Some(&bytes),
+            "{name} is half written or unknown"
+        );
+    }
+}
+
+/// Files may not grow beyond a size, whatever writes them: where each file of the run stops, in turn.
+#[cfg(unix)]
+#[test]
+fn a_file_that_cannot_be_written_whole_is_not_there_at_all() {
+    let bench = Bench::new();
+    // With a short series, so that it is not always the one file that grows too large.
+    let run = "run small.toml --quiet --set output.series=1000 -o";
+    bench.done(&format!("{run} whole"));
+    let mut sizes: Vec<usize> = bench.results("whole").values().map(Vec::len).collect();
+    sizes.sort_unstable();
+    let mut failed = Vec::new();
+    for (number, size) in sizes.iter().enumerate() {
+        // In units of 512 bytes; without the signal, the write itself fails.
+        let limit = (size - 1) / 512;
+        let script = format!(
+            "trap '' XFSZ; ulimit -f {limit}; exec {} {run} broken{number}",
+            program()
+        );
+        let output = Command::new("sh")
+            .args(["-c", &script])
+            .current_dir(bench.path())
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "limit {limit}: {said}");
+        assert!(
+            said.starts_with("error: cannot write ") && said.lines().count() == 1,
+            "{said}"
+        );
+        let folder = format!("broken{number}");
+        assert_incomplete_but_sound(&bench, "whole", &folder);
+        let named = RUN_FILES
+            .iter()
+            .find(|name| said.contains(&format!("{folder}/{name}")));
+        failed.push(*named.unwrap_or_else(|| panic!("no file is named: {said}")));
+    }
+    failed.sort_unstable();
+    failed.dedup();
+    assert!(failed.len() >= 5, "only {failed:?} were hit");
+}
+
+/// A disk that is full. Mounting one takes rights that few have: nothing is tested then.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_leaves_no_half_results() {
+    let bench = Bench::new();
+    bench.done("run small.toml -o whole");
+    // A mount in a name space of its own goes away by itself.
+    let script = format!(
+        "mkdir disk && mount -t tmpfs -o size=64k tmpfs disk || exit 77
+         {} run small.toml --quiet -o disk/a 2> said
+         status=$?
+         mkdir broken && cp -R disk/a/. broken
+         exit $status",
+        program()
+    );
+    let status = Command::new("unshare")
+        .args(["--mount", "sh", "-c", &script])
+        .current_dir(bench.path())
+        .stderr(Stdio::null())
+        .status();
+    match status.map(|status| status.code()) {
+        Ok(Some(1)) if bench.exists("broken") => {
+            let said = String::from_utf8(bench.read("said")).unwrap();
+            assert!(
+                said.contains("cannot write") && said.contains("No space left"),
+                "{said}"
+            );
+            assert_incomplete_but_sound(&bench, "whole", "broken");
+        }
+        other => assert!(!bench.exists("said"), "{other:?}"),
+    }
+}

@@ -1,0 +1,174 @@
+//! The run folder: whose files are replaced, and whose never.
+
+use super::Bench;
+
+#[test]
+fn a_folder_that_holds_something_is_refused() {
+    let bench = Bench::new();
+    bench.write("full/notes.txt", "mine");
+    let said = bench.refused("run small.toml --quiet -o full", 2);
+    assert!(
+        said.contains("full is not empty") && said.contains("--force"),
+        "{said}"
+    );
+    assert_eq!(bench.files("full").len(), 1);
+    // An empty one is taken, and so is one that has to be made.
+    std::fs::create_dir(bench.path().join("empty")).unwrap();
+    bench.done("run small.toml -o empty");
+    bench.done("run small.toml -o not/yet/there");
+    assert!(
+        bench
+            .refused("run small.toml --quiet -o empty", 2)
+            .contains("not empty")
+    );
+}
+
+#[test]
+fn force_replaces_own_files_only() {
+    let bench = Bench::new();
+    bench.done("run small.toml -o clean --set output.snapshots=[]");
+    bench.done("run small.toml -o a");
+    bench.write("a/notes.txt", "mine");
+    bench.write("a/inputs/old.png", "mine too");
+    bench.done("run small.toml -o a --force --set output.snapshots=[]");
+    assert_eq!(bench.read("a/notes.txt"), b"mine");
+    assert_eq!(bench.read("a/inputs/old.png"), b"mine too");
+    std::fs::remove_file(bench.path().join("a/notes.txt")).unwrap();
+    std::fs::remove_dir_all(bench.path().join("a/inputs")).unwrap();
+    // Nothing of the first run is left, such as its maps.
+    bench.assert_same("clean", "a");
+}
+
+#[test]
+fn force_takes_copies_of_an_earlier_run_along() {
+    let bench = Bench::new();
+    bench.done("texture small.toml -o spot.png --set texture.0={shape=\"cavity\",coverage=15}");
+    bench.write(
+        "masked.toml",
+        format!("{}[[texture]]\nshape='mask'\nfile='spot.png'\n", super::SMALL),
+    );
+    bench.done("run masked.toml -o a");
+    bench.done("run masked.toml -o a --force");
+    assert!(bench.exists("a/inputs/spot.png"));
+    bench.done("run small.toml -o a --force");
+    assert!(
+        !bench.exists("a/inputs"),
+        "an input that is no longer used has stayed"
+    );
+}
+
+#[test]
+fn a_foreign_file_in_the_place_of_a_copy_is_refused_before_the_run() {
+    let bench = Bench::new();
+    bench.done("texture small.toml -o spot.png --set texture.0={shape=\"cavity\",coverage=15}");
+    bench.write(
+        "masked.toml",
+        format!("{}[[texture]]\nshape='mask'\nfile='spot.png'\n", super::SMALL),
+    );
+    bench.write("a/inputs/spot.png", "mine");
+    let said = bench.refused("run masked.toml --quiet -o a --force", 2);
+    assert!(
+        said.contains("spot.png is not a file of an earlier run"),
+        "{said}"
+    );
+    assert_eq!(bench.files("a").len(), 1);
+    assert_eq!(bench.read("a/inputs/spot.png"), b"mine");
+    // Nor is a file taken for the folder of copies.
+    bench.write("b/inputs", "mine");
+    bench.refused("run masked.toml --quiet -o b --force", 2);
+    assert_eq!(bench.read("b/inputs"), b"mine");
+}
+
+#[test]
+fn a_damaged_manifest_deletes_nothing_elsewhere() {
+    let bench = Bench::new();
+    bench.write("treasure", "mine");
+    bench.write("a/inputs/deep/treasure", "mine");
+    let entry = |name: &str| format!(r#"{{"name":"{name}","bytes":1,"blake3":""}}"#);
+    let entries = [
+        "../treasure",
+        "inputs/../../treasure",
+        "inputs/deep/treasure",
+        "notes.txt",
+    ]
+    .map(entry);
+    bench.write(
+        "a/manifest.json",
+        format!(
+            r#"{{"version":"","host":"","platform":"","started":"","finished":"","wall_time_s":0.0,"threads":1,
+            "files":[{}]}}"#,
+            entries.join(",")
+        ),
+    );
+    bench.write("a/notes.txt", "mine");
+    bench.done("run small.toml -o a --force");
+    for name in ["treasure", "a/inputs/deep/treasure", "a/notes.txt"] {
+        assert_eq!(bench.read(name), b"mine", "{name}");
+    }
+}
+
+#[test]
+fn the_case_itself_is_never_replaced() {
+    let bench = Bench::new();
+    bench.write("mine/case.toml", super::SMALL);
+    for line in [
+        "run mine/case.toml --quiet -o mine --force",
+        "run mine/case.toml --quiet -o mine/../mine",
+    ] {
+        let said = bench.refused(line, 2);
+        assert!(said.contains("would replace the case itself"), "{said}");
+    }
+    assert_eq!(bench.read("mine/case.toml"), super::SMALL.as_bytes());
+    assert_eq!(bench.files("mine").len(), 1);
+    // Beside it there is room: under a name of its own it is a foreign file.
+    bench.write("beside/small.toml", super::SMALL);
+    bench.done("run beside/small.toml -o beside --force");
+    assert_eq!(bench.read("beside/small.toml"), super::SMALL.as_bytes());
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_said_before_the_run() {
+    let bench = Bench::new();
+    bench.write("file", "mine");
+    for out in ["file", "file/below"] {
+        let said = bench.refused(&format!("run small.toml --quiet -o {out} --force"), 2);
+        assert!(said.contains("cannot write to the folder"), "{said}");
+    }
+    assert_eq!(bench.read("file"), b"mine");
+}
+
+/// Root may write anywhere: nothing is tested then.
+#[cfg(unix)]
+#[test]
+fn a_read_only_folder_is_said_before_the_run() {
+    use std::os::unix::fs::PermissionsExt;
+    let bench = Bench::new();
+    let locked = bench.path().join("locked");
+    std::fs::create_dir(&locked).unwrap();
+    std::fs::set_permissions(&locked, PermissionsExt::from_mode(0o555)).unwrap();
+    if std::fs::write(locked.join("probe"), "").is_ok() {
+        return;
+    }
+    for out in ["locked", "locked/below"] {
+        let said = bench.refused(&format!("run small.toml --quiet -o {out}"), 2);
+        assert!(said.contains("cannot write to the folder"), "{said}");
+    }
+}
+
+#[test]
+fn odd_names_are_names() {
+    let bench = Bench::new();
+    let odd = "fünf µm [2] & #1.toml";
+    bench.write(odd, super::SMALL);
+    let mut command = bench.slipfront("run --quiet");
+    command.arg(odd).assert().success();
+    assert!(bench.exists("results/fünf µm [2] & #1/manifest.json"));
+    let mut command = bench.slipfront("plot small/../results/../results");
+    command
+        .arg(bench.path().join("results/fünf µm [2] & #1"))
+        .assert()
+        .code(2);
+    let mut command = bench.slipfront("plot -o over");
+    let run = "results/fünf µm [2] & #1";
+    command.args([run, run]).assert().success();
+}

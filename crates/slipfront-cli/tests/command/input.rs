@@ -1,0 +1,104 @@
+//! What is wrong with a case is said in a sentence, with status 2, and nothing is written.
+
+use super::Bench;
+
+#[test]
+fn bad_cases_are_refused_with_a_remedy() {
+    let bench = Bench::new();
+    for (text, words) in [
+        (
+            "[load]\npressur = '1 kPa'\n",
+            &["unknown key `pressur`", "did you mean `pressure`?"][..],
+        ),
+        ("[lod]\n", &["did you mean", "[load]"]),
+        (
+            "[load]\npressure = 100\n",
+            &["`load.pressure`", "has no unit", "bad.toml:2:"],
+        ),
+        ("[load]\npressure = '3 mm/s'\n", &["pressure", "speed"]),
+        (
+            "[drive]\nv_star = 0.1\nspeed = '1 mm/s'\n",
+            &["`v_star`", "`speed`"],
+        ),
+        ("[drive]\nv_star = nan\n", &["`drive.v_star`"]),
+        ("[drive\n", &["not valid TOML"]),
+        (
+            "[[texture]]\nshape = 'mask'\nfile = 'none.png'\n",
+            &["none.png", "relative to the case file"],
+        ),
+        (
+            "[[texture]]\nshape = 'groove'\nwidth = '25 um'\n",
+            &["covers all 625 blocks"],
+        ),
+        ("[friction]\nlaw = 'literl'\n", &["did you mean \"literal\"?"]),
+    ] {
+        bench.write("bad.toml", text);
+        for command in ["run bad.toml", "check bad.toml", "texture bad.toml -o mask.png"] {
+            let said = bench.refused(command, 2);
+            for word in words {
+                assert!(said.contains(word), "{word:?} is missing for {text:?}:\n{said}");
+            }
+        }
+    }
+    assert_eq!(bench.files(".").len(), 2, "something has been written");
+}
+
+#[test]
+fn a_case_that_is_no_file_is_refused() {
+    let bench = Bench::new();
+    std::fs::create_dir(bench.path().join("folder")).unwrap();
+    bench.write("binary.toml", [0xff, 0xfe, 0x00]);
+    assert!(
+        bench
+            .refused("run missing.toml", 2)
+            .contains("cannot read the case file missing.toml")
+    );
+    assert!(bench.refused("run folder", 2).contains("is a folder"));
+    assert!(bench.refused("run binary.toml", 2).contains("not UTF-8"));
+}
+
+/// A pipe would be waited for, and a device never ends.
+#[cfg(unix)]
+#[test]
+fn inputs_are_files() {
+    let bench = Bench::new();
+    std::fs::create_dir(bench.path().join("folder.csv")).unwrap();
+    std::os::unix::fs::symlink("/dev/zero", bench.path().join("device.csv")).unwrap();
+    for name in ["folder.csv", "device.csv"] {
+        let said = bench.refused(
+            &format!("run small.toml --set friction.mu_static_field={name}"),
+            2,
+        );
+        assert!(said.contains(&format!("{name} is not a regular file")), "{said}");
+    }
+}
+
+#[test]
+fn what_no_machine_holds_is_refused_in_a_sentence() {
+    let bench = Bench::new();
+    let said = bench.refused("check small.toml --set slider.blocks=[100000,40000]", 2);
+    assert!(said.contains("GiB of memory"), "{said}");
+    let groove = "texture.0={shape=\"groove\",width=\"1um\",offset=\"1m\"}";
+    let said = bench.refused(&format!("check small.toml --set {groove}"), 2);
+    assert!(said.contains("look at its units"), "{said}");
+}
+
+#[test]
+fn bad_overrides_are_refused() {
+    let bench = Bench::new();
+    for (set, word) in [
+        ("drive.sped=1", "did you mean `speed`?"),
+        ("drive.v_star", "="),
+        ("texture.3.coverage=5", "texture"),
+        ("friction.seed=9223372036854775808", "seed"),
+    ] {
+        let said = bench.refused(&format!("run small.toml --set {set}"), 2);
+        assert!(said.contains(word) && said.contains("--set"), "{word:?}: {said}");
+    }
+    assert!(
+        bench
+            .refused("run small.toml --seed 18446744073709551615", 2)
+            .contains("seed")
+    );
+    assert!(!bench.exists("results"));
+}

@@ -1,0 +1,50 @@
+//! Cost of a step of the reference kernel, in block-steps per second, on the baseline of Fig. 3 once it
+//! slides.
+
+#![allow(missing_docs)] // Criterion's macros make public functions without a word.
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use slipfront::known_answers::first_slip_time_star;
+use slipfront::surface::{Coefficients, Distribution, Load};
+use slipfront::{Drive, FrictionLaw, Lattice, Model, Simulation, Surface, scales};
+
+fn baseline(n: usize) -> Model {
+    let lattice = Lattice::free(n, n);
+    let gauss = |mean: f64| Distribution {
+        mean,
+        deviation: 0.05 * mean,
+    };
+    let drawn = Coefficients::draw(n * n, gauss(1.0), gauss(0.5), 1);
+    let surface = Surface::new(drawn, vec![false; n * n], Load::Redistributed, 1.0).expect("all in contact");
+    let damping = scales::damping(0.1);
+    Model::new(
+        lattice,
+        surface,
+        Drive::along_x(0.03),
+        damping,
+        1e-6,
+        FrictionLaw::Projection,
+    )
+}
+
+fn step(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("reference_step");
+    for n in [25, 50, 200] {
+        let model = baseline(n);
+        let mut simulation = Simulation::at_rest(&model, 0.1);
+        // Past the transition, when blocks stick and slip: the steps that a run is made of.
+        let surface = &model.surface;
+        let first = first_slip_time_star(&surface.mu_static, &surface.mu_kinetic, 1.0, 0.03);
+        while simulation.time_star() < first + 60.0 {
+            simulation.step();
+        }
+        group.throughput(Throughput::Elements((n * n) as u64));
+        group.bench_function(BenchmarkId::from_parameter(format!("{n}x{n}")), |bencher| {
+            bencher.iter(|| simulation.step());
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, step);
+criterion_main!(benches);

@@ -1,0 +1,165 @@
+//! What the test binaries share: a slider described by the paper's groups.
+#![allow(dead_code)] // Each binary uses its own part of this.
+
+use slipfront::observe::{Curve, CurveRow, Kinetic, KineticHistory, KineticStart, Observer, Peak, Scheduled};
+use slipfront::surface::{
+    Cavity, Coefficients, Distribution, Groove, Load, Orientation, Texture, cavity_lambda, mesh,
+};
+use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, Stop, Surface, scales};
+
+/// A run described by the groups of Eq. 11. The default is the baseline of Fig. 3.
+#[derive(Clone, Debug)]
+pub(crate) struct Slider {
+    pub(crate) blocks: [usize; 2],
+    pub(crate) edges: [Edges; 2],
+    pub(crate) textures: Vec<Texture>,
+    pub(crate) load: Load,
+    pub(crate) v_star: f64,
+    pub(crate) degrees: f64,
+    pub(crate) r_star: f64,
+    pub(crate) omega_star: f64,
+    pub(crate) sigma_static_star: f64,
+    pub(crate) sigma_kinetic_star: f64,
+    pub(crate) epsilon: f64,
+    pub(crate) law: FrictionLaw,
+    pub(crate) seed: u64,
+    pub(crate) dt_star: f64,
+}
+
+impl Default for Slider {
+    fn default() -> Self {
+        Self {
+            blocks: [25, 25],
+            edges: [Edges::Free; 2],
+            textures: Vec::new(),
+            load: Load::Redistributed,
+            v_star: 0.03,
+            degrees: 0.0,
+            r_star: 0.5,
+            omega_star: 0.1,
+            sigma_static_star: 0.05,
+            sigma_kinetic_star: 0.05,
+            epsilon: 1e-6,
+            law: FrictionLaw::Projection,
+            seed: 1,
+            dt_star: 0.1,
+        }
+    }
+}
+
+/// A run's outcome.
+pub(crate) struct Outcome {
+    pub(crate) peak: Peak,
+    pub(crate) kinetic: Option<Kinetic>,
+    pub(crate) rows: Vec<CurveRow>,
+}
+
+impl Slider {
+    /// The same coefficients everywhere.
+    pub(crate) fn uniform(self) -> Self {
+        Self {
+            sigma_static_star: 0.0,
+            sigma_kinetic_star: 0.0,
+            ..self
+        }
+    }
+
+    pub(crate) fn lattice(&self) -> Lattice {
+        Lattice::with_edges(self.blocks[0], self.blocks[1], self.edges)
+    }
+
+    pub(crate) fn coefficients(&self) -> Coefficients {
+        let gauss = |mean: f64, star: f64| Distribution {
+            mean,
+            deviation: star * mean,
+        };
+        Coefficients::draw(
+            self.lattice().n_blocks(),
+            gauss(1.0, self.sigma_static_star),
+            gauss(self.r_star, self.sigma_kinetic_star),
+            self.seed,
+        )
+    }
+
+    pub(crate) fn surface(&self) -> Surface {
+        let textured = mesh(&self.lattice(), &self.textures).textured;
+        Surface::new(self.coefficients(), textured, self.load, 1.0).unwrap()
+    }
+
+    pub(crate) fn model(&self) -> Model {
+        Model::new(
+            self.lattice(),
+            self.surface(),
+            Drive::at_angle(self.v_star, self.degrees),
+            scales::damping(self.omega_star),
+            self.epsilon,
+            self.law,
+        )
+    }
+
+    /// Steps to t* = `turns`/V*.
+    pub(crate) fn steps(&self, turns: f64) -> u64 {
+        (turns / self.v_star / self.dt_star).ceil() as u64
+    }
+
+    /// Runs until the first peak is over, to t* = 8/V* at most.
+    pub(crate) fn onset(&self) -> Peak {
+        let model = self.model();
+        let mut simulation = Simulation::at_rest(&model, self.dt_star);
+        simulation
+            .run(Stop::after_onset(self.steps(8.0)), &mut [])
+            .unwrap();
+        simulation.peak()
+    }
+
+    /// Runs to t* = `turns`/V*: first peak and kinetic friction.
+    pub(crate) fn summary(&self, turns: f64) -> (Peak, Option<Kinetic>) {
+        self.observed(turns, &mut [])
+    }
+
+    /// The same with every step recorded.
+    pub(crate) fn run(&self, turns: f64) -> Outcome {
+        let mut curve = Curve::every(1);
+        let (peak, kinetic) = self.observed(turns, &mut [&mut curve]);
+        Outcome {
+            peak,
+            kinetic,
+            rows: curve.rows,
+        }
+    }
+
+    fn observed(&self, turns: f64, others: &mut [&mut dyn Observer]) -> (Peak, Option<Kinetic>) {
+        let model = self.model();
+        let steps = self.steps(turns);
+        let mut simulation = Simulation::at_rest(&model, self.dt_star);
+        let mut history = KineticHistory::new(steps);
+        let mut observers = vec![Scheduled::always(&mut history)];
+        observers.extend(others.iter_mut().map(|o| Scheduled::always(*o)));
+        simulation.run(Stop::at_step(steps), &mut observers).unwrap();
+        let peak = simulation.peak();
+        let from = KineticStart::Auto.time_star(&peak, self.v_star);
+        (peak, history.kinetic(from, self.dt_star))
+    }
+}
+
+/// A cavity of Eq. 17 in the middle of a lattice of `blocks`, covering `percent`.
+pub(crate) fn cavity(blocks: [usize; 2], percent: f64, s: u32, w: f64, across: bool) -> Texture {
+    Texture::Cavity(Cavity {
+        center: [0.5 * blocks[0] as f64, 0.5 * blocks[1] as f64],
+        lambda: cavity_lambda(percent, blocks[0] * blocks[1], s, w, 1),
+        s,
+        w,
+        across,
+        rotate: 0.0,
+        array: [1, 1],
+    })
+}
+
+/// A groove through the middle.
+pub(crate) fn groove(orientation: Orientation, width: f64) -> Texture {
+    Texture::Groove(Groove {
+        orientation,
+        width,
+        offset: 0.0,
+    })
+}

@@ -1,0 +1,70 @@
+//! Slip fronts under a uniform prestress run at c/sqrt(1 - tau^2).
+
+use rstest::rstest;
+use slipfront::known_answers::{Facing, front_speed};
+use slipfront::lattice::K_STRAIGHT;
+use slipfront::observe::{FirstSlip, Scheduled};
+use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, Stop, Surface};
+
+const COLUMNS: usize = 80;
+const KINETIC: f64 = 0.25;
+
+/// A strip of `COLUMNS` columns under a constant force per block of prestress `tau`; its first column holds
+/// nothing.
+fn strip(rows: usize, direction: [f64; 2], tau: f64) -> Model {
+    let edges = if rows == 1 { Edges::Free } else { Edges::Periodic };
+    let lattice = Lattice::with_edges(COLUMNS, rows, [Edges::Free, edges]);
+    let mut surface = Surface::uniform(&lattice, 1.0, KINETIC);
+    for j in 0..rows {
+        surface.hold[lattice.block(0, j)] = 0.0;
+    }
+    let force = KINETIC + tau * (1.0 - KINETIC);
+    let drive = Drive {
+        v_star: 0.0,
+        direction,
+        k_drive: 0.0,
+        constant_force: [force * direction[0], force * direction[1]],
+    };
+    Model::new(lattice, surface, drive, 0.0, 0.0, FrictionLaw::Projection)
+}
+
+/// Time for which the front stays at a column, over the second half of the strip.
+fn measured_delay(model: &Model, dt: f64, expected: f64) -> f64 {
+    let mut first = FirstSlip::none(&model.surface);
+    let steps = (1.2 * COLUMNS as f64 * expected / dt) as u64;
+    Simulation::at_rest(model, dt)
+        .run(Stop::at_step(steps), &mut [Scheduled::always(&mut first)])
+        .unwrap();
+    let (from, to) = (COLUMNS / 2, COLUMNS - 10);
+    (first.time_star[to] - first.time_star[from]) / (to - from) as f64
+}
+
+/// A front that runs steadily takes a whole number of steps from one column to the next, the nearest one to
+/// the exact time: hence half a step, 0.2 to 0.6 % of that time.
+#[rstest]
+fn a_front_runs_at_its_speed(
+    #[values(0.6, 0.8, 0.9)] tau: f64,
+    #[values(
+        (1, [1.0, 0.0], K_STRAIGHT),
+        (3, [1.0, 0.0], Facing::Across.row_stiffness()),
+        (3, [0.0, 1.0], Facing::Along.row_stiffness())
+    )]
+    (rows, direction, stiffness): (usize, [f64; 2], f64),
+) {
+    let dt = 0.005;
+    let exact = 1.0 / front_speed(stiffness.sqrt(), tau);
+    let found = measured_delay(&strip(rows, direction, tau), dt, exact);
+    assert!(
+        (found - exact).abs() < 0.55 * dt,
+        "{found} per column, exactly {exact}"
+    );
+}
+
+/// The factors over the speed of long waves that model.md gives.
+#[rstest]
+#[case(0.6, 1.25)]
+#[case(0.8, 1.6667)]
+#[case(0.9, 2.2942)]
+fn the_closed_form_has_the_tabulated_values(#[case] tau: f64, #[case] factor: f64) {
+    assert!((front_speed(1.0, tau) - factor).abs() < 5e-5);
+}

@@ -1,0 +1,43 @@
+//! Steady sliding: mu_k* = mean(mu_ki)/mu_s + sqrt(3/4) Omega* V*, once damping is strong.
+
+use rstest::rstest;
+use slipfront::known_answers::steady_level;
+use slipfront::surface::Load;
+
+use crate::common::{Slider, cavity};
+
+/// Every block slides and the slider settles on the level exponentially, at the slowest with k_s/Omega =
+/// 0.014 to 0.2 per unit of time: by 20/V* less than 1e-9 is left of the transition. (At Omega* = 1 a few
+/// blocks of much friction go on sticking for very long, which the paper's claim tests allow for.)
+#[rstest]
+#[case(Slider { omega_star: 2.0, ..Slider::default() })]
+#[case(Slider { omega_star: 3.0, ..Slider::default() })]
+#[case(Slider { omega_star: 3.0, v_star: 0.1, ..Slider::default() })]
+#[case(Slider { omega_star: 30.0, v_star: 0.01, dt_star: 0.5, ..Slider::default() })]
+#[case(Slider { omega_star: 2.0, r_star: 0.75, degrees: 40.0, ..Slider::default() })]
+#[case(Slider { omega_star: 2.0, textures: vec![cavity([25, 25], 12.0, 1, 0.3, false)], ..Slider::default() })]
+#[case(Slider { omega_star: 2.0, load: Load::Kept, textures: vec![cavity([25, 25], 12.0, 1, 0.3, false)], ..Slider::default() })]
+fn strong_damping_ends_in_steady_sliding(#[case] slider: Slider) {
+    let surface = slider.surface();
+    let mean = surface
+        .mu_kinetic
+        .iter()
+        .zip(&surface.normal_forces)
+        .map(|(mu, f)| mu * f)
+        .sum::<f64>()
+        / surface.n_blocks() as f64;
+    let exact = steady_level(mean, slider.omega_star, slider.v_star);
+    assert!((slider.model().steady_level() - exact).abs() < 1e-13);
+    let outcome = slider.run(20.0);
+    let last = outcome.rows.last().unwrap().point;
+    assert!((last.mu_star - exact).abs() < 1e-9, "{} {exact}", last.mu_star);
+    assert_eq!(last.sliding_percent, 100.0);
+    // The window opens while the last of the transition still dies away.
+    let kinetic = outcome.kinetic.unwrap();
+    assert!(
+        (kinetic.mu_star - exact).abs() < 1e-3,
+        "{} {exact}",
+        kinetic.mu_star
+    );
+    assert_eq!(kinetic.sliding_percent, 100.0);
+}

@@ -1,0 +1,98 @@
+//! A straight groove before anything slips: how the pull on the missing rows loads the rows at its edge.
+
+use rstest::rstest;
+use slipfront::known_answers::{Facing, groove_edge_factor};
+use slipfront::surface::Orientation;
+use slipfront::{Edges, Simulation};
+
+use crate::common::{Slider, groove};
+
+#[rstest]
+#[case(Facing::Across, 2.188312)]
+#[case(Facing::Along, 1.611111)]
+fn the_closed_form_has_the_tabulated_values(#[case] facing: Facing, #[case] factor: f64) {
+    assert!((groove_edge_factor(facing, 5) - factor).abs() < 5e-7);
+}
+
+/// The blocks of the groove follow the drive with a constant lag and a swing that damping wipes out, so that
+/// the *rate* at which the load of an edge row grows is exact: 1e-9 is rounding over the time between two
+/// instants.
+#[rstest]
+fn rows_beside_a_groove_bear_their_factor(
+    #[values((Facing::Across, Orientation::Across), (Facing::Along, Orientation::Along))]
+    (facing, orientation): (Facing, Orientation),
+    #[values(1, 2, 5, 8)] n: usize,
+    #[values(0.0, 180.0)] degrees: f64,
+) {
+    let blocks = match orientation {
+        Orientation::Across => [20, 4],
+        Orientation::Along => [4, 20],
+    };
+    let slider = Slider {
+        blocks,
+        edges: [Edges::Periodic; 2],
+        textures: vec![groove(orientation, n as f64)],
+        v_star: 1e-3,
+        degrees,
+        omega_star: 1.0,
+        epsilon: 0.0,
+        dt_star: 0.5,
+        ..Slider::default().uniform()
+    };
+    let model = slider.model();
+    let edge = model.surface.textured.iter().position(|&t| t).unwrap();
+    let edge = edge
+        - match orientation {
+            Orientation::Across => 1,
+            Orientation::Along => blocks[0],
+        };
+    let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+    let mut loads = Vec::new();
+    for _ in 0..2 {
+        for _ in 0..800 {
+            simulation.step();
+        }
+        let [x, y] = simulation.snapshot().forces.friction.at(edge);
+        assert!(y.abs() < 1e-12);
+        loads.push(x.abs());
+    }
+    assert_eq!(
+        simulation.snapshot().point.n_sliding,
+        n * 4,
+        "only the groove moves"
+    );
+    let rate = (loads[1] - loads[0]) / (400.0 * 0.375 * slider.v_star);
+    let exact = groove_edge_factor(facing, n);
+    assert!((rate / exact - 1.0).abs() < 1e-9, "{rate}, exactly {exact}");
+}
+
+/// The edge rows slip when their share of the load, N/N_contact, is reached; the lag and the swing of the
+/// groove that the quasi-static answer leaves out are of the order of V*.
+#[rstest]
+#[case(Facing::Across, Orientation::Across)]
+#[case(Facing::Along, Orientation::Along)]
+fn the_first_slip_beside_a_groove_comes_as_much_earlier(
+    #[case] facing: Facing,
+    #[case] orientation: Orientation,
+) {
+    let slider = Slider {
+        blocks: [20, 20],
+        edges: [Edges::Periodic; 2],
+        textures: vec![groove(orientation, 5.0)],
+        v_star: 1e-3,
+        omega_star: 0.3,
+        dt_star: 0.5,
+        ..Slider::default().uniform()
+    };
+    let model = slider.model();
+    let mut first = slipfront::observe::FirstSlip::none(&model.surface);
+    Simulation::at_rest(&model, slider.dt_star)
+        .run(
+            slipfront::Stop::at_step(slider.steps(2.5)),
+            &mut [slipfront::observe::Scheduled::always(&mut first)],
+        )
+        .unwrap();
+    let exact = (20.0 / 15.0) / (0.375 * slider.v_star * groove_edge_factor(facing, 5));
+    let found = first.earliest.unwrap();
+    assert!((found / exact - 1.0).abs() < 3e-3, "{found}, exactly {exact}");
+}

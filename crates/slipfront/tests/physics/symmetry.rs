@@ -1,0 +1,261 @@
+//! Quarter turns and mirrors of lattice, drive, surface and texture together turn the motion, to the last
+//! bit, through onset and far beyond.
+
+use rstest::rstest;
+use slipfront::surface::{Coefficients, Load, Texture, mesh};
+use slipfront::{Contact, Drive, Edges, FrictionLaw, Lattice, Model, Simulation, Surface, scales};
+
+use crate::common::{Slider, cavity};
+
+/// A symmetry of the square: first a mirror at the x axis, if any, then quarter turns to the left.
+#[derive(Clone, Copy, Debug)]
+struct Operation {
+    mirror: bool,
+    quarters: usize,
+}
+
+impl Operation {
+    fn vector(self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let mut v = if self.mirror { [x, -y] } else { [x, y] };
+        for _ in 0..self.quarters {
+            v = [-v[1], v[0]];
+        }
+        v
+    }
+
+    fn blocks(self, [nx, ny]: [usize; 2]) -> [usize; 2] {
+        if self.quarters % 2 == 1 {
+            [ny, nx]
+        } else {
+            [nx, ny]
+        }
+    }
+
+    fn edges(self, [x, y]: [Edges; 2]) -> [Edges; 2] {
+        if self.quarters % 2 == 1 { [y, x] } else { [x, y] }
+    }
+
+    /// Where block (i, j) of a lattice of nx x ny blocks goes.
+    fn place(self, [nx, ny]: [usize; 2], i: usize, j: usize) -> [usize; 2] {
+        let (mut size, mut at) = ([nx, ny], if self.mirror { [i, ny - 1 - j] } else { [i, j] });
+        for _ in 0..self.quarters {
+            at = [size[1] - 1 - at[1], at[0]];
+            size = [size[1], size[0]];
+        }
+        at
+    }
+}
+
+/// A surface with scatter and an unsymmetric texture, and what the operation makes of it.
+fn models(slider: &Slider, operation: Operation) -> [Model; 2] {
+    let lattice = slider.lattice();
+    let turned = {
+        let [nx, ny] = operation.blocks(slider.blocks);
+        Lattice::with_edges(nx, ny, operation.edges(slider.edges))
+    };
+    let n = lattice.n_blocks();
+    let drawn = slider.coefficients();
+    let textured = mesh(&lattice, &slider.textures).textured;
+    let (mut mu_static, mut mu_kinetic, mut cut) = (vec![0.0; n], vec![0.0; n], vec![false; n]);
+    for (b, &over) in textured.iter().enumerate() {
+        let to = image(operation, slider.blocks, &turned, &lattice, b);
+        (mu_static[to], mu_kinetic[to], cut[to]) = (drawn.mu_static[b], drawn.mu_kinetic[b], over);
+    }
+    let drive = Drive::at_angle(slider.v_star, slider.degrees);
+    let turned_drive = Drive {
+        direction: operation.vector(drive.direction),
+        ..drive
+    };
+    let model = |lattice, coefficients, textured, drive| {
+        let surface = Surface::new(coefficients, textured, Load::Redistributed, 1.0).unwrap();
+        Model::new(
+            lattice,
+            surface,
+            drive,
+            scales::damping(slider.omega_star),
+            slider.epsilon,
+            slider.law,
+        )
+    };
+    [
+        model(lattice, drawn, textured, drive),
+        model(
+            turned,
+            Coefficients::given(mu_static, mu_kinetic),
+            cut,
+            turned_drive,
+        ),
+    ]
+}
+
+fn image(operation: Operation, blocks: [usize; 2], turned: &Lattice, lattice: &Lattice, b: usize) -> usize {
+    let (i, j) = lattice.column_row(b);
+    let [i, j] = operation.place(blocks, i, j);
+    turned.block(i, j)
+}
+
+fn assert_turns_exactly(slider: &Slider, operation: Operation, steps: usize) {
+    let [model, turned] = models(slider, operation);
+    let mut one = Simulation::at_rest(&model, slider.dt_star);
+    let mut other = Simulation::at_rest(&turned, slider.dt_star);
+    for step in 0..steps {
+        one.step();
+        other.step();
+        if step % 50 != 0 && step + 1 != steps {
+            continue;
+        }
+        let (here, there) = (one.snapshot(), other.snapshot());
+        for b in 0..model.lattice.n_blocks() {
+            let to = image(operation, slider.blocks, &turned.lattice, &model.lattice, b);
+            let turn = |v| operation.vector(v);
+            assert_eq!(
+                turn(here.state.displacement.at(b)),
+                there.state.displacement.at(to),
+                "step {step}, block {b}"
+            );
+            assert_eq!(turn(here.forces.friction.at(b)), there.forces.friction.at(to));
+            assert_eq!(
+                turn(here.forces.velocity_after.at(b)),
+                there.forces.velocity_after.at(to)
+            );
+            assert_eq!(here.forces.contact_after[b], there.forces.contact_after[to]);
+        }
+        // Means are summed in another order.
+        assert!((here.point.mu_star - there.point.mu_star).abs() < 1e-13);
+        assert_eq!(here.point.n_sliding, there.point.n_sliding);
+        let handed = if operation.mirror { -1.0 } else { 1.0 };
+        assert!((handed * here.point.mu_lateral_star - there.point.mu_lateral_star).abs() < 1e-13);
+    }
+    assert!(one.peak().ended, "the comparison reaches beyond the transition");
+    assert_eq!(one.peak().step, other.peak().step);
+}
+
+/// An off-centre elongated cavity, so that nothing is symmetric by itself.
+fn off_centre(blocks: [usize; 2]) -> Texture {
+    let Texture::Cavity(mut found) = cavity(blocks, 8.0, 1, 0.4, false) else {
+        unreachable!("a cavity is a cavity")
+    };
+    found.center = [0.3 * blocks[0] as f64, 0.6 * blocks[1] as f64];
+    found.rotate = 20.0;
+    Texture::Cavity(found)
+}
+
+#[rstest]
+fn every_symmetry_of_the_square_is_exact(
+    #[values((false, 1), (false, 2), (false, 3), (true, 0), (true, 1), (true, 2), (true, 3))]
+    (mirror, quarters): (bool, usize),
+    #[values([12, 12], [8, 13])] blocks: [usize; 2],
+    #[values([Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Periodic, Edges::Periodic])]
+    edges: [Edges; 2],
+    #[values(0.0, 30.0)] degrees: f64,
+) {
+    let slider = Slider {
+        blocks,
+        edges,
+        degrees,
+        textures: vec![off_centre(blocks)],
+        ..Slider::default()
+    };
+    assert_turns_exactly(
+        &slider,
+        Operation { mirror, quarters },
+        slider.steps(5.0) as usize,
+    );
+}
+
+#[rstest]
+#[case::reversal(Slider { law: FrictionLaw::Reversal, ..Slider::default() })]
+#[case::literal(Slider { law: FrictionLaw::Literal, r_star: 0.9, omega_star: 0.3, ..Slider::default() })]
+#[case::strained(Slider { epsilon: 0.05, ..Slider::default() })]
+#[case::linear(Slider { epsilon: 0.0, ..Slider::default() })]
+#[case::chain(Slider { blocks: [30, 1], textures: vec![], ..Slider::default() })]
+#[case::two_by_two(Slider { blocks: [2, 2], textures: vec![], ..Slider::default() })]
+fn other_laws_strains_and_shapes_too(#[case] slider: Slider) {
+    let slider = Slider {
+        degrees: 15.0,
+        ..slider
+    };
+    for quarters in 0..4 {
+        for mirror in [false, true] {
+            let operation = Operation { mirror, quarters };
+            let [model, turned] = models(&slider, operation);
+            let (mut one, mut other) = (
+                Simulation::at_rest(&model, slider.dt_star),
+                Simulation::at_rest(&turned, slider.dt_star),
+            );
+            for _ in 0..1200 {
+                one.step();
+                other.step();
+            }
+            for b in 0..model.lattice.n_blocks() {
+                let to = image(operation, slider.blocks, &turned.lattice, &model.lattice, b);
+                let turned = operation.vector(one.state().displacement.at(b));
+                assert_eq!(
+                    turned,
+                    other.state().displacement.at(to),
+                    "{operation:?}, block {b}"
+                );
+            }
+        }
+    }
+}
+
+/// A shift along a periodic axis shifts the motion, to the last bit.
+#[test]
+fn shifts_along_periodic_axes_are_exact() {
+    let slider = Slider {
+        blocks: [12, 9],
+        edges: [Edges::Periodic; 2],
+        ..Slider::default()
+    };
+    let model = slider.model();
+    let shifted_from = |b: usize| {
+        let (i, j) = model.lattice.column_row(b);
+        model.lattice.block((i + 5) % 12, (j + 2) % 9)
+    };
+    let mut shifted = model.clone();
+    for b in 0..108 {
+        shifted.surface.hold[shifted_from(b)] = model.surface.hold[b];
+        shifted.surface.slide[shifted_from(b)] = model.surface.slide[b];
+    }
+    let (mut one, mut other) = (
+        Simulation::at_rest(&model, 0.1),
+        Simulation::at_rest(&shifted, 0.1),
+    );
+    for _ in 0..2000 {
+        one.step();
+        other.step();
+    }
+    assert!(one.peak().ended);
+    for b in 0..108 {
+        assert_eq!(
+            one.state().displacement.at(b),
+            other.state().displacement.at(shifted_from(b))
+        );
+    }
+}
+
+/// On a symmetric surface the motion has the surface's symmetry: mirrored blocks move as mirrors.
+#[test]
+fn a_symmetric_surface_moves_symmetrically() {
+    let slider = Slider {
+        blocks: [20, 20],
+        textures: vec![cavity([20, 20], 10.0, 1, 0.0, false)],
+        ..Slider::default().uniform()
+    };
+    let model = slider.model();
+    let mut simulation = Simulation::at_rest(&model, 0.1);
+    for _ in 0..slider.steps(5.0) {
+        simulation.step();
+    }
+    let u = &simulation.state().displacement;
+    for b in 0..400 {
+        let (i, j) = (b % 20, b / 20);
+        let up = (19 - j) * 20 + i;
+        assert_eq!((u.x[b], u.y[b]), (u.x[up], -u.y[up]), "block ({i}, {j})");
+        let ([x, y], [other_x, other_y]) = (u.at(b), u.at(up));
+        assert!(x.is_finite() && y.is_finite() && other_x.is_finite() && other_y.is_finite());
+    }
+    assert!(simulation.snapshot().point.mu_lateral_star.abs() < 1e-14);
+    assert!(simulation.state().contact.contains(&Contact::Sliding));
+}

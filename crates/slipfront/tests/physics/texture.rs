@@ -1,0 +1,192 @@
+//! What a texture does to load, friction, counts and times; and the three readings of the friction law.
+
+use rstest::rstest;
+use slipfront::observe::{FirstSlip, Observer, Scheduled, StressMaximum, stress};
+use slipfront::surface::{Load, Orientation};
+use slipfront::{Contact, FrictionLaw, Simulation, State, Stop, VectorField};
+
+use crate::common::{Slider, cavity, groove};
+
+fn textured() -> Slider {
+    Slider {
+        textures: vec![cavity([25, 25], 10.0, 1, 0.0, false)],
+        ..Slider::default()
+    }
+}
+
+#[test]
+fn blocks_in_contact_carry_the_whole_load() {
+    for percent in [0.5, 10.0, 60.0] {
+        let slider = Slider {
+            textures: vec![cavity([25, 25], percent, 1, 0.2, true)],
+            ..Slider::default()
+        };
+        let surface = slider.surface();
+        assert!((surface.normal_forces.iter().sum::<f64>() - 625.0).abs() < 1e-10);
+        let share = 625.0 / surface.n_contact() as f64;
+        let drawn = slider.coefficients();
+        for b in 0..625 {
+            let (load, hold, slide) = if surface.textured[b] {
+                (0.0, 0.0, 0.0)
+            } else {
+                (share, share * drawn.mu_static[b], share * drawn.mu_kinetic[b])
+            };
+            assert_eq!(surface.normal_forces[b], load);
+            let over = surface.textured[b];
+            let kept = |mu: f64| if over { 0.0 } else { mu };
+            assert_eq!(surface.mu_static[b], kept(drawn.mu_static[b]));
+            assert_eq!(surface.mu_kinetic[b], kept(drawn.mu_kinetic[b]));
+            assert!((surface.hold[b] - hold).abs() < 1e-15 && (surface.slide[b] - slide).abs() < 1e-15);
+        }
+        let kept = Slider {
+            load: Load::Kept,
+            ..slider
+        };
+        assert_eq!(
+            kept.surface().normal_forces.iter().sum::<f64>(),
+            surface.n_contact() as f64
+        );
+    }
+}
+
+/// A textured block holds nothing, so that it moves as soon as any force acts: in the first step after t = 0.
+/// N* counts it, first-slip times do not.
+#[rstest]
+fn textured_blocks_move_at_once(#[values(FrictionLaw::Projection, FrictionLaw::Reversal)] law: FrictionLaw) {
+    let slider = Slider { law, ..textured() };
+    let model = slider.model();
+    let n_textured = 625 - model.surface.n_contact();
+    let mut first = FirstSlip::none(&model.surface);
+    let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+    assert_eq!(simulation.snapshot().point.n_sliding, 0, "no force acts at t = 0");
+    for _ in 0..20 {
+        simulation.step();
+        let now = simulation.snapshot();
+        assert_eq!(now.point.n_sliding, n_textured);
+        assert_eq!(now.point.sliding_percent, 100.0 * n_textured as f64 / 625.0);
+        for b in 0..625 {
+            let slides = now.forces.contact_after[b] == Contact::Sliding;
+            assert_eq!(slides, model.surface.textured[b]);
+            assert_eq!(stress::traction(&now, b).is_nan(), model.surface.textured[b]);
+        }
+    }
+    simulation
+        .run(Stop::at_step(1500), &mut [Scheduled::always(&mut first)])
+        .unwrap();
+    for b in 0..625 {
+        assert_eq!(
+            first.time_star[b].is_nan(),
+            model.surface.textured[b],
+            "block {b}"
+        );
+    }
+    let earliest = first.time_star.iter().copied().fold(f64::INFINITY, f64::min);
+    assert_eq!(first.earliest, Some(earliest));
+    // The pull of the cavity's blocks makes its rim slip before an untextured surface would.
+    assert!(earliest < model.first_slip_estimate());
+}
+
+/// Eq. 10 for a stuck block is the pull of its own drive spring; the traction shows the concentration at the
+/// rim.
+#[test]
+fn contact_stress_and_traction_of_stuck_blocks() {
+    let slider = textured().uniform();
+    let model = slider.model();
+    let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+    for _ in 0..300 {
+        simulation.step();
+    }
+    let now = simulation.snapshot();
+    let pull = 0.375 * 0.03 * now.time_star;
+    let mut largest = 0.0_f64;
+    for b in (0..625).filter(|&b| !model.surface.textured[b]) {
+        assert!((stress::contact_stress(&now, b) - pull).abs() < 1e-12);
+        largest = largest.max(stress::traction(&now, b));
+    }
+    assert!(largest > 1.5 * pull, "the rim bears {largest}, the rest {pull}");
+    // All pulls on stuck and sliding blocks add up to the drive's.
+    let total = now.forces.drive.x.iter().sum::<f64>() / 625.0;
+    assert!((total - now.point.mu_star).abs() < 1e-13);
+}
+
+/// The scale of tau_c* is the largest over blocks in contact and steps, seen with or without frames.
+#[test]
+fn the_largest_contact_stress_is_over_blocks_in_contact_and_all_steps() {
+    let slider = textured();
+    let model = slider.model();
+    let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+    let mut largest = StressMaximum::default();
+    let mut by_hand = 0.0_f64;
+    for _ in 0..1200 {
+        let now = simulation.snapshot();
+        for b in (0..625).filter(|&b| !model.surface.textured[b]) {
+            by_hand = by_hand.max(stress::contact_stress(&now, b));
+        }
+        let step = now.step;
+        simulation
+            .run(Stop::at_step(step), &mut [Scheduled::always(&mut largest)])
+            .unwrap();
+        simulation.step();
+    }
+    assert_eq!(largest.value(), by_hand);
+    assert!(by_hand > 1.0);
+}
+
+/// Implicit and explicit friction with memory agree on the peak; without memory the slider never comes down.
+#[test]
+fn two_readings_of_the_law_agree_and_the_literal_one_does_not() {
+    let with = |law| Slider {
+        law,
+        dt_star: 0.02,
+        ..Slider::default()
+    };
+    let (projection, reversal) = (
+        with(FrictionLaw::Projection).onset(),
+        with(FrictionLaw::Reversal).onset(),
+    );
+    let difference = (projection.mu_star - reversal.mu_star).abs();
+    assert!(
+        projection.ended && reversal.ended && difference < 1e-6,
+        "{difference}"
+    );
+    let literal = with(FrictionLaw::Literal).run(8.0);
+    assert!(!literal.peak.ended);
+}
+
+/// A peak beside a frictionless groove, where a block stops and starts often, does not hang on the reading
+/// either.
+#[test]
+fn two_readings_agree_beside_a_groove() {
+    let with = |law| {
+        let slider = Slider {
+            law,
+            dt_star: 0.02,
+            textures: vec![groove(Orientation::Across, 3.0)],
+            ..Slider::default().uniform()
+        };
+        slider.onset().mu_star
+    };
+    let difference = (with(FrictionLaw::Projection) - with(FrictionLaw::Reversal)).abs();
+    assert!(difference < 1e-3, "{difference}");
+}
+
+/// A block over a texture may be torn about as it will: it does not scale the stress of those in contact.
+#[test]
+fn the_largest_contact_stress_leaves_textured_blocks_out() {
+    let slider = textured();
+    let model = slider.model();
+    let mut u = VectorField::zeros(625);
+    let middle = model.lattice.block(12, 12);
+    u.x[middle] = 100.0;
+    assert!(model.surface.textured[middle]);
+    let simulation = Simulation::from_state(&model, 0.1, State::moving(u, VectorField::zeros(625)));
+    let now = simulation.snapshot();
+    let mut largest = StressMaximum::default();
+    largest.observe(&now).unwrap();
+    assert!(stress::contact_stress(&now, middle) > 100.0);
+    assert!(
+        largest.value() < 1e-12,
+        "all others rest without a pull: {}",
+        largest.value()
+    );
+}
