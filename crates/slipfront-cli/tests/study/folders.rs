@@ -200,3 +200,38 @@ fn a_file_with_new_contents_is_a_new_case() {
         std::fs::read(bench.path("mask.npy")).unwrap()
     );
 }
+
+/// A point whose runs diverge beside one whose runs do not: see the same case among the tests of the command.
+#[test]
+fn a_run_that_diverges_is_recorded_and_kept_and_stops_nothing_else() {
+    let bench = Bench::with(
+        "[base]\nslider = { blocks = [6, 6], omega_star = 0 }\ndrive = { v_star = 10 }\n\
+         friction = { r_star = 0, sigma_static_star = 1 }\ntime = { step = 0.9, duration_star = 2000 }\n\
+         [study]\nkeep = 'failed'\n\
+         [[axes]]\nkey = 'load.pressure'\nlist = ['50 GPa', '100 kPa']\n",
+    );
+    for _ in 0..2 {
+        let output = bench.output(&["study.toml", "-o", "out"]);
+        assert_eq!(output.status.code(), Some(1));
+        assert!(errors(&output).contains("1 of 2 runs failed"), "{}", errors(&output));
+    }
+    let results = bench.results("out");
+    let runs = results.table("runs.csv");
+    let of = |pressure: &str| {
+        runs.iter()
+            .filter(|row| row["load.pressure"] == pressure)
+            .collect::<Vec<_>>()
+    };
+    for row in of("50 GPa") {
+        assert_eq!(row["status"], "failed");
+        assert!(row["reason"].contains("diverged"), "{}", row["reason"]);
+        assert!(results.has(&format!("runs/{}/case.toml", row["run"])));
+        assert!(!results.has(&format!("runs/{}/manifest.json", row["run"])));
+    }
+    assert!(
+        of("100 kPa")
+            .iter()
+            .all(|row| row["status"] == "done" && !row["static_friction_star"].is_empty())
+    );
+    assert_eq!((of("50 GPa").len(), of("100 kPa").len()), (1, 1));
+}

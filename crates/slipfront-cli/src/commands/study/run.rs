@@ -151,8 +151,9 @@ fn failures(plan: &Plan, findings: &Findings) -> Result<(), Failure> {
     };
     let place = plan.describe(&plan.points[run.point]);
     let sentence = format!(
-        "{} runs failed, the others stand in the tables; the first, replicate {} of the point {place}: {reason}",
+        "{} of {} runs failed, the others stand in the tables; the first, replicate {} of the point {place}: {reason}",
         failed.len(),
+        findings.runs.len(),
         run.replicate
     );
     Err(Failure::running(anyhow::anyhow!(sentence)))
