@@ -12,6 +12,7 @@ pub mod case;
 pub mod case_file;
 pub mod fields;
 pub mod folder;
+pub mod paper;
 pub mod pictures;
 pub mod quantity;
 pub mod results;

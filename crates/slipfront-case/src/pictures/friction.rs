@@ -65,7 +65,7 @@ pub struct Instant {
 /// Draws mu* and, below it, N* against t*, as wide as a journal's column (85 mm).
 ///
 /// One curve is drawn with all it knows: first slip, peak, kinetic window, lettered instants. Several are
-/// drawn over each other with their peaks, and a legend above. Curves of more than 4000 points are thinned to
+/// drawn over each other with their peaks and lettered instants, and a legend above. Curves of more than 4000 points are thinned to
 /// the first, last, lowest and highest point of every pixel column, which shows the same picture.
 ///
 /// # Errors
@@ -236,9 +236,13 @@ fn label_one(
 /// Several curves, with their peaks.
 fn draw_many(canvas: &mut Canvas, panels: &Panels, curves: &[FrictionCurve]) {
     let Panels { time, mu, sliding } = panels;
+    let mut placer = Placer::new(panels.friction());
     for (index, curve) in curves.iter().enumerate() {
         for (axis, values) in [(mu, &curve.mu_star), (sliding, &curve.sliding_percent)] {
             for piece in pieces(&curve.time_star, values, time, axis) {
+                if axis.start == mu.start {
+                    placer.avoid(&piece);
+                }
                 stroke(canvas, piece, curve_colour(index, curves.len()));
             }
         }
@@ -249,7 +253,31 @@ fn draw_many(canvas: &mut Canvas, panels: &Panels, curves: &[FrictionCurve]) {
             canvas.dot((time.at(t), mu.at(value)), DOT, curve_colour(index, curves.len()));
         }
     }
+    letter(canvas, panels, &mut placer, curves);
     panels.draw_frames(canvas);
+}
+
+/// Dots and letters of the instants.
+fn letter(canvas: &mut Canvas, panels: &Panels, placer: &mut Placer, curves: &[FrictionCurve]) {
+    let Panels { time, mu, .. } = panels;
+    let held = |instant: &&Instant| time.holds(instant.time_star) && mu.holds(instant.mu_star);
+    let instants = curves.iter().flat_map(|curve| &curve.instants).filter(held);
+    let places: Vec<(&Instant, (f64, f64))> = instants
+        .map(|instant| (instant, (time.at(instant.time_star), mu.at(instant.mu_star))))
+        .collect();
+    for &(_, (x, y)) in &places {
+        placer.take(Area {
+            x: x - DOT,
+            y: y - DOT,
+            width: 2.0 * DOT,
+            height: 2.0 * DOT,
+        });
+    }
+    for (instant, place) in places {
+        let text = Text::plain(&instant.letter.to_string(), SIZE_LABEL);
+        write(canvas, placer, &text, around(place, box_of(&text)), BLACK);
+        canvas.dot(place, DOT, BLACK);
+    }
 }
 
 /// Writes a text at the best of the places, with its leader.

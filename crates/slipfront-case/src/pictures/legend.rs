@@ -33,6 +33,8 @@ struct Entry {
     y: f64,
     text: Text,
     colour: Rgb,
+    /// A line alone, whatever the samples of the others are.
+    line: bool,
 }
 
 impl Legend {
@@ -68,6 +70,7 @@ impl Legend {
             y: middle(first + index / columns),
             text,
             colour: curve_colour(index, labels.len()),
+            line: false,
         });
         let title_x = if first == 0 { left - width - 30.0 } else { left };
         Self {
@@ -78,12 +81,27 @@ impl Legend {
         }
     }
 
+    /// The same with a line alone before some of the names.
+    pub(super) fn with_lines(mut self, lines: &[bool]) -> Self {
+        for (entry, &line) in self.entries.iter_mut().zip(lines) {
+            entry.line = line;
+        }
+        self
+    }
+
     /// Draws it.
     pub(super) fn draw(&self, canvas: &mut Canvas) {
         if let Some((title, (x, y))) = &self.title {
             canvas.text(title, (*x, y + 0.5 * title.height()), Align::Start, BLACK);
         }
-        for (index, Entry { x, y, text, colour }) in self.entries.iter().enumerate() {
+        for (index, entry) in self.entries.iter().enumerate() {
+            let Entry {
+                x,
+                y,
+                text,
+                colour,
+                line,
+            } = entry;
             let middle = x + 0.5 * Self::SAMPLE;
             match self.sample {
                 Sample::Line | Sample::Marker => {
@@ -99,7 +117,7 @@ impl Legend {
                     canvas.fill(area, *colour, OPACITY_BAR);
                 }
             }
-            if let Sample::Marker = self.sample {
+            if let (Sample::Marker, false) = (self.sample, line) {
                 marker(canvas, index, (middle, *y), RADIUS_MARKER, *colour);
             }
             canvas.text(

@@ -15,6 +15,7 @@ mod friction;
 mod heat_map;
 mod labels;
 mod legend;
+mod maps;
 mod markers;
 mod names;
 mod outline;
@@ -22,6 +23,7 @@ mod panels;
 mod response;
 mod scale;
 mod series;
+mod shapes;
 mod sides;
 mod stress;
 mod style;
@@ -30,9 +32,12 @@ mod titles;
 mod whisker;
 
 pub use bars::{Bar, BarChart, BarGroup, bars};
+pub(crate) use files::base64;
 pub use friction::{FrictionCurve, Instant, Kinetic, friction};
 pub use heat_map::{HeatAxis, HeatMap, heat_map};
+pub use maps::{FieldMap, FieldMaps, field_maps};
 pub use response::{Response, Responses, response};
+pub use shapes::{Shape, shapes};
 pub use stress::{StressMap, StressMaps, stress};
 pub use titles::{symbol, title};
 

@@ -25,6 +25,8 @@ pub struct Responses {
     pub x_title: String,
     /// Whether x is logarithmic; without effect if an x is not positive.
     pub log_x: bool,
+    /// Whether y is.
+    pub log_y: bool,
     /// What the curves show.
     pub y_title: String,
     /// What the curves' labels are values of, for the legend; see [`symbol`](super::symbol).
@@ -46,6 +48,8 @@ pub struct Response {
     pub low: Vec<f64>,
     /// The upper end.
     pub high: Vec<f64>,
+    /// Whether it is a formula or a level rather than measured: a line through its points, without markers.
+    pub line: bool,
 }
 
 /// Draws means with their confidence bands, as wide as a journal's column (85 mm).
@@ -65,17 +69,16 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
     let curves: Vec<Curve> = curves.iter().map(Curve::of).collect();
     let xs: Vec<f64> = curves.iter().flat_map(|curve| curve.x.clone()).collect();
     let x = Scale::around(&xs, responses.log_x, 0.04);
-    let y = Scale::around(
-        &curves.iter().flat_map(Curve::values).collect::<Vec<_>>(),
-        false,
-        0.06,
-    );
+    let ys: Vec<f64> = curves.iter().flat_map(Curve::values).collect();
+    let y = Scale::around(&ys, responses.log_y, 0.06);
     let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Way::Y));
     let right = COLUMN_WIDTH.round() - RIGHT;
     let mut legend = Legend::default();
     if curves.len() > 1 {
         let labels: Vec<&str> = responses.curves.iter().map(|c| c.label.as_str()).collect();
-        legend = Legend::titled(&responses.legend_title, &labels, Sample::Marker, left, right);
+        let lines: Vec<bool> = curves.iter().map(|curve| curve.line).collect();
+        legend =
+            Legend::titled(&responses.legend_title, &labels, Sample::Marker, left, right).with_lines(&lines);
     }
     let area = Area {
         x: left,
@@ -88,11 +91,12 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
     let mut canvas = Canvas::new(COLUMN_WIDTH, area.bottom() + LOWER_ROOM);
     let title = Text::fitted(&responses.y_title, HEIGHT);
     left_side(&mut canvas, area, 0.0, &y.ticks(Way::Y), &title);
+    short_ticks(&mut canvas, area, Way::Y, &y.short_ticks());
     short_ticks(&mut canvas, area, Way::X, &x.short_ticks());
     let title = Text::fitted(&responses.x_title, area.width);
     lower_side(&mut canvas, area, &x.ticks(Way::X), &title);
     legend.draw(&mut canvas);
-    if y.axis().lo < 0.0 && y.axis().hi > 0.0 {
+    if !y.is_log() && y.axis().lo < 0.0 && y.axis().hi > 0.0 {
         canvas.line((area.x, y.at(0.0)), (area.right(), y.at(0.0)), WIDTH_LEADER, GREY);
     }
     // All bands, then all curves, then all points: nothing hides a point.
@@ -106,14 +110,26 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
         curve.draw_band(&mut canvas, &x, &y, *colour, opacity);
     }
     for (curve, colour) in &coloured {
-        for piece in pieces(&curve.measured(&x), &curve.mean, x.axis(), y.axis()) {
+        for piece in pieces(
+            &measured(&curve.x, &x),
+            &measured(&curve.mean, &y),
+            x.axis(),
+            y.axis(),
+        ) {
             if piece.len() > 1 {
                 canvas.polyline(piece, WIDTH_CURVE, *colour);
             }
         }
     }
-    for (index, (curve, colour)) in coloured.iter().enumerate() {
-        for point in pieces(&curve.measured(&x), &curve.mean, x.axis(), y.axis()).concat() {
+    for (index, (curve, colour)) in coloured.iter().enumerate().filter(|(_, (curve, _))| !curve.line) {
+        for point in pieces(
+            &measured(&curve.x, &x),
+            &measured(&curve.mean, &y),
+            x.axis(),
+            y.axis(),
+        )
+        .concat()
+        {
             marker(&mut canvas, index, point, RADIUS_MARKER, *colour);
         }
     }
@@ -145,6 +161,11 @@ struct Curve {
     mean: Vec<f64>,
     low: Vec<f64>,
     high: Vec<f64>,
+    line: bool,
+}
+
+fn measured(values: &[f64], scale: &Scale) -> Vec<f64> {
+    values.iter().map(|&value| scale.measure(value)).collect()
 }
 
 impl Curve {
@@ -166,6 +187,7 @@ impl Curve {
             mean: order.iter().map(|&index| response.mean[index]).collect(),
             low,
             high,
+            line: response.line,
         }
     }
 
@@ -174,14 +196,10 @@ impl Curve {
         [&self.mean, &self.low, &self.high].into_iter().flatten().copied()
     }
 
-    fn measured(&self, x: &Scale) -> Vec<f64> {
-        self.x.iter().map(|&value| x.measure(value)).collect()
-    }
-
     fn draw_band(&self, canvas: &mut Canvas, x: &Scale, y: &Scale, colour: Rgb, opacity: f64) {
-        let xs = self.measured(x);
-        let lows = pieces(&xs, &self.low, x.axis(), y.axis());
-        let highs = pieces(&xs, &self.high, x.axis(), y.axis());
+        let xs = measured(&self.x, x);
+        let lows = pieces(&xs, &measured(&self.low, y), x.axis(), y.axis());
+        let highs = pieces(&xs, &measured(&self.high, y), x.axis(), y.axis());
         for (low, high) in lows.into_iter().zip(highs) {
             if let ([low], [high]) = (&low[..], &high[..]) {
                 whisker(canvas, low.0, (low.1, high.1), WIDTH_MARK, colour);
@@ -206,6 +224,7 @@ mod tests {
             low: mean.iter().map(|mean| mean - 0.1).collect(),
             high: mean.iter().map(|mean| mean + 0.1).collect(),
             mean,
+            line: false,
         }
     }
 
@@ -215,6 +234,7 @@ mod tests {
             y_title: "y".to_string(),
             legend_title: "size".to_string(),
             log_x,
+            log_y: false,
             curves: curves.to_vec(),
         }
     }
@@ -260,6 +280,25 @@ mod tests {
         assert_eq!(bands(&svg(std::slice::from_ref(&curve))), 1);
         curve.high.fill(f64::NAN);
         assert_eq!(bands(&svg(&[curve])), 0);
+    }
+
+    #[test]
+    fn a_formula_is_a_line_without_markers_on_either_kind_of_axis() {
+        let mut formula = curve("5/2 over V*", &[(0.01, 250.0), (0.1, 25.0)]);
+        let measured = svg(std::slice::from_ref(&formula));
+        formula.line = true;
+        let drawn = svg(std::slice::from_ref(&formula));
+        assert_eq!(
+            (
+                measured.matches("<circle").count(),
+                drawn.matches("<circle").count()
+            ),
+            (4, 0)
+        );
+        let mut both = responses(&[formula], true);
+        both.log_y = true;
+        let logarithmic = response(&both).unwrap().svg;
+        assert!(logarithmic.contains(">100</text>") && !logarithmic.contains("NaN"));
     }
 
     #[test]

@@ -135,7 +135,7 @@ fn check(maps: &StressMaps) -> Result<(), PictureError> {
 }
 
 /// A dark line with a pale rim, seen on every colour of the ramp.
-fn draw_outline(canvas: &mut Canvas, corners: &[(f64, f64)]) {
+pub(super) fn draw_outline(canvas: &mut Canvas, corners: &[(f64, f64)]) {
     let mut points = corners.to_vec();
     // A closed line is drawn past its start: only so is that corner rounded like the others.
     if points.len() > 2 && points.first() == points.last() {

@@ -118,6 +118,7 @@ fn curves(axes: &[Axis], x: usize, quantity: &str, values: &Values) -> Vec<Drawn
             let responses = Responses {
                 x_title: title(axes[x].title()),
                 log_x: axes[x].spacing == Spacing::Logarithmic,
+                log_y: false,
                 y_title: title(quantity),
                 legend_title: match back {
                     [axis] => symbol(axes[*axis].title()),
@@ -163,6 +164,7 @@ fn curve(axes: &[Axis], x: usize, fixed: &[(usize, usize)], labelled: &[usize], 
         mean: vec![],
         low: vec![],
         high: vec![],
+        line: false,
     };
     let mut levels: Vec<(f64, usize)> = axes[x]
         .levels

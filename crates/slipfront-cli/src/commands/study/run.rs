@@ -132,7 +132,7 @@ pub(super) fn finish(
 }
 
 /// Flags that SIGINT and SIGTERM set: that one came, and which.
-fn on_signals() -> std::io::Result<(Arc<AtomicBool>, Arc<AtomicUsize>)> {
+pub(crate) fn on_signals() -> std::io::Result<(Arc<AtomicBool>, Arc<AtomicUsize>)> {
     let (stop, which) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
     for signal in [SIGINT, SIGTERM] {
         // A second signal ends the process at once.

@@ -1,0 +1,53 @@
+//! The files of `cases/paper/`, kept in the program so that `slipfront paper` works anywhere.
+
+/// A table of (name, text) from names relative to `cases/paper/`.
+macro_rules! files {
+    ($($name:literal),* $(,)?) => {
+        &[$(($name, include_str!(concat!("../../../../cases/paper/", $name, ".toml")))),*]
+    };
+}
+
+/// Case and study files by their names.
+pub(super) const FILES: &[(&str, &str)] = files![
+    "fig02",
+    "fig04",
+    "fig05",
+    "fig05_long",
+    "fig06",
+    "fig06_material",
+    "fig07",
+    "fig07_steps",
+    "fig08",
+    "fig09",
+    "fig10",
+    "fig10_long",
+    "fig11",
+    "fig12",
+    "fig12_fluctuations",
+    "fig12_kinetic",
+    "fig12_surfaces",
+    "fig13",
+    "fig14",
+    "fig15",
+    "fig16",
+    "fig16_generality",
+    "fig16_grooves",
+    "fig17",
+    "fig18",
+    "sensitivity",
+    "sensitivity_texture",
+    "table1/case1",
+    "table1/case2",
+    "table1/case3",
+    "table1/case3_corrected",
+    "table1/case4",
+    "table1/case5",
+    "table1/case6",
+    "table1/case6_corrected",
+    "table1/case7",
+    "table1/case7_corrected",
+    "table1/case8",
+];
+
+/// The claims of the paper and what is expected of them.
+pub(super) const CLAIMS: &str = include_str!("../../../../cases/paper/claims.toml");

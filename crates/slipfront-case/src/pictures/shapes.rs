@@ -1,0 +1,92 @@
+//! Outlines of cavities, side by side.
+
+use super::canvas::{Align, Area, Canvas};
+use super::style::{BLACK, COLUMN_WIDTH, CURVES, MARGIN, SIZE_TICK, WIDTH_MARK};
+use super::text::Text;
+use super::{Picture, PictureError};
+
+const COLUMNS: usize = 3;
+const GAP: f64 = 20.0;
+
+/// A closed outline.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Shape {
+    /// Its name, below it.
+    pub label: String,
+    /// Its corners, y upwards.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Draws outlines three in a row on one scale, as wide as a journal's column (85 mm).
+///
+/// # Errors
+///
+/// No outline, or one without extent.
+pub fn shapes(shapes: &[Shape]) -> Result<Picture, PictureError> {
+    let reach = shapes
+        .iter()
+        .flat_map(|shape| shape.points.iter().flatten())
+        .fold(0.0, |reach: f64, &at| reach.max(at.abs()));
+    if shapes.is_empty() || reach.is_nan() || reach <= 0.0 {
+        return Err(PictureError::Nothing("outline"));
+    }
+    let room = ((COLUMN_WIDTH - 2.0 * MARGIN + GAP) / COLUMNS as f64 - GAP).round();
+    let label_room = 1.9 * f64::from(SIZE_TICK);
+    let scale = 0.47 * room / reach;
+    // A row is no higher than its highest outline.
+    let rows: Vec<f64> = shapes
+        .chunks(COLUMNS)
+        .map(|row| {
+            let heights = row.iter().flat_map(|shape| &shape.points).map(|[_, y]| y.abs());
+            (2.0 * scale * heights.fold(0.0, f64::max)).round() + GAP
+        })
+        .collect();
+    let height = rows.iter().map(|row| row + label_room).sum::<f64>();
+    let mut canvas = Canvas::new(COLUMN_WIDTH, 2.0 * MARGIN + height);
+    for (index, shape) in shapes.iter().enumerate() {
+        let row = index / COLUMNS;
+        let area = Area {
+            x: MARGIN + (index % COLUMNS) as f64 * (room + GAP),
+            y: MARGIN + rows[..row].iter().map(|above| above + label_room).sum::<f64>(),
+            width: room,
+            height: rows[row],
+        };
+        let (x, y) = (area.x + 0.5 * room, area.y + 0.5 * area.height);
+        let mut points: Vec<(f64, f64)> = shape
+            .points
+            .iter()
+            .map(|[px, py]| (x + scale * px, y - scale * py))
+            .collect();
+        canvas.polygon(&points, CURVES[0], 0.25);
+        points.extend(points.first().copied());
+        canvas.polyline(points, WIDTH_MARK, CURVES[0]);
+        let label = Text::shortened(&shape.label, SIZE_TICK, room + GAP);
+        canvas.text(
+            &label,
+            (x, area.bottom() + f64::from(SIZE_TICK)),
+            Align::Middle,
+            BLACK,
+        );
+    }
+    canvas.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_outline_is_filled_edged_and_named() {
+        let square = |label: &str| Shape {
+            label: label.to_owned(),
+            points: vec![[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]],
+        };
+        let svg = shapes(&[square("a"), square("b")]).unwrap().svg;
+        assert_eq!(
+            (svg.matches("<path").count(), svg.matches("<polyline").count()),
+            (2, 2)
+        );
+        assert!(svg.contains(">a</text>") && svg.contains(">b</text>"));
+        assert!(shapes(&[]).is_err() && shapes(&[Shape::default()]).is_err());
+    }
+}

@@ -1,0 +1,138 @@
+//! The paper on two random surfaces in place of five: every figure is drawn and every verdict is the expected one.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use slipfront_case::paper::{self, FIGURES, Options, Paper};
+use slipfront_case::study::{Records, StudyError};
+
+fn options(stop: &AtomicBool) -> Options<'_> {
+    Options {
+        threads: std::thread::available_parallelism().map_or(1, usize::from),
+        stop,
+        reduced: true,
+    }
+}
+
+fn run(names: &[&str], folder: &Path, stop: &AtomicBool) -> Result<Paper, paper::PaperError> {
+    let names: Vec<String> = names.iter().map(|&name| name.to_owned()).collect();
+    let mut records = Records::open(folder)?;
+    paper::run(
+        &paper::figures(&names)?,
+        &mut records,
+        &options(stop),
+        &mut |_| {},
+    )
+}
+
+#[test]
+fn every_verdict_is_the_expected_one_and_the_documentation_tells_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let never = AtomicBool::new(false);
+    let paper = run(&["all"], folder.path(), &never).unwrap();
+    let surprises: Vec<String> = paper
+        .surprises()
+        .map(|(_, judged)| {
+            format!(
+                "{}: {} {}",
+                judged.claim.number,
+                judged.verdict.words(),
+                judged.measured()
+            )
+        })
+        .collect();
+    assert!(surprises.is_empty(), "{surprises:#?}");
+    assert!(paper.judged.len() >= 60);
+
+    paper::write(&paper, folder.path()).unwrap();
+    let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    let pictures: usize = paper.figures.iter().map(|(_, found)| found.panels.len()).sum();
+    assert_eq!(report.matches("data:image/png;base64,").count(), pictures);
+    // Nothing is fetched when it is opened.
+    assert!(!report.contains("src=\"http") && !report.contains("<link") && !report.contains("<script"));
+    for (_, found) in &paper.figures {
+        for panel in &found.panels {
+            for ending in ["svg", "png", "csv"] {
+                assert!(
+                    folder.path().join(format!("{}.{ending}", panel.name)).exists(),
+                    "{}",
+                    panel.name
+                );
+            }
+        }
+    }
+
+    // docs/validation/paper.md is a full run's: its claims, criteria and verdicts are these.
+    let page = include_str!("../../../../docs/validation/paper.md");
+    let (claims_table, _) = page.split_once("\n## ").unwrap();
+    let rows: BTreeMap<u32, &str> = claims_table
+        .lines()
+        .filter_map(|line| Some((line.strip_prefix("| ")?.split_once(' ')?.0.parse().ok()?, line)))
+        .collect();
+    let claims = paper::claims().unwrap();
+    assert_eq!(rows.len(), claims.len());
+    for claim in claims {
+        let cells: Vec<&str> = rows[&claim.number].split(" | ").collect();
+        let judged = paper
+            .judged
+            .iter()
+            .find(|judged| judged.claim.number == claim.number);
+        let verdict = judged.map_or(claim.expected, |judged| judged.verdict);
+        assert!(cells[1].starts_with(&claim.claim), "claim {}", claim.number);
+        assert_eq!(cells[4], claim.criterion(), "claim {}", claim.number);
+        let told = cells[5].split([':', '(']).next().map(str::trim);
+        assert_eq!(told, Some(verdict.words()), "claim {}", claim.number);
+    }
+}
+
+#[test]
+fn finished_runs_are_not_run_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let never = AtomicBool::new(false);
+    let first = run(&["fig8"], folder.path(), &never).unwrap();
+    let runs = Records::open(folder.path()).unwrap().len();
+    let names = ["fig08".to_owned()];
+    let mut records = Records::open(folder.path()).unwrap();
+    let mut here = 0;
+    let figures = paper::figures(&names).unwrap();
+    let second = paper::run(&figures, &mut records, &options(&never), &mut |stage| {
+        here = here.max(stage.study.map_or(0, |study| study.here));
+    });
+    assert_eq!((here, records.len()), (0, runs));
+    assert_eq!(second.unwrap().judged, first.judged);
+    assert!(first.judged.iter().all(|judged| judged.claim.figure() == "fig08"));
+}
+
+#[test]
+fn a_stop_flag_ends_it() {
+    let folder = tempfile::tempdir().unwrap();
+    for figure in ["fig4", "fig8"] {
+        let error = run(&[figure], folder.path(), &AtomicBool::new(true)).unwrap_err();
+        assert!(error.is_interruption(), "{figure}: {error}");
+    }
+    assert!(matches!(
+        run(&["fig8"], folder.path(), &AtomicBool::new(true)),
+        Err(paper::PaperError::Study(StudyError::Interrupted))
+    ));
+}
+
+#[test]
+fn figures_are_known_by_their_short_names_too() {
+    let names = |given: &[&str]| -> Vec<&str> {
+        let given: Vec<String> = given.iter().map(|&name| name.to_owned()).collect();
+        paper::figures(&given)
+            .unwrap()
+            .iter()
+            .map(|figure| figure.name)
+            .collect()
+    };
+    assert_eq!(names(&["fig15", "fig3"]), ["fig03", "fig15"]);
+    assert_eq!(names(&["table1"]), ["table1"]);
+    assert_eq!(names(&[]).len(), FIGURES.len());
+    let error = paper::figures(&["fig19".to_owned()]).unwrap_err().to_string();
+    assert!(
+        error.starts_with("the paper has no `fig19`: take fig02, table1, fig03"),
+        "{error}"
+    );
+}

@@ -1,0 +1,151 @@
+//! `slipfront paper`: every figure of the paper again, every claim judged.
+
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use slipfront_case::paper::{self, Options, Stage, StepRule};
+use slipfront_case::study::Records;
+
+use super::study::on_signals;
+use super::{print, set_threads};
+use crate::failure::Failure;
+
+/// Run the figures and tables of the paper again, and judge its claims one by one
+#[derive(Args)]
+#[command(after_help = "Examples:
+  slipfront paper                     everything, into results/paper: figures, claims.csv, report.html
+  slipfront paper fig12 fig15         two figures and the claims about them
+  slipfront paper --docs docs/validation   the claims table of the documentation, too
+
+Exit status 0 says that every verdict is the expected one, 1 that one is not.")]
+pub(crate) struct Paper {
+    /// Figures: fig2 ... fig18, table1, sensitivity, or all
+    #[arg(value_name = "FIGURE")]
+    figures: Vec<String>,
+    /// Folder for the results; what an earlier call there has finished is not run again
+    #[arg(short, long, value_name = "DIR", default_value = "results/paper")]
+    out: PathBuf,
+    /// Most runs at once [default: one per core]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Show neither progress nor claims
+    #[arg(short, long)]
+    quiet: bool,
+    /// Write paper.md and its pictures to this folder as well
+    #[arg(long, value_name = "DIR")]
+    docs: Option<PathBuf>,
+    /// Two random surfaces in place of five, one time step, and only the claims that survive that
+    #[arg(long, hide = true)]
+    reduced: bool,
+}
+
+impl Paper {
+    pub(crate) fn execute(self) -> Result<(), Failure> {
+        let threads = set_threads(self.threads)?;
+        let figures = paper::figures(&self.figures).map_err(Failure::input)?;
+        let mut records = open(&self.out)?;
+        let (stop, signal) = on_signals().map_err(Failure::running)?;
+        let options = Options {
+            threads,
+            stop: &stop,
+            reduced: self.reduced,
+        };
+        let progress = Progress::new(self.quiet);
+        let done = paper::run(&figures, &mut records, &options, &mut |stage| {
+            progress.show(stage);
+        });
+        progress.finish();
+        let paper = match done {
+            Err(error) if error.is_interruption() => {
+                return Err(Failure::Stopped(signal.load(Ordering::Relaxed)));
+            }
+            done => done.map_err(Failure::running)?,
+        };
+        paper::write(&paper, &self.out).map_err(Failure::running)?;
+        if let Some(docs) = &self.docs {
+            paper::write_docs(&paper, docs).map_err(Failure::running)?;
+        }
+        if !self.quiet {
+            print(&paper::summary(&paper))?;
+            print(&format!("{}\n", self.out.join("report.html").display()))?;
+        }
+        match paper.surprises().count() {
+            0 => Ok(()),
+            count => Err(Failure::running(anyhow::anyhow!(
+                "{count} verdicts are not the expected ones: see {}",
+                self.out.join("claims.csv").display()
+            ))),
+        }
+    }
+}
+
+/// Opens the records of an earlier call, or begins them in a folder that holds nothing else.
+fn open(folder: &Path) -> Result<Records, Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| {
+        Failure::input(anyhow::anyhow!(
+            "cannot make the folder {}: {error}",
+            folder.display()
+        ))
+    })?;
+    Records::open(folder).map_err(Failure::input)
+}
+
+/// Progress on stderr: a bar on a terminal, else a line for each figure.
+enum Progress {
+    Silent,
+    Bar(ProgressBar),
+    Lines,
+}
+
+impl Progress {
+    fn new(quiet: bool) -> Self {
+        if quiet {
+            return Self::Silent;
+        }
+        if !std::io::stderr().is_terminal() {
+            return Self::Lines;
+        }
+        let bar = ProgressBar::new(0);
+        if let Ok(style) = ProgressStyle::with_template("{bar:32} {pos}/{len} figures  {elapsed}  {msg}") {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        Self::Bar(bar)
+    }
+
+    fn show(&self, stage: &Stage) {
+        let step = match stage.step {
+            StepRule::Auto => "",
+            StepRule::Paper => ", with the paper's time step",
+        };
+        match self {
+            Self::Silent => {}
+            Self::Bar(bar) => {
+                let runs = stage.study.map_or(String::new(), |study| {
+                    format!(", {} of {} runs", study.done, study.total)
+                });
+                bar.set_length(stage.total as u64);
+                bar.set_position(stage.done as u64);
+                bar.set_message(format!("{}{step}{runs}", stage.figure.name));
+            }
+            Self::Lines => {
+                if stage.study.is_none() {
+                    eprintln!(
+                        "{:>2} of {}: {}{step}",
+                        stage.done + 1,
+                        stage.total,
+                        stage.figure.title
+                    );
+                }
+            }
+        }
+    }
+
+    fn finish(&self) {
+        if let Self::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
