@@ -22,6 +22,9 @@ const OWN_FILES: [&str; 9] = [
 ];
 const MANIFEST: &str = "manifest.json";
 
+/// How the names of files begin while they are being written.
+pub(crate) const UNFINISHED: &str = ".slipfront";
+
 /// What can go wrong with a run folder.
 #[derive(Debug, Error)]
 pub enum FolderError {
@@ -137,7 +140,7 @@ impl RunFolder {
         }
         // A folder that cannot be written should say so before the run, not after it.
         tempfile::Builder::new()
-            .prefix(".slipfront")
+            .prefix(UNFINISHED)
             .tempfile_in(path)
             .map_err(unwritable)?;
         Ok(Self {
@@ -267,7 +270,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
         .filter(|parent| !parent.as_os_str().is_empty())
         .unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".slipfront");
+    builder.prefix(UNFINISHED);
     // Temporary files are private by default; results are not.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));

@@ -210,7 +210,11 @@ pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) 
     let settings = &plan.settings;
     let mut text = format!("{}\n", plan.name);
     for axis in &plan.axes {
-        let levels: Vec<String> = axis.levels.iter().map(|level| level.labels.join(" & ")).collect();
+        let mut levels: Vec<String> = axis.levels.iter().map(|level| level.labels.join(" & ")).collect();
+        if levels.len() > MOST_LEVELS {
+            let between = format!("... ({} levels) ...", levels.len());
+            levels.splice(MOST_LEVELS / 2..levels.len() - 1, [between]);
+        }
         text += &format!("  {}: {}\n", axis.columns.join(" & "), levels.join(", "));
     }
     let replicates = match &settings.until {
@@ -225,7 +229,7 @@ pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) 
     } else {
         ""
     };
-    let runs = |replicates| plan.runs(replicates);
+    let runs = |replicates| plan.runs(replicates).count();
     let (least, most) = (runs(settings.min_replicates()), runs(settings.max_replicates()));
     let count = if least == most {
         format!("{least}")
@@ -242,7 +246,7 @@ pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) 
     )
 }
 
-/// What a study has found, and where it stands.
+/// What a study has found, and where it is.
 pub(crate) fn study(plan: &Plan, findings: &Findings, folder: &Path) -> String {
     let mut text = String::new();
     let name = study::main_quantity(plan);
@@ -284,6 +288,9 @@ pub(crate) fn study(plan: &Plan, findings: &Findings, folder: &Path) -> String {
     }
     text + &format!("runs.csv, points.csv and pictures in {}\n", folder.display())
 }
+
+/// Most levels of an axis that are printed.
+const MOST_LEVELS: usize = 10;
 
 /// Most points that are printed.
 const MOST_ROWS: usize = 40;

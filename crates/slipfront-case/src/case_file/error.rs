@@ -101,8 +101,15 @@ impl CaseError {
         known: &[&str],
     ) -> Self {
         let message = one_line(message);
-        if let Some((key, _)) = name_and_rest(&message, "unknown field `") {
-            return source.error_at(span, keys::unknown(&shortened(key), header, known));
+        if let Some((key, expected)) = name_and_rest(&message, "unknown field `") {
+            let expected: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
+            // A table within the one under `header` has keys of its own.
+            let inner = source.key_at(&span).filter(|_| expected != known);
+            let sentence = match inner {
+                Some(inner) => keys::unknown(&shortened(key), &format!("`{inner}`"), &expected),
+                None => keys::unknown(&shortened(key), header, known),
+            };
+            return source.error_at(span, sentence);
         }
         let complaint = match name_and_rest(&message, "unknown variant `") {
             Some((word, expected)) => {

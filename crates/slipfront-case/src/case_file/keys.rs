@@ -77,6 +77,15 @@ pub(super) fn partners<'k>(table: &'k str, key: &'k str) -> impl Iterator<Item =
         })
 }
 
+/// Whether two keys, such as `drive.v_star` and `drive.speed`, set the same thing.
+pub(crate) fn exclude_each_other(one: &str, other: &str) -> bool {
+    let (Some((table, key)), Some((of, partner))) = (one.rsplit_once('.'), other.rsplit_once('.')) else {
+        return false;
+    };
+    let root = table.split('.').next().unwrap_or(table);
+    table == of && partners(root, key).any(|found| found == partner)
+}
+
 /// Refuses a table that holds both keys of a pair.
 pub(super) fn refuse_both(root: &DeTable<'_>, source: &Source) -> Result<(), CaseError> {
     for (table, pair) in PAIRS {
@@ -109,7 +118,7 @@ pub(super) fn refuse_both(root: &DeTable<'_>, source: &Source) -> Result<(), Cas
 }
 
 /// The sentence about a key that the table under `header` does not have.
-pub(super) fn unknown(key: &str, header: &str, known: &[&str]) -> String {
+pub(crate) fn unknown(key: &str, header: &str, known: &[&str]) -> String {
     let list = known.join(", ");
     let advice = match (home_of(key), nearest(key, known)) {
         (Some(home), _) => format!(": it belongs in {home}"),

@@ -1,7 +1,11 @@
 //! An axis of a study: the levels that one key, several keys together, or a set of named variants take.
 
+use std::collections::{BTreeSet, HashSet};
+
 use serde::Deserialize;
 use toml::Value;
+
+use super::inputs::{names_a_file, plain_name};
 
 /// An axis and its levels.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +27,16 @@ pub struct Level {
     pub number: Option<f64>,
     /// Keys of the case and their values, as for `--set`.
     pub overrides: Vec<String>,
+}
+
+impl Level {
+    /// How pictures name it: a square's pair of blocks by one number.
+    pub(super) fn shown(&self) -> String {
+        match (self.labels.as_slice(), self.number) {
+            ([_], Some(number)) => number.to_string(),
+            (labels, _) => labels.join(" "),
+        }
+    }
 }
 
 /// How the levels of an axis are spaced.
@@ -120,15 +134,46 @@ impl Axis {
                 axis.columns.join("`, `")
             ));
         }
+        let mut seen = HashSet::new();
+        if let Some(twice) = axis.levels.iter().find(|level| !seen.insert(&level.overrides)) {
+            return Err(format!(
+                "the level {} stands twice on the axis of `{}`: keep one",
+                twice.labels.join(", "),
+                axis.columns.join("`, `")
+            ));
+        }
         Ok(axis.with_numbers_or_names())
     }
 
-    /// An axis is one of numbers only if all its levels are.
+    /// An axis is one of numbers only if all its levels are, each another one: zipped keys may repeat the first.
     fn with_numbers_or_names(mut self) -> Self {
-        if self.levels.iter().any(|level| level.number.is_none()) {
+        let mut seen = HashSet::new();
+        let mut differs = |level: &Level| level.number.is_some_and(|number| seen.insert(number.to_bits()));
+        if !self.levels.iter().all(&mut differs) {
             self.spacing = Spacing::Named;
+        } else if self.spacing == Spacing::Linear && self.is_nearer_to_ratios() {
+            self.spacing = Spacing::Logarithmic;
         }
         self
+    }
+
+    /// Whether the numbers of a list, such as 0.01, 0.03, 0.1, are better shown in equal ratios: they span a decade,
+    /// and their median lies nearer to the geometric mean of their ends than to the arithmetic one.
+    fn is_nearer_to_ratios(&self) -> bool {
+        let mut numbers: Vec<f64> = self.levels.iter().filter_map(|level| level.number).collect();
+        numbers.sort_by(f64::total_cmp);
+        let (Some(&least), Some(&most)) = (numbers.first(), numbers.last()) else {
+            return false;
+        };
+        let median = 0.5 * (numbers[(numbers.len() - 1) / 2] + numbers[numbers.len() / 2]);
+        let ratio = |mean: f64| (median / mean).ln().abs();
+        least > 0.0 && most >= 10.0 * least && ratio((least * most).sqrt()) < ratio(0.5 * (least + most))
+    }
+
+    /// Keys of the case that its levels set.
+    pub(super) fn keys(&self) -> BTreeSet<&str> {
+        let overrides = self.levels.iter().flat_map(|level| &level.overrides);
+        overrides.map(|set| key_of(set)).collect()
     }
 
     /// The name under which pictures show it.
@@ -192,7 +237,11 @@ fn named(name: String, variants: &toml::Table) -> Result<Axis, String> {
 
 fn level(keys: &[&str], values: &[&Value]) -> Level {
     Level {
-        labels: values.iter().map(|value| label(value)).collect(),
+        labels: keys
+            .iter()
+            .zip(values)
+            .map(|(key, value)| label(key, value))
+            .collect(),
         number: values.first().and_then(|value| number(value)),
         overrides: keys
             .iter()
@@ -215,23 +264,50 @@ fn number(value: &Value) -> Option<f64> {
     }
 }
 
-fn label(value: &Value) -> String {
-    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+fn label(key: &str, value: &Value) -> String {
+    match value.as_str() {
+        // The same wherever the file stands: beside its case, or copied into a results folder.
+        Some(text) if names_a_file(key) => plain_name(text),
+        Some(text) => text.to_owned(),
+        None => value.to_string(),
+    }
 }
 
 /// Keys of a table, `{ drive.v_star = 0.05 }` or `{ "drive.v_star" = 0.05 }`, as for `--set`.
 pub(super) fn overrides(keys: &toml::Table) -> Vec<String> {
     let mut list = Vec::new();
     for (key, value) in keys {
-        match value {
-            // A table of the case, not a value that is written as one.
-            Value::Table(inner) if !key.contains('.') => {
-                list.extend(inner.iter().map(|(name, value)| format!("{key}.{name}={value}")));
-            }
-            _ => list.push(format!("{key}={value}")),
-        }
+        flatten(key, value, &mut list);
     }
     list
+}
+
+fn flatten(key: &str, value: &Value, list: &mut Vec<String>) {
+    // Tables of the case, `drive`, and elements of its lists, `texture.0`, are ways to keys; all others are values,
+    // and so is a texture in full.
+    let is_number = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
+    let leads_on = !key.contains('.') || key.rsplit('.').next().is_some_and(is_number);
+    match value {
+        Value::Table(inner) if leads_on && !inner.contains_key("shape") => {
+            for (name, value) in inner {
+                flatten(&format!("{key}.{name}"), value, list);
+            }
+        }
+        _ => list.push(format!("{key}={value}")),
+    }
+}
+
+/// The key of an override.
+pub(super) fn key_of(set: &str) -> &str {
+    set.split_once('=').map_or(set, |(key, _)| key)
+}
+
+/// Whether setting `key` leaves nothing of what `earlier` has set: it is the same key, or a table or list around it.
+pub(super) fn displaces(key: &str, earlier: &str) -> bool {
+    earlier
+        .strip_prefix(key)
+        .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        || crate::case_file::exclude_each_other(key, earlier)
 }
 
 /// `count` values from `from` to `to`, both exactly.
@@ -247,19 +323,34 @@ fn spaced(from: f64, to: f64, count: usize, between: fn(f64, f64, f64) -> f64) -
     let value = |k: usize| match k {
         0 => from,
         k if k == count - 1 => to,
-        k => between(from, to, k as f64 / (count - 1) as f64),
+        k => twelve_digits(between(from, to, k as f64 / (count - 1) as f64)),
     };
-    Ok((0..count).map(value).map(Value::Float).collect())
+    Ok((0..count).map(|k| whole_or_not(value(k))).collect())
+}
+
+/// Legible in the tables, and the same on every machine.
+fn twelve_digits(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
+}
+
+/// Keys that count, such as a seed, take whole numbers only; all others take them too.
+fn whole_or_not(value: f64) -> Value {
+    const LARGEST: f64 = 9e15;
+    if value.fract() == 0.0 && value.abs() < LARGEST {
+        Value::Integer(value as i64)
+    } else {
+        Value::Float(value)
+    }
 }
 
 fn linear(from: f64, to: f64, share: f64) -> f64 {
-    from + (to - from) * share
+    // Symmetric, so that a spacing from -1 to 1 meets 0.
+    from * (1.0 - share) + to * share
 }
 
-/// Equal ratios, to twelve digits: the same on every machine, and legible in the tables.
+/// Equal ratios.
 fn logarithmic(from: f64, to: f64, share: f64) -> f64 {
-    let value = from * libm::pow(to / from, share);
-    format!("{value:.11e}").parse().unwrap_or(value)
+    from * libm::pow(to / from, share)
 }
 
 #[cfg(test)]
@@ -277,6 +368,77 @@ mod tests {
         assert_eq!((numbers[0], numbers[5], numbers.len()), (0.01, 0.2, 6));
         assert!((numbers[1] / numbers[0] - 20f64.powf(0.2)).abs() < 1e-10);
         assert_eq!(axis.spacing, Spacing::Logarithmic);
+    }
+
+    #[test]
+    fn spacings_are_legible_and_count_where_they_can() {
+        let labels = |text: &str| -> Vec<String> {
+            let levels = axis(text).unwrap().levels;
+            levels.into_iter().flat_map(|level| level.labels).collect()
+        };
+        assert_eq!(
+            labels("key = 'a.b'\nlinspace = [0, 1, 11]").join(" "),
+            "0 0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8 0.9 1"
+        );
+        assert_eq!(
+            labels("key = 'a.b'\nlinspace = [-0.3, 0.3, 5]").join(" "),
+            "-0.3 -0.15 0 0.15 0.3"
+        );
+        assert_eq!(
+            labels("key = 'a.b'\nlogspace = [1, 100, 3]").join(" "),
+            "1 10 100"
+        );
+    }
+
+    #[test]
+    fn lists_are_spaced_as_they_look() {
+        for (list, spacing) in [
+            ("[0.005, 0.01, 0.03, 0.05, 0.1]", Spacing::Logarithmic),
+            ("[1, 10]", Spacing::Linear),
+            ("[1, 10, 100]", Spacing::Logarithmic),
+            ("[1, 2, 5, 10, 20, 30, 40, 50]", Spacing::Linear),
+            ("[0, 1, 10]", Spacing::Linear),
+            ("[1, 2, 4]", Spacing::Linear),
+            ("[[25, 25], [50, 50]]", Spacing::Linear),
+            ("[1, 'two']", Spacing::Named),
+        ] {
+            let axis = axis(&format!("key = 'a.b'\nlist = {list}")).unwrap();
+            assert_eq!(axis.spacing, spacing, "{list}");
+        }
+        let square = axis("key = 'slider.blocks'\nlist = [[25, 25]]").unwrap();
+        assert_eq!(square.levels[0].shown(), "25");
+    }
+
+    #[test]
+    fn a_level_twice_is_refused_and_repeated_numbers_are_names() {
+        assert!(axis("key = 'a.b'\nlist = [1, 2, 1]").is_err());
+        let zipped = axis("zip = { 'a.b' = [1, 1], 'c.d' = [1, 2] }").unwrap();
+        assert_eq!(zipped.spacing, Spacing::Named);
+    }
+
+    #[test]
+    fn elements_of_lists_are_ways_to_keys() {
+        let keys: toml::Table = toml::from_str(
+            "texture.0.coverage = 5\ntexture.1 = { shape = 'groove' }\noutput.snapshots = { every = 2.0 }",
+        )
+        .unwrap();
+        assert_eq!(
+            overrides(&keys),
+            [
+                "texture.0.coverage=5",
+                "texture.1={ shape = \"groove\" }",
+                "output.snapshots={ every = 2.0 }"
+            ]
+        );
+    }
+
+    #[test]
+    fn what_displaces_what() {
+        assert!(displaces("texture", "texture.0.coverage"));
+        assert!(displaces("drive.v_star", "drive.v_star"));
+        assert!(displaces("drive.speed", "drive.v_star"));
+        assert!(!displaces("texture.0.coverage", "texture"));
+        assert!(!displaces("drive.v", "drive.v_star"));
     }
 
     #[test]

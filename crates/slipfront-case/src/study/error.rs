@@ -7,6 +7,7 @@ use thiserror::Error;
 use crate::case_file::CaseError;
 use crate::folder::FolderError;
 use crate::pictures::PictureError;
+use crate::results::ResultsError;
 
 /// A study that cannot be used, or had to stop.
 #[derive(Debug, Error)]
@@ -67,6 +68,21 @@ pub enum StudyError {
     NotRecords {
         /// The file.
         path: PathBuf,
+    },
+    /// A folder could not be kept.
+    #[error(
+        "cannot keep the folder of a run: {0}; finished runs are safe, and the study goes on from there when \
+        started again"
+    )]
+    Keep(#[from] ResultsError),
+    /// Shards that do not hold all runs.
+    #[error(
+        "{runs} runs are in none of the shards: finish them, or run the rest with `slipfront study` on the \
+        study.toml of the united folder, with --out the folder itself"
+    )]
+    Missing {
+        /// Runs that are not there, as far as is known.
+        runs: usize,
     },
     /// Shards of different studies.
     #[error("{} belongs to another study than {}: merge shards of one study only", other.display(), first.display())]

@@ -1,15 +1,22 @@
 //! Which pictures a study gets: curves over numbers, maps over two of them, bars for names.
 
+use std::collections::HashMap;
+
+use rayon::prelude::*;
+
 use super::axis::{Axis, Spacing};
 use super::error::StudyError;
 use super::execute::Findings;
-use super::plan::{Plan, Point};
+use super::plan::Plan;
 use super::quantities::REDUCTION;
 use super::tables::sample;
 use crate::pictures::{
     self, Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Response, Responses, symbol,
     title,
 };
+
+/// What is drawn, where the study has it.
+pub(super) const QUANTITIES: [&str; 3] = ["static_friction_star", "kinetic_friction_star", REDUCTION];
 
 /// Most curves in one picture.
 const MOST_CURVES: usize = 9;
@@ -19,30 +26,27 @@ const MOST_CURVES: usize = 9;
 /// # Errors
 /// When one cannot be drawn.
 pub(super) fn draw(plan: &Plan, findings: &Findings) -> Result<Vec<(String, Picture)>, StudyError> {
-    let mut quantities = vec!["static_friction_star", "kinetic_friction_star"];
-    if plan.has_reference() {
-        quantities.push(REDUCTION);
-    }
-    let mut drawn = Vec::new();
-    for quantity in quantities {
+    let of_quantity = |quantity: &&str| {
         let values = Values::of(plan, findings, quantity);
-        // A study that stops at the onset knows no kinetic friction: nothing to draw.
-        if values.0.iter().all(|(_, [mean, ..])| mean.is_nan()) {
-            continue;
+        // A study that stops at the onset knows no kinetic friction, one without reference no reduction.
+        if values.0.values().all(|[mean, ..]| mean.is_nan()) {
+            return Vec::new();
         }
-        for (name, picture) in draw_quantity(plan, quantity, &values) {
-            let picture = picture.map_err(|source| StudyError::Picture {
-                name: name.clone(),
-                source,
-            })?;
-            drawn.push((name, picture));
-        }
-    }
-    Ok(drawn)
+        draw_quantity(plan, quantity, &values)
+    };
+    let drawn: Vec<Vec<Drawn>> = QUANTITIES.par_iter().map(of_quantity).collect();
+    drawn
+        .into_iter()
+        .flatten()
+        .map(|(name, picture)| match picture {
+            Ok(picture) => Ok((name, picture)),
+            Err(source) => Err(StudyError::Picture { name, source }),
+        })
+        .collect()
 }
 
-/// Mean and interval of a quantity at every point; not a number where it has none.
-struct Values<'a>(Vec<(&'a Point, [f64; 3])>);
+/// Mean and interval of a quantity by the levels of a point; not a number where it has none.
+struct Values<'a>(HashMap<&'a [usize], [f64; 3]>);
 
 impl<'a> Values<'a> {
     fn of(plan: &'a Plan, findings: &Findings, quantity: &str) -> Self {
@@ -53,21 +57,17 @@ impl<'a> Values<'a> {
             }
             None => [f64::NAN; 3],
         };
+        let points = plan.points.iter().enumerate();
         Self(
-            plan.points
-                .iter()
-                .enumerate()
-                .map(|(position, point)| (point, value(position)))
+            points
+                .map(|(position, point)| (point.levels.as_slice(), value(position)))
                 .collect(),
         )
     }
 
     /// At the point with these levels; a shard lacks most of them.
     fn at(&self, levels: &[usize]) -> [f64; 3] {
-        self.0
-            .iter()
-            .find(|(point, _)| point.levels == levels)
-            .map_or([f64::NAN; 3], |(_, value)| *value)
+        self.0.get(levels).copied().unwrap_or([f64::NAN; 3])
     }
 }
 
@@ -156,7 +156,7 @@ fn curve(axes: &[Axis], x: usize, fixed: &[(usize, usize)], labelled: &[usize], 
     let label: Vec<String> = fixed
         .iter()
         .filter(|(axis, _)| labelled.contains(axis))
-        .map(|&(axis, level)| axes[axis].levels[level].labels.join(" "))
+        .map(|&(axis, level)| axes[axis].levels[level].shown())
         .collect();
     let mut response = Response {
         label: label.join(", "),
@@ -230,7 +230,7 @@ fn bars(axes: &[Axis], quantity: &str, values: &Values) -> Result<Picture, Pictu
             high,
         }
     };
-    let name = |axis: usize, level: usize| axes[axis].levels[level].labels.join(" ");
+    let name = |axis: usize, level: usize| axes[axis].levels[level].shown();
     let levels = |axis: usize| 0..axes[axis].levels.len();
     let groups = if axes.len() == 1 {
         let bars = levels(0).map(|level| bar(&name(0, level), &[level])).collect();

@@ -6,9 +6,11 @@ use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::axis::{Axis, AxisKeys};
+use super::axis::{self, Axis, AxisKeys};
 use super::error::StudyError;
-use crate::case_file::{CaseError, CaseFile, Source, Tables, keys_of};
+use super::inputs::{self, Copy};
+use super::{quantities, tables};
+use crate::case_file::{CaseError, Source, Tables, keys_of, unknown_key};
 
 /// A study file.
 #[derive(Clone, Debug)]
@@ -34,16 +36,6 @@ pub struct Base {
     pub name: String,
     /// The folder that the files it names are relative to.
     pub folder: PathBuf,
-}
-
-impl Base {
-    /// The base case with `overrides`.
-    ///
-    /// # Errors
-    /// As for any case file.
-    pub fn with(&self, overrides: &[String]) -> Result<CaseFile, CaseError> {
-        CaseFile::parse(&self.text, &self.name, overrides)
-    }
 }
 
 /// `[study]`: repetition, reference and what is kept.
@@ -112,6 +104,9 @@ fn default_min() -> u32 {
 /// Confidence of intervals where the study asks for no other.
 pub(super) const CONFIDENCE: f64 = 0.95;
 
+/// Most points that are listed.
+const MAX_POINTS: usize = 1_000_000;
+
 /// Most replicates of a point.
 const MAX_REPLICATES: u32 = 100_000;
 
@@ -169,7 +164,7 @@ impl Settings {
             let sentence = format!("`{}` needs a `reference` to be reduced from", until.key);
             return refuse("study.until.key", sentence);
         }
-        if !super::quantities::known().contains(&until.key) {
+        if !quantities::known().contains(&until.key) {
             let sentence = format!(
                 "`{}` is no number of a summary: take one such as static_friction_star, kinetic_friction_star or {}",
                 until.key,
@@ -185,11 +180,11 @@ impl Settings {
 const TABLES: [&str; 3] = ["base", "study", "axes"];
 
 impl StudyFile {
-    /// The study with its base case inside, for the results folder.
+    /// The study with its base case inside and its files beside it, for the results folder.
     ///
     /// # Errors
     /// When it is too odd for TOML.
-    pub fn resolved(&self) -> Result<String, StudyError> {
+    pub(super) fn portable(&self) -> Result<(String, Vec<Copy>), StudyError> {
         let mut table = toml::Table::new();
         let base: toml::Table = self.base.text.parse().map_err(|error: toml::de::Error| {
             CaseError::syntax(&Source::new(&self.base.name, &self.base.text, &[]), 0, &error)
@@ -201,7 +196,29 @@ impl StudyFile {
                 .filter(|(key, _)| *key != "base")
                 .map(|(key, value)| (key.clone(), value.clone())),
         );
-        Ok(toml::to_string(&table).map_err(CaseError::from)?)
+        let copies = inputs::copy(&mut table, &self.base.folder);
+        Ok((toml::to_string(&table).map_err(CaseError::from)?, copies))
+    }
+
+    /// Points of the whole study.
+    ///
+    /// # Errors
+    /// [`StudyError::TooLarge`].
+    pub fn count_points(&self) -> Result<usize, StudyError> {
+        self.axes
+            .iter()
+            .try_fold(1usize, |product, axis| product.checked_mul(axis.levels.len()))
+            .filter(|&count| count <= MAX_POINTS)
+            .ok_or(StudyError::TooLarge { limit: MAX_POINTS })
+    }
+
+    /// Runs of the whole study at the most; references that points share are counted for each.
+    ///
+    /// # Errors
+    /// [`StudyError::TooLarge`].
+    pub fn count_runs(&self) -> Result<u64, StudyError> {
+        let roles = 1 + u64::from(self.settings.reference.is_some());
+        Ok(self.count_points()? as u64 * self.settings.max_replicates() as u64 * roles)
     }
 
     /// Loads a study file; a base case that it names stands relative to it.
@@ -236,11 +253,17 @@ impl StudyFile {
         settings.check(&source)?;
         let axes = read_axes(&mut tables)?;
         if let Some(key) = tables.root.keys().min_by_key(|key| key.span().start) {
-            let list = TABLES.join(", ");
-            let sentence = format!("unknown key `{}` in a study: the keys are {list}", key.get_ref());
+            let sentence = if keys_of::<Settings>().contains(&key.get_ref().as_ref()) {
+                format!(
+                    "`{}` stands outside its table: it belongs in [study]",
+                    key.get_ref()
+                )
+            } else {
+                unknown_key(key.get_ref(), "a study file", &TABLES)
+            };
             Err(source.error_at(key.span(), sentence))?;
         }
-        refuse_twice(&axes, &source)?;
+        refuse_clashes(&axes, &source)?;
         // The text has been read as TOML once, so that it is a table.
         let table = text
             .parse()
@@ -312,13 +335,31 @@ fn read_axes(tables: &mut Tables) -> Result<Vec<Axis>, StudyError> {
         .collect()
 }
 
-/// Two axes over one key would overwrite each other.
-fn refuse_twice(axes: &[Axis], source: &Source) -> Result<(), CaseError> {
+/// Axes that overwrite each other, or whose columns could not be told from others in the tables.
+fn refuse_clashes(axes: &[Axis], source: &Source) -> Result<(), CaseError> {
     for (k, axis) in axes.iter().enumerate() {
+        let refuse = |sentence: String| Err(source.error(&format!("axes.{k}"), sentence));
+        let before = &axes[..k];
         for column in &axis.columns {
-            if axes[..k].iter().any(|other| other.columns.contains(column)) {
-                let key = format!("axes.{k}");
-                return Err(source.error(&key, format!("`{column}` stands on two axes: keep one of them")));
+            if tables::COLUMNS.contains(&column.as_str()) || quantities::known().contains(column) {
+                return refuse(format!(
+                    "the tables have a column `{column}` already: give the axis another name"
+                ));
+            }
+            if before.iter().any(|other| other.columns.contains(column)) {
+                return refuse(format!("`{column}` stands on two axes: keep one of them"));
+            }
+        }
+        for key in axis.keys() {
+            let overwritten = before
+                .iter()
+                .flat_map(Axis::keys)
+                .find(|earlier| axis::displaces(key, earlier));
+            if let Some(earlier) = overwritten {
+                return refuse(format!(
+                    "this axis sets `{key}`, which leaves nothing of `{earlier}` of an axis before it: put it before \
+                     that one, or keep one of them"
+                ));
             }
         }
     }

@@ -1,12 +1,12 @@
 //! The study folder: the study itself, the records, the tables and the pictures.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use super::error::StudyError;
 use super::file::StudyFile;
-use super::plan::{Plan, RunKey};
 use super::record::{RECORDS, Records};
-use crate::folder::{FolderError, write_whole};
+use crate::folder::{FolderError, UNFINISHED, write_whole};
 
 /// The study as a table with its base inside: what `slipfront study DIR/study.toml` repeats.
 const STUDY: &str = "study.toml";
@@ -40,7 +40,7 @@ impl StudyFolder {
             });
         }
         let records = Records::open(path)?;
-        let text = study.resolved()?;
+        let (text, copies) = study.portable()?;
         let before = std::fs::read_to_string(path.join(STUDY)).ok();
         let changed = before.is_some_and(|before| before != text);
         let folder = Self {
@@ -48,6 +48,10 @@ impl StudyFolder {
             records,
             changed,
         };
+        folder.remove_unfinished();
+        for (name, bytes) in copies {
+            folder.write(&name, &bytes)?;
+        }
         folder.write(STUDY, text.as_bytes())?;
         Ok(folder)
     }
@@ -68,35 +72,32 @@ impl StudyFolder {
         written.map_err(|source| FolderError::Write { path, source }.into())
     }
 
-    /// Copies the files that the cases of the plan read, so that the folder can repeat the study on its own.
-    /// Files outside the base's folder stay where they are.
-    ///
-    /// # Errors
-    /// When a file cannot be read or written.
-    pub fn copy_inputs(&self, plan: &Plan, study: &StudyFile) -> Result<(), StudyError> {
-        for point in &plan.points {
-            for role in plan.roles() {
-                let run = RunKey {
-                    point: point.index,
-                    replicate: 0,
-                    role,
-                };
-                for (_, name) in plan.case_file(run)?.files_mut() {
-                    let inside = Path::new(&*name)
-                        .components()
-                        .all(|part| matches!(part, std::path::Component::Normal(_)));
-                    if !inside || self.path.join(&*name).exists() {
-                        continue;
-                    }
-                    let from = study.base.folder.join(&*name);
-                    let bytes =
-                        std::fs::read(&from).map_err(|source| FolderError::Read { path: from, source })?;
-                    self.write(name, &bytes)?;
-                }
+    /// What a kill left of files that were being written: nobody else writes here while the records are open.
+    fn remove_unfinished(&self) {
+        self.remove(|name| name.starts_with(UNFINISHED));
+    }
+
+    /// Removes pictures of these quantities that the study no longer has.
+    pub(super) fn remove_other_pictures(&self, pictures: &HashSet<String>, quantities: &[&str]) {
+        self.remove(|name| {
+            let ours = quantities.iter().any(|quantity| name.starts_with(quantity));
+            ours && (name.ends_with(".svg") || name.ends_with(".png")) && !pictures.contains(name)
+        });
+    }
+
+    /// Removes files of the folder; one that cannot be removed does no harm.
+    fn remove(&self, which: impl Fn(&str) -> bool) {
+        for entry in std::fs::read_dir(&self.path).into_iter().flatten().flatten() {
+            if entry.file_name().to_str().is_some_and(&which) {
+                let _ = std::fs::remove_file(entry.path());
             }
         }
-        Ok(())
     }
+}
+
+/// Whether a study has used the folder.
+pub fn is_study(folder: &Path) -> bool {
+    folder.join(STUDY).exists()
 }
 
 /// Loads the study of a folder that has run one.

@@ -6,12 +6,15 @@
 //!
 //! Every finished run is one line of a record file; a study that was stopped goes on from there.
 
+use std::collections::HashSet;
+
 mod axis;
 mod error;
 mod execute;
 mod figures;
 mod file;
 mod folder;
+mod inputs;
 mod plan;
 mod quantities;
 mod record;
@@ -22,12 +25,12 @@ mod tables;
 
 pub use axis::{Axis, Level, Spacing};
 pub use error::StudyError;
-pub use execute::{Findings, PointFindings, Progress, execute};
+pub use execute::{Findings, PointFindings, Progress, collect, execute};
 pub use file::{Base, Keep, Settings, StudyFile, Until};
-pub use folder::{StudyFolder, refuse_foreign, study_of};
+pub use folder::{StudyFolder, is_study, refuse_foreign, study_of};
 pub use plan::{Plan, Point, Role, RunKey};
-pub use quantities::{REDUCTION, known as quantities};
-pub use record::{Outcome, Record, Records};
+pub use quantities::{Numbers, Quantity, REDUCTION, known as quantities};
+pub use record::{Finding, Outcome, Record, Records};
 pub use shard::Shard;
 pub use statistics::Sample;
 pub use tables::sample;
@@ -41,16 +44,20 @@ pub fn main_quantity(plan: &Plan) -> &'static str {
     }
 }
 
-/// Writes tables and pictures of a study to its folder.
+/// Writes tables and pictures of a study to its folder, and removes pictures that it no longer has.
 ///
 /// # Errors
 /// When a file cannot be written.
 pub fn write(plan: &Plan, findings: &Findings, folder: &StudyFolder) -> Result<(), StudyError> {
     folder.write("runs.csv", &tables::runs(plan, findings)?)?;
     folder.write("points.csv", &tables::points(plan, findings)?)?;
+    let mut pictures = HashSet::new();
     for (name, picture) in figures::draw(plan, findings)? {
-        folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
-        folder.write(&format!("{name}.png"), &picture.png)?;
+        let (svg, png) = (format!("{name}.svg"), format!("{name}.png"));
+        folder.write(&svg, picture.svg.as_bytes())?;
+        folder.write(&png, &picture.png)?;
+        pictures.extend([svg, png]);
     }
+    folder.remove_other_pictures(&pictures, &figures::QUANTITIES);
     Ok(())
 }

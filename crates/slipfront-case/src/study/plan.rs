@@ -1,5 +1,7 @@
 //! The plan of a study: its points, and what each run of a point is.
 
+use rayon::prelude::*;
+
 use super::axis::{self, Axis};
 use super::error::StudyError;
 use super::file::{Base, Keep, Settings, StudyFile};
@@ -29,6 +31,20 @@ pub struct Point {
     pub index: usize,
     /// Level of each axis.
     pub levels: Vec<usize>,
+    /// What its runs are, for each role.
+    outlines: Vec<Outline>,
+}
+
+/// What is known of the runs of a point before any is made.
+#[derive(Clone, Debug, PartialEq)]
+struct Outline {
+    /// Seed of replicate 0.
+    seed: u64,
+    /// Hash of all that decides the numbers of a run, but for the seed.
+    physics: blake3::Hash,
+    /// Steps times blocks of a run, at most.
+    block_steps: f64,
+    n_blocks: usize,
 }
 
 /// What a run of a point is for.
@@ -43,7 +59,7 @@ pub enum Role {
 /// One run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RunKey {
-    /// Index of the point.
+    /// Position of the point in the plan.
     pub point: usize,
     /// Replicate, from 0.
     pub replicate: usize,
@@ -51,41 +67,21 @@ pub struct RunKey {
     pub role: Role,
 }
 
-impl RunKey {
-    /// Its name: what its folder is called.
-    pub fn name(&self) -> String {
-        let role = match self.role {
-            Role::Point => "",
-            Role::Reference => "-reference",
-        };
-        format!("{}-{}{role}", self.point, self.replicate)
-    }
-}
-
-/// Most points that are listed.
-const MAX_POINTS: usize = 10_000_000;
-
 impl Plan {
     /// Multiplies the axes out and tries every point: the first that is no valid case is named.
     ///
     /// # Errors
     /// [`StudyError::Point`], [`StudyError::TooLarge`].
     pub fn new(file: &StudyFile, shard: Option<Shard>) -> Result<Self, StudyError> {
-        let count = file
-            .axes
-            .iter()
-            .try_fold(1usize, |product, axis| product.checked_mul(axis.levels.len()));
-        let count = count
-            .filter(|&count| count <= MAX_POINTS)
-            .ok_or(StudyError::TooLarge { limit: MAX_POINTS })?;
-        let points = (0..count)
+        let points = (0..file.count_points()?)
             .filter(|&index| shard.is_none_or(|shard| shard.holds(index)))
             .map(|index| Point {
                 index,
                 levels: levels(&file.axes, index),
+                outlines: Vec::new(),
             })
             .collect();
-        let plan = Self {
+        let mut plan = Self {
             name: file.name.clone(),
             settings: file.settings.clone(),
             axes: file.axes.clone(),
@@ -93,18 +89,16 @@ impl Plan {
             base: file.base.clone(),
             reference: file.settings.reference.as_ref().map(axis::overrides),
         };
-        for point in &plan.points {
-            for role in plan.roles() {
-                let run = RunKey {
-                    point: point.index,
-                    replicate: 0,
-                    role,
-                };
-                plan.case(run).map_err(|source| StudyError::Point {
-                    point: plan.describe(point),
-                    source,
-                })?;
-            }
+        let outlines: Vec<Result<Vec<Outline>, CaseError>> = plan
+            .points
+            .par_iter()
+            .map(|point| plan.roles().map(|role| plan.outline(point, role)).collect())
+            .collect();
+        for (position, outlines) in outlines.into_iter().enumerate() {
+            plan.points[position].outlines = outlines.map_err(|source| StudyError::Point {
+                point: plan.describe(&plan.points[position]),
+                source,
+            })?;
         }
         Ok(plan)
     }
@@ -121,62 +115,101 @@ impl Plan {
         self.reference.is_some()
     }
 
-    /// The case file of a run. The seed alone tells replicates apart, so that all points meet the same surfaces.
-    ///
-    /// # Errors
-    /// As for any case file.
-    pub fn case_file(&self, run: RunKey) -> Result<CaseFile, CaseError> {
+    /// The case file of replicate 0.
+    fn case_file(&self, point: &Point, role: Role) -> Result<CaseFile, CaseError> {
         let mut overrides: Vec<String> = Vec::new();
-        for (axis, level) in self.axes.iter().zip(levels(&self.axes, run.point)) {
+        for (axis, &level) in self.axes.iter().zip(&point.levels) {
             overrides.extend_from_slice(&axis.levels[level].overrides);
         }
-        if run.role == Role::Reference {
-            overrides.extend(self.reference.iter().flatten().cloned());
+        if role == Role::Reference {
+            let reference = self.reference.iter().flatten();
+            overrides.retain(|set| {
+                reference
+                    .clone()
+                    .all(|other| !axis::displaces(axis::key_of(other), axis::key_of(set)))
+            });
+            overrides.extend(reference.cloned());
         }
-        let mut file = self.base.with(&overrides)?;
-        file.friction.seed = file.friction.seed.wrapping_add(run.replicate as u64) & i64::MAX as u64;
-        Ok(file)
+        CaseFile::parse(&self.base.text, &self.base.name, &overrides)
+    }
+
+    /// Tries a point and notes what its runs are. What tells runs apart is the physics of their cases, the contents
+    /// of their files and the version; not names of files, nor what is written.
+    fn outline(&self, point: &Point, role: Role) -> Result<Outline, CaseError> {
+        let case = self.trimmed(self.case_file(point, role)?, "point")?;
+        let mut file = case.file.clone();
+        let seed = std::mem::take(&mut file.friction.seed);
+        file.output = Output::default();
+        for (_, name) in file.files_mut() {
+            let hash = case
+                .inputs
+                .iter()
+                .find(|input| input.name == *name)
+                .map(|input| blake3::hash(&input.bytes).to_hex());
+            let ending = name.rsplit('.').next().unwrap_or_default();
+            *name = format!("{}.{ending}", hash.unwrap_or_default());
+        }
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
+        hasher.update(file.to_toml()?.as_bytes());
+        Ok(Outline {
+            seed,
+            physics: hasher.finalize(),
+            block_steps: case.block_steps(),
+            n_blocks: case.model.lattice.n_blocks(),
+        })
     }
 
     /// The case of a run, ready to run.
     ///
     /// # Errors
-    /// As for any case.
+    /// When a file that it reads is no longer what it was.
     pub fn case(&self, run: RunKey) -> Result<Case, CaseError> {
-        let mut file = self.case_file(run)?;
-        if self.settings.keep != Keep::All {
-            // Nobody will look at fields or curves, and the numbers do not depend on them.
-            file.output.snapshots = Snapshots::At(Vec::new());
-            file.output.series = AutoOr::Auto;
+        let mut file = self.case_file(&self.points[run.point], run.role)?;
+        file.friction.seed = self.seed(run);
+        self.trimmed(file, &self.folder_name(run))
+    }
+
+    /// A case that writes no more than the study keeps.
+    fn trimmed(&self, mut file: CaseFile, name: &str) -> Result<Case, CaseError> {
+        if self.settings.keep == Keep::All {
+            return Case::new(file, name, &self.base.folder);
         }
-        let mut case = Case::new(file, &run.name(), &self.base.folder)?;
-        if self.settings.keep != Keep::All {
-            case.output.series_stride = case.schedule.last_step;
-        }
+        // Nobody will look at fields or curves, and the numbers do not depend on them.
+        file.output.snapshots = Snapshots::At(Vec::new());
+        file.output.series = AutoOr::Auto;
+        let mut case = Case::new(file, name, &self.base.folder)?;
+        case.output.series_stride = case.schedule.last_step;
         Ok(case)
     }
 
-    /// What tells two runs apart: the physics of their cases, the contents of their files and the version; not
-    /// names of files, nor what is written. Points share a run that is the same, such as their reference.
-    ///
-    /// # Errors
-    /// As for any case file, and when a file cannot be read.
-    pub fn identity(&self, run: RunKey) -> Result<String, CaseError> {
-        let mut file = self.case_file(run)?;
-        file.output = Output::default();
-        let source = file.source.clone();
-        for (key, name) in file.files_mut() {
-            let path = self.base.folder.join(&*name);
-            let hash = blake3::hash(&crate::case::read_input(&source, &key, &path)?).to_hex();
-            let ending = path
-                .extension()
-                .map(|ending| ending.to_string_lossy().into_owned());
-            *name = format!("{hash}.{}", ending.unwrap_or_default());
-        }
+    fn outline_of(&self, run: RunKey) -> &Outline {
+        &self.points[run.point].outlines[usize::from(run.role == Role::Reference)]
+    }
+
+    /// Seed of a run. It alone tells replicates apart, so that all points meet the same surfaces.
+    pub fn seed(&self, run: RunKey) -> u64 {
+        self.outline_of(run).seed.wrapping_add(run.replicate as u64) & i64::MAX as u64
+    }
+
+    /// What tells a run from all others. Points share a run that is the same, such as their reference.
+    pub fn identity(&self, run: RunKey) -> String {
         let mut hasher = blake3::Hasher::new();
-        hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
-        hasher.update(file.to_toml()?.as_bytes());
-        Ok(hasher.finalize().to_hex()[..32].to_owned())
+        hasher.update(self.outline_of(run).physics.as_bytes());
+        hasher.update(&self.seed(run).to_le_bytes());
+        hasher.finalize().to_hex()[..32].to_owned()
+    }
+
+    /// Name of the folder of a run, where it is kept: the beginning of its identity, so that it stays true when the
+    /// study grows.
+    pub fn folder_name(&self, run: RunKey) -> String {
+        self.identity(run)[..12].to_owned()
+    }
+
+    /// Steps times blocks of a run, at most, and its blocks: what it will cost.
+    pub fn cost(&self, run: RunKey) -> (f64, usize) {
+        let outline = self.outline_of(run);
+        (outline.block_steps, outline.n_blocks)
     }
 
     /// The levels of a point, as a reader would name it.
@@ -203,9 +236,18 @@ impl Plan {
         columns
     }
 
-    /// Runs of `replicates` replicates of every point; references that points share are counted for each.
-    pub fn runs(&self, replicates: usize) -> u64 {
-        self.points.len() as u64 * replicates as u64 * self.roles().count() as u64
+    /// Every run of `replicates` replicates; references that points share are counted for each.
+    pub fn runs(&self, replicates: usize) -> impl Iterator<Item = RunKey> {
+        let of_point = move |point| {
+            (0..replicates).flat_map(move |replicate| {
+                self.roles().map(move |role| RunKey {
+                    point,
+                    replicate,
+                    role,
+                })
+            })
+        };
+        (0..self.points.len()).flat_map(of_point)
     }
 }
 

@@ -1,5 +1,7 @@
 //! The numbers of a summary by their names, for tables and statistics.
 
+use std::sync::LazyLock;
+
 use serde_json::Value;
 
 use crate::summary::Summary;
@@ -10,18 +12,62 @@ pub const REDUCTION: &str = "static_reduction_percent";
 /// What a summary holds beside numbers, and the seed, of which no mean is asked.
 const NO_NUMBERS: [&str; 5] = ["kinetic_window_star", "instants", "warnings", "version", "seed"];
 
-/// Names of all numbers, in the order of the summary; the reduction comes last.
-pub fn known() -> Vec<String> {
-    let mut names: Vec<String> = numbers(&Summary::default())
+static KNOWN: LazyLock<Vec<String>> = LazyLock::new(|| {
+    let mut names: Vec<String> = named(&Summary::default())
         .into_iter()
         .map(|(name, _)| name)
         .collect();
     names.push(REDUCTION.to_owned());
     names
+});
+
+/// Names of all numbers, in the order of the summary; the reduction comes last.
+pub fn known() -> &'static [String] {
+    &KNOWN
 }
 
-/// The numbers of a summary; none where it has none. Yes and no are 1 and 0.
-pub(super) fn numbers(summary: &Summary) -> Vec<(String, Option<f64>)> {
+/// A number of a run, or of a run and its reference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Position in the summary.
+    Number(usize),
+    /// Eq. 16.
+    Reduction,
+}
+
+impl Quantity {
+    /// The quantity of this name, if there is one.
+    pub fn named(name: &str) -> Option<Self> {
+        if name == REDUCTION {
+            return Some(Self::Reduction);
+        }
+        known().iter().position(|known| known == name).map(Self::Number)
+    }
+}
+
+/// The numbers of a summary in the order of [`known`]: all that tables and statistics need of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Numbers {
+    values: Box<[Option<f64>]>,
+    static_friction_star: f64,
+}
+
+impl Numbers {
+    pub(super) fn of(summary: &Summary) -> Self {
+        Self {
+            values: named(summary).into_iter().map(|(_, value)| value).collect(),
+            static_friction_star: summary.static_friction_star,
+        }
+    }
+
+    /// Number at a position; none where the summary has none.
+    pub(super) fn get(&self, position: usize) -> Option<f64> {
+        self.values.get(position).copied().flatten()
+    }
+}
+
+/// The numbers of a summary and their names. Yes and no are 1 and 0.
+fn named(summary: &Summary) -> Vec<(String, Option<f64>)> {
     let Ok(Value::Object(fields)) = serde_json::to_value(summary) else {
         return Vec::new();
     };
@@ -35,16 +81,11 @@ pub(super) fn numbers(summary: &Summary) -> Vec<(String, Option<f64>)> {
     kept.map(|(name, value)| (name, number(value))).collect()
 }
 
-/// One number of a summary by its name.
-pub(super) fn number(summary: &Summary, name: &str) -> Option<f64> {
-    numbers(summary).into_iter().find(|(other, _)| other == name)?.1
-}
-
 /// Reduction of mu_s* in % (Eq. 16), both runs on the same random surface:
 ///
 /// ```text
 /// 100 (mu_s*(reference) - mu_s*)/mu_s*(reference)
 /// ```
-pub(super) fn reduction_percent(point: &Summary, reference: &Summary) -> f64 {
+pub(super) fn reduction_percent(point: &Numbers, reference: &Numbers) -> f64 {
     100.0 * (reference.static_friction_star - point.static_friction_star) / reference.static_friction_star
 }

@@ -5,12 +5,14 @@
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
 use super::error::StudyError;
+use super::quantities::Numbers;
 use crate::summary::Summary;
 
 /// Name of the record file in a study folder.
@@ -26,10 +28,42 @@ pub enum Outcome {
     Failed(String),
 }
 
+impl Outcome {
+    /// What tables and statistics need of it.
+    fn finding(&self) -> Finding {
+        match self {
+            Self::Done(summary) => Finding::Done(Numbers::of(summary)),
+            Self::Failed(reason) => Finding::Failed(reason.clone()),
+        }
+    }
+
+    /// The same, unless the record file could not hold it: JSON has no infinite numbers.
+    pub(super) fn or_not_finite(self) -> Self {
+        let read_back = |outcome: &Self| {
+            let json = serde_json::to_string(outcome).ok()?;
+            serde_json::from_str::<Self>(&json).ok()
+        };
+        if read_back(&self).as_ref() == Some(&self) {
+            self
+        } else {
+            Self::Failed("a number of its summary is not finite".to_owned())
+        }
+    }
+}
+
+/// What was found of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Finding {
+    /// Its numbers.
+    Done(Numbers),
+    /// Why it failed.
+    Failed(String),
+}
+
 /// One line of the record file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// What the run was: see [`super::plan::Plan::identity`].
+    /// What the run was: see [`super::Plan::identity`].
     pub id: String,
     /// Seconds that it took. The only thing here that another run of it would not repeat.
     pub wall_time_s: f64,
@@ -42,7 +76,7 @@ pub struct Record {
 pub struct Records {
     path: PathBuf,
     file: File,
-    outcomes: HashMap<String, Outcome>,
+    findings: HashMap<String, Arc<Finding>>,
     /// Lines that failed their checksum.
     pub damaged: usize,
 }
@@ -68,17 +102,22 @@ impl Records {
             .create(true)
             .open(&path)
             .map_err(|source| cannot_open(&path, source))?;
-        file.try_lock().map_err(|error| match error {
+        let locked = file.try_lock().map_err(|error| match error {
             std::fs::TryLockError::WouldBlock => StudyError::Busy {
                 path: folder.to_owned(),
             },
             std::fs::TryLockError::Error(source) => cannot_open(&path, source),
-        })?;
+        });
+        match locked {
+            // Some file systems of clusters have no locks; the study runs there without.
+            Err(StudyError::Records { source, .. }) if source.kind() == ErrorKind::Unsupported => {}
+            locked => locked?,
+        }
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes)
             .map_err(|source| cannot_open(&path, source))?;
         let (records, damaged) = parse(&bytes);
-        if records.is_empty() && damaged > 0 && bytes.contains(&b'\n') {
+        if damaged > 0 && bytes.contains(&b'\n') && !bytes.split(|&byte| byte == b'\n').any(looks_like_ours) {
             return Err(StudyError::NotRecords { path });
         }
         // What a crash left of a line must not swallow the next one.
@@ -92,41 +131,48 @@ impl Records {
         }
         file.seek(SeekFrom::End(0))
             .map_err(|source| cannot_open(&path, source))?;
-        let outcomes = records
+        // A new file is only safe from a power cut once its folder is.
+        if bytes.is_empty() {
+            sync_folder(folder).map_err(|source| cannot_write(&path, source))?;
+        }
+        let findings = records
             .into_iter()
-            .map(|record| (record.id, record.outcome))
+            .map(|record| (record.id, Arc::new(record.outcome.finding())))
             .collect();
         Ok(Self {
             path,
             file,
-            outcomes,
+            findings,
             damaged,
         })
     }
 
-    /// How the run with this identity ended, if it has.
-    pub fn get(&self, id: &str) -> Option<&Outcome> {
-        self.outcomes.get(id)
+    /// What was found of the run with this identity, if it was done.
+    pub fn get(&self, id: &str) -> Option<&Arc<Finding>> {
+        self.findings.get(id)
     }
 
     /// Number of runs recorded.
     pub fn len(&self) -> usize {
-        self.outcomes.len()
+        self.findings.len()
     }
 
     /// Whether nothing is recorded.
     pub fn is_empty(&self) -> bool {
-        self.outcomes.is_empty()
+        self.findings.is_empty()
     }
 
-    /// Appends a finished run and waits until the disk has it.
+    /// Appends finished runs and waits until the disk has them.
     ///
     /// # Errors
-    /// When it cannot be written; what had been recorded before stays whole.
-    pub fn append(&mut self, record: Record) -> Result<(), StudyError> {
-        let line = to_line(&record);
+    /// When they cannot be written; what had been recorded before stays whole.
+    pub fn append(&mut self, records: &[Record]) -> Result<(), StudyError> {
+        if records.is_empty() {
+            return Ok(());
+        }
+        let lines: Vec<u8> = records.iter().flat_map(to_line).collect();
         let before = self.file.stream_position().unwrap_or(0);
-        let written = self.file.write_all(&line).and_then(|()| self.file.sync_data());
+        let written = self.file.write_all(&lines).and_then(|()| self.file.sync_data());
         written.map_err(|source| {
             // A part of a line is taken back; if even that fails, the next start does it.
             let _ = self.file.set_len(before);
@@ -136,7 +182,10 @@ impl Records {
                 source,
             }
         })?;
-        self.outcomes.insert(record.id, record.outcome);
+        for record in records {
+            self.findings
+                .insert(record.id.clone(), Arc::new(record.outcome.finding()));
+        }
         Ok(())
     }
 
@@ -151,17 +200,21 @@ impl Records {
             path: path.clone(),
             source,
         })?;
-        let (records, damaged) = parse(&bytes);
+        let (mut records, damaged) = parse(&bytes);
         self.damaged += damaged;
-        let mut taken = 0;
-        for record in records {
-            if !self.outcomes.contains_key(&record.id) {
-                self.append(record)?;
-                taken += 1;
-            }
-        }
-        Ok(taken)
+        records.retain(|record| !self.findings.contains_key(&record.id));
+        self.append(&records)?;
+        Ok(records.len())
     }
+}
+
+/// Forces the names in a folder to the disk.
+fn sync_folder(folder: &Path) -> std::io::Result<()> {
+    // Only Unix opens folders as files.
+    if cfg!(unix) {
+        File::open(folder)?.sync_all()?;
+    }
+    Ok(())
 }
 
 fn to_line(record: &Record) -> Vec<u8> {
@@ -192,6 +245,11 @@ fn parse_line(line: &[u8]) -> Option<Record> {
     serde_json::from_slice(json).ok()
 }
 
+/// Whether a line may once have been a record, to tell a damaged file from a foreign one.
+fn looks_like_ours(line: &[u8]) -> bool {
+    line.get(CHECKSUM) == Some(&b' ') && line.get(CHECKSUM + 1) == Some(&b'{')
+}
+
 /// Characters of a checksum.
 const CHECKSUM: usize = 16;
 
@@ -215,12 +273,20 @@ mod tests {
     fn a_line_cut_short_anywhere_is_not_run_and_does_not_harm_the_next() {
         let whole = to_line(&record("a"));
         let next = to_line(&record("b"));
-        for cut in 0..next.len() - 1 {
+        // Every place would be a thousand waits for the disk.
+        for cut in (0..40)
+            .chain((40..next.len() - 1).step_by(97))
+            .chain([next.len() - 2])
+        {
             let folder = tempfile::tempdir().unwrap();
             std::fs::write(folder.path().join(RECORDS), [&whole[..], &next[..cut]].concat()).unwrap();
             let mut records = Records::open(folder.path()).unwrap();
-            assert_eq!((records.len(), records.get("b")), (1, None), "cut at {cut}");
-            records.append(record("c")).unwrap();
+            assert_eq!(
+                (records.len(), records.get("b").is_none()),
+                (1, true),
+                "cut at {cut}"
+            );
+            records.append(&[record("c")]).unwrap();
             drop(records);
             let records = Records::open(folder.path()).unwrap();
             assert_eq!((records.len(), records.damaged), (2, 0), "cut at {cut}");
@@ -263,11 +329,25 @@ mod tests {
     }
 
     #[test]
+    fn what_json_cannot_hold_is_a_failure() {
+        let outcome = |value| {
+            let summary = Summary {
+                energy_error: value,
+                ..Summary::default()
+            };
+            Outcome::Done(Box::new(summary)).or_not_finite()
+        };
+        assert!(matches!(outcome(0.1), Outcome::Done(_)));
+        assert!(matches!(outcome(f64::NAN), Outcome::Failed(_)));
+        assert!(matches!(outcome(f64::INFINITY), Outcome::Failed(_)));
+    }
+
+    #[test]
     fn merging_twice_is_merging_once() {
         let (one, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-        Records::open(one.path()).unwrap().append(record("a")).unwrap();
+        Records::open(one.path()).unwrap().append(&[record("a")]).unwrap();
         let mut records = Records::open(other.path()).unwrap();
-        records.append(record("b")).unwrap();
+        records.append(&[record("b")]).unwrap();
         assert_eq!(records.merge(one.path()).unwrap(), 1);
         assert_eq!(records.merge(one.path()).unwrap(), 0);
         assert_eq!(records.len(), 2);

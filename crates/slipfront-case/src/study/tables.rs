@@ -2,77 +2,108 @@
 
 use super::error::StudyError;
 use super::execute::Findings;
-use super::plan::{Plan, Role, RunKey};
-use super::quantities::{REDUCTION, known, numbers};
-use super::record::Outcome;
+use super::plan::{Plan, Role};
+use super::quantities::{Quantity, REDUCTION, known};
+use super::record::Finding;
 use super::statistics::Sample;
 
-/// `runs.csv`: what varied, the seed, every number of the summary, and whether the run failed. A reference that
-/// is not a point of the study itself has rows of its own.
+/// Columns of `runs.csv` before those of the axes, and after them, before the quantities.
+const BEFORE_AXES: [&str; 3] = ["point", "replicate", "role"];
+const AFTER_AXES: [&str; 4] = ["seed", "run", "status", "reason"];
+
+/// Columns of `points.csv` after those of the axes.
+const STATISTICS: [&str; 9] = [
+    "quantity",
+    "n",
+    "mean",
+    "deviation",
+    "low",
+    "high",
+    "min",
+    "max",
+    "narrow_enough",
+];
+
+/// Names that no axis can have: those of all columns but the quantities.
+pub(super) const COLUMNS: [&str; 16] = [
+    "point",
+    "replicate",
+    "role",
+    "seed",
+    "run",
+    "status",
+    "reason",
+    "quantity",
+    "n",
+    "mean",
+    "deviation",
+    "low",
+    "high",
+    "min",
+    "max",
+    "narrow_enough",
+];
+
+/// `runs.csv`: what varied, the seed, every number of the summary, and whether the run failed. A reference has rows
+/// of its own.
 ///
 /// # Errors
-/// When it cannot be put into words, or a case no longer be read.
+/// When it cannot be put into words.
 pub(super) fn runs(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyError> {
     let mut table = csv::Writer::from_writer(Vec::new());
-    let columns: Vec<&str> = plan
+    let columns = plan
         .axes
         .iter()
-        .flat_map(|axis| axis.columns.iter().map(String::as_str))
-        .collect();
-    let mut quantities = known();
-    if !plan.has_reference() {
-        quantities.retain(|name| name != REDUCTION);
-    }
+        .flat_map(|axis| &axis.columns)
+        .map(String::as_str);
+    let quantities = quantities(plan);
     table.write_record(
-        ["point", "replicate", "role"]
+        BEFORE_AXES
             .into_iter()
             .chain(columns)
-            .chain(["seed", "status", "reason"])
-            .chain(quantities.iter().map(String::as_str)),
+            .chain(AFTER_AXES)
+            .chain(quantities.iter().map(|(name, _)| *name)),
     )?;
-    for (point, found) in plan.points.iter().zip(&findings.points) {
-        for replicate in 0..found.replicates {
-            for role in plan.roles() {
-                let run = RunKey {
-                    point: point.index,
-                    replicate,
-                    role,
-                };
-                let mut row = vec![
-                    point.index.to_string(),
-                    replicate.to_string(),
-                    role_name(role).to_owned(),
-                ];
-                row.extend(plan.columns(point).into_iter().map(|(_, value)| value.to_owned()));
-                row.push(plan.case_file(run)?.friction.seed.to_string());
-                let values = match findings.outcomes.get(&run).map(AsRef::as_ref) {
-                    Some(Outcome::Done(summary)) => {
-                        row.extend(["done".to_owned(), String::new()]);
-                        numbers(summary).into_iter().map(|(_, value)| value).collect()
-                    }
-                    Some(Outcome::Failed(reason)) => {
-                        row.extend(["failed".to_owned(), reason.clone()]);
-                        Vec::new()
-                    }
-                    None => {
-                        row.extend(["missing".to_owned(), String::new()]);
-                        Vec::new()
-                    }
-                };
-                let reduction = match role {
-                    Role::Point => findings.value(point.index, replicate, REDUCTION),
-                    Role::Reference => None,
-                };
-                let count = quantities.len() - usize::from(plan.has_reference());
-                row.extend((0..count).map(|k| cell(values.get(k).copied().flatten())));
-                if plan.has_reference() {
-                    row.push(cell(reduction));
-                }
-                table.write_record(row)?;
+    // Sorted by point, replicate and role.
+    for (&run, finding) in &findings.runs {
+        let point = &plan.points[run.point];
+        let mut row = vec![
+            point.index.to_string(),
+            run.replicate.to_string(),
+            role_name(run.role).to_owned(),
+        ];
+        row.extend(plan.columns(point).into_iter().map(|(_, value)| value.to_owned()));
+        row.extend([plan.seed(run).to_string(), plan.folder_name(run)]);
+        let numbers = match finding.as_ref() {
+            Finding::Done(numbers) => {
+                row.extend(["done".to_owned(), String::new()]);
+                Some(numbers)
             }
+            Finding::Failed(reason) => {
+                row.extend(["failed".to_owned(), reason.clone()]);
+                None
+            }
+        };
+        for &(_, quantity) in &quantities {
+            let value = match (quantity, run.role) {
+                (Quantity::Number(position), _) => numbers.and_then(|numbers| numbers.get(position)),
+                (Quantity::Reduction, Role::Point) => findings.value(run.point, run.replicate, quantity),
+                (Quantity::Reduction, Role::Reference) => None,
+            };
+            row.push(cell(value));
         }
+        table.write_record(row)?;
     }
     finish(table)
+}
+
+/// The quantities that the tables of a study have: a reduction only against a reference.
+fn quantities(plan: &Plan) -> Vec<(&'static str, Quantity)> {
+    known()
+        .iter()
+        .filter(|name| plan.has_reference() || *name != REDUCTION)
+        .filter_map(|name| Some((name.as_str(), Quantity::named(name)?)))
+        .collect()
 }
 
 /// `points.csv`: for each point and quantity the number of values, their mean, standard deviation, confidence
@@ -82,32 +113,21 @@ pub(super) fn runs(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyErr
 /// When it cannot be put into words.
 pub(super) fn points(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyError> {
     let mut table = csv::Writer::from_writer(Vec::new());
-    let columns: Vec<&str> = plan
+    let columns = plan
         .axes
         .iter()
-        .flat_map(|axis| axis.columns.iter().map(String::as_str))
-        .collect();
-    let statistics = [
-        "quantity",
-        "n",
-        "mean",
-        "deviation",
-        "low",
-        "high",
-        "min",
-        "max",
-        "narrow_enough",
-    ];
-    table.write_record(["point"].into_iter().chain(columns).chain(statistics))?;
+        .flat_map(|axis| &axis.columns)
+        .map(String::as_str);
+    table.write_record(["point"].into_iter().chain(columns).chain(STATISTICS))?;
     for (position, point) in plan.points.iter().enumerate() {
-        for name in known() {
-            let Some(sample) = sample(plan, findings, position, &name) else {
+        for (name, _) in quantities(plan) {
+            let Some(sample) = sample(plan, findings, position, name) else {
                 continue;
             };
             let mut row = vec![point.index.to_string()];
             row.extend(plan.columns(point).into_iter().map(|(_, value)| value.to_owned()));
             let [low, high] = sample.interval().map_or([None; 2], |interval| interval.map(Some));
-            row.extend([name.clone(), sample.n.to_string(), number_cell(sample.mean)]);
+            row.extend([name.to_owned(), sample.n.to_string(), number_cell(sample.mean)]);
             row.extend([cell(sample.deviation), cell(low), cell(high)]);
             row.extend([number_cell(sample.min), number_cell(sample.max)]);
             let decides = plan
@@ -125,10 +145,10 @@ pub(super) fn points(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyE
 
 /// Statistics of a quantity at the point at `position` of the plan; none without values.
 pub fn sample(plan: &Plan, findings: &Findings, position: usize, name: &str) -> Option<Sample> {
-    let point = plan.points[position].index;
+    let quantity = Quantity::named(name)?;
     let replicates = findings.points.get(position)?.replicates;
     let values: Vec<f64> = (0..replicates)
-        .filter_map(|replicate| findings.value(point, replicate, name))
+        .filter_map(|replicate| findings.value(position, replicate, quantity))
         .collect();
     Sample::of(&values, plan.settings.confidence())
 }

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use slipfront_case::study::{Plan, StudyFolder, refuse_foreign, study_of};
+use slipfront_case::study::{Plan, StudyFolder, collect, is_study, refuse_foreign, study_of};
 
-use super::run;
+use super::run::finish;
 use crate::failure::Failure;
 
 /// Unite the shards of a study: their records, tables and pictures; may be repeated
@@ -17,11 +17,17 @@ pub(crate) struct Merge {
     /// Folder of the united study
     #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
+    /// Show no tables
+    #[arg(short, long)]
+    quiet: bool,
 }
 
 impl Merge {
     pub(crate) fn execute(self) -> Result<(), Failure> {
-        refuse_foreign(&self.shards).map_err(Failure::input)?;
+        let mut folders = self.shards.clone();
+        // What is there already must be of the same study, so that merging may be repeated.
+        folders.extend(is_study(&self.out).then(|| self.out.clone()));
+        refuse_foreign(&folders).map_err(Failure::input)?;
         let study = study_of(&self.shards[0]).map_err(Failure::input)?;
         let plan = Plan::new(&study, None).map_err(Failure::input)?;
         let mut folder = StudyFolder::open(&self.out, &study).map_err(Failure::input)?;
@@ -29,9 +35,10 @@ impl Merge {
         for shard in &self.shards {
             taken += folder.records.merge(shard).map_err(Failure::running)?;
         }
-        eprintln!("{taken} runs taken over from {} shards", self.shards.len());
-        folder.copy_inputs(&plan, &study).map_err(Failure::running)?;
-        // What no shard has is run here.
-        run::run(&plan, &mut folder, rayon::current_num_threads(), false)
+        if !self.quiet {
+            eprintln!("{taken} runs taken over from {} shards", self.shards.len());
+        }
+        let findings = collect(&plan, &mut folder.records).map_err(Failure::running)?;
+        finish(&plan, &findings, &folder, self.quiet)
     }
 }

@@ -1,5 +1,6 @@
 //! `slipfront study STUDY.toml`: run what is missing, then write tables and pictures.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -7,8 +8,11 @@ use std::time::Instant;
 
 use clap::Args;
 use signal_hook::consts::{SIGINT, SIGTERM};
-use slipfront::Simulation;
-use slipfront_case::study::{self, Findings, Plan, Role, RunKey, Shard, StudyError, StudyFile, StudyFolder};
+use slipfront::Stop;
+use slipfront::observe::StressMaximum;
+use slipfront_case::case::Case;
+use slipfront_case::run;
+use slipfront_case::study::{self, Findings, Plan, RunKey, Shard, StudyError, StudyFile, StudyFolder};
 
 use crate::commands::{print, set_threads};
 use crate::failure::Failure;
@@ -43,6 +47,15 @@ pub(crate) struct StudyRun {
 /// Runs that are done without asking.
 const MANY: u64 = 10_000;
 
+/// Refuses a very large study unless it is meant.
+pub(super) fn refuse_large(file: &StudyFile, meant: bool) -> Result<(), Failure> {
+    let runs = file.count_runs().map_err(Failure::input)?;
+    if runs > MANY && !meant {
+        return Err(Failure::input(StudyError::Large { runs, limit: MANY }));
+    }
+    Ok(())
+}
+
 impl StudyRun {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let threads = set_threads(self.threads)?;
@@ -50,47 +63,72 @@ impl StudyRun {
             return Err(Failure::input(anyhow::anyhow!("name a study file")));
         };
         let file = StudyFile::load(&path).map_err(Failure::input)?;
+        refuse_large(&file, self.yes || self.dry_run)?;
         let plan = Plan::new(&file, self.shard).map_err(Failure::input)?;
         if self.dry_run {
             return print(&dry_run(&plan, threads)?);
         }
-        let runs = plan.runs(plan.settings.max_replicates());
-        if runs > MANY && !self.yes {
-            return Err(Failure::input(StudyError::Large { runs, limit: MANY }));
-        }
-        let out = self
-            .out
-            .unwrap_or_else(|| PathBuf::from("results").join(&file.name));
+        let out = self.out.unwrap_or_else(|| default_out(&file.name, self.shard));
         let mut folder = StudyFolder::open(&out, &file).map_err(Failure::input)?;
-        folder.copy_inputs(&plan, &file).map_err(Failure::running)?;
-        run(&plan, &mut folder, threads, self.quiet)
+        complete(&plan, &mut folder, threads, self.quiet)
     }
 }
 
+/// Shards of one study do not share a folder.
+fn default_out(name: &str, shard: Option<Shard>) -> PathBuf {
+    let name = match shard {
+        Some(shard) => format!("{name}-{}", shard.to_string().replace('/', "-of-")),
+        None => name.to_owned(),
+    };
+    PathBuf::from("results").join(name)
+}
+
 /// Runs what the folder lacks, and writes tables and pictures.
-pub(super) fn run(plan: &Plan, folder: &mut StudyFolder, threads: usize, quiet: bool) -> Result<(), Failure> {
+fn complete(plan: &Plan, folder: &mut StudyFolder, threads: usize, quiet: bool) -> Result<(), Failure> {
     let (stop, signal) = on_signals().map_err(Failure::running)?;
-    if folder.records.damaged > 0 && !quiet {
-        eprintln!(
-            "{} damaged lines of the record file count as not run",
-            folder.records.damaged
-        );
-    }
     let mut progress = StudyProgress::new(quiet);
+    if !quiet {
+        notes(folder);
+    }
     let path = folder.path().to_owned();
     let done = study::execute(plan, &mut folder.records, &path, threads, &stop, &mut |now| {
-        progress.show(now)
+        progress.show(now);
     });
     progress.finish();
     let findings = match done {
         Err(StudyError::Interrupted) => return Err(Failure::Stopped(signal.load(Ordering::Relaxed))),
         done => done.map_err(Failure::running)?,
     };
-    study::write(plan, &findings, folder).map_err(Failure::running)?;
-    if !quiet {
-        print(&report::study(plan, &findings, folder.path()))?;
+    finish(plan, &findings, folder, quiet)
+}
+
+/// What is to be known of a folder that has been used before.
+fn notes(folder: &StudyFolder) {
+    if folder.records.damaged > 0 {
+        eprintln!(
+            "note: {} damaged lines of the record file are passed over; their runs count as not run",
+            folder.records.damaged
+        );
     }
-    failures(plan, &findings)
+    if folder.changed {
+        eprintln!(
+            "note: the study has changed since this folder was last used; runs that still belong to it are kept"
+        );
+    }
+}
+
+/// Writes tables and pictures, and says what was found.
+pub(super) fn finish(
+    plan: &Plan,
+    findings: &Findings,
+    folder: &StudyFolder,
+    quiet: bool,
+) -> Result<(), Failure> {
+    study::write(plan, findings, folder).map_err(Failure::running)?;
+    if !quiet {
+        print(&report::study(plan, findings, folder.path()))?;
+    }
+    failures(plan, findings)
 }
 
 /// Flags that SIGINT and SIGTERM set: that one came, and which.
@@ -111,46 +149,48 @@ fn failures(plan: &Plan, findings: &Findings) -> Result<(), Failure> {
     let Some((run, reason)) = failed.first() else {
         return Ok(());
     };
-    let point = plan.points.iter().find(|point| point.index == run.point);
-    let place = point.map_or(String::new(), |point| plan.describe(point));
+    let place = plan.describe(&plan.points[run.point]);
     let sentence = format!(
-        "{} runs failed, the others stand in the tables; the first, replicate {} of the point {place}: {reason}",
+        "{} of {} runs failed, the others stand in the tables; the first, replicate {} of the point {place}: {reason}",
         failed.len(),
+        findings.runs.len(),
         run.replicate
     );
     Err(Failure::running(anyhow::anyhow!(sentence)))
 }
 
-/// Steps by which the cost of a run is measured.
-const PROBE_STEPS: u32 = 200;
+/// Block-steps by which the cost of a run is measured.
+const PROBE: f64 = 1e6;
 
 fn dry_run(plan: &Plan, threads: usize) -> Result<String, Failure> {
-    let replicates = plan.settings.min_replicates();
-    let mut block_steps = 0.0;
-    let mut per_block_step = None;
-    for point in &plan.points {
-        for role in [Role::Point, Role::Reference]
-            .into_iter()
-            .take(1 + usize::from(plan.has_reference()))
-        {
-            let case = plan
-                .case(RunKey {
-                    point: point.index,
-                    replicate: 0,
-                    role,
-                })
-                .map_err(Failure::input)?;
-            block_steps += replicates as f64 * case.block_steps();
-            per_block_step.get_or_insert_with(|| {
-                let began = Instant::now();
-                let mut simulation = Simulation::at_rest(&case.model, case.schedule.dt_star);
-                (0..PROBE_STEPS).for_each(|_| simulation.step());
-                let steps = f64::from(PROBE_STEPS) * case.model.lattice.n_blocks() as f64;
-                began.elapsed().as_secs_f64() / steps
-            });
-        }
+    let (mut block_steps, mut seconds) = (0.0, 0.0);
+    // A block of a large lattice costs more than one that fits into the cache.
+    let mut rates: HashMap<usize, f64> = HashMap::new();
+    for run in plan.runs(1) {
+        let (cost, n_blocks) = plan.cost(run);
+        let rate = match rates.get(&n_blocks) {
+            Some(&rate) => rate,
+            None => {
+                let rate = probe(plan.case(run).map_err(Failure::input)?)?;
+                rates.insert(n_blocks, rate);
+                rate
+            }
+        };
+        block_steps += cost;
+        seconds += cost / rate;
     }
-    // Observers cost about as much as the step itself.
-    let seconds = 2.0 * block_steps * per_block_step.unwrap_or_default() / threads as f64;
-    Ok(report::plan(plan, block_steps, seconds, threads))
+    let replicates = plan.settings.min_replicates() as f64;
+    let seconds = replicates * seconds / threads as f64;
+    Ok(report::plan(plan, replicates * block_steps, seconds, threads))
+}
+
+/// Block-steps per second of a run.
+fn probe(mut case: Case) -> Result<f64, Failure> {
+    let n_blocks = case.model.lattice.n_blocks() as f64;
+    let steps = (PROBE / n_blocks).clamp(10.0, 1e5) as u64;
+    case.schedule.last_step = steps.min(case.schedule.last_step);
+    case.schedule.stop = Stop::at_step(case.schedule.last_step);
+    let began = Instant::now();
+    run::run(&case, u64::MAX, &mut StressMaximum::default()).map_err(Failure::running)?;
+    Ok(case.block_steps() / began.elapsed().as_secs_f64().max(1e-9))
 }

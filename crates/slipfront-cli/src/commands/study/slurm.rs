@@ -6,6 +6,7 @@ use clap::Args;
 use slipfront_case::study::slurm::{Batch, script};
 use slipfront_case::study::{Plan, StudyFile};
 
+use super::run::refuse_large;
 use crate::commands::print;
 use crate::failure::Failure;
 
@@ -21,19 +22,25 @@ pub(crate) struct Slurm {
     /// Folder for the results of all tasks [default: results/ and the name of the study]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Make a script for more than 10 000 runs without asking
+    #[arg(long)]
+    yes: bool,
 }
 
 impl Slurm {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let study = StudyFile::load(&self.study).map_err(Failure::input)?;
+        refuse_large(&study, self.yes)?;
         // A study that cannot run should not reach the queue.
         let points = Plan::new(&study, None).map_err(Failure::input)?.points.len();
         let out = self
             .out
             .unwrap_or_else(|| PathBuf::from("results").join(&study.name));
         let absolute = |path: PathBuf| std::path::absolute(path).map_err(Failure::input);
+        let command = std::env::current_exe().map_err(Failure::running)?;
         print(&script(&Batch {
             name: study.name.clone(),
+            command: command.display().to_string(),
             study: absolute(self.study)?.display().to_string(),
             out: absolute(out)?.display().to_string(),
             // More tasks than points would have nothing to do.

@@ -1,0 +1,145 @@
+//! Files that the cases of a study read, copied so that a results folder can repeat the study on its own.
+
+use std::path::{Component, Path};
+
+use toml::{Table, Value};
+
+/// Keys of a case that name files.
+const FILE_KEYS: [&str; 3] = ["file", "mu_static_field", "mu_kinetic_field"];
+
+/// Whether a key of a case, such as `texture.0.file`, names a file.
+pub(super) fn names_a_file(key: &str) -> bool {
+    FILE_KEYS.contains(&key.rsplit('.').next().unwrap_or(key))
+}
+
+/// Folder of the copies.
+const FOLDER: &str = "inputs";
+
+/// The name of a file without the way to it: its path below the case, or the last part of one that leads elsewhere.
+/// A copy has the plain name of its original.
+pub(super) fn plain_name(written: &str) -> String {
+    let path = Path::new(written);
+    let inside = path
+        .components()
+        .all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+    let last = path
+        .file_name()
+        .map_or_else(|| written.into(), |name| name.to_string_lossy().into_owned());
+    if !inside {
+        return last;
+    }
+    let below = path.strip_prefix(FOLDER).unwrap_or(path);
+    let parts: Vec<_> = below
+        .components()
+        .filter(|part| matches!(part, Component::Normal(_)))
+        .map(|part| part.as_os_str().to_string_lossy())
+        .collect();
+    parts.join("/")
+}
+
+/// A copy of a file: its path in the results folder, and its bytes.
+pub(super) type Copy = (String, Vec<u8>);
+
+/// Replaces the names of all files of a study, which stand relative to `folder`, by those of copies.
+pub(super) fn copy(study: &mut Table, folder: &Path) -> Vec<Copy> {
+    let mut copies = Copies {
+        folder,
+        made: Vec::new(),
+    };
+    copies.visit_table(study);
+    copies.made
+}
+
+struct Copies<'a> {
+    folder: &'a Path,
+    made: Vec<Copy>,
+}
+
+impl Copies<'_> {
+    fn visit_table(&mut self, table: &mut Table) {
+        // An axis names the key beside its values.
+        let lists_files = table.get("key").and_then(Value::as_str).is_some_and(names_a_file);
+        for (key, value) in table.iter_mut() {
+            let is_file = names_a_file(key) || (lists_files && key == "list");
+            self.visit(value, is_file);
+        }
+    }
+
+    fn visit(&mut self, value: &mut Value, is_file: bool) {
+        match value {
+            Value::String(name) if is_file => self.replace(name),
+            Value::Array(values) => values.iter_mut().for_each(|value| self.visit(value, is_file)),
+            Value::Table(table) => self.visit_table(table),
+            _ => {}
+        }
+    }
+
+    fn replace(&mut self, name: &mut String) {
+        // Every point was valid, so that a file that is not there is one that no point reads.
+        let Ok(bytes) = std::fs::read(self.folder.join(&*name)) else {
+            return;
+        };
+        let plain = plain_name(name);
+        let mut copy = format!("{FOLDER}/{plain}");
+        let mut copies = 1;
+        // Two files of one name from different folders stay two files.
+        while let Some((_, other)) = self.made.iter().find(|(made, _)| *made == copy) {
+            if *other == bytes {
+                *name = copy;
+                return;
+            }
+            copies += 1;
+            copy = format!("{FOLDER}/{copies}-{plain}");
+        }
+        name.clone_from(&copy);
+        self.made.push((copy, bytes));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_copy_has_the_plain_name_of_its_original() {
+        for (written, plain) in [
+            ("mask.png", "mask.png"),
+            ("./masks/a.png", "masks/a.png"),
+            ("../masks/a.png", "a.png"),
+            ("/data/a.png", "a.png"),
+            ("inputs/masks/a.png", "masks/a.png"),
+        ] {
+            assert_eq!(plain_name(written), plain);
+            assert_eq!(plain_name(&format!("inputs/{plain}")), plain);
+        }
+    }
+
+    #[test]
+    fn files_are_found_wherever_a_study_names_them() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a.png", "b.png", "c.npy", "sub/a.png"] {
+            let path = folder.path().join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, name).unwrap();
+        }
+        std::fs::write(folder.path().join("sub/again.png"), "a.png").unwrap();
+        let text = r#"
+            base.texture = [{ shape = "mask", file = "a.png" }]
+            axes = [
+                { key = "texture.0.file", list = ["a.png", "sub/a.png", "missing.png"] },
+                { zip = { "friction.mu_static_field" = ["c.npy"] } },
+                { name = "shape", variants = { b = { texture = [{ shape = "mask", file = "b.png" }] } } },
+            ]"#;
+        let mut study: Table = text.parse().unwrap();
+        let copies = copy(&mut study, folder.path());
+        let names: Vec<&str> = copies.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(
+            names,
+            ["inputs/a.png", "inputs/sub/a.png", "inputs/c.npy", "inputs/b.png"]
+        );
+        let printed = study.to_string();
+        for name in names.iter().chain(&["\"missing.png\""]) {
+            assert!(printed.contains(name), "{name} in {printed}");
+        }
+    }
+}

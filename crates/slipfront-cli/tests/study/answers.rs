@@ -1,0 +1,227 @@
+//! What the tables and pictures say, and on what they do not depend.
+
+use crate::bench::{Bench, SMALL, SMALL_RUNS, deviation, errors, mean};
+
+/// Until the interval of mu_s* is narrow: some points need more than the fewest replicates, none the most.
+fn adaptive(half_width: &str, max: &str) -> String {
+    let until = format!(
+        "until = {{ key = 'static_friction_star', half_width = {half_width}, min = 3, max = {max} }}"
+    );
+    SMALL.replace("replicates = 3", &until)
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bytes() {
+    let bench = Bench::with(SMALL);
+    bench.write("adaptive.toml", adaptive("0.012", "12"));
+    for study in ["study", "adaptive"] {
+        for threads in ["1", "2", "7"] {
+            let (file, out) = (format!("{study}.toml"), format!("{study}-{threads}"));
+            bench.run(&[&file, "-o", &out, "--threads", threads]);
+            bench
+                .results(&out)
+                .assert_same(&bench.results(&format!("{study}-1")));
+        }
+    }
+    bench.results("study-7").assert_each_run_once(SMALL_RUNS);
+    let counts: Vec<usize> = (0..6)
+        .map(|point| bench.results("adaptive-2").numbers(point, "point", "seed").len())
+        .collect();
+    assert!(
+        counts.iter().any(|&count| (4..12).contains(&count)),
+        "nothing was decided: {counts:?}"
+    );
+}
+
+#[test]
+fn where_the_interval_stays_wide_it_is_said() {
+    let bench = Bench::with(&adaptive("1e-6", "4"));
+    let said = bench.run(&["study.toml", "-o", "wide"]);
+    assert_eq!(said.matches("interval still too wide").count(), 6, "{said}");
+    let decided: Vec<String> = bench
+        .results("wide")
+        .table("points.csv")
+        .iter()
+        .filter(|row| row["quantity"] == "static_friction_star")
+        .map(|row| row["narrow_enough"].clone())
+        .collect();
+    assert_eq!(decided, ["false"; 6]);
+}
+
+#[test]
+fn the_same_replicate_has_the_same_surface_at_every_point() {
+    // The first slip of a bare surface is at t* = (8/3) min(mu)/V*, up to a step: it tells the surface.
+    let bench = Bench::with(
+        "base.slider.blocks = [6, 6]\nbase.time.stop = 'after_onset'\n[study]\nreplicates = 8\n[[axes]]\nkey = 'drive.v_star'\nlist = [0.05, 0.1]",
+    );
+    let results = bench.study("out");
+    let scaled = |point, v_star: f64| -> Vec<f64> {
+        let times = results.numbers(point, "point", "first_slip_time_star");
+        times.into_iter().map(|time| time * v_star).collect()
+    };
+    let (slow, fast) = (scaled(0, 0.05), scaled(1, 0.1));
+    let step = 0.1 * 0.1;
+    for (slow, fast) in slow.iter().zip(&fast) {
+        assert!((slow - fast).abs() < step, "{slow} {fast}");
+    }
+    assert!(
+        deviation(&slow) > 5.0 * step,
+        "all replicates are alike: {slow:?}"
+    );
+    assert_eq!(
+        results.numbers(1, "point", "seed"),
+        (1..=8).map(f64::from).collect::<Vec<_>>()
+    );
+}
+
+#[test]
+fn reductions_are_paired_and_their_statistics_those_of_the_pairs() {
+    // What a little more speed does is small beside what another surface does.
+    let bench = Bench::with(
+        "base.slider.blocks = [6, 6]\nbase.time.stop = 'after_onset'\n[study]\nreplicates = 12\n\
+         reference = { drive.v_star = 0.12 }\n[[axes]]\nkey = 'drive.v_star'\nlist = [0.1, 0.08]",
+    );
+    let results = bench.study("out");
+    let column = |role, name| results.numbers(0, role, name);
+    let (slow, fast) = (
+        column("point", "static_friction_star"),
+        column("reference", "static_friction_star"),
+    );
+    let reduction = |slow: f64, fast: f64| 100.0 * (fast - slow) / fast;
+    let paired: Vec<f64> = slow.iter().zip(&fast).map(|(s, f)| reduction(*s, *f)).collect();
+    assert_eq!(column("point", "static_reduction_percent"), paired);
+
+    let elsewhere = fast.iter().cycle().skip(1);
+    let unpaired: Vec<f64> = slow
+        .iter()
+        .zip(elsewhere)
+        .map(|(s, f)| reduction(*s, *f))
+        .collect();
+    assert!(
+        deviation(&paired) < 0.5 * deviation(&unpaired),
+        "{} {}",
+        deviation(&paired),
+        deviation(&unpaired)
+    );
+
+    let points = results.table("points.csv");
+    let row = points
+        .iter()
+        .find(|row| row["point"] == "0" && row["quantity"] == "static_reduction_percent")
+        .unwrap();
+    let number = |name: &str| -> f64 { row[name].parse().unwrap() };
+    assert_eq!(number("n"), 12.0);
+    // t(11, 97.5 %) of a printed table.
+    let half = 2.200985 * deviation(&paired) / 12f64.sqrt();
+    for (name, expected) in [
+        ("mean", mean(&paired)),
+        ("deviation", deviation(&paired)),
+        ("low", mean(&paired) - half),
+        ("high", mean(&paired) + half),
+        ("min", paired.iter().copied().fold(f64::INFINITY, f64::min)),
+        ("max", paired.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
+    ] {
+        assert!(
+            (number(name) - expected).abs() < 1e-5 * expected.abs(),
+            "{name}: {} {expected}",
+            number(name)
+        );
+    }
+}
+
+#[test]
+fn a_reference_that_points_share_is_run_once() {
+    let bench = Bench::with(&SMALL.replace(
+        "0.12, 0.14, 0.16, 0.18]",
+        "]\n[[axes]]\nkey = 'texture.0.coverage'\nlist = [17, 34]",
+    ));
+    // 2 speeds, 2 coverages, 3 surfaces; the bare slider knows no coverage.
+    bench.study("out").assert_each_run_once(12 + 6);
+}
+
+#[test]
+fn a_failed_run_is_told_and_neither_repeated_nor_in_the_way() {
+    let bench = Bench::with(SMALL);
+    let results = bench.study("out");
+    // No valid case diverges, so that one is made to have failed: the sixth line is some run of a point.
+    let text = std::fs::read_to_string(results.records()).unwrap();
+    let failed: String = text
+        .lines()
+        .map(|line| {
+            let mut record: serde_json::Value = serde_json::from_str(&line[17..]).unwrap();
+            let id = record["id"].as_str().unwrap();
+            let first = &results.table("runs.csv")[0]["run"];
+            if id.starts_with(first.as_str()) {
+                record["outcome"] = serde_json::json!({ "failed": "block (3, 2) diverged" });
+            }
+            let json = record.to_string();
+            format!("{} {json}\n", &blake3::hash(json.as_bytes()).to_hex()[..16])
+        })
+        .collect();
+    std::fs::write(results.records(), failed).unwrap();
+    let output = bench.output(&["study.toml", "-o", "out"]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = errors(&output);
+    assert!(
+        said.contains(" runs failed") && said.contains("block (3, 2) diverged"),
+        "{said}"
+    );
+    results.assert_each_run_once(SMALL_RUNS);
+    let rows = results.table("runs.csv");
+    assert_eq!(
+        (rows[0]["status"].as_str(), rows[0]["reason"].as_str()),
+        ("failed", "block (3, 2) diverged")
+    );
+    assert_eq!(
+        rows.iter().filter(|row| row["status"] == "done").count(),
+        SMALL_RUNS - 1
+    );
+    let counts: Vec<String> = results
+        .table("points.csv")
+        .iter()
+        .filter(|row| row["quantity"] == "static_reduction_percent")
+        .map(|row| row["n"].clone())
+        .collect();
+    assert_eq!(counts, ["2", "3", "3", "3", "3", "3"]);
+}
+
+#[test]
+fn a_dry_run_tells_the_plan_and_runs_nothing() {
+    let bench = Bench::with(SMALL);
+    let said = bench.run(&["study.toml", "--dry-run", "-o", "out"]);
+    for part in [
+        "6 points",
+        "3 replicates",
+        "36 runs",
+        "block-steps, about",
+        "drive.v_star: 0.08, 0.1, 0.12, 0.14, 0.16, 0.18",
+    ] {
+        assert!(said.contains(part), "{part} is not in\n{said}");
+    }
+    assert!(!bench.path("out").exists());
+}
+
+#[test]
+fn pictures_are_those_that_the_axes_ask_for() {
+    let bench = Bench::with(&SMALL.replace(
+        "0.12, 0.14, 0.16, 0.18]",
+        "]\n[[axes]]\nkey = 'friction.r_star'\nlist = [0.4, 0.5]",
+    ));
+    bench.write(
+        "names.toml",
+        "base.slider.blocks = [4, 4]\nbase.time.stop = 'after_onset'\n[[axes]]\nname = 'damping'\n\
+         variants = { weak = { slider.omega_star = 0.1 }, strong = { slider.omega_star = 1 } }",
+    );
+    let two_numbers = bench.study("numbers");
+    for name in ["static_friction_star", "static_reduction_percent"] {
+        for file in [format!("{name}.svg"), format!("{name}_map.png")] {
+            assert!(two_numbers.has(&file), "{file}");
+        }
+    }
+    // A study that has changed keeps no picture of what it was.
+    bench.run(&["names.toml", "-o", "numbers"]);
+    assert!(two_numbers.has("static_friction_star.svg"));
+    assert!(
+        !two_numbers.has("static_friction_star_map.svg") && !two_numbers.has("static_reduction_percent.png")
+    );
+}

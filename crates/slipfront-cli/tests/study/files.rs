@@ -1,0 +1,108 @@
+//! What can be written in a study file.
+
+use crate::bench::Bench;
+
+const BASE: &str = "[base.slider]\nblocks = [4, 4]\n[base.time]\nstop = 'after_onset'\n";
+
+/// The levels of the columns of `runs.csv` between `role` and `seed`, row by row.
+fn levels(axes: &str) -> Vec<String> {
+    let bench = Bench::with(&format!("{BASE}{axes}"));
+    let table = std::fs::read_to_string(bench.study("out").path.join("runs.csv")).unwrap();
+    let mut rows = csv::Reader::from_reader(table.as_bytes());
+    let header = rows.headers().unwrap().clone();
+    let seed = header.iter().position(|name| name == "seed").unwrap();
+    rows.records()
+        .map(|row| {
+            row.unwrap()
+                .iter()
+                .take(seed)
+                .skip(3)
+                .collect::<Vec<_>>()
+                .join(" ")
+        })
+        .collect()
+}
+
+#[test]
+fn every_kind_of_axis() {
+    for (axes, expected) in [
+        (
+            "[[axes]]\nkey = 'drive.v_star'\nlist = [0.1, 0.05]",
+            vec!["0.1", "0.05"],
+        ),
+        (
+            "[[axes]]\nkey = 'drive.v_star'\nlinspace = [0.1, 0.2, 3]",
+            vec!["0.1", "0.15", "0.2"],
+        ),
+        (
+            "[[axes]]\nkey = 'drive.v_star'\nlogspace = [0.05, 0.2, 3]",
+            vec!["0.05", "0.1", "0.2"],
+        ),
+        (
+            "[[axes]]\nkey = 'friction.seed'\nlinspace = [1, 3, 3]",
+            vec!["1", "2", "3"],
+        ),
+        (
+            "[[axes]]\nkey = 'load.pressure'\nlist = ['50 kPa', '0.1 MPa']",
+            vec!["50 kPa", "0.1 MPa"],
+        ),
+        (
+            "[[axes]]\nzip = { 'drive.v_star' = [0.1, 0.2], 'friction.r_star' = [0.4, 0.6] }",
+            vec!["0.1 0.4", "0.2 0.6"],
+        ),
+        (
+            "[[axes]]\nname = 'edges'\nvariants = { free = {}, periodic = { slider.edges = 'periodic' } }\n\
+             [[axes]]\nkey = 'slider.blocks'\nlist = [[4, 4], [5, 5]]",
+            vec!["free [4, 4]", "free [5, 5]", "periodic [4, 4]", "periodic [5, 5]"],
+        ),
+        (
+            "[[axes]]\nname = 'shape'\n[axes.variants]\ngroove = { texture = [{ shape = 'groove', coverage = 25 }] }\n\
+             dot = { texture = [{ shape = 'cavity', coverage = 20 }] }\n\
+             [[axes]]\nkey = 'texture.0.coverage'\nlist = [25, 50]",
+            vec!["groove 25", "groove 50", "dot 25", "dot 50"],
+        ),
+    ] {
+        assert_eq!(levels(axes), expected, "{axes}");
+    }
+}
+
+#[test]
+fn a_base_is_a_path_a_table_or_the_baseline() {
+    let bench = Bench::new();
+    let axis = "[[axes]]\nkey = 'drive.v_star'\nlist = [0.1, 0.2]";
+    bench.write("cases/small.toml", BASE.replace("base.", ""));
+    bench.write("path.toml", format!("base = 'cases/small.toml'\n{axis}"));
+    bench.write("table.toml", format!("{BASE}{axis}"));
+    bench.run(&["path.toml", "-o", "path"]);
+    bench.run(&["table.toml", "-o", "table"]);
+    bench.results("path").assert_same(&bench.results("table"));
+    bench.write("absent.toml", axis);
+    let said = bench.run(&["absent.toml", "--dry-run"]);
+    // 625 blocks to t* = 80 and 40 in steps of 0.1: the baseline of Fig. 3.
+    assert!(said.contains("7.50e5 block-steps"), "{said}");
+}
+
+#[test]
+fn without_axes_the_base_is_repeated() {
+    let bench = Bench::with(&format!("{BASE}[study]\nreplicates = 4"));
+    bench.run(&["study.toml", "-o", "out"]);
+    let results = bench.results("out");
+    results.assert_each_run_once(4);
+    assert_eq!(results.table("points.csv")[0]["n"], "4");
+}
+
+#[test]
+fn a_reference_may_set_what_an_axis_sets() {
+    let bench = Bench::with(&format!(
+        "{BASE}[study]\nreference = {{ drive.speed = '0.5 mm/s' }}\n[[axes]]\nkey = 'drive.v_star'\nlist = [0.1, 0.2]"
+    ));
+    let results = bench.study("out");
+    let speeds: Vec<f64> = (0..2)
+        .flat_map(|point| results.numbers(point, "reference", "v_star"))
+        .collect();
+    assert!(
+        speeds[0] == speeds[1] && (speeds[0] - 0.158).abs() < 1e-3,
+        "{speeds:?}"
+    );
+    results.assert_each_run_once(3);
+}

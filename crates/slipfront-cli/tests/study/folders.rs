@@ -1,0 +1,237 @@
+//! The folder of a study: what it keeps, what it makes of damage, change and strangers.
+
+use std::collections::BTreeSet;
+
+use crate::bench::{Bench, Results, SMALL, SMALL_RUNS, errors, field, filled, mask};
+
+#[test]
+fn run_folders_are_kept_on_request() {
+    for (keep, kept) in [("all", true), ("none", false), ("failed", false)] {
+        // The runs are few, since each draws its pictures.
+        let small = SMALL
+            .replace("replicates = 3", &format!("replicates = 1\nkeep = '{keep}'"))
+            .replace("[0.08, 0.1, 0.12, 0.14, 0.16, 0.18]", "[0.1]");
+        let bench = Bench::with(&small);
+        bench.run(&["study.toml", "-o", "out"]);
+        let results = bench.results("out");
+        let folders = results.path.join("runs");
+        assert_eq!(filled(&folders), kept, "{keep}");
+        if !kept {
+            continue;
+        }
+        let named: BTreeSet<String> = results
+            .table("runs.csv")
+            .iter()
+            .map(|row| row["run"].clone())
+            .collect();
+        let found: BTreeSet<String> = std::fs::read_dir(folders)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        assert_eq!(found, named);
+        for name in named {
+            for file in [
+                "manifest.json",
+                "case.toml",
+                "summary.json",
+                "fields.nc",
+                "friction.svg",
+            ] {
+                assert!(results.has(&format!("runs/{name}/{file}")), "{file}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_changed_study_adds_what_is_new_and_says_what_no_longer_belongs() {
+    let bench = Bench::with(SMALL);
+    let results = bench.study("out");
+    bench.write(
+        "study.toml",
+        SMALL.replace("[0.08, 0.1, 0.12", "[0.2, 0.22, 0.24"),
+    );
+    let output = bench.output(&["study.toml", "-o", "out"]);
+    assert!(output.status.success());
+    let (said, warned) = (
+        String::from_utf8_lossy(&output.stdout).into_owned(),
+        errors(&output),
+    );
+    assert!(
+        said.contains("18 recorded runs are not part of the study"),
+        "{said}"
+    );
+    assert!(warned.contains("the study has changed"), "{warned}");
+    results.assert_each_run_once(SMALL_RUNS + SMALL_RUNS / 2);
+    results.assert_same(&bench.study("fresh"));
+}
+
+/// Damages the records, and demands that a restart mends the answer with `again` runs.
+fn mends(damage: impl Fn(&mut Vec<u8>), again: usize) -> String {
+    let bench = Bench::with(SMALL);
+    let results = bench.study("out");
+    let answer = results.answer();
+    let mut bytes = std::fs::read(results.records()).unwrap();
+    damage(&mut bytes);
+    std::fs::write(results.records(), &bytes).unwrap();
+    let whole = results.recorded().len();
+    let output = bench.output(&["study.toml", "-o", "out"]);
+    assert!(output.status.success(), "{}", errors(&output));
+    assert!(results.answer() == answer);
+    assert_eq!(results.recorded().len(), whole + again);
+    errors(&output)
+}
+
+#[test]
+fn a_damaged_line_is_run_again() {
+    let said = mends(
+        |bytes| {
+            let middle = bytes.len() / 2;
+            // Within a number or a name: the line is still JSON or not, but not what was written.
+            bytes[middle] ^= 1;
+        },
+        1,
+    );
+    assert!(said.contains("1 damaged lines"), "{said}");
+}
+
+#[test]
+fn a_torn_last_line_is_run_again() {
+    let said = mends(|bytes| bytes.truncate(bytes.len() - 100), 1);
+    assert!(said.contains("1 damaged lines"), "{said}");
+}
+
+#[test]
+fn a_folder_with_other_things_is_left_alone() {
+    let bench = Bench::with(SMALL);
+    bench.write("out/thesis.tex", "years of work");
+    bench.write("notes/records.jsonl", "my own records\nof something\n");
+    for (out, sentence) in [("out", "holds other things"), ("notes", "is not the record file")] {
+        let output = bench.output(&["study.toml", "-o", out]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(errors(&output).contains(sentence), "{}", errors(&output));
+        assert_eq!(std::fs::read_dir(bench.path(out)).unwrap().count(), 1);
+    }
+}
+
+#[test]
+fn output_that_cannot_be_written_is_bad_input() {
+    let bench = Bench::with(SMALL);
+    bench.write("file", "");
+    for out in ["file/below", "file"] {
+        let output = bench.output(&["study.toml", "-o", out]);
+        assert_eq!(output.status.code(), Some(2), "{}", errors(&output));
+        assert!(
+            errors(&output).contains("cannot write to the folder"),
+            "{}",
+            errors(&output)
+        );
+    }
+}
+
+#[test]
+fn what_a_kill_left_half_written_is_removed() {
+    let bench = Bench::with(SMALL);
+    let results = bench.study("out");
+    bench.write("out/.slipfrontAbCdEf", "half a pict");
+    bench.study("out");
+    assert!(!results.has(".slipfrontAbCdEf"));
+}
+
+#[test]
+fn the_folder_repeats_the_study_without_the_files_it_came_from() {
+    let bench = Bench::new();
+    bench.write(
+        "cases/fields/mu.csv",
+        field(6, 6, |i, j| 0.9 + 0.01 * ((i * 7 + j * 3) % 11) as f64),
+    );
+    bench.write("masks/bar.npy", mask(6, 6, |i, _| i == 2));
+    bench.write("cases/dot.npy", mask(6, 6, |i, j| i == 3 && j == 3));
+    bench.write(
+        "cases/base.toml",
+        "[slider]\nblocks = [6, 6]\n[time]\nstop = 'after_onset'\n[drive]\nv_star = 0.1\n[friction]\n\
+         mu_static_field = 'fields/mu.csv'\n[[texture]]\nshape = 'mask'\nfile = 'dot.npy'",
+    );
+    bench.write(
+        "study.toml",
+        r#"
+        base = "cases/base.toml"
+        study = { replicates = 2, reference = { texture = [] } }
+        [[axes]]
+        key = "texture.0.file"
+        list = ["dot.npy", "../masks/bar.npy"]
+        [[axes]]
+        name = "surface"
+        variants = { given = { friction.sigma_kinetic_star = 0.1 }, drawn = { friction.mu_static_field = "fields/mu.csv", friction.r_star = 0.4 } }
+        "#,
+    );
+    let first = bench.study("first");
+    assert_eq!(first.table("runs.csv").len(), 16);
+    assert_eq!(first.table("runs.csv")[8]["texture.0.file"], "bar.npy");
+    for folder in ["cases", "masks"] {
+        std::fs::remove_dir_all(bench.path(folder)).unwrap();
+    }
+    bench.run(&["first/study.toml", "-o", "second"]);
+    let second: Results = bench.results("second");
+    second.assert_same(&first);
+    second.assert_each_run_once(first.recorded().len());
+    // And of the copy another copy.
+    std::fs::rename(bench.path("first"), bench.path("gone")).unwrap();
+    bench.run(&["second/study.toml", "-o", "third"]);
+    bench.results("third").assert_same(&second);
+}
+
+#[test]
+fn a_file_with_new_contents_is_a_new_case() {
+    let bench = Bench::new();
+    bench.write("mask.npy", mask(4, 4, |i, _| i == 1));
+    bench.write(
+        "study.toml",
+        "base.slider.blocks = [4, 4]\nbase.time.stop = 'after_onset'\nbase.texture = [{ shape = 'mask', file = 'mask.npy' }]\n\
+         [[axes]]\nkey = 'drive.v_star'\nlist = [0.1, 0.12]",
+    );
+    let results = bench.study("out");
+    results.assert_each_run_once(2);
+    bench.write("mask.npy", mask(4, 4, |i, _| i == 2));
+    bench.study("out").assert_each_run_once(4);
+    results.assert_same(&bench.study("fresh"));
+    assert_eq!(
+        std::fs::read(bench.path("out/inputs/mask.npy")).unwrap(),
+        std::fs::read(bench.path("mask.npy")).unwrap()
+    );
+}
+
+/// A point whose runs diverge beside one whose runs do not: see the same case among the tests of the command.
+#[test]
+fn a_run_that_diverges_is_recorded_and_kept_and_stops_nothing_else() {
+    let bench = Bench::with(
+        "[base]\nslider = { blocks = [6, 6], omega_star = 0 }\ndrive = { v_star = 10 }\n\
+         friction = { r_star = 0, sigma_static_star = 1 }\ntime = { step = 0.9, duration_star = 2000 }\n\
+         [study]\nkeep = 'failed'\n\
+         [[axes]]\nkey = 'load.pressure'\nlist = ['50 GPa', '100 kPa']\n",
+    );
+    for _ in 0..2 {
+        let output = bench.output(&["study.toml", "-o", "out"]);
+        assert_eq!(output.status.code(), Some(1));
+        assert!(errors(&output).contains("1 of 2 runs failed"), "{}", errors(&output));
+    }
+    let results = bench.results("out");
+    let runs = results.table("runs.csv");
+    let of = |pressure: &str| {
+        runs.iter()
+            .filter(|row| row["load.pressure"] == pressure)
+            .collect::<Vec<_>>()
+    };
+    for row in of("50 GPa") {
+        assert_eq!(row["status"], "failed");
+        assert!(row["reason"].contains("diverged"), "{}", row["reason"]);
+        assert!(results.has(&format!("runs/{}/case.toml", row["run"])));
+        assert!(!results.has(&format!("runs/{}/manifest.json", row["run"])));
+    }
+    assert!(
+        of("100 kPa")
+            .iter()
+            .all(|row| row["status"] == "done" && !row["static_friction_star"].is_empty())
+    );
+    assert_eq!((of("50 GPa").len(), of("100 kPa").len()), (1, 1));
+}

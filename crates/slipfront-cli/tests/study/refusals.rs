@@ -1,0 +1,142 @@
+//! What is refused, with which sentence, before anything is run.
+
+use crate::bench::{Bench, errors};
+
+#[test]
+fn bad_studies_are_refused_with_a_sentence() {
+    let axis = |text: &str| format!("base.slider.blocks = [4, 4]\n[[axes]]\n{text}");
+    let study = |text: &str| format!("base.slider.blocks = [4, 4]\n[study]\n{text}");
+    for (text, sentence) in [
+        (
+            axis("key = 'drive.v_star'\nlist = []"),
+            "the axis of `drive.v_star` is empty",
+        ),
+        (
+            axis("name = 'shape'\nvariants = {}"),
+            "the axis of `shape` is empty",
+        ),
+        (axis("zip = {}"), "is empty"),
+        (
+            axis("key = 'drive.v_star'"),
+            "needs one of `list`, `linspace` and `logspace`",
+        ),
+        (
+            axis("key = 'drive.v_star'\nlist = [0.1]\nlogspace = [0.1, 1, 2]"),
+            "needs one of",
+        ),
+        (
+            axis("key = 'drive.v_star'\nlist = [0.1]\nname = 'speed'"),
+            "nothing else together",
+        ),
+        (axis("key = 'drive.v_star'\nlist = [0.1, 0.1]"), "stands twice"),
+        (
+            axis("key = 'drive.v_star'\nlogspace = [0, 1, 3]"),
+            "must lie above 0",
+        ),
+        (axis("key = 'drive.v_star'\nlinspace = [0.1, 1, 1]"), "give 2 to"),
+        (axis("key = 'drive.v_star'\nlits = [0.1]"), "did you mean `list`?"),
+        (
+            axis("key = 'drive.v_sar'\nlist = [0.1]"),
+            "did you mean `v_star`?",
+        ),
+        (
+            axis("zip = { 'drive.v_star' = [0.1], 'friction.r_star' = [0.5, 0.6] }"),
+            "equally long",
+        ),
+        (axis("zip = { drive.v_star = [0.1] }"), "stand in quotes"),
+        (
+            axis("name = 'mean'\nvariants = { a = {} }"),
+            "have a column `mean` already",
+        ),
+        (
+            axis("key = 'drive.v_star'\nlist = [0.1]\n[[axes]]\nkey = 'drive.v_star'\nlist = [0.2]"),
+            "stands on two axes",
+        ),
+        (
+            axis(
+                "key = 'texture.0.coverage'\nlist = [5]\n[[axes]]\nname = 'shape'\n\
+                 variants = { groove = { texture = [{ shape = 'groove', coverage = 10 }] } }",
+            ),
+            "leaves nothing of `texture.0.coverage`",
+        ),
+        (
+            axis("key = 'drive.v_star'\nlist = [0.1]\n[[axes]]\nkey = 'drive.speed'\nlist = ['1 mm/s']"),
+            "leaves nothing of `drive.v_star`",
+        ),
+        (
+            axis("key = 'drive.v_star'\nlist = [0.1, -1]"),
+            "the point drive.v_star = -1 is not a valid case",
+        ),
+        (study("replicates = 0"), "must lie between 1 and"),
+        (study("replicate = 2"), "did you mean `replicates`?"),
+        (study("keep = 'al'"), "did you mean \"all\"?"),
+        (study("reference = { textur = [] }"), "did you mean [[texture]]?"),
+        (
+            study("until = { key = 'static_reduction_percent', half_width = 1, max = 9 }"),
+            "needs a `reference`",
+        ),
+        (
+            study("until = { key = 'mu_s', half_width = 0.1, max = 9 }"),
+            "`mu_s` is no number of a summary",
+        ),
+        (
+            study("until = { key = 'static_friction_star', half_width = 0.1, mim = 2, max = 9 }"),
+            "did you mean `min`?",
+        ),
+        (
+            study("until = { key = 'static_friction_star', half_width = 0, max = 9 }"),
+            "must be more than 0",
+        ),
+        (
+            study("until = { key = 'static_friction_star', half_width = 0.1, min = 1, max = 9 }"),
+            "one run has no interval",
+        ),
+        (
+            study("until = { key = 'static_friction_star', half_width = 0.1, confidence = 95, max = 9 }"),
+            "must lie between 0 and 1",
+        ),
+        (
+            study("replicates = 3\nuntil = { key = 'static_friction_star', half_width = 0.1, max = 9 }"),
+            "exclude each other",
+        ),
+        ("[studdy]\nreplicates = 2".to_owned(), "did you mean `study`?"),
+        ("replicates = 2".to_owned(), "it belongs in [study]"),
+        (
+            "base = 'nowhere.toml'".to_owned(),
+            "cannot read the case file nowhere.toml",
+        ),
+        ("base = 3".to_owned(), "`base` must be the path of a case file"),
+        (
+            "[base.slider]\nbloks = [4, 4]".to_owned(),
+            "did you mean `blocks`?",
+        ),
+        ("axes = 3".to_owned(), "`axes` must be a list of tables"),
+        ("[study".to_owned(), "not valid TOML"),
+    ] {
+        let bench = Bench::with(&text);
+        let output = bench.output(&["study.toml", "-o", "out"]);
+        assert_eq!(output.status.code(), Some(2), "{text}\n{}", errors(&output));
+        assert!(errors(&output).contains(sentence), "{text}\n{}", errors(&output));
+        assert!(!bench.path("out").exists(), "{text}");
+    }
+}
+
+#[test]
+fn a_very_large_study_is_asked_for() {
+    let text = "base.slider.blocks = [2, 2]\nstudy.replicates = 101\n\
+                [[axes]]\nkey = 'drive.v_star'\nlinspace = [0.1, 0.2, 100]";
+    let bench = Bench::with(text);
+    let output = bench.output(&["study.toml", "-o", "out"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        errors(&output).contains("10100 runs, more than 10000: give --yes"),
+        "{}",
+        errors(&output)
+    );
+    assert!(!bench.path("out").exists());
+    assert!(bench.run(&["study.toml", "--dry-run"]).contains("10100 runs"));
+    assert_eq!(bench.output(&["slurm", "study.toml"]).status.code(), Some(2));
+    // With --yes it starts: its first part, which is small.
+    bench.run(&["study.toml", "--yes", "--quiet", "--shard", "1/100", "-o", "out"]);
+    bench.results("out").assert_each_run_once(101);
+}

@@ -1,0 +1,156 @@
+#!/bin/bash
+# Runs a study on a real Slurm: a cluster of this one machine, started in a temporary folder and ended with it.
+#
+# Needs Debian's slurm-wlm (slurmctld, slurmd, sbatch, scontrol) and munge, and root; it installs nothing:
+#
+#     apt-get install slurm-wlm munge
+#     cargo build --release
+#     tests/slurm/run.sh [path of slipfront]
+#
+# A study is submitted with the script of `slipfront study slurm`, in three tasks. One task is requeued in the middle,
+# the command of another is killed, and that task is submitted again. The merged parts must be the same bytes as the
+# study run without Slurm, and no run may have been made twice. Takes about a minute. Not part of the tests that
+# always run: no continuous integration has Slurm.
+
+set -euo pipefail
+
+slipfront=$(realpath "${1:-$(dirname "$0")/../../target/release/slipfront}")
+for command in slurmctld slurmd sbatch squeue scontrol munged mungekey; do
+  PATH=$PATH:/usr/sbin command -v "$command" > /dev/null || { echo "needs $command: apt-get install slurm-wlm munge"; exit 2; }
+done
+[ "$(id -u)" = 0 ] || { echo "needs root: slurmd starts jobs as their users"; exit 2; }
+export PATH=$PATH:/usr/sbin
+
+work=$(mktemp -d /tmp/slipfront-slurm.XXXXXX)
+chmod 755 "$work"
+host=$(hostname -s)
+started=()
+
+finish() {
+  status=$?
+  set +e
+  scancel --state=RUNNING,PENDING --name=study 2> /dev/null
+  for ((k = ${#started[@]} - 1; k >= 0; k--)); do kill "${started[k]}" 2> /dev/null; done
+  wait 2> /dev/null
+  if [ $status = 0 ]; then rm -rf "$work"; else echo "failed: logs are in $work"; fi
+  exit $status
+}
+trap finish EXIT
+
+# --- A cluster of one node.
+
+mkdir -p "$work"/{state,spool}
+mungekey --create --keyfile="$work/munge.key" 2> /dev/null || dd if=/dev/urandom of="$work/munge.key" bs=1k count=1 status=none
+chmod 400 "$work/munge.key"
+munged --foreground --force --key-file="$work/munge.key" --socket="$work/munge.socket" --pid-file="$work/munged.pid" \
+  --seed-file="$work/munge.seed" --log-file="$work/munged.log" > "$work/munged.out" 2>&1 &
+started+=($!)
+
+cat > "$work/slurm.conf" << END
+ClusterName=test
+SlurmctldHost=$host(127.0.0.1)
+SlurmUser=root
+AuthType=auth/munge
+CredType=cred/munge
+AuthInfo=socket=$work/munge.socket
+SlurmctldPort=26817
+SlurmdPort=26818
+StateSaveLocation=$work/state
+SlurmdSpoolDir=$work/spool
+SlurmctldPidFile=$work/slurmctld.pid
+SlurmdPidFile=$work/slurmd.pid
+SlurmctldLogFile=$work/slurmctld.log
+SlurmdLogFile=$work/slurmd.log
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SchedulerType=sched/backfill
+MpiDefault=none
+ReturnToService=2
+KillWait=5
+NodeName=$host NodeAddr=127.0.0.1 CPUs=$(nproc) State=UNKNOWN
+PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
+END
+export SLURM_CONF=$work/slurm.conf
+
+for _ in $(seq 50); do [ -S "$work/munge.socket" ] && break; sleep 0.1; done
+slurmctld -D -f "$SLURM_CONF" > "$work/slurmctld.out" 2>&1 &
+started+=($!)
+slurmd -D -f "$SLURM_CONF" > "$work/slurmd.out" 2>&1 &
+started+=($!)
+for _ in $(seq 100); do sinfo -h -o %T 2> /dev/null | grep -q idle && break; sleep 0.2; done
+sinfo
+
+# --- The study without Slurm, and its script.
+
+cd "$work"
+cat > study.toml << 'END'
+[base.slider]
+blocks = [30, 30]
+[[base.texture]]
+shape = "cavity"
+coverage = 10
+[study]
+replicates = 10
+reference = { texture = [] }
+[[axes]]
+key = "drive.v_star"
+list = [0.02, 0.03, 0.04]
+[[axes]]
+key = "friction.r_star"
+list = [0.4, 0.5, 0.6]
+END
+"$slipfront" study study.toml --quiet -o whole
+"$slipfront" study slurm study.toml --tasks 3 -o out > study.sbatch
+runs=$(wc -l < whole/records.jsonl)
+echo "$runs runs without Slurm"
+
+# --- Submitted, requeued and killed.
+
+recorded() { if [ -f "$1/records.jsonl" ]; then wc -l < "$1/records.jsonl"; else echo 0; fi; }
+wait_for() { # until a part has more than so many records
+  for _ in $(seq 600); do
+    if [ "$(recorded "out/shard-$1")" -gt "$2" ]; then return; fi
+    sleep 0.05
+  done
+  echo "part $1 does not go on"; squeue; exit 1
+}
+state() { squeue -h -j "$1" -o %T 2> /dev/null | sort | uniq -c | tr '\n' ' '; }
+wait_end() {
+  for _ in $(seq 600); do
+    [ -z "$(squeue -h -j "$1" -o %i 2> /dev/null)" ] && return
+    # A requeued task waits two minutes by default; not here.
+    squeue -h -j "$1" -t PENDING -o '%F_%K %r' 2> /dev/null | awk '$2 == "BeginTime" { print $1 }' |
+      while read -r task; do scontrol update JobId="$task" StartTime=now; done
+    sleep 0.5
+  done
+  echo "the job does not end"; squeue; exit 1
+}
+
+job=$(sbatch --parsable study.sbatch)
+echo "submitted as job $job"
+wait_for 1 5
+scontrol requeue "${job}_1"
+echo "requeued task 1 with $(recorded out/shard-1) of its runs recorded"
+wait_for 2 5
+kill -9 "$(pgrep -f "^$slipfront study .*$work/out/shard-2 " | head -1)"
+echo "killed the command of task 2 with $(recorded out/shard-2) of its runs recorded"
+wait_end "$job"
+echo "after the job: $(recorded out/shard-1), $(recorded out/shard-2), $(recorded out/shard-3) runs"
+grep -h -i "requeue\|cancelled\|stopped" slurm-study-1.log || true
+
+again=$(sbatch --parsable --array=2 study.sbatch)
+echo "task 2 submitted again as job $again"
+wait_end "$again"
+
+# --- One study.
+
+"$slipfront" study merge out/shard-* --out out/merged --quiet
+for file in whole/*.csv whole/*.svg whole/*.png; do
+  cmp "$file" "out/merged/$(basename "$file")"
+done
+merged=$(cut -c 18- out/merged/records.jsonl | sort | uniq | wc -l)
+parts=$(cat out/shard-*/records.jsonl | wc -l)
+echo "$parts runs in three parts, $merged merged"
+[ "$parts" = "$runs" ] && [ "$merged" = "$runs" ]
+echo "passed: tables and pictures are the same bytes, and no run was made twice"
