@@ -16,7 +16,7 @@ use crate::case_file::CaseError;
 use crate::fields::FieldName;
 use crate::pictures::{FieldMap, FrictionCurve, Instant, Kinetic};
 use crate::run::{self, Record};
-use crate::study::{self, Findings, Plan, Records, Role, RunKey, StudyError, StudyFile};
+use crate::study::{self, Findings, Keep, Plan, Quantity, Records, Role, RunKey, StudyError, StudyFile};
 
 /// How the time step is chosen where a case does not say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,7 +80,7 @@ impl Bench<'_> {
         Ok(Sweep {
             plan: Plan::new(&file, None)?,
             findings: Findings {
-                outcomes: BTreeMap::new(),
+                runs: BTreeMap::new(),
                 points: Vec::new(),
                 strangers: 0,
             },
@@ -371,9 +371,12 @@ impl Sweep {
     /// A quantity of the runs of a point, one value a surface.
     pub(super) fn values(&self, levels: &[usize], quantity: &str) -> Vec<f64> {
         let point = self.point(levels);
-        let replicates = 0..self.findings.points[point].replicates;
+        let (replicates, quantity) = (
+            0..self.findings.points[point].replicates,
+            Quantity::named(quantity),
+        );
         replicates
-            .filter_map(|replicate| self.findings.value(point, replicate, quantity))
+            .filter_map(|replicate| self.findings.value(point, replicate, quantity?))
             .collect()
     }
 
@@ -389,9 +392,11 @@ impl Sweep {
             replicate,
             role: Role::Point,
         };
-        let file = self.plan.case_file(run)?;
-        let name = format!("{} {}", self.plan.name, run.name());
-        let mut case = Case::new(file, &name, Path::new(""))?;
+        // A plan that keeps its runs gives their cases with curves and fields.
+        let mut plan = self.plan.clone();
+        plan.settings.keep = Keep::All;
+        let mut case = plan.case(run)?;
+        case.name = format!("{}, {}", plan.name, plan.describe(&plan.points[run.point]));
         // The largest contact stress of all, which maps are scaled by, may come late.
         case.schedule.stop = Stop::at_step(case.schedule.last_step);
         Ok(case)

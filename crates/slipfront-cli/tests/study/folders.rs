@@ -213,7 +213,11 @@ fn a_run_that_diverges_is_recorded_and_kept_and_stops_nothing_else() {
     for _ in 0..2 {
         let output = bench.output(&["study.toml", "-o", "out"]);
         assert_eq!(output.status.code(), Some(1));
-        assert!(errors(&output).contains("1 of 2 runs failed"), "{}", errors(&output));
+        assert!(
+            errors(&output).contains("1 of 2 runs failed"),
+            "{}",
+            errors(&output)
+        );
     }
     let results = bench.results("out");
     let runs = results.table("runs.csv");
