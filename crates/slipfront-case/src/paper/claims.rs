@@ -268,6 +268,15 @@ mod tests {
     }
 
     #[test]
+    fn another_verdict_than_the_expected_one_is_noticed() {
+        let judged = |value| {
+            let numbers = BTreeMap::from([("fig99.main".to_owned(), Number::exact(value))]);
+            claim([0.0, 1.0], None).judge(&numbers).unwrap()
+        };
+        assert!(judged(0.5).as_expected() && !judged(2.0).as_expected());
+    }
+
+    #[test]
     fn a_claim_about_nothing_measured_is_refused() {
         let error = claim([0.0, 1.0], None)
             .judge(&BTreeMap::new())

@@ -219,7 +219,7 @@ mod tests {
         more.maps[0].marks.push([4, 4]);
         more.maps[0].note = "note".to_owned();
         let (plain, more) = (field_maps(&plain).unwrap().svg, field_maps(&more).unwrap().svg);
-        assert!(more.matches("polyline").count() > plain.matches("polyline").count());
+        assert!(more.matches("<path").count() > plain.matches("<path").count());
         assert!(more.contains(">note</text>"));
     }
 

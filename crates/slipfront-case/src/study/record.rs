@@ -82,6 +82,9 @@ pub struct Records {
 }
 
 impl Records {
+    /// Name of the record file in its folder.
+    pub const FILE: &str = RECORDS;
+
     /// Opens the records of a study folder, or begins them.
     ///
     /// # Errors

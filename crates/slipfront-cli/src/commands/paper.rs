@@ -7,7 +7,7 @@ use std::sync::atomic::Ordering;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use slipfront_case::paper::{self, Options, Stage, StepRule};
-use slipfront_case::study::Records;
+use slipfront_case::study::{Records, StudyError};
 
 use super::study::on_signals;
 use super::{print, set_threads};
@@ -82,14 +82,21 @@ impl Paper {
     }
 }
 
-/// Opens the records of an earlier call, or begins them in a folder that holds nothing else.
+/// Opens the records of an earlier call, or begins them in an empty folder.
 fn open(folder: &Path) -> Result<Records, Failure> {
-    std::fs::create_dir_all(folder).map_err(|error| {
+    let unusable = |error: std::io::Error| {
         Failure::input(anyhow::anyhow!(
-            "cannot make the folder {}: {error}",
+            "cannot use the folder {}: {error}; choose another with --out",
             folder.display()
         ))
-    })?;
+    };
+    std::fs::create_dir_all(folder).map_err(unusable)?;
+    let mut entries = std::fs::read_dir(folder).map_err(unusable)?;
+    if entries.next().is_some() && !folder.join(Records::FILE).exists() {
+        return Err(Failure::input(StudyError::NotAStudy {
+            path: folder.to_owned(),
+        }));
+    }
     Records::open(folder).map_err(Failure::input)
 }
 
