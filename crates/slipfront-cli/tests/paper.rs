@@ -3,7 +3,7 @@
 use assert_cmd::Command;
 
 fn paper(out: &std::path::Path) -> Command {
-    let mut command = Command::cargo_bin("slipfront").unwrap();
+    let mut command = Command::cargo_bin("slipfront").expect("the command is built");
     command.args(["paper", "--reduced", "--out"]).arg(out);
     command
 }
