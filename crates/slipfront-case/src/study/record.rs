@@ -177,8 +177,17 @@ impl Records {
         let before = self.file.stream_position().unwrap_or(0);
         let written = self.file.write_all(&lines).and_then(|()| self.file.sync_data());
         written.map_err(|source| {
-            // A part of a line is taken back; if even that fails, the next start does it.
-            let _ = self.file.set_len(before);
+            // What fits stays, all but a part of a line; if even that cannot be cut off, the next start does it.
+            let there = self
+                .file
+                .metadata()
+                .map_or(0, |file| file.len().saturating_sub(before));
+            let there = &lines[..lines.len().min(there as usize)];
+            let whole = there
+                .iter()
+                .rposition(|&byte| byte == b'\n')
+                .map_or(0, |end| end + 1);
+            let _ = self.file.set_len(before + whole as u64);
             StudyError::Records {
                 action: "write to",
                 path: self.path.clone(),
