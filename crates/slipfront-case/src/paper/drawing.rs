@@ -1,5 +1,7 @@
 //! Pictures as data: drawn when they are wanted, and written as CSV beside.
 
+use serde::{Deserialize, Serialize};
+
 use super::error::PaperError;
 use super::found::Number;
 use crate::pictures::{
@@ -7,7 +9,7 @@ use crate::pictures::{
 };
 
 /// What is drawn.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Drawing {
     /// mu* and N* against t*.
     Curves(Vec<FrictionCurve>),

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::drawing::Drawing;
 use crate::study::Sample;
 
@@ -9,7 +11,7 @@ use crate::study::Sample;
 const CONFIDENCE: f64 = 0.95;
 
 /// A measured number.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Number {
     /// The value, or the mean over random surfaces.
     pub value: f64,
@@ -45,7 +47,7 @@ impl Number {
 }
 
 /// A table of the report.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Table {
     /// Name of its file.
     pub name: String,
@@ -58,7 +60,7 @@ pub struct Table {
 }
 
 /// A picture of a figure.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Panel {
     /// Name of its files.
     pub name: String,
@@ -69,7 +71,7 @@ pub struct Panel {
 }
 
 /// Everything that a figure found.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Found {
     /// Numbers that claims are about, by name.
     pub numbers: BTreeMap<String, Number>,

@@ -31,9 +31,11 @@ mod fig18;
 mod files;
 mod found;
 mod report;
+mod saved;
 mod sensitivity;
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use bench::Bench;
@@ -43,6 +45,7 @@ pub use drawing::Drawing;
 pub use error::PaperError;
 pub use found::{Found, Number, Panel, Table};
 pub use report::{docs_page, summary, write, write_docs};
+use saved::Saved;
 
 use crate::study::{self, Records};
 
@@ -114,6 +117,8 @@ pub struct Options<'a> {
     pub stop: &'a AtomicBool,
     /// Two random surfaces in place of five, one time step, and only the claims that survive that.
     pub reduced: bool,
+    /// Folder in which findings are kept: a figure that this program has finished there is not run again.
+    pub folder: &'a Path,
 }
 
 /// How far it has come.
@@ -174,6 +179,7 @@ pub fn run(
         true => &[StepRule::Auto],
         false => &[StepRule::Auto, StepRule::Paper],
     };
+    let saved = Saved::open(options.folder, options.reduced)?;
     let total = figures.len() * rules.len();
     let mut done = 0;
     let mut passes = Vec::new();
@@ -201,7 +207,15 @@ pub fn run(
                     });
                 },
             };
-            pass.push((*figure, (figure.find)(&mut bench)?));
+            let found = match saved.load(figure.name, step) {
+                Some(found) => found,
+                None => {
+                    let found = (figure.find)(&mut bench)?;
+                    saved.save(figure.name, step, &found)?;
+                    found
+                }
+            };
+            pass.push((*figure, found));
             done += 1;
         }
         passes.push(pass);

@@ -1,5 +1,7 @@
 //! Bars of the named variants of a parametric study.
 
+use serde::{Deserialize, Serialize};
+
 use super::axis::drawable;
 use super::canvas::{Area, Canvas};
 use super::legend::{Legend, Sample};
@@ -21,7 +23,7 @@ const SHARE_GROUP: f64 = 0.8;
 const WIDEST: f64 = 130.0;
 
 /// Bars of named variants.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BarChart {
     /// What the bars show.
     pub y_title: String,
@@ -34,7 +36,7 @@ pub struct BarChart {
 }
 
 /// Bars beside each other.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BarGroup {
     /// The group's name; not shown if there is one group only.
     pub label: String,
@@ -43,7 +45,7 @@ pub struct BarGroup {
 }
 
 /// One bar.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bar {
     /// Its name, different from the others' of its group; bars of the same name are coloured alike.
     pub label: String,

@@ -1,5 +1,7 @@
 //! Friction and the share of sliding blocks against time.
 
+use serde::{Deserialize, Serialize};
+
 use super::axis::drawable;
 use super::canvas::{Align, Area, Canvas};
 use super::labels::{Candidate, Placer, around};
@@ -18,7 +20,7 @@ const DOT: f64 = 7.0;
 const SHADE: Rgb = [0x9a, 0xa5, 0xb1];
 
 /// One run's curve; everything is dimensionless.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrictionCurve {
     /// What the legend calls it; shown only beside other curves.
     pub label: String,
@@ -39,7 +41,7 @@ pub struct FrictionCurve {
 }
 
 /// Kinetic friction: the mean of mu* over a window of t*.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Kinetic {
     /// Where the window begins.
     pub from: f64,
@@ -52,7 +54,7 @@ pub struct Kinetic {
 }
 
 /// A lettered instant of a curve.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Instant {
     /// Its letter.
     pub letter: char,

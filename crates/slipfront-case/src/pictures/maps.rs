@@ -1,5 +1,7 @@
 //! Maps of any field over the blocks, each of a lattice of its own, on one colour scale.
 
+use serde::{Deserialize, Serialize};
+
 use super::axis::Axis;
 use super::canvas::{Align, Area, Canvas, Image, level};
 use super::outline::outline;
@@ -21,7 +23,7 @@ const MARK_CORNERS: usize = 24;
 const MARK: Rgb = [0xd5, 0x2b, 0x1e];
 
 /// Maps on one colour scale.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FieldMaps {
     /// What the values are, over the colour bar; the letter after an underscore is a subscript.
     pub value_title: String,
@@ -34,7 +36,7 @@ pub struct FieldMaps {
 }
 
 /// One map.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FieldMap {
     /// Its name, in the first line over it.
     pub label: String,

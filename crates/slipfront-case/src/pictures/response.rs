@@ -1,5 +1,7 @@
 //! Response curves of a parametric study, with confidence bands.
 
+use serde::{Deserialize, Serialize};
+
 use super::axis::drawable;
 use super::canvas::{Area, Canvas};
 use super::legend::{Legend, Sample};
@@ -19,7 +21,7 @@ const HEIGHT: f64 = 560.0;
 const RIGHT: f64 = 34.0;
 
 /// Response curves over one axis.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Responses {
     /// What x is; see [`title`](super::title).
     pub x_title: String,
@@ -36,7 +38,7 @@ pub struct Responses {
 }
 
 /// One response curve, a point for every value of an axis.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Response {
     /// What the legend calls it; shown only beside other curves.
     pub label: String,

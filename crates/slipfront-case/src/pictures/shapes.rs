@@ -1,5 +1,7 @@
 //! Outlines of cavities, side by side.
 
+use serde::{Deserialize, Serialize};
+
 use super::canvas::{Align, Area, Canvas};
 use super::style::{BLACK, COLUMN_WIDTH, CURVES, MARGIN, SIZE_TICK, WIDTH_MARK};
 use super::text::Text;
@@ -9,7 +11,7 @@ const COLUMNS: usize = 3;
 const GAP: f64 = 20.0;
 
 /// A closed outline.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Shape {
     /// Its name, below it.
     pub label: String,

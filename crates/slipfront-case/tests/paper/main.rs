@@ -7,11 +7,12 @@ use std::sync::atomic::AtomicBool;
 use slipfront_case::paper::{self, FIGURES, Options, Paper};
 use slipfront_case::study::{Records, StudyError};
 
-fn options(stop: &AtomicBool) -> Options<'_> {
+fn options<'a>(folder: &'a Path, stop: &'a AtomicBool) -> Options<'a> {
     Options {
         threads: std::thread::available_parallelism().map_or(1, usize::from),
         stop,
         reduced: true,
+        folder,
     }
 }
 
@@ -21,7 +22,7 @@ fn run(names: &[&str], folder: &Path, stop: &AtomicBool) -> Result<Paper, paper:
     paper::run(
         &paper::figures(&names)?,
         &mut records,
-        &options(stop),
+        &options(folder, stop),
         &mut |_| {},
     )
 }
@@ -96,18 +97,24 @@ fn rows(page: &str) -> BTreeMap<u32, Vec<&str>> {
 }
 
 #[test]
-fn finished_runs_are_not_run_again() {
+fn finished_runs_of_a_figure_that_was_not_finished_are_not_run_again() {
     let folder = tempfile::tempdir().unwrap();
     let never = AtomicBool::new(false);
     let first = run(&["fig8"], folder.path(), &never).unwrap();
     let runs = Records::open(folder.path()).unwrap().len();
+    std::fs::remove_dir_all(folder.path().join("found")).unwrap();
     let names = ["fig08".to_owned()];
     let mut records = Records::open(folder.path()).unwrap();
     let mut here = 0;
     let figures = paper::figures(&names).unwrap();
-    let second = paper::run(&figures, &mut records, &options(&never), &mut |stage| {
-        here = here.max(stage.study.map_or(0, |study| study.here));
-    });
+    let second = paper::run(
+        &figures,
+        &mut records,
+        &options(folder.path(), &never),
+        &mut |stage| {
+            here = here.max(stage.study.map_or(0, |study| study.here));
+        },
+    );
     assert_eq!((here, records.len()), (0, runs));
     assert_eq!(second.unwrap().judged, first.judged);
     assert!(first.judged.iter().all(|judged| judged.claim.figure() == "fig08"));
@@ -144,4 +151,15 @@ fn figures_are_known_by_their_short_names_too() {
         error.starts_with("the paper has no `fig19`: take fig02, table1, fig03"),
         "{error}"
     );
+}
+
+/// A stopped call loses no finished figure: what is there is not run again, so that no signal can end it.
+#[test]
+fn a_finished_figure_is_not_run_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let (never, at_once) = (AtomicBool::new(false), AtomicBool::new(true));
+    let first = run(&["fig4"], folder.path(), &never).unwrap();
+    let second = run(&["fig4"], folder.path(), &at_once).unwrap();
+    assert_eq!(first.figures[0].1.numbers, second.figures[0].1.numbers);
+    assert_eq!(first.figures[0].1.panels.len(), second.figures[0].1.panels.len());
 }

@@ -52,6 +52,7 @@ impl Paper {
             threads,
             stop: &stop,
             reduced: self.reduced,
+            folder: &self.out,
         };
         let progress = Progress::new(self.quiet);
         let done = paper::run(&figures, &mut records, &options, &mut |stage| {

@@ -1,0 +1,122 @@
+//! What figures found, kept on disk as soon as it is found: a call that was stopped does not begin again.
+//!
+//! A file holds a checksum and the figure's findings. One that is damaged, or that another program, other cases or
+//! other options made, counts as not there.
+
+use std::path::{Path, PathBuf};
+
+use super::bench::StepRule;
+use super::error::PaperError;
+use super::files::FILES;
+use super::found::Found;
+use crate::folder::{FolderError, write_whole};
+
+/// Findings of earlier calls in one folder.
+pub(super) struct Saved {
+    folder: PathBuf,
+    /// Hash of the program, its cases and the options: what findings depend on besides figure and step.
+    origin: blake3::Hash,
+}
+
+impl Saved {
+    /// Those in `folder`, made by this very program.
+    ///
+    /// # Errors
+    /// When the folder cannot be made.
+    pub(super) fn open(folder: &Path, reduced: bool) -> Result<Self, PaperError> {
+        let folder = folder.join("found");
+        std::fs::create_dir_all(&folder).map_err(|source| FolderError::Unwritable {
+            path: folder.clone(),
+            source,
+        })?;
+        let mut hasher = blake3::Hasher::new();
+        // A program that was built anew may find something else, whatever its version says.
+        if let Ok(program) = std::env::current_exe().and_then(std::fs::File::open) {
+            hasher.update_reader(program).ok();
+        }
+        for (name, text) in FILES {
+            hasher.update(name.as_bytes()).update(text.as_bytes());
+        }
+        hasher.update(&[u8::from(reduced)]);
+        Ok(Self {
+            folder,
+            origin: hasher.finalize(),
+        })
+    }
+
+    fn path(&self, figure: &str, step: StepRule) -> PathBuf {
+        let step = match step {
+            StepRule::Auto => "auto",
+            StepRule::Paper => "paper",
+        };
+        self.folder.join(format!("{figure}-{step}.bin"))
+    }
+
+    /// Hash of a file's contents and of what made them.
+    fn checksum(&self, findings: &[u8]) -> blake3::Hash {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(self.origin.as_bytes()).update(findings);
+        hasher.finalize()
+    }
+
+    /// What a figure found in an earlier call.
+    pub(super) fn load(&self, figure: &str, step: StepRule) -> Option<Found> {
+        let bytes = std::fs::read(self.path(figure, step)).ok()?;
+        let (checksum, findings) = bytes.split_at_checked(blake3::OUT_LEN)?;
+        if self.checksum(findings).as_bytes() != checksum {
+            return None;
+        }
+        postcard::from_bytes(findings).ok()
+    }
+
+    /// Keeps what a figure found.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub(super) fn save(&self, figure: &str, step: StepRule, found: &Found) -> Result<(), PaperError> {
+        let path = self.path(figure, step);
+        // Plain data: it always has a binary form.
+        let Ok(findings) = postcard::to_stdvec(found) else {
+            return Ok(());
+        };
+        let bytes = [self.checksum(&findings).as_bytes(), findings.as_slice()].concat();
+        Ok(write_whole(&path, &bytes).map_err(|source| FolderError::Write { path, source })?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::found::Number;
+    use super::*;
+
+    #[test]
+    fn findings_come_back_unless_damaged_or_made_otherwise() {
+        let folder = tempfile::tempdir().unwrap();
+        let saved = Saved::open(folder.path(), true).unwrap();
+        let mut found = Found::default();
+        found.number("fig99.one", Number::of(&[1.0, 2.0]));
+        found.value("fig99.none", f64::INFINITY);
+        saved.save("fig99", StepRule::Auto, &found).unwrap();
+        assert_eq!(
+            saved.load("fig99", StepRule::Auto).unwrap().numbers,
+            found.numbers
+        );
+        assert!(saved.load("fig99", StepRule::Paper).is_none());
+        assert!(
+            Saved::open(folder.path(), false)
+                .unwrap()
+                .load("fig99", StepRule::Auto)
+                .is_none()
+        );
+        let path = saved.path("fig99", StepRule::Auto);
+        let whole = std::fs::read(&path).unwrap();
+        for cut in [0, 31, whole.len() - 1] {
+            std::fs::write(&path, &whole[..cut]).unwrap();
+            assert!(saved.load("fig99", StepRule::Auto).is_none(), "{cut}");
+        }
+        let mut flipped = whole;
+        flipped[40] ^= 1;
+        std::fs::write(&path, flipped).unwrap();
+        assert!(saved.load("fig99", StepRule::Auto).is_none());
+    }
+}
