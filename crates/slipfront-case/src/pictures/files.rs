@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD as BASE64;
 use kuva::backend::svg::SvgBackend;
 use kuva::render::color::Color;
 use kuva::render::render::{Primitive, Scene};
@@ -63,7 +65,7 @@ fn svg(scene: &Scene, images: &[Image]) -> Result<String, PictureError> {
          <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n",
         width / DPI * 25.4,
         height / DPI * 25.4,
-        base64(FONT),
+        BASE64.encode(FONT),
     );
     for image in images {
         let Area { x, y, width, height } = image.area;
@@ -74,7 +76,7 @@ fn svg(scene: &Scene, images: &[Image]) -> Result<String, PictureError> {
              preserveAspectRatio=\"none\" image-rendering=\"optimizeSpeed\" \
              style=\"image-rendering:pixelated\" \
              href=\"data:image/png;base64,{}\"/>",
-            base64(&image_png(image)?),
+            BASE64.encode(&image_png(image)?),
         );
     }
     // kuva's opening tag knows neither a physical size nor a view box, so that the picture could not be
@@ -209,36 +211,10 @@ fn encode(
     Ok(file)
 }
 
-pub(crate) fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let byte = |index: usize| chunk.get(index).map_or(0, |&byte| u32::from(byte));
-        let group = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for index in 0..4 {
-            let digit = DIGITS[(group >> (18 - 6 * index)) as usize & 63];
-            text.push(if index <= chunk.len() {
-                char::from(digit)
-            } else {
-                '='
-            });
-        }
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::canvas::Canvas;
     use super::*;
-
-    #[test]
-    fn base64_pads() {
-        assert_eq!(
-            ["", "f", "fo", "foo", "foob"].map(|t| base64(t.as_bytes())),
-            ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg=="]
-        );
-    }
 
     #[test]
     fn an_image_has_no_seams() {

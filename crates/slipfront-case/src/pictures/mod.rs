@@ -32,7 +32,6 @@ mod titles;
 mod whisker;
 
 pub use bars::{Bar, BarChart, BarGroup, bars};
-pub(crate) use files::base64;
 pub use friction::{FrictionCurve, Instant, Kinetic, friction};
 pub use heat_map::{HeatAxis, HeatMap, heat_map};
 pub use maps::{FieldMap, FieldMaps, field_maps};

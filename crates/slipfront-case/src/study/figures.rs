@@ -166,14 +166,7 @@ fn curve(axes: &[Axis], x: usize, fixed: &[(usize, usize)], labelled: &[usize], 
         high: vec![],
         line: false,
     };
-    let mut levels: Vec<(f64, usize)> = axes[x]
-        .levels
-        .iter()
-        .enumerate()
-        .filter_map(|(level, at)| Some((at.number?, level)))
-        .collect();
-    levels.sort_by(|a, b| a.0.total_cmp(&b.0));
-    for (at, level) in levels {
+    for (at, level) in by_number(&axes[x]) {
         let mut place = vec![0; axes.len()];
         place[x] = level;
         fixed.iter().for_each(|&(axis, level)| place[axis] = level);
@@ -186,18 +179,18 @@ fn curve(axes: &[Axis], x: usize, fixed: &[(usize, usize)], labelled: &[usize], 
     response
 }
 
+/// Numbers of an axis in rising order, each with its level.
+fn by_number(axis: &Axis) -> Vec<(f64, usize)> {
+    let levels = axis.levels.iter().enumerate();
+    let mut numbers: Vec<(f64, usize)> = levels
+        .filter_map(|(level, at)| Some((at.number?, level)))
+        .collect();
+    numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
+    numbers
+}
+
 fn map(axes: &[Axis], x: usize, y: usize, quantity: &str, values: &Values) -> Result<Picture, PictureError> {
-    let sorted = |axis: usize| -> Vec<(f64, usize)> {
-        let mut levels: Vec<(f64, usize)> = axes[axis]
-            .levels
-            .iter()
-            .enumerate()
-            .filter_map(|(level, at)| Some((at.number?, level)))
-            .collect();
-        levels.sort_by(|a, b| a.0.total_cmp(&b.0));
-        levels
-    };
-    let (columns, rows) = (sorted(x), sorted(y));
+    let (columns, rows) = (by_number(&axes[x]), by_number(&axes[y]));
     let mut means = Vec::new();
     for &(_, row) in &rows {
         for &(_, column) in &columns {

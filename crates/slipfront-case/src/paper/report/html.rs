@@ -1,10 +1,11 @@
 //! `report.html`: one file that opens from disk, prints, and reads on a phone.
 
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD as BASE64;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::{Drawn, claims_of, counts, greek, step_name};
 use crate::paper::{Figure, Found, Judged, Paper, StepRule, Table, Verdict};
-use crate::pictures::base64;
 
 const STYLE: &str = include_str!("style.css");
 
@@ -137,7 +138,7 @@ fn section(paper: &Paper, figure: &Figure, found: &Found, pictures: &[Drawn]) ->
             h2 { (figure.title) }
             @for Drawn { name, caption, picture } in pictures {
                 figure {
-                    img src={ "data:image/png;base64," (base64(&picture.png)) } alt=(caption) style=(width(&picture.svg));
+                    img src={ "data:image/png;base64," (BASE64.encode(&picture.png)) } alt=(caption) style=(width(&picture.svg));
                     figcaption { (caption) " Numbers: " (name) ".csv." }
                 }
             }
