@@ -213,6 +213,12 @@ impl Case {
     pub fn block_steps(&self) -> f64 {
         self.schedule.last_step as f64 * self.model.lattice.n_blocks() as f64
     }
+
+    /// Steps between two looks at a running case, for its progress or for a reason to stop: some milliseconds' worth.
+    pub fn steps_per_look(&self) -> u64 {
+        const BLOCK_STEPS: u64 = 200_000;
+        (BLOCK_STEPS / self.model.lattice.n_blocks() as u64).max(1)
+    }
 }
 
 fn scales(file: &CaseFile) -> Scales {

@@ -5,7 +5,7 @@ use slipfront::observe::{
     Curve, CurveRow, FirstSlip, Frame, Frames, Instants, KineticHistory, Observer, Schedule, Scheduled,
     StressMaximum,
 };
-use slipfront::{RunError, Simulation, StopReason};
+use slipfront::{RunError, Simulation, Snapshot, StopReason};
 
 use crate::case::{Case, Snapshots};
 use crate::summary::{Observed, Summary};
@@ -98,6 +98,32 @@ pub fn run(case: &Case, watch_every: u64, watcher: &mut dyn Observer) -> Result<
         first_slip_time_star: first_slip.time_star,
         contact_stress_max: stress_maximum.value(),
     })
+}
+
+/// Runs a case as long as `ends` does not say otherwise; none if it was given up.
+///
+/// # Errors
+/// [`RunError`] when the run diverges.
+pub fn run_unless(case: &Case, ends: &dyn Fn() -> bool) -> Option<Result<Record, RunError>> {
+    let record = run(case, case.steps_per_look(), &mut Watchdog(ends));
+    if record.is_err() && ends() {
+        None
+    } else {
+        Some(record)
+    }
+}
+
+/// Ends a run when asked to.
+struct Watchdog<'a>(&'a dyn Fn() -> bool);
+
+impl Observer for Watchdog<'_> {
+    fn observe(&mut self, _: &Snapshot) -> Result<(), RunError> {
+        if (self.0)() {
+            Err(RunError::Observer("given up".to_owned()))
+        } else {
+            Ok(())
+        }
+    }
 }
 
 fn unlettered(frames: Vec<Frame>) -> Vec<(String, Frame)> {

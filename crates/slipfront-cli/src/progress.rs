@@ -11,8 +11,6 @@ use slipfront_case::study::Progress as StudyState;
 
 /// Time between plain lines.
 const LINE_EVERY: Duration = Duration::from_secs(5);
-/// Block-steps between two looks at the clock: some milliseconds' worth.
-const BLOCK_STEPS_PER_LOOK: u64 = 200_000;
 
 /// Shows how far a run has come.
 pub(crate) enum Progress {
@@ -52,11 +50,6 @@ impl Progress {
             bar.set_style(style.progress_chars("=> "));
         }
         Self::Bar(bar)
-    }
-
-    /// Steps between two looks.
-    pub(crate) fn every(case: &Case) -> u64 {
-        (BLOCK_STEPS_PER_LOOK / case.model.lattice.n_blocks() as u64).max(1)
     }
 
     pub(crate) fn finish(&self) {

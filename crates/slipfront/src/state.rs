@@ -19,7 +19,7 @@ pub struct State {
     pub displacement: VectorField,
     /// Velocity at `t - dt/2`, in units of `P mu_s/sqrt(E rho)`.
     pub velocity: VectorField,
-    /// Memory of the friction law (D2).
+    /// Memory of the friction law (D2): a block slides if and only if its velocity is not zero (D12).
     pub contact: Vec<Contact>,
 }
 

@@ -5,8 +5,8 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
-use slipfront::observe::{CurvePoint, Frame, Observer};
-use slipfront::{RunError, Snapshot, Stop};
+use slipfront::Stop;
+use slipfront::observe::{CurvePoint, Frame};
 
 use super::error::PaperError;
 use super::files::FILES;
@@ -14,7 +14,7 @@ use super::found::Number;
 use crate::case::{Case, Snapshots};
 use crate::case_file::CaseError;
 use crate::fields::FieldName;
-use crate::pictures::{FieldMap, FrictionCurve, Instant, Kinetic};
+use crate::pictures::{FieldMap, FrictionCurve};
 use crate::run::{self, Record};
 use crate::study::{self, Findings, Keep, Plan, Quantity, Records, Role, RunKey, StudyError, StudyFile};
 
@@ -42,9 +42,6 @@ pub(super) struct Bench<'a> {
     /// Told of every run of a study.
     pub(super) watch: &'a mut dyn FnMut(&study::Progress),
 }
-
-/// Block-steps between two looks at the stop flag.
-const BLOCK_STEPS_PER_LOOK: usize = 1_000_000;
 
 impl Bench<'_> {
     /// Number of random surfaces where a figure goes beyond its study.
@@ -110,15 +107,10 @@ impl Bench<'_> {
 }
 
 fn run_case(case: Case, stop: &AtomicBool) -> Result<Run, PaperError> {
-    let look = (BLOCK_STEPS_PER_LOOK / case.model.lattice.n_blocks()).max(1) as u64;
-    let record = run::run(&case, look, &mut Watchdog(stop)).map_err(|source| {
-        if stop.load(Ordering::Relaxed) {
-            return StudyError::Interrupted.into();
-        }
-        PaperError::Run {
-            name: case.name.clone(),
-            source,
-        }
+    let record = run::run_unless(&case, &|| stop.load(Ordering::Relaxed)).ok_or(StudyError::Interrupted)?;
+    let record = record.map_err(|source| PaperError::Run {
+        name: case.name.clone(),
+        source,
     })?;
     Ok(Run { case, record })
 }
@@ -154,18 +146,6 @@ pub(super) fn seen_at(mut case: Case, times_star: &[f64]) -> Case {
     steps.dedup();
     case.output.snapshots = Snapshots::At(steps);
     case
-}
-
-/// Ends a run when a signal came.
-struct Watchdog<'a>(&'a AtomicBool);
-
-impl Observer for Watchdog<'_> {
-    fn observe(&mut self, _: &Snapshot) -> Result<(), RunError> {
-        if self.0.load(Ordering::Relaxed) {
-            return Err(RunError::Observer("stopped by a signal".to_owned()));
-        }
-        Ok(())
-    }
 }
 
 /// A case and all that its run left.
@@ -224,41 +204,22 @@ impl Run {
         }
     }
 
-    /// The curve with its peak, its kinetic window and its instants.
-    pub(super) fn curve(&self, label: &str) -> FrictionCurve {
-        let (rows, summary) = (&self.record.rows, &self.record.summary);
-        let kinetic = summary.kinetic_window_star.zip(summary.kinetic_friction_star);
+    /// The curve with its peak, its kinetic window and the letters of its instants.
+    pub(super) fn lettered_curve(&self, label: &str) -> FrictionCurve {
+        let rows = &self.record.rows;
         FrictionCurve {
-            label: label.to_owned(),
             time_star: rows.iter().map(|row| row.time_star).collect(),
             mu_star: rows.iter().map(|row| row.point.mu_star).collect(),
             sliding_percent: rows.iter().map(|row| row.point.sliding_percent).collect(),
-            first_slip_time_star: summary.first_slip_time_star,
-            peak: summary
-                .transition
-                .then_some((summary.onset_time_star, summary.static_friction_star)),
-            kinetic: kinetic.map(|([from, to], mean)| Kinetic {
-                from,
-                to,
-                mean,
-                uncertainty: summary.kinetic_friction_star_uncertainty,
-            }),
-            instants: Vec::new(),
+            ..FrictionCurve::marked(label.to_owned(), &self.record.summary)
         }
     }
 
-    /// The same with the letters of its instants.
-    pub(super) fn lettered_curve(&self, label: &str) -> FrictionCurve {
-        let instants = self.record.summary.instants.iter();
+    /// The same without letters.
+    pub(super) fn curve(&self, label: &str) -> FrictionCurve {
         FrictionCurve {
-            instants: instants
-                .map(|instant| Instant {
-                    letter: instant.instant,
-                    time_star: instant.time_star,
-                    mu_star: instant.mu_star,
-                })
-                .collect(),
-            ..self.curve(label)
+            instants: Vec::new(),
+            ..self.lettered_curve(label)
         }
     }
 

@@ -11,9 +11,6 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use slipfront::observe::Observer;
-use slipfront::{RunError, Snapshot};
-
 use super::error::StudyError;
 use super::file::Keep;
 use super::plan::{Plan, Role, RunKey};
@@ -229,31 +226,13 @@ fn panicked(panic: &(dyn std::any::Any + Send)) -> String {
     format!("a fault of the program: {}", message.unwrap_or("unknown"))
 }
 
-/// Ends a run when the study ends.
-struct Watchdog<'a>(&'a Ends<'a>);
-
-impl Observer for Watchdog<'_> {
-    fn observe(&mut self, _: &Snapshot) -> Result<(), RunError> {
-        if (self.0)() {
-            Err(RunError::Observer("given up".to_owned()))
-        } else {
-            Ok(())
-        }
-    }
-}
-
-/// Block-steps between two looks at the watchdog: some milliseconds' worth.
-const BLOCK_STEPS_PER_LOOK: usize = 200_000;
-
 fn run_one(plan: &Plan, runs: &Path, run: RunKey, ends: &Ends) -> Result<Option<Outcome>, StudyError> {
     let started = jiff::Timestamp::now();
     // The point was valid when the study began: a file that it reads has gone, which is no fault of the run.
     let case = plan.case(run)?;
-    let look = (BLOCK_STEPS_PER_LOOK / case.model.lattice.n_blocks()).max(1) as u64;
-    let record = run::run(&case, look, &mut Watchdog(ends));
-    if record.is_err() && ends() {
+    let Some(record) = run::run_unless(&case, ends) else {
         return Ok(None);
-    }
+    };
     if plan.settings.keep == Keep::All || (plan.settings.keep == Keep::Failed && record.is_err()) {
         let path = runs.join(plan.folder_name(run));
         keep(&case, record.as_ref().ok(), &path, started)?;

@@ -341,7 +341,7 @@ fn refuse_clashes(axes: &[Axis], source: &Source) -> Result<(), CaseError> {
         let refuse = |sentence: String| Err(source.error(&format!("axes.{k}"), sentence));
         let before = &axes[..k];
         for column in &axis.columns {
-            if tables::COLUMNS.contains(&column.as_str()) || quantities::known().contains(column) {
+            if tables::is_column(column) || quantities::known().contains(column) {
                 return refuse(format!(
                     "the tables have a column `{column}` already: give the axis another name"
                 ));

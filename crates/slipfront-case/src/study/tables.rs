@@ -24,25 +24,20 @@ const STATISTICS: [&str; 9] = [
     "narrow_enough",
 ];
 
-/// Names that no axis can have: those of all columns but the quantities.
-pub(super) const COLUMNS: [&str; 16] = [
-    "point",
-    "replicate",
-    "role",
-    "seed",
-    "run",
-    "status",
-    "reason",
-    "quantity",
-    "n",
-    "mean",
-    "deviation",
-    "low",
-    "high",
-    "min",
-    "max",
-    "narrow_enough",
-];
+/// Whether a column other than those of the quantities has this name, so that no axis can.
+pub(super) fn is_column(name: &str) -> bool {
+    [&BEFORE_AXES[..], &AFTER_AXES, &STATISTICS]
+        .concat()
+        .contains(&name)
+}
+
+/// Columns of all axes.
+fn axis_columns(plan: &Plan) -> impl Iterator<Item = &str> {
+    plan.axes
+        .iter()
+        .flat_map(|axis| &axis.columns)
+        .map(String::as_str)
+}
 
 /// `runs.csv`: what varied, the seed, every number of the summary, and whether the run failed. A reference has rows
 /// of its own.
@@ -51,16 +46,11 @@ pub(super) const COLUMNS: [&str; 16] = [
 /// When it cannot be put into words.
 pub(super) fn runs(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyError> {
     let mut table = csv::Writer::from_writer(Vec::new());
-    let columns = plan
-        .axes
-        .iter()
-        .flat_map(|axis| &axis.columns)
-        .map(String::as_str);
     let quantities = quantities(plan);
     table.write_record(
         BEFORE_AXES
             .into_iter()
-            .chain(columns)
+            .chain(axis_columns(plan))
             .chain(AFTER_AXES)
             .chain(quantities.iter().map(|(name, _)| *name)),
     )?;
@@ -113,14 +103,10 @@ fn quantities(plan: &Plan) -> Vec<(&'static str, Quantity)> {
 /// When it cannot be put into words.
 pub(super) fn points(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyError> {
     let mut table = csv::Writer::from_writer(Vec::new());
-    let columns = plan
-        .axes
-        .iter()
-        .flat_map(|axis| &axis.columns)
-        .map(String::as_str);
-    table.write_record(["point"].into_iter().chain(columns).chain(STATISTICS))?;
+    table.write_record(["point"].into_iter().chain(axis_columns(plan)).chain(STATISTICS))?;
+    let quantities = quantities(plan);
     for (position, point) in plan.points.iter().enumerate() {
-        for (name, _) in quantities(plan) {
+        for &(name, _) in &quantities {
             let Some(sample) = sample(plan, findings, position, name) else {
                 continue;
             };
