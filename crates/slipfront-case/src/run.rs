@@ -3,7 +3,6 @@
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{
     Curve, CurveRow, FirstSlip, Frame, Frames, Instants, KineticHistory, Observer, Schedule, Scheduled,
-    StressMaximum,
 };
 use slipfront::{RunError, Simulation, Snapshot, StopReason};
 
@@ -37,16 +36,12 @@ pub fn run(case: &Case, watch_every: u64, watcher: &mut dyn Observer) -> Result<
     };
     let mut curve = Curve::every(case.output.series_stride);
     let mut history = KineticHistory::new(schedule.last_step);
-    let mut first_slip = FirstSlip::none(&case.model.surface);
-    let mut stress_maximum = StressMaximum::default();
     let mut instants = Instants::new(selection.clone(), schedule.kinetic, schedule.end_star());
     let mut frames = Frames::new(selection);
 
     let mut observers = vec![
         Scheduled::always(&mut curve),
         Scheduled::always(&mut history),
-        Scheduled::always(&mut first_slip),
-        Scheduled::always(&mut stress_maximum),
         Scheduled::new(Schedule::Every(watch_every), watcher),
     ];
     match &case.output.snapshots {
@@ -58,6 +53,7 @@ pub fn run(case: &Case, watch_every: u64, watcher: &mut dyn Observer) -> Result<
     let reason = simulation.run(schedule.stop, &mut observers)?;
     drop(observers);
 
+    let first_slip = FirstSlip::of(&simulation);
     let instants = match case.output.snapshots {
         Snapshots::Instants => instants.found(),
         Snapshots::At(_) | Snapshots::Every(_) => Vec::new(),
@@ -96,7 +92,7 @@ pub fn run(case: &Case, watch_every: u64, watcher: &mut dyn Observer) -> Result<
             merged(instants)
         },
         first_slip_time_star: first_slip.time_star,
-        contact_stress_max: stress_maximum.value(),
+        contact_stress_max: simulation.contact_stress_max(),
     })
 }
 

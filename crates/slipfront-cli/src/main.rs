@@ -5,6 +5,7 @@
 
 mod commands;
 mod failure;
+mod probe;
 mod progress;
 mod report;
 

@@ -43,28 +43,28 @@ pub(crate) struct Update {
 /// Time step and damping (Eq. 5), centred in time so that stability does not depend on it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Integrator {
-    /// `c- = 1 - Omega dt/2`.
-    before: f64,
-    /// `1/c+`, `c+ = 1 + Omega dt/2`.
-    inverse_after: f64,
-    /// `dt/(m c+)`.
-    impulse: f64,
+    /// `c-/c+`, with `c-+ = 1 -+ Omega dt/2`: what a free block keeps of its velocity.
+    pub(crate) keeps: f64,
+    /// `dt/(m c+)`: what a force adds to it.
+    pub(crate) impulse: f64,
+    /// `m c+/dt`.
+    pub(crate) inverse_impulse: f64,
 }
 
 impl Integrator {
     pub(crate) fn new(damping: f64, dt: f64) -> Self {
         let after = 1.0 + 0.5 * damping * dt;
         Self {
-            before: 1.0 - 0.5 * damping * dt,
-            inverse_after: 1.0 / after,
+            keeps: (1.0 - 0.5 * damping * dt) / after,
             impulse: dt / after,
+            inverse_impulse: after / dt,
         }
     }
 
     /// Velocity at `t + dt/2` under a force alone (Eqs. 5-8): `(c- v + dt F/m)/c+`.
     #[inline(always)]
     fn push(&self, velocity: [f64; 2], force: [f64; 2]) -> [f64; 2] {
-        let one = |v: f64, f: f64| self.before * v * self.inverse_after + self.impulse * f;
+        let one = |v: f64, f: f64| self.keeps * v + self.impulse * f;
         [one(velocity[0], force[0]), one(velocity[1], force[1])]
     }
 }
@@ -104,20 +104,18 @@ impl Law for Projection {
     #[inline(always)]
     fn update(&self, block: &Block, integrator: &Integrator) -> Update {
         let force = block.force;
-        let stays = is_zero(block.velocity) & (length(force) <= block.hold);
+        let stays = is_zero(block.velocity) & (dot(force, force) <= block.hold * block.hold);
         let free = integrator.push(block.velocity, force);
         let speed = length(free);
-        let q = integrator.impulse * block.slide;
-        let keep = 1.0 - q / speed;
-        let moving = [free[0] * keep, free[1] * keep];
-        // Where nothing moves, speed and q may both be 0 and `keep` no number: it is not selected. A velocity that
-        // rounds to zero has stopped.
-        let rests = stays | (speed <= q) | is_zero(moving);
-        let pull = block.slide / speed;
+        // Where nothing moves, both may be 0 and their ratio no number: nothing is left then either.
+        let taken = integrator.impulse * block.slide / speed;
+        let left = 1.0 - taken;
+        let slides = !stays & (left > 0.0);
+        let pull = taken * integrator.inverse_impulse;
         Update {
-            velocity: select(rests, [0.0, 0.0], moving),
-            friction: select(rests, [-force[0], -force[1]], [-pull * free[0], -pull * free[1]]),
-            contact: if rests { Contact::Stuck } else { Contact::Sliding },
+            velocity: select(slides, [left * free[0], left * free[1]], [0.0, 0.0]),
+            friction: select(slides, [-pull * free[0], -pull * free[1]], [-force[0], -force[1]]),
+            contact: if slides { Contact::Sliding } else { Contact::Stuck },
         }
     }
 }

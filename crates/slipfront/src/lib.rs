@@ -36,10 +36,10 @@ mod model;
 mod simulation;
 mod state;
 mod vector_field;
-mod width;
 
 pub use error::{RunError, SurfaceError};
 pub use friction::FrictionLaw;
+pub use kernel::{Execution, Kernel};
 pub use lattice::{Edges, Lattice};
 pub use model::{Drive, Model};
 pub use scales::Scales;

@@ -42,6 +42,15 @@ impl Drive {
         let along = self.v_star * time_star;
         [along * self.direction[0], along * self.direction[1]]
     }
+
+    /// Pull on a block at displacement `u` (Eq. 2), with the constant force: `F_s = k_s (V t - u)`.
+    pub fn force(&self, u: [f64; 2], time_star: f64) -> [f64; 2] {
+        let reach = self.reach(time_star);
+        [
+            self.k_drive * (reach[0] - u[0]) + self.constant_force[0],
+            self.k_drive * (reach[1] - u[1]) + self.constant_force[1],
+        ]
+    }
 }
 
 /// (cos, sin) of an angle in degrees; exact in the axes and symmetric about them, so that a drive along y is
@@ -114,7 +123,8 @@ impl Model {
     /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V*
     /// ```
     pub fn steady_level(&self) -> f64 {
-        let friction = self.surface.slide.iter().sum::<f64>() / self.surface.n_blocks() as f64;
+        let n = self.surface.n_blocks();
+        let friction = (0..n).map(|b| self.surface.slide(b)).sum::<f64>() / n as f64;
         friction + self.damping * self.drive.v_star
     }
 

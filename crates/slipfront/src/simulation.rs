@@ -1,16 +1,16 @@
 //! The loop: evaluate, observe, stop, step.
 
-use crate::kernel::{Forces, reference};
+use crate::kernel::{Block, Engine, Execution, Held, Totals};
 use crate::observe::{CurvePoint, Peak, Scheduled};
-use crate::{Model, RunError, State};
+use crate::{Model, RunError, State, VectorField};
 
 /// A run in progress.
 pub struct Simulation<'m> {
     model: &'m Model,
     dt_star: f64,
     step: u64,
-    state: State,
-    forces: Forces,
+    engine: Engine,
+    totals: Totals,
     point: CurvePoint,
     peak: Peak,
 }
@@ -26,16 +26,54 @@ pub struct Snapshot<'a> {
     pub time_star: f64,
     /// Time step.
     pub dt_star: f64,
-    /// Displacements at t_n, velocities half a step earlier.
-    pub state: &'a State,
-    /// Forces at t_n, velocities half a step later, stick and slip.
-    pub forces: &'a Forces,
+    /// Sums over all blocks.
+    pub totals: Totals,
     /// mu* and N*.
     pub point: CurvePoint,
     /// The first peak of mu*, as far as it can be known by now.
     pub peak: Peak,
     /// Whether the run ends here.
     pub last: bool,
+    engine: &'a Engine,
+}
+
+/// Differences of mu* that rounding cannot make: a prediction closer than this is none.
+const CLEARLY: f64 = 1e-9;
+
+impl Snapshot<'_> {
+    /// Displacement, velocity and forces of block `b`. Forces are found anew: to be asked for now and then, not at every
+    /// step.
+    pub fn block(&self, b: usize) -> Block {
+        self.engine.block(self.model, self.step, self.dt_star, b)
+    }
+
+    /// Energies held now.
+    ///
+    /// # Panics
+    /// If nobody wanted them: see [`Observer::wants_energies`](crate::observe::Observer::wants_energies).
+    pub fn held(&self) -> Held {
+        self.totals.held.expect("energies are measured where an observer wants them")
+    }
+
+    /// mu* one step on, which the velocities of the blocks tell already, to rounding.
+    pub(crate) fn mu_star_next(&self) -> f64 {
+        let mut totals = self.totals;
+        for axis in 0..2 {
+            totals.displacement[axis] += self.dt_star * totals.velocity_after[axis];
+        }
+        let time_star = (self.step + 1) as f64 * self.dt_star;
+        CurvePoint::measure(self.model, &totals, time_star).mu_star
+    }
+
+    /// Whether mu* will be higher one step on.
+    pub(crate) fn rises(&self) -> bool {
+        self.mu_star_next() > self.point.mu_star + CLEARLY
+    }
+
+    /// Whether mu* will be lower one step on.
+    pub(crate) fn falls(&self) -> bool {
+        self.mu_star_next() < self.point.mu_star - CLEARLY
+    }
 }
 
 /// When a run ends.
@@ -71,6 +109,11 @@ impl Stop {
         }
     }
 
+    /// Whether the next step may be the last. That mu* will have fallen can be told before.
+    fn may_end(&self, now: &Snapshot) -> bool {
+        now.step + 1 >= self.last_step || (self.after_onset && now.peak.ends_at(now.mu_star_next() - CLEARLY))
+    }
+
     fn reached(&self, now: &Snapshot) -> Option<StopReason> {
         if self.after_onset && now.peak.ended {
             Some(StopReason::Onset)
@@ -90,18 +133,23 @@ impl<'m> Simulation<'m> {
 
     /// A slider in a given state at t = 0.
     pub fn from_state(model: &'m Model, dt_star: f64, state: State) -> Self {
-        let forces = Forces::zeros(model.lattice.n_blocks());
-        let peak = Peak::new(model.steady_level());
+        Self::executed(model, dt_star, state, Execution::default())
+    }
+
+    /// The same, computed as `execution` says.
+    pub fn executed(model: &'m Model, dt_star: f64, state: State, execution: Execution) -> Self {
+        let mut engine = Engine::new(model, dt_star, state, execution);
+        let totals = engine.step(model, 0, true);
         let mut simulation = Self {
             model,
             dt_star,
             step: 0,
-            state,
-            forces,
+            engine,
+            totals,
             point: CurvePoint::default(),
-            peak,
+            peak: Peak::new(model.steady_level()),
         };
-        simulation.evaluate();
+        simulation.measure();
         simulation
     }
 
@@ -114,22 +162,34 @@ impl<'m> Simulation<'m> {
             let mut now = self.snapshot();
             let reason = stop.reached(&now);
             now.last = reason.is_some();
-            for observer in observers.iter_mut().filter(|o| o.due(&now)) {
+            for observer in observers.iter_mut().filter(|o| o.due(now.step)) {
                 observer.observe(&now)?;
             }
             if let Some(reason) = reason {
                 return Ok(reason);
             }
-            self.step();
+            let next = now.step + 1;
+            let energies = stop.may_end(&now) || observers.iter().any(|o| o.wants_energies(next));
+            self.step_with(energies);
             self.check_finite()?;
         }
     }
 
     /// One time step: from t_n to t_n+1.
     pub fn step(&mut self) {
-        reference::advance(&mut self.state, self.dt_star, &mut self.forces);
+        self.step_with(false);
+    }
+
+    fn step_with(&mut self, energies: bool) {
         self.step += 1;
-        self.evaluate();
+        self.totals = self.engine.step(self.model, self.step, energies);
+        self.measure();
+    }
+
+    fn measure(&mut self) {
+        let time_star = self.time_star();
+        self.point = CurvePoint::measure(self.model, &self.totals, time_star);
+        self.peak.watch(self.step, time_star, self.point.mu_star);
     }
 
     /// The present instant.
@@ -139,11 +199,11 @@ impl<'m> Simulation<'m> {
             step: self.step,
             time_star: self.time_star(),
             dt_star: self.dt_star,
-            state: &self.state,
-            forces: &self.forces,
+            totals: self.totals,
             point: self.point,
             peak: self.peak,
             last: false,
+            engine: &self.engine,
         }
     }
 
@@ -152,9 +212,18 @@ impl<'m> Simulation<'m> {
         self.step as f64 * self.dt_star
     }
 
-    /// Displacements now, velocities half a step ago.
-    pub fn state(&self) -> &State {
-        &self.state
+    /// Displacements now, velocities half a step later.
+    pub fn state(&self) -> State {
+        let n = self.model.lattice.n_blocks();
+        let mut state = State::at_rest(n);
+        let State { displacement, velocity } = &mut state;
+        for b in 0..n {
+            let [u, v] = self.engine.motion(b);
+            let set = |field: &mut VectorField, [x, y]: [f64; 2]| (field.x[b], field.y[b]) = (x, y);
+            set(displacement, u);
+            set(velocity, v);
+        }
+        state
     }
 
     /// The first peak of mu* as known by now.
@@ -162,11 +231,15 @@ impl<'m> Simulation<'m> {
         self.peak
     }
 
-    fn evaluate(&mut self) {
-        let time_star = self.time_star();
-        reference::evaluate(self.model, &self.state, time_star, self.dt_star, &mut self.forces);
-        self.point = CurvePoint::measure(self.model, &self.state, &self.forces, time_star);
-        self.peak.watch(self.step, time_star, self.point.mu_star);
+    /// t* at which each block first slid while in contact; not a number where none has.
+    pub fn first_slip_time_star(&self) -> Vec<f64> {
+        (0..self.model.lattice.n_blocks()).map(|b| self.engine.first_slip(b)).collect()
+    }
+
+    /// The largest contact stress (Eq. 10) over blocks in contact and all steps so far, in units of `P mu_s`: the scale of
+    /// tau_c*.
+    pub fn contact_stress_max(&self) -> f64 {
+        self.engine.contact_stress_max(self.model, self.step)
     }
 
     /// One sum tells for all blocks: a single displacement that is not finite spoils mu*.
@@ -174,14 +247,12 @@ impl<'m> Simulation<'m> {
         if self.point.mu_star.is_finite() && self.point.mu_lateral_star.is_finite() {
             return Ok(());
         }
-        let u = &self.state.displacement;
-        let finite = |b: usize| u.x[b].is_finite() && u.y[b].is_finite();
-        let block = (0..u.len()).find(|&b| !finite(b)).unwrap_or(0);
-        let value = if u.x[block].is_finite() {
-            u.y[block]
-        } else {
-            u.x[block]
-        };
+        let bad = (0..self.model.lattice.n_blocks()).find_map(|b| {
+            let [u, _] = self.engine.motion(b);
+            let value = u.into_iter().find(|u| !u.is_finite())?;
+            Some((b, value))
+        });
+        let (block, value) = bad.unwrap_or((0, self.point.mu_star));
         let (i, j) = self.model.lattice.column_row(block);
         Err(RunError::NotFinite {
             step: self.step,

@@ -1,4 +1,4 @@
-//! What changes from step to step: displacements, velocities, stick or slip.
+//! What changes from step to step: displacements and velocities.
 
 use crate::VectorField;
 
@@ -12,35 +12,22 @@ pub enum Contact {
     Sliding,
 }
 
-/// The state at step n: displacements at t_n, velocities half a step earlier (leapfrog, D6).
+/// A state at step n: displacements at t_n, velocities half a step earlier or later (leapfrog, D6). A block slides if and
+/// only if its velocity is not zero (D12): that is all the memory that friction needs (D2).
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// Displacement **u** from the rest site, in units of `P mu_s l/E`.
     pub displacement: VectorField,
-    /// Velocity at `t - dt/2`, in units of `P mu_s/sqrt(E rho)`.
+    /// Velocity in units of `P mu_s/sqrt(E rho)`: at `t - dt/2` where a simulation begins, at `t + dt/2` where it stands.
     pub velocity: VectorField,
-    /// Memory of the friction law (D2): a block slides if and only if its velocity is not zero (D12).
-    pub contact: Vec<Contact>,
 }
 
 impl State {
     /// Every block stuck at its rest site.
     pub fn at_rest(n_blocks: usize) -> Self {
-        Self::moving(VectorField::zeros(n_blocks), VectorField::zeros(n_blocks))
-    }
-
-    /// A given motion: `displacement` at t = 0, `velocity` half a step earlier. Blocks that move are sliding.
-    pub fn moving(displacement: VectorField, velocity: VectorField) -> Self {
-        let contact = velocity
-            .x
-            .iter()
-            .zip(&velocity.y)
-            .map(|(&x, &y)| contact_of([x, y]))
-            .collect();
         Self {
-            displacement,
-            velocity,
-            contact,
+            displacement: VectorField::zeros(n_blocks),
+            velocity: VectorField::zeros(n_blocks),
         }
     }
 }

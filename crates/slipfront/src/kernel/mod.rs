@@ -1,40 +1,197 @@
-//! What advances a [`State`](crate::State) by one step.
+//! What advances the state of all blocks by one step.
 //!
-//! [`mod@reference`] reads like the paper, one pass per equation. Observers see what a kernel leaves in
-//! [`Forces`].
+//! [`reference`] reads like the paper, one pass per equation; [`fused`] computes the same in one fast sweep. The
+//! [`Simulation`](crate::Simulation) steps either through [`Engine`] and shows observers what it found.
 
-pub mod reference;
+mod fused;
+mod reference;
 
-use crate::{Contact, VectorField};
+use self::fused::Fused;
+use self::reference::Reference;
+use crate::lattice::Bond;
+use crate::vector_field::length;
+use crate::{FrictionLaw, Model, State};
 
-/// Forces at t_n and the outcome of the update that starts there; one value per block.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Forces {
-    /// `F_s` of the drive springs (Eq. 2), with any constant force.
-    pub drive: VectorField,
-    /// `F_c` of the lattice springs (Eq. 3).
-    pub lattice: VectorField,
-    /// `F_f` of friction (Eq. 4).
-    pub friction: VectorField,
-    /// Velocity at `t_n + dt/2`.
-    pub velocity_after: VectorField,
-    /// Stuck or sliding from t_n on.
-    pub contact_after: Vec<Contact>,
-    /// Force of the spring along each bond, on its way into `lattice`.
-    springs: [VectorField; 4],
+/// Which kernel computes the steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    /// One pass per equation, to be read beside the paper, for every reading of the friction law.
+    Reference,
+    /// One sweep for all equations, for [`FrictionLaw::Projection`]; another reading is computed by the reference.
+    Fused,
 }
 
-impl Forces {
-    /// No forces yet, for `n_blocks` blocks.
-    pub fn zeros(n_blocks: usize) -> Self {
-        let zeros = || VectorField::zeros(n_blocks);
+/// How a run is computed. Results are the same bits for any `threads` and `skips`, and for both kernels to rounding until
+/// friction's onset, which tells blocks apart by less.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Execution {
+    /// What computes the steps.
+    pub kernel: Kernel,
+    /// Threads that share the blocks of the fused kernel; worth it from some 100 000 blocks.
+    pub threads: usize,
+    /// Whether blocks at rest are left alone until they can break.
+    pub skips: bool,
+}
+
+impl Default for Execution {
+    fn default() -> Self {
         Self {
-            drive: zeros(),
-            lattice: zeros(),
-            friction: zeros(),
-            velocity_after: zeros(),
-            contact_after: vec![Contact::Stuck; n_blocks],
-            springs: [zeros(), zeros(), zeros(), zeros()],
+            kernel: Kernel::Fused,
+            threads: 1,
+            skips: true,
         }
     }
+}
+
+/// Sums over all blocks at t_n, in units of this crate.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Totals {
+    /// `sum u`.
+    pub displacement: [f64; 2],
+    /// `sum v` at t_n, the mean of the half steps around it.
+    pub velocity: [f64; 2],
+    /// `sum v` at `t_n + dt/2`.
+    pub velocity_after: [f64; 2],
+    /// `sum v^2` at t_n.
+    pub velocity_square: f64,
+    /// `sum F_f . v` at t_n: what friction gives, less than zero.
+    pub friction_power: f64,
+    /// Blocks that slide from t_n on, textured ones included.
+    pub n_sliding: usize,
+    /// Blocks in contact that do.
+    pub n_slipping: usize,
+    /// Energies held, if they were asked for.
+    pub held: Option<Held>,
+}
+
+/// Energies held at t_n.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Held {
+    /// Kinetic energy, the mean of the half steps before and after.
+    pub kinetic: f64,
+    /// Of the springs between blocks.
+    pub lattice: f64,
+    /// Of the drive springs.
+    pub drive_springs: f64,
+}
+
+/// One block at t_n. Friction and contact are those of the update that starts there.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Block {
+    /// **u**, in units of `P mu_s l/E`.
+    pub displacement: [f64; 2],
+    /// Velocity at `t_n + dt/2`.
+    pub velocity: [f64; 2],
+    /// `F_s` of the drive spring (Eq. 2), with any constant force.
+    pub force_drive: [f64; 2],
+    /// `F_c` of the lattice springs (Eq. 3).
+    pub force_lattice: [f64; 2],
+    /// `F_f` of friction (Eq. 4).
+    pub force_friction: [f64; 2],
+}
+
+impl Block {
+    /// Whether the block slides from t_n on (D12).
+    pub fn slides(&self) -> bool {
+        self.velocity != [0.0, 0.0]
+    }
+}
+
+/// A kernel with its state.
+#[derive(Debug)]
+pub(crate) enum Engine {
+    Reference(Box<Reference>),
+    Fused(Box<Fused>),
+}
+
+impl Engine {
+    pub(crate) fn new(model: &Model, dt_star: f64, state: State, execution: Execution) -> Self {
+        match (execution.kernel, model.law) {
+            (Kernel::Fused, FrictionLaw::Projection) => {
+                let Execution { threads, skips, .. } = execution;
+                Self::Fused(Box::new(Fused::new(model, dt_star, &state, threads, skips)))
+            }
+            _ => Self::Reference(Box::new(Reference::new(model, dt_star, state))),
+        }
+    }
+
+    /// Goes to step `number`: the next one, or 0 to begin with.
+    pub(crate) fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals {
+        match self {
+            Self::Reference(kernel) => kernel.step(model, number, energies),
+            Self::Fused(kernel) => kernel.step(model, number, energies),
+        }
+    }
+
+    /// Block `b` at step `number`, the present one.
+    pub(crate) fn block(&self, model: &Model, number: u64, dt_star: f64, b: usize) -> Block {
+        match self {
+            Self::Reference(kernel) => kernel.block(b),
+            Self::Fused(kernel) => {
+                let [displacement, velocity] = kernel.motion(b);
+                let force_drive = model.drive.force(displacement, number as f64 * dt_star);
+                let force_lattice = lattice_force(model, b, displacement, |b| kernel.motion(b)[0]);
+                Block {
+                    displacement,
+                    velocity,
+                    force_drive,
+                    force_lattice,
+                    force_friction: friction(model, b, velocity, force_drive, force_lattice),
+                }
+            }
+        }
+    }
+
+    /// Displacement now and velocity half a step later of block `b`.
+    pub(crate) fn motion(&self, b: usize) -> [[f64; 2]; 2] {
+        match self {
+            Self::Reference(kernel) => kernel.motion(b),
+            Self::Fused(kernel) => kernel.motion(b),
+        }
+    }
+
+    /// When block `b` first slid while in contact; not a number if it never has.
+    pub(crate) fn first_slip(&self, b: usize) -> f64 {
+        match self {
+            Self::Reference(kernel) => kernel.first_slip(b),
+            Self::Fused(kernel) => kernel.first_slip(b),
+        }
+    }
+
+    /// Largest contact stress of a block in contact up to step `number`, the present one.
+    pub(crate) fn contact_stress_max(&self, model: &Model, number: u64) -> f64 {
+        match self {
+            Self::Reference(kernel) => kernel.contact_stress_max(),
+            Self::Fused(kernel) => kernel.contact_stress_max(model, number),
+        }
+    }
+}
+
+/// Eq. 3 for one block, summed as the kernels do.
+fn lattice_force(model: &Model, b: usize, u: [f64; 2], displacement: impl Fn(usize) -> [f64; 2]) -> [f64; 2] {
+    let lattice = &model.lattice;
+    let (i, j) = lattice.column_row(b);
+    let pair = |bond: &Bond| {
+        let [di, dj] = bond.offset;
+        let own = lattice.neighbour(i, j, [di, dj]).map_or([0.0; 2], |other| {
+            let v = displacement(other);
+            bond.force([v[0] - u[0], v[1] - u[1]], model.epsilon)
+        });
+        let behind = lattice.neighbour(i, j, [-di, -dj]).map_or([0.0; 2], |other| {
+            let v = displacement(other);
+            bond.force([u[0] - v[0], u[1] - v[1]], model.epsilon)
+        });
+        [own[0] - behind[0], own[1] - behind[1]]
+    };
+    let [e, n, ne, nw] = Bond::ALL.each_ref().map(|bond| pair(bond));
+    [(e[0] + n[0]) + (ne[0] + nw[0]), (e[1] + n[1]) + (ne[1] + nw[1])]
+}
+
+/// `F_f` of the projection law, from the velocity that it left: against it, or balancing the other forces at rest.
+fn friction(model: &Model, b: usize, velocity: [f64; 2], drive: [f64; 2], lattice: [f64; 2]) -> [f64; 2] {
+    if velocity == [0.0, 0.0] {
+        return [-(drive[0] + lattice[0]), -(drive[1] + lattice[1])];
+    }
+    let pull = model.surface.slide(b) / length(velocity);
+    [-pull * velocity[0], -pull * velocity[1]]
 }

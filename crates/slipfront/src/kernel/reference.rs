@@ -1,56 +1,205 @@
 //! The reference kernel: one pass over the blocks per equation, to be read beside the paper.
 //!
-//! [`evaluate`] computes what happens at t_n (Eqs. 2-7), [`advance`] moves on to t_n+1 (Eq. 8). Opposite
-//! neighbours are summed in pairs, straight ones before diagonal ones, so that a quarter turn or a mirror of
-//! the whole problem mirrors the trajectory to the last bit.
+//! A step moves the blocks (Eq. 8), finds the forces on them (Eqs. 2, 3) and lets friction and damping act (Eqs. 4-7).
+//! Opposite neighbours are summed in pairs, straight ones before diagonal ones, so that a quarter turn or a mirror of the
+//! whole problem mirrors the trajectory to the last bit.
 
-use super::Forces;
+use fearless_simd::{Level, dispatch};
+
+use super::{Block, Held, Totals};
 use crate::friction::{self, Integrator, Law};
+use crate::lanes;
 use crate::lattice::Bond;
-use crate::width::widest;
 use crate::{Contact, Edges, FrictionLaw, Lattice, Model, State, VectorField};
 
-/// Forces on every block at `time_star`, and what friction makes of them over the coming step `dt_star`.
-pub fn evaluate(model: &Model, state: &State, time_star: f64, dt_star: f64, forces: &mut Forces) {
-    widest!(evaluate_at_any_width(model: &Model, state: &State, time_star: f64, dt_star: f64, forces: &mut Forces) -> ());
+/// The state of all blocks, and the forces of the latest step.
+#[derive(Debug)]
+pub(crate) struct Reference {
+    dt_star: f64,
+    begun: bool,
+    /// Displacements at t_n, velocities half a step later.
+    state: State,
+    forces: Forces,
+    /// Thresholds `mu_s F_n` and `mu_k F_n`.
+    hold: Vec<f64>,
+    slide: Vec<f64>,
+    first_slip: Vec<f64>,
+    stress_square_max: f64,
 }
 
-#[inline(always)]
-fn evaluate_at_any_width(model: &Model, state: &State, time_star: f64, dt_star: f64, forces: &mut Forces) {
-    drive_forces(model, state, time_star, &mut forces.drive);
-    lattice_forces(model, state, &mut forces.lattice, &mut forces.springs);
-    let integrator = Integrator::new(model.damping, dt_star);
-    match model.law {
-        FrictionLaw::Projection => friction_forces(&friction::Projection, model, state, &integrator, forces),
-        FrictionLaw::Reversal => friction_forces(&friction::Reversal, model, state, &integrator, forces),
-        FrictionLaw::Literal => friction_forces(&friction::Literal, model, state, &integrator, forces),
+/// Forces at t_n and the outcome of the update that starts there; one value per block.
+#[derive(Clone, Debug, PartialEq)]
+struct Forces {
+    drive: VectorField,
+    lattice: VectorField,
+    friction: VectorField,
+    /// Velocities before the update, after it outside a step.
+    velocity: VectorField,
+    contact: Vec<Contact>,
+    /// Force of the spring along each bond, on its way into `lattice`.
+    springs: [VectorField; 4],
+}
+
+impl Reference {
+    pub(crate) fn new(model: &Model, dt_star: f64, state: State) -> Self {
+        let n = model.lattice.n_blocks();
+        let zeros = || VectorField::zeros(n);
+        Self {
+            dt_star,
+            begun: false,
+            state,
+            forces: Forces {
+                drive: zeros(),
+                lattice: zeros(),
+                friction: zeros(),
+                velocity: zeros(),
+                contact: vec![Contact::Stuck; n],
+                springs: [zeros(), zeros(), zeros(), zeros()],
+            },
+            hold: (0..n).map(|b| model.surface.hold(b)).collect(),
+            slide: (0..n).map(|b| model.surface.slide(b)).collect(),
+            first_slip: vec![f64::NAN; n],
+            stress_square_max: 0.0,
+        }
+    }
+
+    /// Goes to step `number`: the next one, or 0 to begin with.
+    pub(crate) fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals {
+        let time_star = number as f64 * self.dt_star;
+        let level = Level::new();
+        dispatch!(level, _ => self.advance_and_evaluate(model, time_star));
+        self.mark_first_slips(model, time_star);
+        dispatch!(level, _ => self.measure(model, time_star, energies))
+    }
+
+    #[inline(always)]
+    fn advance_and_evaluate(&mut self, model: &Model, time_star: f64) {
+        if std::mem::replace(&mut self.begun, true) {
+            move_blocks(&mut self.state, self.dt_star);
+        }
+        drive_forces(model, &self.state, time_star, &mut self.forces.drive);
+        lattice_forces(model, &self.state, &mut self.forces.lattice, &mut self.forces.springs);
+        let integrator = Integrator::new(model.damping, self.dt_star);
+        match model.law {
+            FrictionLaw::Projection => self.friction_forces(&friction::Projection, &integrator),
+            FrictionLaw::Reversal => self.friction_forces(&friction::Reversal, &integrator),
+            FrictionLaw::Literal => self.friction_forces(&friction::Literal, &integrator),
+        }
+        std::mem::swap(&mut self.state.velocity, &mut self.forces.velocity);
+    }
+
+    /// Eqs. 4-7: friction and damping, and the velocity half a step later.
+    #[inline(always)]
+    fn friction_forces<L: Law>(&mut self, law: &L, integrator: &Integrator) {
+        let Forces {
+            drive,
+            lattice,
+            friction,
+            velocity,
+            contact,
+            ..
+        } = &mut self.forces;
+        let before = &self.state.velocity;
+        rub(
+            law,
+            integrator,
+            [&self.hold, &self.slide],
+            [&before.x, &before.y],
+            [&drive.x, &drive.y, &lattice.x, &lattice.y],
+            [&mut friction.x, &mut friction.y],
+            [&mut velocity.x, &mut velocity.y],
+            contact,
+        );
+    }
+
+    fn mark_first_slips(&mut self, model: &Model, time_star: f64) {
+        let contacts = self.forces.contact.iter().zip(&model.surface.textured);
+        for ((&contact, textured), time) in contacts.zip(&mut self.first_slip) {
+            if contact == Contact::Sliding && !textured && time.is_nan() {
+                *time = time_star;
+            }
+        }
+    }
+
+    /// Sums over all blocks of what the step has found.
+    #[inline(always)]
+    fn measure(&mut self, model: &Model, time_star: f64, energies: bool) -> Totals {
+        let n = self.hold.len();
+        let [ux, uy] = cut(&self.state.displacement, n);
+        let ([bx, by], [ax, ay]) = (cut(&self.forces.velocity, n), cut(&self.state.velocity, n));
+        let ([lx, ly], [fx, fy]) = (cut(&self.forces.lattice, n), cut(&self.forces.friction, n));
+        let (textured, contact) = (&model.surface.textured[..n], &self.forces.contact[..n]);
+        let sum = |[x, y]: [&[f64]; 2]| [lanes::sum(n, |b| x[b]), lanes::sum(n, |b| y[b])];
+        let squares = |[x, y]: [&[f64]; 2]| lanes::sum(n, |b| x[b] * x[b] + y[b] * y[b]);
+        let (vx, vy) = (|b: usize| 0.5 * (bx[b] + ax[b]), |b: usize| 0.5 * (by[b] + ay[b]));
+        let sliding = || contact.iter().map(|&c| c == Contact::Sliding);
+        let stress_square = lanes::largest(n, |b| {
+            let (x, y) = (fx[b] + lx[b], fy[b] + ly[b]);
+            if textured[b] { 0.0 } else { x * x + y * y }
+        });
+        self.stress_square_max = self.stress_square_max.max(stress_square);
+        Totals {
+            displacement: sum([ux, uy]),
+            velocity: [lanes::sum(n, vx), lanes::sum(n, vy)],
+            velocity_after: sum([ax, ay]),
+            velocity_square: lanes::sum(n, |b| vx(b) * vx(b) + vy(b) * vy(b)),
+            friction_power: lanes::sum(n, |b| fx[b] * vx(b) + fy[b] * vy(b)),
+            n_sliding: sliding().filter(|&slides| slides).count(),
+            n_slipping: sliding()
+                .zip(textured)
+                .filter(|&(slides, textured)| slides && !textured)
+                .count(),
+            held: energies.then(|| {
+                let [x, y] = model.drive.reach(time_star);
+                let stretch_square = lanes::sum(n, |b| (x - ux[b]) * (x - ux[b]) + (y - uy[b]) * (y - uy[b]));
+                Held {
+                    kinetic: 0.25 * (squares([bx, by]) + squares([ax, ay])),
+                    lattice: lattice_energy(&model.lattice, &self.state.displacement, model.epsilon),
+                    drive_springs: 0.5 * model.drive.k_drive * stretch_square,
+                }
+            }),
+        }
+    }
+
+    pub(crate) fn block(&self, b: usize) -> Block {
+        Block {
+            displacement: self.state.displacement.at(b),
+            velocity: self.state.velocity.at(b),
+            force_drive: self.forces.drive.at(b),
+            force_lattice: self.forces.lattice.at(b),
+            force_friction: self.forces.friction.at(b),
+        }
+    }
+
+    /// Displacement now and velocity half a step later of block `b`.
+    pub(crate) fn motion(&self, b: usize) -> [[f64; 2]; 2] {
+        [self.state.displacement.at(b), self.state.velocity.at(b)]
+    }
+
+    /// When block `b` first slid while in contact; not a number if it never has.
+    pub(crate) fn first_slip(&self, b: usize) -> f64 {
+        self.first_slip[b]
+    }
+
+    /// Largest contact stress of a block in contact so far.
+    pub(crate) fn contact_stress_max(&self) -> f64 {
+        self.stress_square_max.sqrt()
     }
 }
 
-/// Eq. 8: `u(t + dt) = u(t) + dt v(t + dt/2)`.
-pub fn advance(state: &mut State, dt_star: f64, forces: &mut Forces) {
-    std::mem::swap(&mut state.velocity, &mut forces.velocity_after);
-    std::mem::swap(&mut state.contact, &mut forces.contact_after);
-    widest!(move_blocks(state: &mut State, dt_star: f64) -> ());
+#[inline(always)]
+fn cut(field: &VectorField, n: usize) -> [&[f64]; 2] {
+    [&field.x[..n], &field.y[..n]]
 }
 
+/// Eq. 8: `u(t + dt) = u(t) + dt v(t + dt/2)`.
 #[inline(always)]
 fn move_blocks(state: &mut State, dt_star: f64) {
-    let State {
-        displacement,
-        velocity,
-        ..
-    } = state;
-    displacement
-        .x
-        .iter_mut()
-        .zip(&velocity.x)
-        .for_each(|(u, v)| *u += dt_star * v);
-    displacement
-        .y
-        .iter_mut()
-        .zip(&velocity.y)
-        .for_each(|(u, v)| *u += dt_star * v);
+    let State { displacement, velocity } = state;
+    let axes = [(&mut displacement.x, &velocity.x), (&mut displacement.y, &velocity.y)];
+    for (u, v) in axes {
+        u.iter_mut().zip(v).for_each(|(u, v)| *u += dt_star * v);
+    }
 }
 
 /// Eq. 2: `F_s = k_s (V t - u)`.
@@ -170,36 +319,6 @@ fn add_pairs(own: [&[f64]; 4], behind: [&[f64]; 4], total: &mut [f64]) {
     }
 }
 
-/// Eqs. 4-7: friction and damping, and the velocity half a step later.
-#[inline(always)]
-fn friction_forces<L: Law>(
-    law: &L,
-    model: &Model,
-    state: &State,
-    integrator: &Integrator,
-    forces: &mut Forces,
-) {
-    let surface = &model.surface;
-    let Forces {
-        drive,
-        lattice,
-        friction,
-        velocity_after,
-        contact_after,
-        ..
-    } = forces;
-    rub(
-        law,
-        integrator,
-        [&surface.hold, &surface.slide],
-        [&state.velocity.x, &state.velocity.y],
-        [&drive.x, &drive.y, &lattice.x, &lattice.y],
-        [&mut friction.x, &mut friction.y],
-        [&mut velocity_after.x, &mut velocity_after.y],
-        contact_after,
-    );
-}
-
 /// The friction law on every block: thresholds, velocities and forces in; friction, velocities and contact out.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)] // One slice per array, known not to overlap: the loop is free of checks.
@@ -235,49 +354,38 @@ fn rub<L: Law>(
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::surface::{Coefficients, Distribution, Load};
-    use crate::{Drive, Edges, Simulation, Surface};
-
-    /// The same bits whether the loops were compiled for the widest registers at hand or for the plainest.
-    #[test]
-    fn bits_do_not_depend_on_the_width() {
-        let spread = Distribution {
-            mean: 1.0,
-            deviation: 0.3,
+/// Energy of all springs between blocks at displacements `u`.
+#[inline(always)]
+fn lattice_energy(lattice: &Lattice, u: &VectorField, epsilon: f64) -> f64 {
+    let energy = |bond: &Bond, b: usize, n: usize| bond.energy([u.x[n] - u.x[b], u.y[n] - u.y[b]], epsilon);
+    let of_row = |bond: &Bond, j: usize| -> f64 {
+        // The one block of the row whose neighbour may stand beyond its end; the others stand all alike.
+        let (end, first) = match bond.offset[0] {
+            1 => (Some(lattice.nx - 1), 0),
+            -1 => (Some(0), 1),
+            _ => (None, 0),
         };
-        for (nx, ny, edges) in [
-            (13, 11, Edges::Free),
-            (9, 16, Edges::Periodic),
-            (1, 20, Edges::Free),
-        ] {
-            let lattice = Lattice::with_edges(nx, ny, [edges; 2]);
-            let n = lattice.n_blocks();
-            let drawn = Coefficients::draw(
-                n,
-                spread,
-                Distribution {
-                    mean: 0.5,
-                    deviation: 0.1,
-                },
-                5,
-            );
-            let surface = Surface::new(drawn, vec![false; n], Load::Redistributed, 1.0).unwrap();
-            let drive = Drive::at_angle(0.05, 20.0);
-            let model = Model::new(lattice, surface, drive, 0.1, 1e-3, FrictionLaw::Projection);
-            let mut simulation = Simulation::at_rest(&model, 0.1);
-            // Through the onset, where blocks stick and slip at once.
-            for _ in 0..600 {
-                simulation.step();
-            }
-            let (state, time) = (simulation.state(), simulation.time_star());
-            let (mut wide, mut plain) = (Forces::zeros(n), Forces::zeros(n));
-            evaluate(&model, state, time, 0.1, &mut wide);
-            evaluate_at_any_width(&model, state, time, 0.1, &mut plain);
-            assert!(wide.contact_after.contains(&Contact::Sliding));
-            assert_eq!(wide, plain);
-        }
-    }
+        let beyond = end.and_then(|i| {
+            Some(energy(
+                bond,
+                lattice.block(i, j),
+                lattice.neighbour(i, j, bond.offset)?,
+            ))
+        });
+        let inside = lattice.nx - usize::from(end.is_some());
+        let beside = if inside > 0 {
+            lattice.neighbour(first, j, bond.offset)
+        } else {
+            None
+        };
+        let along = beside.map_or(0.0, |beside| {
+            let block = lattice.block(first, j);
+            lanes::sum(inside, |k| energy(bond, block + k, beside + k))
+        });
+        along + beyond.unwrap_or(0.0)
+    };
+    Bond::ALL
+        .iter()
+        .map(|bond| (0..lattice.ny).map(|j| of_row(bond, j)).sum::<f64>())
+        .sum()
 }

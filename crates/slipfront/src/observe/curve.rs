@@ -2,11 +2,9 @@
 
 use super::Observer;
 use super::energy::{Energies, Ledger};
-use crate::kernel::Forces;
-use crate::lanes;
+use crate::kernel::Totals;
 use crate::vector_field::dot;
-use crate::width::widest;
-use crate::{Contact, Model, RunError, Snapshot, State};
+use crate::{Model, RunError, Snapshot};
 
 /// The whole slider at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,34 +25,22 @@ impl CurvePoint {
     /// ```text
     /// mu* = (1/N) sum_i F_s,i . d = k_s (V* t* - mean(u . d))
     /// ```
-    pub(crate) fn measure(model: &Model, state: &State, forces: &Forces, time_star: f64) -> Self {
-        let (drive, n, nx) = (&model.drive, model.lattice.n_blocks() as f64, model.lattice.nx);
-        let sum = |u: &[f64]| widest!(sum_of_rows(u: &[f64], nx: usize) -> f64);
-        let mean = [sum(&state.displacement.x) / n, sum(&state.displacement.y) / n];
+    pub(crate) fn measure(model: &Model, totals: &Totals, time_star: f64) -> Self {
+        let (drive, n) = (&model.drive, model.lattice.n_blocks() as f64);
+        let mean = totals.displacement.map(|sum| sum / n);
         let reach = drive.reach(time_star);
         let pull = [
             drive.k_drive * (reach[0] - mean[0]),
             drive.k_drive * (reach[1] - mean[1]),
         ];
         let [dx, dy] = drive.direction;
-        let n_sliding = forces
-            .contact_after
-            .iter()
-            .filter(|&&c| c == Contact::Sliding)
-            .count();
         Self {
             mu_star: dot(pull, [dx, dy]),
             mu_lateral_star: dot(pull, [-dy, dx]),
-            n_sliding,
-            sliding_percent: 100.0 * n_sliding as f64 / n,
+            n_sliding: totals.n_sliding,
+            sliding_percent: 100.0 * totals.n_sliding as f64 / n,
         }
     }
-}
-
-/// Sum row by row, so that a lattice can be shared out by rows without changing it.
-#[inline(always)]
-fn sum_of_rows(u: &[f64], nx: usize) -> f64 {
-    u.chunks(nx).map(|row| lanes::sum(row.len(), |k| row[k])).sum()
 }
 
 /// The first peak of mu* that is followed by a fall of at least half-way to the steady level L, found while the
@@ -88,6 +74,11 @@ impl Peak {
         }
     }
 
+    /// Whether a fall to `mu_star` would end the peak.
+    pub(crate) fn ends_at(&self, mu_star: f64) -> bool {
+        self.mu_star > self.steady_level && mu_star <= 0.5 * (self.mu_star + self.steady_level)
+    }
+
     pub(crate) fn watch(&mut self, step: u64, time_star: f64, mu_star: f64) {
         self.mu_star_max = self.mu_star_max.max(mu_star);
         if self.ended {
@@ -95,8 +86,8 @@ impl Peak {
         }
         if mu_star > self.mu_star {
             (self.mu_star, self.step, self.time_star) = (mu_star, step, time_star);
-        } else if self.mu_star > self.steady_level {
-            self.ended = mu_star <= 0.5 * (self.mu_star + self.steady_level);
+        } else {
+            self.ended = self.ends_at(mu_star);
         }
     }
 }
@@ -138,7 +129,7 @@ impl Observer for Curve {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
         self.ledger.add(now);
         if now.last || now.step.is_multiple_of(self.stride) {
-            let energies = self.ledger.energies(now);
+            let energies = self.ledger.energies(now.held());
             self.rows.push(CurveRow {
                 step: now.step,
                 time_star: now.time_star,
@@ -147,6 +138,10 @@ impl Observer for Curve {
             });
         }
         Ok(())
+    }
+
+    fn wants_energies(&self, step: u64) -> bool {
+        step.is_multiple_of(self.stride)
     }
 }
 

@@ -1,7 +1,8 @@
 //! Fields over the lattice kept from chosen instants.
 
 use super::{CurvePoint, Observer, stress};
-use crate::{Contact, RunError, Snapshot};
+use crate::kernel::Block;
+use crate::{RunError, Snapshot};
 
 /// A quantity with one value per block. Values are dimensionless, as everywhere in this crate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,15 +24,16 @@ pub enum Field {
 }
 
 impl Field {
-    fn value(self, now: &Snapshot, b: usize) -> f64 {
+    fn value(self, block: &Block, textured: bool) -> f64 {
         match self {
-            Field::ContactStress => stress::contact_stress(now, b),
-            Field::Traction => stress::traction(now, b),
-            Field::DisplacementX => now.state.displacement.x[b],
-            Field::DisplacementY => now.state.displacement.y[b],
-            Field::VelocityX => now.forces.velocity_after.x[b],
-            Field::VelocityY => now.forces.velocity_after.y[b],
-            Field::Sliding => f64::from(u8::from(now.forces.contact_after[b] == Contact::Sliding)),
+            Field::ContactStress => stress::contact_stress(block),
+            Field::Traction if textured => f64::NAN,
+            Field::Traction => stress::traction(block),
+            Field::DisplacementX => block.displacement[0],
+            Field::DisplacementY => block.displacement[1],
+            Field::VelocityX => block.velocity[0],
+            Field::VelocityY => block.velocity[1],
+            Field::Sliding => f64::from(u8::from(block.slides())),
         }
     }
 }
@@ -76,12 +78,15 @@ impl Selection {
     /// Overwrites a frame of the same selection, without allocating.
     pub(crate) fn capture_into(&self, now: &Snapshot, frame: &mut Frame) {
         (frame.step, frame.time_star, frame.point) = (now.step, now.time_star, now.point);
-        let lattice = &now.model.lattice;
-        for (&field, values) in self.fields.iter().zip(&mut frame.values) {
-            values.clear();
-            for j in (0..lattice.ny).step_by(self.stride) {
-                let columns = (0..lattice.nx).step_by(self.stride);
-                values.extend(columns.map(|i| field.value(now, lattice.block(i, j)) as f32));
+        let (lattice, textured) = (&now.model.lattice, &now.model.surface.textured);
+        frame.values.iter_mut().for_each(Vec::clear);
+        for j in (0..lattice.ny).step_by(self.stride) {
+            for i in (0..lattice.nx).step_by(self.stride) {
+                let b = lattice.block(i, j);
+                let block = now.block(b);
+                for (field, values) in self.fields.iter().zip(&mut frame.values) {
+                    values.push(field.value(&block, textured[b]) as f32);
+                }
             }
         }
     }

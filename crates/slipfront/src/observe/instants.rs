@@ -6,7 +6,7 @@
 
 use super::frames::{Frame, Selection};
 use super::{KineticStart, Observer};
-use crate::{Contact, RunError, Snapshot};
+use crate::{RunError, Snapshot};
 
 /// Letters of the instants.
 const LETTERS: [char; 6] = ['A', 'B', 'C', 'D', 'E', 'F'];
@@ -92,7 +92,7 @@ impl Observer for Instants {
         if passes(0.5 / v_star) {
             self.keep(A, now);
         }
-        if !self.held[B] && slips(now) {
+        if !self.held[B] && now.totals.n_slipping > 0 {
             self.keep(B, now);
         }
         let kinetic_from = self.kinetic.time_star(&now.peak, v_star);
@@ -110,7 +110,7 @@ impl Observer for Instants {
         self.known = [most_until, fall_until].map(|until| now.time_star >= until);
         if now.peak.step == now.step {
             // While everything in contact sticks, mu* rises at every step: none of these is the peak yet.
-            if self.held[B] || now.last {
+            if (self.held[B] && !now.rises()) || now.last {
                 self.keep(C, now);
             }
             self.held[D] = false;
@@ -126,7 +126,10 @@ impl Observer for Instants {
                 self.keep(D, now);
                 self.held[E] = false;
             } else if now.time_star <= fall_until && now.point.mu_star < least {
-                self.keep(E, now);
+                let falls_on = now.falls() && (now.step + 1) as f64 * now.dt_star <= fall_until;
+                if !falls_on || now.last {
+                    self.keep(E, now);
+                }
             }
         }
         if passes(middle) {
@@ -134,13 +137,4 @@ impl Observer for Instants {
         }
         Ok(())
     }
-}
-
-/// Whether a block in contact slides.
-fn slips(now: &Snapshot) -> bool {
-    let contacts = now.forces.contact_after.iter().zip(&now.model.surface.textured);
-    now.point.n_sliding > 0
-        && contacts
-            .into_iter()
-            .any(|(c, textured)| *c == Contact::Sliding && !textured)
 }

@@ -17,7 +17,6 @@ pub use energy::{Energies, Ledger};
 pub use frames::{Field, Frame, Frames};
 pub use fronts::FirstSlip;
 pub use instants::Instants;
-pub use stress::StressMaximum;
 pub use summary::{Doubt, Kinetic, KineticHistory, KineticStart};
 
 use crate::{RunError, Snapshot};
@@ -29,6 +28,12 @@ pub trait Observer {
     /// # Errors
     /// [`RunError::Observer`] ends the run.
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError>;
+
+    /// Whether it needs the energies held at `step`, which are not measured unasked.
+    fn wants_energies(&self, step: u64) -> bool {
+        let _ = step;
+        false
+    }
 }
 
 /// At which steps an observer is called.
@@ -59,12 +64,16 @@ impl<'a> Scheduled<'a> {
         Self::new(Schedule::Always, observer)
     }
 
-    pub(crate) fn due(&self, now: &Snapshot) -> bool {
+    pub(crate) fn due(&self, step: u64) -> bool {
         match &self.schedule {
             Schedule::Always => true,
-            Schedule::Every(n) => now.step.is_multiple_of(*n),
-            Schedule::At(steps) => steps.binary_search(&now.step).is_ok(),
+            Schedule::Every(n) => step.is_multiple_of(*n),
+            Schedule::At(steps) => steps.binary_search(&step).is_ok(),
         }
+    }
+
+    pub(crate) fn wants_energies(&self, step: u64) -> bool {
+        self.due(step) && self.observer.wants_energies(step)
     }
 
     pub(crate) fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {

@@ -12,17 +12,16 @@ pub enum Load {
 }
 
 impl Load {
-    /// Normal force on every block in units of `P l^2`.
-    pub(crate) fn normal_forces(self, textured: &[bool]) -> Result<Vec<f64>, SurfaceError> {
+    /// Normal force on a block in contact in units of `P l^2`.
+    pub(crate) fn share(self, textured: &[bool]) -> Result<f64, SurfaceError> {
         let n_blocks = textured.len();
         let n_contact = textured.iter().filter(|&&t| !t).count();
         if n_contact == 0 {
             return Err(SurfaceError::NoContact { n_blocks });
         }
-        let share = match self {
+        Ok(match self {
             Load::Redistributed => n_blocks as f64 / n_contact as f64,
             Load::Kept => 1.0,
-        };
-        Ok(textured.iter().map(|&t| if t { 0.0 } else { share }).collect())
+        })
     }
 }

@@ -24,12 +24,10 @@ pub struct Surface {
     pub mu_static: Vec<f64>,
     /// Local kinetic coefficients `mu_ki`; 0 over a texture.
     pub mu_kinetic: Vec<f64>,
-    /// Normal forces `F_n,i` in units of `P l^2`; 0 over a texture.
-    pub normal_forces: Vec<f64>,
-    /// Static thresholds `mu_si F_n,i` in units of `P mu_s l^2`.
-    pub hold: Vec<f64>,
-    /// Kinetic friction `mu_ki F_n,i` in units of `P mu_s l^2`.
-    pub slide: Vec<f64>,
+    /// Normal force on a block in contact, in units of `P l^2`.
+    share: f64,
+    /// The scale of all forces, `mu_s`.
+    mu_static_mean: f64,
 }
 
 impl Surface {
@@ -52,27 +50,17 @@ impl Surface {
             textured.len(),
             "coefficients and texture belong to different lattices"
         );
-        let normal_forces = load.normal_forces(&textured)?;
-        for b in 0..textured.len() {
-            if textured[b] {
-                mu_static[b] = 0.0;
-                mu_kinetic[b] = 0.0;
-            }
+        let share = load.share(&textured)?;
+        for b in (0..textured.len()).filter(|&b| textured[b]) {
+            mu_static[b] = 0.0;
+            mu_kinetic[b] = 0.0;
         }
-        let threshold = |mu: &[f64]| -> Vec<f64> {
-            mu.iter()
-                .zip(&normal_forces)
-                .map(|(mu, force)| mu / mu_static_mean * force)
-                .collect()
-        };
-        let (hold, slide) = (threshold(&mu_static), threshold(&mu_kinetic));
         Ok(Self {
             textured,
             mu_static,
             mu_kinetic,
-            normal_forces,
-            hold,
-            slide,
+            share,
+            mu_static_mean,
         })
     }
 
@@ -84,10 +72,24 @@ impl Surface {
             textured: vec![false; n],
             mu_static: vec![mu_static; n],
             mu_kinetic: vec![mu_kinetic; n],
-            normal_forces: vec![1.0; n],
-            hold: vec![mu_static; n],
-            slide: vec![mu_kinetic; n],
+            share: 1.0,
+            mu_static_mean: 1.0,
         }
+    }
+
+    /// Normal force `F_n,i` on block `b` in units of `P l^2`; 0 over a texture.
+    pub fn normal_force(&self, b: usize) -> f64 {
+        if self.textured[b] { 0.0 } else { self.share }
+    }
+
+    /// Static threshold `mu_si F_n,i` of block `b` in units of `P mu_s l^2`.
+    pub fn hold(&self, b: usize) -> f64 {
+        self.mu_static[b] / self.mu_static_mean * self.normal_force(b)
+    }
+
+    /// Kinetic friction `mu_ki F_n,i` of block `b` in units of `P mu_s l^2`.
+    pub fn slide(&self, b: usize) -> f64 {
+        self.mu_kinetic[b] / self.mu_static_mean * self.normal_force(b)
     }
 
     /// Number of blocks.
@@ -109,7 +111,7 @@ impl Surface {
     pub fn weakest(&self) -> f64 {
         (0..self.n_blocks())
             .filter(|&b| !self.textured[b])
-            .map(|b| self.hold[b].max(self.slide[b]))
+            .map(|b| self.hold(b).max(self.slide(b)))
             .fold(f64::INFINITY, f64::min)
     }
 }
@@ -126,12 +128,13 @@ mod tests {
         textured[5] = true;
         let given = Coefficients::given(vec![2.0; 8], vec![1.0; 8]);
         let surface = Surface::new(given, textured, Load::Redistributed, 2.0).unwrap();
-        assert_eq!(surface.hold[0], 8.0 / 6.0);
+        assert_eq!(surface.hold(0), 8.0 / 6.0);
         assert_eq!(
-            (surface.hold[3], surface.slide[5], surface.mu_static[3]),
+            (surface.hold(3), surface.slide(5), surface.mu_static[3]),
             (0.0, 0.0, 0.0)
         );
-        assert!((surface.normal_forces.iter().sum::<f64>() - lattice.n_blocks() as f64).abs() < 1e-12);
+        let load: f64 = (0..8).map(|b| surface.normal_force(b)).sum();
+        assert!((load - lattice.n_blocks() as f64).abs() < 1e-12);
         assert_eq!(surface.texture_percent(), 25.0);
     }
 }

@@ -4,18 +4,14 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::time::Instant;
 
 use clap::Args;
 use signal_hook::consts::{SIGINT, SIGTERM};
-use slipfront::Stop;
-use slipfront::observe::StressMaximum;
-use slipfront_case::case::Case;
-use slipfront_case::run;
 use slipfront_case::study::{self, Findings, Plan, RunKey, Shard, StudyError, StudyFile, StudyFolder};
 
 use crate::commands::{print, set_threads};
 use crate::failure::Failure;
+use crate::probe::seconds_per_step;
 use crate::progress::StudyProgress;
 use crate::report;
 
@@ -159,9 +155,6 @@ fn failures(plan: &Plan, findings: &Findings) -> Result<(), Failure> {
     Err(Failure::running(anyhow::anyhow!(sentence)))
 }
 
-/// Block-steps by which the cost of a run is measured.
-const PROBE: f64 = 1e6;
-
 fn dry_run(plan: &Plan, threads: usize) -> Result<String, Failure> {
     let (mut block_steps, mut seconds) = (0.0, 0.0);
     // A block of a large lattice costs more than one that fits into the cache.
@@ -171,7 +164,8 @@ fn dry_run(plan: &Plan, threads: usize) -> Result<String, Failure> {
         let rate = match rates.get(&n_blocks) {
             Some(&rate) => rate,
             None => {
-                let rate = probe(plan.case(run).map_err(Failure::input)?)?;
+                let case = plan.case(run).map_err(Failure::input)?;
+                let rate = n_blocks as f64 / seconds_per_step(&case);
                 rates.insert(n_blocks, rate);
                 rate
             }
@@ -182,15 +176,4 @@ fn dry_run(plan: &Plan, threads: usize) -> Result<String, Failure> {
     let replicates = plan.settings.min_replicates() as f64;
     let seconds = replicates * seconds / threads as f64;
     Ok(report::plan(plan, replicates * block_steps, seconds, threads))
-}
-
-/// Block-steps per second of a run.
-fn probe(mut case: Case) -> Result<f64, Failure> {
-    let n_blocks = case.model.lattice.n_blocks() as f64;
-    let steps = (PROBE / n_blocks).clamp(10.0, 1e5) as u64;
-    case.schedule.last_step = steps.min(case.schedule.last_step);
-    case.schedule.stop = Stop::at_step(case.schedule.last_step);
-    let began = Instant::now();
-    run::run(&case, u64::MAX, &mut StressMaximum::default()).map_err(Failure::running)?;
-    Ok(case.block_steps() / began.elapsed().as_secs_f64().max(1e-9))
 }

@@ -1,0 +1,63 @@
+//! Arrays that begin on a cache line, so that vectors of eight numbers do not straddle two.
+
+use std::ops::{Deref, DerefMut};
+
+use super::vector::LANES;
+
+/// A fixed number of f64 on a 64-byte boundary.
+#[derive(Debug)]
+pub(super) struct Aligned {
+    /// The numbers, with room before them for the boundary; never moved, as its length never changes.
+    room: Vec<f64>,
+    first: usize,
+    len: usize,
+}
+
+impl Aligned {
+    pub(super) fn filled(len: usize, value: f64) -> Self {
+        let room = vec![value; len + LANES - 1];
+        let first = room.as_ptr().align_offset(64).min(LANES - 1);
+        Self { room, first, len }
+    }
+}
+
+impl Deref for Aligned {
+    type Target = [f64];
+
+    #[inline(always)]
+    fn deref(&self) -> &[f64] {
+        &self.room[self.first..self.first + self.len]
+    }
+}
+
+impl DerefMut for Aligned {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [f64] {
+        &mut self.room[self.first..self.first + self.len]
+    }
+}
+
+/// A plane vector per element.
+#[derive(Debug)]
+pub(super) struct Vectors {
+    pub(super) x: Aligned,
+    pub(super) y: Aligned,
+}
+
+impl Vectors {
+    pub(super) fn zeros(len: usize) -> Self {
+        Self {
+            x: Aligned::filled(len, 0.0),
+            y: Aligned::filled(len, 0.0),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn at(&self, k: usize) -> [f64; 2] {
+        [self.x[k], self.y[k]]
+    }
+
+    pub(super) fn set(&mut self, k: usize, [x, y]: [f64; 2]) {
+        (self.x[k], self.y[k]) = (x, y);
+    }
+}

@@ -1,0 +1,413 @@
+//! The arrays of a band of tiles, and the sweep that takes them through a step.
+
+use fearless_simd::{Simd, SimdBase};
+
+use super::aligned::{Aligned, Vectors};
+use super::blocks::{
+    ChunksMut, FrictionLoop, Halfway, LatticeLoop, Step, Sums, TileSums, UpwardLoop, friction, lattice_forces, spring,
+    upward_springs,
+};
+use super::layout::{Layout, TILE};
+use super::rest::{Resting, patience};
+use super::springs::Geometry;
+use super::vector::{LANES, Plane, load, load_plane, splat};
+use crate::lattice::Bond;
+use crate::{Model, State};
+
+/// What the last sweep left of a tile.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Tile {
+    pub(super) sums: TileSums,
+    /// Whether something in it moves, ghosts included.
+    pub(super) moving: bool,
+    /// The first step at which a block of it may break, if nothing around it moves; 0 if nobody has looked.
+    pub(super) wake: u64,
+    /// Largest u_x, -u_x, u_y, -u_y of its blocks, when last looked.
+    pub(super) extent: [f64; 4],
+    /// Whether it has moved since.
+    pub(super) extent_is_old: bool,
+}
+
+/// What is to be done with a tile in a sweep.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Order {
+    /// It, or a tile around it, moves, or a block of it may break.
+    pub(super) active: bool,
+    /// A tile around it is active, and may need its springs.
+    pub(super) near: bool,
+    /// Nothing moves in it or around it: it may be left alone until a block breaks.
+    pub(super) quiet: bool,
+}
+
+/// A run of tiles with all that one thread needs to take them through a step.
+///
+/// Indices of the arrays count from the first element of the front halo; those of arrays without halos from the first
+/// element of the band.
+#[derive(Debug)]
+pub(super) struct Band {
+    /// First tile, and first element.
+    pub(super) first_tile: usize,
+    pub(super) first: usize,
+    /// Number of elements, whole vectors.
+    pub(super) len: usize,
+    pub(super) tiles: Vec<Tile>,
+    pub(super) orders: Vec<Order>,
+    /// Elements before and after the band whose displacements it knows.
+    pub(super) halo: usize,
+    /// With halos: displacements at t_n.
+    pub(super) displacement: Vectors,
+    /// Velocities at t_n + dt/2.
+    pub(super) velocity: Vectors,
+    hold_squares: Aligned,
+    slide_impulses: Aligned,
+    pub(super) first_slip: Aligned,
+    /// With the front halo: springs to the east, to the north-west, to the next row at all.
+    masks: [Vec<u8>; 3],
+    blocks: Vec<u8>,
+    touching: Vec<u8>,
+    slipped: Vec<u8>,
+    /// Forces of the latest upward springs, as a ring over the elements.
+    upward: [Vectors; 3],
+    /// `F_c` of the tile at hand.
+    lattice: Vectors,
+    /// What the friction law leaves half-way.
+    drive: Vectors,
+    free: Vectors,
+    taken: Aligned,
+    /// Elements from a row to the next.
+    stride: usize,
+}
+
+/// Elements repeated after the end of the ring, for vectors that reach over it.
+const MIRROR: usize = 2 * LANES;
+
+fn vectors(elements: usize) -> usize {
+    elements.next_multiple_of(LANES)
+}
+
+impl Band {
+    /// The tiles `first_tile..end_tile` of a lattice in `state`, with time steps of `dt_star`.
+    pub(super) fn new(layout: &Layout, model: &Model, state: &State, dt_star: f64, tiles: std::ops::Range<usize>) -> Self {
+        let first = tiles.start * TILE;
+        let len = vectors((tiles.end * TILE).min(layout.len()) - first);
+        let halo = vectors(layout.stride + 1 + LANES);
+        let ring = vectors(layout.stride + 1 + TILE + LANES) + MIRROR;
+        let bytes = || vec![0; len / LANES];
+        let mut masks: [Vec<u8>; 3] = Default::default();
+        for vector in 0..(halo + len) / LANES {
+            let element = (first + vector * LANES) as isize - halo as isize;
+            for (masks, bits) in masks.iter_mut().zip(layout.masks(element)) {
+                masks.push(bits);
+            }
+        }
+        let mut band = Self {
+            first_tile: tiles.start,
+            first,
+            len,
+            tiles: vec![Tile::default(); tiles.len()],
+            orders: vec![Order::default(); tiles.len()],
+            halo,
+            displacement: Vectors::zeros(halo + len + halo),
+            velocity: Vectors::zeros(len),
+            hold_squares: Aligned::filled(len, f64::INFINITY),
+            slide_impulses: Aligned::filled(len, 0.0),
+            first_slip: Aligned::filled(len, f64::NAN),
+            masks,
+            blocks: bytes(),
+            touching: bytes(),
+            slipped: bytes(),
+            upward: [Vectors::zeros(ring), Vectors::zeros(ring), Vectors::zeros(ring)],
+            lattice: Vectors::zeros(TILE),
+            drive: Vectors::zeros(TILE),
+            free: Vectors::zeros(TILE),
+            taken: Aligned::filled(TILE, 0.0),
+            stride: layout.stride,
+        };
+        let impulse = Step::new(model, 0, dt_star).impulse;
+        for k in 0..len {
+            let Some(b) = layout.block(first + k) else { continue };
+            let (hold, slide) = (model.surface.hold(b), model.surface.slide(b));
+            band.hold_squares[k] = hold * hold;
+            band.slide_impulses[k] = impulse * slide;
+            let bit = 1 << (k % LANES);
+            band.blocks[k / LANES] |= bit;
+            if !model.surface.textured[b] {
+                band.touching[k / LANES] |= bit;
+            }
+            band.displacement.set(halo + k, state.displacement.at(b));
+            let velocity = state.velocity.at(b);
+            band.velocity.set(k, velocity);
+            let tile = &mut band.tiles[k / TILE];
+            tile.extent_is_old = true;
+            if velocity != [0.0, 0.0] {
+                tile.moving = true;
+                let speed_square = velocity[0] * velocity[0] + velocity[1] * velocity[1];
+                tile.sums.speed_square = tile.sums.speed_square.max(speed_square);
+            }
+        }
+        band
+    }
+
+    /// Elements of the band's tile `t`, counted from the band's first.
+    fn elements(&self, t: usize) -> std::ops::Range<usize> {
+        t * TILE..((t + 1) * TILE).min(self.len)
+    }
+
+    /// Displacement of an element one step on, without moving it.
+    pub(super) fn advanced(&self, k: usize, moves: f64) -> [f64; 2] {
+        let ([ux, uy], [vx, vy]) = (self.displacement.at(self.halo + k), self.velocity.at(k));
+        [ux + moves * vx, uy + moves * vy]
+    }
+
+    /// One step: displacements to t_n, forces there, velocities to t_n + dt/2, by the orders given. The halos hold the
+    /// displacements at t_n of what lies around the band.
+    #[inline(always)]
+    pub(super) fn sweep<S: Simd, G: Geometry>(
+        &mut self,
+        simd: S,
+        geometry: G,
+        model: &Model,
+        step: Step,
+        energies: bool,
+    ) {
+        // Springs reach a row and a block ahead: what they pull on moves first.
+        let n_tiles = self.tiles.len();
+        let ahead = (self.stride + MIRROR).div_ceil(TILE).min(n_tiles);
+        for t in 0..ahead {
+            self.advance(simd, t, step.moves);
+        }
+        let behind = vectors(self.stride + 1);
+        self.upward(simd, geometry, self.halo - behind, self.halo);
+        for t in 0..n_tiles {
+            if t + ahead < n_tiles {
+                self.advance(simd, t + ahead, step.moves);
+            }
+            let (order, elements) = (self.orders[t], self.elements(t));
+            if order.near {
+                self.upward(simd, geometry, self.halo + elements.start, self.halo + elements.end);
+            }
+            if order.active {
+                if energies || order.quiet {
+                    self.tile::<S, G, true>(simd, geometry, step, t);
+                } else {
+                    self.tile::<S, G, false>(simd, geometry, step, t);
+                }
+            }
+            if order.quiet && self.tiles[t].sums.sliding == 0 {
+                self.tiles[t].wake = step.number.saturating_add(self.patience(simd, model, step, t).max(1));
+            }
+        }
+    }
+
+    /// Eq. 8: `u += dt v` in a tile that moves.
+    #[inline(always)]
+    fn advance<S: Simd>(&mut self, simd: S, t: usize, moves: f64) {
+        if !self.tiles[t].moving {
+            return;
+        }
+        self.tiles[t].extent_is_old = true;
+        let elements = self.elements(t);
+        let (from, to) = (self.halo + elements.start, self.halo + elements.end);
+        let ux = self.displacement.x[from..to].as_chunks_mut().0;
+        let uy = self.displacement.y[from..to].as_chunks_mut().0;
+        let vx = self.velocity.x[elements.clone()].as_chunks().0;
+        let vy = self.velocity.y[elements].as_chunks().0;
+        let dt = splat(simd, moves);
+        for (((ux, uy), vx), vy) in ux.iter_mut().zip(uy).zip(vx).zip(vy) {
+            (load(simd, ux) + dt * load(simd, vx)).store_array(ux);
+            (load(simd, uy) + dt * load(simd, vy)).store_array(uy);
+        }
+    }
+
+    /// Pieces of the elements `from..to` of which neither the places of their own springs nor those of the springs behind
+    /// them run over the end of the ring: first element, end, and the two places.
+    #[inline(always)]
+    fn pieces(&self, from: usize, to: usize) -> impl Iterator<Item = (usize, usize, usize, usize)> + use<> {
+        let (ring, stride) = (self.upward[0].x.len() - MIRROR, self.stride);
+        let mut first = from;
+        std::iter::from_fn(move || {
+            if first >= to {
+                return None;
+            }
+            let own = first % ring;
+            let behind = (first + ring - stride - 1) % ring;
+            let room = (ring - own).min((ring + MIRROR - 2 - behind) / LANES * LANES);
+            let end = to.min(first + room);
+            Some((std::mem::replace(&mut first, end), end, own, behind))
+        })
+    }
+
+    /// Upward springs of the elements `from..to`, into the ring.
+    #[inline(always)]
+    fn upward<S: Simd, G: Geometry>(&mut self, simd: S, geometry: G, from: usize, to: usize) {
+        for (first, end, own, _) in self.pieces(from, to) {
+            let n = end - first;
+            let (x, y) = (&self.displacement.x, &self.displacement.y);
+            let at = |k: usize| [x[k..k + n].as_chunks().0, y[k..k + n].as_chunks().0];
+            let north = first + self.stride;
+            let vectors = first / LANES..end / LANES;
+            let [north_f, north_east_f, north_west_f] = &mut self.upward;
+            let stretch = UpwardLoop {
+                here: at(first),
+                there: [at(north), at(north + 1), at(north - 1)],
+                masks: self.masks.each_ref().map(|masks| &masks[vectors.clone()]),
+                force: [
+                    chunks_mut(north_f, own, n),
+                    chunks_mut(north_east_f, own, n),
+                    chunks_mut(north_west_f, own, n),
+                ],
+            };
+            upward_springs(simd, geometry, stretch);
+            if own < MIRROR {
+                let ring = self.upward[0].x.len() - MIRROR;
+                for force in &mut self.upward {
+                    force.x.copy_within(..MIRROR, ring);
+                    force.y.copy_within(..MIRROR, ring);
+                }
+            }
+        }
+    }
+
+    /// Forces and velocities of a tile, whose upward springs and those of the row behind are in the ring.
+    #[inline(always)]
+    fn tile<S: Simd, G: Geometry, const ENERGY: bool>(&mut self, simd: S, geometry: G, step: Step, t: usize) {
+        let elements = self.elements(t);
+        let start = self.halo + elements.start;
+        let mut sums = Sums::zero(simd);
+        let mut west = self.east_springs(simd, geometry, start - LANES);
+        for (first, end, own, behind) in self.pieces(start, self.halo + elements.end) {
+            let n = end - first;
+            let (x, y) = (&self.displacement.x, &self.displacement.y);
+            let at = |k: usize| [x[k..k + n].as_chunks().0, y[k..k + n].as_chunks().0];
+            let [north, north_east, north_west] = &self.upward;
+            let vectors = first / LANES..end / LANES;
+            let halo = self.halo / LANES;
+            let stretch = LatticeLoop {
+                here: at(first),
+                east: at(first + 1),
+                has_east: &self.masks[0][vectors.clone()],
+                blocks: &self.blocks[vectors.start - halo..vectors.end - halo],
+                own: [
+                    chunks(north, own, n),
+                    chunks(north_east, own, n),
+                    chunks(north_west, own, n),
+                ],
+                behind: [
+                    chunks(north, behind + 1, n),
+                    chunks(north_east, behind, n),
+                    chunks(north_west, behind + 2, n),
+                ],
+                force: chunks_mut(&mut self.lattice, first - start, n),
+            };
+            lattice_forces::<S, G, ENERGY>(simd, geometry, stretch, &mut west, &mut sums.lattice_energy);
+        }
+        let n = elements.len();
+        let vectors = elements.start / LANES..elements.end / LANES;
+        let stretch = FrictionLoop {
+            displacement: chunks(&self.displacement, start, n),
+            lattice: chunks(&self.lattice, 0, n),
+            hold_squares: self.hold_squares[elements.clone()].as_chunks().0,
+            slide_impulses: self.slide_impulses[elements.clone()].as_chunks().0,
+            blocks: &self.blocks[vectors.clone()],
+            touching: &self.touching[vectors.clone()],
+            velocity: chunks_mut(&mut self.velocity, elements.start, n),
+            slipped: &mut self.slipped[vectors],
+            first_slip: self.first_slip[elements].as_chunks_mut().0,
+        };
+        let halfway = Halfway {
+            drive: chunks_mut(&mut self.drive, 0, n),
+            free: chunks_mut(&mut self.free, 0, n),
+            taken: self.taken[..n].as_chunks_mut().0,
+        };
+        friction::<S, ENERGY>(simd, step, stretch, halfway, &mut sums);
+        let tile = &mut self.tiles[t];
+        tile.sums = sums.totals();
+        tile.moving = tile.sums.sliding > 0;
+        tile.wake = 0;
+    }
+
+    /// Springs to the east of the eight elements from `first` on.
+    #[inline(always)]
+    fn east_springs<S: Simd, G: Geometry>(&self, simd: S, geometry: G, first: usize) -> Plane<S> {
+        let here = load_plane(simd, chunks(&self.displacement, first, LANES), 0);
+        let there = load_plane(simd, chunks(&self.displacement, first + 1, LANES), 0);
+        spring(simd, geometry, &Bond::EAST, self.masks[0][first / LANES], here, there)
+    }
+
+    /// How long a tile at rest can be left alone; its lattice forces are those of the sweep at hand.
+    #[inline(always)]
+    fn patience<S: Simd>(&self, simd: S, model: &Model, step: Step, t: usize) -> u64 {
+        let elements = self.elements(t);
+        let n = elements.len();
+        let blocks = Resting {
+            displacement: chunks(&self.displacement, self.halo + elements.start, n),
+            lattice: chunks(&self.lattice, 0, n),
+            hold_squares: self.hold_squares[elements.clone()].as_chunks().0,
+            slide_impulses: self.slide_impulses[elements].as_chunks().0,
+        };
+        patience(simd, &step, &model.drive, &blocks)
+    }
+
+    /// Looks at the displacements of the tiles that have moved since they were last looked at.
+    pub(super) fn measure_extents(&mut self) {
+        for t in 0..self.tiles.len() {
+            if !self.tiles[t].extent_is_old {
+                continue;
+            }
+            let mut extent = [f64::NEG_INFINITY; 4];
+            for k in self.elements(t) {
+                if self.blocks[k / LANES] >> (k % LANES) & 1 == 1 {
+                    let [x, y] = self.displacement.at(self.halo + k);
+                    for (most, value) in extent.iter_mut().zip([x, -x, y, -y]) {
+                        *most = most.max(value);
+                    }
+                }
+            }
+            self.tiles[t].extent = extent;
+            self.tiles[t].extent_is_old = false;
+        }
+    }
+
+    /// Sum over a tile's blocks of the squared stretch of the drive springs, as the sweep itself finds it.
+    pub(super) fn stretch_square(&self, t: usize, reach: [f64; 2]) -> f64 {
+        let mut lanes = [0.0; LANES];
+        for k in self.elements(t) {
+            if self.blocks[k / LANES] >> (k % LANES) & 1 == 1 {
+                let [ux, uy] = self.displacement.at(self.halo + k);
+                let (x, y) = (reach[0] - ux, reach[1] - uy);
+                lanes[k % LANES] += x * x + y * y;
+            }
+        }
+        super::vector::total_of(lanes)
+    }
+
+    /// Largest `tau_c^2` of the blocks in contact of a tile at rest.
+    pub(super) fn resting_stress_square(&self, t: usize, step: &Step) -> f64 {
+        let mut most = 0.0_f64;
+        for k in self.elements(t) {
+            if self.touching[k / LANES] >> (k % LANES) & 1 == 1 {
+                let [ux, uy] = self.displacement.at(self.halo + k);
+                let x = step.k_drive * (step.reach[0] - ux) + step.constant_force[0];
+                let y = step.k_drive * (step.reach[1] - uy) + step.constant_force[1];
+                most = most.max(x * x + y * y);
+            }
+        }
+        most
+    }
+}
+
+#[inline(always)]
+fn chunks(vectors: &Vectors, from: usize, n: usize) -> [&[[f64; LANES]]; 2] {
+    [
+        vectors.x[from..from + n].as_chunks().0,
+        vectors.y[from..from + n].as_chunks().0,
+    ]
+}
+
+#[inline(always)]
+fn chunks_mut(vectors: &mut Vectors, from: usize, n: usize) -> [ChunksMut<'_>; 2] {
+    [
+        vectors.x[from..from + n].as_chunks_mut().0,
+        vectors.y[from..from + n].as_chunks_mut().0,
+    ]
+}

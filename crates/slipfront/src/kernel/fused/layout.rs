@@ -1,0 +1,191 @@
+//! Where the blocks of the lattice stand in the arrays of the fused kernel.
+//!
+//! Row follows row in one long line of elements, so that the neighbours of element e are always e + 1, e + stride and
+//! e + stride +- 1, whatever the row, and vectors of eight run over the ends of rows. Springs that a free edge leaves out
+//! are masked. Along a periodic x axis every row has a ghost at either end, which copies the block at its other end.
+//! Elements that are no blocks are inert: their threshold is infinite and no sum counts them.
+
+use super::vector::LANES;
+use crate::{Edges, Lattice};
+
+/// Elements of a tile, the unit of skipping and of summing: sums over blocks are sums over tiles of sums over their eight
+/// lanes, for any number of threads.
+pub(super) const TILE: usize = 256;
+
+/// Shortest row: springs of one vector may not pull on blocks of the same vector in the next row.
+const SHORTEST_ROW: usize = 16;
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layout {
+    lattice: Lattice,
+    /// Elements from a row to the next.
+    pub(super) stride: usize,
+    /// Ghosts before the first block of a row.
+    ghosts: usize,
+}
+
+impl Layout {
+    pub(super) fn new(lattice: &Lattice) -> Self {
+        let ghosts = usize::from(lattice.edges[0] == Edges::Periodic);
+        Self {
+            lattice: *lattice,
+            stride: (lattice.nx + 2 * ghosts).max(SHORTEST_ROW),
+            ghosts,
+        }
+    }
+
+    /// Number of elements, up to the end of the last row.
+    pub(super) fn len(&self) -> usize {
+        self.lattice.ny * self.stride
+    }
+
+    /// Number of tiles that hold them; the last is filled up with inert elements to whole vectors only.
+    pub(super) fn n_tiles(&self) -> usize {
+        self.len().div_ceil(TILE)
+    }
+
+    /// Element of block (i, j).
+    pub(super) fn element(&self, i: usize, j: usize) -> usize {
+        j * self.stride + self.ghosts + i
+    }
+
+    /// Element of the block with index `b` in the lattice.
+    pub(super) fn element_of(&self, b: usize) -> usize {
+        let (i, j) = self.lattice.column_row(b);
+        self.element(i, j)
+    }
+
+    /// Column of an element: none for one that is no block.
+    fn column(&self, element: usize) -> Option<usize> {
+        let i = (element % self.stride).checked_sub(self.ghosts)?;
+        (i < self.lattice.nx).then_some(i)
+    }
+
+    /// Index in the lattice of the block at an element, if there is one.
+    pub(super) fn block(&self, element: usize) -> Option<usize> {
+        let j = element / self.stride;
+        let i = self.column(element)?;
+        (j < self.lattice.ny).then(|| self.lattice.block(i, j))
+    }
+
+    /// Number of rows.
+    pub(super) fn rows(&self) -> usize {
+        self.lattice.ny
+    }
+
+    /// Ghosts of row `j`: element and the element that it copies.
+    pub(super) fn ghosts_of_row(&self, j: usize) -> [(usize, usize); 2] {
+        let (first, last) = (self.element(0, j), self.element(self.lattice.nx - 1, j));
+        [(first - 1, last), (last + 1, first)]
+    }
+
+    pub(super) fn has_ghosts(&self) -> bool {
+        self.ghosts > 0
+    }
+
+    pub(super) fn is_periodic_along_y(&self) -> bool {
+        self.lattice.edges[1] == Edges::Periodic
+    }
+
+    /// Which springs of an element exist: to the east and north-east, to the north-west, to the next row at all. `element`
+    /// may lie before the first or after the last row.
+    fn springs(&self, element: isize) -> [bool; 3] {
+        let row = element.div_euclid(self.stride as isize);
+        let periodic = self.is_periodic_along_y();
+        let up = periodic || (0..self.lattice.ny as isize - 1).contains(&row);
+        let i = element.rem_euclid(self.stride as isize);
+        let i = i - self.ghosts as isize;
+        let (nx, ghosts) = (self.lattice.nx as isize, self.ghosts as isize);
+        [
+            -ghosts <= i && i + 1 < nx + ghosts,
+            -ghosts < i && i < nx + ghosts,
+            up,
+        ]
+    }
+
+    /// Masks of the eight elements from `first` on: see [`Layout::springs`].
+    pub(super) fn masks(&self, first: isize) -> [u8; 3] {
+        let mut bits = [0; 3];
+        for lane in 0..LANES {
+            for (bits, exists) in bits.iter_mut().zip(self.springs(first + lane as isize)) {
+                *bits |= u8::from(exists) << lane;
+            }
+        }
+        bits
+    }
+
+    /// Tiles whose blocks pull on those of `tile`, itself among them, in rising order.
+    pub(super) fn neighbours(&self, tile: usize) -> Vec<usize> {
+        let n = self.len() as isize;
+        let (first, last) = ((tile * TILE) as isize, ((tile + 1) * TILE).min(self.len()) as isize - 1);
+        let (stride, nx) = (self.stride as isize, self.lattice.nx as isize);
+        let mut tiles = Vec::new();
+        let mut add = |from: isize, to: isize| {
+            // The tiles between those of the two ends, wrapped or cut off at the ends of the line.
+            let mut element = from;
+            while element <= to {
+                let wrapped = element.rem_euclid(n);
+                if wrapped == element || self.is_periodic_along_y() {
+                    tiles.push(wrapped as usize / TILE);
+                }
+                element = if element == to { to + 1 } else { (element + TILE as isize).min(to) };
+            }
+        };
+        for row in [-stride, 0, stride] {
+            add(first + row - 1, last + row + 1);
+            if self.has_ghosts() {
+                add(first + row - nx, last + row - nx);
+                add(first + row + nx, last + row + nx);
+            }
+        }
+        tiles.sort_unstable();
+        tiles.dedup();
+        tiles
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Held against the neighbours that the lattice itself knows.
+    #[test]
+    fn neighbouring_tiles_hold_all_neighbouring_blocks() {
+        use Edges::{Free, Periodic};
+        for edges in [[Free, Free], [Periodic, Free], [Free, Periodic], [Periodic, Periodic]] {
+            for (nx, ny) in [(5, 7), (25, 40), (50, 50), (300, 5), (700, 4), (3, 400)] {
+                let lattice = Lattice::with_edges(nx, ny, edges);
+                let layout = Layout::new(&lattice);
+                for tile in 0..layout.n_tiles() {
+                    let neighbours = layout.neighbours(tile);
+                    for element in tile * TILE..((tile + 1) * TILE).min(layout.len()) {
+                        let Some(b) = layout.block(element) else { continue };
+                        let (i, j) = lattice.column_row(b);
+                        for (di, dj) in [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)] {
+                            if let Some(other) = lattice.neighbour(i, j, [di, dj]) {
+                                let other = layout.element_of(other) / TILE;
+                                assert!(neighbours.contains(&other), "{nx}x{ny} {edges:?} {tile} {other}");
+                            }
+                        }
+                    }
+                    assert!(neighbours.len() <= 21 && neighbours.contains(&tile));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn blocks_and_elements_are_each_others_inverse() {
+        let lattice = Lattice::with_edges(5, 4, [Edges::Periodic, Edges::Free]);
+        let layout = Layout::new(&lattice);
+        for b in 0..lattice.n_blocks() {
+            assert_eq!(layout.block(layout.element_of(b)), Some(b));
+        }
+        assert_eq!((0..layout.len()).filter(|&e| layout.block(e).is_some()).count(), 20);
+        for j in 0..4 {
+            for (ghost, copied) in layout.ghosts_of_row(j) {
+                assert!(layout.block(ghost).is_none() && layout.block(copied).is_some());
+            }
+        }
+    }
+}

@@ -1,0 +1,362 @@
+//! The fast kernel: the equations of [`reference`](super::reference) in one sweep over the blocks.
+//!
+//! Blocks stand in one long line ([`layout`]), cut into tiles of 256 elements. A sweep takes tile after tile through a
+//! step ([`band`]): displacements, springs, friction and all sums, eight blocks at a time ([`blocks`]), each spring once.
+//! Springs come from a series where that is as exact as the square root ([`springs`]). A tile at rest, with nothing moving
+//! around it, is left alone until a block of it can break ([`rest`]). Bands of tiles are shared out among threads.
+//!
+//! The trajectory has the same bits for any number of threads and any SIMD width, whether work is skipped or not: sums are
+//! sums over tiles, and the choice between series and square root is made for the whole lattice.
+
+mod aligned;
+mod band;
+mod blocks;
+mod layout;
+mod rest;
+mod springs;
+mod vector;
+
+use fearless_simd::{Level, dispatch};
+
+use self::band::Band;
+use self::blocks::Step;
+use self::layout::Layout;
+use self::springs::{Series, SquareRoot};
+use super::{Held, Totals};
+use crate::lattice::K_STRAIGHT;
+use crate::{Model, State};
+
+/// Steps from one exact look at the largest differences of displacement to the next; between, they are bounded.
+const LOOK_EVERY: u64 = 16;
+
+/// How springs are computed in a sweep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Springs {
+    /// Small strains: 1e-4 and less.
+    ShortSeries,
+    /// Up to 1e-2.
+    LongSeries,
+    /// Any.
+    SquareRoot,
+}
+
+/// The state of all blocks and the way to step them.
+#[derive(Debug)]
+pub(crate) struct Fused {
+    layout: Layout,
+    dt_star: f64,
+    bands: Vec<Band>,
+    threads: Option<rayon::ThreadPool>,
+    level: Level,
+    /// Whether tiles at rest are left alone.
+    skips: bool,
+    /// For every tile, those around it.
+    neighbours: Vec<Vec<usize>>,
+    /// For every tile: whether something in it moves, and whether the sweep at hand takes it.
+    moving: Vec<bool>,
+    active: Vec<bool>,
+    /// If nothing moves: the first step at which a block may break.
+    wake: u64,
+    /// Step of the latest sweep, and what it found.
+    swept: Option<u64>,
+    latest: Totals,
+    /// Largest u_x, -u_x, u_y, -u_y at the latest look, and how much they may have grown since.
+    extent: [f64; 4],
+    growth: f64,
+    /// Highest speed after the latest sweep.
+    speed: f64,
+    stress_square_max: f64,
+}
+
+impl Fused {
+    /// Takes over a state; `threads` share the work if the lattice is large enough to pay for it.
+    pub(crate) fn new(model: &Model, dt_star: f64, state: &State, threads: usize, skips: bool) -> Self {
+        { let l = Level::new(); let l = if std::env::var("AVX2").is_ok() { Level::Avx2(l.as_avx2().unwrap()) } else { l }; Self::at_level(model, dt_star, state, threads, skips, l) }
+    }
+
+    fn at_level(
+        model: &Model,
+        dt_star: f64,
+        state: &State,
+        threads: usize,
+        skips: bool,
+        level: Level,
+    ) -> Self {
+        let layout = Layout::new(&model.lattice);
+        let n_tiles = layout.n_tiles();
+        let n_bands = threads.clamp(1, n_tiles);
+        let bands: Vec<Band> = (0..n_bands)
+            .map(|k| n_tiles * k / n_bands..n_tiles * (k + 1) / n_bands)
+            .map(|tiles| Band::new(&layout, model, state, dt_star, tiles))
+            .collect();
+        let speed_square = bands
+            .iter()
+            .flat_map(|band| &band.tiles)
+            .map(|tile| tile.sums.speed_square)
+            .fold(0.0, f64::max);
+        let sum = |v: &[f64]| v.iter().sum();
+        let latest = Totals {
+            velocity_after: [sum(&state.velocity.x), sum(&state.velocity.y)],
+            ..Totals::default()
+        };
+        let mut kernel = Self {
+            layout,
+            dt_star,
+            threads: (n_bands > 1).then(|| pool(n_bands)).flatten(),
+            bands,
+            level,
+            skips,
+            neighbours: (0..n_tiles).map(|tile| layout.neighbours(tile)).collect(),
+            moving: vec![false; n_tiles],
+            active: vec![false; n_tiles],
+            wake: 0,
+            swept: None,
+            latest,
+            extent: [f64::NEG_INFINITY; 4],
+            growth: 0.0,
+            speed: speed_square.sqrt(),
+            stress_square_max: 0.0,
+        };
+        kernel.copy_ghosts();
+        kernel
+    }
+
+    /// Goes to step `number`: the next one, or 0 to begin with.
+    pub(crate) fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals {
+        let mut step = Step::new(model, number, self.dt_star);
+        if self.swept.is_none() {
+            // At the start displacements are those of t_0 already.
+            step.moves = 0.0;
+        }
+        if !self.skips || number >= self.wake {
+            let springs = self.choose_springs(model, &step);
+            self.give_orders(number);
+            self.fill_halos(step.moves);
+            self.sweep(model, &step, springs, energies);
+            self.copy_ghosts();
+            self.swept = Some(number);
+            self.add_up();
+        }
+        Totals {
+            held: energies.then(|| self.held(&step)),
+            ..self.latest
+        }
+    }
+
+    /// Springs of the coming sweep: by a bound on all differences of displacement, from their extent at the latest look and
+    /// the highest speeds since.
+    fn choose_springs(&mut self, model: &Model, step: &Step) -> Springs {
+        let look = |number: u64| number / LOOK_EVERY;
+        if self.swept.is_none_or(|swept| look(swept) < look(step.number)) {
+            let mut extent = [f64::NEG_INFINITY; 4];
+            for band in &mut self.bands {
+                band.measure_extents();
+                for tile in &band.tiles {
+                    for (most, value) in extent.iter_mut().zip(tile.extent) {
+                        *most = most.max(value);
+                    }
+                }
+            }
+            (self.extent, self.growth) = (extent, 0.0);
+        }
+        self.growth += 2.0 * step.moves * self.speed;
+        let [right, left, top, bottom] = self.extent;
+        let (ex, ey) = (right + left + self.growth, top + bottom + self.growth);
+        // |eps s|/d^2 of any spring.
+        let strain = model.epsilon * (2.0 * (ex + ey) + model.epsilon * (ex * ex + ey * ey));
+        if strain <= Series::<3>::reach() {
+            Springs::ShortSeries
+        } else if strain <= Series::<7>::reach() {
+            Springs::LongSeries
+        } else {
+            Springs::SquareRoot
+        }
+    }
+
+    /// Tells every tile what to do in the sweep to step `number`.
+    fn give_orders(&mut self, number: u64) {
+        let Self { bands, neighbours, moving, active, .. } = self;
+        let tiles = bands.iter().flat_map(|band| &band.tiles);
+        for (moving, tile) in moving.iter_mut().zip(tiles) {
+            *moving = tile.moving;
+        }
+        for band in bands.iter_mut() {
+            for (t, (tile, order)) in band.tiles.iter().zip(&mut band.orders).enumerate() {
+                let moved = neighbours[band.first_tile + t].iter().any(|&t| moving[t]);
+                order.active = !self.skips || moved || tile.wake <= number;
+                order.quiet = self.skips && order.active && !moved;
+                active[band.first_tile + t] = order.active;
+            }
+        }
+        for band in bands.iter_mut() {
+            for (t, order) in band.orders.iter_mut().enumerate() {
+                order.near = neighbours[band.first_tile + t].iter().any(|&t| active[t]);
+            }
+        }
+    }
+
+    /// Displacements beyond the ends of every band, as they will be in the coming step. Those beyond a free edge stay zero:
+    /// no spring leads there.
+    fn fill_halos(&mut self, moves: f64) {
+        if self.bands.len() == 1 && !self.layout.is_periodic_along_y() {
+            return;
+        }
+        let (n, halo) = (self.layout.len() as isize, self.bands[0].halo);
+        for b in 0..self.bands.len() {
+            let (first, len) = (self.bands[b].first as isize, self.bands[b].len);
+            // Behind the last row stand elements of the band's last vector already.
+            let rows = len.min(self.layout.len() - self.bands[b].first);
+            for k in (0..halo).chain(halo + rows..halo + len + halo) {
+                let element = first + k as isize - halo as isize;
+                let wrapped = element.rem_euclid(n);
+                if wrapped == element || self.layout.is_periodic_along_y() {
+                    let (other, at) = self.find(wrapped as usize);
+                    let u = self.bands[other].advanced(at, moves);
+                    self.bands[b].displacement.set(k, u);
+                }
+            }
+        }
+    }
+
+    /// Band of an element, and its place there.
+    fn find(&self, element: usize) -> (usize, usize) {
+        let band = self.bands.partition_point(|band| band.first <= element) - 1;
+        (band, element - self.bands[band].first)
+    }
+
+    /// All bands through a step, each on a thread if there are threads.
+    fn sweep(&mut self, model: &Model, step: &Step, springs: Springs, energies: bool) {
+        let level = self.level;
+        let bands = &mut self.bands;
+        match &self.threads {
+            Some(threads) => threads.install(|| sweep_bands(level, bands, model, step, springs, energies)),
+            None => sweep_bands(level, bands, model, step, springs, energies),
+        }
+    }
+
+    /// Ghosts move as the blocks that they copy.
+    fn copy_ghosts(&mut self) {
+        if !self.layout.has_ghosts() {
+            return;
+        }
+        for j in 0..self.layout.rows() {
+            for (ghost, copied) in self.layout.ghosts_of_row(j) {
+                let ((from, at), (to, k)) = (self.find(copied), self.find(ghost));
+                let band = &self.bands[from];
+                let (u, v) = (band.displacement.at(band.halo + at), band.velocity.at(at));
+                let band = &mut self.bands[to];
+                band.displacement.set(band.halo + k, u);
+                band.velocity.set(k, v);
+                band.tiles[k / layout::TILE].moving |= v != [0.0, 0.0];
+            }
+        }
+    }
+
+    /// Sums over the lattice of what the tiles know after a sweep.
+    fn add_up(&mut self) {
+        let before = self.latest.velocity_after;
+        let (mut totals, mut speed_square, mut wake) = (Totals::default(), 0.0_f64, u64::MAX);
+        for tile in self.bands.iter().flat_map(|band| &band.tiles) {
+            let sums = &tile.sums;
+            for axis in 0..2 {
+                totals.displacement[axis] += sums.displacement[axis];
+                totals.velocity_after[axis] += sums.velocity[axis];
+            }
+            totals.velocity_square += 0.25 * sums.motion_square;
+            totals.friction_power += 0.5 * sums.friction_work;
+            totals.n_sliding += sums.sliding as usize;
+            totals.n_slipping += sums.slipping as usize;
+            speed_square = speed_square.max(sums.speed_square);
+            self.stress_square_max = self.stress_square_max.max(sums.stress_square);
+            wake = wake.min(if tile.moving { 0 } else { tile.wake });
+        }
+        for axis in 0..2 {
+            totals.velocity[axis] = 0.5 * (before[axis] + totals.velocity_after[axis]);
+        }
+        (self.latest, self.speed, self.wake) = (totals, speed_square.sqrt(), wake);
+    }
+
+    /// Energies held at the present step.
+    fn held(&self, step: &Step) -> Held {
+        let (mut velocity_squares, mut lattice, mut stretch_square) = (0.0, 0.0, 0.0);
+        for band in &self.bands {
+            for (t, (tile, order)) in band.tiles.iter().zip(&band.orders).enumerate() {
+                velocity_squares += tile.sums.velocity_squares;
+                lattice += tile.sums.lattice_energy;
+                // The springs of the drive stretch on while a tile is left alone.
+                stretch_square += if self.swept == Some(step.number) && order.active {
+                    tile.sums.stretch_square
+                } else {
+                    band.stretch_square(t, step.reach)
+                };
+            }
+        }
+        Held {
+            kinetic: 0.25 * velocity_squares,
+            lattice: lattice / (2.0 * K_STRAIGHT),
+            drive_springs: 0.5 * step.k_drive * stretch_square,
+        }
+    }
+
+    /// Largest contact stress of a block in contact up to step `number`, the present one.
+    pub(crate) fn contact_stress_max(&self, model: &Model, number: u64) -> f64 {
+        let step = Step::new(model, number, self.dt_star);
+        let mut square = self.stress_square_max;
+        for band in &self.bands {
+            for t in (0..band.tiles.len()).filter(|&t| !band.tiles[t].moving && band.tiles[t].wake > number) {
+                square = square.max(band.resting_stress_square(t, &step));
+            }
+        }
+        square.sqrt()
+    }
+
+    /// Displacement now and velocity half a step later of block `b`.
+    pub(crate) fn motion(&self, b: usize) -> [[f64; 2]; 2] {
+        let (band, k) = self.find(self.layout.element_of(b));
+        let band = &self.bands[band];
+        [band.displacement.at(band.halo + k), band.velocity.at(k)]
+    }
+
+    /// When block `b` first slid while in contact; not a number if it never has.
+    pub(crate) fn first_slip(&self, b: usize) -> f64 {
+        let (band, k) = self.find(self.layout.element_of(b));
+        self.bands[band].first_slip[k]
+    }
+}
+
+fn pool(threads: usize) -> Option<rayon::ThreadPool> {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()
+}
+
+fn sweep_bands(level: Level, bands: &mut [Band], model: &Model, step: &Step, springs: Springs, energies: bool) {
+    match bands {
+        [] => {}
+        [band] => sweep_band(level, band, model, step, springs, energies),
+        _ => {
+            let (one, other) = bands.split_at_mut(bands.len() / 2);
+            rayon::join(
+                || sweep_bands(level, one, model, step, springs, energies),
+                || sweep_bands(level, other, model, step, springs, energies),
+            );
+        }
+    }
+}
+
+/// One band, with the widest instructions at hand.
+fn sweep_band(level: Level, band: &mut Band, model: &Model, step: &Step, springs: Springs, energies: bool) {
+    let epsilon = model.epsilon;
+    match springs {
+        Springs::ShortSeries => {
+            let geometry = Series::<3> { epsilon };
+            dispatch!(level, simd => band.sweep(simd, geometry, model, *step, energies));
+        }
+        Springs::LongSeries => {
+            let geometry = Series::<7> { epsilon };
+            dispatch!(level, simd => band.sweep(simd, geometry, model, *step, energies));
+        }
+        Springs::SquareRoot => {
+            let geometry = SquareRoot { epsilon };
+            dispatch!(level, simd => band.sweep(simd, geometry, model, *step, energies));
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! How long blocks at rest will stay so.
+//!
+//! While a block and its neighbours are stuck, the force on it grows by that of its drive spring alone, linearly:
+//! `F(t) = F + k_s V t`. It breaks when `|F(t)|` passes its threshold `T = max(mu_s, mu_k) F_n` (D12):
+//!
+//! ```text
+//! c t^2 + 2 a t = T^2 - F^2,   a = F . k_s V,   c = (k_s V)^2
+//! t = (sqrt(a^2 + c (T^2 - F^2)) - a)/c
+//! ```
+
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat};
+
+use super::blocks::{Chunks, Step, pull};
+use super::vector::{add, dot, largest, load, load_plane, splat, square};
+use crate::Drive;
+
+/// Blocks at rest.
+pub(super) struct Resting<'a> {
+    pub(super) displacement: [Chunks<'a>; 2],
+    /// `F_c`.
+    pub(super) lattice: [Chunks<'a>; 2],
+    pub(super) hold_squares: Chunks<'a>,
+    pub(super) slide_impulses: Chunks<'a>,
+}
+
+/// Number of steps, never too large, before the first of the blocks can break; forces are those of `step`.
+///
+/// With a drive at an angle, a block of which one force component shrinks while the other grows is not left alone, so that
+/// the largest contact stress of a time at rest always stands at its beginning or at its end.
+#[inline(always)]
+pub(super) fn patience<S: Simd>(simd: S, step: &Step, drive: &Drive, blocks: &Resting) -> u64 {
+    let [bx, by] = drive.direction.map(|d| drive.k_drive * drive.v_star * d);
+    let growth_square = bx * bx + by * by;
+    if growth_square == 0.0 {
+        return u64::MAX;
+    }
+    let growth = [splat(simd, bx), splat(simd, by)];
+    let c = splat(simd, growth_square);
+    let zero = splat(simd, 0.0);
+    let mut soonest = splat(simd, f64::NEG_INFINITY);
+    for k in 0..blocks.hold_squares.len() {
+        let drive = pull(simd, *step, load_plane(simd, blocks.displacement, k));
+        let force = add(drive, load_plane(simd, blocks.lattice, k));
+        let slide = load(simd, &blocks.slide_impulses[k]) * splat(simd, step.inverse_impulse);
+        let threshold_square = load(simd, &blocks.hold_squares[k]).max(slide * slide);
+        let a = dot(force, growth);
+        let room = threshold_square - square(force);
+        let time = ((a * a + c * room).sqrt() - a) / c;
+        let grows = if bx != 0.0 && by != 0.0 {
+            (drive[0] * growth[0]).simd_ge(zero) & (drive[1] * growth[1]).simd_ge(zero)
+        } else {
+            room.simd_ge(zero)
+        };
+        // At the threshold, or where rounding makes the root no number, there is no time left.
+        let time = (grows & room.simd_ge(zero) & time.simd_ge(zero)).select(time, zero);
+        soonest = soonest.max(-time);
+    }
+    // Forces are known to some units of their last place: as many steps earlier as the load needs to grow by that, and
+    // two more for the roundings of the root and of the division.
+    let reach = step.reach[0].abs() + step.reach[1].abs();
+    let noise = 1e-13 * (1.0 + step.k_drive * reach) / growth_square.sqrt();
+    let steps = (-largest(soonest) * (1.0 - 1e-9) - noise) / step.dt_star - 2.0;
+    // A conversion of floats saturates: at zero below, at the largest number above.
+    steps as u64
+}
