@@ -52,7 +52,9 @@ impl Snapshot<'_> {
     /// # Panics
     /// If nobody wanted them: see [`Observer::wants_energies`](crate::observe::Observer::wants_energies).
     pub fn held(&self) -> Held {
-        self.totals.held.expect("energies are measured where an observer wants them")
+        self.totals
+            .held
+            .expect("energies are measured where an observer wants them")
     }
 
     /// mu* one step on, which the velocities of the blocks tell already, to rounding.
@@ -216,7 +218,10 @@ impl<'m> Simulation<'m> {
     pub fn state(&self) -> State {
         let n = self.model.lattice.n_blocks();
         let mut state = State::at_rest(n);
-        let State { displacement, velocity } = &mut state;
+        let State {
+            displacement,
+            velocity,
+        } = &mut state;
         for b in 0..n {
             let [u, v] = self.engine.motion(b);
             let set = |field: &mut VectorField, [x, y]: [f64; 2]| (field.x[b], field.y[b]) = (x, y);
@@ -233,7 +238,9 @@ impl<'m> Simulation<'m> {
 
     /// t* at which each block first slid while in contact; not a number where none has.
     pub fn first_slip_time_star(&self) -> Vec<f64> {
-        (0..self.model.lattice.n_blocks()).map(|b| self.engine.first_slip(b)).collect()
+        (0..self.model.lattice.n_blocks())
+            .map(|b| self.engine.first_slip(b))
+            .collect()
     }
 
     /// The largest contact stress (Eq. 10) over blocks in contact and all steps so far, in units of `P mu_s`: the scale of

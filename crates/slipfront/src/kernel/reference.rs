@@ -78,7 +78,12 @@ impl Reference {
             move_blocks(&mut self.state, self.dt_star);
         }
         drive_forces(model, &self.state, time_star, &mut self.forces.drive);
-        lattice_forces(model, &self.state, &mut self.forces.lattice, &mut self.forces.springs);
+        lattice_forces(
+            model,
+            &self.state,
+            &mut self.forces.lattice,
+            &mut self.forces.springs,
+        );
         let integrator = Integrator::new(model.damping, self.dt_star);
         match model.law {
             FrictionLaw::Projection => self.friction_forces(&friction::Projection, &integrator),
@@ -195,8 +200,14 @@ fn cut(field: &VectorField, n: usize) -> [&[f64]; 2] {
 /// Eq. 8: `u(t + dt) = u(t) + dt v(t + dt/2)`.
 #[inline(always)]
 fn move_blocks(state: &mut State, dt_star: f64) {
-    let State { displacement, velocity } = state;
-    let axes = [(&mut displacement.x, &velocity.x), (&mut displacement.y, &velocity.y)];
+    let State {
+        displacement,
+        velocity,
+    } = state;
+    let axes = [
+        (&mut displacement.x, &velocity.x),
+        (&mut displacement.y, &velocity.y),
+    ];
     for (u, v) in axes {
         u.iter_mut().zip(v).for_each(|(u, v)| *u += dt_star * v);
     }

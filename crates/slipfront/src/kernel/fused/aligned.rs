@@ -21,6 +21,37 @@ impl Aligned {
     }
 }
 
+impl Aligned {
+    /// The cache lines from element `k` on, which may lie beyond the end.
+    #[inline(always)]
+    pub(super) fn lines(&self, k: usize) -> Lines {
+        Lines(self.as_ptr().wrapping_add(k).cast())
+    }
+}
+
+/// Cache lines that will be needed. A lattice larger than the cache would otherwise be waited for: the arrays are many, and
+/// what moves first in a tile is far from what was touched last.
+#[derive(Clone, Copy)]
+pub(super) struct Lines(*const i8);
+
+impl Lines {
+    /// Asks the processor to fetch the line of the given number.
+    #[inline(always)]
+    pub(super) fn prefetch(self, line: usize) {
+        #[cfg(target_arch = "x86_64")]
+        {
+            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+            // SAFETY: a prefetch reads and writes nothing that the program can see, at any address.
+            #[allow(unsafe_code)]
+            unsafe {
+                _mm_prefetch::<_MM_HINT_T0>(self.0.wrapping_add(line * LANES * size_of::<f64>()));
+            }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = (self.0, line);
+    }
+}
+
 impl Deref for Aligned {
     type Target = [f64];
 

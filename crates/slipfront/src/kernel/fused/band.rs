@@ -4,8 +4,8 @@ use fearless_simd::{Simd, SimdBase};
 
 use super::aligned::{Aligned, Vectors};
 use super::blocks::{
-    ChunksMut, FrictionLoop, Halfway, LatticeLoop, Step, Sums, TileSums, UpwardLoop, friction, lattice_forces, spring,
-    upward_springs,
+    ChunksMut, FrictionLoop, Halfway, LatticeLoop, Step, Sums, TileSums, UpwardLoop, friction,
+    lattice_forces, spring, upward_springs,
 };
 use super::layout::{Layout, TILE};
 use super::rest::{Resting, patience};
@@ -87,7 +87,13 @@ fn vectors(elements: usize) -> usize {
 
 impl Band {
     /// The tiles `first_tile..end_tile` of a lattice in `state`, with time steps of `dt_star`.
-    pub(super) fn new(layout: &Layout, model: &Model, state: &State, dt_star: f64, tiles: std::ops::Range<usize>) -> Self {
+    pub(super) fn new(
+        layout: &Layout,
+        model: &Model,
+        state: &State,
+        dt_star: f64,
+        tiles: std::ops::Range<usize>,
+    ) -> Self {
         let first = tiles.start * TILE;
         let len = vectors((tiles.end * TILE).min(layout.len()) - first);
         let halo = vectors(layout.stride + 1 + LANES);
@@ -125,7 +131,9 @@ impl Band {
         };
         let impulse = Step::new(model, 0, dt_star).impulse;
         for k in 0..len {
-            let Some(b) = layout.block(first + k) else { continue };
+            let Some(b) = layout.block(first + k) else {
+                continue;
+            };
             let (hold, slide) = (model.surface.hold(b), model.surface.slide(b));
             band.hold_squares[k] = hold * hold;
             band.slide_impulses[k] = impulse * slide;
@@ -172,7 +180,7 @@ impl Band {
     ) {
         // Springs reach a row and a block ahead: what they pull on moves first.
         let n_tiles = self.tiles.len();
-        let ahead = (self.stride + MIRROR).div_ceil(TILE).min(n_tiles);
+        let ahead = self.tiles_ahead().min(n_tiles);
         for t in 0..ahead {
             self.advance(simd, t, step.moves);
         }
@@ -184,7 +192,12 @@ impl Band {
             }
             let (order, elements) = (self.orders[t], self.elements(t));
             if order.near {
-                self.upward(simd, geometry, self.halo + elements.start, self.halo + elements.end);
+                self.upward(
+                    simd,
+                    geometry,
+                    self.halo + elements.start,
+                    self.halo + elements.end,
+                );
             }
             if order.active {
                 if energies || order.quiet {
@@ -194,9 +207,17 @@ impl Band {
                 }
             }
             if order.quiet && self.tiles[t].sums.sliding == 0 {
-                self.tiles[t].wake = step.number.saturating_add(self.patience(simd, model, step, t).max(1));
+                self.tiles[t].wake = step
+                    .number
+                    .saturating_add(self.patience(simd, model, step, t).max(1));
             }
         }
+    }
+
+    /// Tiles ahead of the one at hand whose displacements must be those of the step.
+    #[inline(always)]
+    fn tiles_ahead(&self) -> usize {
+        (self.stride + MIRROR).div_ceil(TILE)
     }
 
     /// Eq. 8: `u += dt v` in a tile that moves.
@@ -302,6 +323,16 @@ impl Band {
             lattice_forces::<S, G, ENERGY>(simd, geometry, stretch, &mut west, &mut sums.lattice_energy);
         }
         let n = elements.len();
+        let next = elements.start + TILE;
+        let moving_next = next + self.tiles_ahead() * TILE;
+        let ahead = [
+            self.hold_squares.lines(next),
+            self.slide_impulses.lines(next),
+            self.displacement.x.lines(self.halo + moving_next),
+            self.displacement.y.lines(self.halo + moving_next),
+            self.velocity.x.lines(moving_next),
+            self.velocity.y.lines(moving_next),
+        ];
         let vectors = elements.start / LANES..elements.end / LANES;
         let stretch = FrictionLoop {
             displacement: chunks(&self.displacement, start, n),
@@ -312,7 +343,8 @@ impl Band {
             touching: &self.touching[vectors.clone()],
             velocity: chunks_mut(&mut self.velocity, elements.start, n),
             slipped: &mut self.slipped[vectors],
-            first_slip: self.first_slip[elements].as_chunks_mut().0,
+            first_slip: self.first_slip[elements.clone()].as_chunks_mut().0,
+            ahead,
         };
         let halfway = Halfway {
             drive: chunks_mut(&mut self.drive, 0, n),
@@ -331,7 +363,14 @@ impl Band {
     fn east_springs<S: Simd, G: Geometry>(&self, simd: S, geometry: G, first: usize) -> Plane<S> {
         let here = load_plane(simd, chunks(&self.displacement, first, LANES), 0);
         let there = load_plane(simd, chunks(&self.displacement, first + 1, LANES), 0);
-        spring(simd, geometry, &Bond::EAST, self.masks[0][first / LANES], here, there)
+        spring(
+            simd,
+            geometry,
+            &Bond::EAST,
+            self.masks[0][first / LANES],
+            here,
+            there,
+        )
     }
 
     /// How long a tile at rest can be left alone; its lattice forces are those of the sweep at hand.

@@ -5,10 +5,11 @@
 
 use fearless_simd::{Simd, SimdBase, SimdFloat};
 
+use super::aligned::Lines;
 use super::springs::Geometry;
 use super::vector::{
-    Eight, LANES, Plane, add, behind, bits, dot, is_zero, keep, largest, load, load_plane, mask, scale, select, splat, square, subtract,
-    total,
+    Eight, LANES, Plane, add, behind, bits, dot, is_zero, keep, largest, load, load_plane, mask, scale,
+    select, splat, square, subtract, total,
 };
 use crate::Model;
 use crate::lattice::Bond;
@@ -104,7 +105,11 @@ pub(super) fn spring<S: Simd, G: Geometry>(
 /// Zero where a bit is missing. Away from edges and textures none is: without AVX-512 the test is cheaper than the mask.
 #[inline(always)]
 fn where_present<S: Simd>(simd: S, present: u8, a: Plane<S>) -> Plane<S> {
-    if present == u8::MAX { a } else { keep(simd, mask(simd, present), a) }
+    if present == u8::MAX {
+        a
+    } else {
+        keep(simd, mask(simd, present), a)
+    }
 }
 
 /// Eq. 3: the springs to the next row, each computed once for the blocks at its two ends.
@@ -162,7 +167,14 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
     let mut before = *west;
     for c in 0..n {
         let u = load_plane(simd, here, c);
-        let east = spring(simd, geometry, &Bond::EAST, has_east[c], u, load_plane(simd, there, c));
+        let east = spring(
+            simd,
+            geometry,
+            &Bond::EAST,
+            has_east[c],
+            u,
+            load_plane(simd, there, c),
+        );
         let west = behind(before, east);
         before = east;
         let north = load_plane(simd, north, c);
@@ -209,6 +221,8 @@ pub(super) struct FrictionLoop<'a> {
     /// Which blocks in contact have ever slid, and since when.
     pub(super) slipped: &'a mut [u8],
     pub(super) first_slip: ChunksMut<'a>,
+    /// What later tiles will need first.
+    pub(super) ahead: [Lines; 6],
 }
 
 /// Sums over the eight lanes.
@@ -298,8 +312,14 @@ fn drive_stretch<S: Simd>(simd: S, step: Step, u: Plane<S>) -> Plane<S> {
 /// Eq. 2: `F_s = k_s (V t - u)`, with any constant force.
 #[inline(always)]
 pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Plane<S>) -> Plane<S> {
-    let constant = [splat(simd, step.constant_force[0]), splat(simd, step.constant_force[1])];
-    add(scale(splat(simd, step.k_drive), drive_stretch(simd, step, u)), constant)
+    let constant = [
+        splat(simd, step.constant_force[0]),
+        splat(simd, step.constant_force[1]),
+    ];
+    add(
+        scale(splat(simd, step.k_drive), drive_stretch(simd, step, u)),
+        constant,
+    )
 }
 
 /// Room for what the first half of the law leaves to the second, over a tile.
@@ -364,6 +384,9 @@ pub(super) fn friction<S: Simd, const ENERGY: bool>(
     let first_slip = &mut stretch.first_slip[..n];
     let zero = splat(simd, 0.0);
     for c in 0..n {
+        for lines in stretch.ahead {
+            lines.prefetch(c);
+        }
         let lattice = load_plane(simd, lattice_force, c);
         let drive = load_plane(simd, drive_force, c);
         let free = load_plane(simd, free_velocity, c);

@@ -117,7 +117,10 @@ impl Layout {
     /// Tiles whose blocks pull on those of `tile`, itself among them, in rising order.
     pub(super) fn neighbours(&self, tile: usize) -> Vec<usize> {
         let n = self.len() as isize;
-        let (first, last) = ((tile * TILE) as isize, ((tile + 1) * TILE).min(self.len()) as isize - 1);
+        let (first, last) = (
+            (tile * TILE) as isize,
+            ((tile + 1) * TILE).min(self.len()) as isize - 1,
+        );
         let (stride, nx) = (self.stride as isize, self.lattice.nx as isize);
         let mut tiles = Vec::new();
         let mut add = |from: isize, to: isize| {
@@ -128,7 +131,11 @@ impl Layout {
                 if wrapped == element || self.is_periodic_along_y() {
                     tiles.push(wrapped as usize / TILE);
                 }
-                element = if element == to { to + 1 } else { (element + TILE as isize).min(to) };
+                element = if element == to {
+                    to + 1
+                } else {
+                    (element + TILE as isize).min(to)
+                };
             }
         };
         for row in [-stride, 0, stride] {
@@ -152,7 +159,12 @@ mod tests {
     #[test]
     fn neighbouring_tiles_hold_all_neighbouring_blocks() {
         use Edges::{Free, Periodic};
-        for edges in [[Free, Free], [Periodic, Free], [Free, Periodic], [Periodic, Periodic]] {
+        for edges in [
+            [Free, Free],
+            [Periodic, Free],
+            [Free, Periodic],
+            [Periodic, Periodic],
+        ] {
             for (nx, ny) in [(5, 7), (25, 40), (50, 50), (300, 5), (700, 4), (3, 400)] {
                 let lattice = Lattice::with_edges(nx, ny, edges);
                 let layout = Layout::new(&lattice);
@@ -161,7 +173,16 @@ mod tests {
                     for element in tile * TILE..((tile + 1) * TILE).min(layout.len()) {
                         let Some(b) = layout.block(element) else { continue };
                         let (i, j) = lattice.column_row(b);
-                        for (di, dj) in [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)] {
+                        for (di, dj) in [
+                            (-1, -1),
+                            (0, -1),
+                            (1, -1),
+                            (-1, 0),
+                            (1, 0),
+                            (-1, 1),
+                            (0, 1),
+                            (1, 1),
+                        ] {
                             if let Some(other) = lattice.neighbour(i, j, [di, dj]) {
                                 let other = layout.element_of(other) / TILE;
                                 assert!(neighbours.contains(&other), "{nx}x{ny} {edges:?} {tile} {other}");
@@ -181,7 +202,10 @@ mod tests {
         for b in 0..lattice.n_blocks() {
             assert_eq!(layout.block(layout.element_of(b)), Some(b));
         }
-        assert_eq!((0..layout.len()).filter(|&e| layout.block(e).is_some()).count(), 20);
+        assert_eq!(
+            (0..layout.len()).filter(|&e| layout.block(e).is_some()).count(),
+            20
+        );
         for j in 0..4 {
             for (ghost, copied) in layout.ghosts_of_row(j) {
                 assert!(layout.block(ghost).is_none() && layout.block(copied).is_some());

@@ -71,7 +71,7 @@ pub(crate) struct Fused {
 impl Fused {
     /// Takes over a state; `threads` share the work if the lattice is large enough to pay for it.
     pub(crate) fn new(model: &Model, dt_star: f64, state: &State, threads: usize, skips: bool) -> Self {
-        { let l = Level::new(); let l = if std::env::var("AVX2").is_ok() { Level::Avx2(l.as_avx2().unwrap()) } else { l }; Self::at_level(model, dt_star, state, threads, skips, l) }
+        Self::at_level(model, dt_star, state, threads, skips, Level::new())
     }
 
     fn at_level(
@@ -175,7 +175,13 @@ impl Fused {
 
     /// Tells every tile what to do in the sweep to step `number`.
     fn give_orders(&mut self, number: u64) {
-        let Self { bands, neighbours, moving, active, .. } = self;
+        let Self {
+            bands,
+            neighbours,
+            moving,
+            active,
+            ..
+        } = self;
         let tiles = bands.iter().flat_map(|band| &band.tiles);
         for (moving, tile) in moving.iter_mut().zip(tiles) {
             *moving = tile.moving;
@@ -328,7 +334,14 @@ fn pool(threads: usize) -> Option<rayon::ThreadPool> {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()
 }
 
-fn sweep_bands(level: Level, bands: &mut [Band], model: &Model, step: &Step, springs: Springs, energies: bool) {
+fn sweep_bands(
+    level: Level,
+    bands: &mut [Band],
+    model: &Model,
+    step: &Step,
+    springs: Springs,
+    energies: bool,
+) {
     match bands {
         [] => {}
         [band] => sweep_band(level, band, model, step, springs, energies),

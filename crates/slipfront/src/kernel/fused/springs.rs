@@ -29,8 +29,8 @@ impl Geometry for SquareRoot {
         let length = square(r).sqrt();
         let along = splat(simd, bond.rest[0]) * e[0] + splat(simd, bond.rest[1]) * e[1];
         let stretch = splat(simd, 2.0) * along + epsilon * square(e);
-        let tension = splat(simd, bond.stiffness) * stretch
-            / (length * (length + splat(simd, bond.rest_length)));
+        let tension =
+            splat(simd, bond.stiffness) * stretch / (length * (length + splat(simd, bond.rest_length)));
         scale(tension, r)
     }
 }
