@@ -4,7 +4,7 @@ use slipfront::observe::frames::Selection;
 use slipfront::observe::{
     Curve, CurveRow, FirstSlip, Frame, Frames, Instants, KineticHistory, Observer, Schedule, Scheduled,
 };
-use slipfront::{RunError, Simulation, Snapshot, StopReason};
+use slipfront::{Execution, RunError, Simulation, Snapshot, StopReason};
 
 use crate::case::{Case, Snapshots};
 use crate::summary::{Observed, Summary};
@@ -24,11 +24,20 @@ pub struct Record {
     pub contact_stress_max: f64,
 }
 
-/// Runs a case to its end. `watcher` is shown every `watch_every`-th step, for a display of progress.
+/// Fewest blocks for which a thread is worth its share in keeping step with the others.
+const BLOCKS_PER_THREAD: usize = 1 << 16;
+
+/// Runs a case to its end, on at most `threads` threads. `watcher` is shown every `watch_every`-th step, for a display of
+/// progress.
 ///
 /// # Errors
 /// [`RunError`] when the run diverges.
-pub fn run(case: &Case, watch_every: u64, watcher: &mut dyn Observer) -> Result<Record, RunError> {
+pub fn run(
+    case: &Case,
+    threads: usize,
+    watch_every: u64,
+    watcher: &mut dyn Observer,
+) -> Result<Record, RunError> {
     let schedule = &case.schedule;
     let selection = Selection {
         fields: case.output.fields.iter().map(|field| field.observed()).collect(),
@@ -49,7 +58,11 @@ pub fn run(case: &Case, watch_every: u64, watcher: &mut dyn Observer) -> Result<
         Snapshots::At(steps) => observers.push(Scheduled::new(Schedule::At(steps.clone()), &mut frames)),
         Snapshots::Every(steps) => observers.push(Scheduled::new(Schedule::Every(*steps), &mut frames)),
     }
-    let mut simulation = Simulation::at_rest(&case.model, schedule.dt_star);
+    let execution = Execution {
+        threads: (case.model.lattice.n_blocks() / BLOCKS_PER_THREAD).clamp(1, threads),
+        ..Execution::default()
+    };
+    let mut simulation = Simulation::executed(&case.model, schedule.dt_star, None, execution);
     let reason = simulation.run(schedule.stop, &mut observers)?;
     drop(observers);
 
@@ -96,12 +109,12 @@ pub fn run(case: &Case, watch_every: u64, watcher: &mut dyn Observer) -> Result<
     })
 }
 
-/// Runs a case as long as `ends` does not say otherwise; none if it was given up.
+/// Runs a case on one thread as long as `ends` does not say otherwise; none if it was given up.
 ///
 /// # Errors
 /// [`RunError`] when the run diverges.
 pub fn run_unless(case: &Case, ends: &dyn Fn() -> bool) -> Option<Result<Record, RunError>> {
-    let record = run(case, case.steps_per_look(), &mut Watchdog(ends));
+    let record = run(case, 1, case.steps_per_look(), &mut Watchdog(ends));
     if record.is_err() && ends() {
         None
     } else {

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use slipfront::{Execution, Simulation, State};
+use slipfront::{Execution, Simulation};
 use slipfront_case::case::Case;
 
 /// How long a probe may take.
@@ -11,12 +11,11 @@ const PROBE: Duration = Duration::from_millis(100);
 /// Seconds that a step of this case takes when every block is looked at: no run takes longer, and one with blocks at rest
 /// is faster.
 pub(crate) fn seconds_per_step(case: &Case) -> f64 {
-    let state = State::at_rest(case.model.lattice.n_blocks());
     let execution = Execution {
         skips: false,
         ..Execution::default()
     };
-    let mut simulation = Simulation::executed(&case.model, case.schedule.dt_star, state, execution);
+    let mut simulation = Simulation::executed(&case.model, case.schedule.dt_star, None, execution);
     let (began, mut steps) = (Instant::now(), 0);
     while began.elapsed() < PROBE {
         simulation.step();

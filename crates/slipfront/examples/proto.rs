@@ -18,7 +18,7 @@ fn main() {
         1e-6,
         FrictionLaw::Projection,
     );
-    let run = |e: Execution| Simulation::executed(&model, 0.1, State::at_rest(n * n), e);
+    let run = |e: Execution| Simulation::executed(&model, 0.1, None, e);
     let mut fast = run(Execution {
         skips: false,
         threads,

@@ -39,7 +39,7 @@ mod vector_field;
 
 pub use error::{RunError, SurfaceError};
 pub use friction::FrictionLaw;
-pub use kernel::{Execution, Kernel};
+pub use kernel::{Execution, Kernel, simd_width};
 pub use lattice::{Edges, Lattice};
 pub use model::{Drive, Model};
 pub use scales::Scales;

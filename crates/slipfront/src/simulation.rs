@@ -130,16 +130,16 @@ impl Stop {
 impl<'m> Simulation<'m> {
     /// A slider at rest at t = 0. `dt_star` must stay below [`crate::lattice::dt_star_limit`].
     pub fn at_rest(model: &'m Model, dt_star: f64) -> Self {
-        Self::from_state(model, dt_star, State::at_rest(model.lattice.n_blocks()))
+        Self::executed(model, dt_star, None, Execution::default())
     }
 
     /// A slider in a given state at t = 0.
     pub fn from_state(model: &'m Model, dt_star: f64, state: State) -> Self {
-        Self::executed(model, dt_star, state, Execution::default())
+        Self::executed(model, dt_star, Some(state), Execution::default())
     }
 
-    /// The same, computed as `execution` says.
-    pub fn executed(model: &'m Model, dt_star: f64, state: State, execution: Execution) -> Self {
+    /// A slider in a given state, or at rest, computed as `execution` says.
+    pub fn executed(model: &'m Model, dt_star: f64, state: Option<State>, execution: Execution) -> Self {
         let mut engine = Engine::new(model, dt_star, state, execution);
         let totals = engine.step(model, 0, true);
         let mut simulation = Self {

@@ -115,7 +115,7 @@ fn every_case_gives_its_pinned_results() {
         .into_par_iter()
         .map(|(name, path)| {
             let case = Case::load(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
-            let record = run::run(&case, u64::MAX, &mut Unwatched).unwrap();
+            let record = run::run(&case, 1, u64::MAX, &mut Unwatched).unwrap();
             (name, Pin::of(&record.summary))
         })
         .collect();

@@ -6,6 +6,8 @@
 mod fused;
 mod reference;
 
+use fearless_simd::Level;
+
 use self::fused::Fused;
 use self::reference::Reference;
 use crate::lattice::Bond;
@@ -40,6 +42,17 @@ impl Default for Execution {
             threads: 1,
             skips: true,
         }
+    }
+}
+
+/// The widest vector instructions that the kernels find on this processor; results do not depend on them.
+pub fn simd_width() -> &'static str {
+    match Level::new() {
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512(_) => "AVX-512",
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2(_) => "AVX2",
+        _ => "baseline",
     }
 }
 
@@ -105,13 +118,17 @@ pub(crate) enum Engine {
 }
 
 impl Engine {
-    pub(crate) fn new(model: &Model, dt_star: f64, state: State, execution: Execution) -> Self {
+    /// From a state, or from rest.
+    pub(crate) fn new(model: &Model, dt_star: f64, state: Option<State>, execution: Execution) -> Self {
         match (execution.kernel, model.law) {
             (Kernel::Fused, FrictionLaw::Projection) => {
                 let Execution { threads, skips, .. } = execution;
-                Self::Fused(Box::new(Fused::new(model, dt_star, &state, threads, skips)))
+                Self::Fused(Box::new(Fused::new(model, dt_star, state.as_ref(), threads, skips)))
             }
-            _ => Self::Reference(Box::new(Reference::new(model, dt_star, state))),
+            _ => {
+                let state = state.unwrap_or_else(|| State::at_rest(model.lattice.n_blocks()));
+                Self::Reference(Box::new(Reference::new(model, dt_star, state)))
+            }
         }
     }
 

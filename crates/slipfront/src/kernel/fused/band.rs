@@ -90,7 +90,7 @@ impl Band {
     pub(super) fn new(
         layout: &Layout,
         model: &Model,
-        state: &State,
+        state: Option<&State>,
         dt_star: f64,
         tiles: std::ops::Range<usize>,
     ) -> Self {
@@ -142,15 +142,14 @@ impl Band {
             if !model.surface.textured[b] {
                 band.touching[k / LANES] |= bit;
             }
-            band.displacement.set(halo + k, state.displacement.at(b));
-            let velocity = state.velocity.at(b);
-            band.velocity.set(k, velocity);
-            let tile = &mut band.tiles[k / TILE];
-            tile.extent_is_old = true;
-            if velocity != [0.0, 0.0] {
-                tile.moving = true;
-                let speed_square = velocity[0] * velocity[0] + velocity[1] * velocity[1];
-                tile.sums.speed_square = tile.sums.speed_square.max(speed_square);
+            band.tiles[k / TILE].extent_is_old = true;
+            if let Some(state) = state {
+                let (u, v) = (state.displacement.at(b), state.velocity.at(b));
+                band.displacement.set(halo + k, u);
+                band.velocity.set(k, v);
+                let tile = &mut band.tiles[k / TILE];
+                tile.moving |= v != [0.0, 0.0];
+                tile.sums.speed_square = tile.sums.speed_square.max(v[0] * v[0] + v[1] * v[1]);
             }
         }
         band

@@ -46,7 +46,6 @@ pub(crate) struct Fused {
     layout: Layout,
     dt_star: f64,
     bands: Vec<Band>,
-    threads: Option<rayon::ThreadPool>,
     level: Level,
     /// Whether tiles at rest are left alone.
     skips: bool,
@@ -63,21 +62,23 @@ pub(crate) struct Fused {
     /// Largest u_x, -u_x, u_y, -u_y at the latest look, and how much they may have grown since.
     extent: [f64; 4],
     growth: f64,
+    /// Largest strains of the short and of the long series.
+    reaches: [f64; 2],
     /// Highest speed after the latest sweep.
     speed: f64,
     stress_square_max: f64,
 }
 
 impl Fused {
-    /// Takes over a state; `threads` share the work if the lattice is large enough to pay for it.
-    pub(crate) fn new(model: &Model, dt_star: f64, state: &State, threads: usize, skips: bool) -> Self {
+    /// Takes over a state, or begins at rest; the blocks are shared out among `threads`.
+    pub(crate) fn new(model: &Model, dt_star: f64, state: Option<&State>, threads: usize, skips: bool) -> Self {
         Self::at_level(model, dt_star, state, threads, skips, Level::new())
     }
 
     fn at_level(
         model: &Model,
         dt_star: f64,
-        state: &State,
+        state: Option<&State>,
         threads: usize,
         skips: bool,
         level: Level,
@@ -96,13 +97,12 @@ impl Fused {
             .fold(0.0, f64::max);
         let sum = |v: &[f64]| v.iter().sum();
         let latest = Totals {
-            velocity_after: [sum(&state.velocity.x), sum(&state.velocity.y)],
+            velocity_after: state.map_or([0.0; 2], |state| [sum(&state.velocity.x), sum(&state.velocity.y)]),
             ..Totals::default()
         };
         let mut kernel = Self {
             layout,
             dt_star,
-            threads: (n_bands > 1).then(|| pool(n_bands)).flatten(),
             bands,
             level,
             skips,
@@ -114,6 +114,7 @@ impl Fused {
             latest,
             extent: [f64::NEG_INFINITY; 4],
             growth: 0.0,
+            reaches: [Series::<3>::reach(), Series::<7>::reach()],
             speed: speed_square.sqrt(),
             stress_square_max: 0.0,
         };
@@ -132,7 +133,7 @@ impl Fused {
             let springs = self.choose_springs(model, &step);
             self.give_orders(number);
             self.fill_halos(step.moves);
-            self.sweep(model, &step, springs, energies);
+            sweep(self.level, &mut self.bands, model, &step, springs, energies);
             self.copy_ghosts();
             self.swept = Some(number);
             self.add_up();
@@ -164,9 +165,9 @@ impl Fused {
         let (ex, ey) = (right + left + self.growth, top + bottom + self.growth);
         // |eps s|/d^2 of any spring.
         let strain = model.epsilon * (2.0 * (ex + ey) + model.epsilon * (ex * ex + ey * ey));
-        if strain <= Series::<3>::reach() {
+        if strain <= self.reaches[0] {
             Springs::ShortSeries
-        } else if strain <= Series::<7>::reach() {
+        } else if strain <= self.reaches[1] {
             Springs::LongSeries
         } else {
             Springs::SquareRoot
@@ -228,16 +229,6 @@ impl Fused {
     fn find(&self, element: usize) -> (usize, usize) {
         let band = self.bands.partition_point(|band| band.first <= element) - 1;
         (band, element - self.bands[band].first)
-    }
-
-    /// All bands through a step, each on a thread if there are threads.
-    fn sweep(&mut self, model: &Model, step: &Step, springs: Springs, energies: bool) {
-        let level = self.level;
-        let bands = &mut self.bands;
-        match &self.threads {
-            Some(threads) => threads.install(|| sweep_bands(level, bands, model, step, springs, energies)),
-            None => sweep_bands(level, bands, model, step, springs, energies),
-        }
     }
 
     /// Ghosts move as the blocks that they copy.
@@ -330,11 +321,8 @@ impl Fused {
     }
 }
 
-fn pool(threads: usize) -> Option<rayon::ThreadPool> {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()
-}
-
-fn sweep_bands(
+/// All bands through a step, shared out among the threads of the pool.
+fn sweep(
     level: Level,
     bands: &mut [Band],
     model: &Model,
@@ -348,8 +336,8 @@ fn sweep_bands(
         _ => {
             let (one, other) = bands.split_at_mut(bands.len() / 2);
             rayon::join(
-                || sweep_bands(level, one, model, step, springs, energies),
-                || sweep_bands(level, other, model, step, springs, energies),
+                || sweep(level, one, model, step, springs, energies),
+                || sweep(level, other, model, step, springs, energies),
             );
         }
     }
