@@ -200,7 +200,7 @@ fn lattice_force(model: &Model, b: usize, u: [f64; 2], displacement: impl Fn(usi
         });
         [own[0] - behind[0], own[1] - behind[1]]
     };
-    let [e, n, ne, nw] = Bond::ALL.each_ref().map(|bond| pair(bond));
+    let [e, n, ne, nw] = Bond::ALL.each_ref().map(pair);
     [(e[0] + n[0]) + (ne[0] + nw[0]), (e[1] + n[1]) + (ne[1] + nw[1])]
 }
 

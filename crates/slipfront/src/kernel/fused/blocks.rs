@@ -194,7 +194,7 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
             let straight = square(east) + square(north);
             let diagonal = square(north_east) + square(north_west);
             let held = straight + splat(simd, 2.0) * diagonal;
-            *energy = *energy + where_present(simd, blocks[c], [held, held])[0];
+            *energy += where_present(simd, blocks[c], [held, held])[0];
         }
     }
     *west = before;
@@ -408,8 +408,8 @@ pub(super) fn friction<S: Simd, const ENERGY: bool>(
         let motion = where_present(simd, blocks[c], add(before, after));
         sums.displacement = add(sums.displacement, where_present(simd, blocks[c], displacement));
         sums.velocity = add(sums.velocity, after);
-        sums.motion_square = sums.motion_square + square(motion);
-        sums.friction_work = sums.friction_work - dot(against, motion);
+        sums.motion_square += square(motion);
+        sums.friction_work -= dot(against, motion);
         sums.speed_square = sums.speed_square.max(square(after));
         // Eq. 10; for a stuck block F_f + F_c = -F_s to the last bit.
         let stress = select(slides, subtract(lattice, rubbing), drive);
@@ -418,8 +418,8 @@ pub(super) fn friction<S: Simd, const ENERGY: bool>(
         if ENERGY {
             let stretch_square = square(drive_stretch(simd, step, displacement));
             let squares = where_present(simd, blocks[c], [square(before) + square(after), stretch_square]);
-            sums.velocity_squares = sums.velocity_squares + squares[0];
-            sums.stretch_square = sums.stretch_square + squares[1];
+            sums.velocity_squares += squares[0];
+            sums.stretch_square += squares[1];
         }
 
         let slides = bits(slides);

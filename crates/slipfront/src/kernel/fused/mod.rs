@@ -267,9 +267,8 @@ impl Fused {
             self.stress_square_max = self.stress_square_max.max(sums.stress_square);
             wake = wake.min(if tile.moving { 0 } else { tile.wake });
         }
-        for axis in 0..2 {
-            totals.velocity[axis] = 0.5 * (before[axis] + totals.velocity_after[axis]);
-        }
+        let after = totals.velocity_after;
+        totals.velocity = [0.5 * (before[0] + after[0]), 0.5 * (before[1] + after[1])];
         (self.latest, self.speed, self.wake) = (totals, speed_square.sqrt(), wake);
     }
 
