@@ -91,6 +91,7 @@ for size in "${sizes[@]}"; do
   surface=("$size" "$folder/mu_s.f64" "$folder/mu_k.f64" "$steps")
   for ((round = 0; round < rounds; round++)); do
     record "$size" slipfront "$("$built/examples/step_cost" "${surface[@]}")"
+    record "$size" "slipfront, every block at every step" "$("$built/examples/step_cost" "${surface[@]}" --no-skip)"
     record "$size" "LAMMPS, no friction" \
       "$(run_lammps "$folder" "$steps" | awk '/^Loop time/ { print "-", "-", $4 * 1e9 / $9 / $12 }')"
     record "$size" "C, -O3 -march=native" "$("$work/lattice" "${surface[@]}")"

@@ -5,19 +5,27 @@
 //! ```
 //!
 //! A slider of 50 x 50 blocks; the two files hold the local coefficients, row by row from y = 0, as
-//! little-endian f64. Prints mu_s*, the step of the peak and nanoseconds per block and step of the loop alone.
+//! little-endian f64. `--no-skip` steps every block at every step, also at rest. Prints mu_s*, the step of the peak and nanoseconds per block and step of the loop alone.
 //! `benches/peers/run.sh` holds other programs against it.
 
 use std::error::Error;
 use std::time::Instant;
 
 use slipfront::surface::{Coefficients, Load};
-use slipfront::{Drive, FrictionLaw, Lattice, Model, Simulation, Surface, scales};
+use slipfront::{Drive, Execution, FrictionLaw, Lattice, Model, Simulation, Surface, scales};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [size, mu_static, mu_kinetic, steps] = arguments.as_slice() else {
-        return Err("usage: step_cost SIZE MU_STATIC.f64 MU_KINETIC.f64 STEPS".into());
+    let (inputs, skips) = match arguments.as_slice() {
+        [inputs @ .., last] if last == "--no-skip" => (inputs, false),
+        inputs => (inputs, true),
+    };
+    let [size, mu_static, mu_kinetic, steps] = inputs else {
+        return Err("usage: step_cost SIZE MU_STATIC.f64 MU_KINETIC.f64 STEPS [--no-skip]".into());
+    };
+    let execution = Execution {
+        skips,
+        ..Execution::default()
     };
     let (size, steps): (usize, u64) = (size.parse()?, steps.parse()?);
     let lattice = Lattice::free(size, size);
@@ -32,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         1e-6,
         FrictionLaw::Projection,
     );
-    let mut simulation = Simulation::at_rest(&model, 0.1);
+    let mut simulation = Simulation::executed(&model, 0.1, None, execution);
 
     let began = Instant::now();
     for _ in 0..steps {
