@@ -1,5 +1,5 @@
 //! Orders of convergence in the time step, asserted: 2 where the motion is smooth, 1 where blocks start and
-//! stop.
+//! stop. On the fused kernel; the same on the reference kernel: `convergence_on_reference`.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -8,9 +8,14 @@ mod common;
 
 use rstest::rstest;
 use slipfront::known_answers::SlipCycle;
-use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, State, Surface, VectorField, scales};
+use slipfront::{
+    Drive, Edges, FrictionLaw, Kernel, Lattice, Model, Simulation, State, Surface, VectorField, scales,
+};
 
-use common::Slider;
+use common::{Slider, at_rest, from_state};
+
+/// What steps the simulations of this binary.
+const KERNEL: Kernel = Kernel::Fused;
 
 /// Slope of log(error) against log(step) by least squares: the order.
 fn order(steps: &[f64], errors: &[f64]) -> f64 {
@@ -45,31 +50,38 @@ fn smooth_motion(model: &Model, time: f64, steps: u32) -> (VectorField, VectorFi
         y: wave(0.91, 1.4),
     };
     // At rest at t = 0: half a step earlier the velocity is minus that of half a step later.
-    let rest = State::moving(bent.clone(), VectorField::zeros(n));
-    let at_rest = Simulation::from_state(model, dt, rest);
-    let forces = at_rest.snapshot().forces;
-    let before = |drive: &[f64], lattice: &[f64]| {
-        drive
-            .iter()
-            .zip(lattice)
-            .map(|(d, l)| -0.5 * dt * (d + l))
-            .collect::<Vec<_>>()
+    let state = |velocity| State {
+        displacement: bent.clone(),
+        velocity,
+    };
+    let at_rest = from_state(model, dt, state(VectorField::zeros(n)));
+    let before = |axis: usize| {
+        let pull = |b| {
+            let block = at_rest.snapshot().block(b);
+            -0.5 * dt * (block.force_drive[axis] + block.force_lattice[axis])
+        };
+        (0..n).map(pull).collect::<Vec<_>>()
     };
     let velocity = VectorField {
-        x: before(&forces.drive.x, &forces.lattice.x),
-        y: before(&forces.drive.y, &forces.lattice.y),
+        x: before(0),
+        y: before(1),
     };
-    let mut simulation = Simulation::from_state(model, dt, State::moving(bent, velocity));
-    for _ in 0..steps {
+    let mut simulation = from_state(model, dt, state(velocity));
+    for _ in 1..steps {
         simulation.step();
     }
-    let now = simulation.snapshot();
+    let before = simulation.state().velocity;
+    simulation.step();
+    let State {
+        displacement,
+        velocity: after,
+    } = simulation.state();
     let mean = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| 0.5 * (a + b)).collect();
     let velocity = VectorField {
-        x: mean(&now.state.velocity.x, &now.forces.velocity_after.x),
-        y: mean(&now.state.velocity.y, &now.forces.velocity_after.y),
+        x: mean(&before.x, &after.x),
+        y: mean(&before.y, &after.y),
     };
-    (now.state.displacement.clone(), velocity)
+    (displacement, velocity)
 }
 
 fn distance(a: &VectorField, b: &VectorField) -> f64 {
@@ -115,7 +127,7 @@ fn first_slip(v_star: f64, dt_star: f64) -> (u64, u64) {
         ..Slider::default().uniform()
     };
     let model = slider.model();
-    let mut simulation = Simulation::at_rest(&model, dt_star);
+    let mut simulation = at_rest(&model, dt_star);
     let slides = |simulation: &Simulation| {
         assert!(simulation.time_star() * v_star < 8.0, "neither slips nor stops");
         simulation.snapshot().point.n_sliding > 0
@@ -170,11 +182,11 @@ fn in_transition(seed: u64, steps: u32) -> VectorField {
         ..Slider::default()
     };
     let model = slider.model();
-    let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+    let mut simulation = at_rest(&model, slider.dt_star);
     for _ in 0..steps {
         simulation.step();
     }
-    simulation.state().displacement.clone()
+    simulation.state().displacement
 }
 
 const TRANSITION: f64 = 27.0;
