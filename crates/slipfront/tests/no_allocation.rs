@@ -8,7 +8,7 @@ use std::cell::Cell;
 use slipfront::observe::frames::{Field, Selection};
 use slipfront::observe::{Curve, Instants, KineticHistory, KineticStart, Schedule, Scheduled};
 use slipfront::surface::{Coefficients, Distribution, Load};
-use slipfront::{Drive, Execution, FrictionLaw, Kernel, Lattice, Model, Simulation, State, Stop, Surface};
+use slipfront::{Drive, Execution, FrictionLaw, Kernel, Lattice, Model, Simulation, Stop, Surface};
 
 /// The system's allocator, counting calls per thread.
 struct Counting;
@@ -95,7 +95,7 @@ fn a_step_allocates_nothing() {
                 kernel,
                 ..Execution::default()
             };
-            let mut simulation = Simulation::executed(&model, 0.1, State::at_rest(625), execution);
+            let mut simulation = Simulation::executed(&model, 0.1, None, execution);
             let calls = allocations(|| (0..1000).for_each(|_| simulation.step()));
             assert_eq!(calls, 0, "{law:?} {kernel:?}");
             // 1000 steps go through onset, which comes at t* = 82 here.

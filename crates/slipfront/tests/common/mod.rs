@@ -11,11 +11,15 @@ use slipfront::{
 
 /// A slider at rest, stepped by the kernel that this binary tests.
 pub(crate) fn at_rest(model: &Model, dt_star: f64) -> Simulation<'_> {
-    from_state(model, dt_star, State::at_rest(model.lattice.n_blocks()))
+    executed(model, dt_star, None)
 }
 
 /// A slider in a given state, stepped by the kernel that this binary tests.
 pub(crate) fn from_state(model: &Model, dt_star: f64, state: State) -> Simulation<'_> {
+    executed(model, dt_star, Some(state))
+}
+
+fn executed(model: &Model, dt_star: f64, state: Option<State>) -> Simulation<'_> {
     let execution = Execution {
         kernel: crate::KERNEL,
         ..Execution::default()
