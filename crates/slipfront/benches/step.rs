@@ -1,12 +1,11 @@
-//! Cost of a step of the reference kernel, in block-steps per second, on the baseline of Fig. 3 once it
-//! slides.
+//! Cost of a step of either kernel, in block-steps per second, on the baseline of Fig. 3 once it slides.
 
 #![allow(missing_docs)] // Criterion's macros make public functions without a word.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use slipfront::known_answers::first_slip_time_star;
 use slipfront::surface::{Coefficients, Distribution, Load};
-use slipfront::{Drive, FrictionLaw, Lattice, Model, Simulation, Surface, scales};
+use slipfront::{Drive, Execution, FrictionLaw, Kernel, Lattice, Model, Simulation, Surface, scales};
 
 fn baseline(n: usize) -> Model {
     let lattice = Lattice::free(n, n);
@@ -27,11 +26,17 @@ fn baseline(n: usize) -> Model {
     )
 }
 
-fn step(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("reference_step");
-    for n in [25, 50, 200] {
+fn step(criterion: &mut Criterion, group: &str, kernel: Kernel) {
+    let mut group = criterion.benchmark_group(group);
+    for n in [25, 50, 200, 512] {
         let model = baseline(n);
-        let mut simulation = Simulation::at_rest(&model, 0.1);
+        // Every block at every step: what is measured does not hang on where the slider happens to rest.
+        let execution = Execution {
+            kernel,
+            skips: false,
+            ..Execution::default()
+        };
+        let mut simulation = Simulation::executed(&model, 0.1, None, execution);
         // Past the transition, when blocks stick and slip: the steps that a run is made of.
         let surface = &model.surface;
         let first = first_slip_time_star(&surface.mu_static, &surface.mu_kinetic, 1.0, 0.03);
@@ -46,5 +51,13 @@ fn step(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, step);
+fn reference(criterion: &mut Criterion) {
+    step(criterion, "reference_step", Kernel::Reference);
+}
+
+fn fused(criterion: &mut Criterion) {
+    step(criterion, "fused_step", Kernel::Fused);
+}
+
+criterion_group!(benches, reference, fused);
 criterion_main!(benches);

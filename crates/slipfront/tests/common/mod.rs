@@ -5,7 +5,27 @@ use slipfront::observe::{Curve, CurveRow, Kinetic, KineticHistory, KineticStart,
 use slipfront::surface::{
     Cavity, Coefficients, Distribution, Groove, Load, Orientation, Texture, cavity_lambda, mesh,
 };
-use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, Stop, Surface, scales};
+use slipfront::{
+    Drive, Edges, Execution, FrictionLaw, Lattice, Model, Simulation, State, Stop, Surface, scales,
+};
+
+/// A slider at rest, stepped by the kernel that this binary tests.
+pub(crate) fn at_rest(model: &Model, dt_star: f64) -> Simulation<'_> {
+    executed(model, dt_star, None)
+}
+
+/// A slider in a given state, stepped by the kernel that this binary tests.
+pub(crate) fn from_state(model: &Model, dt_star: f64, state: State) -> Simulation<'_> {
+    executed(model, dt_star, Some(state))
+}
+
+fn executed(model: &Model, dt_star: f64, state: Option<State>) -> Simulation<'_> {
+    let execution = Execution {
+        kernel: crate::KERNEL,
+        ..Execution::default()
+    };
+    Simulation::executed(model, dt_star, state, execution)
+}
 
 /// A run described by the groups of Eq. 11. The default is the baseline of Fig. 3.
 #[derive(Clone, Debug)]
@@ -105,7 +125,7 @@ impl Slider {
     /// Runs until the first peak is over, to t* = 8/V* at most.
     pub(crate) fn onset(&self) -> Peak {
         let model = self.model();
-        let mut simulation = Simulation::at_rest(&model, self.dt_star);
+        let mut simulation = at_rest(&model, self.dt_star);
         simulation
             .run(Stop::after_onset(self.steps(8.0)), &mut [])
             .unwrap();
@@ -131,7 +151,7 @@ impl Slider {
     fn observed(&self, turns: f64, others: &mut [&mut dyn Observer]) -> (Peak, Option<Kinetic>) {
         let model = self.model();
         let steps = self.steps(turns);
-        let mut simulation = Simulation::at_rest(&model, self.dt_star);
+        let mut simulation = at_rest(&model, self.dt_star);
         let mut history = KineticHistory::new(steps);
         let mut observers = vec![Scheduled::always(&mut history)];
         observers.extend(others.iter_mut().map(|o| Scheduled::always(*o)));

@@ -11,9 +11,12 @@ mod common;
 
 use rstest::rstest;
 use slipfront::surface::{Coefficients, Distribution, Load, Orientation, Texture};
-use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Scales, Simulation, Surface, scales};
+use slipfront::{Drive, Edges, FrictionLaw, Kernel, Lattice, Model, Scales, Surface, scales};
 
-use common::{Slider, cavity, groove};
+use common::{Slider, at_rest, cavity, groove};
+
+/// What steps the simulations of this binary.
+const KERNEL: Kernel = Kernel::Fused;
 
 /// The slider of the texture figures: 50 x 50 blocks, sigma_s* = 0.
 fn textured(textures: Vec<Texture>, seed: u64) -> Slider {
@@ -496,7 +499,7 @@ fn table_1(case: usize, corrected: bool) -> Model {
 /// mu* at the same times t* up to the end of the transition, largest difference from case 8.
 fn difference_from_case_8(case: usize, corrected: bool) -> f64 {
     let (one, other) = (table_1(case, corrected), table_1(7, false));
-    let (mut one, mut other) = (Simulation::at_rest(&one, 0.1), Simulation::at_rest(&other, 0.1));
+    let (mut one, mut other) = (at_rest(&one, 0.1), at_rest(&other, 0.1));
     let mut largest = 0.0_f64;
     while !other.peak().ended {
         assert!(other.time_star() < 200.0, "no transition");

@@ -2,19 +2,17 @@
 
 use rstest::rstest;
 use slipfront::known_answers::first_slip_time_star;
-use slipfront::observe::{FirstSlip, Scheduled};
+use slipfront::observe::FirstSlip;
 use slipfront::surface::{Coefficients, Load};
-use slipfront::{Contact, Drive, FrictionLaw, Lattice, Model, Simulation, Stop, Surface};
+use slipfront::{Drive, FrictionLaw, Lattice, Model, Stop, Surface};
 
-use crate::common::Slider;
+use crate::common::{Slider, at_rest};
 
 fn first_slip(model: &Model, dt_star: f64) -> FirstSlip {
-    let mut first = FirstSlip::none(&model.surface);
     let steps = (4.0 / model.drive.v_star / dt_star) as u64;
-    Simulation::at_rest(model, dt_star)
-        .run(Stop::at_step(steps), &mut [Scheduled::always(&mut first)])
-        .unwrap();
-    first
+    let mut simulation = at_rest(model, dt_star);
+    simulation.run(Stop::at_step(steps), &mut []).unwrap();
+    FirstSlip::of(&simulation)
 }
 
 /// The first instant at which the force exceeds the threshold: at most one step late, never early; rounding
@@ -89,15 +87,13 @@ fn friction_balances_all_other_forces_until_then() {
         ..Slider::default()
     };
     let model = slider.model();
-    let mut simulation = Simulation::at_rest(&model, 0.1);
+    let mut simulation = at_rest(&model, 0.1);
     while simulation.time_star() < model.first_slip_estimate() - 0.1 {
-        let forces = simulation.snapshot().forces;
         for b in 0..model.lattice.n_blocks() {
-            let (drive, lattice, friction) =
-                (forces.drive.at(b), forces.lattice.at(b), forces.friction.at(b));
-            assert_eq!(friction, [-drive[0], -drive[1]]);
-            assert_eq!(lattice, [0.0, 0.0]);
-            assert_eq!(forces.contact_after[b], Contact::Stuck);
+            let block = simulation.snapshot().block(b);
+            assert_eq!(block.force_friction, block.force_drive.map(|f| -f));
+            assert_eq!(block.force_lattice, [0.0, 0.0]);
+            assert!(!block.slides());
         }
         simulation.step();
     }

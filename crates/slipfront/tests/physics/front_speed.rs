@@ -3,8 +3,10 @@
 use rstest::rstest;
 use slipfront::known_answers::{Facing, front_speed};
 use slipfront::lattice::K_STRAIGHT;
-use slipfront::observe::{FirstSlip, Scheduled};
-use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, Stop, Surface};
+use slipfront::observe::FirstSlip;
+use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Stop, Surface};
+
+use crate::common::at_rest;
 
 const COLUMNS: usize = 80;
 const KINETIC: f64 = 0.25;
@@ -16,7 +18,7 @@ fn strip(rows: usize, direction: [f64; 2], tau: f64) -> Model {
     let lattice = Lattice::with_edges(COLUMNS, rows, [Edges::Free, edges]);
     let mut surface = Surface::uniform(&lattice, 1.0, KINETIC);
     for j in 0..rows {
-        surface.hold[lattice.block(0, j)] = 0.0;
+        surface.mu_static[lattice.block(0, j)] = 0.0;
     }
     let force = KINETIC + tau * (1.0 - KINETIC);
     let drive = Drive {
@@ -30,11 +32,10 @@ fn strip(rows: usize, direction: [f64; 2], tau: f64) -> Model {
 
 /// Time for which the front stays at a column, over the second half of the strip.
 fn measured_delay(model: &Model, dt: f64, expected: f64) -> f64 {
-    let mut first = FirstSlip::none(&model.surface);
     let steps = (1.2 * COLUMNS as f64 * expected / dt) as u64;
-    Simulation::at_rest(model, dt)
-        .run(Stop::at_step(steps), &mut [Scheduled::always(&mut first)])
-        .unwrap();
+    let mut simulation = at_rest(model, dt);
+    simulation.run(Stop::at_step(steps), &mut []).unwrap();
+    let first = FirstSlip::of(&simulation);
     let (from, to) = (COLUMNS / 2, COLUMNS - 10);
     (first.time_star[to] - first.time_star[from]) / (to - from) as f64
 }

@@ -5,7 +5,9 @@ use std::f64::consts::{PI, TAU};
 use rstest::rstest;
 use slipfront::known_answers::{LatticeWave, lattice_waves, leapfrog_frequency};
 use slipfront::lattice::{K_DRIVE, POISSON_RATIO, dt_star_limit};
-use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, State, Surface, VectorField, scales};
+use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, State, Surface, VectorField, scales};
+
+use crate::common::from_state;
 
 /// A lattice that rests on nothing: linear springs, no friction, drive springs that hold it in place.
 fn floating(nx: usize, ny: usize, omega_star: f64, k_drive: f64) -> Model {
@@ -56,15 +58,18 @@ fn inner(a: &VectorField, b: &VectorField) -> f64 {
 fn amplitudes(model: &Model, shape: &VectorField, dt: f64, steps: usize, frequency: f64) -> (Vec<f64>, f64) {
     // Leapfrog's own swing: u(n dt) = cos(w n dt), so that the velocity half a step before 0 is this.
     let before = (1.0 - (frequency * dt).cos()) / dt;
-    let state = State::moving(shape.clone(), scaled(shape, before));
-    let mut simulation = Simulation::from_state(model, dt, state);
+    let state = State {
+        displacement: shape.clone(),
+        velocity: scaled(shape, before),
+    };
+    let mut simulation = from_state(model, dt, state);
     let norm = inner(shape, shape);
     let (mut found, mut stray) = (Vec::with_capacity(steps), 0.0_f64);
     for _ in 0..steps {
         simulation.step();
-        let u = &simulation.state().displacement;
-        let amplitude = inner(u, shape) / norm;
-        let rest = inner(u, u) / norm - amplitude * amplitude;
+        let u = simulation.state().displacement;
+        let amplitude = inner(&u, shape) / norm;
+        let rest = inner(&u, &u) / norm - amplitude * amplitude;
         stray = stray.max(rest.abs());
         found.push(amplitude);
     }

@@ -1,9 +1,15 @@
-//! Exact answers: every law of the model that has a closed solution, on the reference kernel.
+//! Exact answers: every law of the model that has a closed solution, on the fused kernel. The same on the reference kernel:
+//! `physics_on_reference`.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
 #[path = "../common/mod.rs"]
 mod common;
+
+use slipfront::Kernel;
+
+/// What steps the simulations of this binary.
+const KERNEL: Kernel = Kernel::Fused;
 
 mod energy;
 mod first_slip;

@@ -3,9 +3,9 @@
 use rstest::rstest;
 use slipfront::observe::frames::{Field, Selection};
 use slipfront::observe::{FirstSlip, Instants, KineticStart, Observer, Scheduled};
-use slipfront::{RunError, Simulation, Stop, StopReason};
+use slipfront::{RunError, Stop, StopReason};
 
-use crate::common::{Slider, cavity};
+use crate::common::{Slider, at_rest, cavity};
 
 fn textured() -> Slider {
     Slider {
@@ -30,14 +30,11 @@ fn instants_are_those_of_their_definitions(#[case] slider: Slider, #[case] kinet
         stride: 3,
     };
     let mut instants = Instants::new(selection.clone(), kinetic, end);
-    let mut first = FirstSlip::none(&model.surface);
-    let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+    let mut simulation = at_rest(&model, slider.dt_star);
     simulation
-        .run(
-            Stop::at_step(steps),
-            &mut [Scheduled::always(&mut instants), Scheduled::always(&mut first)],
-        )
+        .run(Stop::at_step(steps), &mut [Scheduled::always(&mut instants)])
         .unwrap();
+    let first = FirstSlip::of(&simulation);
     let peak = simulation.peak();
     let found = instants.found();
     let letters: String = found.iter().map(|(letter, _)| *letter).collect();
@@ -81,7 +78,7 @@ fn instants_are_those_of_their_definitions(#[case] slider: Slider, #[case] kinet
         assert_eq!(frame.values.len(), 3);
         assert!(frame.values.iter().all(|field| field.len() == 9 * 9));
         // The fields belong to the same step as the curve: the run repeated up to it shows the same.
-        let mut again = Simulation::at_rest(&model, slider.dt_star);
+        let mut again = at_rest(&model, slider.dt_star);
         again.run(Stop::at_step(frame.step), &mut []).unwrap();
         let exact = selection.capture(&again.snapshot());
         for (one, other) in frame.values.iter().flatten().zip(exact.values.iter().flatten()) {
@@ -106,7 +103,7 @@ fn without_a_fall_there_is_no_transition() {
         stride: 1,
     };
     let mut instants = Instants::new(selection, KineticStart::Auto, steps as f64 * slider.dt_star);
-    let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+    let mut simulation = at_rest(&model, slider.dt_star);
     simulation
         .run(Stop::at_step(steps), &mut [Scheduled::always(&mut instants)])
         .unwrap();
@@ -121,14 +118,14 @@ fn without_a_fall_there_is_no_transition() {
 fn a_run_may_stop_as_soon_as_the_fall_is_seen() {
     let slider = Slider::default();
     let model = slider.model();
-    let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+    let mut simulation = at_rest(&model, slider.dt_star);
     let reason = simulation.run(Stop::after_onset(slider.steps(8.0)), &mut []);
     assert_eq!(reason, Ok(StopReason::Onset));
     let rows = slider.run(8.0).rows;
     let (step, peak) = (simulation.snapshot().step as usize, simulation.peak());
     let half_way = 0.5 * (peak.mu_star + model.steady_level());
     assert!(rows[step].point.mu_star <= half_way && rows[step - 1].point.mu_star > half_way);
-    let reason = Simulation::at_rest(&model, slider.dt_star).run(Stop::after_onset(100), &mut []);
+    let reason = at_rest(&model, slider.dt_star).run(Stop::after_onset(100), &mut []);
     assert_eq!(reason, Ok(StopReason::End));
 }
 
@@ -140,7 +137,7 @@ fn time_is_a_product() {
         ..Slider::default()
     };
     let model = slider.model();
-    let mut simulation = Simulation::at_rest(&model, 0.1);
+    let mut simulation = at_rest(&model, 0.1);
     for step in 1..=10_000_u32 {
         simulation.step();
         assert_eq!(simulation.time_star(), f64::from(step) * 0.1);
@@ -160,7 +157,7 @@ fn a_diverging_run_is_reported() {
         ..textured()
     };
     let model = slider.model();
-    let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+    let mut simulation = at_rest(&model, slider.dt_star);
     let found = simulation.run(Stop::at_step(100_000), &mut []);
     let Err(RunError::NotFinite { step, value, .. }) = found else {
         panic!("it ran: {found:?}")
@@ -178,12 +175,13 @@ fn mu_star_is_the_mean_pull_along_and_across_the_drive() {
         ..textured()
     };
     let model = slider.model();
-    let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+    let mut simulation = at_rest(&model, slider.dt_star);
     let mut lateral = 0.0_f64;
     for _ in 0..1500 {
         simulation.step();
         let now = simulation.snapshot();
-        let pull = [&now.forces.drive.x, &now.forces.drive.y].map(|f| f.iter().sum::<f64>() / 625.0);
+        let mean = |axis: usize| (0..625).map(|b| now.block(b).force_drive[axis]).sum::<f64>() / 625.0;
+        let pull = [mean(0), mean(1)];
         let (s, c) = 30.0_f64.to_radians().sin_cos();
         assert!((now.point.mu_star - (pull[0] * c + pull[1] * s)).abs() < 1e-13);
         assert!((now.point.mu_lateral_star - (pull[1] * c - pull[0] * s)).abs() < 1e-13);
@@ -207,7 +205,7 @@ fn what_comes_after_the_windows_is_neither_d_nor_e() {
     };
     for (kinetic, e_until) in [(KineticStart::Auto, 2.5), (KineticStart::At(220.0), 220.0)] {
         let mut instants = Instants::new(selection.clone(), kinetic, 267.0);
-        let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+        let mut simulation = at_rest(&model, slider.dt_star);
         simulation
             .run(
                 Stop::after_onset(slider.steps(8.0)),

@@ -3,7 +3,9 @@
 
 use rstest::rstest;
 use slipfront::surface::{Coefficients, Distribution, Load};
-use slipfront::{Drive, FrictionLaw, Lattice, Model, Scales, Simulation, Surface, scales};
+use slipfront::{Drive, FrictionLaw, Lattice, Model, Scales, Surface, scales};
+
+use crate::common::at_rest;
 
 const SLIDERS: [Scales; 4] = [
     // Cases 8 and 1 of Table 1, and two of other materials, block sizes and coefficients.
@@ -62,7 +64,7 @@ fn model(scales: &Scales, epsilon: f64) -> Model {
 /// Largest difference of mu* between two sliders up to a little past the peak of the first.
 fn difference(one: &Model, other: &Model) -> f64 {
     let dt = 0.1;
-    let (mut one, mut other) = (Simulation::at_rest(one, dt), Simulation::at_rest(other, dt));
+    let (mut one, mut other) = (at_rest(one, dt), at_rest(other, dt));
     let mut largest = 0.0_f64;
     while !one.peak().ended {
         assert!(one.time_star() < 200.0, "no transition");

@@ -1,10 +1,9 @@
 //! One block, and a uniform lattice, which moves as one: slip, stop, stick, and slip again.
 
 use rstest::rstest;
-use slipfront::Simulation;
 use slipfront::known_answers::SlipCycle;
 
-use crate::common::Slider;
+use crate::common::{Slider, at_rest};
 
 fn one_block(omega_star: f64, v_star: f64, dt_star: f64) -> Slider {
     Slider {
@@ -70,7 +69,7 @@ struct Slip {
 
 fn first_slip(slider: &Slider) -> Slip {
     let model = slider.model();
-    let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+    let mut simulation = at_rest(&model, slider.dt_star);
     let (mut start, mut largest) = (None, 0.0_f64);
     loop {
         let now = simulation.snapshot();
@@ -149,7 +148,7 @@ fn the_mean_force_over_a_cycle(
     };
     let exact = SlipCycle::new(omega_star, 0.5, 0.1);
     let model = slider.model();
-    let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+    let mut simulation = at_rest(&model, slider.dt_star);
     let (mut starts, mut sum, mut slid) = (Vec::new(), 0.0, false);
     while starts.len() < 4 {
         let now = simulation.snapshot();
@@ -220,7 +219,7 @@ fn one_block_moves_along_the_drive() {
         ..one_block(0.1, 0.03, 0.05)
     };
     let model = slider.model();
-    let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+    let mut simulation = at_rest(&model, slider.dt_star);
     for _ in 0..slider.steps(8.0) {
         simulation.step();
         let [x, y] = simulation.state().displacement.at(0);

@@ -19,13 +19,11 @@ use crate::common::{Slider, cavity};
 #[case(Slider { omega_star: 2.0, load: Load::Kept, textures: vec![cavity([25, 25], 12.0, 1, 0.3, false)], ..Slider::default() })]
 fn strong_damping_ends_in_steady_sliding(#[case] slider: Slider) {
     let surface = slider.surface();
-    let mean = surface
-        .mu_kinetic
-        .iter()
-        .zip(&surface.normal_forces)
-        .map(|(mu, f)| mu * f)
+    let n = surface.n_blocks();
+    let mean = (0..n)
+        .map(|b| surface.mu_kinetic[b] * surface.normal_force(b))
         .sum::<f64>()
-        / surface.n_blocks() as f64;
+        / n as f64;
     let exact = steady_level(mean, slider.omega_star, slider.v_star);
     assert!((slider.model().steady_level() - exact).abs() < 1e-13);
     let outcome = slider.run(20.0);

@@ -2,10 +2,11 @@
 
 use rstest::rstest;
 use slipfront::known_answers::{Facing, groove_edge_factor};
+use slipfront::observe::FirstSlip;
 use slipfront::surface::Orientation;
-use slipfront::{Edges, Simulation};
+use slipfront::{Edges, Stop};
 
-use crate::common::{Slider, groove};
+use crate::common::{Slider, at_rest, groove};
 
 #[rstest]
 #[case(Facing::Across, 2.188312)]
@@ -46,13 +47,13 @@ fn rows_beside_a_groove_bear_their_factor(
             Orientation::Across => 1,
             Orientation::Along => blocks[0],
         };
-    let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+    let mut simulation = at_rest(&model, slider.dt_star);
     let mut loads = Vec::new();
     for _ in 0..2 {
         for _ in 0..800 {
             simulation.step();
         }
-        let [x, y] = simulation.snapshot().forces.friction.at(edge);
+        let [x, y] = simulation.snapshot().block(edge).force_friction;
         assert!(y.abs() < 1e-12);
         loads.push(x.abs());
     }
@@ -85,14 +86,9 @@ fn the_first_slip_beside_a_groove_comes_as_much_earlier(
         ..Slider::default().uniform()
     };
     let model = slider.model();
-    let mut first = slipfront::observe::FirstSlip::none(&model.surface);
-    Simulation::at_rest(&model, slider.dt_star)
-        .run(
-            slipfront::Stop::at_step(slider.steps(2.5)),
-            &mut [slipfront::observe::Scheduled::always(&mut first)],
-        )
-        .unwrap();
+    let mut simulation = at_rest(&model, slider.dt_star);
+    simulation.run(Stop::at_step(slider.steps(2.5)), &mut []).unwrap();
     let exact = (20.0 / 15.0) / (0.375 * slider.v_star * groove_edge_factor(facing, 5));
-    let found = first.earliest.unwrap();
+    let found = FirstSlip::of(&simulation).earliest.unwrap();
     assert!((found / exact - 1.0).abs() < 3e-3, "{found}, exactly {exact}");
 }

@@ -8,15 +8,14 @@ mod common;
 
 use proptest::prelude::*;
 use slipfront::observe::frames::{Field, Selection};
-use slipfront::observe::{
-    Curve, FirstSlip, Instants, KineticHistory, KineticStart, Observer, Scheduled, StressMaximum,
-};
+use slipfront::observe::{Curve, Instants, KineticHistory, KineticStart, Observer, Scheduled};
 use slipfront::surface::{Cavity, Groove, Load, Orientation, Texture, mesh};
-use slipfront::{
-    Contact, Drive, Edges, FrictionLaw, Lattice, Model, Simulation, State, Stop, Surface, VectorField,
-};
+use slipfront::{Drive, Edges, FrictionLaw, Kernel, Lattice, Model, State, Stop, Surface, VectorField};
 
-use common::Slider;
+use common::{Slider, at_rest, from_state};
+
+/// What steps the simulations of this binary.
+const KERNEL: Kernel = Kernel::Fused;
 
 fn edges() -> impl Strategy<Value = [Edges; 2]> {
     let one = || prop_oneof![Just(Edges::Free), Just(Edges::Periodic)];
@@ -133,11 +132,11 @@ proptest! {
         prop_assert_eq!(&surface.textured, &textured);
         prop_assert_eq!(surface.n_contact(), n - n_textured);
         prop_assert!((surface.texture_percent() - 100.0 * n_textured as f64 / n as f64).abs() < 1e-12);
-        let load: f64 = surface.normal_forces.iter().sum();
+        let load: f64 = (0..n).map(|b| surface.normal_force(b)).sum();
         let carried = if slider.load == Load::Kept { n - n_textured } else { n };
         prop_assert!((load / carried as f64 - 1.0).abs() < 1e-12);
         for (b, &over) in textured.iter().enumerate() {
-            let felt = [surface.hold[b], surface.slide[b], surface.normal_forces[b]];
+            let felt = [surface.hold(b), surface.slide(b), surface.normal_force(b)];
             let nothing = felt == [0.0; 3];
             prop_assert!(felt.iter().all(|&f| f >= 0.0) && (!over || nothing));
         }
@@ -214,22 +213,20 @@ proptest! {
         prop_assume!(has_contact(&slider));
         let model = slider.model();
         let n = model.lattice.n_blocks();
-        let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+        let mut simulation = at_rest(&model, slider.dt_star);
         let selection = Selection { fields: vec![Field::ContactStress, Field::Traction, Field::Sliding], stride: 2 };
         let mut instants = Instants::new(selection, KineticStart::Auto, 30.0 * slider.dt_star);
-        let (mut curve, mut first) = (Curve::every(1), FirstSlip::none(&model.surface));
-        let (mut history, mut largest) = (KineticHistory::new(30), StressMaximum::default());
+        let (mut curve, mut history) = (Curve::every(1), KineticHistory::new(30));
         simulation.run(Stop::at_step(30), &mut [
             Scheduled::always(&mut instants),
             Scheduled::always(&mut curve),
-            Scheduled::always(&mut first),
             Scheduled::always(&mut history),
-            Scheduled::always(&mut largest),
         ]).unwrap();
-        let now = simulation.snapshot();
+        let (now, state) = (simulation.snapshot(), simulation.state());
         let finite = |f: &VectorField| f.x.iter().chain(&f.y).all(|v| v.is_finite());
-        prop_assert!(finite(&now.state.displacement) && finite(&now.state.velocity));
-        prop_assert!(finite(&now.forces.friction) && largest.value().is_finite());
+        prop_assert!(finite(&state.displacement) && finite(&state.velocity));
+        prop_assert!((0..n).all(|b| now.block(b).force_friction.iter().all(|f| f.is_finite())));
+        prop_assert!(simulation.contact_stress_max().is_finite());
         prop_assert_eq!(curve.rows.len(), 31);
         for (step, row) in curve.rows.iter().enumerate() {
             prop_assert_eq!(row.step, step as u64);
@@ -239,10 +236,11 @@ proptest! {
             prop_assert!((0.0..=100.0).contains(&row.point.sliding_percent));
             prop_assert!((row.point.sliding_percent - 100.0 * row.point.n_sliding as f64 / n as f64).abs() < 1e-12);
         }
-        for b in 0..n {
-            let moves = now.forces.velocity_after.at(b) != [0.0, 0.0];
-            prop_assert_eq!(now.forces.contact_after[b] == Contact::Sliding, moves);
-        }
+        let moving = |b: &usize| state.velocity.at(*b) != [0.0, 0.0];
+        prop_assert!((0..n).all(|b| now.block(b).slides() == moving(&b)));
+        prop_assert_eq!(now.point.n_sliding, (0..n).filter(moving).count());
+        let slips = |b: &usize| moving(b) && !model.surface.textured[*b];
+        prop_assert_eq!(now.totals.n_slipping, (0..n).filter(slips).count());
     }
 
     /// What friction may do: a sliding block feels mu_k F_n against its motion, a stuck one what balances the
@@ -252,20 +250,22 @@ proptest! {
         prop_assume!(has_contact(&slider));
         let slider = Slider { law: FrictionLaw::Projection, ..slider };
         let model = slider.model();
-        let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+        let mut simulation = at_rest(&model, slider.dt_star);
         for _ in 0..40 {
+            let before = simulation.state().velocity;
             simulation.step();
             let now = simulation.snapshot();
             for b in 0..model.lattice.n_blocks() {
-                let ([fx, fy], [vx, vy]) = (now.forces.friction.at(b), now.forces.velocity_after.at(b));
+                let block = now.block(b);
+                let ([fx, fy], [vx, vy]) = (block.force_friction, block.velocity);
                 let friction = (fx * fx + fy * fy).sqrt();
-                if now.forces.contact_after[b] == Contact::Sliding {
-                    prop_assert!((friction - model.surface.slide[b]).abs() < 1e-12);
+                if block.slides() {
+                    prop_assert!((friction - model.surface.slide(b)).abs() < 1e-12);
                     prop_assert!(fx * vx + fy * vy <= 0.0);
-                } else if now.state.contact[b] == Contact::Stuck {
-                    let threshold = model.surface.hold[b].max(model.surface.slide[b]);
+                } else if before.at(b) == [0.0, 0.0] {
+                    let threshold = model.surface.hold(b).max(model.surface.slide(b));
                     prop_assert!(friction <= threshold * (1.0 + 1e-14));
-                    let (drive, lattice) = (now.forces.drive.at(b), now.forces.lattice.at(b));
+                    let (drive, lattice) = (block.force_drive, block.force_lattice);
                     prop_assert_eq!([fx, fy], [-(drive[0] + lattice[0]), -(drive[1] + lattice[1])]);
                 }
             }
@@ -281,8 +281,12 @@ proptest! {
         let u = VectorField { x: wave(1.7), y: wave(2.9) };
         let surface = Surface::uniform(&lattice, 1.0, 0.5);
         let model = Model::new(lattice, surface, Drive::along_x(0.0), 0.0, epsilon, FrictionLaw::Projection);
-        let simulation = Simulation::from_state(&model, 0.1, State::moving(u.clone(), VectorField::zeros(n)));
-        let force = &simulation.snapshot().forces.lattice;
+        let bent = State { displacement: u.clone(), velocity: VectorField::zeros(n) };
+        let simulation = from_state(&model, 0.1, bent.clone());
+        let mut force = VectorField::zeros(n);
+        for b in 0..n {
+            [force.x[b], force.y[b]] = simulation.snapshot().block(b).force_lattice;
+        }
         let tolerance = 1e-14 * n as f64;
         prop_assert!(force.x.iter().sum::<f64>().abs() < tolerance && force.y.iter().sum::<f64>().abs() < tolerance);
         if lattice.edges == [Edges::Free; 2] {
@@ -299,7 +303,7 @@ proptest! {
             let work: f64 = (0..n).map(|b| force.x[b] * u.x[b] + force.y[b] * u.y[b]).sum();
             prop_assert!(work <= tolerance);
             let mut curve = Curve::every(1);
-            let mut again = Simulation::from_state(&model, 0.1, State::moving(u.clone(), VectorField::zeros(n)));
+            let mut again = from_state(&model, 0.1, bent);
             again.run(Stop::at_step(0), &mut [Scheduled::always(&mut curve)]).unwrap();
             prop_assert!((curve.rows[0].energies.lattice + 0.5 * work).abs() < tolerance);
         }
@@ -338,7 +342,7 @@ proptest! {
     ) {
         let slider = Slider { blocks: [1, 1], ..Slider::default() };
         let model = slider.model();
-        let simulation = Simulation::at_rest(&model, 0.1);
+        let simulation = at_rest(&model, 0.1);
         let mut history = KineticHistory::new(last_step);
         let curve = |n: u64| (rate * n as f64).sin();
         for n in 0..=last_step {
@@ -370,7 +374,7 @@ proptest! {
     fn frames_hold_every_nth_block(slider in slider(), stride in 1..6_usize, steps in 0..60_u32) {
         prop_assume!(has_contact(&slider));
         let model = slider.model();
-        let mut simulation = Simulation::at_rest(&model, slider.dt_star);
+        let mut simulation = at_rest(&model, slider.dt_star);
         for _ in 0..steps {
             simulation.step();
         }
@@ -388,10 +392,10 @@ proptest! {
                 continue;
             }
             let at = (j / stride) * nx + i / stride;
-            prop_assert_eq!(frame.values[0][at], now.state.displacement.x[b] as f32);
-            prop_assert_eq!(frame.values[1][at], now.forces.velocity_after.y[b] as f32);
-            let slides = now.forces.contact_after[b] == Contact::Sliding;
-            prop_assert_eq!(frame.values[2][at], f32::from(u8::from(slides)));
+            let block = now.block(b);
+            prop_assert_eq!(frame.values[0][at], block.displacement[0] as f32);
+            prop_assert_eq!(frame.values[1][at], block.velocity[1] as f32);
+            prop_assert_eq!(frame.values[2][at], f32::from(u8::from(block.slides())));
             prop_assert_eq!(frame.values[3][at].is_nan(), model.surface.textured[b]);
         }
     }

@@ -116,7 +116,8 @@ impl Band {
             displacement: Vectors::zeros(halo + len + halo),
             velocity: Vectors::zeros(len),
             hold_squares: Aligned::filled(len, f64::INFINITY),
-            slide_impulses: Aligned::filled(len, 0.0),
+            // A ghost has the velocity of the block that it copies: only endless friction keeps it from sliding by itself.
+            slide_impulses: Aligned::filled(len, f64::INFINITY),
             first_slip: Aligned::filled(len, f64::NAN),
             masks,
             blocks: bytes(),

@@ -123,26 +123,22 @@ impl Layout {
         );
         let (stride, nx) = (self.stride as isize, self.lattice.nx as isize);
         let mut tiles = Vec::new();
+        // The line itself, and its copies before and after it along a periodic y axis.
+        let copies = if self.is_periodic_along_y() { -n..=n } else { 0..=0 };
         let mut add = |from: isize, to: isize| {
-            // The tiles between those of the two ends, wrapped or cut off at the ends of the line.
-            let mut element = from;
-            while element <= to {
-                let wrapped = element.rem_euclid(n);
-                if wrapped == element || self.is_periodic_along_y() {
-                    tiles.push(wrapped as usize / TILE);
+            for copy in copies.clone().step_by(self.len()) {
+                let (from, to) = ((from + copy).max(0), (to + copy).min(n - 1));
+                if from <= to {
+                    tiles.extend(from as usize / TILE..=to as usize / TILE);
                 }
-                element = if element == to {
-                    to + 1
-                } else {
-                    (element + TILE as isize).min(to)
-                };
             }
         };
         for row in [-stride, 0, stride] {
             add(first + row - 1, last + row + 1);
             if self.has_ghosts() {
-                add(first + row - nx, last + row - nx);
-                add(first + row + nx, last + row + nx);
+                // From the last column to the first, and back.
+                add(first + row - nx + 1, last + row - nx + 1);
+                add(first + row + nx - 1, last + row + nx - 1);
             }
         }
         tiles.sort_unstable();
@@ -165,7 +161,7 @@ mod tests {
             [Free, Periodic],
             [Periodic, Periodic],
         ] {
-            for (nx, ny) in [(5, 7), (25, 40), (50, 50), (300, 5), (700, 4), (3, 400)] {
+            for (nx, ny) in [(5, 7), (25, 40), (50, 50), (300, 5), (700, 4), (3, 400), (254, 5)] {
                 let lattice = Lattice::with_edges(nx, ny, edges);
                 let layout = Layout::new(&lattice);
                 for tile in 0..layout.n_tiles() {
@@ -190,6 +186,8 @@ mod tests {
                         }
                     }
                     assert!(neighbours.len() <= 21 && neighbours.contains(&tile));
+                    let back = |&other: &usize| layout.neighbours(other).contains(&tile);
+                    assert!(neighbours.iter().all(back), "{nx}x{ny} {edges:?} {tile}");
                 }
             }
         }

@@ -1,0 +1,14 @@
+//! Orders of convergence, on the reference kernel.
+
+#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+use slipfront::Kernel;
+
+/// What steps the simulations of this binary.
+const KERNEL: Kernel = Kernel::Reference;
+
+#[path = "../convergence/orders.rs"]
+mod orders;

@@ -1,0 +1,36 @@
+//! The exact answers of `physics`, on the reference kernel.
+
+#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+use slipfront::Kernel;
+
+/// What steps the simulations of this binary.
+const KERNEL: Kernel = Kernel::Reference;
+
+#[path = "../physics/energy.rs"]
+mod energy;
+#[path = "../physics/first_slip.rs"]
+mod first_slip;
+#[path = "../physics/front_speed.rs"]
+mod front_speed;
+#[path = "../physics/lattice_waves.rs"]
+mod lattice_waves;
+#[path = "../physics/observables.rs"]
+mod observables;
+#[path = "../physics/scale_invariance.rs"]
+mod scale_invariance;
+#[path = "../physics/shapes.rs"]
+mod shapes;
+#[path = "../physics/slip_cycle.rs"]
+mod slip_cycle;
+#[path = "../physics/steady_sliding.rs"]
+mod steady_sliding;
+#[path = "../physics/straight_groove.rs"]
+mod straight_groove;
+#[path = "../physics/symmetry.rs"]
+mod symmetry;
+#[path = "../physics/texture.rs"]
+mod texture;
