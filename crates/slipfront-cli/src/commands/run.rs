@@ -57,7 +57,8 @@ impl Run {
             print(&report::physics(&case))?;
         }
         let mut progress = Progress::new(&case, self.quiet);
-        let record = run::run(&case, threads, case.steps_per_look(), &mut progress).map_err(Failure::running)?;
+        let record =
+            run::run(&case, threads, case.steps_per_look(), &mut progress).map_err(Failure::running)?;
         progress.finish();
         results::write(&case, &record, folder, started, threads).map_err(Failure::running)?;
 

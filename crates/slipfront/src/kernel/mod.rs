@@ -123,7 +123,13 @@ impl Engine {
         match (execution.kernel, model.law) {
             (Kernel::Fused, FrictionLaw::Projection) => {
                 let Execution { threads, skips, .. } = execution;
-                Self::Fused(Box::new(Fused::new(model, dt_star, state.as_ref(), threads, skips)))
+                Self::Fused(Box::new(Fused::new(
+                    model,
+                    dt_star,
+                    state.as_ref(),
+                    threads,
+                    skips,
+                )))
             }
             _ => {
                 let state = state.unwrap_or_else(|| State::at_rest(model.lattice.n_blocks()));

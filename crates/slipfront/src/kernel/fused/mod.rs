@@ -71,7 +71,13 @@ pub(crate) struct Fused {
 
 impl Fused {
     /// Takes over a state, or begins at rest; the blocks are shared out among `threads`.
-    pub(crate) fn new(model: &Model, dt_star: f64, state: Option<&State>, threads: usize, skips: bool) -> Self {
+    pub(crate) fn new(
+        model: &Model,
+        dt_star: f64,
+        state: Option<&State>,
+        threads: usize,
+        skips: bool,
+    ) -> Self {
         Self::at_level(model, dt_star, state, threads, skips, Level::new())
     }
 
@@ -338,14 +344,7 @@ impl Fused {
 }
 
 /// All bands through a step, shared out among the threads of the pool.
-fn sweep(
-    level: Level,
-    bands: &mut [Band],
-    model: &Model,
-    step: &Step,
-    springs: Springs,
-    energies: bool,
-) {
+fn sweep(level: Level, bands: &mut [Band], model: &Model, step: &Step, springs: Springs, energies: bool) {
     match bands {
         [] => {}
         [band] => sweep_band(level, band, model, step, springs, energies),
