@@ -14,6 +14,8 @@ mod blocks;
 mod layout;
 mod rest;
 mod springs;
+#[cfg(test)]
+mod tests;
 mod vector;
 
 use fearless_simd::{Level, dispatch};
