@@ -6,7 +6,8 @@ use slipfront::surface::{
     Cavity, Coefficients, Distribution, Groove, Load, Orientation, Texture, cavity_lambda, mesh,
 };
 use slipfront::{
-    Drive, Edges, Execution, FrictionLaw, Lattice, Model, Simulation, State, Stop, Surface, scales,
+    Drive, Edges, Execution, FrictionLaw, Lattice, Model, Simulation, State, Stop, Surface, VectorField,
+    scales,
 };
 
 /// A slider at rest, stepped by the kernel that this binary tests.
@@ -150,15 +151,49 @@ impl Slider {
 
     fn observed(&self, turns: f64, others: &mut [&mut dyn Observer]) -> (Peak, Option<Kinetic>) {
         let model = self.model();
-        let steps = self.steps(turns);
         let mut simulation = at_rest(&model, self.dt_star);
+        let kinetic = self.watch(&mut simulation, turns, others);
+        (simulation.peak(), kinetic)
+    }
+
+    /// Runs a simulation of this slider to t* = `turns`/V*: kinetic friction.
+    pub(crate) fn watch(
+        &self,
+        simulation: &mut Simulation,
+        turns: f64,
+        others: &mut [&mut dyn Observer],
+    ) -> Option<Kinetic> {
+        let steps = self.steps(turns);
         let mut history = KineticHistory::new(steps);
         let mut observers = vec![Scheduled::always(&mut history)];
         observers.extend(others.iter_mut().map(|o| Scheduled::always(*o)));
         simulation.run(Stop::at_step(steps), &mut observers).unwrap();
-        let peak = simulation.peak();
-        let from = KineticStart::Auto.time_star(&peak, self.v_star);
-        (peak, history.kinetic(from, self.dt_star))
+        let from = KineticStart::Auto.time_star(&simulation.peak(), self.v_star);
+        history.kinetic(from, self.dt_star)
+    }
+}
+
+/// Blocks displaced by up to `size`, every `apart`-th of them thrown as well.
+pub(crate) fn thrown(n_blocks: usize, size: f64, apart: usize) -> State {
+    let wave = |k: f64, apart: usize| {
+        let one = |b: usize| {
+            if b.is_multiple_of(apart) {
+                size * (k * b as f64 + 1.0).sin()
+            } else {
+                0.0
+            }
+        };
+        (0..n_blocks).map(one).collect()
+    };
+    State {
+        displacement: VectorField {
+            x: wave(1.7, 1),
+            y: wave(2.9, 1),
+        },
+        velocity: VectorField {
+            x: wave(0.7, apart),
+            y: wave(1.3, apart),
+        },
     }
 }
 

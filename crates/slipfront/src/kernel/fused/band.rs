@@ -33,6 +33,8 @@ pub(super) struct Tile {
 pub(super) struct Order {
     /// It, or a tile around it, moves, or a block of it may break.
     pub(super) active: bool,
+    /// It was left alone until now.
+    pub(super) wakes: bool,
     /// A tile around it is active, and may need its springs.
     pub(super) near: bool,
     /// Nothing moves in it or around it: it may be left alone until a block breaks.

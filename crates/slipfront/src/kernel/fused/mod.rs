@@ -14,6 +14,8 @@ mod blocks;
 mod layout;
 mod rest;
 mod springs;
+#[cfg(test)]
+mod tests;
 mod vector;
 
 use fearless_simd::{Level, dispatch};
@@ -138,6 +140,7 @@ impl Fused {
         if !self.skips || number >= self.wake {
             let springs = self.choose_springs(model, &step);
             self.give_orders(number);
+            self.note_ends_of_rest(model, number);
             self.fill_halos(step.moves);
             sweep(self.level, &mut self.bands, model, &step, springs, energies);
             self.copy_ghosts();
@@ -182,6 +185,8 @@ impl Fused {
 
     /// Tells every tile what to do in the sweep to step `number`.
     fn give_orders(&mut self, number: u64) {
+        let begins = self.swept.is_none();
+        let follows = self.swept.is_some_and(|swept| swept + 1 == number);
         let Self {
             bands,
             neighbours,
@@ -196,7 +201,9 @@ impl Fused {
         for band in bands.iter_mut() {
             for (t, (tile, order)) in band.tiles.iter().zip(&mut band.orders).enumerate() {
                 let moved = neighbours[band.first_tile + t].iter().any(|&t| moving[t]);
+                let rested = !begins && !(follows && order.active);
                 order.active = !self.skips || moved || tile.wake <= number;
+                order.wakes = order.active && rested;
                 order.quiet = self.skips && order.active && !moved;
                 active[band.first_tile + t] = order.active;
             }
@@ -204,6 +211,17 @@ impl Fused {
         for band in bands.iter_mut() {
             for (t, order) in band.orders.iter_mut().enumerate() {
                 order.near = neighbours[band.first_tile + t].iter().any(|&t| active[t]);
+            }
+        }
+    }
+
+    /// Contact stresses of the tiles that were left alone up to the step before `number`. They are largest at the beginning,
+    /// which a sweep has seen, or at the end: at the next step the block that bears most may slide already.
+    fn note_ends_of_rest(&mut self, model: &Model, number: u64) {
+        for band in &self.bands {
+            for t in (0..band.tiles.len()).filter(|&t| band.orders[t].wakes) {
+                let step = Step::new(model, number - 1, self.dt_star);
+                self.stress_square_max = self.stress_square_max.max(band.resting_stress_square(t, &step));
             }
         }
     }
@@ -305,7 +323,8 @@ impl Fused {
         let step = Step::new(model, number, self.dt_star);
         let mut square = self.stress_square_max;
         for band in &self.bands {
-            for t in (0..band.tiles.len()).filter(|&t| !band.tiles[t].moving && band.tiles[t].wake > number) {
+            let rests = |&t: &usize| self.swept != Some(number) || !band.orders[t].active;
+            for t in (0..band.tiles.len()).filter(rests) {
                 square = square.max(band.resting_stress_square(t, &step));
             }
         }

@@ -119,3 +119,83 @@ fn along_axis<S: Simd>(rest: isize, tension: Eight<S>, bend: Eight<S>) -> Eight<
         _ => bend - tension,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+
+    use super::super::vector::LANES;
+    use super::*;
+
+    fn force(geometry: impl Geometry, bond: &Bond, e: [f64; 2]) -> [f64; 2] {
+        dispatch!(Level::new(), simd => {
+            let [x, y] = geometry.force(simd, bond, [splat(simd, e[0]), splat(simd, e[1])]);
+            let (x, y): ([f64; LANES], [f64; LANES]) = (x.into(), y.into());
+            assert!(x == [x[0]; LANES] && y == [y[0]; LANES]);
+            [x[0], y[0]]
+        })
+    }
+
+    /// By either form, whose roundings are some units of the last place each.
+    fn assert_same<const DEGREE: usize>(bond: &Bond, e: [f64; 2], epsilon: f64) {
+        let exact = bond.force(e, epsilon);
+        let by_root = force(SquareRoot { epsilon }, bond, e);
+        let by_series = force(Series::<DEGREE> { epsilon }, bond, e);
+        for axis in 0..2 {
+            let unit = f64::EPSILON * exact[axis].abs();
+            assert!((by_root[axis] - exact[axis]).abs() <= 4.0 * unit);
+            assert!(
+                (by_series[axis] - exact[axis]).abs() <= 4.0 * unit,
+                "{} units: {:?} {e:?} at {epsilon}",
+                (by_series[axis] - exact[axis]).abs() / unit,
+                bond.offset
+            );
+        }
+    }
+
+    /// Up to its reach, in all directions.
+    fn series_is_exact<const DEGREE: usize>() {
+        let reach = Series::<DEGREE>::reach();
+        assert!((2.0 * reach.powi(DEGREE as i32 + 1) * 2_f64.powi(54) - 1.0).abs() < 1e-12);
+        for epsilon in [1e-12, 1e-6, 1e-3, 0.2] {
+            for bond in &Bond::ALL {
+                for sign in [-1.0, 1.0] {
+                    // Along the spring, (1 + eps t)^2 = 1 + z.
+                    let t = ((1.0 + sign * reach).sqrt() - 1.0) / epsilon;
+                    assert_same::<DEGREE>(bond, bond.rest.map(|d| t * d), epsilon);
+                }
+                for k in 1..2000 {
+                    // |z| <= 2 eps |e| + (eps e)^2.
+                    let size = 0.499 * reach / epsilon * f64::from(k) / 2000.0;
+                    let (y, x) = f64::from(k).sin_cos();
+                    assert_same::<DEGREE>(bond, [size * x, size * y], epsilon);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_series_are_as_exact_as_the_square_root() {
+        series_is_exact::<3>();
+        series_is_exact::<7>();
+    }
+
+    /// The bound of [`Series`], and that it is no more than ten times too large.
+    #[test]
+    fn what_the_series_leave_out_is_bounded() {
+        for degree in [3, 7] {
+            for size in [0.25, 0.2, 0.1, 0.05] {
+                for z in [-size, size] {
+                    let sum = (0..=degree).rev().fold(0.0, |sum, m| sum * z + G[m]);
+                    let root = f64::sqrt(1.0 + z);
+                    let exact = 1.0 / (root * (root + 1.0));
+                    let (left_out, bound) = ((sum / exact - 1.0).abs(), 2.0 * size.powi(degree as i32 + 1));
+                    assert!(
+                        (0.1 * bound..bound).contains(&left_out),
+                        "{degree} {z}: {left_out:e} {bound:e}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! What only the inside of the kernel shows: vector widths, rest, and how much of it is left alone.
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::surface::{Coefficients, Distribution, Load};
+use crate::{Drive, Edges, FrictionLaw, Lattice, Surface, VectorField, scales};
+
+fn model(lattice: Lattice, v_star: f64, degrees: f64, epsilon: f64) -> Model {
+    let n = lattice.n_blocks();
+    let gauss = |mean: f64| Distribution {
+        mean,
+        deviation: 0.1 * mean,
+    };
+    let drawn = Coefficients::draw(n, gauss(1.0), gauss(0.5), 3);
+    let surface = Surface::new(drawn, vec![false; n], Load::Redistributed, 1.0).expect("all in contact");
+    let drive = Drive::at_angle(v_star, degrees);
+    Model::new(
+        lattice,
+        surface,
+        drive,
+        scales::damping(0.1),
+        epsilon,
+        FrictionLaw::Projection,
+    )
+}
+
+/// Every width that this processor has, narrow ones first.
+fn levels() -> Vec<Level> {
+    let mut levels = vec![Level::baseline()];
+    #[cfg(target_arch = "x86_64")]
+    {
+        let widest = Level::new();
+        levels.extend(widest.as_sse2().map(Level::Sse2));
+        levels.extend(widest.as_sse4_2().map(Level::Sse4_2));
+        levels.extend(widest.as_avx2().map(Level::Avx2));
+        levels.extend(widest.as_avx512().map(Level::Avx512));
+    }
+    levels.push(Level::new());
+    levels
+}
+
+/// All motions and sums now and then in a run of `steps`, to the last bit.
+fn history(model: &Model, level: Level, steps: u64) -> Vec<u64> {
+    let mut kernel = Fused::at_level(model, 0.2, None, 1, true, level);
+    let mut bits = Vec::new();
+    for number in 0..=steps {
+        let energies = number % 10 == 0;
+        let totals = kernel.step(model, number, energies);
+        if !energies {
+            continue;
+        }
+        let held = totals.held.expect("energies were asked for");
+        let mut numbers = vec![
+            totals.velocity_square,
+            totals.friction_power,
+            held.kinetic,
+            held.lattice,
+            held.drive_springs,
+            kernel.contact_stress_max(model, number),
+        ];
+        numbers.extend(
+            [totals.displacement, totals.velocity, totals.velocity_after]
+                .iter()
+                .flatten(),
+        );
+        for b in 0..model.lattice.n_blocks() {
+            numbers.extend(kernel.motion(b).iter().flatten());
+        }
+        bits.extend(numbers.into_iter().map(f64::to_bits));
+    }
+    assert!((0..model.lattice.n_blocks()).any(|b| kernel.first_slip(b) > 0.0));
+    bits
+}
+
+#[test]
+fn every_vector_width_gives_the_same_bits() {
+    // Either series, and the square root.
+    for epsilon in [1e-6, 2e-4, 1e-2] {
+        for edges in [[Edges::Free; 2], [Edges::Periodic; 2]] {
+            let model = model(Lattice::with_edges(21, 30, edges), 0.1, 20.0, epsilon);
+            let mut histories = levels()
+                .into_iter()
+                .map(|level| (level, history(&model, level, 250)));
+            let (_, first) = histories.next().expect("there is a baseline");
+            for (level, other) in histories {
+                assert!(other == first, "{level:?} at {epsilon}, {edges:?}");
+            }
+        }
+    }
+}
+
+/// At a slow drive hardly anything is done until the first slip, and half of it is spared afterwards.
+#[test]
+fn slow_drives_are_mostly_rest() {
+    let model = model(Lattice::free(64, 64), 0.002, 0.0, 1e-6);
+    let mut kernel = Fused::new(&model, 0.5, None, 1, true);
+    // Tiles that a sweep has taken, before and after the first slip, and steps from then on.
+    let (mut before, mut after, mut steps) = (0, 0, 0);
+    for number in 0..3000 {
+        let totals = kernel.step(&model, number, false);
+        let swept = kernel.swept == Some(number);
+        let taken = kernel.active.iter().filter(|&&active| swept && active).count();
+        if totals.n_sliding > 0 || steps > 0 {
+            steps += 1;
+            after += taken;
+        } else {
+            before += taken;
+        }
+    }
+    let tiles = kernel.active.len();
+    assert!(steps > 1000 && steps < 2000, "{steps} steps after the first slip");
+    // Once at the start, and just before the first slip.
+    assert!(before <= 3 * tiles, "{before} of {tiles} tiles");
+    assert!(
+        after * 5 < 3 * steps * tiles,
+        "{after} of {tiles} tiles in {steps} steps"
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Blocks at rest, bent: the kernel that leaves them alone until it must look again does so in time, and not much too
+    /// early where the pull on every block grows.
+    #[test]
+    fn rest_ends_in_time(
+        u in prop::collection::vec([-0.1..0.1_f64, -0.1..0.1_f64], 9),
+        holds in prop::collection::vec((0.5..2.0_f64, 0.2..1.5_f64), 9),
+        v_star in 0.01..0.3_f64,
+        degrees in prop_oneof![Just(0.0), Just(90.0), Just(180.0), 0.0..360.0_f64],
+        constant in [-0.2..0.2_f64, -0.2..0.2_f64],
+        dt_star in 0.05..0.5_f64,
+    ) {
+        let mut model = model(Lattice::free(3, 3), v_star, degrees, 1e-3);
+        model.drive.constant_force = constant;
+        for (b, (hold, slide)) in holds.into_iter().enumerate() {
+            (model.surface.mu_static[b], model.surface.mu_kinetic[b]) = (hold, slide);
+        }
+        let state = State {
+            displacement: VectorField { x: u.iter().map(|u| u[0]).collect(), y: u.iter().map(|u| u[1]).collect() },
+            velocity: VectorField::zeros(9),
+        };
+        let mut resting = Fused::new(&model, dt_star, Some(&state), 1, true);
+        let mut plain = Fused::new(&model, dt_star, Some(&state), 1, false);
+        resting.step(&model, 0, false);
+        let mut slips = |number| plain.step(&model, number, false).n_sliding > 0;
+        let first = (0..100_000).find(|&number| slips(number)).expect("a block breaks");
+        prop_assert!(resting.wake <= first, "woken at {}, to break at {first}", resting.wake);
+        let along_an_axis = model.drive.direction.contains(&0.0);
+        if along_an_axis && first > 0 {
+            prop_assert!(first - resting.wake <= 5, "woken at {}, to break at {first}", resting.wake);
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! The fused kernel against itself: threads and rest change nothing, not a bit.
+
+use rstest::rstest;
+use slipfront::surface::{Orientation, Texture};
+use slipfront::{Drive, Edges, Execution, FrictionLaw, Lattice, Model, Simulation, State, Surface};
+
+use crate::common::{self, Slider, cavity, groove};
+use crate::{FUSED, bits, go, has_room};
+
+/// Everything that a run shows at one instant, but for its state.
+fn shown(simulation: &Simulation) -> Vec<u64> {
+    let now = simulation.snapshot();
+    let totals = now.totals;
+    let held = totals.held.unwrap_or_default();
+    let mut numbers = vec![
+        now.point.mu_star,
+        now.point.mu_lateral_star,
+        totals.velocity_square,
+        totals.friction_power,
+        totals.n_sliding as f64,
+        totals.n_slipping as f64,
+        held.kinetic,
+        held.lattice,
+        held.drive_springs,
+        simulation.contact_stress_max(),
+    ];
+    for pair in [totals.displacement, totals.velocity, totals.velocity_after] {
+        numbers.extend(pair);
+    }
+    bits(&numbers)
+}
+
+fn state(simulation: &Simulation) -> Vec<u64> {
+    let State {
+        displacement,
+        velocity,
+    } = simulation.state();
+    [displacement.x, displacement.y, velocity.x, velocity.y]
+        .iter()
+        .flat_map(|field| bits(field))
+        .collect()
+}
+
+/// The fused kernel on one thread, doing every block at every step, against all other ways to execute it; energies are
+/// asked for now and then.
+fn assert_same_bits(model: &Model, dt_star: f64, from: Option<&State>, steps: u64) {
+    let of = |threads| {
+        [false, true].map(|skips| Execution {
+            threads,
+            skips,
+            ..FUSED
+        })
+    };
+    let executions: Vec<_> = [1, 2, 3, 7].into_iter().flat_map(of).skip(1).collect();
+    let run = |execution| Simulation::executed(model, dt_star, from.cloned(), execution);
+    let mut plain = run(FUSED);
+    let mut others: Vec<_> = executions.iter().map(|&execution| run(execution)).collect();
+    for step in 1..=steps {
+        let energies = step % 5 == 0 || step % 7 == 0;
+        go(&mut plain, energies);
+        let (here, exact) = (shown(&plain), state(&plain));
+        for (other, execution) in others.iter_mut().zip(&executions) {
+            go(other, energies);
+            let (found, expected) = (other.snapshot().totals, plain.snapshot().totals);
+            assert!(
+                shown(other) == here,
+                "step {step}, {execution:?}: {found:?}, plainly {expected:?}; largest contact stress {}, plainly {}",
+                other.contact_stress_max(),
+                plain.contact_stress_max()
+            );
+            assert!(state(other) == exact, "step {step}, {execution:?}");
+        }
+    }
+    let first = plain.first_slip_time_star();
+    assert!(first.iter().any(|t| !t.is_nan()), "nothing ever slips");
+    for (other, execution) in others.iter().zip(&executions) {
+        assert!(
+            bits(&other.first_slip_time_star()) == bits(&first),
+            "{execution:?}"
+        );
+    }
+}
+
+#[rstest]
+fn lattices_of_every_shape(
+    #[values([1, 1], [25, 25], [64, 40], [3, 400], [300, 5], [700, 3])] blocks: [usize; 2],
+    #[values(
+        [Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Free, Edges::Periodic],
+        [Edges::Periodic, Edges::Periodic]
+    )]
+    edges: [Edges; 2],
+) {
+    if !has_room(blocks, edges) {
+        return;
+    }
+    let slider = Slider {
+        blocks,
+        edges,
+        degrees: 25.0,
+        v_star: 0.1,
+        sigma_static_star: 0.1,
+        dt_star: 0.2,
+        ..Slider::default()
+    };
+    assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(4.0));
+}
+
+/// Textured blocks hardly rest; strains bring either series and the square root, and go from one to the other.
+#[rstest]
+fn textures_and_strains(
+    #[values(None, Some(cavity([40, 40], 5.0, 1, 0.3, true)), Some(groove(Orientation::Across, 2.0)))]
+    texture: Option<Texture>,
+    #[values(0.0, 2e-5, 1e-3, 5e-3)] epsilon: f64,
+) {
+    let slider = Slider {
+        blocks: [40, 40],
+        edges: [Edges::Periodic, Edges::Free],
+        textures: texture.into_iter().collect(),
+        epsilon,
+        v_star: 0.1,
+        dt_star: 0.2,
+        ..Slider::default()
+    };
+    assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(4.0));
+}
+
+/// Between slips the whole slider rests, and while some blocks slip the others do.
+#[rstest]
+fn slow_drives(
+    #[values([Edges::Free, Edges::Free], [Edges::Periodic, Edges::Periodic])] edges: [Edges; 2],
+    #[values(0.0, 65.0)] degrees: f64,
+) {
+    let slider = Slider {
+        blocks: [40, 40],
+        edges,
+        degrees,
+        v_star: 0.002,
+        dt_star: 0.5,
+        sigma_static_star: 0.1,
+        ..Slider::default()
+    };
+    assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(3.0));
+}
+
+/// Blocks that are displaced at the start, and a few of them thrown.
+#[rstest]
+fn a_state_in_motion(
+    #[values([Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Periodic, Edges::Periodic])]
+    edges: [Edges; 2],
+    #[values(1e-6, 1e-2)] epsilon: f64,
+) {
+    let slider = Slider {
+        blocks: [17, 90],
+        edges,
+        epsilon,
+        degrees: 200.0,
+        ..Slider::default()
+    };
+    let from = common::thrown(1530, 0.1, 400);
+    assert_same_bits(&slider.model(), slider.dt_star, Some(&from), 300);
+}
+
+/// A tile of 16 rows rests; in its first row a block that holds more than all others is about to break, and does so at the
+/// very step after a block in the last row of the tile below, which pushes it: the largest contact stress is that of its
+/// last step at rest.
+#[test]
+fn the_largest_stress_may_be_that_of_the_last_step_at_rest() {
+    let lattice = Lattice::free(16, 32);
+    let (pushing, held) = (lattice.block(8, 15), lattice.block(9, 16));
+    let mut from = State::at_rest(512);
+    from.displacement.x[pushing] = -1.0;
+    from.displacement.x[held] = -4.0;
+    let model = |surface| {
+        Model::new(
+            lattice,
+            surface,
+            Drive::along_x(0.001),
+            0.0,
+            0.0,
+            FrictionLaw::Projection,
+        )
+    };
+    let dt_star = 0.5;
+    let mut surface = Surface::uniform(&lattice, 20.0, 20.0);
+    let firm = model(surface.clone());
+    // Thresholds that the pushing block passes after 50 steps and the held one after 80, if nothing pushes.
+    for (b, steps) in [(pushing, 50.0), (held, 80.0)] {
+        let block = Simulation::executed(&firm, dt_star, Some(from.clone()), FUSED)
+            .snapshot()
+            .block(b);
+        let [x, y] = [0, 1].map(|axis| block.force_drive[axis] + block.force_lattice[axis]);
+        surface.mu_static[b] = (x + steps * dt_star * 0.375 * 0.001).hypot(y);
+        surface.mu_kinetic[b] = surface.mu_static[b] - 0.5;
+    }
+    let model = model(surface);
+    assert_same_bits(&model, dt_star, Some(&from), 60);
+}
