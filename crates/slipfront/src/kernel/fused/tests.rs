@@ -90,6 +90,37 @@ fn every_vector_width_gives_the_same_bits() {
     }
 }
 
+/// What decides between the series and the square root is never less than the largest difference of displacement, nor
+/// more by the way of two blocks between two looks: the fastest go at less than 1.5.
+#[test]
+fn differences_of_displacement_are_bounded() {
+    let model = model(Lattice::free(30, 30), 0.3, 20.0, 1e-3);
+    for skips in [false, true] {
+        let mut kernel = Fused::new(&model, 0.2, None, 1, skips);
+        for number in 0..400 {
+            kernel.step(&model, number, false);
+            let mut extent = [f64::NEG_INFINITY; 4];
+            for b in 0..model.lattice.n_blocks() {
+                let [[x, y], _] = kernel.motion(b);
+                for (most, value) in extent.iter_mut().zip([x, -x, y, -y]) {
+                    *most = most.max(value);
+                }
+            }
+            for axis in [0, 2] {
+                let exact = extent[axis] + extent[axis + 1];
+                let bound = kernel.extent[axis] + kernel.extent[axis + 1] + kernel.growth;
+                // Displacements round by 1e-16 of themselves.
+                let over = bound - exact * (1.0 - 1e-14);
+                assert!(
+                    (0.0..2.0 * 1.5 * 0.2 * LOOK_EVERY as f64).contains(&over),
+                    "{exact}, bound {bound}"
+                );
+            }
+        }
+        assert!(kernel.latest.n_sliding > 0);
+    }
+}
+
 /// At a slow drive hardly anything is done until the first slip, and half of it is spared afterwards.
 #[test]
 fn slow_drives_are_mostly_rest() {
