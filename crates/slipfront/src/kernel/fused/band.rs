@@ -5,7 +5,7 @@ use fearless_simd::{Simd, SimdBase};
 use super::aligned::{Aligned, Vectors};
 use super::blocks::{
     ChunksMut, FrictionLoop, Halfway, LatticeLoop, Step, Sums, TileSums, UpwardLoop, friction,
-    lattice_forces, spring, upward_springs,
+    lattice_forces, spring, stretch_square, upward_springs,
 };
 use super::layout::{Layout, TILE};
 use super::rest::{Resting, patience};
@@ -409,17 +409,18 @@ impl Band {
         }
     }
 
-    /// Sum over a tile's blocks of the squared stretch of the drive springs, as the sweep itself finds it.
-    pub(super) fn stretch_square(&self, t: usize, reach: [f64; 2]) -> f64 {
-        let mut lanes = [0.0; LANES];
-        for k in self.elements(t) {
-            if self.blocks[k / LANES] >> (k % LANES) & 1 == 1 {
-                let [ux, uy] = self.displacement.at(self.halo + k);
-                let (x, y) = (reach[0] - ux, reach[1] - uy);
-                lanes[k % LANES] += x * x + y * y;
+    /// Squared stretches of the drive springs of the tiles at rest, which the sweep to this step has left alone; of all
+    /// tiles if there was no sweep.
+    #[inline(always)]
+    pub(super) fn stretch_at_rest<S: Simd>(&mut self, simd: S, step: Step, swept: bool) {
+        for t in 0..self.tiles.len() {
+            if !(swept && self.orders[t].active) {
+                let elements = self.elements(t);
+                let displacement = chunks(&self.displacement, self.halo + elements.start, elements.len());
+                let blocks = &self.blocks[elements.start / LANES..elements.end / LANES];
+                self.tiles[t].sums.stretch_square = stretch_square(simd, step, displacement, blocks);
             }
         }
-        super::vector::total_of(lanes)
     }
 
     /// Largest `tau_c^2` of the blocks in contact of a tile at rest.

@@ -322,6 +322,17 @@ pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Plane<S>) -> Plane<S> {
     )
 }
 
+/// `sum (V t - u)^2` over blocks, in the order of the sweep.
+#[inline(always)]
+pub(super) fn stretch_square<S: Simd>(simd: S, step: Step, displacement: [Chunks; 2], blocks: &[u8]) -> f64 {
+    let mut sum = splat(simd, 0.0);
+    for (c, &present) in blocks.iter().enumerate() {
+        let square = square(drive_stretch(simd, step, load_plane(simd, displacement, c)));
+        sum += where_present(simd, present, [square, square])[0];
+    }
+    total(sum)
+}
+
 /// Room for what the first half of the law leaves to the second, over a tile.
 pub(super) struct Halfway<'a> {
     /// `F_s`.

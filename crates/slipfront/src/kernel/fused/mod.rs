@@ -14,9 +14,10 @@ mod blocks;
 mod layout;
 mod rest;
 mod springs;
+mod vector;
+
 #[cfg(test)]
 mod tests;
-mod vector;
 
 use fearless_simd::{Level, dispatch};
 
@@ -142,13 +143,16 @@ impl Fused {
             self.give_orders(number);
             self.note_ends_of_rest(model, number);
             self.fill_halos(step.moves);
-            sweep(self.level, &mut self.bands, model, &step, springs, energies);
+            let level = self.level;
+            for_each(&mut self.bands, &|band| {
+                sweep(level, band, model, step, springs, energies);
+            });
             self.copy_ghosts();
             self.swept = Some(number);
             self.add_up();
         }
         Totals {
-            held: energies.then(|| self.held(&step)),
+            held: energies.then(|| self.held(step)),
             ..self.latest
         }
     }
@@ -159,12 +163,10 @@ impl Fused {
         let look = |number: u64| number / LOOK_EVERY;
         if self.swept.is_none_or(|swept| look(swept) < look(step.number)) {
             let mut extent = [f64::NEG_INFINITY; 4];
-            for band in &mut self.bands {
-                band.measure_extents();
-                for tile in &band.tiles {
-                    for (most, value) in extent.iter_mut().zip(tile.extent) {
-                        *most = most.max(value);
-                    }
+            for_each(&mut self.bands, &Band::measure_extents);
+            for tile in self.bands.iter().flat_map(|band| &band.tiles) {
+                for (most, value) in extent.iter_mut().zip(tile.extent) {
+                    *most = most.max(value);
                 }
             }
             (self.extent, self.growth) = (extent, 0.0);
@@ -297,19 +299,17 @@ impl Fused {
     }
 
     /// Energies held at the present step.
-    fn held(&self, step: &Step) -> Held {
+    fn held(&mut self, step: Step) -> Held {
+        // The springs of the drive stretch on while a tile is left alone.
+        let (level, swept) = (self.level, self.swept == Some(step.number));
+        for_each(&mut self.bands, &|band| {
+            dispatch!(level, simd => band.stretch_at_rest(simd, step, swept));
+        });
         let (mut velocity_squares, mut lattice, mut stretch_square) = (0.0, 0.0, 0.0);
-        for band in &self.bands {
-            for (t, (tile, order)) in band.tiles.iter().zip(&band.orders).enumerate() {
-                velocity_squares += tile.sums.velocity_squares;
-                lattice += tile.sums.lattice_energy;
-                // The springs of the drive stretch on while a tile is left alone.
-                stretch_square += if self.swept == Some(step.number) && order.active {
-                    tile.sums.stretch_square
-                } else {
-                    band.stretch_square(t, step.reach)
-                };
-            }
+        for tile in self.bands.iter().flat_map(|band| &band.tiles) {
+            velocity_squares += tile.sums.velocity_squares;
+            lattice += tile.sums.lattice_energy;
+            stretch_square += tile.sums.stretch_square;
         }
         Held {
             kinetic: 0.25 * velocity_squares,
@@ -345,36 +345,33 @@ impl Fused {
     }
 }
 
-/// All bands through a step, shared out among the threads of the pool.
-fn sweep(level: Level, bands: &mut [Band], model: &Model, step: &Step, springs: Springs, energies: bool) {
+/// The same work for every band, shared out among the threads of the pool.
+fn for_each(bands: &mut [Band], work: &(impl Fn(&mut Band) + Sync)) {
     match bands {
         [] => {}
-        [band] => sweep_band(level, band, model, step, springs, energies),
+        [band] => work(band),
         _ => {
             let (one, other) = bands.split_at_mut(bands.len() / 2);
-            rayon::join(
-                || sweep(level, one, model, step, springs, energies),
-                || sweep(level, other, model, step, springs, energies),
-            );
+            rayon::join(|| for_each(one, work), || for_each(other, work));
         }
     }
 }
 
-/// One band, with the widest instructions at hand.
-fn sweep_band(level: Level, band: &mut Band, model: &Model, step: &Step, springs: Springs, energies: bool) {
+/// One band through a step, with the widest instructions at hand.
+fn sweep(level: Level, band: &mut Band, model: &Model, step: Step, springs: Springs, energies: bool) {
     let epsilon = model.epsilon;
     match springs {
         Springs::ShortSeries => {
             let geometry = Series::<3> { epsilon };
-            dispatch!(level, simd => band.sweep(simd, geometry, model, *step, energies));
+            dispatch!(level, simd => band.sweep(simd, geometry, model, step, energies));
         }
         Springs::LongSeries => {
             let geometry = Series::<7> { epsilon };
-            dispatch!(level, simd => band.sweep(simd, geometry, model, *step, energies));
+            dispatch!(level, simd => band.sweep(simd, geometry, model, step, energies));
         }
         Springs::SquareRoot => {
             let geometry = SquareRoot { epsilon };
-            dispatch!(level, simd => band.sweep(simd, geometry, model, *step, energies));
+            dispatch!(level, simd => band.sweep(simd, geometry, model, step, energies));
         }
     }
 }
