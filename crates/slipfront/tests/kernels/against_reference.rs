@@ -75,8 +75,8 @@ fn assert_alike(fused: &Simulation, reference: &Simulation) {
 }
 
 /// Both kernels through up to `steps` steps, or until the first peak has ended; energies are asked for now and then.
-fn assert_same(model: &Model, dt_star: f64, state: Option<State>, steps: u64) {
-    let run = |execution| Simulation::executed(model, dt_star, state.clone(), execution);
+fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
+    let run = |execution| Simulation::executed(model, dt_star, state.cloned(), execution);
     let (mut fused, mut reference) = (run(FUSED), run(REFERENCE));
     assert_alike(&fused, &reference);
     for step in 1..=steps {
@@ -207,7 +207,7 @@ fn a_state_in_motion(
     };
     let state = common::thrown(slider.lattice().n_blocks(), 1.0, 3);
     // Until most have come to rest.
-    assert_same(&slider.model(), slider.dt_star, Some(state), 100);
+    assert_same(&slider.model(), slider.dt_star, Some(&state), 100);
 }
 
 /// Far beyond the first peak too: friction hands differences on without making them larger, so that two kernels part only

@@ -203,7 +203,7 @@ impl Fused {
         for band in bands.iter_mut() {
             for (t, (tile, order)) in band.tiles.iter().zip(&mut band.orders).enumerate() {
                 let moved = neighbours[band.first_tile + t].iter().any(|&t| moving[t]);
-                let rested = !begins && !(follows && order.active);
+                let rested = !(begins || follows && order.active);
                 order.active = !self.skips || moved || tile.wake <= number;
                 order.wakes = order.active && rested;
                 order.quiet = self.skips && order.active && !moved;
