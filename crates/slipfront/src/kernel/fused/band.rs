@@ -18,7 +18,7 @@ use crate::{Model, State};
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tile {
     pub(super) sums: TileSums,
-    /// Whether something in it moves, ghosts included.
+    /// Whether an element of it moves, ghosts included.
     pub(super) moving: bool,
     /// The first step at which a block of it may break, if nothing around it moves; 0 if nobody has looked.
     pub(super) wake: u64,
@@ -31,13 +31,13 @@ pub(super) struct Tile {
 /// What is to be done with a tile in a sweep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Order {
-    /// It, or a tile around it, moves, or a block of it may break.
+    /// A block of it or beside it moves, or a block of it may break.
     pub(super) active: bool,
     /// It was left alone until now.
     pub(super) wakes: bool,
-    /// A tile around it is active, and may need its springs.
+    /// Its upward springs are needed, by itself or by a tile to the north.
     pub(super) near: bool,
-    /// Nothing moves in it or around it: it may be left alone until a block breaks.
+    /// No block of it or beside it moves: it may be left alone until one breaks.
     pub(super) quiet: bool,
 }
 
@@ -67,6 +67,8 @@ pub(super) struct Band {
     masks: [Vec<u8>; 3],
     blocks: Vec<u8>,
     touching: Vec<u8>,
+    /// Which elements move, ghosts included.
+    moving: Vec<u8>,
     slipped: Vec<u8>,
     /// Forces of the latest upward springs, as a ring over the elements.
     upward: [Vectors; 3],
@@ -79,6 +81,9 @@ pub(super) struct Band {
     /// Elements from a row to the next.
     stride: usize,
 }
+
+/// Where more blocks of a tile move than this, all tiles around it are taken to be touched.
+const FEW: u32 = 32;
 
 /// Elements repeated after the end of the ring, for vectors that reach over it.
 const MIRROR: usize = 2 * LANES;
@@ -124,6 +129,7 @@ impl Band {
             masks,
             blocks: bytes(),
             touching: bytes(),
+            moving: bytes(),
             slipped: bytes(),
             upward: [Vectors::zeros(ring), Vectors::zeros(ring), Vectors::zeros(ring)],
             lattice: Vectors::zeros(TILE),
@@ -150,8 +156,8 @@ impl Band {
                 let (u, v) = (state.displacement.at(b), state.velocity.at(b));
                 band.displacement.set(halo + k, u);
                 band.velocity.set(k, v);
+                band.set_moving(k, v != [0.0, 0.0]);
                 let tile = &mut band.tiles[k / TILE];
-                tile.moving |= v != [0.0, 0.0];
                 tile.sums.speed_square = tile.sums.speed_square.max(v[0] * v[0] + v[1] * v[1]);
             }
         }
@@ -159,8 +165,39 @@ impl Band {
     }
 
     /// Elements of the band's tile `t`, counted from the band's first.
-    fn elements(&self, t: usize) -> std::ops::Range<usize> {
+    pub(super) fn elements(&self, t: usize) -> std::ops::Range<usize> {
         t * TILE..((t + 1) * TILE).min(self.len)
+    }
+
+    /// Notes whether an element moves.
+    pub(super) fn set_moving(&mut self, k: usize, moves: bool) {
+        let bit = 1 << (k % LANES);
+        if moves {
+            self.moving[k / LANES] |= bit;
+            self.tiles[k / TILE].moving = true;
+        } else {
+            self.moving[k / LANES] &= !bit;
+        }
+    }
+
+    /// Marks all tiles that hold a moving element or an element that a spring joins to one.
+    pub(super) fn mark_touched(&self, layout: &Layout, touched: &mut [bool]) {
+        for t in (0..self.tiles.len()).filter(|&t| self.tiles[t].moving) {
+            let elements = self.elements(t);
+            let mut mark = |from: usize, to: usize| {
+                let (first, last) = (self.first + from, self.first + to - 1);
+                layout
+                    .tiles_around(first, last)
+                    .for_each(|tile| touched[tile] = true);
+            };
+            if self.tiles[t].sums.sliding > FEW {
+                mark(elements.start, elements.end);
+                continue;
+            }
+            for k in elements.step_by(LANES).filter(|k| self.moving[k / LANES] != 0) {
+                mark(k, k + LANES);
+            }
+        }
     }
 
     /// Displacement of an element one step on, without moving it.
@@ -344,6 +381,7 @@ impl Band {
             blocks: &self.blocks[vectors.clone()],
             touching: &self.touching[vectors.clone()],
             velocity: chunks_mut(&mut self.velocity, elements.start, n),
+            moving: &mut self.moving[vectors.clone()],
             slipped: &mut self.slipped[vectors],
             first_slip: self.first_slip[elements.clone()].as_chunks_mut().0,
             ahead,

@@ -218,6 +218,8 @@ pub(super) struct FrictionLoop<'a> {
     pub(super) touching: &'a [u8],
     /// At `t - dt/2`, then at `t + dt/2`.
     pub(super) velocity: [ChunksMut<'a>; 2],
+    /// Which blocks move after the step.
+    pub(super) moving: &'a mut [u8],
     /// Which blocks in contact have ever slid, and since when.
     pub(super) slipped: &'a mut [u8],
     pub(super) first_slip: ChunksMut<'a>,
@@ -391,7 +393,7 @@ pub(super) fn friction<S: Simd, const ENERGY: bool>(
     let taken = &halfway.taken[..n];
     let hold_squares = &stretch.hold_squares[..n];
     let (blocks, touching) = (&stretch.blocks[..n], &stretch.touching[..n]);
-    let slipped = &mut stretch.slipped[..n];
+    let (moving, slipped) = (&mut stretch.moving[..n], &mut stretch.slipped[..n]);
     let first_slip = &mut stretch.first_slip[..n];
     let zero = splat(simd, 0.0);
     for c in 0..n {
@@ -434,6 +436,7 @@ pub(super) fn friction<S: Simd, const ENERGY: bool>(
         }
 
         let slides = bits(slides);
+        moving[c] = slides;
         let slips = slides & touching[c];
         sums.sliding += slides.count_ones();
         sums.slipping += slips.count_ones();

@@ -52,11 +52,9 @@ pub(crate) struct Fused {
     level: Level,
     /// Whether tiles at rest are left alone.
     skips: bool,
-    /// For every tile, those around it.
-    neighbours: Vec<Vec<usize>>,
-    /// For every tile: whether something in it moves, and whether the sweep at hand takes it.
-    moving: Vec<bool>,
-    active: Vec<bool>,
+    /// For every tile: whether a block of it, or beside one of it, moves; whether a tile in the sweep needs its springs.
+    touched: Vec<bool>,
+    near: Vec<bool>,
     /// If nothing moves: the first step at which a block may break.
     wake: u64,
     /// Step of the latest sweep, and what it found.
@@ -115,9 +113,8 @@ impl Fused {
             bands,
             level,
             skips,
-            neighbours: (0..n_tiles).map(|tile| layout.neighbours(tile)).collect(),
-            moving: vec![false; n_tiles],
-            active: vec![false; n_tiles],
+            touched: vec![false; n_tiles],
+            near: vec![false; n_tiles],
             wake: 0,
             swept: None,
             latest,
@@ -190,29 +187,36 @@ impl Fused {
         let begins = self.swept.is_none();
         let follows = self.swept.is_some_and(|swept| swept + 1 == number);
         let Self {
+            layout,
             bands,
-            neighbours,
-            moving,
-            active,
+            touched,
+            near,
             ..
         } = self;
-        let tiles = bands.iter().flat_map(|band| &band.tiles);
-        for (moving, tile) in moving.iter_mut().zip(tiles) {
-            *moving = tile.moving;
+        touched.fill(false);
+        near.fill(false);
+        for band in bands.iter() {
+            band.mark_touched(layout, touched);
         }
         for band in bands.iter_mut() {
-            for (t, (tile, order)) in band.tiles.iter().zip(&mut band.orders).enumerate() {
-                let moved = neighbours[band.first_tile + t].iter().any(|&t| moving[t]);
+            for t in 0..band.tiles.len() {
+                let moved = touched[band.first_tile + t];
+                let (tile, order) = (&band.tiles[t], &mut band.orders[t]);
                 let rested = !(begins || follows && order.active);
                 order.active = !self.skips || moved || tile.wake <= number;
                 order.wakes = order.active && rested;
                 order.quiet = self.skips && order.active && !moved;
-                active[band.first_tile + t] = order.active;
+                if order.active {
+                    let elements = band.elements(t);
+                    let (first, last) = (band.first + elements.start, band.first + elements.end - 1);
+                    near[band.first_tile + t] = true;
+                    layout.tiles_below(first, last).for_each(|tile| near[tile] = true);
+                }
             }
         }
         for band in bands.iter_mut() {
-            for (t, order) in band.orders.iter_mut().enumerate() {
-                order.near = neighbours[band.first_tile + t].iter().any(|&t| active[t]);
+            for (order, &near) in band.orders.iter_mut().zip(&near[band.first_tile..]) {
+                order.near = near;
             }
         }
     }
@@ -270,7 +274,7 @@ impl Fused {
                 let band = &mut self.bands[to];
                 band.displacement.set(band.halo + k, u);
                 band.velocity.set(k, v);
-                band.tiles[k / layout::TILE].moving |= v != [0.0, 0.0];
+                band.set_moving(k, v != [0.0, 0.0]);
             }
         }
     }
