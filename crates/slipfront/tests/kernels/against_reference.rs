@@ -111,11 +111,12 @@ fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
     }
 }
 
-/// Sizes at and beside the widths of a vector, of the shortest row, of a tile and of the memory of upward springs.
+/// Sizes at and beside the widths of a vector, of the shortest row, and of a tile; and rows of 24 in so many tiles that these
+/// begin at every place in the memory of upward springs, which is 37 vectors long then.
 #[rstest]
 fn lattices_of_every_shape(
     #[values(
-        [1, 1], [1, 20], [20, 1], [5, 7], [13, 11], [14, 9], [16, 16], [17, 3], [25, 25], [64, 40], [3, 400], [254, 5],
+        [1, 1], [1, 20], [20, 1], [5, 7], [13, 11], [14, 9], [16, 16], [17, 3], [25, 25], [64, 40], [3, 400], [254, 5], [24, 400],
         [256, 4], [300, 5], [700, 3]
     )]
     blocks: [usize; 2],
