@@ -95,8 +95,11 @@ fn every_vector_width_gives_the_same_bits() {
 #[test]
 fn differences_of_displacement_are_bounded() {
     let model = model(Lattice::free(30, 30), 0.3, 20.0, 1e-3);
-    for skips in [false, true] {
-        let mut kernel = Fused::new(&model, 0.2, None, 1, skips);
+    // From rest, and with two blocks that fly apart.
+    let mut apart = State::at_rest(900);
+    (apart.velocity.x[0], apart.velocity.x[899]) = (-1.4, 1.4);
+    for (from, skips) in [(None, false), (None, true), (Some(&apart), true)] {
+        let mut kernel = Fused::new(&model, 0.2, from, 1, skips);
         for number in 0..400 {
             kernel.step(&model, number, false);
             let mut extent = [f64::NEG_INFINITY; 4];
