@@ -127,14 +127,15 @@ fn textures_and_strains(
 /// Between slips the whole slider rests, and while some blocks slip the others do.
 #[rstest]
 fn slow_drives(
+    #[values([40, 40], [300, 5], [3, 400])] blocks: [usize; 2],
     #[values([Edges::Free, Edges::Free], [Edges::Periodic, Edges::Periodic])] edges: [Edges; 2],
     #[values(0.0, 65.0)] degrees: f64,
 ) {
     let slider = Slider {
-        blocks: [40, 40],
+        blocks,
         edges,
         degrees,
-        v_star: 0.002,
+        v_star: 0.004,
         dt_star: 0.5,
         sigma_static_star: 0.1,
         ..Slider::default()
