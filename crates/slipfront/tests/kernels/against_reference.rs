@@ -88,10 +88,9 @@ fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
             break;
         }
     }
-    assert_eq!(
-        bits(&fused.first_slip_time_star()),
-        bits(&reference.first_slip_time_star())
-    );
+    let first = reference.first_slip_time_star();
+    assert!(first.iter().any(|t| !t.is_nan()), "nothing ever slips");
+    assert_eq!(bits(&fused.first_slip_time_star()), bits(&first));
     // What is shown of a block is found anew from its motion.
     let bound = ROUNDING * largest(&reference.state().displacement);
     for b in 0..model.lattice.n_blocks() {
