@@ -5,6 +5,10 @@
 //! Springs come from a series where that is as exact as the square root ([`springs`]). A tile at rest, with nothing moving
 //! around it, is left alone until a block of it can break ([`rest`]). Bands of tiles are shared out among threads.
 //!
+//! A step must read displacement, velocity and two thresholds of every block and write displacement and velocity: 80 bytes,
+//! which is what a lattice larger than the cache costs at best (`examples/large_step.rs`). Springs pass through a ring that
+//! stays in the cache.
+//!
 //! The trajectory has the same bits for any number of threads and any SIMD width, whether work is skipped or not: sums are
 //! sums over tiles, and the choice between series and square root is made for the whole lattice.
 
