@@ -1,7 +1,7 @@
 //! What advances the state of all blocks by one step.
 //!
-//! [`reference`] reads like the paper, one pass per equation; [`fused`] computes the same in one fast sweep. The
-//! [`Simulation`](crate::Simulation) steps either through [`Engine`] and shows observers what it found.
+//! `reference.rs` reads like the paper, one pass per equation; `fused/` computes the same in one fast sweep. The
+//! [`Simulation`](crate::Simulation) steps either and shows observers what it found.
 
 mod fused;
 mod reference;
