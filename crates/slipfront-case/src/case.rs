@@ -9,8 +9,9 @@ use slipfront::surface::{self, Coefficients, Distribution, Load, mesh};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Scales, Stop, Surface};
 
 use crate::arrays;
-use crate::case_file::{self, AutoOr, CaseError, CaseFile, Source};
+use crate::case_file::{self, AutoOr, CaseError, CaseFile};
 use crate::fields::FieldName;
+use crate::folder::read_whole;
 use crate::quantity::Length;
 
 /// A case, valid by construction.
@@ -342,9 +343,10 @@ fn textures(
             }
             case_file::Texture::Mask(mask) => {
                 let key = format!("texture.{index}.file");
-                let (path, copy) = inputs.read(file, &key, &mask.file)?;
+                let path = inputs.find(file, &key, &mask.file)?;
                 let shape = read_mask(&path, mask.threshold, lattice)
                     .map_err(|error| file.source.error(&key, error.to_string()))?;
+                let copy = inputs.keep(file, &key, &path, lattice)?;
                 if let case_file::Texture::Mask(mask) = &mut file.texture[index] {
                     mask.file = copy;
                 }
@@ -486,10 +488,10 @@ fn coefficients(
         let Some(written) = name.as_ref() else {
             return Ok(None);
         };
-        let (path, copy) = inputs.read(file, key, written)?;
+        let path = inputs.find(file, key, written)?;
         let field = arrays::read_field(&path, lattice.nx, lattice.ny)
             .map_err(|error| file.source.error(key, error.to_string()))?;
-        *name = Some(copy);
+        *name = Some(inputs.keep(file, key, &path, lattice)?);
         Ok(Some(field))
     };
     let (mut static_name, mut kinetic_name) = (
@@ -520,23 +522,6 @@ fn coefficients(
     Ok(drawn)
 }
 
-/// The bytes of a file that a case names.
-pub(crate) fn read_input(source: &Source, key: &str, path: &Path) -> Result<Vec<u8>, CaseError> {
-    let unreadable = |error: std::io::Error| {
-        let sentence = format!(
-            "cannot read {}: {error}; paths are relative to the case file",
-            path.display()
-        );
-        source.error(key, sentence)
-    };
-    // A pipe would be waited for, and a device such as /dev/zero never ends.
-    if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
-        let sentence = format!("{} is not a regular file: name a file that is", path.display());
-        return Err(source.error(key, sentence));
-    }
-    std::fs::read(path).map_err(unreadable)
-}
-
 /// Files read so far.
 struct Inputs {
     folder: PathBuf,
@@ -551,10 +536,28 @@ impl Inputs {
         }
     }
 
-    /// Notes a file; gives its path and the one of its copy in the run folder.
-    fn read(&mut self, file: &CaseFile, key: &str, written: &str) -> Result<(PathBuf, String), CaseError> {
+    /// The path of a file that the case names.
+    fn find(&self, file: &CaseFile, key: &str, written: &str) -> Result<PathBuf, CaseError> {
         let path = self.folder.join(written);
-        let bytes = read_input(&file.source, key, &path)?;
+        let metadata = std::fs::metadata(&path).map_err(|error| unreadable(file, key, &path, &error))?;
+        // A pipe would be waited for, and a device such as /dev/zero never ends.
+        if !metadata.is_file() {
+            let sentence = format!("{} is not a regular file: name a file that is", path.display());
+            return Err(file.source.error(key, sentence));
+        }
+        Ok(path)
+    }
+
+    /// Notes a file that has been read; gives the path of its copy in the run folder.
+    fn keep(
+        &mut self,
+        file: &CaseFile,
+        key: &str,
+        path: &Path,
+        lattice: &Lattice,
+    ) -> Result<String, CaseError> {
+        let longest = arrays::longest(path, lattice.nx, lattice.ny);
+        let bytes = read_whole(path, longest).map_err(|error| unreadable(file, key, path, &error))?;
         let plain = path
             .file_name()
             .map_or_else(|| "input".into(), |name| name.to_string_lossy().into_owned());
@@ -563,7 +566,7 @@ impl Inputs {
         // Two files of one name from different folders stay two files.
         while let Some(other) = self.read.iter().find(|input| input.name == name) {
             if other.bytes == bytes {
-                return Ok((path, name));
+                return Ok(name);
             }
             copies += 1;
             name = format!("inputs/{copies}-{plain}");
@@ -572,8 +575,16 @@ impl Inputs {
             name: name.clone(),
             bytes,
         });
-        Ok((path, name))
+        Ok(name)
     }
+}
+
+fn unreadable(file: &CaseFile, key: &str, path: &Path, error: &std::io::Error) -> CaseError {
+    let sentence = format!(
+        "cannot read {}: {error}; paths are relative to the case file",
+        path.display()
+    );
+    file.source.error(key, sentence)
 }
 
 fn schedule(file: &CaseFile, scales: &Scales, groups: &Groups) -> Result<Schedule, CaseError> {

@@ -2,10 +2,12 @@
 //!
 //! Files appear whole or not at all, and `manifest.json` comes last: where it stands, the run is complete.
 
-use std::io::Write;
+use std::fs::File;
+use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
+use tempfile::TempPath;
 use thiserror::Error;
 
 /// Names that belong to slipfront in a run folder, besides the files in `inputs/` that a manifest lists.
@@ -129,7 +131,7 @@ impl RunFolder {
             // The manifest goes first: from now on the folder does not look complete.
             for name in own_files(path) {
                 match std::fs::remove_file(path.join(name)) {
-                    Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                    Err(error) if error.kind() != ErrorKind::NotFound => {
                         return Err(unwritable(error));
                     }
                     _ => {}
@@ -232,7 +234,7 @@ impl RunFolder {
 /// Files of an earlier run in this folder, its manifest first.
 fn own_files(path: &Path) -> Vec<String> {
     let mut names: Vec<String> = OWN_FILES.map(str::to_owned).to_vec();
-    let manifest = std::fs::read(path.join(MANIFEST)).ok();
+    let manifest = read_whole(&path.join(MANIFEST), TEXT_MAX_BYTES).ok();
     let manifest = manifest.and_then(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok());
     let listed = manifest
         .into_iter()
@@ -250,7 +252,7 @@ fn checksum(folder: &Path, name: &str) -> Result<ManifestFile, FolderError> {
     let path = folder.join(name);
     let hash = |path: &Path| -> std::io::Result<ManifestFile> {
         let mut hasher = blake3::Hasher::new();
-        hasher.update_reader(std::fs::File::open(path)?)?;
+        hasher.update_reader(File::open(path)?)?;
         Ok(ManifestFile {
             name: name.to_owned(),
             bytes: hasher.count(),
@@ -269,17 +271,52 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
         .parent()
         .filter(|parent| !parent.as_os_str().is_empty())
         .unwrap_or(Path::new("."));
+    stage(folder, |file| file.write_all(bytes))?.persist(path)?;
+    Ok(())
+}
+
+/// Makes a file in a folder, forced to the disk, that still has to take its name and goes away if it does not.
+pub(crate) fn stage(
+    folder: &Path,
+    fill: impl FnOnce(&mut File) -> std::io::Result<()>,
+) -> std::io::Result<TempPath> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(UNFINISHED);
     // Temporary files are private by default; results are not.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let mut file = builder.tempfile_in(folder)?;
-    file.write_all(bytes)?;
+    fill(file.as_file_mut())?;
     file.as_file().sync_all()?;
-    file.persist(path)?;
-    Ok(())
+    Ok(file.into_temp_path())
 }
+
+/// Reads a regular file that can have no more than `most` bytes if it is what it should be.
+///
+/// A pipe would be waited for, a device such as `/dev/zero` never ends, and a file of many gigabytes in the place of
+/// a small one would take all memory before anyone looked at it.
+///
+/// # Errors
+/// What the system says, and for a longer file or none.
+pub(crate) fn read_whole(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
+    let metadata = std::fs::metadata(path)?;
+    if !metadata.is_file() {
+        return Err(std::io::Error::other("it is not a regular file"));
+    }
+    if metadata.len() > most {
+        let sentence = format!(
+            "it has {} bytes where at most {most} can be meant",
+            metadata.len()
+        );
+        return Err(std::io::Error::new(ErrorKind::FileTooLarge, sentence));
+    }
+    let mut bytes = Vec::new();
+    File::open(path)?.take(most).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The largest file of our own that is read whole: a case, a summary, a manifest.
+pub(crate) const TEXT_MAX_BYTES: u64 = crate::case_file::MAX_MIB << 20;
 
 /// Pretty JSON with a final newline.
 pub(crate) fn json(value: &impl Serialize) -> Vec<u8> {

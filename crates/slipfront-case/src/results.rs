@@ -208,9 +208,9 @@ impl FrictionCurve {
 ///
 /// # Errors
 /// When it is missing or no summary.
-pub fn read_summary(folder: &Path) -> Result<Summary, ResultsError> {
-    let path = folder.join("summary.json");
-    let bytes = std::fs::read(&path).map_err(|source| FolderError::Read {
+pub fn read_summary(run: &Path) -> Result<Summary, ResultsError> {
+    let path = run.join("summary.json");
+    let bytes = folder::read_whole(&path, folder::TEXT_MAX_BYTES).map_err(|source| FolderError::Read {
         path: path.clone(),
         source,
     })?;

@@ -411,6 +411,29 @@ fn files_of_another_kind_are_refused() {
     }
 }
 
+/// A record dimension of a fixed length has no records, and no variable of them needs a byte more for each: without
+/// a look at the file, the number in the header alone would say how many frames to make.
+#[test]
+fn instants_that_the_file_does_not_hold_are_refused() {
+    let lattice = lattice();
+    let (_folder, path) = folder();
+    let names = [FieldName::Traction];
+    write_fields(&path, &lattice.file(1, &names, &frames(&names, 1))).unwrap();
+    let whole = fs::read(&path).unwrap();
+    let time = whole
+        .windows(8)
+        .position(|bytes| bytes == b"\0\0\0\x04time")
+        .unwrap();
+    for (dimension, instants) in [(0u32, u32::MAX - 1), (0, 1000), (1, u32::MAX - 1), (1, 1)] {
+        let mut bytes = whole.clone();
+        bytes[4..8].copy_from_slice(&instants.to_be_bytes());
+        bytes[time + 8..time + 12].copy_from_slice(&dimension.to_be_bytes());
+        replace(&path, &bytes);
+        let said = read_fields(&path).unwrap_err().to_string();
+        assert!(said.contains(&format!("promises {instants} instants")), "{said}");
+    }
+}
+
 /// Whatever happens to the bytes, the reader answers without a panic and without reserving what is not there.
 #[test]
 fn damaged_files_are_refused_or_read() {

@@ -73,6 +73,29 @@ fn inputs_are_files() {
     }
 }
 
+/// The copy of an input takes no more than what can be meant, whatever follows it in the file.
+#[test]
+fn inputs_are_no_longer_than_their_lattice_needs() {
+    let bench = Bench::new();
+    let mut npy =
+        b"\x93NUMPY\x01\x00\x46\x00{'descr': '|u1', 'fortran_order': False, 'shape': (5, 6), }".to_vec();
+    npy.resize(79, b' ');
+    npy.push(b'\n');
+    npy.extend([1; 30]);
+    bench.write("mu.npy", &npy);
+    bench.done("check small.toml --set friction.mu_static_field=mu.npy");
+    let file = std::fs::OpenOptions::new()
+        .write(true)
+        .open(bench.path().join("mu.npy"))
+        .unwrap();
+    file.set_len(1 << 40).unwrap();
+    let said = bench.refused("run small.toml --set friction.mu_static_field=mu.npy", 2);
+    assert!(
+        said.contains("1099511627776 bytes where at most 10240 can be meant"),
+        "{said}"
+    );
+}
+
 #[test]
 fn what_no_machine_holds_is_refused_in_a_sentence() {
     let bench = Bench::new();
