@@ -248,6 +248,12 @@ fn own_files(path: &Path) -> Vec<String> {
     names
 }
 
+/// Bytes of an earlier run in this folder, which [`RunFolder::prepare`] would remove with `force`.
+pub fn own_bytes(path: &Path) -> u64 {
+    let length = |name| std::fs::symlink_metadata(path.join(name)).map_or(0, |file| file.len());
+    own_files(path).into_iter().map(length).sum()
+}
+
 fn checksum(folder: &Path, name: &str) -> Result<ManifestFile, FolderError> {
     let path = folder.join(name);
     let hash = |path: &Path| -> std::io::Result<ManifestFile> {

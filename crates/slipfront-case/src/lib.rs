@@ -8,6 +8,7 @@
 //! [`results::write`], [`results::draw`].
 
 pub mod arrays;
+pub mod budget;
 pub mod case;
 pub mod case_file;
 pub mod fields;

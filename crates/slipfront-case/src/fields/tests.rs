@@ -140,6 +140,36 @@ fn what_is_written_is_read() {
 }
 
 #[test]
+fn maps_are_one_field_at_a_few_instants() {
+    let lattice = lattice();
+    let (_folder, path) = folder();
+    let names = [FieldName::Sliding, FieldName::Traction];
+    let frames = frames(&names, 1);
+    write_fields(&path, &lattice.file(1, &names, &frames)).unwrap();
+    for (most, instants) in [
+        (1, vec![0]),
+        (2, vec![0, 2]),
+        (3, vec![0, 1, 2]),
+        (9, vec![0, 1, 2]),
+    ] {
+        let maps = read_maps(&path, FieldName::Traction, most).unwrap();
+        assert_eq!(maps.names, [FieldName::Traction]);
+        assert_eq!(maps.textured, lattice.textured);
+        let wanted = instants
+            .iter()
+            .map(|&instant| (frames[instant].step, &frames[instant].values[1]));
+        let found = maps.frames.iter().map(|frame| (frame.step, &frame.values[0]));
+        assert!(found.eq(wanted), "{most}");
+    }
+    assert!(
+        read_maps(&path, FieldName::VelocityX, 6)
+            .unwrap()
+            .names
+            .is_empty()
+    );
+}
+
+#[test]
 fn thinning_starts_at_block_0() {
     let blocks: Vec<usize> = (0..15).collect();
     assert_eq!(thin(&blocks, 5, 1), blocks);
