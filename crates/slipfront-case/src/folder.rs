@@ -6,9 +6,11 @@ use std::fs::File;
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use tempfile::TempPath;
 use thiserror::Error;
+
+use crate::manifest::{MANIFEST, Manifest};
 
 /// Names that belong to slipfront in a run folder, besides the files in `inputs/` that a manifest lists.
 const OWN_FILES: [&str; 9] = [
@@ -22,7 +24,6 @@ const OWN_FILES: [&str; 9] = [
     "stress.svg",
     "stress.png",
 ];
-const MANIFEST: &str = "manifest.json";
 
 /// How the names of files begin while they are being written.
 pub(crate) const UNFINISHED: &str = ".slipfront";
@@ -76,38 +77,6 @@ pub enum FolderError {
 pub struct RunFolder {
     path: PathBuf,
     written: Vec<String>,
-}
-
-/// `manifest.json`: what was written, when and where. All other files of the same case are the same bytes.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Manifest {
-    /// Version of slipfront.
-    pub version: String,
-    /// Name of the machine.
-    pub host: String,
-    /// Operating system and processor.
-    pub platform: String,
-    /// When the run began, UTC.
-    pub started: String,
-    /// When its last file was written, UTC.
-    pub finished: String,
-    /// Seconds in between.
-    pub wall_time_s: f64,
-    /// Threads that it was allowed.
-    pub threads: usize,
-    /// Every other file of the run.
-    pub files: Vec<ManifestFile>,
-}
-
-/// A file and its checksum.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct ManifestFile {
-    /// Path in the folder.
-    pub name: String,
-    /// Length.
-    pub bytes: u64,
-    /// BLAKE3 hash, hexadecimal.
-    pub blake3: String,
 }
 
 impl RunFolder {
@@ -208,25 +177,15 @@ impl RunFolder {
     ///
     /// # Errors
     /// When a file cannot be read back or the manifest cannot be written.
-    pub fn complete(self, started: jiff::Timestamp, threads: usize) -> Result<Manifest, FolderError> {
-        let files = self
-            .written
-            .iter()
-            .map(|name| checksum(&self.path, name))
-            .collect::<Result<_, _>>()?;
-        let finished = jiff::Timestamp::now();
-        let manifest = Manifest {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            host: gethostname::gethostname().to_string_lossy().into_owned(),
-            platform: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
-            started: started.to_string(),
-            finished: finished.to_string(),
-            wall_time_s: finished.duration_since(started).as_secs_f64(),
-            threads,
-            files,
-        };
+    pub fn complete(
+        self,
+        started: jiff::Timestamp,
+        threads: usize,
+        seed: u64,
+    ) -> Result<Manifest, FolderError> {
+        let (manifest, bytes) = Manifest::of(&self.path, &self.written, started, threads, seed)?.sealed();
         let path = self.path.join(MANIFEST);
-        write_whole(&path, &json(&manifest)).map_err(|source| FolderError::Write { path, source })?;
+        write_whole(&path, &bytes).map_err(|source| FolderError::Write { path, source })?;
         Ok(manifest)
     }
 }
@@ -252,20 +211,6 @@ fn own_files(path: &Path) -> Vec<String> {
 pub fn own_bytes(path: &Path) -> u64 {
     let length = |name| std::fs::symlink_metadata(path.join(name)).map_or(0, |file| file.len());
     own_files(path).into_iter().map(length).sum()
-}
-
-fn checksum(folder: &Path, name: &str) -> Result<ManifestFile, FolderError> {
-    let path = folder.join(name);
-    let hash = |path: &Path| -> std::io::Result<ManifestFile> {
-        let mut hasher = blake3::Hasher::new();
-        hasher.update_reader(File::open(path)?)?;
-        Ok(ManifestFile {
-            name: name.to_owned(),
-            bytes: hasher.count(),
-            blake3: hasher.finalize().to_hex().to_string(),
-        })
-    };
-    hash(&path).map_err(|source| FolderError::Read { path, source })
 }
 
 /// Writes a file whole or not at all: into a neighbour first, which then takes its name.

@@ -9,7 +9,8 @@ use thiserror::Error;
 use crate::case::Case;
 use crate::case_file::CaseError;
 use crate::fields::{self, FieldFrame, FieldName, FieldsError, FieldsFile, StaticFields};
-use crate::folder::{self, FolderError, Manifest, RunFolder};
+use crate::folder::{self, FolderError, RunFolder};
+use crate::manifest::Manifest;
 use crate::pictures::{self, FrictionCurve, Instant, Kinetic, Picture, PictureError, StressMap, StressMaps};
 use crate::run::Record;
 use crate::series::{self, SeriesError, SeriesRow};
@@ -73,7 +74,7 @@ pub fn write(
         folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
         folder.write(&format!("{name}.png"), &picture.png)?;
     }
-    Ok(folder.complete(started, threads)?)
+    Ok(folder.complete(started, threads, case.file.friction.seed)?)
 }
 
 /// Writes the case and copies of the files that it reads: enough to run it again.

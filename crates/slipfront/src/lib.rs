@@ -47,3 +47,4 @@ pub use simulation::{Simulation, Snapshot, Stop, StopReason};
 pub use state::{Contact, State};
 pub use surface::Surface;
 pub use vector_field::VectorField;
+pub use width::simd_width;
