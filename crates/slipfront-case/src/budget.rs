@@ -217,6 +217,11 @@ impl Budget {
         HEAP * phases
     }
 
+    /// Memory of a case that is made and not run, in bytes.
+    pub(crate) fn memory_of_case(&self) -> f64 {
+        self.making().total()
+    }
+
     /// Room for the files of a run, in bytes.
     pub fn disk(&self) -> f64 {
         self.files().total()

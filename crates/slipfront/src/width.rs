@@ -33,14 +33,14 @@ pub(crate) fn width() -> Width {
     Width::Baseline
 }
 
-/// Name of the SIMD width at which runs of this process are computed: `avx512`, `avx2`, or `baseline` for what every
+/// Name of the SIMD width at which runs of this process are computed: `AVX-512`, `AVX2`, or `baseline` for what every
 /// processor of its kind has. Results do not depend on it.
 pub fn simd_width() -> &'static str {
     match width() {
         #[cfg(target_arch = "x86_64")]
-        Width::Avx512 => "avx512",
+        Width::Avx512 => "AVX-512",
         #[cfg(target_arch = "x86_64")]
-        Width::Avx2 => "avx2",
+        Width::Avx2 => "AVX2",
         Width::Baseline => "baseline",
     }
 }

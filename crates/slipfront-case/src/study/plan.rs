@@ -238,7 +238,13 @@ impl Plan {
     pub fn memory(&self, threads: usize) -> f64 {
         let runs = self.runs(self.settings.max_replicates()).take(threads).count();
         let largest = self.largest_run().map_or(0.0, |(_, bytes)| bytes);
-        PROGRAM + runs as f64 * largest
+        PROGRAM + self.planning() + runs as f64 * largest
+    }
+
+    /// Memory in which cases were tried, and which the allocator keeps for others of their size, in bytes.
+    fn planning(&self) -> f64 {
+        let made = |run| self.outline_of(run).budget.memory_of_case();
+        self.runs(1).map(made).fold(0.0, f64::max)
     }
 
     /// The run that takes the most memory, and how much, in bytes.
@@ -265,7 +271,7 @@ impl Plan {
         if needed <= available {
             return Ok(());
         }
-        let fit = ((available - PROGRAM) / largest).max(0.0) as usize;
+        let fit = ((available - PROGRAM - self.planning()) / largest).max(0.0) as usize;
         let available = shown(available);
         if fit == 0 {
             return Err(StudyError::PointMemory {
@@ -374,10 +380,10 @@ mod tests {
         let text = "[study]\nreplicates = 2\n[[axes]]\nkey = 'slider.blocks'\nlist = [[4, 4], [300, 300]]";
         let file = StudyFile::parse(text, "study.toml", "study", Path::new("")).unwrap();
         let plan = Plan::new(&file, None).unwrap();
-        let one = plan.memory(1) - PROGRAM;
-        assert_eq!(plan.memory(3) - PROGRAM, 3.0 * one);
+        let one = plan.memory(2) - plan.memory(1);
+        assert_eq!(plan.memory(3), plan.memory(1) + 2.0 * one);
         assert_eq!(plan.memory(64), plan.memory(4));
-        let available = PROGRAM + 2.5 * one;
+        let available = plan.memory(2) + 0.5 * one;
         assert!(plan.compare_memory(2, available).is_ok());
         assert!(matches!(
             plan.compare_memory(3, available),
@@ -388,7 +394,7 @@ mod tests {
             })
         ));
         let said = plan
-            .compare_memory(2, PROGRAM + 0.5 * one)
+            .compare_memory(2, plan.memory(1) - 0.5 * one)
             .unwrap_err()
             .to_string();
         assert!(

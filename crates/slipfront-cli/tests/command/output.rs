@@ -107,7 +107,7 @@ fn the_manifest_says_how_the_run_came_about() {
     assert_eq!(manifest["random"], random);
     assert_eq!(manifest["kernel"], "reference");
     let width = manifest["simd_width"].as_str().unwrap();
-    assert!(["avx512", "avx2", "baseline"].contains(&width), "{width}");
+    assert!(["AVX-512", "AVX2", "baseline"].contains(&width), "{width}");
     // Built outside of git there is none.
     if let Some(revision) = manifest["revision"].as_str() {
         let commit = revision.strip_suffix("-dirty").unwrap_or(revision);
