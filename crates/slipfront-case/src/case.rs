@@ -9,8 +9,10 @@ use slipfront::surface::{self, Coefficients, Distribution, Load, mesh};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Scales, Stop, Surface};
 
 use crate::arrays;
-use crate::case_file::{self, AutoOr, CaseError, CaseFile, Source};
-use crate::fields::FieldName;
+use crate::budget::{Budget, Excess};
+use crate::case_file::{self, AutoOr, CaseError, CaseFile};
+use crate::fields::{self, FieldName};
+use crate::folder::read_whole;
 use crate::quantity::Length;
 
 /// A case, valid by construction.
@@ -36,6 +38,8 @@ pub struct Case {
     pub schedule: Schedule,
     /// What is written.
     pub output: Output,
+    /// What the run needs.
+    pub budget: Budget,
 }
 
 /// The dimensionless groups on which the model depends (Eq. 11).
@@ -128,11 +132,9 @@ const MAX_STEPS: f64 = 1e11;
 /// Largest strain of the load: beyond it the springs of this model mean nothing.
 const MAX_EPSILON: f64 = 0.5;
 
-/// Most bytes of fields that a run keeps in memory until it ends.
-const MAX_FIELD_BYTES: f64 = 4.0 * 1024.0 * 1024.0 * 1024.0;
-
 impl Case {
-    /// Loads a case file and the files it names, which stand relative to it.
+    /// Loads a case file and the files it names, which stand relative to it. A run that this machine has no memory for
+    /// is refused before anything of it is made.
     ///
     /// # Errors
     /// A sentence that names place, value, bound and remedy.
@@ -142,27 +144,49 @@ impl Case {
             .file_stem()
             .map_or_else(|| "case".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let folder = path.parent().unwrap_or(Path::new(""));
-        Self::new(file, &name, folder)
+        Self::to_run(file, &name, folder)
     }
 
-    /// Makes a case of text that stands in no folder; files it names stand in the working directory.
+    /// Makes a case of text that stands in no folder, as [`load`](Self::load) does; files it names stand in the working
+    /// directory.
     ///
     /// # Errors
     /// A sentence that names place, value, bound and remedy.
     pub fn parse(text: &str, name: &str, overrides: &[String]) -> Result<Self, CaseError> {
-        Self::new(CaseFile::parse(text, name, overrides)?, name, Path::new(""))
+        Self::to_run(CaseFile::parse(text, name, overrides)?, name, Path::new(""))
     }
 
-    /// Makes a case of a case file; the files it names stand relative to `folder`.
+    fn to_run(file: CaseFile, name: &str, folder: &Path) -> Result<Self, CaseError> {
+        let Numbers {
+            lattice,
+            output,
+            budget,
+            ..
+        } = Numbers::of(&file)?;
+        within_budget(&file, budget.check_memory(false))?;
+        check_fields(&file, &lattice, &output)?;
+        let case = Self::new(file, name, folder)?;
+        // Once more, with the files that it reads.
+        within_budget(&case.file, case.budget.check_memory(true))?;
+        Ok(case)
+    }
+
+    /// Makes a case of a case file; the files it names stand relative to `folder`. It may be one that this machine has
+    /// no memory to run.
     ///
     /// # Errors
     /// A sentence that names place, value, bound and remedy.
     pub fn new(mut file: CaseFile, name: &str, folder: &Path) -> Result<Self, CaseError> {
-        let scales = scales(&file);
-        let groups = groups(&file, &scales)?;
-        let lattice = lattice(&file);
-        memory(&lattice).map_err(|sentence| file.source.error("slider.blocks", sentence))?;
-        let mut inputs = Inputs::new(folder);
+        let Numbers {
+            scales,
+            groups,
+            lattice,
+            schedule,
+            output,
+            budget,
+        } = Numbers::of(&file)?;
+        within_budget(&file, budget.check_making())?;
+        let mut inputs = Inputs::new(folder, budget);
         let textures = textures(&mut file, &scales, &lattice, &mut inputs)?;
         let meshed = mesh(&lattice, &textures.shapes);
         let coefficients = coefficients(&mut file, &groups, &lattice, &mut inputs)?;
@@ -179,11 +203,6 @@ impl Case {
             meshed_percent: surface.texture_percent(),
             clipped: meshed.clipped,
         };
-        let law = match file.friction.law {
-            case_file::Law::Projection => FrictionLaw::Projection,
-            case_file::Law::Reversal => FrictionLaw::Reversal,
-            case_file::Law::Literal => FrictionLaw::Literal,
-        };
         let drive = Drive::at_angle(groups.v_star, file.drive.direction);
         let model = Model::new(
             lattice,
@@ -191,13 +210,12 @@ impl Case {
             drive,
             damping(groups.omega_star),
             groups.epsilon,
-            law,
+            law(&file),
         );
-        let schedule = schedule(&file, &scales, &groups)?;
-        let output = output(&file, &schedule, &lattice)?;
         Ok(Self {
             name: name.to_owned(),
             file,
+            budget: inputs.budget,
             inputs: inputs.read,
             scales,
             groups,
@@ -207,6 +225,14 @@ impl Case {
             schedule,
             output,
         })
+    }
+
+    /// Refuses a run whose files have no room in `folder`, even when `replaced` bytes there have gone before.
+    ///
+    /// # Errors
+    /// With the figures, and which key to change.
+    pub fn check_disk(&self, folder: &Path, replaced: u64) -> Result<(), CaseError> {
+        within_budget(&self.file, self.budget.check_disk(folder, replaced))
     }
 
     /// Steps times blocks: what the run costs.
@@ -219,6 +245,61 @@ impl Case {
         const BLOCK_STEPS: u64 = 200_000;
         (BLOCK_STEPS / self.model.lattice.n_blocks() as u64).max(1)
     }
+}
+
+/// All that a case file says without its files, before any array of the lattice is made.
+struct Numbers {
+    scales: Scales,
+    groups: Groups,
+    lattice: Lattice,
+    schedule: Schedule,
+    output: Output,
+    budget: Budget,
+}
+
+fn law(file: &CaseFile) -> FrictionLaw {
+    match file.friction.law {
+        case_file::Law::Projection => FrictionLaw::Projection,
+        case_file::Law::Reversal => FrictionLaw::Reversal,
+        case_file::Law::Literal => FrictionLaw::Literal,
+    }
+}
+
+impl Numbers {
+    fn of(file: &CaseFile) -> Result<Self, CaseError> {
+        let scales = scales(file);
+        let groups = groups(file, &scales)?;
+        let lattice = lattice(file);
+        let schedule = schedule(file, &scales, &groups)?;
+        let output = output(file, &schedule)?;
+        let budget = Budget::new(&lattice, law(file), &schedule, &output);
+        Ok(Self {
+            scales,
+            groups,
+            lattice,
+            schedule,
+            output,
+            budget,
+        })
+    }
+}
+
+fn within_budget(file: &CaseFile, checked: Result<(), Excess>) -> Result<(), CaseError> {
+    checked.map_err(|excess| file.source.error(excess.key, excess.sentence))
+}
+
+/// Refuses fields that their file could not hold when the run is over.
+pub(crate) fn check_fields(file: &CaseFile, lattice: &Lattice, output: &Output) -> Result<(), CaseError> {
+    let Lattice { nx, ny, .. } = lattice;
+    let needed = fields::smallest_stride(*nx, *ny, output.stride);
+    if needed == output.stride {
+        return Ok(());
+    }
+    let sentence = format!(
+        "one field of {nx} x {ny} blocks takes more than the 2 GiB that the format of fields.nc holds: set \
+         `output.stride` to {needed} or more"
+    );
+    Err(file.source.error("output.stride", sentence))
 }
 
 fn scales(file: &CaseFile) -> Scales {
@@ -300,21 +381,6 @@ fn lattice(file: &CaseFile) -> Lattice {
     Lattice::with_edges(nx, ny, edges)
 }
 
-/// Bytes that a run keeps per block, roughly: 24 numbers for state, forces, springs and surface.
-const BYTES_PER_BLOCK: usize = 24 * size_of::<f64>();
-
-/// Asks for the memory of a run all at once, while it can still be refused in a sentence.
-fn memory(lattice: &Lattice) -> Result<(), String> {
-    let bytes = lattice.n_blocks().saturating_mul(BYTES_PER_BLOCK);
-    Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| {
-        format!(
-            "{} blocks take about {:.0} GiB of memory, more than this machine gives: take fewer",
-            lattice.n_blocks(),
-            bytes as f64 / 1024f64.powi(3)
-        )
-    })
-}
-
 struct Textures {
     shapes: Vec<surface::Texture>,
     asked_percent: Option<f64>,
@@ -342,9 +408,14 @@ fn textures(
             }
             case_file::Texture::Mask(mask) => {
                 let key = format!("texture.{index}.file");
-                let (path, copy) = inputs.read(file, &key, &mask.file)?;
+                let path = inputs.find(file, &key, &mask.file)?;
                 let shape = read_mask(&path, mask.threshold, lattice)
                     .map_err(|error| file.source.error(&key, error.to_string()))?;
+                inputs.budget.add_mask(match &shape {
+                    surface::Texture::Image(image) => image.dark.len(),
+                    _ => lattice.n_blocks(),
+                });
+                let copy = inputs.keep(file, &key, &path, lattice)?;
                 if let case_file::Texture::Mask(mask) = &mut file.texture[index] {
                     mask.file = copy;
                 }
@@ -486,10 +557,10 @@ fn coefficients(
         let Some(written) = name.as_ref() else {
             return Ok(None);
         };
-        let (path, copy) = inputs.read(file, key, written)?;
+        let path = inputs.find(file, key, written)?;
         let field = arrays::read_field(&path, lattice.nx, lattice.ny)
             .map_err(|error| file.source.error(key, error.to_string()))?;
-        *name = Some(copy);
+        *name = Some(inputs.keep(file, key, &path, lattice)?);
         Ok(Some(field))
     };
     let (mut static_name, mut kinetic_name) = (
@@ -520,41 +591,44 @@ fn coefficients(
     Ok(drawn)
 }
 
-/// The bytes of a file that a case names.
-pub(crate) fn read_input(source: &Source, key: &str, path: &Path) -> Result<Vec<u8>, CaseError> {
-    let unreadable = |error: std::io::Error| {
-        let sentence = format!(
-            "cannot read {}: {error}; paths are relative to the case file",
-            path.display()
-        );
-        source.error(key, sentence)
-    };
-    // A pipe would be waited for, and a device such as /dev/zero never ends.
-    if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
-        let sentence = format!("{} is not a regular file: name a file that is", path.display());
-        return Err(source.error(key, sentence));
-    }
-    std::fs::read(path).map_err(unreadable)
-}
-
-/// Files read so far.
+/// Files read so far, and what the case needs with them.
 struct Inputs {
     folder: PathBuf,
     read: Vec<Input>,
+    budget: Budget,
 }
 
 impl Inputs {
-    fn new(folder: &Path) -> Self {
+    fn new(folder: &Path, budget: Budget) -> Self {
         Self {
             folder: folder.to_owned(),
             read: Vec::new(),
+            budget,
         }
     }
 
-    /// Notes a file; gives its path and the one of its copy in the run folder.
-    fn read(&mut self, file: &CaseFile, key: &str, written: &str) -> Result<(PathBuf, String), CaseError> {
+    /// The path of a file that the case names.
+    fn find(&self, file: &CaseFile, key: &str, written: &str) -> Result<PathBuf, CaseError> {
         let path = self.folder.join(written);
-        let bytes = read_input(&file.source, key, &path)?;
+        let metadata = std::fs::metadata(&path).map_err(|error| unreadable(file, key, &path, &error))?;
+        // A pipe would be waited for, and a device such as /dev/zero never ends.
+        if !metadata.is_file() {
+            let sentence = format!("{} is not a regular file: name a file that is", path.display());
+            return Err(file.source.error(key, sentence));
+        }
+        Ok(path)
+    }
+
+    /// Notes a file that has been read; gives the path of its copy in the run folder.
+    fn keep(
+        &mut self,
+        file: &CaseFile,
+        key: &str,
+        path: &Path,
+        lattice: &Lattice,
+    ) -> Result<String, CaseError> {
+        let longest = arrays::longest(path, lattice.nx, lattice.ny);
+        let bytes = read_whole(path, longest).map_err(|error| unreadable(file, key, path, &error))?;
         let plain = path
             .file_name()
             .map_or_else(|| "input".into(), |name| name.to_string_lossy().into_owned());
@@ -563,17 +637,27 @@ impl Inputs {
         // Two files of one name from different folders stay two files.
         while let Some(other) = self.read.iter().find(|input| input.name == name) {
             if other.bytes == bytes {
-                return Ok((path, name));
+                return Ok(name);
             }
             copies += 1;
             name = format!("inputs/{copies}-{plain}");
         }
+        self.budget.add_input(bytes.len());
         self.read.push(Input {
             name: name.clone(),
             bytes,
         });
-        Ok((path, name))
+        within_budget(file, self.budget.check_making())?;
+        Ok(name)
     }
+}
+
+fn unreadable(file: &CaseFile, key: &str, path: &Path, error: &std::io::Error) -> CaseError {
+    let sentence = format!(
+        "cannot read {}: {error}; paths are relative to the case file",
+        path.display()
+    );
+    file.source.error(key, sentence)
 }
 
 fn schedule(file: &CaseFile, scales: &Scales, groups: &Groups) -> Result<Schedule, CaseError> {
@@ -631,7 +715,7 @@ fn schedule(file: &CaseFile, scales: &Scales, groups: &Groups) -> Result<Schedul
     })
 }
 
-fn output(file: &CaseFile, schedule: &Schedule, lattice: &Lattice) -> Result<Output, CaseError> {
+fn output(file: &CaseFile, schedule: &Schedule) -> Result<Output, CaseError> {
     let Schedule {
         dt_star, last_step, ..
     } = *schedule;
@@ -666,35 +750,12 @@ fn output(file: &CaseFile, schedule: &Schedule, lattice: &Lattice) -> Result<Out
         AutoOr::Number(time) => spacing("output.series", time)?,
     };
     let stride = file.output.stride as usize;
-    let output = Output {
+    Ok(Output {
         snapshots,
         fields: file.output.fields.clone(),
         stride,
         series_stride,
-    };
-    let bytes = output.field_bytes(lattice, last_step);
-    if bytes > MAX_FIELD_BYTES {
-        let sentence = format!(
-            "the snapshots take {:.1} GiB, more than {:.0}: take fewer, name fewer `fields`, or raise `stride`",
-            bytes / 1024f64.powi(3),
-            MAX_FIELD_BYTES / 1024f64.powi(3)
-        );
-        return Err(file.source.error("output.snapshots", sentence));
-    }
-    Ok(output)
-}
-
-impl Output {
-    /// Bytes of all snapshots together.
-    pub fn field_bytes(&self, lattice: &Lattice, last_step: u64) -> f64 {
-        let frames = match &self.snapshots {
-            Snapshots::Instants => 6,
-            Snapshots::At(steps) => steps.len() as u64,
-            Snapshots::Every(every) => last_step / every + 1,
-        };
-        let blocks = lattice.nx.div_ceil(self.stride) * lattice.ny.div_ceil(self.stride);
-        frames as f64 * self.fields.len() as f64 * blocks as f64 * size_of::<f32>() as f64
-    }
+    })
 }
 
 /// Difference between the texture as asked and as meshed, relative to what was asked, that deserves a word.
@@ -789,5 +850,26 @@ impl Case {
             ),
         );
         warnings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_that_no_file_holds_are_refused_before_the_run() {
+        let check = |text: &str| {
+            let file = CaseFile::parse(text, "case.toml", &[]).unwrap();
+            let Numbers { lattice, output, .. } = Numbers::of(&file).unwrap();
+            check_fields(&file, &lattice, &output)
+        };
+        let large = "[slider]\nblocks = [40000, 20000]\n[output]\nstride =";
+        assert!(check(&format!("{large} 2")).is_ok());
+        let said = check(&format!("{large} 1")).unwrap_err().to_string();
+        assert!(
+            said.contains("case.toml:4:10: ") && said.contains("set `output.stride` to 2 or more"),
+            "{said}"
+        );
     }
 }

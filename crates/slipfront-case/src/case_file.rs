@@ -37,7 +37,7 @@ pub use time::{RunTime, Step, Stop, Time};
 pub use values::AutoOr;
 
 /// The largest file that is read as a case, in MiB.
-const MAX_MIB: u64 = 16;
+pub(crate) const MAX_MIB: u64 = 16;
 
 /// A whole case file. The default is the baseline of Fig. 3, Table 1 case 8.
 ///

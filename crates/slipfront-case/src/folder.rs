@@ -2,11 +2,16 @@
 //!
 //! Files appear whole or not at all, and `manifest.json` comes last: where it stands, the run is complete.
 
-use std::io::Write;
+use std::fs::File;
+use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
+use slipfront::Model;
+use tempfile::TempPath;
 use thiserror::Error;
+
+use crate::manifest::{MANIFEST, Manifest};
 
 /// Names that belong to slipfront in a run folder, besides the files in `inputs/` that a manifest lists.
 const OWN_FILES: [&str; 9] = [
@@ -20,7 +25,6 @@ const OWN_FILES: [&str; 9] = [
     "stress.svg",
     "stress.png",
 ];
-const MANIFEST: &str = "manifest.json";
 
 /// How the names of files begin while they are being written.
 pub(crate) const UNFINISHED: &str = ".slipfront";
@@ -76,38 +80,6 @@ pub struct RunFolder {
     written: Vec<String>,
 }
 
-/// `manifest.json`: what was written, when and where. All other files of the same case are the same bytes.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Manifest {
-    /// Version of slipfront.
-    pub version: String,
-    /// Name of the machine.
-    pub host: String,
-    /// Operating system and processor.
-    pub platform: String,
-    /// When the run began, UTC.
-    pub started: String,
-    /// When its last file was written, UTC.
-    pub finished: String,
-    /// Seconds in between.
-    pub wall_time_s: f64,
-    /// Threads that it was allowed.
-    pub threads: usize,
-    /// Every other file of the run.
-    pub files: Vec<ManifestFile>,
-}
-
-/// A file and its checksum.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct ManifestFile {
-    /// Path in the folder.
-    pub name: String,
-    /// Length.
-    pub bytes: u64,
-    /// BLAKE3 hash, hexadecimal.
-    pub blake3: String,
-}
-
 impl RunFolder {
     /// Makes the folder ready: it is created, or empty, or with `force` rid of the files of an earlier run (and of
     /// nothing else).
@@ -129,7 +101,7 @@ impl RunFolder {
             // The manifest goes first: from now on the folder does not look complete.
             for name in own_files(path) {
                 match std::fs::remove_file(path.join(name)) {
-                    Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                    Err(error) if error.kind() != ErrorKind::NotFound => {
                         return Err(unwritable(error));
                     }
                     _ => {}
@@ -206,25 +178,17 @@ impl RunFolder {
     ///
     /// # Errors
     /// When a file cannot be read back or the manifest cannot be written.
-    pub fn complete(self, started: jiff::Timestamp, threads: usize) -> Result<Manifest, FolderError> {
-        let files = self
-            .written
-            .iter()
-            .map(|name| checksum(&self.path, name))
-            .collect::<Result<_, _>>()?;
-        let finished = jiff::Timestamp::now();
-        let manifest = Manifest {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            host: gethostname::gethostname().to_string_lossy().into_owned(),
-            platform: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
-            started: started.to_string(),
-            finished: finished.to_string(),
-            wall_time_s: finished.duration_since(started).as_secs_f64(),
-            threads,
-            files,
-        };
+    pub fn complete(
+        self,
+        started: jiff::Timestamp,
+        threads: usize,
+        model: &Model,
+        seed: u64,
+    ) -> Result<Manifest, FolderError> {
+        let (manifest, bytes) =
+            Manifest::of(&self.path, &self.written, started, threads, model, seed)?.sealed();
         let path = self.path.join(MANIFEST);
-        write_whole(&path, &json(&manifest)).map_err(|source| FolderError::Write { path, source })?;
+        write_whole(&path, &bytes).map_err(|source| FolderError::Write { path, source })?;
         Ok(manifest)
     }
 }
@@ -232,7 +196,7 @@ impl RunFolder {
 /// Files of an earlier run in this folder, its manifest first.
 fn own_files(path: &Path) -> Vec<String> {
     let mut names: Vec<String> = OWN_FILES.map(str::to_owned).to_vec();
-    let manifest = std::fs::read(path.join(MANIFEST)).ok();
+    let manifest = read_whole(&path.join(MANIFEST), TEXT_MAX_BYTES).ok();
     let manifest = manifest.and_then(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok());
     let listed = manifest
         .into_iter()
@@ -246,18 +210,10 @@ fn own_files(path: &Path) -> Vec<String> {
     names
 }
 
-fn checksum(folder: &Path, name: &str) -> Result<ManifestFile, FolderError> {
-    let path = folder.join(name);
-    let hash = |path: &Path| -> std::io::Result<ManifestFile> {
-        let mut hasher = blake3::Hasher::new();
-        hasher.update_reader(std::fs::File::open(path)?)?;
-        Ok(ManifestFile {
-            name: name.to_owned(),
-            bytes: hasher.count(),
-            blake3: hasher.finalize().to_hex().to_string(),
-        })
-    };
-    hash(&path).map_err(|source| FolderError::Read { path, source })
+/// Bytes of an earlier run in this folder, which [`RunFolder::prepare`] would remove with `force`.
+pub fn own_bytes(path: &Path) -> u64 {
+    let length = |name| std::fs::symlink_metadata(path.join(name)).map_or(0, |file| file.len());
+    own_files(path).into_iter().map(length).sum()
 }
 
 /// Writes a file whole or not at all: into a neighbour first, which then takes its name.
@@ -269,17 +225,52 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
         .parent()
         .filter(|parent| !parent.as_os_str().is_empty())
         .unwrap_or(Path::new("."));
+    stage(folder, |file| file.write_all(bytes))?.persist(path)?;
+    Ok(())
+}
+
+/// Makes a file in a folder, forced to the disk, that still has to take its name and goes away if it does not.
+pub(crate) fn stage(
+    folder: &Path,
+    fill: impl FnOnce(&mut File) -> std::io::Result<()>,
+) -> std::io::Result<TempPath> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(UNFINISHED);
     // Temporary files are private by default; results are not.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let mut file = builder.tempfile_in(folder)?;
-    file.write_all(bytes)?;
+    fill(file.as_file_mut())?;
     file.as_file().sync_all()?;
-    file.persist(path)?;
-    Ok(())
+    Ok(file.into_temp_path())
 }
+
+/// Reads a regular file that can have no more than `most` bytes if it is what it should be.
+///
+/// A pipe would be waited for, a device such as `/dev/zero` never ends, and a file of many gigabytes in the place of
+/// a small one would take all memory before anyone looked at it.
+///
+/// # Errors
+/// What the system says, and for a longer file or none.
+pub(crate) fn read_whole(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
+    let metadata = std::fs::metadata(path)?;
+    if !metadata.is_file() {
+        return Err(std::io::Error::other("it is not a regular file"));
+    }
+    if metadata.len() > most {
+        let sentence = format!(
+            "it has {} bytes where at most {most} can be meant",
+            metadata.len()
+        );
+        return Err(std::io::Error::new(ErrorKind::FileTooLarge, sentence));
+    }
+    let mut bytes = Vec::new();
+    File::open(path)?.take(most).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The largest file of our own that is read whole: a case, a summary, a manifest.
+pub(crate) const TEXT_MAX_BYTES: u64 = crate::case_file::MAX_MIB << 20;
 
 /// Pretty JSON with a final newline.
 pub(crate) fn json(value: &impl Serialize) -> Vec<u8> {

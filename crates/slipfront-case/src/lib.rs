@@ -8,10 +8,12 @@
 //! [`results::write`], [`results::draw`].
 
 pub mod arrays;
+pub mod budget;
 pub mod case;
 pub mod case_file;
 pub mod fields;
 pub mod folder;
+pub mod manifest;
 pub mod paper;
 pub mod pictures;
 pub mod quantity;
@@ -20,3 +22,4 @@ pub mod run;
 pub mod series;
 pub mod study;
 pub mod summary;
+pub mod verify;

@@ -4,13 +4,13 @@
 
 use std::path::{Path, PathBuf};
 
-use slipfront::observe::Frame;
 use thiserror::Error;
 
 use crate::case::Case;
 use crate::case_file::CaseError;
 use crate::fields::{self, FieldFrame, FieldName, FieldsError, FieldsFile, StaticFields};
-use crate::folder::{self, FolderError, Manifest, RunFolder};
+use crate::folder::{self, FolderError, RunFolder};
+use crate::manifest::Manifest;
 use crate::pictures::{self, FrictionCurve, Instant, Kinetic, Picture, PictureError, StressMap, StressMaps};
 use crate::run::Record;
 use crate::series::{self, SeriesError, SeriesRow};
@@ -52,13 +52,14 @@ pub enum ResultsError {
     },
 }
 
-/// Writes the files of a run and draws its pictures; the manifest completes the folder.
+/// Writes the files of a run and draws its pictures; the manifest completes the folder. The fields are taken out of
+/// the record: drawing needs the room that they took.
 ///
 /// # Errors
 /// When a file cannot be written: the folder is then left without a manifest.
 pub fn write(
     case: &Case,
-    record: &Record,
+    record: &mut Record,
     mut folder: RunFolder,
     started: jiff::Timestamp,
     threads: usize,
@@ -73,7 +74,7 @@ pub fn write(
         folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
         folder.write(&format!("{name}.png"), &picture.png)?;
     }
-    Ok(folder.complete(started, threads)?)
+    Ok(folder.complete(started, threads, &case.model, case.file.friction.seed)?)
 }
 
 /// Writes the case and copies of the files that it reads: enough to run it again.
@@ -88,17 +89,16 @@ pub fn write_case(case: &Case, folder: &mut RunFolder) -> Result<(), ResultsErro
     Ok(())
 }
 
-fn write_fields(case: &Case, record: &Record, path: &Path) -> Result<(), FieldsError> {
+fn write_fields(case: &Case, record: &mut Record, path: &Path) -> Result<(), FieldsError> {
     let surface = &case.model.surface;
     let names = &case.output.fields;
-    let frames: Vec<FieldFrame> = record
-        .frames
-        .iter()
+    let frames: Vec<FieldFrame> = std::mem::take(&mut record.frames)
+        .into_iter()
         .map(|(label, frame)| FieldFrame {
             time_star: frame.time_star,
-            label: label.clone(),
+            label,
             step: frame.step,
-            values: dimensional(case, record, frame),
+            values: dimensional(case, record.contact_stress_max, frame.values),
         })
         .collect();
     fields::write_fields(
@@ -122,23 +122,21 @@ fn write_fields(case: &Case, record: &Record, path: &Path) -> Result<(), FieldsE
 }
 
 /// Values of a frame in the units of the fields file.
-fn dimensional(case: &Case, record: &Record, frame: &Frame) -> Vec<Vec<f32>> {
-    let unit = |field: &FieldName| match field {
-        // A run in which nothing was ever pulled has no largest stress to divide by.
-        FieldName::ContactStressStar if record.contact_stress_max > 0.0 => 1.0 / record.contact_stress_max,
-        FieldName::ContactStressStar | FieldName::Sliding => 1.0,
-        FieldName::Traction => case.scales.stress(),
-        FieldName::DisplacementX | FieldName::DisplacementY => case.scales.displacement(),
-        FieldName::VelocityX | FieldName::VelocityY => case.scales.speed(),
-    };
-    let scaled = |(field, values): (&FieldName, &Vec<f32>)| -> Vec<f32> {
-        let unit = unit(field);
-        values
-            .iter()
-            .map(|&value| (f64::from(value) * unit) as f32)
-            .collect()
-    };
-    case.output.fields.iter().zip(&frame.values).map(scaled).collect()
+fn dimensional(case: &Case, contact_stress_max: f64, mut fields: Vec<Vec<f32>>) -> Vec<Vec<f32>> {
+    for (field, values) in case.output.fields.iter().zip(&mut fields) {
+        let unit = match field {
+            // A run in which nothing was ever pulled has no largest stress to divide by.
+            FieldName::ContactStressStar if contact_stress_max > 0.0 => 1.0 / contact_stress_max,
+            FieldName::ContactStressStar | FieldName::Sliding => 1.0,
+            FieldName::Traction => case.scales.stress(),
+            FieldName::DisplacementX | FieldName::DisplacementY => case.scales.displacement(),
+            FieldName::VelocityX | FieldName::VelocityY => case.scales.speed(),
+        };
+        for value in values {
+            *value = (f64::from(*value) * unit) as f32;
+        }
+    }
+    fields
 }
 
 /// Draws the pictures of a run folder from its files.
@@ -208,31 +206,24 @@ impl FrictionCurve {
 ///
 /// # Errors
 /// When it is missing or no summary.
-pub fn read_summary(folder: &Path) -> Result<Summary, ResultsError> {
-    let path = folder.join("summary.json");
-    let bytes = std::fs::read(&path).map_err(|source| FolderError::Read {
+pub fn read_summary(run: &Path) -> Result<Summary, ResultsError> {
+    let path = run.join("summary.json");
+    let bytes = folder::read_whole(&path, folder::TEXT_MAX_BYTES).map_err(|source| FolderError::Read {
         path: path.clone(),
         source,
     })?;
     serde_json::from_slice(&bytes).map_err(|source| ResultsError::Summary { path, source })
 }
 
-/// Most maps in the picture of the stress.
-const MOST_MAPS: usize = 6;
+/// Most maps in the picture of the stress: of more snapshots, six spread over the run are shown.
+pub(crate) const MOST_MAPS: usize = 6;
 
 /// Draws the stress maps of a run; none if it kept no contact stress.
 fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
-    let fields = fields::read_fields(&folder.join("fields.nc"))?;
-    let stress = fields
-        .names
-        .iter()
-        .position(|&name| name == FieldName::ContactStressStar);
-    let Some(stress) = stress.filter(|_| !fields.frames.is_empty()) else {
+    let fields = fields::read_maps(&folder.join("fields.nc"), FieldName::ContactStressStar, MOST_MAPS)?;
+    if fields.names.is_empty() || fields.frames.is_empty() {
         return Ok(None);
-    };
-    // Of many snapshots, six spread over the run are shown.
-    let shown = fields.frames.len().min(MOST_MAPS);
-    let pick = |k: usize| &fields.frames[k * (fields.frames.len() - 1) / (shown - 1).max(1)];
+    }
     let rows = series::read_csv(&folder.join("series.csv"))?;
     let instants = read_summary(folder)?.instants;
     // A snapshot between the rows of a thinned series has no mu* of its own, unless it is an instant.
@@ -250,18 +241,20 @@ fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
             .or_else(row)
             .unwrap_or(f64::NAN)
     };
-    let maps = (0..shown)
-        .map(pick)
+    let (nx, ny) = (fields.columns(), fields.rows());
+    let maps = fields
+        .frames
+        .into_iter()
         .map(|frame| StressMap {
-            label: frame.label.clone(),
+            mu_star: mu_star(&frame),
+            label: frame.label,
             time_star: frame.time_star,
-            mu_star: mu_star(frame),
-            values: frame.values[stress].clone(),
+            values: frame.values.into_iter().next().unwrap_or_default(),
         })
         .collect();
     let maps = StressMaps {
-        nx: fields.columns(),
-        ny: fields.rows(),
+        nx,
+        ny,
         block_size: fields.block_size * fields.stride as f64,
         textured: fields.textured,
         maps,

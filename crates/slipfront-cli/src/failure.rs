@@ -12,6 +12,8 @@ pub(crate) enum Failure {
     Running(anyhow::Error),
     /// Stopped by this signal, with everything saved: status 128 + signal.
     Stopped(usize),
+    /// Stopped by this signal, with nothing to save: status 128 + signal.
+    GivenUp(usize),
 }
 
 impl Failure {
@@ -29,6 +31,7 @@ impl Failure {
             Self::Input(error) => (error, 2),
             Self::Running(error) => (error, 1),
             Self::Stopped(signal) => (StudyError::Interrupted.into(), 128 + signal as u8),
+            Self::GivenUp(signal) => (anyhow::anyhow!("stopped by a signal"), 128 + signal as u8),
         };
         eprintln!("error: {error}");
         ExitCode::from(status)

@@ -35,6 +35,7 @@ enum Command {
     Paper(commands::paper::Paper),
     Texture(commands::texture::Texture),
     Plot(commands::plot::Plot),
+    Verify(commands::verify::Verify),
     Completions(commands::completions::Completions),
 }
 
@@ -46,6 +47,7 @@ fn main() -> ExitCode {
         Command::Paper(paper) => paper.execute(),
         Command::Texture(texture) => texture.execute(),
         Command::Plot(plot) => plot.execute(),
+        Command::Verify(verify) => verify.execute(),
         Command::Completions(completions) => completions.execute(),
     };
     match done {

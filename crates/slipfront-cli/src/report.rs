@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use slipfront::lattice::dt_star_limit;
+use slipfront_case::budget::{available_memory, shown};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Law;
 use slipfront_case::study::{self, Findings, Plan};
@@ -110,7 +111,7 @@ pub(crate) fn texture(case: &Case) -> String {
 
 /// What `check` adds to the physics: the expected onset, the cost, the warnings.
 pub(crate) fn cost(case: &Case, seconds: f64) -> String {
-    let (lattice, schedule) = (&case.model.lattice, &case.schedule);
+    let (schedule, budget) = (&case.schedule, &case.budget);
     let v_star = case.groups.v_star;
     let onset = |star: f64| format!("t* = {} ({})", plain(star), si(star * case.scales.time(), "s"));
     let mut text = String::new();
@@ -134,10 +135,19 @@ pub(crate) fn cost(case: &Case, seconds: f64) -> String {
         dt_star_limit()
     );
     text += &format!(
-        "cost              {:.3e} block-steps, {} on this machine; fields {}\n",
+        "cost              {:.3e} block-steps, {} on this machine\n",
         case.block_steps(),
-        duration(seconds),
-        bytes(case.output.field_bytes(lattice, schedule.last_step))
+        duration(seconds)
+    );
+    text += &format!(
+        "memory            {}{}\n",
+        shown(budget.memory()),
+        available_memory().map_or(String::new(), |there| format!(" of {} available", shown(there)))
+    );
+    text += &format!(
+        "disk              {}, the snapshots {} of it\n",
+        shown(budget.disk()),
+        shown(budget.disk_of_snapshots())
     );
     text + &warnings(&case.warnings())
 }
@@ -240,9 +250,14 @@ pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) 
         "  {} points, {replicates}{reference}: at most {count} runs\n",
         plan.points.len()
     );
-    text + &format!(
-        "  {block_steps:.2e} block-steps, about {} on {threads} threads of this machine\n",
+    text += &format!(
+        "  {block_steps:.2e} block-steps, {} on {threads} threads of this machine\n",
         duration(seconds)
+    );
+    text + &format!(
+        "  {} of memory for {threads} runs at once, {} on the disk\n",
+        shown(plan.memory(threads)),
+        shown(plan.disk(plan.runs(settings.min_replicates())))
     )
 }
 
@@ -349,8 +364,4 @@ fn duration(seconds: f64) -> String {
     }
     let rounded = std::time::Duration::from_secs_f64(seconds.min(1e15));
     format!("about {}", indicatif::HumanDuration(rounded))
-}
-
-fn bytes(bytes: f64) -> String {
-    indicatif::HumanBytes(bytes as u64).to_string()
 }

@@ -14,6 +14,8 @@ use crate::folder::write_whole;
 
 /// More pixels than any lattice has blocks.
 const PIXELS_MAX: u64 = 1 << 28;
+/// A byte for each of these is more than any picture of dark and bright takes.
+pub(super) const FILE_MAX_BYTES: u64 = PIXELS_MAX;
 /// Deflate cannot pack more than about 1030 bytes into one.
 const DEFLATE_MAX_RATIO: u64 = 1040;
 
@@ -30,9 +32,17 @@ const DEFLATE_MAX_RATIO: u64 = 1040;
 ///
 /// # Errors
 ///
-/// [`ArrayError`] if the file is missing, not a PNG image, corrupt, or has more than 2^28 pixels.
+/// [`ArrayError`] if the file is missing, not a PNG image, corrupt, or has more than 2^28 pixels or bytes.
 pub fn read_mask_png(path: &Path, threshold: f64) -> Result<MaskImage, ArrayError> {
     let (file, file_bytes) = open(path)?;
+    if file_bytes > FILE_MAX_BYTES {
+        return Err(ArrayError::TooLong {
+            path: path.to_owned(),
+            found: file_bytes,
+            wanted: format!("an image takes at most {FILE_MAX_BYTES}"),
+            remedy: "scale it down",
+        });
+    }
     let mut decoder = Decoder::new(BufReader::new(file));
     decoder.set_transformations(Transformations::EXPAND);
     decoder.set_ignore_text_chunk(true);

@@ -1,8 +1,9 @@
 //! Arrays and images that a user hands over: friction coefficients block by block, and texture masks.
 //!
 //! The files come from strangers, so every reader compares what the header announces with the length of the
-//! file before it reserves memory, and answers with an [`ArrayError`] whatever the bytes are. Arrays are
-//! (ny, nx) and row-major, row j = 0 (the smallest y) first. The case parser reads next.
+//! file before it reserves memory, takes no file that is longer than its lattice can need, and answers with an
+//! [`ArrayError`] whatever the bytes are. Arrays are (ny, nx) and row-major, row j = 0 (the smallest y) first. The
+//! case parser reads next.
 
 mod mask;
 mod npy;
@@ -66,6 +67,18 @@ pub enum ArrayError {
         path: PathBuf,
         /// The type found, as numpy writes it.
         found: String,
+    },
+    /// The file is longer than it can be if it is what it should be.
+    #[error("`{}` has {found} bytes where {wanted}; {remedy}", path.display())]
+    TooLong {
+        /// The file.
+        path: PathBuf,
+        /// Its length.
+        found: u64,
+        /// The most that can be meant, as a phrase.
+        wanted: String,
+        /// What to do about it.
+        remedy: &'static str,
     },
     /// The array has another shape than the lattice.
     #[error("`{}` has {found} where {wanted} is wanted; {remedy}", path.display())]
@@ -150,6 +163,23 @@ pub fn read_field(path: &Path, nx: usize, ny: usize) -> Result<Vec<f64>, ArrayEr
             value: values[at].to_string(),
             wanted: "a finite number >= 0",
         }),
+    }
+}
+
+/// The longest file that can be meant for a lattice of `nx` x `ny` blocks, in bytes.
+///
+/// A `.npy` holds a header and 64 bits per block, a line of a `.csv` numbers and what is written beside them, an image
+/// no more than it may have pixels.
+pub(crate) fn longest(path: &Path, nx: usize, ny: usize) -> u64 {
+    let blocks = (nx as u64).saturating_mul(ny as u64);
+    match extension(path).as_str() {
+        "npy" => blocks
+            .saturating_mul(8)
+            .saturating_add(npy::HEADER_MAX_BYTES as u64),
+        "csv" => blocks
+            .saturating_mul(table::NUMBER_MAX_BYTES)
+            .saturating_add(table::PREAMBLE_MAX_BYTES),
+        _ => mask::FILE_MAX_BYTES,
     }
 }
 

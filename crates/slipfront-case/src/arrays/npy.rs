@@ -8,7 +8,7 @@ use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 use super::{ArrayError, open, read_error};
 
 /// Numpy itself refuses longer headers.
-const HEADER_MAX_BYTES: usize = 10_000;
+pub(super) const HEADER_MAX_BYTES: usize = 10_000;
 /// A dict that holds a list of tuples that hold a shape: nothing that numpy writes for numbers nests deeper.
 const HEADER_MAX_NESTING: usize = 4;
 /// All numbers of a header together: their product then fits into 64 bits, whatever the radix they are written in.

@@ -6,14 +6,26 @@ use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 
-use super::{ArrayError, open, read_error};
+use super::{ArrayError, longest, open, read_error};
 
 /// Comment lines longer than this in total are not looked through for the separator.
-const PREAMBLE_MAX_BYTES: u64 = 1 << 20;
+pub(super) const PREAMBLE_MAX_BYTES: u64 = 1 << 20;
+/// A number with its separator and blanks, and its share of comments: numpy's longest takes 25.
+pub(super) const NUMBER_MAX_BYTES: u64 = 64;
 
 /// Reads `ny` lines of `nx` numbers in row-major order; the values may be anything that is written as a number.
 pub(super) fn read(path: &Path, nx: usize, ny: usize) -> Result<Vec<f64>, ArrayError> {
-    let (mut file, _) = open(path)?;
+    let (mut file, file_bytes) = open(path)?;
+    // A line is read before it is looked at, and may be the whole file.
+    let longest = longest(path, nx, ny);
+    if file_bytes > longest {
+        return Err(ArrayError::TooLong {
+            path: path.to_owned(),
+            found: file_bytes,
+            wanted: format!("{ny} lines of {nx} numbers take at most {longest}"),
+            remedy: "write one number per block, or change `blocks`",
+        });
+    }
     let separator = separator(&file).map_err(|source| read_error(path, source))?;
     file.seek(SeekFrom::Start(0))
         .map_err(|source| read_error(path, source))?;
@@ -25,7 +37,8 @@ pub(super) fn read(path: &Path, nx: usize, ny: usize) -> Result<Vec<f64>, ArrayE
         .delimiter(separator)
         .from_reader(BufReader::new(file));
 
-    let mut values = Vec::new();
+    // A number and what separates it from the next take two bytes at the least.
+    let mut values = Vec::with_capacity((nx * ny).min(file_bytes as usize / 2 + 1));
     let mut record = StringRecord::new();
     let mut row = 0;
     while table

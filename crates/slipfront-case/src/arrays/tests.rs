@@ -422,6 +422,35 @@ fn png_that_is_cut_short_or_something_else() {
     }
 }
 
+/// A file with a hole at its end, which takes no room on the disk.
+fn stretched(name: &str, bytes: &[u8], length: u64) -> (TempDir, PathBuf) {
+    let (folder, path) = file(name, bytes);
+    let stretched = fs::OpenOptions::new().write(true).open(&path).unwrap();
+    stretched.set_len(length).unwrap();
+    (folder, path)
+}
+
+#[test]
+fn files_longer_than_can_be_meant_are_not_read() {
+    let most = (1 << 20) + 6 * 64;
+    let (_folder, path) = stretched("mu.csv", b"1,2,3\n4,5,6\n#", most + 1);
+    let text = message(read_field(&path, 3, 2));
+    let wanted = format!(
+        "has {} bytes where 2 lines of 3 numbers take at most {most};",
+        most + 1
+    );
+    assert!(text.contains(&wanted), "{text}");
+    let (_folder, path) = stretched("mask.png", b"", (1 << 28) + 1);
+    let text = message(read_mask_png(&path, 0.5));
+    assert!(
+        text.contains("where an image takes at most 268435456; scale it down"),
+        "{text}"
+    );
+    // Of an array only as much is read as the lattice has blocks.
+    let (_folder, path) = stretched("mu.npy", &field_npy(), 1 << 40);
+    assert_eq!(read_field(&path, 3, 2).unwrap(), FIELD);
+}
+
 #[rstest]
 #[case(1, 1)]
 #[case(8, 3)]

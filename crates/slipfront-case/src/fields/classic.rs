@@ -152,12 +152,25 @@ impl Classic {
                 total.checked_add(bytes?.checked_next_multiple_of(4)?)
             });
         classic.record_bytes = record_bytes.ok_or_else(|| absurd("one record"))?;
+        classic.check_records()?;
         Ok(classic)
     }
 
     /// Number of records, that is of instants.
     pub(super) fn records(&self) -> usize {
         self.records
+    }
+
+    /// The number of records stands in the header alone: it counts only as far as the file holds their bytes.
+    fn check_records(&self) -> Result<(), Fault> {
+        let held = self.file_bytes.checked_div(self.record_bytes).unwrap_or(0);
+        if self.records as u64 <= held {
+            return Ok(());
+        }
+        Err(Fault::Broken(format!(
+            "its header promises {} instants where {} bytes hold at most {held}",
+            self.records, self.file_bytes
+        )))
     }
 
     /// The names of the variables that have exactly these dimensions.

@@ -3,7 +3,7 @@
 //! The file is NetCDF-3 with 64-bit offsets and CF-1.8 attributes, so that xarray, ParaView, Octave and MATLAB
 //! open it as it is. Fields have the dimensions (time, y, x), what never changes has (y, x); row j = 0 is the
 //! smallest y. The file carries no date: equal input gives equal bytes. [`write_fields`] ends a run,
-//! [`read_fields`] serves the pictures.
+//! [`read_maps`] serves the pictures, [`read_fields`] whoever wants it all.
 
 mod classic;
 mod read;
@@ -15,7 +15,8 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 use slipfront::observe::Field;
 
-pub use read::read_fields;
+pub use read::{read_fields, read_maps};
+pub(crate) use write::smallest_stride;
 pub use write::write_fields;
 
 /// A field that changes with time, named as in `output.fields` of a case file.

@@ -17,24 +17,57 @@ use super::{FieldFrame, FieldName, FieldsData, FieldsError};
 ///
 /// [`FieldsError`] if the file is missing, cut short, damaged, or not a fields file.
 pub fn read_fields(path: &Path) -> Result<FieldsData, FieldsError> {
-    read(path).map_err(|fault| match fault {
-        Fault::Io(source) => FieldsError::Read {
-            path: path.to_owned(),
-            source,
-        },
-        Fault::Broken(detail) => FieldsError::Broken {
-            path: path.to_owned(),
-            detail,
-        },
-    })
+    let read = || {
+        let mut file = Classic::open(path)?;
+        let all: Vec<usize> = (0..file.records()).collect();
+        let data = read_chosen(&mut file, |_| true, &all)?;
+        Ok(FieldsData {
+            mu_static: file.values(MU_STATIC, &[Y, X], 0)?,
+            mu_kinetic: file.values(MU_KINETIC, &[Y, X], 0)?,
+            first_slip_time_star: file.values(FIRST_SLIP, &[Y, X], 0)?,
+            ..data
+        })
+    };
+    read().map_err(|fault| in_words(fault, path))
 }
 
-fn read(path: &Path) -> Result<FieldsData, Fault> {
-    let mut file = Classic::open(path)?;
-    let [nx, ny] = counts(&file, BLOCKS)?;
-    let [stride] = counts(&file, STRIDE)?;
-    let [block_size] = numbers(&file, BLOCK_SIZE)?;
-    let [time_unit_s] = numbers(&file, TIME_UNIT)?;
+/// Reads what a picture of one field takes, however long the file is: this field alone, at no more than `most`
+/// instants spread over the run, and of what never changes the texture alone.
+///
+/// # Errors
+///
+/// As for [`read_fields`].
+pub fn read_maps(path: &Path, field: FieldName, most: usize) -> Result<FieldsData, FieldsError> {
+    let read = || {
+        let mut file = Classic::open(path)?;
+        let records = file.records();
+        let shown = records.min(most);
+        let spread: Vec<usize> = (0..shown)
+            .map(|k| k * (records - 1) / (shown - 1).max(1))
+            .collect();
+        read_chosen(&mut file, |name| name == field, &spread)
+    };
+    read().map_err(|fault| in_words(fault, path))
+}
+
+fn in_words(fault: Fault, path: &Path) -> FieldsError {
+    let path = path.to_owned();
+    match fault {
+        Fault::Io(source) => FieldsError::Read { path, source },
+        Fault::Broken(detail) => FieldsError::Broken { path, detail },
+    }
+}
+
+/// Some fields at some instants, and the texture; the other arrays are left empty.
+fn read_chosen(
+    file: &mut Classic,
+    chosen: impl Fn(FieldName) -> bool,
+    records: &[usize],
+) -> Result<FieldsData, Fault> {
+    let [nx, ny] = counts(file, BLOCKS)?;
+    let [stride] = counts(file, STRIDE)?;
+    let [block_size] = numbers(file, BLOCK_SIZE)?;
+    let [time_unit_s] = numbers(file, TIME_UNIT)?;
     for (name, blocks) in [(X, nx), (Y, ny)] {
         let (found, wanted) = (file.dimension(name)?, blocks.div_ceil(stride));
         if found != wanted {
@@ -47,9 +80,11 @@ fn read(path: &Path) -> Result<FieldsData, Fault> {
     let names: Vec<FieldName> = file
         .variables_over(&[TIME, Y, X])
         .filter_map(FieldName::from_name)
+        .filter(|name| chosen(*name))
         .collect();
-    let frames = (0..file.records())
-        .map(|record| read_frame(&mut file, &names, record))
+    let frames = records
+        .iter()
+        .map(|&record| read_frame(file, &names, record))
         .collect::<Result<_, _>>()?;
     Ok(FieldsData {
         nx,
@@ -63,9 +98,9 @@ fn read(path: &Path) -> Result<FieldsData, Fault> {
             .iter()
             .map(|value| *value != 0.0)
             .collect(),
-        mu_static: file.values(MU_STATIC, &[Y, X], 0)?,
-        mu_kinetic: file.values(MU_KINETIC, &[Y, X], 0)?,
-        first_slip_time_star: file.values(FIRST_SLIP, &[Y, X], 0)?,
+        mu_static: Vec::new(),
+        mu_kinetic: Vec::new(),
+        first_slip_time_star: Vec::new(),
         frames,
     })
 }

@@ -140,6 +140,36 @@ fn what_is_written_is_read() {
 }
 
 #[test]
+fn maps_are_one_field_at_a_few_instants() {
+    let lattice = lattice();
+    let (_folder, path) = folder();
+    let names = [FieldName::Sliding, FieldName::Traction];
+    let frames = frames(&names, 1);
+    write_fields(&path, &lattice.file(1, &names, &frames)).unwrap();
+    for (most, instants) in [
+        (1, vec![0]),
+        (2, vec![0, 2]),
+        (3, vec![0, 1, 2]),
+        (9, vec![0, 1, 2]),
+    ] {
+        let maps = read_maps(&path, FieldName::Traction, most).unwrap();
+        assert_eq!(maps.names, [FieldName::Traction]);
+        assert_eq!(maps.textured, lattice.textured);
+        let wanted = instants
+            .iter()
+            .map(|&instant| (frames[instant].step, &frames[instant].values[1]));
+        let found = maps.frames.iter().map(|frame| (frame.step, &frame.values[0]));
+        assert!(found.eq(wanted), "{most}");
+    }
+    assert!(
+        read_maps(&path, FieldName::VelocityX, 6)
+            .unwrap()
+            .names
+            .is_empty()
+    );
+}
+
+#[test]
 fn thinning_starts_at_block_0() {
     let blocks: Vec<usize> = (0..15).collect();
     assert_eq!(thin(&blocks, 5, 1), blocks);
@@ -408,6 +438,29 @@ fn files_of_another_kind_are_refused() {
             matches!(read_fields(&path), Err(FieldsError::Broken { .. })),
             "cut after {length} bytes"
         );
+    }
+}
+
+/// A record dimension of a fixed length has no records, and no variable of them needs a byte more for each: without
+/// a look at the file, the number in the header alone would say how many frames to make.
+#[test]
+fn instants_that_the_file_does_not_hold_are_refused() {
+    let lattice = lattice();
+    let (_folder, path) = folder();
+    let names = [FieldName::Traction];
+    write_fields(&path, &lattice.file(1, &names, &frames(&names, 1))).unwrap();
+    let whole = fs::read(&path).unwrap();
+    let time = whole
+        .windows(8)
+        .position(|bytes| bytes == b"\0\0\0\x04time")
+        .unwrap();
+    for (dimension, instants) in [(0u32, u32::MAX - 1), (0, 1000), (1, u32::MAX - 1), (1, 1)] {
+        let mut bytes = whole.clone();
+        bytes[4..8].copy_from_slice(&instants.to_be_bytes());
+        bytes[time + 8..time + 12].copy_from_slice(&dimension.to_be_bytes());
+        replace(&path, &bytes);
+        let said = read_fields(&path).unwrap_err().to_string();
+        assert!(said.contains(&format!("promises {instants} instants")), "{said}");
     }
 }
 

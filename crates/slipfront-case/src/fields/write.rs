@@ -80,18 +80,22 @@ fn check(path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
 
 /// One variable must hold all blocks that are kept.
 pub(super) fn check_size(path: &Path, nx: usize, ny: usize, stride: usize) -> Result<(), FieldsError> {
-    let (columns, rows) = (nx.div_ceil(stride), ny.div_ceil(stride));
-    if fits(columns, rows) {
+    let smallest = smallest_stride(nx, ny, stride);
+    if stride == smallest {
         return Ok(());
     }
-    let enough = (stride..).find(|stride| fits(nx.div_ceil(*stride), ny.div_ceil(*stride)));
-    let stride = enough.unwrap_or(usize::MAX);
     Err(FieldsError::TooLarge {
         path: path.to_owned(),
-        columns,
-        rows,
-        stride,
+        columns: nx.div_ceil(stride),
+        rows: ny.div_ceil(stride),
+        stride: smallest,
     })
+}
+
+/// The smallest stride from `stride` on with which one variable holds a lattice of `nx` x `ny` blocks.
+pub(crate) fn smallest_stride(nx: usize, ny: usize, stride: usize) -> usize {
+    let enough = (stride..).find(|stride| fits(nx.div_ceil(*stride), ny.div_ceil(*stride)));
+    enough.unwrap_or(usize::MAX)
 }
 
 fn fits(columns: usize, rows: usize) -> bool {

@@ -37,6 +37,47 @@ pub enum StudyError {
         /// Most points.
         limit: usize,
     },
+    /// As many runs at once as there is no memory for.
+    #[error(
+        "{threads} runs at once take about {needed} of memory where {available} are available: give --threads {fit}"
+    )]
+    Memory {
+        /// Runs at once.
+        threads: usize,
+        /// What they take.
+        needed: String,
+        /// What there is.
+        available: String,
+        /// How many runs there is memory for.
+        fit: usize,
+    },
+    /// A run that there is no memory for.
+    #[error(
+        "a run of the point {point} takes about {needed} of memory where {available} are available: lower \
+        `slider.blocks`, or keep no run folders (`study.keep`)"
+    )]
+    PointMemory {
+        /// Its levels.
+        point: String,
+        /// What it takes.
+        needed: String,
+        /// What there is.
+        available: String,
+    },
+    /// Results that there is no room for.
+    #[error(
+        "the runs still to be done take about {needed} where {free} are free in {}: keep fewer run folders \
+        (`study.keep`), or choose another folder with --out",
+        path.display()
+    )]
+    Disk {
+        /// What they take.
+        needed: String,
+        /// What there is.
+        free: String,
+        /// The folder.
+        path: PathBuf,
+    },
     /// The results folder.
     #[error(transparent)]
     Folder(#[from] FolderError),

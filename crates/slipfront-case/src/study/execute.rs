@@ -230,12 +230,12 @@ fn run_one(plan: &Plan, runs: &Path, run: RunKey, ends: &Ends) -> Result<Option<
     let started = jiff::Timestamp::now();
     // The point was valid when the study began: a file that it reads has gone, which is no fault of the run.
     let case = plan.case(run)?;
-    let Some(record) = run::run_unless(&case, ends) else {
+    let Some(mut record) = run::run_unless(&case, ends) else {
         return Ok(None);
     };
     if plan.settings.keep == Keep::All || (plan.settings.keep == Keep::Failed && record.is_err()) {
         let path = runs.join(plan.folder_name(run));
-        keep(&case, record.as_ref().ok(), &path, started)?;
+        keep(&case, record.as_mut().ok(), &path, started)?;
     }
     Ok(Some(match record {
         Ok(record) => Outcome::Done(Box::new(record.summary)).or_not_finite(),
@@ -246,7 +246,7 @@ fn run_one(plan: &Plan, runs: &Path, run: RunKey, ends: &Ends) -> Result<Option<
 /// Keeps a run folder; of a failed run the case file, which repeats it.
 fn keep(
     case: &Case,
-    record: Option<&run::Record>,
+    record: Option<&mut run::Record>,
     path: &Path,
     started: jiff::Timestamp,
 ) -> Result<(), ResultsError> {

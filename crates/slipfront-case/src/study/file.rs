@@ -205,11 +205,7 @@ impl StudyFile {
     /// # Errors
     /// [`StudyError::TooLarge`].
     pub fn count_points(&self) -> Result<usize, StudyError> {
-        self.axes
-            .iter()
-            .try_fold(1usize, |product, axis| product.checked_mul(axis.levels.len()))
-            .filter(|&count| count <= MAX_POINTS)
-            .ok_or(StudyError::TooLarge { limit: MAX_POINTS })
+        count_points(&self.axes)
     }
 
     /// Runs of the whole study at the most; references that points share are counted for each.
@@ -325,14 +321,24 @@ fn read_axes(tables: &mut Tables) -> Result<Vec<Axis>, StudyError> {
         let sentence = "`axes` must be a list of tables: write [[axes]] above the keys of each";
         return Err(tables.source.error_at(span, sentence))?;
     };
-    values
-        .into_iter()
-        .map(|value| {
-            let span = value.span();
-            let keys: AxisKeys = tables.read_table(value, "[[axes]]", keys_of::<AxisKeys>())?;
-            Axis::new(keys).map_err(|sentence| tables.source.error_at(span, sentence).into())
-        })
-        .collect()
+    let mut axes: Vec<Axis> = Vec::new();
+    for value in values {
+        let span = value.span();
+        let keys: AxisKeys = tables.read_table(value, "[[axes]]", keys_of::<AxisKeys>())?;
+        let axis = Axis::new(keys).map_err(|sentence| tables.source.error_at(span, sentence))?;
+        axes.push(axis);
+        // A line of the file makes up to 100 000 levels: too many are noticed before more are made.
+        count_points(&axes)?;
+    }
+    Ok(axes)
+}
+
+/// The product of the axes.
+fn count_points(axes: &[Axis]) -> Result<usize, StudyError> {
+    axes.iter()
+        .try_fold(1usize, |product, axis| product.checked_mul(axis.levels.len()))
+        .filter(|&count| count <= MAX_POINTS)
+        .ok_or(StudyError::TooLarge { limit: MAX_POINTS })
 }
 
 /// Axes that overwrite each other, or whose columns could not be told from others in the tables.

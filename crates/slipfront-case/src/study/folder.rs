@@ -1,12 +1,14 @@
 //! The study folder: the study itself, the records, the tables and the pictures.
 
 use std::collections::HashSet;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use super::error::StudyError;
 use super::file::StudyFile;
+use super::inputs::Copy;
 use super::record::{RECORDS, Records};
-use crate::folder::{FolderError, UNFINISHED, write_whole};
+use crate::folder::{FolderError, TEXT_MAX_BYTES, UNFINISHED, read_whole, stage, write_whole};
 
 /// The study as a table with its base inside: what `slipfront study DIR/study.toml` repeats.
 const STUDY: &str = "study.toml";
@@ -41,17 +43,15 @@ impl StudyFolder {
         }
         let records = Records::open(path)?;
         let (text, copies) = study.portable()?;
-        let before = std::fs::read_to_string(path.join(STUDY)).ok();
-        let changed = before.is_some_and(|before| before != text);
+        let before = read_whole(&path.join(STUDY), TEXT_MAX_BYTES).ok();
+        let changed = before.is_some_and(|before| before != text.as_bytes());
         let folder = Self {
             path: path.to_owned(),
             records,
             changed,
         };
         folder.remove_unfinished();
-        for (name, bytes) in copies {
-            folder.write(&name, &bytes)?;
-        }
+        folder.copy(&copies)?;
         folder.write(STUDY, text.as_bytes())?;
         Ok(folder)
     }
@@ -70,6 +70,29 @@ impl StudyFolder {
         let folder = path.parent().unwrap_or(&self.path);
         let written = std::fs::create_dir_all(folder).and_then(|()| write_whole(&path, bytes));
         written.map_err(|source| FolderError::Write { path, source }.into())
+    }
+
+    /// Copies files, one after the other. None takes its name before all are read: it may be that of an original.
+    fn copy(&self, copies: &[Copy]) -> Result<(), FolderError> {
+        let failed = |path: &Path| {
+            let path = path.to_owned();
+            |source| FolderError::Write { path, source }
+        };
+        let mut staged = Vec::new();
+        for Copy { name, original, .. } in copies {
+            let path = self.path.join(name);
+            let copied = stage(&self.path, |to| {
+                std::io::copy(&mut File::open(original)?, to).map(|_| ())
+            });
+            staged.push((copied.map_err(failed(&path))?, path));
+        }
+        for (file, path) in staged {
+            std::fs::create_dir_all(path.parent().unwrap_or(&self.path)).map_err(failed(&path))?;
+            file.persist(&path)
+                .map_err(|error| error.error)
+                .map_err(failed(&path))?;
+        }
+        Ok(())
     }
 
     /// What a kill left of files that were being written: nobody else writes here while the records are open.
@@ -119,7 +142,7 @@ pub fn study_of(folder: &Path) -> Result<StudyFile, StudyError> {
 pub fn refuse_foreign(folders: &[PathBuf]) -> Result<(), StudyError> {
     let read = |folder: &Path| {
         let path = folder.join(STUDY);
-        std::fs::read(&path).map_err(|source| FolderError::Read { path, source })
+        read_whole(&path, TEXT_MAX_BYTES).map_err(|source| FolderError::Read { path, source })
     };
     let Some((first, others)) = folders.split_first() else {
         return Ok(());

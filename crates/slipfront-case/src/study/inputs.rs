@@ -1,6 +1,7 @@
 //! Files that the cases of a study read, copied so that a results folder can repeat the study on its own.
 
-use std::path::{Component, Path};
+use std::fs::File;
+use std::path::{Component, Path, PathBuf};
 
 use toml::{Table, Value};
 
@@ -37,8 +38,14 @@ pub(super) fn plain_name(written: &str) -> String {
     parts.join("/")
 }
 
-/// A copy of a file: its path in the results folder, and its bytes.
-pub(super) type Copy = (String, Vec<u8>);
+/// A copy to be made of a file.
+pub(super) struct Copy {
+    /// Its path in the results folder.
+    pub(super) name: String,
+    /// The file.
+    pub(super) original: PathBuf,
+    hash: blake3::Hash,
+}
 
 /// Replaces the names of all files of a study, which stand relative to `folder`, by those of copies.
 pub(super) fn copy(study: &mut Table, folder: &Path) -> Vec<Copy> {
@@ -76,15 +83,16 @@ impl Copies<'_> {
 
     fn replace(&mut self, name: &mut String) {
         // Every point was valid, so that a file that is not there is one that no point reads.
-        let Ok(bytes) = std::fs::read(self.folder.join(&*name)) else {
+        let original = self.folder.join(&*name);
+        let Ok(hash) = hash(&original) else {
             return;
         };
         let plain = plain_name(name);
         let mut copy = format!("{FOLDER}/{plain}");
         let mut copies = 1;
         // Two files of one name from different folders stay two files.
-        while let Some((_, other)) = self.made.iter().find(|(made, _)| *made == copy) {
-            if *other == bytes {
+        while let Some(made) = self.made.iter().find(|made| made.name == copy) {
+            if made.hash == hash {
                 *name = copy;
                 return;
             }
@@ -92,8 +100,21 @@ impl Copies<'_> {
             copy = format!("{FOLDER}/{copies}-{plain}");
         }
         name.clone_from(&copy);
-        self.made.push((copy, bytes));
+        self.made.push(Copy {
+            name: copy,
+            original,
+            hash,
+        });
     }
+}
+
+fn hash(path: &Path) -> std::io::Result<blake3::Hash> {
+    // A pipe would be waited for, and a device never ends.
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(std::io::ErrorKind::InvalidInput.into());
+    }
+    let mut hasher = blake3::Hasher::new();
+    Ok(hasher.update_reader(File::open(path)?)?.finalize())
 }
 
 #[cfg(test)]
@@ -114,6 +135,18 @@ mod tests {
         }
     }
 
+    /// No point reads it, so that no case has looked at it.
+    #[cfg(unix)]
+    #[test]
+    fn what_never_ends_is_not_copied() {
+        let folder = tempfile::tempdir().unwrap();
+        std::os::unix::fs::symlink("/dev/zero", folder.path().join("endless.png")).unwrap();
+        let mut study: Table = "base.texture = [{ shape = 'mask', file = 'endless.png' }]"
+            .parse()
+            .unwrap();
+        assert!(copy(&mut study, folder.path()).is_empty());
+    }
+
     #[test]
     fn files_are_found_wherever_a_study_names_them() {
         let folder = tempfile::tempdir().unwrap();
@@ -132,7 +165,7 @@ mod tests {
             ]"#;
         let mut study: Table = text.parse().unwrap();
         let copies = copy(&mut study, folder.path());
-        let names: Vec<&str> = copies.iter().map(|(name, _)| name.as_str()).collect();
+        let names: Vec<&str> = copies.iter().map(|copy| copy.name.as_str()).collect();
         assert_eq!(
             names,
             ["inputs/a.png", "inputs/sub/a.png", "inputs/c.npy", "inputs/b.png"]

@@ -1,12 +1,16 @@
 //! The plan of a study: its points, and what each run of a point is.
 
+use std::sync::Mutex;
+
 use rayon::prelude::*;
 
 use super::axis::{self, Axis};
 use super::error::StudyError;
 use super::file::{Base, Keep, Settings, StudyFile};
+use super::folder::StudyFolder;
 use super::shard::Shard;
-use crate::case::Case;
+use crate::budget::{Budget, PROGRAM, available_memory, free_disk, shown};
+use crate::case::{Case, check_fields};
 use crate::case_file::{AutoOr, CaseError, CaseFile, Output, Snapshots};
 
 /// Every run that a study may need.
@@ -45,7 +49,14 @@ struct Outline {
     /// Steps times blocks of a run, at most.
     block_steps: f64,
     n_blocks: usize,
+    budget: Budget,
 }
+
+/// Lattices of more blocks are tried one at a time: of one for each thread at once no machine may have room.
+const LARGE: u64 = 250_000;
+
+/// A line of the records and a row of the tables.
+const RECORD_BYTES: f64 = 4096.0;
 
 /// What a run of a point is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -89,10 +100,15 @@ impl Plan {
             base: file.base.clone(),
             reference: file.settings.reference.as_ref().map(axis::overrides),
         };
+        let alone = Mutex::new(());
         let outlines: Vec<Result<Vec<Outline>, CaseError>> = plan
             .points
             .par_iter()
-            .map(|point| plan.roles().map(|role| plan.outline(point, role)).collect())
+            .map(|point| {
+                plan.roles()
+                    .map(|role| plan.outline(point, role, &alone))
+                    .collect()
+            })
             .collect();
         for (position, outlines) in outlines.into_iter().enumerate() {
             plan.points[position].outlines = outlines.map_err(|source| StudyError::Point {
@@ -135,8 +151,11 @@ impl Plan {
 
     /// Tries a point and notes what its runs are. What tells runs apart is the physics of their cases, the contents
     /// of their files and the version; not names of files, nor what is written.
-    fn outline(&self, point: &Point, role: Role) -> Result<Outline, CaseError> {
-        let case = self.trimmed(self.case_file(point, role)?, "point")?;
+    fn outline(&self, point: &Point, role: Role, alone: &Mutex<()>) -> Result<Outline, CaseError> {
+        let file = self.case_file(point, role)?;
+        let blocks: u64 = file.slider.blocks.into_iter().map(u64::from).product();
+        let _alone = (blocks > LARGE).then(|| alone.lock());
+        let case = self.trimmed(file, "point")?;
         let mut file = case.file.clone();
         let seed = std::mem::take(&mut file.friction.seed);
         file.output = Output::default();
@@ -157,6 +176,7 @@ impl Plan {
             physics: hasher.finalize(),
             block_steps: case.block_steps(),
             n_blocks: case.model.lattice.n_blocks(),
+            budget: case.budget,
         })
     }
 
@@ -173,7 +193,9 @@ impl Plan {
     /// A case that writes no more than the study keeps.
     fn trimmed(&self, mut file: CaseFile, name: &str) -> Result<Case, CaseError> {
         if self.settings.keep == Keep::All {
-            return Case::new(file, name, &self.base.folder);
+            let case = Case::new(file, name, &self.base.folder)?;
+            check_fields(&case.file, &case.model.lattice, &case.output)?;
+            return Ok(case);
         }
         // Nobody will look at fields or curves, and the numbers do not depend on them.
         file.output.snapshots = Snapshots::At(Vec::new());
@@ -210,6 +232,86 @@ impl Plan {
     pub fn cost(&self, run: RunKey) -> (f64, usize) {
         let outline = self.outline_of(run);
         (outline.block_steps, outline.n_blocks)
+    }
+
+    /// Memory of `threads` runs at once, if they are the largest, in bytes.
+    pub fn memory(&self, threads: usize) -> f64 {
+        let runs = self.runs(self.settings.max_replicates()).take(threads).count();
+        let largest = self.largest_run().map_or(0.0, |(_, bytes)| bytes);
+        PROGRAM + self.planning() + runs as f64 * largest
+    }
+
+    /// Memory in which cases were tried, and which the allocator keeps for others of their size, in bytes.
+    fn planning(&self) -> f64 {
+        let made = |run| self.outline_of(run).budget.memory_of_case();
+        self.runs(1).map(made).fold(0.0, f64::max)
+    }
+
+    /// The run that takes the most memory, and how much, in bytes.
+    fn largest_run(&self) -> Option<(RunKey, f64)> {
+        let writes = self.settings.keep == Keep::All;
+        self.runs(1)
+            .map(|run| (run, self.outline_of(run).budget.memory_beside_others(writes)))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Refuses as many runs at once as there is no memory for.
+    ///
+    /// # Errors
+    /// [`StudyError::Memory`] with how many there is memory for, [`StudyError::PointMemory`] if it is not even one.
+    pub fn check_memory(&self, threads: usize) -> Result<(), StudyError> {
+        available_memory().map_or(Ok(()), |available| self.compare_memory(threads, available))
+    }
+
+    fn compare_memory(&self, threads: usize, available: f64) -> Result<(), StudyError> {
+        let Some((run, largest)) = self.largest_run() else {
+            return Ok(());
+        };
+        let needed = self.memory(threads);
+        if needed <= available {
+            return Ok(());
+        }
+        let fit = ((available - PROGRAM - self.planning()) / largest).max(0.0) as usize;
+        let available = shown(available);
+        if fit == 0 {
+            return Err(StudyError::PointMemory {
+                point: self.describe(&self.points[run.point]),
+                needed: shown(largest),
+                available,
+            });
+        }
+        Err(StudyError::Memory {
+            threads,
+            needed: shown(needed),
+            available,
+            fit,
+        })
+    }
+
+    /// Room that these runs will take on the disk, in bytes.
+    pub fn disk(&self, runs: impl Iterator<Item = RunKey>) -> f64 {
+        let kept = |run| match self.settings.keep {
+            Keep::All => self.outline_of(run).budget.disk(),
+            Keep::None | Keep::Failed => 0.0,
+        };
+        runs.map(|run| RECORD_BYTES + kept(run)).sum()
+    }
+
+    /// Refuses a study that has no room in its folder for the runs that it still lacks, as far as these are known.
+    ///
+    /// # Errors
+    /// [`StudyError::Disk`].
+    pub fn check_disk(&self, folder: &StudyFolder) -> Result<(), StudyError> {
+        let lacking = |run: &RunKey| folder.records.get(&self.identity(*run)).is_none();
+        let needed = self.disk(self.runs(self.settings.min_replicates()).filter(lacking));
+        match free_disk(folder.path()) {
+            Some(free) if needed > free => Err(StudyError::Disk {
+                needed: shown(needed),
+                free: shown(free),
+                path: folder.path().to_owned(),
+            }),
+            _ => Ok(()),
+        }
     }
 
     /// The levels of a point, as a reader would name it.
@@ -264,4 +366,47 @@ fn levels(axes: &[Axis], mut index: usize) -> Vec<usize> {
         .collect();
     levels.reverse();
     levels
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    /// Runs at once count with the largest of them, and not with more than there are.
+    #[test]
+    fn threads_are_held_against_the_memory() {
+        let text = "[study]\nreplicates = 2\n[[axes]]\nkey = 'slider.blocks'\nlist = [[4, 4], [300, 300]]";
+        let file = StudyFile::parse(text, "study.toml", "study", Path::new("")).unwrap();
+        let plan = Plan::new(&file, None).unwrap();
+        let one = plan.memory(2) - plan.memory(1);
+        assert_eq!(plan.memory(3), plan.memory(1) + 2.0 * one);
+        assert_eq!(plan.memory(64), plan.memory(4));
+        let available = plan.memory(2) + 0.5 * one;
+        assert!(plan.compare_memory(2, available).is_ok());
+        assert!(matches!(
+            plan.compare_memory(3, available),
+            Err(StudyError::Memory {
+                threads: 3,
+                fit: 2,
+                ..
+            })
+        ));
+        let said = plan
+            .compare_memory(2, plan.memory(1) - 0.5 * one)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            said.contains("slider.blocks = [300, 300]") && said.contains("lower `slider.blocks`"),
+            "{said}"
+        );
+        // Every run that is kept writes its fields and draws its pictures.
+        let kept = text.replace("replicates = 2", "replicates = 2\nkeep = 'all'");
+        let kept = StudyFile::parse(&kept, "study.toml", "study", Path::new("")).unwrap();
+        let kept = Plan::new(&kept, None).unwrap();
+        assert!(kept.memory(1) > 2.0 * plan.memory(1));
+        let disk = |plan: &Plan| plan.disk(plan.runs(2));
+        assert!(disk(&kept) > 100.0 * disk(&plan));
+    }
 }

@@ -7,6 +7,7 @@ pub(crate) mod plot;
 pub(crate) mod run;
 pub(crate) mod study;
 pub(crate) mod texture;
+pub(crate) mod verify;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

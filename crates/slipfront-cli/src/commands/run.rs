@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use jiff::Timestamp;
 use slipfront_case::case::Case;
-use slipfront_case::folder::RunFolder;
+use slipfront_case::folder::{RunFolder, own_bytes};
 use slipfront_case::{results, run};
 
 use super::{CaseArgs, print, set_threads};
@@ -49,6 +49,8 @@ impl Run {
         let talks = !self.quiet && !self.json;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&case.name));
         refuse_to_replace(case_path.as_deref(), &out)?;
+        let replaced = if self.force { own_bytes(&out) } else { 0 };
+        case.check_disk(&out, replaced).map_err(Failure::input)?;
         let folder = RunFolder::prepare(&out, self.force).map_err(Failure::input)?;
         let inputs = case.inputs.iter().map(|input| input.name.as_str());
         folder.expect_free(inputs).map_err(Failure::input)?;
@@ -57,10 +59,10 @@ impl Run {
             print(&report::physics(&case))?;
         }
         let mut progress = Progress::new(&case, self.quiet);
-        let record =
+        let mut record =
             run::run(&case, threads, case.steps_per_look(), &mut progress).map_err(Failure::running)?;
         progress.finish();
-        results::write(&case, &record, folder, started, threads).map_err(Failure::running)?;
+        results::write(&case, &mut record, folder, started, threads).map_err(Failure::running)?;
 
         if self.json {
             print(&results::summary_json(&record.summary))?;

@@ -126,18 +126,16 @@ fn a_file_that_cannot_be_written_whole_is_not_there_at_all() {
     assert!(failed.len() >= 5, "only {failed:?} were hit");
 }
 
-/// A disk that is full. Mounting one takes rights that few have: nothing is tested then.
+/// Runs a line in a folder `disk` of its own size and number of files; gives the status and what was said. Mounting
+/// one takes rights that few have: nothing is tested then.
 #[cfg(target_os = "linux")]
-#[test]
-fn a_full_disk_leaves_no_half_results() {
-    let bench = Bench::new();
-    bench.done("run small.toml -o whole");
+fn on_a_small_disk(bench: &Bench, options: &str, line: &str) -> Option<(i32, String)> {
     // A mount in a name space of its own goes away by itself.
     let script = format!(
-        "mkdir disk && mount -t tmpfs -o size=64k tmpfs disk || exit 77
-         {} run small.toml --quiet -o disk/a 2> said
+        "mkdir disk && mount -t tmpfs -o {options} tmpfs disk || exit 77
+         {} {line} 2> said
          status=$?
-         mkdir broken && cp -R disk/a/. broken
+         cp -R disk/. left
          exit $status",
         program()
     );
@@ -146,15 +144,66 @@ fn a_full_disk_leaves_no_half_results() {
         .current_dir(bench.path())
         .stderr(Stdio::null())
         .status();
-    match status.map(|status| status.code()) {
-        Ok(Some(1)) if bench.exists("broken") => {
-            let said = String::from_utf8(bench.read("said")).unwrap();
-            assert!(
-                said.contains("cannot write") && said.contains("No space left"),
-                "{said}"
-            );
-            assert_incomplete_but_sound(&bench, "whole", "broken");
-        }
-        other => assert!(!bench.exists("said"), "{other:?}"),
+    if !bench.exists("said") {
+        return None;
     }
+    let said = String::from_utf8(bench.read("said")).unwrap();
+    Some((status.unwrap().code().unwrap(), said))
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_disk_without_room_is_said_before_the_run() {
+    let bench = Bench::new();
+    let Some((status, said)) = on_a_small_disk(&bench, "size=1m", "run small.toml --quiet -o disk/a") else {
+        return;
+    };
+    assert_eq!(status, 2, "{said}");
+    for word in [
+        "the files of this run take about 2.",
+        "where 1.0 MiB are free in disk/a",
+        "choose another folder",
+    ] {
+        assert!(said.contains(word), "{said}");
+    }
+    assert!(!bench.exists("left/a"));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_study_without_room_is_said_before_its_runs() {
+    let bench = Bench::new();
+    bench.write(
+        "study.toml",
+        "base.slider.blocks = [2, 2]\n[study]\nreplicates = 100\n",
+    );
+    let line = "study study.toml --quiet -o disk/a";
+    let Some((status, said)) = on_a_small_disk(&bench, "size=64k", line) else {
+        return;
+    };
+    assert_eq!(status, 2, "{said}");
+    for word in ["take about 400.0 KiB where ", "are free in disk/a", "study.keep"] {
+        assert!(said.contains(word), "{said}");
+    }
+    assert!(bench.read("left/a/records.jsonl").is_empty());
+}
+
+/// A disk that takes so many bytes, but not so many files.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_leaves_no_half_results() {
+    let bench = Bench::new();
+    bench.done("run small.toml -o whole");
+    // Its own folder, that of the run, and four files.
+    let run = "run small.toml --quiet -o disk/a";
+    let Some((status, said)) = on_a_small_disk(&bench, "size=8m,nr_inodes=6", run) else {
+        return;
+    };
+    assert_eq!(status, 1, "{said}");
+    assert!(
+        said.contains("cannot write") && said.contains("No space left"),
+        "{said}"
+    );
+    assert!(bench.exists("left/a/case.toml"));
+    assert_incomplete_but_sound(&bench, "whole", "left/a");
 }

@@ -73,14 +73,73 @@ fn inputs_are_files() {
     }
 }
 
+/// The copy of an input takes no more than what can be meant, whatever follows it in the file.
+#[test]
+fn inputs_are_no_longer_than_their_lattice_needs() {
+    let bench = Bench::new();
+    let mut npy =
+        b"\x93NUMPY\x01\x00\x46\x00{'descr': '|u1', 'fortran_order': False, 'shape': (5, 6), }".to_vec();
+    npy.resize(79, b' ');
+    npy.push(b'\n');
+    npy.extend([1; 30]);
+    bench.write("mu.npy", &npy);
+    bench.done("check small.toml --set friction.mu_static_field=mu.npy");
+    let file = std::fs::OpenOptions::new()
+        .write(true)
+        .open(bench.path().join("mu.npy"))
+        .unwrap();
+    file.set_len(1 << 40).unwrap();
+    let said = bench.refused("run small.toml --set friction.mu_static_field=mu.npy", 2);
+    assert!(
+        said.contains("1099511627776 bytes where at most 10240 can be meant"),
+        "{said}"
+    );
+}
+
 #[test]
 fn what_no_machine_holds_is_refused_in_a_sentence() {
     let bench = Bench::new();
-    let said = bench.refused("check small.toml --set slider.blocks=[100000,40000]", 2);
-    assert!(said.contains("GiB of memory"), "{said}");
+    let long = "--set time.step=0.01 --set time.duration_star=1e9";
+    for (sets, word) in [
+        ("--set slider.blocks=[100000,40000]", "for 4000000000 blocks"),
+        (&format!("{long} --set output.series=0.01"), "rows of the series"),
+        (
+            &format!("{long} --set output.snapshots={{every=0.01}} --set output.fields=[]"),
+            "snapshots of 0 fields",
+        ),
+    ] {
+        for command in ["check", "run"] {
+            let said = bench.refused(&format!("{command} small.toml {sets}"), 2);
+            assert!(said.contains("iB of memory") && said.contains(word), "{said}");
+        }
+    }
+    assert!(!bench.exists("results"));
     let groove = "texture.0={shape=\"groove\",width=\"1um\",offset=\"1m\"}";
     let said = bench.refused(&format!("check small.toml --set {groove}"), 2);
     assert!(said.contains("look at its units"), "{said}");
+}
+
+/// What the machine has is not what the process may have.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_limit_of_the_process_is_refused_in_a_sentence() {
+    let bench = Bench::new();
+    // A million blocks take 200 MB and more; the process itself less than 1 GB, its threads' stacks included.
+    for (blocks, status) in [("[1000,1000]", 0), ("[8000,1000]", 2)] {
+        let script = format!(
+            "ulimit -v 2000000; exec {} check small.toml --set slider.blocks={blocks}",
+            super::program()
+        );
+        let output = std::process::Command::new("sh")
+            .args(["-c", &script])
+            .env("RAYON_NUM_THREADS", "2")
+            .current_dir(bench.path())
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(status), "{said}");
+        assert!(status == 0 || said.contains("see `ulimit -v`"), "{said}");
+    }
 }
 
 #[test]

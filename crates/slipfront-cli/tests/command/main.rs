@@ -10,6 +10,7 @@ mod looks;
 mod output;
 mod repetition;
 mod texture;
+mod verify;
 
 use std::collections::BTreeMap;
 use std::path::Path;

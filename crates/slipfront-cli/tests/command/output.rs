@@ -94,6 +94,38 @@ fn the_manifest_lists_every_other_file_and_its_length() {
 }
 
 #[test]
+fn the_manifest_says_how_the_run_came_about() {
+    let bench = Bench::new();
+    bench.done("run small.toml -o a --threads 1 --seed 7");
+    let manifest: serde_json::Value = serde_json::from_slice(&bench.read("a/manifest.json")).unwrap();
+    assert_eq!(manifest["version"], env!("CARGO_PKG_VERSION"));
+    let case = blake3::hash(&bench.read("a/case.toml")).to_hex();
+    assert_eq!(manifest["case_blake3"], case.as_str());
+    let random = serde_json::json!({
+        "generator": "ChaCha8", "seed": 7, "streams": { "mu_static": 0, "mu_kinetic": 1 }
+    });
+    assert_eq!(manifest["random"], random);
+    assert_eq!(manifest["kernel"], "reference");
+    let width = manifest["simd_width"].as_str().unwrap();
+    assert!(["AVX-512", "AVX2", "baseline"].contains(&width), "{width}");
+    // Built outside of git there is none.
+    if let Some(revision) = manifest["revision"].as_str() {
+        let commit = revision.strip_suffix("-dirty").unwrap_or(revision);
+        assert!(
+            commit.len() >= 40 && commit.bytes().all(|byte| byte.is_ascii_hexdigit()),
+            "{revision}"
+        );
+    } else {
+        assert!(manifest["revision"].is_null());
+    }
+    let time = |key: &str| -> jiff::Timestamp { manifest[key].as_str().unwrap().parse().unwrap() };
+    let passed = time("finished").duration_since(time("started")).as_secs_f64();
+    // To the digits that a number of seconds has in the file.
+    assert!((manifest["wall_time_s"].as_f64().unwrap() - passed).abs() < 1e-6);
+    assert!(!manifest["host"].as_str().unwrap().is_empty());
+}
+
+#[test]
 fn json_is_the_summary_and_nothing_else() {
     let bench = Bench::new();
     let said = bench.done("run small.toml -o a --json");

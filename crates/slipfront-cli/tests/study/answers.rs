@@ -193,7 +193,10 @@ fn a_dry_run_tells_the_plan_and_runs_nothing() {
         "6 points",
         "3 replicates",
         "36 runs",
-        "block-steps, about",
+        "block-steps, ",
+        " of memory for ",
+        // A line of the records and of the tables for each run.
+        "144.0 KiB on the disk",
         "drive.v_star: 0.08, 0.1, 0.12, 0.14, 0.16, 0.18",
     ] {
         assert!(said.contains(part), "{part} is not in\n{said}");

@@ -106,3 +106,21 @@ fn a_reference_may_set_what_an_axis_sets() {
     );
     results.assert_each_run_once(3);
 }
+
+/// A study that works in its own results folder may read what stands where a copy goes.
+#[test]
+fn copies_do_not_overwrite_what_is_still_to_be_copied() {
+    let bench = Bench::new();
+    let table = |value: f64| format!("{value},{value},{value},{value}\n").repeat(4);
+    bench.write("one/mu.csv", table(1.0));
+    bench.write("two/mu.csv", table(0.9));
+    let study = |files: &str| format!("{BASE}[[axes]]\nkey = 'friction.mu_static_field'\nlist = [{files}]\n");
+    bench.write("first/study.toml", study("'../two/mu.csv'"));
+    bench.run(&["first/study.toml", "-o", "out"]);
+    bench.write("out/study.toml", study("'../one/mu.csv', 'inputs/mu.csv'"));
+    bench.run(&["out/study.toml", "-o", "out"]);
+    for (copy, value) in [("mu.csv", 1.0), ("2-mu.csv", 0.9)] {
+        let copied = std::fs::read_to_string(bench.path("out/inputs").join(copy)).unwrap();
+        assert_eq!(copied, table(value), "{copy}");
+    }
+}

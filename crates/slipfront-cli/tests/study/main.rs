@@ -10,3 +10,4 @@ mod folders;
 mod interrupted;
 mod refusals;
 mod shards;
+mod verify;

@@ -35,6 +35,11 @@ fn bad_studies_are_refused_with_a_sentence() {
         ),
         (axis("key = 'drive.v_star'\nlinspace = [0.1, 1, 1]"), "give 2 to"),
         (axis("key = 'drive.v_star'\nlits = [0.1]"), "did you mean `list`?"),
+        // A hundred lines that would make ten million levels.
+        (
+            axis(&vec!["key = 'drive.v_star'\nlinspace = [0.1, 1, 100000]"; 100].join("\n[[axes]]\n")),
+            "multiply to more than 1000000 points",
+        ),
         (
             axis("key = 'drive.v_sar'\nlist = [0.1]"),
             "did you mean `v_star`?",

@@ -35,6 +35,24 @@ pub struct Execution {
     pub skips: bool,
 }
 
+impl Kernel {
+    /// The kernel that steps under a friction law when this one is asked for.
+    pub fn for_law(self, law: FrictionLaw) -> Self {
+        match law {
+            FrictionLaw::Projection => self,
+            FrictionLaw::Reversal | FrictionLaw::Literal => Self::Reference,
+        }
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Reference => "reference",
+            Self::Fused => "fused",
+        }
+    }
+}
+
 impl Default for Execution {
     fn default() -> Self {
         Self {
@@ -120,8 +138,8 @@ pub(crate) enum Engine {
 impl Engine {
     /// From a state, or from rest.
     pub(crate) fn new(model: &Model, dt_star: f64, state: Option<State>, execution: Execution) -> Self {
-        match (execution.kernel, model.law) {
-            (Kernel::Fused, FrictionLaw::Projection) => {
+        match execution.kernel.for_law(model.law) {
+            Kernel::Fused => {
                 let Execution { threads, skips, .. } = execution;
                 Self::Fused(Box::new(Fused::new(
                     model,
@@ -131,7 +149,7 @@ impl Engine {
                     skips,
                 )))
             }
-            _ => {
+            Kernel::Reference => {
                 let state = state.unwrap_or_else(|| State::at_rest(model.lattice.n_blocks()));
                 Self::Reference(Box::new(Reference::new(model, dt_star, state)))
             }

@@ -30,6 +30,12 @@ enum Stream {
     MuKinetic = 1,
 }
 
+/// The random streams by what is drawn from them: each is the stream of this number of ChaCha8 under the seed.
+pub const STREAMS: [(&str, u64); 2] = [
+    ("mu_static", Stream::MuStatic as u64),
+    ("mu_kinetic", Stream::MuKinetic as u64),
+];
+
 impl Coefficients {
     /// Draws `mu_si` and `mu_ki` for `n_blocks` blocks, textured or not, in block order.
     ///

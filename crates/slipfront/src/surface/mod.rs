@@ -7,7 +7,7 @@ mod coefficients;
 mod load;
 mod texture;
 
-pub use coefficients::{Coefficients, Distribution};
+pub use coefficients::{Coefficients, Distribution, STREAMS};
 pub use load::Load;
 pub use texture::{
     Cavity, Groove, MaskImage, Meshed, Orientation, Texture, cavity_lambda, cavity_percent, mesh,

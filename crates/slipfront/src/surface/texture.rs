@@ -137,13 +137,12 @@ pub fn mesh(lattice: &Lattice, textures: &[Texture]) -> Meshed {
                 }
             }
             Texture::Cavity(_) | Texture::Groove(_) | Texture::Polygon(_) => {
-                let outlines = outlines(texture, lattice);
-                if outlines.iter().any(|outline| reaches_over(outline, lattice)) {
-                    meshed.clipped.push(index);
+                let mut clipped = false;
+                for outline in outlines(texture, lattice) {
+                    clipped |= reaches_over(&outline, lattice);
+                    fill(&outline, lattice, &mut meshed.textured);
                 }
-                for outline in &outlines {
-                    fill(outline, lattice, &mut meshed.textured);
-                }
+                meshed.clipped.extend(clipped.then_some(index));
             }
         }
     }
@@ -165,24 +164,22 @@ enum Outline {
     },
 }
 
-fn outlines(texture: &Texture, lattice: &Lattice) -> Vec<Outline> {
+/// One by one: of a million cavities, each drawn by thousands of vertices, no machine holds the outlines at once.
+fn outlines<'a>(texture: &'a Texture, lattice: &Lattice) -> Box<dyn Iterator<Item = Outline> + 'a> {
     match texture {
-        Texture::Cavity(cavity) => cavity
-            .centers(lattice)
-            .map(|center| cavity.outline(center))
-            .collect(),
+        Texture::Cavity(cavity) => Box::new(cavity.centers(lattice).map(|center| cavity.outline(center))),
         Texture::Groove(groove) => {
             let along_x = groove.orientation == Orientation::Along;
             let size = if along_x { lattice.ny } else { lattice.nx } as f64;
             let middle = 0.5 * size + groove.offset;
-            vec![Outline::Strip {
+            Box::new(std::iter::once(Outline::Strip {
                 along_x,
                 from: middle - 0.5 * groove.width,
                 to: middle + 0.5 * groove.width,
-            }]
+            }))
         }
-        Texture::Polygon(points) => vec![Outline::Polygon(points.clone())],
-        Texture::Image(_) | Texture::Blocks(_) => Vec::new(),
+        Texture::Polygon(points) => Box::new(std::iter::once(Outline::Polygon(points.clone()))),
+        Texture::Image(_) | Texture::Blocks(_) => Box::new(std::iter::empty()),
     }
 }
 
@@ -191,7 +188,7 @@ fn outlines(texture: &Texture, lattice: &Lattice) -> Vec<Outline> {
 const OUTLINE_VERTICES: usize = 4096;
 
 impl Cavity {
-    fn centers(&self, lattice: &Lattice) -> impl Iterator<Item = [f64; 2]> {
+    fn centers(&self, lattice: &Lattice) -> impl Iterator<Item = [f64; 2]> + use<> {
         let [columns, rows] = self.array;
         let spacing = [
             lattice.nx as f64 / columns as f64,

@@ -64,8 +64,10 @@ impl StudyRun {
         if self.dry_run {
             return print(&dry_run(&plan, threads)?);
         }
+        plan.check_memory(threads).map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| default_out(&file.name, self.shard));
         let mut folder = StudyFolder::open(&out, &file).map_err(Failure::input)?;
+        plan.check_disk(&folder).map_err(Failure::input)?;
         complete(&plan, &mut folder, threads, self.quiet)
     }
 }
@@ -156,6 +158,8 @@ fn failures(plan: &Plan, findings: &Findings) -> Result<(), Failure> {
 }
 
 fn dry_run(plan: &Plan, threads: usize) -> Result<String, Failure> {
+    // One run at a time is tried here; the study itself may be meant for another machine.
+    plan.check_memory(1).map_err(Failure::input)?;
     let (mut block_steps, mut seconds) = (0.0, 0.0);
     // A block of a large lattice costs more than one that fits into the cache.
     let mut rates: HashMap<usize, f64> = HashMap::new();

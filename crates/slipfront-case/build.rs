@@ -1,0 +1,39 @@
+//! Tells the crate the git revision that it is built from, if it is built in a checkout of its own.
+
+use std::path::Path;
+use std::process::Command;
+
+/// What decides the numbers of a run, relative to this crate: a change elsewhere is none of theirs.
+const SOURCES: [&str; 4] = ["../slipfront/src", "src", "../../Cargo.toml", "../../Cargo.lock"];
+
+fn main() {
+    // HEAD changes with the branch; its log grows with every commit.
+    let heads = ["HEAD", "logs/HEAD"].map(|name| git(&["rev-parse", "--git-path", name]));
+    let heads = heads.iter().flatten().map(String::as_str);
+    for path in SOURCES.into_iter().chain(["build.rs"]).chain(heads) {
+        // What is not there would count as changed in every build.
+        if Path::new(path).exists() {
+            println!("cargo::rerun-if-changed={path}");
+        }
+    }
+    if let Some(revision) = revision() {
+        println!("cargo::rustc-env=SLIPFRONT_REVISION={revision}");
+    }
+}
+
+/// The commit, and whether the sources are its; none outside of git.
+fn revision() -> Option<String> {
+    // Vendored in another repository, the revision would be that one's.
+    git(&["rev-parse", "--show-prefix"]).filter(|prefix| prefix == "crates/slipfront-case/")?;
+    let commit = git(&["rev-parse", "HEAD"])?;
+    let changes = git(&[&["status", "--porcelain", "--"], &SOURCES[..]].concat())?;
+    let dirty = if changes.is_empty() { "" } else { "-dirty" };
+    Some(format!("{commit}{dirty}"))
+}
+
+/// What git says; none if there is no git, or it fails.
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").args(arguments).output().ok()?;
+    let said = String::from_utf8(output.stdout).ok()?;
+    output.status.success().then(|| said.trim_end().to_owned())
+}

@@ -1,0 +1,177 @@
+//! `slipfront verify`: what stands in results folders, against what was written there.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use clap::Args;
+use jiff::Timestamp;
+use slipfront::observe::Observer;
+use slipfront::{RunError, Snapshot};
+use slipfront_case::case::Case;
+use slipfront_case::folder::RunFolder;
+use slipfront_case::manifest::Manifest;
+use slipfront_case::verify::{Verdict, compare, is_study, verify};
+use slipfront_case::{results, run};
+
+use super::study::on_signals;
+use super::{print, set_threads};
+use crate::failure::Failure;
+use crate::progress::Progress;
+
+/// Whether a signal came, and which.
+type Signals = (Arc<AtomicBool>, Arc<AtomicUsize>);
+
+/// Check that results are what was written: every file of a run against its manifest, a study against its records
+#[derive(Args)]
+#[command(after_help = "Examples:
+  slipfront verify results/baseline
+  slipfront verify results/*
+  slipfront verify --rerun results/baseline   runs its case again and compares every file
+
+Exit status 0 says that all is well, 1 that something differs, 2 that a folder is not one of a run or a study.")]
+pub(crate) struct Verify {
+    /// Folders of runs or studies
+    #[arg(required = true, value_name = "DIR")]
+    folders: Vec<PathBuf>,
+    /// Run the case of each run folder again, in the folder for temporary files (TMPDIR), and compare every file but the
+    /// manifest
+    #[arg(long)]
+    rerun: bool,
+    /// Most threads to use [default: one per core]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Say only what is wrong
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+impl Verify {
+    pub(crate) fn execute(self) -> Result<(), Failure> {
+        set_threads(self.threads)?;
+        // A signal ends the repeated run and not the process, so that nothing of it is left behind.
+        let signals = self
+            .rerun
+            .then(on_signals)
+            .transpose()
+            .map_err(Failure::running)?;
+        let (mut different, mut unusable) = (0, 0);
+        for folder in &self.folders {
+            let mut verdict = Verdict::default();
+            let looked_at = self.look_at(folder, signals.as_ref(), &mut verdict);
+            different += usize::from(!verdict.differences.is_empty());
+            print(&self.report(folder, &verdict, looked_at.is_ok()))?;
+            match looked_at {
+                Ok(()) => {}
+                // The others are looked at all the same.
+                Err(Failure::Input(error)) => {
+                    unusable += 1;
+                    eprintln!("error: {error}");
+                }
+                Err(failure) => return Err(failure),
+            }
+        }
+        let of_all = format!("of {} folders", self.folders.len());
+        match (unusable, different) {
+            (0, 0) => Ok(()),
+            (0, _) => Err(Failure::running(anyhow::anyhow!(
+                "{different} {of_all} differ from what was written"
+            ))),
+            (_, _) => Err(Failure::input(anyhow::anyhow!(
+                "{unusable} {of_all} cannot be verified, {different} differ"
+            ))),
+        }
+    }
+
+    fn look_at(&self, folder: &Path, rerun: Option<&Signals>, verdict: &mut Verdict) -> Result<(), Failure> {
+        if rerun.is_some() && is_study(folder) {
+            return Err(Failure::input(anyhow::anyhow!(
+                "{} is the folder of a study: --rerun repeats single runs, such as those in its folder runs/",
+                folder.display()
+            )));
+        }
+        *verdict = verify(folder).map_err(Failure::input)?;
+        rerun.map_or(Ok(()), |signals| self.repeat(folder, signals, verdict))
+    }
+
+    /// Runs the case of a folder again beside it, and adds what differs.
+    fn repeat(&self, folder: &Path, (stop, signal): &Signals, verdict: &mut Verdict) -> Result<(), Failure> {
+        let started = Timestamp::now();
+        let case = Case::load(&folder.join("case.toml"), &[]).map_err(Failure::input)?;
+        let again = tempfile::tempdir().map_err(Failure::running)?;
+        case.check_disk(again.path(), 0).map_err(Failure::input)?;
+        let mut watch = Watch {
+            progress: Progress::new(&case, self.quiet),
+            stop,
+        };
+        let done = run::run(&case, rayon::current_num_threads(), case.steps_per_look(), &mut watch);
+        watch.progress.finish();
+        if stop.load(Ordering::Relaxed) {
+            return Err(Failure::GivenUp(signal.load(Ordering::Relaxed)));
+        }
+        let mut record = done.map_err(Failure::running)?;
+        let made = RunFolder::prepare(again.path(), false).map_err(Failure::running)?;
+        let now = results::write(&case, &mut record, made, started, 1).map_err(Failure::running)?;
+        verdict
+            .differences
+            .extend(compare(&now.files, folder, "are written now"));
+        if let Ok(before) = Manifest::read(folder) {
+            verdict
+                .differences
+                .extend(no_longer_written(&before, &now, folder));
+            if before.program() != Manifest::this_program() {
+                let programs = (before.program(), Manifest::this_program());
+                verdict.notes.push(format!(
+                    "{} was written by {}, and repeated by {}",
+                    folder.display(),
+                    programs.0,
+                    programs.1
+                ));
+            }
+        }
+        verdict.what += "; the same when repeated";
+        Ok(())
+    }
+
+    fn report(&self, folder: &Path, verdict: &Verdict, complete: bool) -> String {
+        let mut text = String::new();
+        for difference in &verdict.differences {
+            text += &format!("{difference}\n");
+        }
+        if self.quiet {
+            return text;
+        }
+        if complete && verdict.differences.is_empty() {
+            text += &format!("{}: {}\n", folder.display(), verdict.what);
+        }
+        for note in &verdict.notes {
+            text += &format!("note: {note}\n");
+        }
+        text
+    }
+}
+
+/// Files of a run that its repetition does not write.
+fn no_longer_written(before: &Manifest, now: &Manifest, folder: &Path) -> Vec<String> {
+    let gone = before
+        .files
+        .iter()
+        .filter(|file| now.files.iter().all(|other| other.name != file.name));
+    gone.map(|file| format!("{} is not written now", folder.join(&file.name).display()))
+        .collect()
+}
+
+/// Shows progress, and ends the run after a signal.
+struct Watch<'a> {
+    progress: Progress,
+    stop: &'a AtomicBool,
+}
+
+impl Observer for Watch<'_> {
+    fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
+        if self.stop.load(Ordering::Relaxed) {
+            return Err(RunError::Observer("stopped by a signal".to_owned()));
+        }
+        self.progress.observe(now)
+    }
+}

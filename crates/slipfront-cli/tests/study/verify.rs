@@ -1,0 +1,121 @@
+//! `slipfront verify` of a study: its tables and pictures are those of its records.
+
+use std::path::Path;
+use std::process::Output;
+
+use assert_cmd::Command;
+
+use crate::bench::{Bench, SMALL, SMALL_RUNS, errors};
+
+fn verified(bench: &Bench, folder: &str) -> (i32, String, String) {
+    let output: Output = Command::new(env!("CARGO_BIN_EXE_slipfront"))
+        .current_dir(bench.path(""))
+        .args(["verify", folder])
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stdout.clone()).unwrap();
+    (output.status.code().unwrap(), said, errors(&output))
+}
+
+/// Every file of a folder, those in folders of it left out.
+fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap().map(Result::unwrap);
+    let files = entries.filter(|entry| entry.file_type().unwrap().is_file());
+    let mut names: Vec<String> = files
+        .map(|entry| entry.file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_study_is_what_its_records_give() {
+    let bench = Bench::with(SMALL);
+    let results = bench.study("out");
+    let (status, said, problems) = verified(&bench, "out");
+    assert_eq!((status, problems.as_str()), (0, ""), "{said}");
+    assert!(
+        said.contains(&format!(
+            "out: tables and pictures as its {SMALL_RUNS} recorded runs give them"
+        )),
+        "{said}"
+    );
+    for name in names(&results.path) {
+        let path = results.path.join(&name);
+        let bytes = std::fs::read(&path).unwrap();
+        let mut changed = bytes.clone();
+        changed[bytes.len() / 2] ^= 1;
+        std::fs::write(&path, changed).unwrap();
+        let (status, said, problems) = verified(&bench, "out");
+        assert_eq!(status, 1, "{name}: {said}{problems}");
+        let start = format!("out/{name} ");
+        assert!(
+            said.lines().any(|line| line.starts_with(&start)),
+            "{name}: {said}"
+        );
+        std::fs::write(&path, bytes).unwrap();
+    }
+    std::fs::remove_file(results.path.join("points.csv")).unwrap();
+    bench.write("out/notes.txt", "mine");
+    let (status, said, _) = verified(&bench, "out");
+    assert_eq!(
+        (status, said.as_str()),
+        (
+            1,
+            "out/points.csv is missing\nnote: out/notes.txt is not slipfront's\n"
+        )
+    );
+}
+
+#[test]
+fn run_folders_of_a_study_are_verified_too() {
+    let bench = Bench::with(
+        "base.slider.blocks = [4, 4]\nbase.drive.v_star = 0.2\n[study]\nreplicates = 2\nkeep = 'all'",
+    );
+    let results = bench.study("out");
+    assert!(
+        verified(&bench, "out")
+            .1
+            .contains("2 run folders as they were written")
+    );
+    let run = std::fs::read_dir(results.path.join("runs"))
+        .unwrap()
+        .next()
+        .unwrap()
+        .unwrap();
+    std::fs::write(run.path().join("series.csv"), "changed").unwrap();
+    let (status, said, _) = verified(&bench, "out");
+    assert!(
+        status == 1 && said.contains("series.csv differs: it has 7 bytes"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_part_of_a_study_is_not_the_whole() {
+    let bench = Bench::with(SMALL);
+    bench.run(&["study.toml", "--shard", "1/2", "-o", "part"]);
+    let (status, _, problems) = verified(&bench, "part");
+    assert_eq!(status, 2);
+    assert!(
+        problems.contains("the study in part lacks 18 runs: finish it, or merge it"),
+        "{problems}"
+    );
+}
+
+#[test]
+fn single_runs_are_repeated_and_studies_are_not() {
+    let bench = Bench::with(SMALL);
+    bench.study("out");
+    let output = Command::new(env!("CARGO_BIN_EXE_slipfront"))
+        .current_dir(bench.path(""))
+        .args(["verify", "--rerun", "out"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        errors(&output).contains("--rerun repeats single runs"),
+        "{}",
+        errors(&output)
+    );
+}
