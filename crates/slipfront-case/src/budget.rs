@@ -409,9 +409,9 @@ mod tests {
     fn what_takes_the_most_is_named_with_its_remedy() {
         for (sets, key, words) in [
             (
-                vec!["slider.blocks=[2000,1000]", "output.snapshots=[]"],
+                vec!["slider.blocks=[2000,2000]", "output.snapshots=[]"],
                 "slider.blocks",
-                ["402.5 MiB of it for 2000000 blocks", "lower `slider.blocks`"],
+                ["286.1 MiB of it for 4000000 blocks", "lower `slider.blocks`"],
             ),
             (
                 vec!["slider.blocks=[100,100]", "output.snapshots={every=0.1}"],

@@ -7,8 +7,8 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use slipfront::{Kernel, Model, simd_width};
 use slipfront::surface::STREAMS;
+use slipfront::{Kernel, Model, simd_width};
 use thiserror::Error;
 
 use crate::folder::{FolderError, TEXT_MAX_BYTES, json, read_whole};

@@ -104,7 +104,12 @@ impl Verify {
             progress: Progress::new(&case, self.quiet),
             stop,
         };
-        let done = run::run(&case, rayon::current_num_threads(), case.steps_per_look(), &mut watch);
+        let done = run::run(
+            &case,
+            rayon::current_num_threads(),
+            case.steps_per_look(),
+            &mut watch,
+        );
         watch.progress.finish();
         if stop.load(Ordering::Relaxed) {
             return Err(Failure::GivenUp(signal.load(Ordering::Relaxed)));

@@ -105,7 +105,7 @@ fn the_manifest_says_how_the_run_came_about() {
         "generator": "ChaCha8", "seed": 7, "streams": { "mu_static": 0, "mu_kinetic": 1 }
     });
     assert_eq!(manifest["random"], random);
-    assert_eq!(manifest["kernel"], "reference");
+    assert_eq!(manifest["kernel"], "fused");
     let width = manifest["simd_width"].as_str().unwrap();
     assert!(["AVX-512", "AVX2", "baseline"].contains(&width), "{width}");
     // Built outside of git there is none.
