@@ -3,7 +3,7 @@
 //! Files appear whole or not at all, and `manifest.json` comes last: where it stands, the run is complete.
 
 use std::fs::File;
-use std::io::{ErrorKind, Read, Write};
+use std::io::{ErrorKind, Read, Take, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -11,12 +11,15 @@ use slipfront::Model;
 use tempfile::TempPath;
 use thiserror::Error;
 
+use crate::case_file::CaseFile;
 use crate::manifest::{MANIFEST, Manifest};
 
-/// Names that belong to slipfront in a run folder, besides the files in `inputs/` that a manifest lists.
-const OWN_FILES: [&str; 9] = [
+/// The resolved case in its folder.
+const CASE: &str = "case.toml";
+
+/// Names that belong to slipfront in a run folder, besides its case and the copies in `inputs/`.
+const OWN_FILES: [&str; 8] = [
     MANIFEST,
-    "case.toml",
     "summary.json",
     "series.csv",
     "fields.nc",
@@ -193,21 +196,62 @@ impl RunFolder {
     }
 }
 
-/// Files of an earlier run in this folder, its manifest first.
+/// Files of an earlier run in this folder, finished or not: its manifest first, its case last, which until then tells
+/// the copies of a run that was stopped.
 fn own_files(path: &Path) -> Vec<String> {
-    let mut names: Vec<String> = OWN_FILES.map(str::to_owned).to_vec();
     let manifest = read_whole(&path.join(MANIFEST), TEXT_MAX_BYTES).ok();
     let manifest = manifest.and_then(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok());
     let listed = manifest
         .into_iter()
         .flat_map(|manifest| manifest.files)
         .map(|file| file.name);
-    // A manifest is only believed about the folder of copies: a damaged one must not make us delete elsewhere.
-    names.extend(listed.filter(|name| {
+    let mut copies: Vec<String> = listed.chain(named_by_case(&path.join(CASE))).collect();
+    copies.sort();
+    copies.dedup();
+    // They are only believed about the folder of copies: damage must not make us delete elsewhere.
+    copies.retain(|name| {
         name.strip_prefix("inputs/")
             .is_some_and(|plain| !plain.contains(['/', '\\']))
-    }));
+    });
+    let mut names: Vec<String> = OWN_FILES.map(str::to_owned).to_vec();
+    names.extend(copies);
+    names.extend(unfinished(path, ""));
+    names.extend(unfinished(path, "inputs/"));
+    names.push(CASE.to_owned());
     names
+}
+
+/// The files that a resolved case names. One that is not resolved was not written by a run, and what it names may be
+/// the only copy that there is.
+fn named_by_case(path: &Path) -> Vec<String> {
+    let read = || {
+        let bytes = read_whole(path, TEXT_MAX_BYTES).ok()?;
+        let mut case = CaseFile::parse(std::str::from_utf8(&bytes).ok()?, CASE, &[]).ok()?;
+        let resolved = case.to_toml().ok()? == std::str::from_utf8(&bytes).ok()?;
+        resolved.then(|| case.files_mut().map(|(_, name)| name.clone()).collect())
+    };
+    read().unwrap_or_default()
+}
+
+/// What a kill left in a folder, or one inside it such as `inputs/`, of files that were being written.
+fn unfinished(folder: &Path, inside: &str) -> Vec<String> {
+    let entries = std::fs::read_dir(folder.join(inside))
+        .into_iter()
+        .flatten()
+        .flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    names
+        .filter(|name| name.starts_with(UNFINISHED))
+        .map(|name| format!("{inside}{name}"))
+        .collect()
+}
+
+/// Removes what a kill left of files that were being written, where nobody else writes now. A file that cannot be
+/// removed does no harm.
+pub(crate) fn remove_unfinished(folder: &Path) {
+    for name in unfinished(folder, "") {
+        let _ = std::fs::remove_file(folder.join(name));
+    }
 }
 
 /// Bytes of an earlier run in this folder, which [`RunFolder::prepare`] would remove with `force`.
@@ -245,14 +289,14 @@ pub(crate) fn stage(
     Ok(file.into_temp_path())
 }
 
-/// Reads a regular file that can have no more than `most` bytes if it is what it should be.
+/// Opens a regular file that can have no more than `most` bytes if it is what it should be.
 ///
 /// A pipe would be waited for, a device such as `/dev/zero` never ends, and a file of many gigabytes in the place of
 /// a small one would take all memory before anyone looked at it.
 ///
 /// # Errors
 /// What the system says, and for a longer file or none.
-pub(crate) fn read_whole(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
+pub(crate) fn open_bounded(path: &Path, most: u64) -> std::io::Result<Take<File>> {
     let metadata = std::fs::metadata(path)?;
     if !metadata.is_file() {
         return Err(std::io::Error::other("it is not a regular file"));
@@ -264,8 +308,16 @@ pub(crate) fn read_whole(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
         );
         return Err(std::io::Error::new(ErrorKind::FileTooLarge, sentence));
     }
+    Ok(File::open(path)?.take(most))
+}
+
+/// Reads a regular file that can have no more than `most` bytes.
+///
+/// # Errors
+/// As for [`open_bounded`].
+pub(crate) fn read_whole(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    File::open(path)?.take(most).read_to_end(&mut bytes)?;
+    open_bounded(path, most)?.read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 

@@ -143,11 +143,24 @@ fn judged(line: &str, output: &std::process::Output) -> Result<Ended, String> {
         1 | 2 => said.lines().any(|line| line.starts_with("error: ")),
         _ => false,
     };
-    let alarming = ["panicked", "RUST_BACKTRACE", "memory allocation of", "fault of the program"];
-    if !sound || alarming.iter().any(|word| said.contains(word) || printed.contains(word)) {
+    let alarming = [
+        "panicked",
+        "RUST_BACKTRACE",
+        "memory allocation of",
+        "fault of the program",
+    ];
+    if !sound
+        || alarming
+            .iter()
+            .any(|word| said.contains(word) || printed.contains(word))
+    {
         return Err(format!("`{line}` ends with status {status}: {printed}{said}"));
     }
-    Ok(Ended { status, printed, said })
+    Ok(Ended {
+        status,
+        printed,
+        said,
+    })
 }
 
 pub(crate) fn program() -> &'static str {

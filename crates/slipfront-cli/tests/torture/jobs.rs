@@ -110,9 +110,28 @@ pub(crate) fn bench() -> Bench {
         .collect();
     bench.write("mu_k.npy", npy("<f8", 6, 5, &numbers));
     bench.write("mu_s.csv", "1.0, 0.9, 1.1, 0.95, 1.05, 1.0\n".repeat(5));
-    bench.write("mask.npy", npy("|b1", 6, 5, &std::array::from_fn::<u8, 30, _>(|k| u8::from(k == 3))));
-    bench.write("dot.npy", npy("|b1", 4, 4, &std::array::from_fn::<u8, 16, _>(|k| u8::from(k == 5))));
-    bench.write("spot.toml", "[slider]\nblocks = [6, 5]\n[[texture]]\nshape = 'cavity'\ncoverage = 15\n");
+    bench.write(
+        "mask.npy",
+        npy(
+            "|b1",
+            6,
+            5,
+            &std::array::from_fn::<u8, 30, _>(|k| u8::from(k == 3)),
+        ),
+    );
+    bench.write(
+        "dot.npy",
+        npy(
+            "|b1",
+            4,
+            4,
+            &std::array::from_fn::<u8, 16, _>(|k| u8::from(k == 5)),
+        ),
+    );
+    bench.write(
+        "spot.toml",
+        "[slider]\nblocks = [6, 5]\n[[texture]]\nshape = 'cavity'\ncoverage = 15\n",
+    );
     bench.done("texture spot.toml -o mask.png").unwrap();
     bench.write("case.toml", CASE);
     bench.write("study.toml", STUDY);
@@ -142,7 +161,9 @@ fn told_by_time(name: &str) -> bool {
 fn records(bytes: &[u8]) -> Result<BTreeMap<String, Value>, String> {
     let mut found = BTreeMap::new();
     for line in String::from_utf8_lossy(bytes).lines() {
-        let record = line.get(17..).and_then(|json| serde_json::from_str::<Value>(json).ok());
+        let record = line
+            .get(17..)
+            .and_then(|json| serde_json::from_str::<Value>(json).ok());
         let record = record.ok_or_else(|| format!("records.jsonl has the line {line}"))?;
         let id = record["id"].as_str().unwrap_or_default().to_owned();
         if found.insert(id, record["outcome"].clone()).is_some() {
@@ -167,7 +188,9 @@ pub(crate) fn expect_sound(now: &Files, whole: &Files) -> Result<(), String> {
     // The manifest promises that the rest is there.
     for manifest in now.keys().filter(|name| name.ends_with("manifest.json")) {
         let folder = manifest.trim_end_matches("manifest.json");
-        let missing = whole.keys().find(|name| name.starts_with(folder) && !now.contains_key(*name));
+        let missing = whole
+            .keys()
+            .find(|name| name.starts_with(folder) && !now.contains_key(*name));
         if let Some(missing) = missing {
             return Err(format!("{manifest} is there, and {missing} is not"));
         }

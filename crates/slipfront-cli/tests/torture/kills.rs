@@ -10,7 +10,11 @@ use crate::tally::{Chance, Tally, cases};
 const IN_A_ROW: usize = 4;
 
 fn kill_and_look(bench: &Bench, job: &Job, whole: &Files, after: Duration) -> Result<&'static str, String> {
-    let line = if bench.path("out").exists() { job.again } else { job.line };
+    let line = if bench.path("out").exists() {
+        job.again
+    } else {
+        job.line
+    };
     let mut child = bench.start(line);
     std::thread::sleep(after);
     child.kill().unwrap();
