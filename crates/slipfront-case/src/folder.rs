@@ -95,7 +95,7 @@ impl RunFolder {
             source,
         };
         std::fs::create_dir_all(path).map_err(unwritable)?;
-        if std::fs::read_dir(path).map_err(unwritable)?.next().is_some() {
+        if !is_empty(path).map_err(unwritable)? {
             if !force {
                 return Err(FolderError::NotEmpty {
                     path: path.to_owned(),
@@ -219,6 +219,14 @@ fn own_files(path: &Path) -> Vec<String> {
     names.extend(unfinished(path, "inputs/"));
     names.push(CASE.to_owned());
     names
+}
+
+/// Whether there is nothing in a folder.
+///
+/// # Errors
+/// When it cannot be read.
+pub fn is_empty(folder: &Path) -> std::io::Result<bool> {
+    Ok(std::fs::read_dir(folder)?.next().transpose()?.is_none())
 }
 
 /// The files that a resolved case names. One that is not resolved was not written by a run, and what it names may be
