@@ -1,11 +1,13 @@
 //! Fields over the lattice kept from chosen instants.
 
+use serde::{Deserialize, Serialize};
+
 use super::{CurvePoint, Observer, stress};
 use crate::kernel::Block;
 use crate::{RunError, Snapshot};
 
 /// A quantity with one value per block. Values are dimensionless, as everywhere in this crate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Field {
     /// Contact stress tau_c (Eq. 10), in units of `P mu_s`; not yet scaled by its maximum.
     ContactStress,
@@ -39,7 +41,7 @@ impl Field {
 }
 
 /// Fields of one instant.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     /// Step.
     pub step: u64,
@@ -52,7 +54,7 @@ pub struct Frame {
 }
 
 /// Which fields to keep, and of how many blocks.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Selection {
     /// The fields, in this order.
     pub fields: Vec<Field>,
@@ -93,7 +95,7 @@ impl Selection {
 }
 
 /// Keeps the selected fields of every instant it is shown.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frames {
     /// What is kept.
     pub selection: Selection,

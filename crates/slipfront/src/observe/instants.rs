@@ -4,6 +4,8 @@
 //! [t_s*, t_s* + 2.5/V*]. E: the smallest mu* from D to the start of the kinetic window. F: the middle of that
 //! window. What a later step may prove wrong is kept as a candidate and overwritten.
 
+use serde::{Deserialize, Serialize};
+
 use super::frames::{Frame, Selection};
 use super::{KineticStart, Observer};
 use crate::{RunError, Snapshot};
@@ -18,7 +20,7 @@ const E: usize = 4;
 const F: usize = 5;
 
 /// Fields at A-F. To be shown every step.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Instants {
     selection: Selection,
     kinetic: KineticStart,
