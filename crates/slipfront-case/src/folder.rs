@@ -2,7 +2,7 @@
 //!
 //! Files appear whole or not at all, and `manifest.json` comes last: where it stands, the run is complete.
 
-use std::fs::File;
+use std::fs::{File, TryLockError};
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
@@ -11,11 +11,15 @@ use slipfront::Model;
 use tempfile::TempPath;
 use thiserror::Error;
 
+use crate::case_file::CaseFile;
+use crate::checkpoint::{CHECKPOINT, Checkpoints, PREVIOUS};
 use crate::manifest::{MANIFEST, Manifest};
 
 /// Names that belong to slipfront in a run folder, besides the files in `inputs/` that a manifest lists.
-const OWN_FILES: [&str; 9] = [
+const OWN_FILES: [&str; 11] = [
     MANIFEST,
+    CHECKPOINT,
+    PREVIOUS,
     "case.toml",
     "summary.json",
     "series.csv",
@@ -38,6 +42,28 @@ pub enum FolderError {
         path.display()
     )]
     NotEmpty {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// There is a run in it that was interrupted.
+    #[error(
+        "the folder {0} holds a run that was interrupted: go on with it by `slipfront run --resume {0}`, choose another \
+         with --out, or begin again with --force",
+        path.display()
+    )]
+    Interrupted {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// There is no run in it to go on with.
+    #[error("{} holds no run to go on with: it has no case.toml", path.display())]
+    NoRun {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// Somebody else writes there.
+    #[error("another process is running in the folder {}: wait for it, or choose another folder", path.display())]
+    Busy {
         /// The folder.
         path: PathBuf,
     },
@@ -78,6 +104,8 @@ pub enum FolderError {
 pub struct RunFolder {
     path: PathBuf,
     written: Vec<String>,
+    /// Held as long as the run goes on.
+    _lock: Option<File>,
 }
 
 impl RunFolder {
@@ -92,23 +120,17 @@ impl RunFolder {
             source,
         };
         std::fs::create_dir_all(path).map_err(unwritable)?;
+        let lock = lock(path)?;
         if std::fs::read_dir(path).map_err(unwritable)?.next().is_some() {
             if !force {
-                return Err(FolderError::NotEmpty {
-                    path: path.to_owned(),
+                let path = path.to_owned();
+                return Err(if is_interrupted(&path) {
+                    FolderError::Interrupted { path }
+                } else {
+                    FolderError::NotEmpty { path }
                 });
             }
-            // The manifest goes first: from now on the folder does not look complete.
-            for name in own_files(path) {
-                match std::fs::remove_file(path.join(name)) {
-                    Err(error) if error.kind() != ErrorKind::NotFound => {
-                        return Err(unwritable(error));
-                    }
-                    _ => {}
-                }
-            }
-            // Gone if it held our inputs only; a foreign file keeps it.
-            std::fs::remove_dir(path.join("inputs")).ok();
+            remove_own(path)?;
         }
         // A folder that cannot be written should say so before the run, not after it.
         tempfile::Builder::new()
@@ -118,7 +140,47 @@ impl RunFolder {
         Ok(Self {
             path: path.to_owned(),
             written: Vec::new(),
+            _lock: lock,
         })
+    }
+
+    /// Takes over the folder of a run that has a case.
+    ///
+    /// # Errors
+    /// When there is no such run, or another process goes on with it.
+    pub fn reopen(path: &Path) -> Result<Self, FolderError> {
+        if !path.join("case.toml").is_file() {
+            let path = path.to_owned();
+            return Err(FolderError::NoRun { path });
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            written: Vec::new(),
+            _lock: lock(path)?,
+        })
+    }
+
+    /// Removes what was written of the results of a run before it was interrupted: it is written again. The case, the
+    /// files that it reads and the checkpoints stay.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn clear_results(&mut self, case: &Case) -> Result<(), FolderError> {
+        let kept = ["case.toml", CHECKPOINT, PREVIOUS];
+        let results = OWN_FILES.into_iter().filter(|name| !kept.contains(name));
+        remove(&self.path, results.map(str::to_owned))?;
+        remove(&self.path, unfinished(&self.path))?;
+        let inputs = case.inputs.iter().map(|input| input.name.clone());
+        self.written = ["case.toml".to_owned()].into_iter().chain(inputs).collect();
+        Ok(())
+    }
+
+    /// Removes all that was written of the run: there is nothing to go on with.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn discard(self) -> Result<(), FolderError> {
+        remove_own(&self.path)
     }
 
     /// Refuses foreign files that stand where `names` will be written: better now than after the run.
@@ -188,8 +250,32 @@ impl RunFolder {
         let (manifest, bytes) =
             Manifest::of(&self.path, &self.written, started, threads, model, seed)?.sealed();
         let path = self.path.join(MANIFEST);
-        write_whole(&path, &bytes).map_err(|source| FolderError::Write { path, source })?;
+        write_whole(&path, &bytes)
+            .and_then(|()| sync_folder(&self.path))
+            .map_err(|source| FolderError::Write { path, source })?;
+        // The run is complete whether they can be removed or not.
+        let _ = Checkpoints::remove(&self.path);
         Ok(manifest)
+    }
+}
+
+/// Whether a folder holds a run that was begun, and neither completed nor removed.
+fn is_interrupted(path: &Path) -> bool {
+    path.join("case.toml").exists() && !path.join(MANIFEST).exists()
+}
+
+/// Locks a folder for one process. Some file systems of clusters have no locks, and some systems none of folders: the run
+/// goes on without.
+fn lock(path: &Path) -> Result<Option<File>, FolderError> {
+    let Ok(folder) = File::open(path) else {
+        return Ok(None);
+    };
+    match folder.try_lock() {
+        Ok(()) => Ok(Some(folder)),
+        Err(TryLockError::WouldBlock) => Err(FolderError::Busy {
+            path: path.to_owned(),
+        }),
+        Err(TryLockError::Error(_)) => Ok(None),
     }
 }
 
@@ -198,16 +284,42 @@ fn own_files(path: &Path) -> Vec<String> {
     let mut names: Vec<String> = OWN_FILES.map(str::to_owned).to_vec();
     let manifest = read_whole(&path.join(MANIFEST), TEXT_MAX_BYTES).ok();
     let manifest = manifest.and_then(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok());
-    let listed = manifest
-        .into_iter()
-        .flat_map(|manifest| manifest.files)
-        .map(|file| file.name);
-    // A manifest is only believed about the folder of copies: a damaged one must not make us delete elsewhere.
-    names.extend(listed.filter(|name| {
+    let listed: Vec<String> = match manifest {
+        Some(manifest) => manifest.files.into_iter().map(|file| file.name).collect(),
+        // A run that was interrupted has only its case to tell.
+        None => CaseFile::load(&path.join("case.toml"), &[])
+            .map(|mut case| case.files_mut().map(|(_, name)| name.clone()).collect())
+            .unwrap_or_default(),
+    };
+    // They are only believed about the folder of copies: damaged ones must not make us delete elsewhere.
+    names.extend(listed.into_iter().filter(|name| {
         name.strip_prefix("inputs/")
             .is_some_and(|plain| !plain.contains(['/', '\\']))
     }));
     names
+}
+
+/// Removes the files of an earlier run from this folder.
+fn remove_own(path: &Path) -> Result<(), FolderError> {
+    // The manifest goes first: from now on the folder does not look complete.
+    remove(path, own_files(path))?;
+    // Gone if it held our inputs only; a foreign file keeps it.
+    std::fs::remove_dir(path.join("inputs")).ok();
+    Ok(())
+}
+
+/// Removes these files from a folder, where they are.
+fn remove(folder: &Path, names: impl IntoIterator<Item = String>) -> Result<(), FolderError> {
+    for name in names {
+        match std::fs::remove_file(folder.join(name)) {
+            Err(source) if source.kind() != ErrorKind::NotFound => {
+                let path = folder.to_owned();
+                return Err(FolderError::Unwritable { path, source });
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 /// Bytes of an earlier run in this folder, which [`RunFolder::prepare`] would remove with `force`.
@@ -245,27 +357,38 @@ pub(crate) fn stage(
     Ok(file.into_temp_path())
 }
 
+/// Forces the names in a folder to the disk.
+pub(crate) fn sync_folder(folder: &Path) -> std::io::Result<()> {
+    // Only Unix opens folders as files.
+    if cfg!(unix) {
+        File::open(folder)?.sync_all()?;
+    }
+    Ok(())
+}
+
+/// Opens a file that is one: a pipe would be waited for, a device such as `/dev/zero` never ends.
+pub(crate) fn open_regular(path: &Path) -> std::io::Result<File> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(std::io::Error::other("it is not a regular file"));
+    }
+    File::open(path)
+}
+
 /// Reads a regular file that can have no more than `most` bytes if it is what it should be.
 ///
-/// A pipe would be waited for, a device such as `/dev/zero` never ends, and a file of many gigabytes in the place of
-/// a small one would take all memory before anyone looked at it.
+/// A file of many gigabytes in the place of a small one would take all memory before anyone looked at it.
 ///
 /// # Errors
 /// What the system says, and for a longer file or none.
 pub(crate) fn read_whole(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
-    let metadata = std::fs::metadata(path)?;
-    if !metadata.is_file() {
-        return Err(std::io::Error::other("it is not a regular file"));
-    }
-    if metadata.len() > most {
-        let sentence = format!(
-            "it has {} bytes where at most {most} can be meant",
-            metadata.len()
-        );
+    let file = open_regular(path)?;
+    let length = file.metadata()?.len();
+    if length > most {
+        let sentence = format!("it has {length} bytes where at most {most} can be meant");
         return Err(std::io::Error::new(ErrorKind::FileTooLarge, sentence));
     }
     let mut bytes = Vec::new();
-    File::open(path)?.take(most).read_to_end(&mut bytes)?;
+    file.take(most).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 

@@ -10,7 +10,8 @@ use std::path::{Component, Path, PathBuf};
 use thiserror::Error;
 
 use crate::case_file::CaseFile;
-use crate::folder::{TEXT_MAX_BYTES, UNFINISHED, read_whole};
+use crate::checkpoint::is_of_interrupted_run;
+use crate::folder::{TEXT_MAX_BYTES, read_whole};
 use crate::manifest::{MANIFEST, Manifest, ManifestError, ManifestFile};
 use crate::study::{self, Plan, Records, StudyError, StudyFolder};
 
@@ -162,7 +163,7 @@ fn strangers(folder: &Path, known: &BTreeSet<&str>, folders: &[&str]) -> Vec<Str
     found.sort();
     let in_words = |name: String| {
         let path = folder.join(&name);
-        if name.starts_with(UNFINISHED) {
+        if is_of_interrupted_run(&name) {
             format!("{} was left by a run that was interrupted", path.display())
         } else {
             format!("{} is not slipfront's", path.display())

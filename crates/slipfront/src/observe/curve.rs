@@ -125,6 +125,11 @@ impl Curve {
             ledger: Ledger::default(),
         }
     }
+
+    /// Whether it can have come of this new one.
+    pub fn continues(&self, new: &Self) -> bool {
+        self.stride == new.stride
+    }
 }
 
 impl Observer for Curve {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::frames::{Frame, Selection};
 use super::{KineticStart, Observer};
-use crate::{RunError, Snapshot};
+use crate::{Lattice, RunError, Snapshot};
 
 /// Letters of the instants.
 const LETTERS: [char; 6] = ['A', 'B', 'C', 'D', 'E', 'F'];
@@ -45,6 +45,15 @@ impl Instants {
             ended: false,
             known: [false; 2],
         }
+    }
+
+    /// Whether it can have come of this new one, on this lattice.
+    pub fn continues(&self, new: &Self, lattice: &Lattice) -> bool {
+        let alike = self.selection == new.selection
+            && self.kinetic == new.kinetic
+            && self.end_time_star == new.end_time_star;
+        let mut frames = self.frames.iter().flatten();
+        alike && frames.all(|frame| self.selection.fits(frame, lattice))
     }
 
     /// The instants that the run had, in the order of their letters. Without a transition there is no D and E, nor

@@ -88,6 +88,11 @@ impl KineticHistory {
         }
     }
 
+    /// Whether it can have come of this new one.
+    pub fn continues(&self, new: &Self) -> bool {
+        self.steps_per_bin == new.steps_per_bin && self.in_bin < self.steps_per_bin
+    }
+
     /// Largest N* of all steps.
     pub fn sliding_percent_max(&self) -> f64 {
         self.sliding_percent_max
