@@ -3,7 +3,7 @@
 //! Files appear whole or not at all, and `manifest.json` comes last: where it stands, the run is complete.
 
 use std::fs::{File, TryLockError};
-use std::io::{ErrorKind, Read, Write};
+use std::io::{ErrorKind, Read, Take, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -11,16 +11,19 @@ use slipfront::Model;
 use tempfile::TempPath;
 use thiserror::Error;
 
+use crate::case::Case;
 use crate::case_file::CaseFile;
 use crate::checkpoint::{CHECKPOINT, Checkpoints, PREVIOUS};
 use crate::manifest::{MANIFEST, Manifest};
 
-/// Names that belong to slipfront in a run folder, besides the files in `inputs/` that a manifest lists.
-const OWN_FILES: [&str; 11] = [
+/// The resolved case in its folder.
+const CASE: &str = "case.toml";
+
+/// Names that belong to slipfront in a run folder, besides its case and the copies in `inputs/`.
+const OWN_FILES: [&str; 10] = [
     MANIFEST,
     CHECKPOINT,
     PREVIOUS,
-    "case.toml",
     "summary.json",
     "series.csv",
     "fields.nc",
@@ -121,6 +124,7 @@ impl RunFolder {
         };
         std::fs::create_dir_all(path).map_err(unwritable)?;
         let lock = lock(path)?;
+        remove_unfinished(path);
         if std::fs::read_dir(path).map_err(unwritable)?.next().is_some() {
             if !force {
                 let path = path.to_owned();
@@ -149,7 +153,7 @@ impl RunFolder {
     /// # Errors
     /// When there is no such run, or another process goes on with it.
     pub fn reopen(path: &Path) -> Result<Self, FolderError> {
-        if !path.join("case.toml").is_file() {
+        if !path.join(CASE).is_file() {
             let path = path.to_owned();
             return Err(FolderError::NoRun { path });
         }
@@ -166,12 +170,12 @@ impl RunFolder {
     /// # Errors
     /// What the system says.
     pub fn clear_results(&mut self, case: &Case) -> Result<(), FolderError> {
-        let kept = ["case.toml", CHECKPOINT, PREVIOUS];
+        let kept = [CHECKPOINT, PREVIOUS];
         let results = OWN_FILES.into_iter().filter(|name| !kept.contains(name));
         remove(&self.path, results.map(str::to_owned))?;
-        remove(&self.path, unfinished(&self.path))?;
+        remove(&self.path, unfinished(&self.path, ""))?;
         let inputs = case.inputs.iter().map(|input| input.name.clone());
-        self.written = ["case.toml".to_owned()].into_iter().chain(inputs).collect();
+        self.written = [CASE.to_owned()].into_iter().chain(inputs).collect();
         Ok(())
     }
 
@@ -261,7 +265,7 @@ impl RunFolder {
 
 /// Whether a folder holds a run that was begun, and neither completed nor removed.
 fn is_interrupted(path: &Path) -> bool {
-    path.join("case.toml").exists() && !path.join(MANIFEST).exists()
+    path.join(CASE).exists() && !path.join(MANIFEST).exists()
 }
 
 /// Locks a folder for one process. Some file systems of clusters have no locks, and some systems none of folders: the run
@@ -279,24 +283,62 @@ fn lock(path: &Path) -> Result<Option<File>, FolderError> {
     }
 }
 
-/// Files of an earlier run in this folder, its manifest first.
+/// Files of an earlier run in this folder, finished or not: its manifest first, its case last, which until then tells
+/// the copies of a run that was stopped.
 fn own_files(path: &Path) -> Vec<String> {
-    let mut names: Vec<String> = OWN_FILES.map(str::to_owned).to_vec();
     let manifest = read_whole(&path.join(MANIFEST), TEXT_MAX_BYTES).ok();
     let manifest = manifest.and_then(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok());
-    let listed: Vec<String> = match manifest {
-        Some(manifest) => manifest.files.into_iter().map(|file| file.name).collect(),
-        // A run that was interrupted has only its case to tell.
-        None => CaseFile::load(&path.join("case.toml"), &[])
-            .map(|mut case| case.files_mut().map(|(_, name)| name.clone()).collect())
-            .unwrap_or_default(),
-    };
-    // They are only believed about the folder of copies: damaged ones must not make us delete elsewhere.
-    names.extend(listed.into_iter().filter(|name| {
+    let listed = manifest
+        .into_iter()
+        .flat_map(|manifest| manifest.files)
+        .map(|file| file.name);
+    let mut copies: Vec<String> = listed.chain(named_by_case(&path.join(CASE))).collect();
+    copies.sort();
+    copies.dedup();
+    // They are only believed about the folder of copies: damage must not make us delete elsewhere.
+    copies.retain(|name| {
         name.strip_prefix("inputs/")
             .is_some_and(|plain| !plain.contains(['/', '\\']))
-    }));
+    });
+    let mut names: Vec<String> = OWN_FILES.map(str::to_owned).to_vec();
+    names.extend(copies);
+    names.extend(unfinished(path, ""));
+    names.extend(unfinished(path, "inputs/"));
+    names.push(CASE.to_owned());
     names
+}
+
+/// The files that a resolved case names. One that is not resolved was not written by a run, and what it names may be
+/// the only copy that there is.
+fn named_by_case(path: &Path) -> Vec<String> {
+    let read = || {
+        let bytes = read_whole(path, TEXT_MAX_BYTES).ok()?;
+        let mut case = CaseFile::parse(std::str::from_utf8(&bytes).ok()?, CASE, &[]).ok()?;
+        let resolved = case.to_toml().ok()? == std::str::from_utf8(&bytes).ok()?;
+        resolved.then(|| case.files_mut().map(|(_, name)| name.clone()).collect())
+    };
+    read().unwrap_or_default()
+}
+
+/// What a kill left in a folder, or one inside it such as `inputs/`, of files that were being written.
+fn unfinished(folder: &Path, inside: &str) -> Vec<String> {
+    let entries = std::fs::read_dir(folder.join(inside))
+        .into_iter()
+        .flatten()
+        .flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    names
+        .filter(|name| name.starts_with(UNFINISHED))
+        .map(|name| format!("{inside}{name}"))
+        .collect()
+}
+
+/// Removes what a kill left of files that were being written, where nobody else writes now. A file that cannot be
+/// removed does no harm.
+pub(crate) fn remove_unfinished(folder: &Path) {
+    for name in unfinished(folder, "") {
+        let _ = std::fs::remove_file(folder.join(name));
+    }
 }
 
 /// Removes the files of an earlier run from this folder.
@@ -374,21 +416,29 @@ pub(crate) fn open_regular(path: &Path) -> std::io::Result<File> {
     File::open(path)
 }
 
-/// Reads a regular file that can have no more than `most` bytes if it is what it should be.
+/// Opens a regular file that can have no more than `most` bytes if it is what it should be.
 ///
 /// A file of many gigabytes in the place of a small one would take all memory before anyone looked at it.
 ///
 /// # Errors
 /// What the system says, and for a longer file or none.
-pub(crate) fn read_whole(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
+pub(crate) fn open_bounded(path: &Path, most: u64) -> std::io::Result<Take<File>> {
     let file = open_regular(path)?;
     let length = file.metadata()?.len();
     if length > most {
         let sentence = format!("it has {length} bytes where at most {most} can be meant");
         return Err(std::io::Error::new(ErrorKind::FileTooLarge, sentence));
     }
+    Ok(file.take(most))
+}
+
+/// Reads a regular file that can have no more than `most` bytes.
+///
+/// # Errors
+/// As for [`open_bounded`].
+pub(crate) fn read_whole(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    file.take(most).read_to_end(&mut bytes)?;
+    open_bounded(path, most)?.read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 

@@ -138,6 +138,9 @@ fn dimensional(case: &Case, contact_stress_max: f64, mut fields: Vec<Vec<f32>>) 
     fields
 }
 
+/// The files that pictures are drawn from.
+pub const DRAWN_FROM: [&str; 3] = ["summary.json", "series.csv", "fields.nc"];
+
 /// Draws the pictures of a run folder from its files.
 ///
 /// # Errors

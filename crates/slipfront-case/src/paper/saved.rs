@@ -9,7 +9,10 @@ use super::bench::StepRule;
 use super::error::PaperError;
 use super::files::FILES;
 use super::found::Found;
-use crate::folder::{FolderError, write_whole};
+use crate::folder::{FolderError, read_whole, remove_unfinished, write_whole};
+
+/// A longer file holds something else: a figure's findings take some megabytes at the most.
+const MAX_BYTES: u64 = 1 << 28;
 
 /// Findings of earlier calls in one folder.
 pub(super) struct Saved {
@@ -29,6 +32,8 @@ impl Saved {
             path: folder.clone(),
             source,
         })?;
+        // The records of the folder above are open, so that nobody else writes here.
+        remove_unfinished(&folder);
         let mut hasher = blake3::Hasher::new();
         // A program that was built anew may find something else, whatever its version says.
         if let Ok(program) = std::env::current_exe().and_then(std::fs::File::open) {
@@ -61,7 +66,7 @@ impl Saved {
 
     /// What a figure found in an earlier call.
     pub(super) fn load(&self, figure: &str, step: StepRule) -> Option<Found> {
-        let bytes = std::fs::read(self.path(figure, step)).ok()?;
+        let bytes = read_whole(&self.path(figure, step), MAX_BYTES).ok()?;
         let (checksum, findings) = bytes.split_at_checked(blake3::OUT_LEN)?;
         if self.checksum(findings).as_bytes() != checksum {
             return None;

@@ -91,7 +91,16 @@ impl Verify {
     /// Runs the case of a folder again beside it, and adds what differs.
     fn repeat(&self, folder: &Path, signals: &Signals, verdict: &mut Verdict) -> Result<(), Failure> {
         let started = Timestamp::now();
-        let case = Case::load(&folder.join("case.toml"), &[]).map_err(Failure::input)?;
+        let case = folder.join("case.toml");
+        // A user may hand over a case through a pipe; in a folder of results it would be waited for.
+        if !case.is_file() {
+            let sentence = format!(
+                "{} is not a regular file: there is nothing to repeat",
+                case.display()
+            );
+            return Err(Failure::input(anyhow::anyhow!(sentence)));
+        }
+        let case = Case::load(&case, &[]).map_err(Failure::input)?;
         let again = tempfile::tempdir().map_err(Failure::running)?;
         case.check_disk(again.path(), 0, false).map_err(Failure::input)?;
         let mut running = Running::start(&case, rayon::current_num_threads());

@@ -38,7 +38,11 @@ pub(super) fn resume(path: &Path, previous: bool, manner: Manner) -> Result<(), 
     let (running, started, from) = match saved {
         None => {
             let running = Running::start(&case, manner.threads);
-            (running, Timestamp::now(), "the start: it has no checkpoint".to_owned())
+            (
+                running,
+                Timestamp::now(),
+                "the start: it has no checkpoint".to_owned(),
+            )
         }
         Some(Saved { state, step, started }) => {
             let running = Running::resume(&case, manner.threads, state).ok_or_else(|| {
@@ -95,7 +99,9 @@ fn remedy(error: &CheckpointError, path: &Path, case: &Case, previous: bool) -> 
                 _ => "no whole one is kept beside it: begin the run again".to_owned(),
             }
         }
-        CheckpointError::Case { .. } => "put back the case.toml with which it was begun, or begin again".to_owned(),
+        CheckpointError::Case { .. } => {
+            "put back the case.toml with which it was begun, or begin again".to_owned()
+        }
         _ => "or begin the run again".to_owned(),
     }
 }
