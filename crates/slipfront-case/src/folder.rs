@@ -256,7 +256,11 @@ impl RunFolder {
         let path = self.path.join(MANIFEST);
         write_whole(&path, &bytes)
             .and_then(|()| sync_folder(&self.path))
-            .map_err(|source| FolderError::Write { path, source })?;
+            .map_err(|source| {
+                // What may not be on the disk is not complete.
+                let _ = std::fs::remove_file(&path);
+                FolderError::Write { path, source }
+            })?;
         // The run is complete whether they can be removed or not.
         let _ = Checkpoints::remove(&self.path);
         Ok(manifest)
