@@ -13,6 +13,7 @@ pub mod case;
 pub mod case_file;
 pub mod fields;
 pub mod folder;
+mod legible;
 pub mod manifest;
 pub mod paper;
 pub mod pictures;

@@ -7,6 +7,8 @@ use slipfront::Scales;
 use slipfront::observe::CurveRow;
 use thiserror::Error;
 
+use crate::legible;
+
 /// One row of `series.csv`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SeriesRow {
@@ -40,7 +42,7 @@ pub struct SeriesRow {
 
 /// A series that cannot be read.
 #[derive(Debug, Error)]
-#[error("cannot read {}: {source}; it should be the series.csv of a slipfront run", path.display())]
+#[error("cannot read {}: {}; it should be the series.csv of a slipfront run", path.display(), legible::sentence(&source.to_string()))]
 pub struct SeriesError {
     path: PathBuf,
     source: csv::Error,

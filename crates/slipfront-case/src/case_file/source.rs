@@ -9,9 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::CaseError;
-
-/// The longest piece of a line or of a `--set` that a message repeats, in characters.
-const MAX_SHOWN: usize = 100;
+use crate::legible::{MAX_PIECE, shortened};
 
 /// What a case was read from, kept so that later errors can name their place.
 ///
@@ -206,7 +204,7 @@ impl fmt::Display for Place {
 /// The line, and below it carets under `width` characters from byte `start`; empty when there is nothing to show.
 fn excerpt(line: &str, start: usize, width: usize) -> String {
     let before = &line[..start.min(line.len())];
-    if line.trim().is_empty() || before.chars().count() > MAX_SHOWN {
+    if line.trim().is_empty() || before.chars().count() > MAX_PIECE {
         return String::new();
     }
     // Tabs stay tabs, so that the caret stands below its character however wide they are.
@@ -219,13 +217,4 @@ fn excerpt(line: &str, start: usize, width: usize) -> String {
         .min(shown.chars().count().saturating_sub(before.chars().count()))
         .max(1);
     format!("\n  {shown}\n  {margin}{}", "^".repeat(width))
-}
-
-/// At most 100 characters of a text, on one line.
-pub(super) fn shortened(text: &str) -> String {
-    let mut shown: String = text.chars().take(MAX_SHOWN).collect();
-    if shown.len() < text.len() {
-        shown.push_str("...");
-    }
-    shown.replace(|c: char| c.is_control() && c != '\t', " ")
 }

@@ -8,6 +8,7 @@ use super::names::{
     TIME_STAR, TIME_UNIT, X, Y,
 };
 use super::{FieldFrame, FieldName, FieldsData, FieldsError};
+use crate::legible;
 
 /// Reads a `fields.nc` that [`write_fields`](super::write_fields) has written.
 ///
@@ -54,7 +55,10 @@ fn in_words(fault: Fault, path: &Path) -> FieldsError {
     let path = path.to_owned();
     match fault {
         Fault::Io(source) => FieldsError::Read { path, source },
-        Fault::Broken(detail) => FieldsError::Broken { path, detail },
+        Fault::Broken(detail) => FieldsError::Broken {
+            path,
+            detail: legible::sentence(&detail),
+        },
     }
 }
 
