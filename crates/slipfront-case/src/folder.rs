@@ -253,20 +253,27 @@ pub(crate) fn stage(
 /// # Errors
 /// What the system says, and for a longer file or none.
 pub(crate) fn read_whole(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
-    let metadata = std::fs::metadata(path)?;
-    if !metadata.is_file() {
-        return Err(std::io::Error::other("it is not a regular file"));
-    }
-    if metadata.len() > most {
-        let sentence = format!(
-            "it has {} bytes where at most {most} can be meant",
-            metadata.len()
-        );
+    let file = open_regular(path)?;
+    let length = file.metadata()?.len();
+    if length > most {
+        let sentence = format!("it has {length} bytes where at most {most} can be meant");
         return Err(std::io::Error::new(ErrorKind::FileTooLarge, sentence));
     }
     let mut bytes = Vec::new();
-    File::open(path)?.take(most).read_to_end(&mut bytes)?;
+    file.take(most).read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+/// Opens a regular file. The check comes before the opening, because opening a pipe waits for a writer.
+///
+/// # Errors
+/// What the system says, and for anything else than a regular file.
+pub(crate) fn open_regular(path: &Path) -> std::io::Result<File> {
+    if std::fs::metadata(path)?.is_file() {
+        File::open(path)
+    } else {
+        Err(std::io::Error::other("it is not a regular file"))
+    }
 }
 
 /// The largest file of our own that is read whole: a case, a summary, a manifest.

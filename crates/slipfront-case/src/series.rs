@@ -7,6 +7,7 @@ use slipfront::Scales;
 use slipfront::observe::CurveRow;
 use thiserror::Error;
 
+use crate::folder::open_regular;
 use crate::legible;
 
 /// One row of `series.csv`.
@@ -84,7 +85,10 @@ pub fn to_csv(rows: impl Iterator<Item = SeriesRow>) -> Result<Vec<u8>, csv::Err
 /// # Errors
 /// When the file is missing or is no series.
 pub fn read_csv(path: &Path) -> Result<Vec<SeriesRow>, SeriesError> {
-    let read = || -> Result<_, csv::Error> { csv::Reader::from_path(path)?.deserialize().collect() };
+    let read = || -> Result<_, csv::Error> {
+        let file = open_regular(path)?;
+        csv::Reader::from_reader(file).deserialize().collect()
+    };
     read().map_err(|source| SeriesError {
         path: path.to_owned(),
         source,

@@ -11,6 +11,10 @@ use toml::de::{DeTable, DeValue};
 use super::error::CaseError;
 use crate::legible::{MAX_PIECE, shortened};
 
+/// The longest key whose place is noted, in bytes: all known ones are shorter. The keys below one of many megabytes
+/// would take that length each.
+const MAX_KEY: usize = 64;
+
 /// What a case was read from, kept so that later errors can name their place.
 ///
 /// Sources do not take part in comparison: all are equal.
@@ -20,7 +24,7 @@ pub struct Source {
     /// The file's text, then each override on a line of its own, so that a span alone tells where it belongs.
     text: Arc<str>,
     overrides: Vec<Range<usize>>,
-    /// The span of every value by its key, such as `drive.v_star` or `texture.0.coverage`.
+    /// The span of every value by its key, such as `drive.v_star` or `texture.0.coverage`; none of absurdly long keys.
     places: BTreeMap<String, Range<usize>>,
 }
 
@@ -146,6 +150,9 @@ fn note_table(places: &mut BTreeMap<String, Range<usize>>, prefix: &str, table: 
 }
 
 fn note_value(places: &mut BTreeMap<String, Range<usize>>, key: String, value: &Spanned<DeValue<'_>>) {
+    if key.len() > MAX_KEY {
+        return;
+    }
     match value.get_ref() {
         DeValue::Table(table) => note_table(places, &format!("{key}."), table),
         DeValue::Array(values) => {

@@ -80,6 +80,10 @@ fn read_chosen(
             )));
         }
     }
+    // The instants are records: otherwise the whole of an array would be read for each of them.
+    if !records.is_empty() && file.dimension(TIME)? != 0 {
+        return Err(Fault::Broken(format!("`{TIME}` has a fixed length")));
+    }
     // A file without instants has no dimension `time`.
     let names: Vec<FieldName> = file
         .variables_over(&[TIME, Y, X])

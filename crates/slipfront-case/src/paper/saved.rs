@@ -3,16 +3,18 @@
 //! A file holds a checksum and the figure's findings. One that is damaged, or that another program, other cases or
 //! other options made, counts as not there.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::bench::StepRule;
 use super::error::PaperError;
 use super::files::FILES;
 use super::found::Found;
-use crate::folder::{FolderError, write_whole};
+use crate::folder::{FolderError, open_regular, write_whole};
 
 /// Findings of earlier calls in one folder.
-pub(super) struct Saved {
+#[derive(Debug)]
+pub struct Saved {
     folder: PathBuf,
     /// Hash of the program, its cases and the options: what findings depend on besides figure and step.
     origin: blake3::Hash,
@@ -23,7 +25,7 @@ impl Saved {
     ///
     /// # Errors
     /// When the folder cannot be made.
-    pub(super) fn open(folder: &Path, reduced: bool) -> Result<Self, PaperError> {
+    pub fn open(folder: &Path, reduced: bool) -> Result<Self, PaperError> {
         let folder = folder.join("found");
         std::fs::create_dir_all(&folder).map_err(|source| FolderError::Unwritable {
             path: folder.clone(),
@@ -44,7 +46,8 @@ impl Saved {
         })
     }
 
-    fn path(&self, figure: &str, step: StepRule) -> PathBuf {
+    /// The file of a figure's findings.
+    pub fn path(&self, figure: &str, step: StepRule) -> PathBuf {
         let step = match step {
             StepRule::Auto => "auto",
             StepRule::Paper => "paper",
@@ -59,9 +62,17 @@ impl Saved {
         hasher.finalize()
     }
 
+    /// The bytes of a file: findings under their checksum.
+    pub fn sealed(&self, findings: &[u8]) -> Vec<u8> {
+        [self.checksum(findings).as_bytes(), findings].concat()
+    }
+
     /// What a figure found in an earlier call.
-    pub(super) fn load(&self, figure: &str, step: StepRule) -> Option<Found> {
-        let bytes = std::fs::read(self.path(figure, step)).ok()?;
+    pub fn load(&self, figure: &str, step: StepRule) -> Option<Found> {
+        let mut bytes = Vec::new();
+        open_regular(&self.path(figure, step))
+            .and_then(|mut file| file.read_to_end(&mut bytes))
+            .ok()?;
         let (checksum, findings) = bytes.split_at_checked(blake3::OUT_LEN)?;
         if self.checksum(findings).as_bytes() != checksum {
             return None;
@@ -73,14 +84,14 @@ impl Saved {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub(super) fn save(&self, figure: &str, step: StepRule, found: &Found) -> Result<(), PaperError> {
+    pub fn save(&self, figure: &str, step: StepRule, found: &Found) -> Result<(), PaperError> {
         let path = self.path(figure, step);
         // Plain data: it always has a binary form.
         let Ok(findings) = postcard::to_stdvec(found) else {
             return Ok(());
         };
-        let bytes = [self.checksum(&findings).as_bytes(), findings.as_slice()].concat();
-        Ok(write_whole(&path, &bytes).map_err(|source| FolderError::Write { path, source })?)
+        Ok(write_whole(&path, &self.sealed(&findings))
+            .map_err(|source| FolderError::Write { path, source })?)
     }
 }
 

@@ -6,6 +6,7 @@ use serde::Deserialize;
 use toml::Value;
 
 use super::inputs::{names_a_file, plain_name};
+use crate::legible::shortened;
 
 /// An axis and its levels.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,8 +67,19 @@ pub(super) struct AxisKeys {
 /// Most levels of one axis.
 const MAX_LEVELS: usize = 100_000;
 
+/// The longest key of an axis, in bytes: all of a case are shorter. It is repeated in every level.
+const MAX_KEY: usize = 100;
+
 impl Axis {
     pub(super) fn new(keys: AxisKeys) -> Result<Self, String> {
+        let all = keys.key.iter().chain(keys.zip.iter().flat_map(toml::Table::keys));
+        if let Some(long) = all.into_iter().find(|key| key.len() > MAX_KEY) {
+            return Err(format!(
+                "the key `{}` of an axis has {} bytes, more than {MAX_KEY}: name one of a case, such as drive.v_star",
+                shortened(long),
+                long.len()
+            ));
+        }
         let axis = match keys {
             AxisKeys {
                 key: Some(key),
@@ -287,6 +299,8 @@ fn flatten(key: &str, value: &Value, list: &mut Vec<String>) {
     // and so is a texture in full.
     let is_number = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
     let leads_on = !key.contains('.') || key.rsplit('.').next().is_some_and(is_number);
+    // A key that no case has is refused as it stands, not once for everything in it.
+    let leads_on = leads_on && key.len() <= MAX_KEY;
     match value {
         Value::Table(inner) if leads_on && !inner.contains_key("shape") => {
             for (name, value) in inner {
@@ -468,6 +482,25 @@ mod tests {
         );
         assert_eq!(axis.levels[1].number, Some(50.0));
         assert!(super::Axis::new(toml::from_str("zip = { a = [1], b = [1, 2] }").unwrap()).is_err());
+    }
+
+    /// A few megabytes of text must not become terabytes.
+    #[test]
+    fn long_keys_are_not_repeated_in_every_level() {
+        let long = "k".repeat(100_000);
+        for text in [
+            format!("key = '{long}'\nlinspace = [0, 1, 100000]"),
+            format!("zip = {{ {long} = [1, 2, 3] }}"),
+        ] {
+            let said = axis(&text).unwrap_err();
+            assert!(
+                said.contains("has 100000 bytes, more than 100") && said.len() < 300,
+                "{said}"
+            );
+        }
+        let keys: String = (0..1000).map(|k| format!("k{k} = 1, ")).collect();
+        let keys: toml::Table = format!("{long} = {{ {keys} }}").parse().unwrap();
+        assert_eq!(overrides(&keys).len(), 1);
     }
 
     #[test]

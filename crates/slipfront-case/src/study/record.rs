@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::StudyError;
 use super::quantities::Numbers;
+use crate::folder::open_regular;
 use crate::summary::Summary;
 
 /// Name of the record file in a study folder.
@@ -105,6 +106,10 @@ impl Records {
             .create(true)
             .open(&path)
             .map_err(|source| cannot_open(&path, source))?;
+        // A device never ends, and a pipe waits for a writer.
+        if !file.metadata().is_ok_and(|file| file.is_file()) {
+            return Err(StudyError::NotRecords { path });
+        }
         let locked = file.try_lock().map_err(|error| match error {
             std::fs::TryLockError::WouldBlock => StudyError::Busy {
                 path: folder.to_owned(),
@@ -207,7 +212,9 @@ impl Records {
     /// When they cannot be read or written.
     pub fn merge(&mut self, folder: &Path) -> Result<usize, StudyError> {
         let path = folder.join(RECORDS);
-        let bytes = std::fs::read(&path).map_err(|source| StudyError::Records {
+        let mut bytes = Vec::new();
+        let read = open_regular(&path).and_then(|mut file| file.read_to_end(&mut bytes));
+        read.map_err(|source| StudyError::Records {
             action: "read",
             path: path.clone(),
             source,
