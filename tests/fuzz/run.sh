@@ -15,16 +15,18 @@ out=target/fuzz
 mkdir -p "$out"
 
 host="$(rustc -vV | sed -n 's/^host: //p')"
-build() {
-    cargo build --quiet --locked --package slipfront-fuzz --profile fuzz --target-dir "$out/build" "$@"
-}
-build --bin fuzz-seeds
+revision="$(git rev-parse --short HEAD 2> /dev/null || echo none)"
+cargo build --quiet --locked --package slipfront-fuzz --bin fuzz-seeds
+target/debug/fuzz-seeds "$out/seeds" > "$out/targets"
+if [ "$#" -eq 0 ]; then
+    set -- $(cut -d ' ' -f 1 "$out/targets")
+fi
 export RUSTFLAGS="-Ccodegen-units=1 -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4
     -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table
     -Cllvm-args=-sanitizer-coverage-trace-compares"
 # Named, so that build scripts are not instrumented.
-build --features libfuzzer --bin fuzz --target "$host"
-revision="$(git rev-parse --short HEAD 2> /dev/null || echo none)"
+cargo build --quiet --locked --package slipfront-fuzz --features libfuzzer --bin fuzz --profile fuzz \
+    --target-dir "$out/build" --target "$host"
 fuzz="$out/fuzz-$revision-$$"
 cp "$out/build/$host/fuzz/fuzz" "$fuzz"
 
@@ -37,10 +39,6 @@ fi
 export TMPDIR
 trap 'rm -rf "$TMPDIR" "$fuzz"' EXIT
 
-"$out/build/fuzz/fuzz-seeds" "$out/seeds" > "$out/targets"
-if [ "$#" -eq 0 ]; then
-    set -- $(cut -d ' ' -f 1 "$out/targets")
-fi
 log="$out/log.csv"
 [ -e "$log" ] || echo 'finished,revision,target,cpu_s,executions,edges,features,corpus,peak_rss_mb,finding' > "$log"
 
@@ -74,7 +72,7 @@ run_slice() {
 }
 
 # Whoever had the least time goes next, until all have had theirs; what has failed is not tried again.
-spent() { cat "$out/cpu/$1-$$" 2> /dev/null | awk '{ sum += $1 } END { printf "%.0f", sum }'; }
+spent() { touch "$out/cpu/$1-$$" && awk '{ sum += $1 } END { printf "%.0f", sum }' "$out/cpu/$1-$$"; }
 next() {
     local name least= chosen=
     for name in "$@"; do
