@@ -37,6 +37,8 @@ pub struct Target {
     memory: Memory,
     /// Mutations that `cargo test` tries: a share of a second.
     pub mutations: usize,
+    /// Long inputs that `cargo test` tries.
+    pub repetitions: usize,
 }
 
 /// Most memory at once: a limit that the parser states, or what follows from the length of the input.

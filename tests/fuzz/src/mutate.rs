@@ -61,6 +61,29 @@ impl Mutator {
         input
     }
 
+    /// A seed in which one stretch is repeated until all is about this long, with something else in every repetition.
+    pub fn repeated(&mut self, seeds: &[Vec<u8>], length: usize) -> Vec<u8> {
+        let seed = seeds[self.below(seeds.len())].clone();
+        let (start, end) = self.range(seed.len());
+        let piece = match self.below(3) {
+            0 => self.word(),
+            1 => lines_around(&seed, start, end).to_vec(),
+            _ => seed[start..end].to_vec(),
+        };
+        let mut input = seed[..start].to_vec();
+        let mut number = 0;
+        let counted = self.below(2) == 0;
+        while input.len() + seed.len() - end < length {
+            input.extend_from_slice(&piece);
+            if counted || piece.is_empty() {
+                number += 1;
+                input.extend_from_slice(number.to_string().as_bytes());
+            }
+        }
+        input.extend_from_slice(&seed[end..]);
+        input
+    }
+
     fn change(&mut self, input: &mut Vec<u8>, seeds: &[Vec<u8>]) {
         let (start, end) = self.range(input.len());
         match self.below(7) {
@@ -112,6 +135,19 @@ impl Mutator {
     fn below(&mut self, bound: usize) -> usize {
         (self.random.next_u64() % bound.max(1) as u64) as usize
     }
+}
+
+/// The lines in which a stretch lies.
+fn lines_around(text: &[u8], start: usize, end: usize) -> &[u8] {
+    let first = text[..start]
+        .iter()
+        .rposition(|&byte| byte == b'\n')
+        .map_or(0, |at| at + 1);
+    let last = text[end..]
+        .iter()
+        .position(|&byte| byte == b'\n')
+        .map_or(text.len(), |at| end + at + 1);
+    &text[first..last]
 }
 
 /// The word of a line of a dictionary as libFuzzer reads it: `name="\x00word"`.

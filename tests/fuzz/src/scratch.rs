@@ -5,7 +5,15 @@ use std::sync::LazyLock;
 
 use tempfile::TempDir;
 
-static FOLDER: LazyLock<TempDir> = LazyLock::new(|| tempfile::tempdir().unwrap());
+static FOLDER: LazyLock<TempDir> = LazyLock::new(|| {
+    // Records wait for the disk after every line: memory does not keep them waiting.
+    let in_memory = || TempDir::new_in("/dev/shm");
+    let asked = std::env::var_os("TMPDIR").map(|_| TempDir::new());
+    asked
+        .unwrap_or_else(in_memory)
+        .or_else(|_| TempDir::new())
+        .unwrap()
+});
 
 /// A file with these bytes, which keeps them until the next of its name is written.
 pub(crate) fn file(name: &str, bytes: &[u8]) -> PathBuf {

@@ -1,5 +1,8 @@
 //! Every target on its seeds, on what fuzzing has found before, and on a fixed number of mutations of both.
 
+// A helper that cannot do its work fails its test.
+#![allow(clippy::unwrap_used)]
+
 use std::sync::{Mutex, PoisonError};
 
 use slipfront_fuzz::{Mutator, TARGETS, Target};
@@ -20,7 +23,18 @@ fn replay(name: &str) {
     for number in 0..target.mutations {
         run(target, &mutator.mutated(&seeds), &format!("mutation {number}"));
     }
+    // What grows with the square of the length shows only here.
+    for number in 0..target.repetitions {
+        run(
+            target,
+            &mutator.repeated(&seeds, LONG),
+            &format!("repetition {number}"),
+        );
+    }
 }
+
+/// Bytes of an input that is long.
+const LONG: usize = 100_000;
 
 fn run(target: &Target, bytes: &[u8], name: &str) {
     let failed = std::panic::catch_unwind(|| target.run(bytes)).is_err();

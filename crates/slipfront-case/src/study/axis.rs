@@ -1,6 +1,7 @@
 //! An axis of a study: the levels that one key, several keys together, or a set of named variants take.
 
 use std::collections::{BTreeSet, HashSet};
+use std::ops::Bound;
 
 use serde::Deserialize;
 use toml::Value;
@@ -324,6 +325,22 @@ pub(super) fn displaces(key: &str, earlier: &str) -> bool {
         || crate::case_file::exclude_each_other(key, earlier)
 }
 
+/// The first of `earlier` keys of which setting `key` leaves nothing.
+pub(super) fn displaced<'k>(key: &str, earlier: &BTreeSet<&'k str>) -> Option<&'k str> {
+    let below = format!("{key}.");
+    let partners = crate::case_file::partners_of(key);
+    let same = earlier
+        .get(key)
+        .or_else(|| partners.iter().find_map(|partner| earlier.get(partner.as_str())));
+    let inside = || {
+        earlier
+            .range::<str, _>((Bound::Included(below.as_str()), Bound::Unbounded))
+            .next()
+            .filter(|found| found.starts_with(&below))
+    };
+    same.or_else(inside).copied()
+}
+
 /// `count` values from `from` to `to`, both exactly.
 fn spaced(from: f64, to: f64, count: usize, between: fn(f64, f64, f64) -> f64) -> Result<Vec<Value>, String> {
     if !(2..=MAX_LEVELS).contains(&count) {
@@ -453,6 +470,17 @@ mod tests {
         assert!(displaces("drive.speed", "drive.v_star"));
         assert!(!displaces("texture.0.coverage", "texture"));
         assert!(!displaces("drive.v", "drive.v_star"));
+        let earlier = ["drive.v_star", "slider.blocks", "texture.0.coverage", "texture0"].into();
+        assert_eq!(displaced("texture", &earlier), Some("texture.0.coverage"));
+        assert_eq!(displaced("drive.v_star", &earlier), Some("drive.v_star"));
+        assert_eq!(displaced("drive.speed", &earlier), Some("drive.v_star"));
+        assert_eq!(
+            displaced("texture.0.lambda", &earlier),
+            Some("texture.0.coverage")
+        );
+        for other in ["drive.v", "texture.0.coverage.x", "slider.omega_star", "tex"] {
+            assert_eq!(displaced(other, &earlier), None);
+        }
     }
 
     #[test]

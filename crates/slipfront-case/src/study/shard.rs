@@ -34,7 +34,9 @@ impl Shard {
         };
         // An array may begin at any number.
         let first = read("SLURM_ARRAY_TASK_MIN").unwrap_or(1);
-        let number = (read("SLURM_ARRAY_TASK_ID")? + 1).saturating_sub(first);
+        let number = read("SLURM_ARRAY_TASK_ID")?
+            .saturating_add(1)
+            .saturating_sub(first);
         Self::new(number, read("SLURM_ARRAY_TASK_COUNT")?, given)
     }
 

@@ -26,6 +26,7 @@ pub(crate) const NPY: Target = Target {
         per_byte: 512,
     },
     mutations: 3000,
+    repetitions: 20,
 };
 
 /// Tables of numbers as text.
@@ -41,6 +42,7 @@ pub(crate) const CSV_TABLE: Target = Target {
         per_byte: 64,
     },
     mutations: 3000,
+    repetitions: 60,
 };
 
 /// Masks as images.
@@ -57,6 +59,7 @@ pub(crate) const MASK_PNG: Target = Target {
         per_byte: 2 * 8 * 1040,
     },
     mutations: 500,
+    repetitions: 20,
 };
 
 fn npy_files() -> Vec<Vec<u8>> {

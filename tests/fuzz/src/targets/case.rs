@@ -27,6 +27,7 @@ pub(crate) const CASE_FILE: Target = Target {
         per_byte: 512,
     },
     mutations: 3000,
+    repetitions: 100,
 };
 
 /// A case that is made of it, surface and all, as long as the lattice is small.
@@ -43,6 +44,7 @@ pub(crate) const CASE: Target = Target {
         per_byte: 512,
     },
     mutations: 300,
+    repetitions: 30,
 };
 
 /// Most blocks of a lattice that is made: its memory is bounded by the machine's, not by the file.

@@ -21,6 +21,7 @@ pub(crate) const FIELDS: Target = Target {
         per_byte: 128,
     },
     mutations: 2000,
+    repetitions: 40,
 };
 
 /// A file of a small lattice.

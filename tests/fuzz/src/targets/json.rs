@@ -27,6 +27,7 @@ pub(crate) const SUMMARY: Target = Target {
         per_byte: 64,
     },
     mutations: 2000,
+    repetitions: 60,
 };
 
 /// The manifest as it is, then with the seal that it should have, in a folder that is verified and replaced.
@@ -42,6 +43,7 @@ pub(crate) const MANIFEST: Target = Target {
         per_byte: 256,
     },
     mutations: 500,
+    repetitions: 40,
 };
 
 /// A summary in which nothing is missing.

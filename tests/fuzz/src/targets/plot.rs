@@ -21,6 +21,7 @@ pub(crate) const PLOT: Target = Target {
         per_byte: 1024,
     },
     mutations: 10,
+    repetitions: 0,
 };
 
 const END: &[u8] = b"\n==\n";

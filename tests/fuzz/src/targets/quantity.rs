@@ -20,6 +20,7 @@ pub(crate) const QUANTITY: Target = Target {
         per_byte: 64,
     },
     mutations: 5000,
+    repetitions: 20,
 };
 
 fn made() -> Vec<Vec<u8>> {

@@ -19,6 +19,7 @@ pub(crate) const RECORDS: Target = Target {
         per_byte: 256,
     },
     mutations: 300,
+    repetitions: 40,
 };
 
 fn record(id: &str, outcome: Outcome) -> Record {

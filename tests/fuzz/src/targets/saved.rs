@@ -21,6 +21,7 @@ pub(crate) const SAVED: Target = Target {
         per_byte: 512,
     },
     mutations: 2000,
+    repetitions: 40,
 };
 
 fn made() -> Vec<Vec<u8>> {

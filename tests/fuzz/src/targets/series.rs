@@ -18,6 +18,7 @@ pub(crate) const SERIES: Target = Target {
         per_byte: 256,
     },
     mutations: 2000,
+    repetitions: 60,
 };
 
 /// A few rows.

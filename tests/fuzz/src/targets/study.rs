@@ -20,6 +20,7 @@ pub(crate) const STUDY_FILE: Target = Target {
         per_byte: 1024,
     },
     mutations: 200,
+    repetitions: 60,
 };
 
 /// Levels of each axis that are tried.
