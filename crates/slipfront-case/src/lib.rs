@@ -14,6 +14,7 @@ pub mod case_file;
 pub mod checkpoint;
 pub mod fields;
 pub mod folder;
+mod legible;
 pub mod manifest;
 pub mod paper;
 pub mod pictures;

@@ -10,6 +10,7 @@ use crate::case::Case;
 use crate::case_file::CaseError;
 use crate::fields::{self, FieldFrame, FieldName, FieldsError, FieldsFile, StaticFields};
 use crate::folder::{self, FolderError, RunFolder};
+use crate::legible;
 use crate::manifest::Manifest;
 use crate::pictures::{self, FrictionCurve, Instant, Kinetic, Picture, PictureError, StressMap, StressMaps};
 use crate::run::Record;
@@ -35,7 +36,7 @@ pub enum ResultsError {
     #[error("cannot write series.csv: {0}")]
     Csv(#[from] csv::Error),
     /// `summary.json`.
-    #[error("{} is not the summary of a slipfront run: {source}", path.display())]
+    #[error("{} is not the summary of a slipfront run: {}", path.display(), legible::sentence(&source.to_string()))]
     Summary {
         /// The file.
         path: PathBuf,
