@@ -2,8 +2,8 @@
 //!
 //! Files appear whole or not at all, and `manifest.json` comes last: where it stands, the run is complete.
 
-use std::fs::File;
-use std::io::{ErrorKind, Read, Write};
+use std::fs::{File, TryLockError};
+use std::io::{ErrorKind, Read, Take, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -11,12 +11,19 @@ use slipfront::Model;
 use tempfile::TempPath;
 use thiserror::Error;
 
+use crate::case::Case;
+use crate::case_file::CaseFile;
+use crate::checkpoint::{CHECKPOINT, Checkpoints, PREVIOUS};
 use crate::manifest::{MANIFEST, Manifest};
 
-/// Names that belong to slipfront in a run folder, besides the files in `inputs/` that a manifest lists.
-const OWN_FILES: [&str; 9] = [
+/// The resolved case in its folder.
+const CASE: &str = "case.toml";
+
+/// Names that belong to slipfront in a run folder, besides its case and the copies in `inputs/`.
+const OWN_FILES: [&str; 10] = [
     MANIFEST,
-    "case.toml",
+    CHECKPOINT,
+    PREVIOUS,
     "summary.json",
     "series.csv",
     "fields.nc",
@@ -38,6 +45,28 @@ pub enum FolderError {
         path.display()
     )]
     NotEmpty {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// There is a run in it that was interrupted.
+    #[error(
+        "the folder {0} holds a run that was interrupted: go on with it by `slipfront run --resume {0}`, choose another \
+         with --out, or begin again with --force",
+        path.display()
+    )]
+    Interrupted {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// There is no run in it to go on with.
+    #[error("{} holds no run to go on with: it has no case.toml", path.display())]
+    NoRun {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// Somebody else writes there.
+    #[error("another process is running in the folder {}: wait for it, or choose another folder", path.display())]
+    Busy {
         /// The folder.
         path: PathBuf,
     },
@@ -78,6 +107,8 @@ pub enum FolderError {
 pub struct RunFolder {
     path: PathBuf,
     written: Vec<String>,
+    /// Held as long as the run goes on.
+    _lock: Option<File>,
 }
 
 impl RunFolder {
@@ -92,23 +123,18 @@ impl RunFolder {
             source,
         };
         std::fs::create_dir_all(path).map_err(unwritable)?;
+        let lock = lock(path)?;
+        remove_unfinished(path);
         if std::fs::read_dir(path).map_err(unwritable)?.next().is_some() {
             if !force {
-                return Err(FolderError::NotEmpty {
-                    path: path.to_owned(),
+                let path = path.to_owned();
+                return Err(if is_interrupted(&path) {
+                    FolderError::Interrupted { path }
+                } else {
+                    FolderError::NotEmpty { path }
                 });
             }
-            // The manifest goes first: from now on the folder does not look complete.
-            for name in own_files(path) {
-                match std::fs::remove_file(path.join(name)) {
-                    Err(error) if error.kind() != ErrorKind::NotFound => {
-                        return Err(unwritable(error));
-                    }
-                    _ => {}
-                }
-            }
-            // Gone if it held our inputs only; a foreign file keeps it.
-            std::fs::remove_dir(path.join("inputs")).ok();
+            remove_own(path)?;
         }
         // A folder that cannot be written should say so before the run, not after it.
         tempfile::Builder::new()
@@ -118,7 +144,47 @@ impl RunFolder {
         Ok(Self {
             path: path.to_owned(),
             written: Vec::new(),
+            _lock: lock,
         })
+    }
+
+    /// Takes over the folder of a run that has a case.
+    ///
+    /// # Errors
+    /// When there is no such run, or another process goes on with it.
+    pub fn reopen(path: &Path) -> Result<Self, FolderError> {
+        if !path.join(CASE).is_file() {
+            let path = path.to_owned();
+            return Err(FolderError::NoRun { path });
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            written: Vec::new(),
+            _lock: lock(path)?,
+        })
+    }
+
+    /// Removes what was written of the results of a run before it was interrupted: it is written again. The case, the
+    /// files that it reads and the checkpoints stay.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn clear_results(&mut self, case: &Case) -> Result<(), FolderError> {
+        let kept = [CHECKPOINT, PREVIOUS];
+        let results = OWN_FILES.into_iter().filter(|name| !kept.contains(name));
+        remove(&self.path, results.map(str::to_owned))?;
+        remove(&self.path, unfinished(&self.path, ""))?;
+        let inputs = case.inputs.iter().map(|input| input.name.clone());
+        self.written = [CASE.to_owned()].into_iter().chain(inputs).collect();
+        Ok(())
+    }
+
+    /// Removes all that was written of the run: there is nothing to go on with.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn discard(self) -> Result<(), FolderError> {
+        remove_own(&self.path)
     }
 
     /// Refuses foreign files that stand where `names` will be written: better now than after the run.
@@ -188,26 +254,114 @@ impl RunFolder {
         let (manifest, bytes) =
             Manifest::of(&self.path, &self.written, started, threads, model, seed)?.sealed();
         let path = self.path.join(MANIFEST);
-        write_whole(&path, &bytes).map_err(|source| FolderError::Write { path, source })?;
+        write_whole(&path, &bytes)
+            .and_then(|()| sync_folder(&self.path))
+            .map_err(|source| FolderError::Write { path, source })?;
+        // The run is complete whether they can be removed or not.
+        let _ = Checkpoints::remove(&self.path);
         Ok(manifest)
     }
 }
 
-/// Files of an earlier run in this folder, its manifest first.
+/// Whether a folder holds a run that was begun, and neither completed nor removed.
+fn is_interrupted(path: &Path) -> bool {
+    path.join(CASE).exists() && !path.join(MANIFEST).exists()
+}
+
+/// Locks a folder for one process. Some file systems of clusters have no locks, and some systems none of folders: the run
+/// goes on without.
+fn lock(path: &Path) -> Result<Option<File>, FolderError> {
+    let Ok(folder) = File::open(path) else {
+        return Ok(None);
+    };
+    match folder.try_lock() {
+        Ok(()) => Ok(Some(folder)),
+        Err(TryLockError::WouldBlock) => Err(FolderError::Busy {
+            path: path.to_owned(),
+        }),
+        Err(TryLockError::Error(_)) => Ok(None),
+    }
+}
+
+/// Files of an earlier run in this folder, finished or not: its manifest first, its case last, which until then tells
+/// the copies of a run that was stopped.
 fn own_files(path: &Path) -> Vec<String> {
-    let mut names: Vec<String> = OWN_FILES.map(str::to_owned).to_vec();
     let manifest = read_whole(&path.join(MANIFEST), TEXT_MAX_BYTES).ok();
     let manifest = manifest.and_then(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok());
     let listed = manifest
         .into_iter()
         .flat_map(|manifest| manifest.files)
         .map(|file| file.name);
-    // A manifest is only believed about the folder of copies: a damaged one must not make us delete elsewhere.
-    names.extend(listed.filter(|name| {
+    let mut copies: Vec<String> = listed.chain(named_by_case(&path.join(CASE))).collect();
+    copies.sort();
+    copies.dedup();
+    // They are only believed about the folder of copies: damage must not make us delete elsewhere.
+    copies.retain(|name| {
         name.strip_prefix("inputs/")
             .is_some_and(|plain| !plain.contains(['/', '\\']))
-    }));
+    });
+    let mut names: Vec<String> = OWN_FILES.map(str::to_owned).to_vec();
+    names.extend(copies);
+    names.extend(unfinished(path, ""));
+    names.extend(unfinished(path, "inputs/"));
+    names.push(CASE.to_owned());
     names
+}
+
+/// The files that a resolved case names. One that is not resolved was not written by a run, and what it names may be
+/// the only copy that there is.
+fn named_by_case(path: &Path) -> Vec<String> {
+    let read = || {
+        let bytes = read_whole(path, TEXT_MAX_BYTES).ok()?;
+        let mut case = CaseFile::parse(std::str::from_utf8(&bytes).ok()?, CASE, &[]).ok()?;
+        let resolved = case.to_toml().ok()? == std::str::from_utf8(&bytes).ok()?;
+        resolved.then(|| case.files_mut().map(|(_, name)| name.clone()).collect())
+    };
+    read().unwrap_or_default()
+}
+
+/// What a kill left in a folder, or one inside it such as `inputs/`, of files that were being written.
+fn unfinished(folder: &Path, inside: &str) -> Vec<String> {
+    let entries = std::fs::read_dir(folder.join(inside))
+        .into_iter()
+        .flatten()
+        .flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    names
+        .filter(|name| name.starts_with(UNFINISHED))
+        .map(|name| format!("{inside}{name}"))
+        .collect()
+}
+
+/// Removes what a kill left of files that were being written, where nobody else writes now. A file that cannot be
+/// removed does no harm.
+pub(crate) fn remove_unfinished(folder: &Path) {
+    for name in unfinished(folder, "") {
+        let _ = std::fs::remove_file(folder.join(name));
+    }
+}
+
+/// Removes the files of an earlier run from this folder.
+fn remove_own(path: &Path) -> Result<(), FolderError> {
+    // The manifest goes first: from now on the folder does not look complete.
+    remove(path, own_files(path))?;
+    // Gone if it held our inputs only; a foreign file keeps it.
+    std::fs::remove_dir(path.join("inputs")).ok();
+    Ok(())
+}
+
+/// Removes these files from a folder, where they are.
+fn remove(folder: &Path, names: impl IntoIterator<Item = String>) -> Result<(), FolderError> {
+    for name in names {
+        match std::fs::remove_file(folder.join(name)) {
+            Err(source) if source.kind() != ErrorKind::NotFound => {
+                let path = folder.to_owned();
+                return Err(FolderError::Unwritable { path, source });
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 /// Bytes of an earlier run in this folder, which [`RunFolder::prepare`] would remove with `force`.
@@ -245,35 +399,47 @@ pub(crate) fn stage(
     Ok(file.into_temp_path())
 }
 
-/// Reads a regular file that can have no more than `most` bytes if it is what it should be.
+/// Forces the names in a folder to the disk.
+pub(crate) fn sync_folder(folder: &Path) -> std::io::Result<()> {
+    // Only Unix opens folders as files.
+    if cfg!(unix) {
+        File::open(folder)?.sync_all()?;
+    }
+    Ok(())
+}
+
+/// Opens a file that is one: a pipe would be waited for, a device such as `/dev/zero` never ends.
+pub(crate) fn open_regular(path: &Path) -> std::io::Result<File> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(std::io::Error::other("it is not a regular file"));
+    }
+    File::open(path)
+}
+
+/// Opens a regular file that can have no more than `most` bytes if it is what it should be.
 ///
-/// A pipe would be waited for, a device such as `/dev/zero` never ends, and a file of many gigabytes in the place of
-/// a small one would take all memory before anyone looked at it.
+/// A file of many gigabytes in the place of a small one would take all memory before anyone looked at it.
 ///
 /// # Errors
 /// What the system says, and for a longer file or none.
-pub(crate) fn read_whole(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
+pub(crate) fn open_bounded(path: &Path, most: u64) -> std::io::Result<Take<File>> {
     let file = open_regular(path)?;
     let length = file.metadata()?.len();
     if length > most {
         let sentence = format!("it has {length} bytes where at most {most} can be meant");
         return Err(std::io::Error::new(ErrorKind::FileTooLarge, sentence));
     }
-    let mut bytes = Vec::new();
-    file.take(most).read_to_end(&mut bytes)?;
-    Ok(bytes)
+    Ok(file.take(most))
 }
 
-/// Opens a regular file. The check comes before the opening, because opening a pipe waits for a writer.
+/// Reads a regular file that can have no more than `most` bytes.
 ///
 /// # Errors
-/// What the system says, and for anything else than a regular file.
-pub(crate) fn open_regular(path: &Path) -> std::io::Result<File> {
-    if std::fs::metadata(path)?.is_file() {
-        File::open(path)
-    } else {
-        Err(std::io::Error::other("it is not a regular file"))
-    }
+/// As for [`open_bounded`].
+pub(crate) fn read_whole(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    open_bounded(path, most)?.read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// The largest file of our own that is read whole: a case, a summary, a manifest.

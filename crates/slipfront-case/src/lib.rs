@@ -11,6 +11,7 @@ pub mod arrays;
 pub mod budget;
 pub mod case;
 pub mod case_file;
+pub mod checkpoint;
 pub mod fields;
 pub mod folder;
 mod legible;

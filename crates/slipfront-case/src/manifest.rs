@@ -95,7 +95,10 @@ pub struct ManifestFile {
 #[derive(Debug, Error)]
 pub enum ManifestError {
     /// There is none.
-    #[error("{} holds no manifest.json: it is no run folder, or its run did not end", path.display())]
+    #[error(
+        "{0} holds no manifest.json: it is no run folder, or its run did not end; `slipfront run --resume {0}` goes on with it",
+        path.display()
+    )]
     Missing {
         /// The folder.
         path: PathBuf,

@@ -53,8 +53,8 @@ pub enum ResultsError {
     },
 }
 
-/// Writes the files of a run and draws its pictures; the manifest completes the folder. The fields are taken out of
-/// the record: drawing needs the room that they took.
+/// Writes the results of a run, whose case stands in the folder already, and draws its pictures; the manifest completes
+/// the folder. The fields are taken out of the record: drawing needs the room that they took.
 ///
 /// # Errors
 /// When a file cannot be written: the folder is then left without a manifest.
@@ -65,7 +65,6 @@ pub fn write(
     started: jiff::Timestamp,
     threads: usize,
 ) -> Result<Manifest, ResultsError> {
-    write_case(case, &mut folder)?;
     folder.write("summary.json", &folder::json(&record.summary))?;
     let rows = record.rows.iter().map(|row| SeriesRow::new(row, &case.scales));
     folder.write("series.csv", &series::to_csv(rows)?)?;
@@ -139,6 +138,9 @@ fn dimensional(case: &Case, contact_stress_max: f64, mut fields: Vec<Vec<f32>>) 
     }
     fields
 }
+
+/// The files that pictures are drawn from.
+pub const DRAWN_FROM: [&str; 3] = ["summary.json", "series.csv", "fields.nc"];
 
 /// Draws the pictures of a run folder from its files.
 ///

@@ -1,5 +1,6 @@
 //! `series.csv`: the curve of a run, one row per recorded step, names with units in the header.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -7,7 +8,7 @@ use slipfront::Scales;
 use slipfront::observe::CurveRow;
 use thiserror::Error;
 
-use crate::folder::open_regular;
+use crate::folder::open_bounded;
 use crate::legible;
 
 /// One row of `series.csv`.
@@ -86,11 +87,59 @@ pub fn to_csv(rows: impl Iterator<Item = SeriesRow>) -> Result<Vec<u8>, csv::Err
 /// When the file is missing or is no series.
 pub fn read_csv(path: &Path) -> Result<Vec<SeriesRow>, SeriesError> {
     let read = || -> Result<_, csv::Error> {
-        let file = open_regular(path)?;
+        let file = BoundedLines::new(open_bounded(path, u64::MAX)?);
         csv::Reader::from_reader(file).deserialize().collect()
     };
     read().map_err(|source| SeriesError {
         path: path.to_owned(),
         source,
     })
+}
+
+/// The longest line of a series: more than its header, and than thirteen numbers take.
+const LINE_MAX_BYTES: usize = 4096;
+
+/// A file whose lines are not too long: the csv crate would keep one of any length in memory.
+struct BoundedLines<R> {
+    file: R,
+    /// Bytes since the last line break.
+    line_bytes: usize,
+}
+
+impl<R> BoundedLines<R> {
+    fn new(file: R) -> Self {
+        Self { file, line_bytes: 0 }
+    }
+}
+
+impl<R: Read> Read for BoundedLines<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        // Of a larger buffer a line that is too long could hide in one piece.
+        let most = buffer.len().min(LINE_MAX_BYTES);
+        let bytes = self.file.read(&mut buffer[..most])?;
+        self.line_bytes = match buffer[..bytes].iter().rposition(|&byte| byte == b'\n') {
+            Some(end) => bytes - end - 1,
+            None => self.line_bytes + bytes,
+        };
+        if self.line_bytes > LINE_MAX_BYTES {
+            let sentence = format!("a line of it has more than {LINE_MAX_BYTES} bytes");
+            return Err(std::io::Error::new(std::io::ErrorKind::InvalidData, sentence));
+        }
+        Ok(bytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_without_end_is_refused() {
+        let text = |line: usize| ["a".repeat(line), "b".repeat(line)].join("\n").into_bytes();
+        let read = |bytes: &[u8]| std::io::read_to_string(BoundedLines::new(bytes));
+        let longest = text(LINE_MAX_BYTES);
+        assert_eq!(read(&longest).unwrap().into_bytes(), longest);
+        let error = read(&text(2 * LINE_MAX_BYTES + 1)).unwrap_err();
+        assert!(error.to_string().contains("more than 4096 bytes"), "{error}");
+    }
 }

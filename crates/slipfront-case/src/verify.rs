@@ -10,7 +10,8 @@ use std::path::{Component, Path, PathBuf};
 use thiserror::Error;
 
 use crate::case_file::CaseFile;
-use crate::folder::{TEXT_MAX_BYTES, UNFINISHED, read_whole};
+use crate::checkpoint::is_of_interrupted_run;
+use crate::folder::{TEXT_MAX_BYTES, read_whole};
 use crate::legible::{sentence, shortened};
 use crate::manifest::{MANIFEST, Manifest, ManifestError, ManifestFile};
 use crate::study::{self, Plan, Records, StudyError, StudyFolder};
@@ -38,6 +39,18 @@ pub enum VerifyError {
     /// It has no usable manifest.
     #[error(transparent)]
     Manifest(#[from] ManifestError),
+    /// Files that a picture would be drawn from.
+    #[error(
+        "{difference}: pictures of it would not show what was run; run its case again, or remove {} to draw the files \
+        as they are",
+        manifest.display()
+    )]
+    Changed {
+        /// The first of them, and how it differs.
+        difference: String,
+        /// The manifest that says so.
+        manifest: PathBuf,
+    },
     /// A study that has not all its runs.
     #[error("the study in {} lacks {runs} runs: finish it, or merge it with its other shards, and verify it then", path.display())]
     Unfinished {
@@ -73,6 +86,27 @@ pub fn verify(folder: &Path) -> Result<Verdict, VerifyError> {
 /// Whether a study has been run in the folder.
 pub fn is_study(folder: &Path) -> bool {
     study::is_study(folder) && folder.join(Records::FILE).exists()
+}
+
+/// Refuses files of a finished run that are not as they were written; without a manifest nothing is known of them.
+///
+/// # Errors
+/// When one differs, or the manifest is damaged.
+pub fn expect_as_written(folder: &Path, names: &[&str]) -> Result<(), VerifyError> {
+    let manifest = match Manifest::read(folder) {
+        Ok(manifest) => manifest,
+        Err(ManifestError::Missing { .. }) => return Ok(()),
+        Err(error) => return Err(error.into()),
+    };
+    let mut files = manifest.files;
+    files.retain(|file| names.contains(&file.name.as_str()));
+    match compare(&files, folder, "were written").into_iter().next() {
+        None => Ok(()),
+        Some(difference) => Err(VerifyError::Changed {
+            difference,
+            manifest: folder.join(MANIFEST),
+        }),
+    }
 }
 
 fn verify_run(folder: &Path) -> Result<Verdict, VerifyError> {
@@ -166,7 +200,7 @@ fn strangers(folder: &Path, known: &BTreeSet<&str>, folders: &[&str]) -> Vec<Str
     found.sort();
     let in_words = |name: String| {
         let path = folder.join(&name);
-        sentence(&if name.starts_with(UNFINISHED) {
+        sentence(&if is_of_interrupted_run(&name) {
             format!("{} was left by a run that was interrupted", path.display())
         } else {
             format!("{} is not slipfront's", path.display())

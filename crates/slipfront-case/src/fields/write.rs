@@ -14,6 +14,7 @@ use super::names::{
     TIME_STAR, TIME_UNIT, X, Y,
 };
 use super::{FieldName, FieldsError, FieldsFile, thin};
+use crate::folder::UNFINISHED;
 
 /// The largest variable (or record of one) that every reader of 64-bit offset files takes.
 const VARIABLE_MAX_BYTES: usize = i32::MAX as usize - 3;
@@ -119,7 +120,7 @@ fn write_beside(path: &Path, file: &FieldsFile) -> io::Result<()> {
         _ => Path::new("."),
     };
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".fields-").suffix(".nc");
+    builder.prefix(UNFINISHED);
     if let Some(permissions) = permissions_of_a_new_file() {
         builder.permissions(permissions);
     }

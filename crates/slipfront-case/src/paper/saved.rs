@@ -3,14 +3,16 @@
 //! A file holds a checksum and the figure's findings. One that is damaged, or that another program, other cases or
 //! other options made, counts as not there.
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::bench::StepRule;
 use super::error::PaperError;
 use super::files::FILES;
 use super::found::Found;
-use crate::folder::{FolderError, open_regular, write_whole};
+use crate::folder::{FolderError, read_whole, remove_unfinished, write_whole};
+
+/// A longer file holds something else: a figure's findings take some megabytes at the most.
+const MAX_BYTES: u64 = 1 << 28;
 
 /// Findings of earlier calls in one folder.
 #[derive(Debug)]
@@ -31,6 +33,8 @@ impl Saved {
             path: folder.clone(),
             source,
         })?;
+        // The records of the folder above are open, so that nobody else writes here.
+        remove_unfinished(&folder);
         let mut hasher = blake3::Hasher::new();
         // A program that was built anew may find something else, whatever its version says.
         if let Ok(program) = std::env::current_exe().and_then(std::fs::File::open) {
@@ -69,10 +73,7 @@ impl Saved {
 
     /// What a figure found in an earlier call.
     pub fn load(&self, figure: &str, step: StepRule) -> Option<Found> {
-        let mut bytes = Vec::new();
-        open_regular(&self.path(figure, step))
-            .and_then(|mut file| file.read_to_end(&mut bytes))
-            .ok()?;
+        let bytes = read_whole(&self.path(figure, step), MAX_BYTES).ok()?;
         let (checksum, findings) = bytes.split_at_checked(blake3::OUT_LEN)?;
         if self.checksum(findings).as_bytes() != checksum {
             return None;

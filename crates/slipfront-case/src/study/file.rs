@@ -184,7 +184,7 @@ impl StudyFile {
     /// The study with its base case inside and its files beside it, for the results folder.
     ///
     /// # Errors
-    /// When it is too odd for TOML.
+    /// When it is too odd for TOML, and when a file cannot be read.
     pub(super) fn portable(&self) -> Result<(String, Vec<Copy>), StudyError> {
         let mut table = toml::Table::new();
         let base: toml::Table = self.base.text.parse().map_err(|error: toml::de::Error| {
@@ -197,7 +197,7 @@ impl StudyFile {
                 .filter(|(key, _)| *key != "base")
                 .map(|(key, value)| (key.clone(), value.clone())),
         );
-        let copies = inputs::copy(&mut table, &self.base.folder);
+        let copies = inputs::copy(&mut table, &self.base.folder)?;
         Ok((toml::to_string(&table).map_err(CaseError::from)?, copies))
     }
 

@@ -8,7 +8,7 @@ use super::error::StudyError;
 use super::file::StudyFile;
 use super::inputs::Copy;
 use super::record::{RECORDS, Records};
-use crate::folder::{FolderError, TEXT_MAX_BYTES, UNFINISHED, read_whole, stage, write_whole};
+use crate::folder::{FolderError, TEXT_MAX_BYTES, open_bounded, read_whole, stage, write_whole};
 
 /// The study as a table with its base inside: what `slipfront study DIR/study.toml` repeats.
 const STUDY: &str = "study.toml";
@@ -50,7 +50,6 @@ impl StudyFolder {
             records,
             changed,
         };
-        folder.remove_unfinished();
         folder.copy(&copies)?;
         folder.write(STUDY, text.as_bytes())?;
         Ok(folder)
@@ -95,23 +94,14 @@ impl StudyFolder {
         Ok(())
     }
 
-    /// What a kill left of files that were being written: nobody else writes here while the records are open.
-    fn remove_unfinished(&self) {
-        self.remove(|name| name.starts_with(UNFINISHED));
-    }
-
-    /// Removes pictures of these quantities that the study no longer has.
+    /// Removes pictures of these quantities that the study no longer has; one that cannot be removed does no harm.
     pub(super) fn remove_other_pictures(&self, pictures: &HashSet<String>, quantities: &[&str]) {
-        self.remove(|name| {
+        let which = |name: &str| {
             let ours = quantities.iter().any(|quantity| name.starts_with(quantity));
             ours && (name.ends_with(".svg") || name.ends_with(".png")) && !pictures.contains(name)
-        });
-    }
-
-    /// Removes files of the folder; one that cannot be removed does no harm.
-    fn remove(&self, which: impl Fn(&str) -> bool) {
+        };
         for entry in std::fs::read_dir(&self.path).into_iter().flatten().flatten() {
-            if entry.file_name().to_str().is_some_and(&which) {
+            if entry.file_name().to_str().is_some_and(which) {
                 let _ = std::fs::remove_file(entry.path());
             }
         }
@@ -128,7 +118,13 @@ pub fn is_study(folder: &Path) -> bool {
 /// # Errors
 /// As for any study file.
 pub fn study_of(folder: &Path) -> Result<StudyFile, StudyError> {
-    let mut study = StudyFile::load(&folder.join(STUDY))?;
+    let path = folder.join(STUDY);
+    // A user may hand over a study through a pipe; in a folder of results it would be waited for.
+    open_bounded(&path, TEXT_MAX_BYTES).map_err(|source| FolderError::Read {
+        path: path.clone(),
+        source,
+    })?;
+    let mut study = StudyFile::load(&path)?;
     study.name = folder
         .file_name()
         .map_or(study.name, |name| name.to_string_lossy().into_owned());

@@ -1,9 +1,12 @@
 //! Files that the cases of a study read, copied so that a results folder can repeat the study on its own.
 
 use std::fs::File;
+use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
 
 use toml::{Table, Value};
+
+use crate::folder::FolderError;
 
 /// Keys of a case that name files.
 const FILE_KEYS: [&str; 3] = ["file", "mu_static_field", "mu_kinetic_field"];
@@ -48,18 +51,23 @@ pub(super) struct Copy {
 }
 
 /// Replaces the names of all files of a study, which stand relative to `folder`, by those of copies.
-pub(super) fn copy(study: &mut Table, folder: &Path) -> Vec<Copy> {
+///
+/// # Errors
+/// When a file is there and cannot be read.
+pub(super) fn copy(study: &mut Table, folder: &Path) -> Result<Vec<Copy>, FolderError> {
     let mut copies = Copies {
         folder,
         made: Vec::new(),
+        failed: None,
     };
     copies.visit_table(study);
-    copies.made
+    copies.failed.map_or(Ok(copies.made), Err)
 }
 
 struct Copies<'a> {
     folder: &'a Path,
     made: Vec<Copy>,
+    failed: Option<FolderError>,
 }
 
 impl Copies<'_> {
@@ -82,10 +90,16 @@ impl Copies<'_> {
     }
 
     fn replace(&mut self, name: &mut String) {
-        // Every point was valid, so that a file that is not there is one that no point reads.
         let original = self.folder.join(&*name);
-        let Ok(hash) = hash(&original) else {
-            return;
+        let hash = match hash(&original) {
+            Ok(Some(hash)) => hash,
+            // Every point was valid, so that a file that is not there is one that no point reads.
+            Ok(None) => return,
+            Err(source) => {
+                let path = original;
+                self.failed.get_or_insert(FolderError::Read { path, source });
+                return;
+            }
         };
         let plain = plain_name(name);
         let mut copy = format!("{FOLDER}/{plain}");
@@ -108,13 +122,19 @@ impl Copies<'_> {
     }
 }
 
-fn hash(path: &Path) -> std::io::Result<blake3::Hash> {
-    // A pipe would be waited for, and a device never ends.
-    if !std::fs::metadata(path)?.is_file() {
-        return Err(std::io::ErrorKind::InvalidInput.into());
+/// The hash of a regular file; none if there is no such file.
+fn hash(path: &Path) -> std::io::Result<Option<blake3::Hash>> {
+    match std::fs::metadata(path) {
+        Ok(metadata) if metadata.is_file() => {}
+        // A pipe would be waited for, and a device never ends.
+        Ok(_) => return Ok(None),
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            return Ok(None);
+        }
+        Err(error) => return Err(error),
     }
     let mut hasher = blake3::Hasher::new();
-    Ok(hasher.update_reader(File::open(path)?)?.finalize())
+    Ok(Some(hasher.update_reader(File::open(path)?)?.finalize()))
 }
 
 #[cfg(test)]
@@ -144,7 +164,7 @@ mod tests {
         let mut study: Table = "base.texture = [{ shape = 'mask', file = 'endless.png' }]"
             .parse()
             .unwrap();
-        assert!(copy(&mut study, folder.path()).is_empty());
+        assert!(copy(&mut study, folder.path()).unwrap().is_empty());
     }
 
     #[test]
@@ -164,7 +184,7 @@ mod tests {
                 { name = "shape", variants = { b = { texture = [{ shape = "mask", file = "b.png" }] } } },
             ]"#;
         let mut study: Table = text.parse().unwrap();
-        let copies = copy(&mut study, folder.path());
+        let copies = copy(&mut study, folder.path()).unwrap();
         let names: Vec<&str> = copies.iter().map(|copy| copy.name.as_str()).collect();
         assert_eq!(
             names,

@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
-use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::StudyError;
 use super::quantities::Numbers;
-use crate::folder::open_regular;
+use crate::folder::{open_bounded, remove_unfinished, sync_folder};
 use crate::summary::Summary;
 
 /// Name of the record file in a study folder.
@@ -106,8 +106,9 @@ impl Records {
             .create(true)
             .open(&path)
             .map_err(|source| cannot_open(&path, source))?;
-        // A device never ends, and a pipe waits for a writer.
-        if !file.metadata().is_ok_and(|file| file.is_file()) {
+        let metadata = file.metadata().map_err(|source| cannot_open(&path, source))?;
+        // A pipe would be waited for, and a device never ends.
+        if !metadata.is_file() {
             return Err(StudyError::NotRecords { path });
         }
         let locked = file.try_lock().map_err(|error| match error {
@@ -121,29 +122,25 @@ impl Records {
             Err(StudyError::Records { source, .. }) if source.kind() == ErrorKind::Unsupported => {}
             locked => locked?,
         }
-        let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes)
-            .map_err(|source| cannot_open(&path, source))?;
-        let (records, damaged) = parse(&bytes);
-        if damaged > 0 && bytes.contains(&b'\n') && !bytes.split(|&byte| byte == b'\n').any(looks_like_ours) {
+        // Nobody else writes in the folder from now on.
+        remove_unfinished(folder);
+        let lines = Lines::read(&mut file).map_err(|source| cannot_open(&path, source))?;
+        if lines.are_foreign() {
             return Err(StudyError::NotRecords { path });
         }
         // What a crash left of a line must not swallow the next one.
-        let whole = bytes
-            .iter()
-            .rposition(|&byte| byte == b'\n')
-            .map_or(0, |end| end + 1);
-        if whole < bytes.len() {
-            file.set_len(whole as u64)
+        if lines.whole_bytes < lines.bytes {
+            file.set_len(lines.whole_bytes)
                 .map_err(|source| cannot_write(&path, source))?;
         }
         file.seek(SeekFrom::End(0))
             .map_err(|source| cannot_open(&path, source))?;
         // A new file is only safe from a power cut once its folder is.
-        if bytes.is_empty() {
+        if lines.bytes == 0 {
             sync_folder(folder).map_err(|source| cannot_write(&path, source))?;
         }
-        let findings = records
+        let findings = lines
+            .records
             .into_iter()
             .map(|record| (record.id, Arc::new(record.outcome.finding())))
             .collect();
@@ -151,7 +148,7 @@ impl Records {
             path,
             file,
             findings,
-            damaged,
+            damaged: lines.damaged,
         })
     }
 
@@ -212,28 +209,21 @@ impl Records {
     /// When they cannot be read or written.
     pub fn merge(&mut self, folder: &Path) -> Result<usize, StudyError> {
         let path = folder.join(RECORDS);
-        let mut bytes = Vec::new();
-        let read = open_regular(&path).and_then(|mut file| file.read_to_end(&mut bytes));
-        read.map_err(|source| StudyError::Records {
+        let read = open_bounded(&path, u64::MAX).and_then(|mut file| Lines::read(&mut file));
+        let lines = read.map_err(|source| StudyError::Records {
             action: "read",
             path: path.clone(),
             source,
         })?;
-        let (mut records, damaged) = parse(&bytes);
-        self.damaged += damaged;
+        if lines.are_foreign() {
+            return Err(StudyError::NotRecords { path });
+        }
+        self.damaged += lines.damaged;
+        let mut records = lines.records;
         records.retain(|record| !self.findings.contains_key(&record.id));
         self.append(&records)?;
         Ok(records.len())
     }
-}
-
-/// Forces the names in a folder to the disk.
-fn sync_folder(folder: &Path) -> std::io::Result<()> {
-    // Only Unix opens folders as files.
-    if cfg!(unix) {
-        File::open(folder)?.sync_all()?;
-    }
-    Ok(())
 }
 
 fn to_line(record: &Record) -> Vec<u8> {
@@ -242,17 +232,63 @@ fn to_line(record: &Record) -> Vec<u8> {
     format!("{} {json}\n", checksum(json.as_bytes())).into_bytes()
 }
 
-/// The whole lines of a record file, and how many were not.
-fn parse(bytes: &[u8]) -> (Vec<Record>, usize) {
-    let mut records = Vec::new();
-    let mut damaged = 0;
-    for line in bytes.split(|&byte| byte == b'\n').filter(|line| !line.is_empty()) {
+/// The longest line of a record file: hundreds of times what a run takes.
+const LINE_MAX_BYTES: u64 = 1 << 20;
+
+/// What a record file holds.
+#[derive(Default)]
+struct Lines {
+    records: Vec<Record>,
+    /// Lines that fail their checksum.
+    damaged: usize,
+    /// Whether a line is a record or may once have been one.
+    ours: bool,
+    /// Whether a line is longer than any record.
+    too_long: bool,
+    bytes: u64,
+    /// The same up to the last line break.
+    whole_bytes: u64,
+}
+
+impl Lines {
+    /// Reads line by line: a file of any length takes no more memory than its records.
+    fn read(file: &mut impl Read) -> std::io::Result<Self> {
+        let mut file = BufReader::new(file);
+        let mut lines = Self::default();
+        let mut line = Vec::new();
+        while !lines.too_long {
+            line.clear();
+            let read = file.by_ref().take(LINE_MAX_BYTES).read_until(b'\n', &mut line)? as u64;
+            if read == 0 {
+                break;
+            }
+            lines.bytes += read;
+            if line.last() == Some(&b'\n') {
+                lines.whole_bytes = lines.bytes;
+                line.pop();
+            } else {
+                lines.too_long = read == LINE_MAX_BYTES;
+            }
+            lines.take(&line);
+        }
+        Ok(lines)
+    }
+
+    fn take(&mut self, line: &[u8]) {
+        if line.is_empty() {
+            return;
+        }
+        self.ours |= looks_like_ours(line);
         match parse_line(line) {
-            Some(record) => records.push(record),
-            None => damaged += 1,
+            Some(record) => self.records.push(record),
+            None => self.damaged += 1,
         }
     }
-    (records, damaged)
+
+    /// Whether this is no record file, not even a damaged one.
+    fn are_foreign(&self) -> bool {
+        self.too_long || (self.damaged > 0 && self.whole_bytes > 0 && !self.ours)
+    }
 }
 
 fn parse_line(line: &[u8]) -> Option<Record> {
@@ -324,10 +360,10 @@ mod tests {
         for bit in 0..8 {
             let mut damaged = lines.clone();
             damaged[middle] ^= 1 << bit;
-            let (records, spoilt) = parse(&damaged);
-            let ids: Vec<&str> = records.iter().map(|record| record.id.as_str()).collect();
+            let lines = Lines::read(&mut damaged.as_slice()).unwrap();
+            let ids: Vec<&str> = lines.records.iter().map(|record| record.id.as_str()).collect();
             assert_eq!(ids, ["a", "c"]);
-            assert!(spoilt >= 1);
+            assert!(lines.damaged >= 1);
         }
     }
 

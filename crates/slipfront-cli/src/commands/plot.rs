@@ -6,6 +6,7 @@ use clap::Args;
 use slipfront_case::folder::write_whole;
 use slipfront_case::pictures::Picture;
 use slipfront_case::results;
+use slipfront_case::verify::expect_as_written;
 
 use super::print;
 use crate::failure::Failure;
@@ -26,6 +27,9 @@ pub(crate) struct Plot {
 
 impl Plot {
     pub(crate) fn execute(self) -> Result<(), Failure> {
+        for folder in &self.folders {
+            expect_as_written(folder, &results::DRAWN_FROM).map_err(Failure::input)?;
+        }
         let (out, drawn) = match self.folders.as_slice() {
             [folder] => (folder.clone(), results::draw(folder).map_err(Failure::input)?),
             folders => {

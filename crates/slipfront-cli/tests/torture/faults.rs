@@ -1,0 +1,356 @@
+//! Every file-system call that a command makes fails in turn.
+
+use std::process::Command;
+use std::sync::OnceLock;
+
+use crate::bench::{Bench, Ended, Files};
+use crate::jobs::{JOBS, Job, bench, expect_all, undisturbed};
+use crate::tally::{Chance, Tally, cases, long};
+
+/// The watcher, compiled with the C compiler that Rust links with; none where it does not work.
+fn watcher() -> Option<&'static str> {
+    static WATCHER: OnceLock<Option<String>> = OnceLock::new();
+    let make = || {
+        let path = format!("{}/faults-{}", env!("CARGO_TARGET_TMPDIR"), std::process::id());
+        let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/torture/faults.c");
+        let compiled = Command::new("cc")
+            .args(["-O2", "-Wall", "-Wextra", "-Werror", "-o", &path, source])
+            .status();
+        let works = compiled.is_ok_and(|status| status.success())
+            && Command::new(&path)
+                .args(["/nowhere", "EIO", "0", "0", "/dev/null", "true"])
+                .status()
+                .is_ok_and(|status| status.success());
+        if !works {
+            eprintln!(
+                "SKIPPED: no C compiler, or no right to watch a process: no file-system call fails in these tests"
+            );
+        }
+        works.then_some(path)
+    };
+    WATCHER.get_or_init(make).as_deref()
+}
+
+/// A call that a command makes.
+#[derive(Clone, Debug)]
+struct Call {
+    number: usize,
+    name: String,
+    path: String,
+}
+
+/// What becomes of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Fault {
+    action: &'static str,
+    /// And of all that follow.
+    lasts: bool,
+}
+
+const FAULTS: [Fault; 9] = [
+    once("EIO"),
+    once("ENOSPC"),
+    once("EACCES"),
+    once("EINTR"),
+    once("short"),
+    once("kill"),
+    once("torn"),
+    from_then_on("ENOSPC"),
+    from_then_on("EIO"),
+];
+
+const fn once(action: &'static str) -> Fault {
+    Fault { action, lasts: false }
+}
+
+const fn from_then_on(action: &'static str) -> Fault {
+    Fault { action, lasts: true }
+}
+
+impl Fault {
+    fn kills(self) -> bool {
+        ["kill", "torn"].contains(&self.action)
+    }
+
+    /// Whether a call can meet with it on a real system.
+    fn can_hit(self, call: &Call) -> bool {
+        let name = call.name.as_str();
+        match self.action {
+            "ENOSPC" => [
+                "openat",
+                "open",
+                "mkdir",
+                "mkdirat",
+                "write",
+                "pwrite64",
+                "writev",
+                "fsync",
+                "fdatasync",
+                "rename",
+                "renameat",
+                "renameat2",
+                "link",
+                "linkat",
+                "ftruncate",
+                "fallocate",
+                "copy_file_range",
+                "close",
+            ]
+            .contains(&name),
+            "EACCES" => !["read", "write", "pwrite64", "fsync", "fdatasync", "close"].contains(&name),
+            "EINTR" => [
+                "open",
+                "openat",
+                "read",
+                "write",
+                "pwrite64",
+                "fsync",
+                "fdatasync",
+                "flock",
+            ]
+            .contains(&name),
+            "short" => ["read", "write", "pread64", "pwrite64"].contains(&name),
+            "torn" => ["write", "pwrite64"].contains(&name),
+            _ => true,
+        }
+    }
+}
+
+/// What came of a line with a fault.
+struct Hit {
+    /// How it ended; nothing if it was killed.
+    ended: Result<Option<Ended>, String>,
+    /// The first call that was spoilt.
+    call: Option<Call>,
+    calls: Vec<Call>,
+}
+
+/// Runs a line with a fault from the call of this number on.
+fn hit(bench: &Bench, line: &str, fault: Fault, number: usize) -> Hit {
+    let log = bench.beside("calls");
+    let (from, to) = (
+        number.to_string(),
+        if fault.lasts { 0 } else { number }.to_string(),
+    );
+    let (work, log_path) = (bench.path(""), log.display().to_string());
+    let work = work.to_str().unwrap().trim_end_matches('/');
+    let watcher = [watcher().unwrap(), work, fault.action, &from, &to, &log_path];
+    let ended = bench.run_under(&watcher, line);
+    let (mut call, mut calls) = (None, Vec::new());
+    for line in std::fs::read_to_string(&log).unwrap_or_default().lines() {
+        let mut words = line.trim_start_matches('*').splitn(3, ' ');
+        let mut word = || words.next().unwrap_or_default().to_owned();
+        let made = Call {
+            number: word().parse().unwrap_or_default(),
+            name: word(),
+            path: word(),
+        };
+        if line.starts_with('*') && call.is_none() {
+            call = Some(made.clone());
+        }
+        calls.push(made);
+    }
+    Hit { ended, call, calls }
+}
+
+/// Says what came of a fault at a call, or what is wrong with it.
+type Judge<'a> = dyn Fn(Fault, Option<Ended>, &Call) -> Result<&'static str, String> + 'a;
+
+/// The words of an error of the system.
+fn cause(action: &str) -> &'static str {
+    match action {
+        "EIO" => "Input/output error",
+        "ENOSPC" => "No space left on device",
+        "EACCES" => "Permission denied",
+        _ => "Interrupted system call",
+    }
+}
+
+/// Whether a sentence names a file: its name, or for one without a name yet its folder.
+fn names(said: &str, path: &str) -> bool {
+    let mut parts = path.rsplit('/').filter(|part| !part.starts_with('.'));
+    parts.next().is_none_or(|part| said.contains(part))
+}
+
+/// Every fault at every call of a line, or a sample of them; `judge` says what came of one.
+fn every_fault(
+    tally: &mut Tally,
+    bench: &Bench,
+    kind: &str,
+    line: &str,
+    short: usize,
+    judge: &Judge,
+    prepare: &dyn Fn(),
+) {
+    prepare();
+    let Hit { ended, calls, .. } = hit(bench, line, once("EIO"), 0);
+    ended.unwrap();
+    assert!(
+        calls.len() > 10,
+        "only {} calls of `{line}` were seen",
+        calls.len()
+    );
+    let mut tried = Vec::new();
+    for fault in FAULTS {
+        tried.extend(
+            calls
+                .iter()
+                .filter(|call| fault.can_hit(call))
+                .map(|call| (fault, call.number)),
+        );
+    }
+    let tried = Chance::new().some(tried, cases(short, usize::MAX));
+    for (fault, number) in tried {
+        prepare();
+        let Hit { ended, call, .. } = hit(bench, line, fault, number);
+        let Some(call) = call else {
+            tally.note(kind, "", Ok("had ended before"));
+            continue;
+        };
+        let case = format!("{fault:?} at call {number}, {} of {}", call.name, call.path);
+        let ended = ended.and_then(|ended| judge(fault, ended, &call));
+        if long()
+            && let Err(finding) = &ended
+        {
+            eprintln!("FOUND {kind}, {case}: {finding}");
+        }
+        tally.note(kind, &case, ended);
+    }
+}
+
+/// A command that failed must name a file and the cause.
+fn expect_sentence(said: &str, fault: Fault, call: &Call) -> Result<(), String> {
+    // Of a folder that is there, but cannot be looked at, the standard library says that it exists.
+    let causes = [cause(fault.action), "File exists"];
+    if fault.lasts || (causes.iter().any(|cause| said.contains(cause)) && names(said, &call.path)) {
+        return Ok(());
+    }
+    Err(format!("the sentence does not name both file and cause: {said}"))
+}
+
+fn torture(job: &Job, short: usize) {
+    if watcher().is_none() {
+        return;
+    }
+    let bench = bench();
+    let mut tally = Tally::new("faults");
+    let whole: Files = undisturbed(&bench, job);
+    let judge = |fault: Fault, ended: Option<Ended>, call: &Call| {
+        let outcome = match &ended {
+            None if fault.kills() => "killed",
+            None => return Err("it was killed".to_owned()),
+            Some(ended) if ended.status == 0 => {
+                expect_all(&bench.files("out"), &whole)?;
+                "harmless"
+            }
+            Some(ended) => {
+                expect_sentence(&ended.said, fault, call)?;
+                "refused"
+            }
+        };
+        job.expect_honest(&bench, &whole)?;
+        job.finish(&bench, &whole)?;
+        Ok(outcome)
+    };
+    let prepare = || {
+        bench.remove("out");
+        bench.remove("temporary");
+        std::fs::create_dir(bench.path("temporary")).unwrap();
+    };
+    every_fault(&mut tally, &bench, job.name, job.line, short, &judge, &prepare);
+    tally.close();
+}
+
+#[test]
+fn of_a_run() {
+    torture(&JOBS[0], 14);
+}
+
+#[test]
+fn of_a_study() {
+    torture(&JOBS[1], 14);
+}
+
+#[test]
+fn of_a_paper() {
+    torture(&JOBS[2], 8);
+}
+
+/// What only reads: its answer is the right one, or there is none.
+#[test]
+fn of_those_who_read() {
+    if watcher().is_none() {
+        return;
+    }
+    let bench = bench();
+    let mut tally = Tally::new("faults");
+    bench.done(JOBS[0].line).unwrap();
+    bench.copy("out", "damaged");
+    let mut series = bench.read("out/series.csv");
+    let middle = series.len() / 2;
+    series[middle] ^= 1;
+    bench.write("damaged/series.csv", series);
+    bench.done("study study.toml --quiet -o study").unwrap();
+    let pictures = |folder: &str| {
+        let mut files = bench.files(folder);
+        files.retain(|name, _| !name.contains('/') && (name.ends_with("svg") || name.ends_with("png")));
+        files
+    };
+    let drawn = pictures("out");
+    for (line, status) in [("verify out", 0), ("verify study", 0), ("verify damaged", 1)] {
+        let judge = |fault: Fault, ended: Option<Ended>, _: &Call| match ended {
+            None if fault.kills() => Ok("killed"),
+            Some(ended) if ended.status == status => Ok("harmless"),
+            Some(ended) if ended.status != 0 => Ok("refused"),
+            ended => Err(format!("{ended:?}")),
+        };
+        let prepare = || {
+            bench.remove("temporary");
+            std::fs::create_dir(bench.path("temporary")).unwrap();
+        };
+        every_fault(&mut tally, &bench, line, line, 30, &judge, &prepare);
+    }
+    let judge = |fault: Fault, ended: Option<Ended>, call: &Call| {
+        let now = pictures("drawn");
+        let wrong = now
+            .iter()
+            .find(|(name, bytes)| !name.starts_with('.') && drawn.get(*name) != Some(bytes));
+        if let Some((name, _)) = wrong {
+            return Err(format!("{name} is wrong"));
+        }
+        match ended {
+            None if fault.kills() => Ok("killed"),
+            Some(ended)
+                if ended.status == 0 && now.keys().filter(|name| !name.starts_with('.')).eq(drawn.keys()) =>
+            {
+                Ok("harmless")
+            }
+            Some(ended) if ended.status != 0 => expect_sentence(&ended.said, fault, call).map(|()| "refused"),
+            ended => Err(format!("{ended:?}")),
+        }
+    };
+    every_fault(
+        &mut tally,
+        &bench,
+        "plot",
+        "plot out -o drawn",
+        6,
+        &judge,
+        &|| bench.remove("drawn"),
+    );
+    tally.close();
+}
+
+/// The calls of the program are seen however they are made: this one renames without libc.
+#[test]
+fn renames_are_seen() {
+    if watcher().is_none() {
+        return;
+    }
+    let bench = bench();
+    let Hit { ended, calls, .. } = hit(&bench, JOBS[0].line, once("EIO"), 0);
+    assert_eq!(ended.unwrap().unwrap().status, 0);
+    let count = |start: &str| calls.iter().filter(|call| call.name.starts_with(start)).count();
+    let files = bench.files("out").len();
+    assert_eq!((count("rename"), count("fsync")), (files, files));
+}

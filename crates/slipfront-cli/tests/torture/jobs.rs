@@ -1,0 +1,246 @@
+//! Commands that write folders: what they are given, how they go on, and what their folders must hold.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use crate::bench::{Bench, Files};
+
+/// A command that writes the folder `out`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Job {
+    pub(crate) name: &'static str,
+    /// The first time.
+    pub(crate) line: &'static str,
+    /// After it was stopped in any way.
+    pub(crate) again: &'static str,
+    /// Whether `slipfront verify` knows such folders.
+    pub(crate) verified: bool,
+}
+
+/// Every one that there is.
+pub(crate) const JOBS: [Job; 3] = [
+    Job {
+        name: "run",
+        line: "run case.toml --quiet --threads 1 -o out",
+        again: "run case.toml --quiet --threads 1 -o out --force",
+        verified: true,
+    },
+    Job {
+        name: "study",
+        line: "study study.toml --quiet --threads 1 -o out",
+        again: "study study.toml --quiet --threads 1 -o out",
+        verified: true,
+    },
+    Job {
+        name: "paper",
+        line: "paper fig02 fig13 --reduced --quiet --threads 1 -o out",
+        again: "paper fig02 fig13 --reduced --quiet --threads 1 -o out",
+        verified: false,
+    },
+];
+
+/// A case that reads every kind of file that there is.
+const CASE: &str = r#"# A small and quick one.
+[slider]
+blocks = [6, 5]
+[drive]
+v_star = 0.1
+[friction]
+mu_static_field = "mu_s.csv"
+mu_kinetic_field = "mu_k.npy"
+[[texture]]
+shape = "mask"
+file = "mask.png"
+[[texture]]
+shape = "mask"
+file = "mask.npy"
+[time]
+duration_star = 60
+[output]
+snapshots = [30, 50]
+series = 1
+"#;
+
+const STUDY: &str = r#"# Two points, three surfaces of each.
+[base.slider]
+blocks = [4, 4]
+[base.time]
+duration_star = 40
+[base.output]
+snapshots = []
+series = 1
+[[base.texture]]
+shape = "mask"
+file = "dot.npy"
+[study]
+replicates = 3
+[[axes]]
+key = "drive.v_star"
+list = [0.1, 0.2]
+"#;
+
+/// Of this one the run folders are kept.
+const KEPT: &str = r#"
+[study]
+keep = "all"
+[[axes]]
+key = "drive.v_star"
+list = [0.2]
+[base]
+slider = { blocks = [3, 3] }
+time = { duration_star = 20 }
+output = { snapshots = [], series = 1 }
+"#;
+
+/// An array of numpy, `ny` rows of `nx` values of a type such as `|b1`.
+fn npy(kind: &str, nx: usize, ny: usize, data: &[u8]) -> Vec<u8> {
+    let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({ny}, {nx}), }}");
+    let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    bytes.extend(format!("{header:<117}\n").into_bytes());
+    bytes.extend(data);
+    bytes
+}
+
+/// A bench with all that the jobs read.
+pub(crate) fn bench() -> Bench {
+    let bench = Bench::new();
+    let numbers: Vec<u8> = (0..30)
+        .flat_map(|k| (0.4 + 0.01 * f64::from(k % 7)).to_le_bytes())
+        .collect();
+    bench.write("mu_k.npy", npy("<f8", 6, 5, &numbers));
+    bench.write("mu_s.csv", "1.0, 0.9, 1.1, 0.95, 1.05, 1.0\n".repeat(5));
+    bench.write(
+        "mask.npy",
+        npy(
+            "|b1",
+            6,
+            5,
+            &std::array::from_fn::<u8, 30, _>(|k| u8::from(k == 3)),
+        ),
+    );
+    bench.write(
+        "dot.npy",
+        npy(
+            "|b1",
+            4,
+            4,
+            &std::array::from_fn::<u8, 16, _>(|k| u8::from(k == 5)),
+        ),
+    );
+    bench.write(
+        "spot.toml",
+        "[slider]\nblocks = [6, 5]\n[[texture]]\nshape = 'cavity'\ncoverage = 15\n",
+    );
+    bench.done("texture spot.toml -o mask.png").unwrap();
+    bench.write("case.toml", CASE);
+    bench.write("study.toml", STUDY);
+    bench.write("kept.toml", KEPT);
+    bench
+}
+
+/// The folder `out` of a job that nothing disturbs, which is then removed.
+pub(crate) fn undisturbed(bench: &Bench, job: &Job) -> Files {
+    bench.done(job.line).unwrap();
+    let whole = bench.files("out");
+    bench.remove("out");
+    whole
+}
+
+/// Names of files that are being written.
+fn unfinished(name: &str) -> bool {
+    name.rsplit('/').next().is_some_and(|name| name.starts_with('.'))
+}
+
+/// What the disk holds of a run that is not the same each time: when it was made.
+fn told_by_time(name: &str) -> bool {
+    name.ends_with("manifest.json") || name == "records.jsonl"
+}
+
+/// Outcomes of recorded runs by their identities. A run that is recorded twice or not whole is a finding.
+fn records(bytes: &[u8]) -> Result<BTreeMap<String, Value>, String> {
+    let mut found = BTreeMap::new();
+    for line in String::from_utf8_lossy(bytes).lines() {
+        let record = line
+            .get(17..)
+            .and_then(|json| serde_json::from_str::<Value>(json).ok());
+        let record = record.ok_or_else(|| format!("records.jsonl has the line {line}"))?;
+        let id = record["id"].as_str().unwrap_or_default().to_owned();
+        if found.insert(id, record["outcome"].clone()).is_some() {
+            return Err("a run is recorded twice".to_owned());
+        }
+    }
+    Ok(found)
+}
+
+/// Demands that a folder holds nothing but files as they should be, some of which may be missing.
+pub(crate) fn expect_sound(now: &Files, whole: &Files) -> Result<(), String> {
+    for (name, bytes) in now {
+        if unfinished(name) || told_by_time(name) {
+            continue;
+        }
+        match whole.get(name) {
+            Some(whole) if whole == bytes => {}
+            Some(_) => return Err(format!("{name} is wrong")),
+            None => return Err(format!("{name} should not be there")),
+        }
+    }
+    // The manifest promises that the rest is there.
+    for manifest in now.keys().filter(|name| name.ends_with("manifest.json")) {
+        let folder = manifest.trim_end_matches("manifest.json");
+        let missing = whole
+            .keys()
+            .find(|name| name.starts_with(folder) && !now.contains_key(*name));
+        if let Some(missing) = missing {
+            return Err(format!("{manifest} is there, and {missing} is not"));
+        }
+    }
+    Ok(())
+}
+
+/// Demands that a folder holds exactly what it should.
+pub(crate) fn expect_complete(now: &Files, whole: &Files) -> Result<(), String> {
+    if let Some(left) = now.keys().find(|name| unfinished(name)) {
+        return Err(format!("{left} is left behind"));
+    }
+    expect_all(now, whole)
+}
+
+/// The same, beside which something half written may be left.
+pub(crate) fn expect_all(now: &Files, whole: &Files) -> Result<(), String> {
+    if let Some(missing) = whole.keys().find(|name| !now.contains_key(*name)) {
+        return Err(format!("{missing} is missing"));
+    }
+    expect_sound(now, whole)?;
+    if let (Some(now), Some(whole)) = (now.get("records.jsonl"), whole.get("records.jsonl"))
+        && records(now)? != records(whole)?
+    {
+        return Err("other runs are recorded".to_owned());
+    }
+    Ok(())
+}
+
+impl Job {
+    /// Lets the job go on to its end, and demands the right answer.
+    pub(crate) fn finish(&self, bench: &Bench, whole: &Files) -> Result<(), String> {
+        bench.done(self.again)?;
+        expect_complete(&bench.files("out"), whole)?;
+        if self.verified {
+            let ended = bench.done("verify out")?;
+            if ended.printed.contains("note: ") {
+                return Err(format!("verify finds more: {}", ended.printed));
+            }
+        }
+        Ok(())
+    }
+
+    /// Demands that what stands in the folder is right so far, and that it does not look complete unless it is.
+    pub(crate) fn expect_honest(&self, bench: &Bench, whole: &Files) -> Result<(), String> {
+        let now = bench.files("out");
+        expect_sound(&now, whole)?;
+        if self.verified && bench.path("out").exists() && bench.run("verify out")?.status == 0 {
+            expect_all(&now, whole)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,22 @@
+//! Torture: the command is killed, its file-system calls fail, and what it reads is damaged. It must never give a wrong
+//! answer that looks right, never panic, never hang and never take memory without bound.
+//!
+//! `cargo test` takes a sample of the cases. All of them, with the numbers of cases tried:
+//!
+//! ```console
+//! $ SLIPFRONT_TORTURE=long cargo test --release -p slipfront-cli --test torture -- --nocapture
+//! ```
+//!
+//! The random choices follow from a seed, `SLIPFRONT_TORTURE_SEED`, which every failure names.
+
+#![cfg(unix)]
+// Helpers of tests are not tests by themselves to clippy.
+#![allow(clippy::unwrap_used)]
+
+mod bench;
+mod damage;
+#[cfg(target_os = "linux")]
+mod faults;
+mod jobs;
+mod kills;
+mod tally;

@@ -1,0 +1,92 @@
+//! How much is tried, by what seed, and what came of it.
+
+use std::collections::BTreeMap;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+/// Findings that are shown of one test.
+const SHOWN: usize = 40;
+
+/// Whether all cases are asked for.
+pub(crate) fn long() -> bool {
+    std::env::var("SLIPFRONT_TORTURE").is_ok_and(|form| form == "long")
+}
+
+/// How many cases to try in the short form and in the long one.
+pub(crate) fn cases(short: usize, all: usize) -> usize {
+    if long() { all } else { short }
+}
+
+fn seed() -> u64 {
+    let given = std::env::var("SLIPFRONT_TORTURE_SEED").ok();
+    given.map_or(1, |seed| seed.parse().unwrap())
+}
+
+/// Random choices of a test.
+pub(crate) struct Chance(ChaCha8Rng);
+
+impl Chance {
+    pub(crate) fn new() -> Self {
+        Self(ChaCha8Rng::seed_from_u64(seed()))
+    }
+
+    /// A whole number below `bound`.
+    pub(crate) fn below(&mut self, bound: usize) -> usize {
+        // The bias is far below what any test could see.
+        (self.0.next_u64() % bound.max(1) as u64) as usize
+    }
+
+    /// At most `count` of these, in their order.
+    pub(crate) fn some<T>(&mut self, mut of: Vec<T>, count: usize) -> Vec<T> {
+        while of.len() > count {
+            let gone = self.below(of.len());
+            of.remove(gone);
+        }
+        of
+    }
+}
+
+/// What came of the cases of a test.
+pub(crate) struct Tally {
+    what: &'static str,
+    outcomes: BTreeMap<String, usize>,
+    findings: Vec<String>,
+}
+
+impl Tally {
+    pub(crate) fn new(what: &'static str) -> Self {
+        Self {
+            what,
+            outcomes: BTreeMap::new(),
+            findings: Vec::new(),
+        }
+    }
+
+    /// Notes a case of some kind: how it ended well, or what is wrong with it.
+    pub(crate) fn note(&mut self, kind: &str, case: &str, ended: Result<&str, String>) {
+        let ended = ended.unwrap_or_else(|finding| {
+            self.findings.push(format!("{kind}, {case}: {finding}"));
+            "FOUND"
+        });
+        *self.outcomes.entry(format!("{kind}: {ended}")).or_default() += 1;
+    }
+
+    /// Says how many cases there were, and fails if there is a finding.
+    pub(crate) fn close(self) {
+        let all: usize = self.outcomes.values().sum();
+        let mut text = format!("{}: {all} cases\n", self.what);
+        for (outcome, count) in &self.outcomes {
+            text += &format!("{count:>8}  {outcome}\n");
+        }
+        eprint!("{text}");
+        let findings = self.findings.len();
+        let shown: Vec<String> = self.findings.into_iter().take(SHOWN).collect();
+        assert!(
+            findings == 0,
+            "{text}{findings} findings with SLIPFRONT_TORTURE_SEED={}:\n{}",
+            seed(),
+            shown.join("\n")
+        );
+    }
+}
