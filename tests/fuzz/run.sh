@@ -3,13 +3,14 @@
 #
 # Needs a C++ compiler, and no nightly Rust: the coverage that libFuzzer steers by is a pass of the stable compiler.
 # What it finds stands in target/fuzz/artifacts/TARGET; what it has learned, in target/fuzz/corpus/TARGET, is gone on
-# from. A line for every slice is added to target/fuzz/log.csv. JOBS=2 runs two slices at a time.
+# from. A line for every slice is added to target/fuzz/log.csv. JOBS=2 runs two slices at a time, SLICE is the longest.
+# 0 seconds build everything and run nothing.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 wanted="${1:-60}"
 shift || true
-slice=240
+slice="${SLICE:-240}"
 jobs="${JOBS:-1}"
 out=target/fuzz
 mkdir -p "$out"
@@ -37,6 +38,8 @@ else
     TMPDIR="$(mktemp --directory)"
 fi
 export TMPDIR
+cpu_times="$TMPDIR/cpu"
+mkdir "$cpu_times"
 trap 'rm -rf "$TMPDIR" "$fuzz"' EXIT
 
 log="$out/log.csv"
@@ -46,16 +49,16 @@ log="$out/log.csv"
 run_slice() {
     local name="$1" seconds="$2" longest dictionary said status=0 cpu
     read -r _ longest dictionary < <(grep "^$name " "$out/targets")
-    mkdir -p "$out/corpus/$name" "$out/artifacts/$name" "$out/cpu"
+    mkdir -p "$out/corpus/$name" "$out/artifacts/$name"
     said="$out/last-$name.txt"
     local options=(-max_total_time="$seconds" -max_len="$longest" -timeout=20 -rss_limit_mb=2048 -print_final_stats=1
         -artifact_prefix="$out/artifacts/$name/")
     [ "$dictionary" = - ] || options+=(-dict="tests/fuzz/dictionaries/$dictionary")
     TIMEFORMAT='%U %S'
     { time SLIPFRONT_FUZZ="$name" "$fuzz" "${options[@]}" "$out/corpus/$name" "$out/seeds/$name" > "$said" 2>&1; } \
-        2> "$out/cpu/$name-time" || status=$?
-    cpu="$(awk '{ printf "%.0f", $1 + $2 }' "$out/cpu/$name-time")"
-    echo "$cpu" >> "$out/cpu/$name-$$"
+        2> "$cpu_times/$name-time" || status=$?
+    cpu="$(awk '{ printf "%.0f", $1 + $2 }' "$cpu_times/$name-time")"
+    echo "$cpu" >> "$cpu_times/$name"
     local stat finding=
     stat() { sed -n "s/^stat::$1: *//p" "$said" | tail -n 1; }
     [ "$status" -eq 0 ] || finding="$(sed -n 's/.*Test unit written to //p' "$said" | tail -n 1)"
@@ -72,12 +75,12 @@ run_slice() {
 }
 
 # Whoever had the least time goes next, until all have had theirs; what has failed is not tried again.
-spent() { touch "$out/cpu/$1-$$" && awk '{ sum += $1 } END { printf "%.0f", sum }' "$out/cpu/$1-$$"; }
+spent() { touch "$cpu_times/$1" && awk '{ sum += $1 } END { printf "%.0f", sum }' "$cpu_times/$1"; }
 next() {
     local name least= chosen=
     for name in "$@"; do
-        [ -e "$out/cpu/$name-busy" ] && continue
-        grep -q "^$name:" "$out/cpu/failed-$$" 2> /dev/null && continue
+        [ -e "$cpu_times/$name-busy" ] && continue
+        grep -q "^$name:" "$cpu_times/failed" 2> /dev/null && continue
         local had
         had="$(spent "$name")"
         [ "$had" -lt "$wanted" ] || continue
@@ -88,8 +91,6 @@ next() {
     done
     echo "$chosen $least"
 }
-mkdir -p "$out/cpu"
-rm -f "$out"/cpu/*
 while true; do
     read -r name had < <(next "$@")
     if [ -z "$name" ]; then
@@ -98,14 +99,14 @@ while true; do
         wait -n || true
         continue
     fi
-    touch "$out/cpu/$name-busy"
+    touch "$cpu_times/$name-busy"
     seconds=$((wanted - had < slice ? wanted - had : slice))
     {
-        run_slice "$name" "$seconds" | tee -a "$out/cpu/failed-$$"
-        rm "$out/cpu/$name-busy"
+        run_slice "$name" "$seconds" | tee -a "$cpu_times/failed"
+        rm "$cpu_times/$name-busy"
     } &
     while [ "$(jobs -rp | wc -l)" -ge "$jobs" ]; do
         wait -n || true
     done
 done
-[ ! -s "$out/cpu/failed-$$" ]
+[ ! -s "$cpu_times/failed" ]

@@ -71,6 +71,7 @@ replay! {
     mask_png
     records
     saved
+    checkpoint
     fields
     summary
     series

@@ -2,6 +2,7 @@
 
 mod arrays;
 mod case;
+mod checkpoint;
 mod fields;
 mod json;
 mod plot;
@@ -14,7 +15,7 @@ mod study;
 use crate::Target;
 
 /// Every target, in the order of a run from case file to picture.
-pub const TARGETS: [Target; 14] = [
+pub const TARGETS: [Target; 15] = [
     case::CASE_FILE,
     case::CASE,
     study::STUDY_FILE,
@@ -24,7 +25,7 @@ pub const TARGETS: [Target; 14] = [
     arrays::MASK_PNG,
     records::RECORDS,
     saved::SAVED,
-    // Here go checkpoints.
+    checkpoint::CHECKPOINTS,
     fields::FIELDS,
     json::SUMMARY,
     series::SERIES,
