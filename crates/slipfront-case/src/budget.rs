@@ -35,6 +35,8 @@ const SURFACE: f64 = FLAG + 2.0 * NUMBER;
 const FUSED: f64 = 7.0 * NUMBER + 2.0;
 /// The reference kernel: two vectors of state, eight of forces, two thresholds, a time.
 const REFERENCE: f64 = 23.0 * NUMBER + CONTACT;
+/// A block in a checkpoint: two vectors, a time.
+const SAVED: f64 = 5.0 * NUMBER;
 /// [`slipfront::observe::FirstSlip`].
 const FIRST_SLIP: f64 = NUMBER;
 
@@ -228,6 +230,14 @@ impl Budget {
         self.making().total()
     }
 
+    /// The same run when it goes on from a checkpoint, which is in memory until the kernel has taken it over.
+    pub(crate) fn resumed(self) -> Self {
+        Self {
+            kernel: self.kernel + SAVED,
+            ..self
+        }
+    }
+
     /// Room for the files of a run, in bytes.
     pub fn disk(&self) -> f64 {
         self.files().total()
@@ -236,6 +246,13 @@ impl Budget {
     /// The same for the snapshots alone.
     pub fn disk_of_snapshots(&self) -> f64 {
         self.files().snapshots
+    }
+
+    /// Room for checkpoints while the run goes on, in bytes: blocks, snapshots and rows as they stand in memory, in the
+    /// latest one, the one before it, and one that is being written.
+    pub fn disk_of_checkpoints(&self) -> f64 {
+        let rows = self.rows * size_of::<CurveRow>() as f64;
+        3.0 * (self.blocks * SAVED + self.snapshots() + rows + HISTORY)
     }
 
     fn files(&self) -> Bytes {
@@ -286,18 +303,30 @@ impl Budget {
         Err(Excess { key, sentence })
     }
 
-    /// Refuses a run whose files have no room in `folder`, which need not be there yet. `replaced` is what goes from
-    /// there before.
-    pub(crate) fn check_disk(&self, folder: &Path, replaced: u64) -> Result<(), Excess> {
+    /// Refuses a run whose files, and checkpoints if it saves any, have no room in `folder`, which need not be there yet.
+    /// `replaced` is what goes from there before.
+    pub(crate) fn check_disk(&self, folder: &Path, replaced: u64, checkpoints: bool) -> Result<(), Excess> {
         let Some(free) = free_disk(folder).map(|free| free + replaced as f64) else {
             return Ok(());
         };
-        if self.disk() <= free {
+        let beside = if checkpoints {
+            self.disk_of_checkpoints()
+        } else {
+            0.0
+        };
+        if self.disk() + beside <= free {
             return Ok(());
         }
         let (key, most, remedy) = self.most(&self.files());
+        let (beside, without) = if checkpoints {
+            let beside = format!(" and its checkpoints {}", shown(beside));
+            (beside, ", run without checkpoints (--checkpoint off)")
+        } else {
+            (String::new(), "")
+        };
         let sentence = format!(
-            "the files of this run take about {} ({most}) where {} are free in {}: {remedy}, or choose another folder",
+            "the files of this run take about {} ({most}){beside} where {} are free in {}: {remedy}{without}, or choose \
+             another folder",
             shown(self.disk()),
             shown(free),
             folder.display()

@@ -227,12 +227,21 @@ impl Case {
         })
     }
 
-    /// Refuses a run whose files have no room in `folder`, even when `replaced` bytes there have gone before.
+    /// Refuses a run whose files, and checkpoints if it saves any, have no room in `folder`, even when `replaced` bytes
+    /// there have gone before.
     ///
     /// # Errors
     /// With the figures, and which key to change.
-    pub fn check_disk(&self, folder: &Path, replaced: u64) -> Result<(), CaseError> {
-        within_budget(&self.file, self.budget.check_disk(folder, replaced))
+    pub fn check_disk(&self, folder: &Path, replaced: u64, checkpoints: bool) -> Result<(), CaseError> {
+        within_budget(&self.file, self.budget.check_disk(folder, replaced, checkpoints))
+    }
+
+    /// Refuses to go on from a checkpoint where there is no memory for that.
+    ///
+    /// # Errors
+    /// With the figures, and which key to change.
+    pub fn check_memory_resumed(&self) -> Result<(), CaseError> {
+        within_budget(&self.file, self.budget.resumed().check_memory(true))
     }
 
     /// Steps times blocks: what the run costs.

@@ -26,7 +26,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 pub use error::{CaseError, Invalid};
-pub(crate) use keys::{exclude_each_other, keys_of, unknown as unknown_key};
+pub(crate) use keys::{exclude_each_other, keys_of, partners_of, unknown as unknown_key};
 pub use motion::{Drive, DriveSpeed, Friction, KineticFriction, Law, Load};
 pub use output::{Output, Snapshots};
 pub use slider::{Damping, Edge, Slider};

@@ -2,7 +2,7 @@
 //!
 //! Files appear whole or not at all, and `manifest.json` comes last: where it stands, the run is complete.
 
-use std::fs::File;
+use std::fs::{File, TryLockError};
 use std::io::{ErrorKind, Read, Take, Write};
 use std::path::{Path, PathBuf};
 
@@ -11,15 +11,19 @@ use slipfront::Model;
 use tempfile::TempPath;
 use thiserror::Error;
 
+use crate::case::Case;
 use crate::case_file::CaseFile;
+use crate::checkpoint::{CHECKPOINT, Checkpoints, PREVIOUS};
 use crate::manifest::{MANIFEST, Manifest};
 
 /// The resolved case in its folder.
 const CASE: &str = "case.toml";
 
 /// Names that belong to slipfront in a run folder, besides its case and the copies in `inputs/`.
-const OWN_FILES: [&str; 8] = [
+const OWN_FILES: [&str; 10] = [
     MANIFEST,
+    CHECKPOINT,
+    PREVIOUS,
     "summary.json",
     "series.csv",
     "fields.nc",
@@ -41,6 +45,28 @@ pub enum FolderError {
         path.display()
     )]
     NotEmpty {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// There is a run in it that was interrupted.
+    #[error(
+        "the folder {0} holds a run that was interrupted: go on with it by `slipfront run --resume {0}`, choose another \
+         with --out, or begin again with --force",
+        path.display()
+    )]
+    Interrupted {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// There is no run in it to go on with.
+    #[error("{} holds no run to go on with: it has no case.toml", path.display())]
+    NoRun {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// Somebody else writes there.
+    #[error("another process is running in the folder {}: wait for it, or choose another folder", path.display())]
+    Busy {
         /// The folder.
         path: PathBuf,
     },
@@ -81,6 +107,8 @@ pub enum FolderError {
 pub struct RunFolder {
     path: PathBuf,
     written: Vec<String>,
+    /// Held as long as the run goes on.
+    _lock: Option<File>,
 }
 
 impl RunFolder {
@@ -95,23 +123,18 @@ impl RunFolder {
             source,
         };
         std::fs::create_dir_all(path).map_err(unwritable)?;
+        let lock = lock(path)?;
+        remove_unfinished(path);
         if !is_empty(path).map_err(unwritable)? {
             if !force {
-                return Err(FolderError::NotEmpty {
-                    path: path.to_owned(),
+                let path = path.to_owned();
+                return Err(if is_interrupted(&path) {
+                    FolderError::Interrupted { path }
+                } else {
+                    FolderError::NotEmpty { path }
                 });
             }
-            // The manifest goes first: from now on the folder does not look complete.
-            for name in own_files(path) {
-                match std::fs::remove_file(path.join(name)) {
-                    Err(error) if error.kind() != ErrorKind::NotFound => {
-                        return Err(unwritable(error));
-                    }
-                    _ => {}
-                }
-            }
-            // Gone if it held our inputs only; a foreign file keeps it.
-            std::fs::remove_dir(path.join("inputs")).ok();
+            remove_own(path)?;
         }
         // A folder that cannot be written should say so before the run, not after it.
         tempfile::Builder::new()
@@ -121,7 +144,47 @@ impl RunFolder {
         Ok(Self {
             path: path.to_owned(),
             written: Vec::new(),
+            _lock: lock,
         })
+    }
+
+    /// Takes over the folder of a run that has a case.
+    ///
+    /// # Errors
+    /// When there is no such run, or another process goes on with it.
+    pub fn reopen(path: &Path) -> Result<Self, FolderError> {
+        if !path.join(CASE).is_file() {
+            let path = path.to_owned();
+            return Err(FolderError::NoRun { path });
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            written: Vec::new(),
+            _lock: lock(path)?,
+        })
+    }
+
+    /// Removes what was written of the results of a run before it was interrupted: it is written again. The case, the
+    /// files that it reads and the checkpoints stay.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn clear_results(&mut self, case: &Case) -> Result<(), FolderError> {
+        let kept = [CHECKPOINT, PREVIOUS];
+        let results = OWN_FILES.into_iter().filter(|name| !kept.contains(name));
+        remove(&self.path, results.map(str::to_owned))?;
+        remove(&self.path, unfinished(&self.path, ""))?;
+        let inputs = case.inputs.iter().map(|input| input.name.clone());
+        self.written = [CASE.to_owned()].into_iter().chain(inputs).collect();
+        Ok(())
+    }
+
+    /// Removes all that was written of the run: there is nothing to go on with.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn discard(self) -> Result<(), FolderError> {
+        remove_own(&self.path)
     }
 
     /// Refuses foreign files that stand where `names` will be written: better now than after the run.
@@ -191,8 +254,36 @@ impl RunFolder {
         let (manifest, bytes) =
             Manifest::of(&self.path, &self.written, started, threads, model, seed)?.sealed();
         let path = self.path.join(MANIFEST);
-        write_whole(&path, &bytes).map_err(|source| FolderError::Write { path, source })?;
+        write_whole(&path, &bytes)
+            .and_then(|()| sync_folder(&self.path))
+            .map_err(|source| {
+                // What may not be on the disk is not complete.
+                let _ = std::fs::remove_file(&path);
+                FolderError::Write { path, source }
+            })?;
+        // The run is complete whether they can be removed or not.
+        let _ = Checkpoints::remove(&self.path);
         Ok(manifest)
+    }
+}
+
+/// Whether a folder holds a run that was begun, and neither completed nor removed.
+fn is_interrupted(path: &Path) -> bool {
+    path.join(CASE).exists() && !path.join(MANIFEST).exists()
+}
+
+/// Locks a folder for one process. Some file systems of clusters have no locks, and some systems none of folders: the run
+/// goes on without.
+fn lock(path: &Path) -> Result<Option<File>, FolderError> {
+    let Ok(folder) = File::open(path) else {
+        return Ok(None);
+    };
+    match folder.try_lock() {
+        Ok(()) => Ok(Some(folder)),
+        Err(TryLockError::WouldBlock) => Err(FolderError::Busy {
+            path: path.to_owned(),
+        }),
+        Err(TryLockError::Error(_)) => Ok(None),
     }
 }
 
@@ -262,6 +353,29 @@ pub(crate) fn remove_unfinished(folder: &Path) {
     }
 }
 
+/// Removes the files of an earlier run from this folder.
+fn remove_own(path: &Path) -> Result<(), FolderError> {
+    // The manifest goes first: from now on the folder does not look complete.
+    remove(path, own_files(path))?;
+    // Gone if it held our inputs only; a foreign file keeps it.
+    std::fs::remove_dir(path.join("inputs")).ok();
+    Ok(())
+}
+
+/// Removes these files from a folder, where they are.
+fn remove(folder: &Path, names: impl IntoIterator<Item = String>) -> Result<(), FolderError> {
+    for name in names {
+        match std::fs::remove_file(folder.join(name)) {
+            Err(source) if source.kind() != ErrorKind::NotFound => {
+                let path = folder.to_owned();
+                return Err(FolderError::Unwritable { path, source });
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
 /// Bytes of an earlier run in this folder, which [`RunFolder::prepare`] would remove with `force`.
 pub fn own_bytes(path: &Path) -> u64 {
     let length = |name| std::fs::symlink_metadata(path.join(name)).map_or(0, |file| file.len());
@@ -297,26 +411,37 @@ pub(crate) fn stage(
     Ok(file.into_temp_path())
 }
 
+/// Forces the names in a folder to the disk.
+pub(crate) fn sync_folder(folder: &Path) -> std::io::Result<()> {
+    // Only Unix opens folders as files.
+    if cfg!(unix) {
+        File::open(folder)?.sync_all()?;
+    }
+    Ok(())
+}
+
+/// Opens a file that is one: a pipe would be waited for, a device such as `/dev/zero` never ends.
+pub(crate) fn open_regular(path: &Path) -> std::io::Result<File> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(std::io::Error::other("it is not a regular file"));
+    }
+    File::open(path)
+}
+
 /// Opens a regular file that can have no more than `most` bytes if it is what it should be.
 ///
-/// A pipe would be waited for, a device such as `/dev/zero` never ends, and a file of many gigabytes in the place of
-/// a small one would take all memory before anyone looked at it.
+/// A file of many gigabytes in the place of a small one would take all memory before anyone looked at it.
 ///
 /// # Errors
 /// What the system says, and for a longer file or none.
 pub(crate) fn open_bounded(path: &Path, most: u64) -> std::io::Result<Take<File>> {
-    let metadata = std::fs::metadata(path)?;
-    if !metadata.is_file() {
-        return Err(std::io::Error::other("it is not a regular file"));
-    }
-    if metadata.len() > most {
-        let sentence = format!(
-            "it has {} bytes where at most {most} can be meant",
-            metadata.len()
-        );
+    let file = open_regular(path)?;
+    let length = file.metadata()?.len();
+    if length > most {
+        let sentence = format!("it has {length} bytes where at most {most} can be meant");
         return Err(std::io::Error::new(ErrorKind::FileTooLarge, sentence));
     }
-    Ok(File::open(path)?.take(most))
+    Ok(file.take(most))
 }
 
 /// Reads a regular file that can have no more than `most` bytes.

@@ -12,6 +12,7 @@ use slipfront::{Kernel, Model, simd_width};
 use thiserror::Error;
 
 use crate::folder::{FolderError, TEXT_MAX_BYTES, json, read_whole};
+use crate::legible::{self, shortened};
 
 /// Name of the manifest in its folder.
 pub const MANIFEST: &str = "manifest.json";
@@ -94,7 +95,10 @@ pub struct ManifestFile {
 #[derive(Debug, Error)]
 pub enum ManifestError {
     /// There is none.
-    #[error("{} holds no manifest.json: it is no run folder, or its run did not end", path.display())]
+    #[error(
+        "{0} holds no manifest.json: it is no run folder, or its run did not end; `slipfront run --resume {0}` goes on with it",
+        path.display()
+    )]
     Missing {
         /// The folder.
         path: PathBuf,
@@ -180,7 +184,7 @@ impl Manifest {
                 "it has no seal, by which changes of it are seen".to_owned()
             }
             Ok(_) => "its seal does not fit, so that it was changed after the run".to_owned(),
-            Err(error) => error.to_string(),
+            Err(error) => legible::sentence(&error.to_string()),
         };
         Err(ManifestError::Damaged { path, why })
     }
@@ -188,8 +192,8 @@ impl Manifest {
     /// The program that wrote it, in words.
     pub fn program(&self) -> String {
         match &self.revision {
-            Some(revision) => format!("slipfront {} ({revision})", self.version),
-            None => format!("slipfront {}", self.version),
+            Some(revision) => shortened(&format!("slipfront {} ({revision})", self.version)),
+            None => shortened(&format!("slipfront {}", self.version)),
         }
     }
 

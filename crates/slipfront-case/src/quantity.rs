@@ -12,6 +12,8 @@ use serde::de::{Deserialize, Deserializer, Visitor};
 use serde::ser::{Serialize, Serializer};
 use thiserror::Error;
 
+use crate::legible::shortened;
+
 /// The longest text that is read as a quantity, in bytes.
 const MAX_TEXT: usize = 200;
 
@@ -566,7 +568,7 @@ fn unknown_unit(text: &str, symbol: &str) -> QuantityError {
     };
     QuantityError::UnknownUnit {
         text: text.to_owned(),
-        unit: symbol.to_owned(),
+        unit: shortened(symbol),
         advice,
     }
 }

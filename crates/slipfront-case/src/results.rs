@@ -10,6 +10,7 @@ use crate::case::Case;
 use crate::case_file::CaseError;
 use crate::fields::{self, FieldFrame, FieldName, FieldsError, FieldsFile, StaticFields};
 use crate::folder::{self, FolderError, RunFolder};
+use crate::legible;
 use crate::manifest::Manifest;
 use crate::pictures::{self, FrictionCurve, Instant, Kinetic, Picture, PictureError, StressMap, StressMaps};
 use crate::run::Record;
@@ -35,7 +36,7 @@ pub enum ResultsError {
     #[error("cannot write series.csv: {0}")]
     Csv(#[from] csv::Error),
     /// `summary.json`.
-    #[error("{} is not the summary of a slipfront run: {source}", path.display())]
+    #[error("{} is not the summary of a slipfront run: {}", path.display(), legible::sentence(&source.to_string()))]
     Summary {
         /// The file.
         path: PathBuf,
@@ -52,8 +53,8 @@ pub enum ResultsError {
     },
 }
 
-/// Writes the files of a run and draws its pictures; the manifest completes the folder. The fields are taken out of
-/// the record: drawing needs the room that they took.
+/// Writes the results of a run, whose case stands in the folder already, and draws its pictures; the manifest completes
+/// the folder. The fields are taken out of the record: drawing needs the room that they took.
 ///
 /// # Errors
 /// When a file cannot be written: the folder is then left without a manifest.
@@ -64,7 +65,6 @@ pub fn write(
     started: jiff::Timestamp,
     threads: usize,
 ) -> Result<Manifest, ResultsError> {
-    write_case(case, &mut folder)?;
     folder.write("summary.json", &folder::json(&record.summary))?;
     let rows = record.rows.iter().map(|row| SeriesRow::new(row, &case.scales));
     folder.write("series.csv", &series::to_csv(rows)?)?;

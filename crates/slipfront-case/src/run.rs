@@ -1,10 +1,11 @@
 //! [`Case`] -> [`Record`]: one run with all observers that its files need.
 
+use serde::{Deserialize, Serialize};
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{
     Curve, CurveRow, FirstSlip, Frame, Frames, Instants, KineticHistory, Observer, Schedule, Scheduled,
 };
-use slipfront::{Execution, RunError, Simulation, Snapshot, StopReason};
+use slipfront::{Checkpoint, Execution, RunError, Simulation, Snapshot, StopReason};
 
 use crate::case::{Case, Snapshots};
 use crate::summary::{Observed, Summary};
@@ -27,86 +28,216 @@ pub struct Record {
 /// Fewest blocks for which a thread is worth its share in keeping step with the others.
 const BLOCKS_PER_THREAD: usize = 1 << 16;
 
-/// Runs a case to its end, on at most `threads` threads. `watcher` is shown every `watch_every`-th step, for a display of
-/// progress.
+/// Runs a case to its end, on at most `threads` threads.
 ///
 /// # Errors
 /// [`RunError`] when the run diverges.
-pub fn run(
-    case: &Case,
-    threads: usize,
-    watch_every: u64,
-    watcher: &mut dyn Observer,
-) -> Result<Record, RunError> {
-    let schedule = &case.schedule;
-    let selection = Selection {
-        fields: case.output.fields.iter().map(|field| field.observed()).collect(),
-        stride: case.output.stride,
-    };
-    let mut curve = Curve::every(case.output.series_stride);
-    let mut history = KineticHistory::new(schedule.last_step);
-    let mut instants = Instants::new(selection.clone(), schedule.kinetic, schedule.end_star());
-    let mut frames = Frames::new(selection);
-
-    let mut observers = vec![
-        Scheduled::always(&mut curve),
-        Scheduled::always(&mut history),
-        Scheduled::new(Schedule::Every(watch_every), watcher),
-    ];
-    match &case.output.snapshots {
-        Snapshots::Instants => observers.push(Scheduled::always(&mut instants)),
-        Snapshots::At(steps) => observers.push(Scheduled::new(Schedule::At(steps.clone()), &mut frames)),
-        Snapshots::Every(steps) => observers.push(Scheduled::new(Schedule::Every(*steps), &mut frames)),
+pub fn run(case: &Case, threads: usize) -> Result<Record, RunError> {
+    let mut running = Running::start(case, threads);
+    loop {
+        if let Some(reason) = running.advance(u64::MAX)? {
+            return Ok(running.record(reason));
+        }
     }
-    let execution = Execution {
-        threads: (case.model.lattice.n_blocks() / BLOCKS_PER_THREAD).clamp(1, threads),
-        ..Execution::default()
-    };
-    let mut simulation = Simulation::executed(&case.model, schedule.dt_star, None, execution);
-    let reason = simulation.run(schedule.stop, &mut observers)?;
-    drop(observers);
+}
 
-    let first_slip = FirstSlip::of(&simulation);
-    let instants = match case.output.snapshots {
-        Snapshots::Instants => instants.found(),
-        Snapshots::At(_) | Snapshots::Every(_) => Vec::new(),
-    };
-    let peak = simulation.peak();
-    let kinetic_from = schedule.kinetic.time_star(&peak, case.groups.v_star);
-    // A run that stops at its onset has no kinetic phase, wherever the window was meant to begin, and neither has one in
-    // which nothing slipped.
-    let kinetic = match reason {
-        StopReason::End if first_slip.earliest.is_none() => None,
-        StopReason::End => history.kinetic(kinetic_from, schedule.dt_star),
-        StopReason::Onset => None,
-    };
-    let (steps, energies) = curve
-        .rows
-        .last()
-        .map(|row| (row.step, row.energies))
-        .unwrap_or_default();
-    let found = Observed {
-        reason,
-        steps,
-        peak,
-        kinetic,
-        first_slip: first_slip.earliest,
-        sliding_percent_max: history.sliding_percent_max(),
-        energies,
-        instants: &instants,
-    };
-    let summary = Summary::new(case, &found);
-    Ok(Record {
-        summary,
-        rows: curve.rows,
-        frames: if instants.is_empty() {
-            unlettered(frames.frames)
-        } else {
-            merged(instants)
-        },
-        first_slip_time_star: first_slip.time_star,
-        contact_stress_max: simulation.contact_stress_max(),
-    })
+/// A run in progress, with all that its files need of it.
+pub struct Running<'c> {
+    case: &'c Case,
+    simulation: Simulation<'c>,
+    observers: Observers,
+}
+
+/// What a run has recorded up to now.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Observers {
+    curve: Curve,
+    history: KineticHistory,
+    fields: Fields,
+}
+
+/// The snapshots.
+#[derive(Debug, Serialize, Deserialize)]
+enum Fields {
+    Instants(Box<Instants>),
+    Frames(Frames),
+}
+
+/// All that a run needs to go on later, written down as [`Running::state`].
+#[derive(Debug, Serialize, Deserialize)]
+pub struct RunState<N = Vec<f64>, O = Observers> {
+    simulation: Checkpoint<N>,
+    observers: O,
+}
+
+impl Observers {
+    fn new(case: &Case) -> Self {
+        let (schedule, output) = (&case.schedule, &case.output);
+        let selection = Selection {
+            fields: output.fields.iter().map(|field| field.observed()).collect(),
+            stride: output.stride,
+        };
+        Self {
+            curve: Curve::every(output.series_stride),
+            history: KineticHistory::new(schedule.last_step),
+            fields: match output.snapshots {
+                Snapshots::Instants => Fields::Instants(Box::new(Instants::new(
+                    selection,
+                    schedule.kinetic,
+                    schedule.end_star(),
+                ))),
+                Snapshots::At(_) | Snapshots::Every(_) => Fields::Frames(Frames::new(selection)),
+            },
+        }
+    }
+
+    /// Whether they can be those of a run of this case after `step` steps.
+    fn belong_to(&self, case: &Case, step: u64) -> bool {
+        let (new, lattice) = (Self::new(case), &case.model.lattice);
+        let fields = match (&self.fields, &new.fields) {
+            (Fields::Instants(old), Fields::Instants(new)) => old.continues(new, lattice, step),
+            (Fields::Frames(old), Fields::Frames(new)) => old.continues(new, lattice, step),
+            _ => false,
+        };
+        fields && self.curve.continues(&new.curve, step) && self.history.continues(&new.history, step)
+    }
+
+    fn scheduled(&mut self, snapshots: &Snapshots) -> [Scheduled<'_>; 3] {
+        let schedule = match snapshots {
+            Snapshots::Instants => Schedule::Always,
+            Snapshots::At(steps) => Schedule::At(steps.clone()),
+            Snapshots::Every(steps) => Schedule::Every(*steps),
+        };
+        let fields: &mut dyn Observer = match &mut self.fields {
+            Fields::Instants(instants) => &mut **instants,
+            Fields::Frames(frames) => frames,
+        };
+        [
+            Scheduled::always(&mut self.curve),
+            Scheduled::always(&mut self.history),
+            Scheduled::new(schedule, fields),
+        ]
+    }
+}
+
+impl<'c> Running<'c> {
+    fn execution(case: &Case, threads: usize) -> Execution {
+        Execution {
+            threads: (case.model.lattice.n_blocks() / BLOCKS_PER_THREAD).clamp(1, threads),
+            ..Execution::default()
+        }
+    }
+
+    /// Begins a run on at most `threads` threads.
+    pub fn start(case: &'c Case, threads: usize) -> Self {
+        let execution = Self::execution(case, threads);
+        Self {
+            case,
+            simulation: Simulation::executed(&case.model, case.schedule.dt_star, None, execution),
+            observers: Observers::new(case),
+        }
+    }
+
+    /// Goes on with a run where its state was written down; none if the state is not one of this case.
+    pub fn resume(case: &'c Case, threads: usize, state: RunState) -> Option<Self> {
+        let RunState {
+            simulation,
+            observers,
+        } = state;
+        let step = simulation.step;
+        if step > case.schedule.last_step || !observers.belong_to(case, step) {
+            return None;
+        }
+        let execution = Self::execution(case, threads);
+        Some(Self {
+            case,
+            simulation: Simulation::resume(&case.model, case.schedule.dt_star, simulation, execution)?,
+            observers,
+        })
+    }
+
+    /// At most `steps` steps; why the run ended, if it did.
+    ///
+    /// # Errors
+    /// [`RunError`] when the run diverges.
+    pub fn advance(&mut self, steps: u64) -> Result<Option<StopReason>, RunError> {
+        let mut observers = self.observers.scheduled(&self.case.output.snapshots);
+        self.simulation
+            .advance(self.case.schedule.stop, steps, &mut observers)
+    }
+
+    /// The present instant.
+    pub fn snapshot(&self) -> Snapshot<'_> {
+        self.simulation.snapshot()
+    }
+
+    /// The case that is run.
+    pub fn case(&self) -> &'c Case {
+        self.case
+    }
+
+    /// All that the run needs to go on later, to be written down.
+    pub fn state(&self) -> impl Serialize + '_ {
+        RunState {
+            simulation: self.simulation.checkpoint(),
+            observers: &self.observers,
+        }
+    }
+
+    /// What the run leaves behind, once it has ended.
+    pub fn record(self, reason: StopReason) -> Record {
+        let Self {
+            case,
+            simulation,
+            observers,
+        } = self;
+        let Observers {
+            curve,
+            history,
+            fields,
+        } = observers;
+        let schedule = &case.schedule;
+        let first_slip = FirstSlip::of(&simulation);
+        let (instants, frames) = match fields {
+            Fields::Instants(instants) => (instants.found(), Vec::new()),
+            Fields::Frames(frames) => (Vec::new(), frames.frames),
+        };
+        let peak = simulation.peak();
+        let kinetic_from = schedule.kinetic.time_star(&peak, case.groups.v_star);
+        // A run that stops at its onset has no kinetic phase, wherever the window was meant to begin, and neither has one
+        // in which nothing slipped.
+        let kinetic = match reason {
+            StopReason::End if first_slip.earliest.is_none() => None,
+            StopReason::End => history.kinetic(kinetic_from, schedule.dt_star),
+            StopReason::Onset => None,
+        };
+        let (steps, energies) = curve
+            .rows
+            .last()
+            .map(|row| (row.step, row.energies))
+            .unwrap_or_default();
+        let found = Observed {
+            reason,
+            steps,
+            peak,
+            kinetic,
+            first_slip: first_slip.earliest,
+            sliding_percent_max: history.sliding_percent_max(),
+            energies,
+            instants: &instants,
+        };
+        Record {
+            summary: Summary::new(case, &found),
+            rows: curve.rows,
+            frames: if instants.is_empty() {
+                unlettered(frames)
+            } else {
+                merged(instants)
+            },
+            first_slip_time_star: first_slip.time_star,
+            contact_stress_max: simulation.contact_stress_max(),
+        }
+    }
 }
 
 /// Runs a case on one thread as long as `ends` does not say otherwise; none if it was given up.
@@ -114,25 +245,15 @@ pub fn run(
 /// # Errors
 /// [`RunError`] when the run diverges.
 pub fn run_unless(case: &Case, ends: &dyn Fn() -> bool) -> Option<Result<Record, RunError>> {
-    let record = run(case, 1, case.steps_per_look(), &mut Watchdog(ends));
-    if record.is_err() && ends() {
-        None
-    } else {
-        Some(record)
-    }
-}
-
-/// Ends a run when asked to.
-struct Watchdog<'a>(&'a dyn Fn() -> bool);
-
-impl Observer for Watchdog<'_> {
-    fn observe(&mut self, _: &Snapshot) -> Result<(), RunError> {
-        if (self.0)() {
-            Err(RunError::Observer("given up".to_owned()))
-        } else {
-            Ok(())
+    let mut running = Running::start(case, 1);
+    while !ends() {
+        match running.advance(case.steps_per_look()) {
+            Ok(None) => {}
+            Ok(Some(reason)) => return Some(Ok(running.record(reason))),
+            Err(error) => return Some(Err(error)),
         }
     }
+    None
 }
 
 fn unlettered(frames: Vec<Frame>) -> Vec<(String, Frame)> {

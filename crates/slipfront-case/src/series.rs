@@ -9,6 +9,7 @@ use slipfront::observe::CurveRow;
 use thiserror::Error;
 
 use crate::folder::open_bounded;
+use crate::legible;
 
 /// One row of `series.csv`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -43,7 +44,7 @@ pub struct SeriesRow {
 
 /// A series that cannot be read.
 #[derive(Debug, Error)]
-#[error("cannot read {}: {source}; it should be the series.csv of a slipfront run", path.display())]
+#[error("cannot read {}: {}; it should be the series.csv of a slipfront run", path.display(), legible::sentence(&source.to_string()))]
 pub struct SeriesError {
     path: PathBuf,
     source: csv::Error,

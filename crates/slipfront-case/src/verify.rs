@@ -10,7 +10,9 @@ use std::path::{Component, Path, PathBuf};
 use thiserror::Error;
 
 use crate::case_file::CaseFile;
-use crate::folder::{FolderError, TEXT_MAX_BYTES, UNFINISHED, read_whole};
+use crate::checkpoint::is_of_interrupted_run;
+use crate::folder::{FolderError, TEXT_MAX_BYTES, read_whole};
+use crate::legible::{sentence, shortened};
 use crate::manifest::{MANIFEST, Manifest, ManifestError, ManifestFile};
 use crate::study::{self, Finding, Findings, Plan, Records, StudyError, StudyFolder};
 
@@ -127,7 +129,7 @@ fn verify_run(folder: &Path) -> Result<Verdict, VerifyError> {
             "{} files as {} wrote them, finished {}",
             manifest.files.len(),
             manifest.program(),
-            manifest.finished
+            shortened(&manifest.finished)
         ),
         differences,
         notes: strangers(folder, &listed.chain([MANIFEST]).collect(), &["inputs"]),
@@ -140,7 +142,10 @@ pub fn compare(files: &[ManifestFile], folder: &Path, how: &str) -> Vec<String> 
         let path = folder.join(&file.name);
         let inside = |part| matches!(part, Component::Normal(_));
         if !Path::new(&file.name).components().all(inside) {
-            return Some(format!("{} lies outside of its folder", path.display()));
+            return Some(sentence(&format!(
+                "{} lies outside of its folder",
+                path.display()
+            )));
         }
         // A file of another length need not be read.
         let found = match std::fs::metadata(&path) {
@@ -155,7 +160,7 @@ pub fn compare(files: &[ManifestFile], folder: &Path, how: &str) -> Vec<String> 
             Err(error) if error.kind() == ErrorKind::NotFound => "is missing".to_owned(),
             Err(error) => format!("cannot be read: {error}"),
         };
-        Some(format!("{} {found}", path.display()))
+        Some(sentence(&format!("{} {found}", path.display())))
     };
     files.iter().filter_map(difference).collect()
 }
@@ -169,8 +174,8 @@ fn unresolved(path: &Path) -> Option<String> {
         Ok(resolved) if resolved.as_bytes() == text => None,
         Ok(_) => Some(format!("{} is not the resolved case that it was", path.display())),
         Err(error) => {
-            let sentence = error.to_string();
-            let line = sentence.lines().next().unwrap_or_default();
+            let message = error.to_string();
+            let line = message.lines().next().unwrap_or_default();
             Some(format!("{} is no case for this version: {line}", path.display()))
         }
     }
@@ -195,11 +200,11 @@ fn strangers(folder: &Path, known: &BTreeSet<&str>, folders: &[&str]) -> Vec<Str
     found.sort();
     let in_words = |name: String| {
         let path = folder.join(&name);
-        if name.starts_with(UNFINISHED) {
+        sentence(&if is_of_interrupted_run(&name) {
             format!("{} was left by a run that was interrupted", path.display())
         } else {
             format!("{} is not slipfront's", path.display())
-        }
+        })
     };
     found.into_iter().map(in_words).collect()
 }
@@ -212,8 +217,8 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
     let (plan, file) = match made {
         Ok(made) => made,
         Err(error) => {
-            let sentence = error.to_string();
-            let line = sentence.lines().next().unwrap_or_default();
+            let message = error.to_string();
+            let line = message.lines().next().unwrap_or_default();
             verdict.differences.push(format!(
                 "{} is no study for this version: {line}",
                 folder.join("study.toml").display()

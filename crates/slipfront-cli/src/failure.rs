@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use slipfront_case::study::StudyError;
+use crate::signals::Signals;
 
 /// Why a command ends, which decides its exit status.
 pub(crate) enum Failure {
@@ -10,10 +10,8 @@ pub(crate) enum Failure {
     Input(anyhow::Error),
     /// Failed while running: status 1.
     Running(anyhow::Error),
-    /// Stopped by this signal, with everything saved: status 128 + signal.
-    Stopped(usize),
-    /// Stopped by this signal, with nothing to save: status 128 + signal.
-    GivenUp(usize),
+    /// Stopped by this signal: status 128 + signal.
+    Stopped(usize, anyhow::Error),
 }
 
 impl Failure {
@@ -25,13 +23,17 @@ impl Failure {
         Self::Running(error.into())
     }
 
+    /// Stopped by the signal that came.
+    pub(crate) fn stopped(signals: &Signals, error: impl Into<anyhow::Error>) -> Self {
+        Self::Stopped(signals.stopped().unwrap_or_default(), error.into())
+    }
+
     /// Says on stderr what is wrong.
     pub(crate) fn report(self) -> ExitCode {
         let (error, status) = match self {
             Self::Input(error) => (error, 2),
             Self::Running(error) => (error, 1),
-            Self::Stopped(signal) => (StudyError::Interrupted.into(), 128 + signal as u8),
-            Self::GivenUp(signal) => (anyhow::anyhow!("stopped by a signal"), 128 + signal as u8),
+            Self::Stopped(signal, error) => (error, 128 + signal as u8),
         };
         eprintln!("error: {error}");
         ExitCode::from(status)

@@ -8,6 +8,8 @@ mod failure;
 mod probe;
 mod progress;
 mod report;
+mod saving;
+mod signals;
 
 use std::process::ExitCode;
 

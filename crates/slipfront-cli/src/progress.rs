@@ -4,9 +4,8 @@ use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
-use slipfront::observe::Observer;
-use slipfront::{RunError, Snapshot};
-use slipfront_case::case::Case;
+use slipfront::Snapshot;
+use slipfront_case::run::Running;
 use slipfront_case::study::Progress as StudyState;
 
 /// Time between plain lines.
@@ -23,13 +22,17 @@ pub(crate) struct Lines {
     last_step: u64,
     n_blocks: u64,
     end_star: f64,
+    /// Step at which this process began.
+    first_step: u64,
     began: Instant,
     next: Instant,
 }
 
 impl Progress {
-    pub(crate) fn new(case: &Case, quiet: bool) -> Self {
-        let last_step = case.schedule.last_step;
+    /// Of a run that begins, or goes on, where it is now.
+    pub(crate) fn new(running: &Running, quiet: bool) -> Self {
+        let case = running.case();
+        let (first_step, last_step) = (running.snapshot().step, case.schedule.last_step);
         if quiet {
             return Self::Silent;
         }
@@ -40,6 +43,7 @@ impl Progress {
                 last_step,
                 n_blocks,
                 end_star,
+                first_step,
                 began: now,
                 next: now + LINE_EVERY,
             });
@@ -49,6 +53,9 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style.progress_chars("=> "));
         }
+        // What was done before says nothing of the rate.
+        bar.set_position(first_step);
+        bar.reset_eta();
         Self::Bar(bar)
     }
 
@@ -57,10 +64,17 @@ impl Progress {
             bar.finish_and_clear();
         }
     }
-}
 
-impl Observer for Progress {
-    fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
+    /// Says something beside the progress.
+    pub(crate) fn note(&self, text: &str) {
+        match self {
+            Self::Silent => {}
+            Self::Bar(bar) => bar.println(text),
+            Self::Lines(_) => eprintln!("{text}"),
+        }
+    }
+
+    pub(crate) fn show(&mut self, now: &Snapshot) {
         match self {
             Self::Silent => {}
             Self::Bar(bar) => {
@@ -72,18 +86,17 @@ impl Observer for Progress {
             }
             Self::Lines(lines) => lines.show(now),
         }
-        Ok(())
     }
 }
 
 impl Lines {
     fn show(&mut self, now: &Snapshot) {
-        if Instant::now() < self.next || now.step == 0 {
+        if Instant::now() < self.next || now.step == self.first_step {
             return;
         }
         self.next += LINE_EVERY;
         let passed = self.began.elapsed();
-        let rate = now.step as f64 / passed.as_secs_f64();
+        let rate = (now.step - self.first_step) as f64 / passed.as_secs_f64();
         let left = (self.last_step - now.step) as f64 / rate;
         eprintln!(
             "{:3.0} %  t* = {:.1} of {:.1}  mu* = {:.3}  {:.1} million block-steps/s  {} left",

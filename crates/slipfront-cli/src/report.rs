@@ -145,9 +145,10 @@ pub(crate) fn cost(case: &Case, seconds: f64) -> String {
         available_memory().map_or(String::new(), |there| format!(" of {} available", shown(there)))
     );
     text += &format!(
-        "disk              {}, the snapshots {} of it\n",
+        "disk              {}, the snapshots {} of it; {} more for checkpoints while it runs\n",
         shown(budget.disk()),
-        shown(budget.disk_of_snapshots())
+        shown(budget.disk_of_snapshots()),
+        shown(budget.disk_of_checkpoints())
     );
     text + &warnings(&case.warnings())
 }

@@ -22,6 +22,7 @@
 //! assert!((simulation.peak().time_star - 8.0 / 3.0 / 0.03).abs() < 0.2);
 //! ```
 
+pub mod checkpoint;
 pub mod kernel;
 pub mod known_answers;
 pub mod lattice;
@@ -37,6 +38,7 @@ mod simulation;
 mod state;
 mod vector_field;
 
+pub use checkpoint::Checkpoint;
 pub use error::{RunError, SurfaceError};
 pub use friction::FrictionLaw;
 pub use kernel::{Execution, Kernel, simd_width};

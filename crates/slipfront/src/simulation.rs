@@ -1,5 +1,6 @@
 //! The loop: evaluate, observe, stop, step.
 
+use crate::checkpoint::{Checkpoint, Numbers};
 use crate::kernel::{Block, Engine, Execution, Held, Totals};
 use crate::observe::{CurvePoint, Peak, Scheduled};
 use crate::{Model, RunError, State, VectorField};
@@ -13,6 +14,8 @@ pub struct Simulation<'m> {
     totals: Totals,
     point: CurvePoint,
     peak: Peak,
+    /// Whether observers have seen the present step.
+    shown: bool,
 }
 
 /// All that can be seen of a run at one instant t_n. Forces, friction and contact are those of the update that
@@ -150,9 +153,39 @@ impl<'m> Simulation<'m> {
             totals,
             point: CurvePoint::default(),
             peak: Peak::new(model.steady_level()),
+            shown: false,
         };
         simulation.measure();
         simulation
+    }
+
+    /// A run that goes on from a checkpoint as if it had never been stopped, with the same bits, computed as `execution`
+    /// says. None if the checkpoint is that of another lattice or another kernel.
+    pub fn resume(
+        model: &'m Model,
+        dt_star: f64,
+        checkpoint: Checkpoint,
+        execution: Execution,
+    ) -> Option<Self> {
+        let (step, totals, peak) = (checkpoint.step, checkpoint.totals, checkpoint.peak);
+        let engine = Engine::resume(model, dt_star, checkpoint, execution)?;
+        Some(Self {
+            model,
+            dt_star,
+            step,
+            engine,
+            totals,
+            point: CurvePoint::measure(model, &totals, step as f64 * dt_star),
+            peak,
+            shown: true,
+        })
+    }
+
+    /// What [`Simulation::resume`] needs, to be written down. Taken between two calls of [`Simulation::advance`], it goes
+    /// with what the observers have seen.
+    pub fn checkpoint(&self) -> Checkpoint<Numbers<'_>> {
+        self.engine
+            .checkpoint(self.model, self.step, self.totals, self.peak)
     }
 
     /// Steps until `stop`, showing every instant to the observers that are due, the last one included.
@@ -161,13 +194,35 @@ impl<'m> Simulation<'m> {
     /// [`RunError::NotFinite`] when the run diverges, and whatever an observer fails with.
     pub fn run(&mut self, stop: Stop, observers: &mut [Scheduled]) -> Result<StopReason, RunError> {
         loop {
+            if let Some(reason) = self.advance(stop, u64::MAX, observers)? {
+                return Ok(reason);
+            }
+        }
+    }
+
+    /// At most `steps` steps towards `stop`; none if it was not reached. Observers see every instant once, also where one
+    /// call ends and the next begins.
+    ///
+    /// # Errors
+    /// As for [`Simulation::run`].
+    pub fn advance(
+        &mut self,
+        stop: Stop,
+        steps: u64,
+        observers: &mut [Scheduled],
+    ) -> Result<Option<StopReason>, RunError> {
+        let last_step = self.step.saturating_add(steps);
+        loop {
             let mut now = self.snapshot();
             let reason = stop.reached(&now);
             now.last = reason.is_some();
-            for observer in observers.iter_mut().filter(|o| o.due(now.step)) {
-                observer.observe(&now)?;
+            if !self.shown {
+                for observer in observers.iter_mut().filter(|o| o.due(now.step)) {
+                    observer.observe(&now)?;
+                }
             }
-            if let Some(reason) = reason {
+            if reason.is_some() || now.step >= last_step {
+                self.shown = true;
                 return Ok(reason);
             }
             let next = now.step + 1;
@@ -184,6 +239,7 @@ impl<'m> Simulation<'m> {
 
     fn step_with(&mut self, energies: bool) {
         self.step += 1;
+        self.shown = false;
         self.totals = self.engine.step(self.model, self.step, energies);
         self.measure();
     }

@@ -7,10 +7,8 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use super::keys;
-use super::source::{Place, Source, shortened};
-
-/// The longest sentence of an error, in characters.
-const MAX_SENTENCE: usize = 1000;
+use super::source::{Place, Source};
+use crate::legible::{self, shortened};
 
 /// A case file that cannot be used.
 #[derive(Debug, Error)]
@@ -67,12 +65,7 @@ pub struct Invalid {
 
 impl CaseError {
     pub(super) fn invalid(place: Option<Place>, sentence: impl Into<String>) -> Self {
-        let mut sentence: String = sentence.into();
-        // A text of the user's, repeated in a sentence, may be as long as the file.
-        if let Some((end, _)) = sentence.char_indices().nth(MAX_SENTENCE) {
-            sentence.truncate(end);
-            sentence.push_str("...");
-        }
+        let sentence = legible::sentence(&sentence.into());
         Self::Invalid(Box::new(Invalid { place, sentence }))
     }
 

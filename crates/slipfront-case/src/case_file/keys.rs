@@ -77,13 +77,20 @@ pub(super) fn partners<'k>(table: &'k str, key: &'k str) -> impl Iterator<Item =
         })
 }
 
-/// Whether two keys, such as `drive.v_star` and `drive.speed`, set the same thing.
-pub(crate) fn exclude_each_other(one: &str, other: &str) -> bool {
-    let (Some((table, key)), Some((of, partner))) = (one.rsplit_once('.'), other.rsplit_once('.')) else {
-        return false;
+/// The keys that set the same thing as a key such as `drive.v_star`, which has `drive.speed`.
+pub(crate) fn partners_of(key: &str) -> Vec<String> {
+    let Some((table, leaf)) = key.rsplit_once('.') else {
+        return Vec::new();
     };
     let root = table.split('.').next().unwrap_or(table);
-    table == of && partners(root, key).any(|found| found == partner)
+    partners(root, leaf)
+        .map(|partner| format!("{table}.{partner}"))
+        .collect()
+}
+
+/// Whether two keys, such as `drive.v_star` and `drive.speed`, set the same thing.
+pub(crate) fn exclude_each_other(one: &str, other: &str) -> bool {
+    partners_of(one).iter().any(|partner| partner == other)
 }
 
 /// Refuses a table that holds both keys of a pair.

@@ -9,9 +9,11 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::CaseError;
+use crate::legible::{MAX_PIECE, shortened};
 
-/// The longest piece of a line or of a `--set` that a message repeats, in characters.
-const MAX_SHOWN: usize = 100;
+/// The longest key whose place is noted, in bytes: all known ones are shorter. The keys below one of many megabytes
+/// would take that length each.
+const MAX_KEY: usize = 64;
 
 /// What a case was read from, kept so that later errors can name their place.
 ///
@@ -22,7 +24,7 @@ pub struct Source {
     /// The file's text, then each override on a line of its own, so that a span alone tells where it belongs.
     text: Arc<str>,
     overrides: Vec<Range<usize>>,
-    /// The span of every value by its key, such as `drive.v_star` or `texture.0.coverage`.
+    /// The span of every value by its key, such as `drive.v_star` or `texture.0.coverage`; none of absurdly long keys.
     places: BTreeMap<String, Range<usize>>,
 }
 
@@ -148,6 +150,9 @@ fn note_table(places: &mut BTreeMap<String, Range<usize>>, prefix: &str, table: 
 }
 
 fn note_value(places: &mut BTreeMap<String, Range<usize>>, key: String, value: &Spanned<DeValue<'_>>) {
+    if key.len() > MAX_KEY {
+        return;
+    }
     match value.get_ref() {
         DeValue::Table(table) => note_table(places, &format!("{key}."), table),
         DeValue::Array(values) => {
@@ -206,7 +211,7 @@ impl fmt::Display for Place {
 /// The line, and below it carets under `width` characters from byte `start`; empty when there is nothing to show.
 fn excerpt(line: &str, start: usize, width: usize) -> String {
     let before = &line[..start.min(line.len())];
-    if line.trim().is_empty() || before.chars().count() > MAX_SHOWN {
+    if line.trim().is_empty() || before.chars().count() > MAX_PIECE {
         return String::new();
     }
     // Tabs stay tabs, so that the caret stands below its character however wide they are.
@@ -219,13 +224,4 @@ fn excerpt(line: &str, start: usize, width: usize) -> String {
         .min(shown.chars().count().saturating_sub(before.chars().count()))
         .max(1);
     format!("\n  {shown}\n  {margin}{}", "^".repeat(width))
-}
-
-/// At most 100 characters of a text, on one line.
-pub(super) fn shortened(text: &str) -> String {
-    let mut shown: String = text.chars().take(MAX_SHOWN).collect();
-    if shown.len() < text.len() {
-        shown.push_str("...");
-    }
-    shown.replace(|c: char| c.is_control() && c != '\t', " ")
 }

@@ -3,6 +3,7 @@
 //! The reader of `netcdf3` reserves what a header asks for before it looks for the bytes, so that one damaged
 //! byte can end the process. Here every number of a header is held against the bytes that are left.
 
+use std::collections::HashSet;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
@@ -133,6 +134,9 @@ impl Classic {
         let attributes = header.list(0x0c, 12, Header::attribute)?;
         let variables = header.list(0x0b, 28, |header| header.variable(dimensions.len()))?;
 
+        each_once(dimensions.iter().map(|dimension| &dimension.name))?;
+        each_once(variables.iter().map(|variable| &variable.name))?;
+
         let mut classic = Classic {
             file,
             file_bytes,
@@ -262,6 +266,14 @@ impl Classic {
             .map(|id| self.dimensions[*id].length as u64);
         lengths.try_fold(variable.kind.bytes() as u64, u64::checked_mul)
     }
+}
+
+/// Names that stand twice would be read twice, however long their arrays are.
+fn each_once<'a>(mut names: impl Iterator<Item = &'a String>) -> Result<(), Fault> {
+    let mut seen = HashSet::new();
+    names.find(|name| !seen.insert(*name)).map_or(Ok(()), |twice| {
+        Err(Fault::Broken(format!("its header defines `{twice}` twice")))
+    })
 }
 
 fn absurd(variable: &str) -> Fault {

@@ -8,6 +8,7 @@ use super::names::{
     TIME_STAR, TIME_UNIT, X, Y,
 };
 use super::{FieldFrame, FieldName, FieldsData, FieldsError};
+use crate::legible;
 
 /// Reads a `fields.nc` that [`write_fields`](super::write_fields) has written.
 ///
@@ -54,7 +55,10 @@ fn in_words(fault: Fault, path: &Path) -> FieldsError {
     let path = path.to_owned();
     match fault {
         Fault::Io(source) => FieldsError::Read { path, source },
-        Fault::Broken(detail) => FieldsError::Broken { path, detail },
+        Fault::Broken(detail) => FieldsError::Broken {
+            path,
+            detail: legible::sentence(&detail),
+        },
     }
 }
 
@@ -75,6 +79,10 @@ fn read_chosen(
                 "`{name}` has the length {found} where {wanted} is wanted"
             )));
         }
+    }
+    // The instants are records: otherwise the whole of an array would be read for each of them.
+    if !records.is_empty() && file.dimension(TIME)? != 0 {
+        return Err(Fault::Broken(format!("`{TIME}` has a fixed length")));
     }
     // A file without instants has no dimension `time`.
     let names: Vec<FieldName> = file

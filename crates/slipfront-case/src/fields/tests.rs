@@ -464,6 +464,62 @@ fn instants_that_the_file_does_not_hold_are_refused() {
     }
 }
 
+/// Puts bytes behind the first `mark`, and one more into the count of 32 bits that follows it.
+fn with_one_more(bytes: &[u8], tag: &[u8; 8], more: &[u8], behind: usize) -> Vec<u8> {
+    let at = bytes.windows(8).position(|bytes| bytes == tag).unwrap();
+    let mut bytes = bytes.to_vec();
+    bytes[at + 7] += 1;
+    bytes.splice(behind..behind, more.iter().copied());
+    bytes
+}
+
+/// Where nothing is a record, the whole of each array would be read for every instant that the header promises: the
+/// square of the file's length in memory.
+#[test]
+fn instants_that_are_no_records_are_refused() {
+    let lattice = lattice();
+    let (_folder, path) = folder();
+    let names = [FieldName::Traction];
+    write_fields(&path, &lattice.file(1, &names, &frames(&names, 1))).unwrap();
+    let whole = fs::read(&path).unwrap();
+    let end_of =
+        |mark: &[u8]| whole.windows(mark.len()).position(|bytes| bytes == mark).unwrap() + mark.len();
+    // Another record dimension with a variable of one byte, so that the file holds any number of records.
+    let variables = end_of(b"\0\0\0\x0b\0\0\0\x0b");
+    let variable = b"\0\0\0\x04more\0\0\0\x01\0\0\0\x04\0\0\0\0\0\0\0\0\0\0\0\x01\0\0\0\x04\0\0\0\0\0\0\0\0";
+    let bytes = with_one_more(&whole, b"\0\0\0\x0b\0\0\0\x0b", variable, variables);
+    let time = end_of(b"\0\0\0\x04time");
+    let dimensions = end_of(b"instant_length\0\0") + 4;
+    let mut bytes = with_one_more(
+        &bytes,
+        b"\0\0\0\x0a\0\0\0\x04",
+        b"\0\0\0\x04more\0\0\0\0",
+        dimensions,
+    );
+    bytes[time..time + 4].copy_from_slice(&3u32.to_be_bytes());
+    bytes[4..8].copy_from_slice(&100u32.to_be_bytes());
+    replace(&path, &bytes);
+    let said = read_fields(&path).unwrap_err().to_string();
+    assert!(said.contains("`time` has a fixed length"), "{said}");
+}
+
+#[test]
+fn an_array_that_stands_twice_is_refused() {
+    let lattice = lattice();
+    let (_folder, path) = folder();
+    let names = [FieldName::VelocityX, FieldName::VelocityY];
+    write_fields(&path, &lattice.file(1, &names, &frames(&names, 1))).unwrap();
+    let mut bytes = fs::read(&path).unwrap();
+    let second = bytes
+        .windows(10)
+        .position(|bytes| bytes == b"velocity_y")
+        .unwrap();
+    bytes[second + 9] = b'x';
+    replace(&path, &bytes);
+    let said = read_fields(&path).unwrap_err().to_string();
+    assert!(said.contains("its header defines `velocity_x` twice"), "{said}");
+}
+
 /// Whatever happens to the bytes, the reader answers without a panic and without reserving what is not there.
 #[test]
 fn damaged_files_are_refused_or_read() {

@@ -45,7 +45,8 @@ pub use drawing::Drawing;
 pub use error::PaperError;
 pub use found::{Found, Number, Panel, Table};
 pub use report::{docs_page, summary, write, write_docs};
-use saved::Saved;
+#[doc(hidden)] // Read by the fuzz target of these files.
+pub use saved::Saved;
 
 use crate::study::{self, Records};
 

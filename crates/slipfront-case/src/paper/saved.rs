@@ -15,7 +15,8 @@ use crate::folder::{FolderError, read_whole, remove_unfinished, write_whole};
 const MAX_BYTES: u64 = 1 << 28;
 
 /// Findings of earlier calls in one folder.
-pub(super) struct Saved {
+#[derive(Debug)]
+pub struct Saved {
     folder: PathBuf,
     /// Hash of the program, its cases and the options: what findings depend on besides figure and step.
     origin: blake3::Hash,
@@ -26,7 +27,7 @@ impl Saved {
     ///
     /// # Errors
     /// When the folder cannot be made.
-    pub(super) fn open(folder: &Path, reduced: bool) -> Result<Self, PaperError> {
+    pub fn open(folder: &Path, reduced: bool) -> Result<Self, PaperError> {
         let folder = folder.join("found");
         std::fs::create_dir_all(&folder).map_err(|source| FolderError::Unwritable {
             path: folder.clone(),
@@ -49,7 +50,8 @@ impl Saved {
         })
     }
 
-    fn path(&self, figure: &str, step: StepRule) -> PathBuf {
+    /// The file of a figure's findings.
+    pub fn path(&self, figure: &str, step: StepRule) -> PathBuf {
         let step = match step {
             StepRule::Auto => "auto",
             StepRule::Paper => "paper",
@@ -64,8 +66,13 @@ impl Saved {
         hasher.finalize()
     }
 
+    /// The bytes of a file: findings under their checksum.
+    pub fn sealed(&self, findings: &[u8]) -> Vec<u8> {
+        [self.checksum(findings).as_bytes(), findings].concat()
+    }
+
     /// What a figure found in an earlier call.
-    pub(super) fn load(&self, figure: &str, step: StepRule) -> Option<Found> {
+    pub fn load(&self, figure: &str, step: StepRule) -> Option<Found> {
         let bytes = read_whole(&self.path(figure, step), MAX_BYTES).ok()?;
         let (checksum, findings) = bytes.split_at_checked(blake3::OUT_LEN)?;
         if self.checksum(findings).as_bytes() != checksum {
@@ -78,14 +85,14 @@ impl Saved {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub(super) fn save(&self, figure: &str, step: StepRule, found: &Found) -> Result<(), PaperError> {
+    pub fn save(&self, figure: &str, step: StepRule, found: &Found) -> Result<(), PaperError> {
         let path = self.path(figure, step);
         // Plain data: it always has a binary form.
         let Ok(findings) = postcard::to_stdvec(found) else {
             return Ok(());
         };
-        let bytes = [self.checksum(&findings).as_bytes(), findings.as_slice()].concat();
-        Ok(write_whole(&path, &bytes).map_err(|source| FolderError::Write { path, source })?)
+        Ok(write_whole(&path, &self.sealed(&findings))
+            .map_err(|source| FolderError::Write { path, source })?)
     }
 }
 

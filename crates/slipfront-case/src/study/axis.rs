@@ -1,11 +1,13 @@
 //! An axis of a study: the levels that one key, several keys together, or a set of named variants take.
 
 use std::collections::{BTreeSet, HashSet};
+use std::ops::Bound;
 
 use serde::Deserialize;
 use toml::Value;
 
 use super::inputs::{names_a_file, plain_name};
+use crate::legible::shortened;
 
 /// An axis and its levels.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,8 +68,19 @@ pub(super) struct AxisKeys {
 /// Most levels of one axis.
 const MAX_LEVELS: usize = 100_000;
 
+/// The longest key of an axis, in bytes: all of a case are shorter. It is repeated in every level.
+const MAX_KEY: usize = 100;
+
 impl Axis {
     pub(super) fn new(keys: AxisKeys) -> Result<Self, String> {
+        let all = keys.key.iter().chain(keys.zip.iter().flat_map(toml::Table::keys));
+        if let Some(long) = all.into_iter().find(|key| key.len() > MAX_KEY) {
+            return Err(format!(
+                "the key `{}` of an axis has {} bytes, more than {MAX_KEY}: name one of a case, such as drive.v_star",
+                shortened(long),
+                long.len()
+            ));
+        }
         let axis = match keys {
             AxisKeys {
                 key: Some(key),
@@ -287,6 +300,8 @@ fn flatten(key: &str, value: &Value, list: &mut Vec<String>) {
     // and so is a texture in full.
     let is_number = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
     let leads_on = !key.contains('.') || key.rsplit('.').next().is_some_and(is_number);
+    // A key that no case has is refused as it stands, not once for everything in it.
+    let leads_on = leads_on && key.len() <= MAX_KEY;
     match value {
         Value::Table(inner) if leads_on && !inner.contains_key("shape") => {
             for (name, value) in inner {
@@ -308,6 +323,22 @@ pub(super) fn displaces(key: &str, earlier: &str) -> bool {
         .strip_prefix(key)
         .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
         || crate::case_file::exclude_each_other(key, earlier)
+}
+
+/// The first of `earlier` keys of which setting `key` leaves nothing.
+pub(super) fn displaced<'k>(key: &str, earlier: &BTreeSet<&'k str>) -> Option<&'k str> {
+    let below = format!("{key}.");
+    let partners = crate::case_file::partners_of(key);
+    let same = earlier
+        .get(key)
+        .or_else(|| partners.iter().find_map(|partner| earlier.get(partner.as_str())));
+    let inside = || {
+        earlier
+            .range::<str, _>((Bound::Included(below.as_str()), Bound::Unbounded))
+            .next()
+            .filter(|found| found.starts_with(&below))
+    };
+    same.or_else(inside).copied()
 }
 
 /// `count` values from `from` to `to`, both exactly.
@@ -439,6 +470,17 @@ mod tests {
         assert!(displaces("drive.speed", "drive.v_star"));
         assert!(!displaces("texture.0.coverage", "texture"));
         assert!(!displaces("drive.v", "drive.v_star"));
+        let earlier = ["drive.v_star", "slider.blocks", "texture.0.coverage", "texture0"].into();
+        assert_eq!(displaced("texture", &earlier), Some("texture.0.coverage"));
+        assert_eq!(displaced("drive.v_star", &earlier), Some("drive.v_star"));
+        assert_eq!(displaced("drive.speed", &earlier), Some("drive.v_star"));
+        assert_eq!(
+            displaced("texture.0.lambda", &earlier),
+            Some("texture.0.coverage")
+        );
+        for other in ["drive.v", "texture.0.coverage.x", "slider.omega_star", "tex"] {
+            assert_eq!(displaced(other, &earlier), None);
+        }
     }
 
     #[test]
@@ -468,6 +510,25 @@ mod tests {
         );
         assert_eq!(axis.levels[1].number, Some(50.0));
         assert!(super::Axis::new(toml::from_str("zip = { a = [1], b = [1, 2] }").unwrap()).is_err());
+    }
+
+    /// A few megabytes of text must not become terabytes.
+    #[test]
+    fn long_keys_are_not_repeated_in_every_level() {
+        let long = "k".repeat(100_000);
+        for text in [
+            format!("key = '{long}'\nlinspace = [0, 1, 100000]"),
+            format!("zip = {{ {long} = [1, 2, 3] }}"),
+        ] {
+            let said = axis(&text).unwrap_err();
+            assert!(
+                said.contains("has 100000 bytes, more than 100") && said.len() < 300,
+                "{said}"
+            );
+        }
+        let keys: String = (0..1000).map(|k| format!("k{k} = 1, ")).collect();
+        let keys: toml::Table = format!("{long} = {{ {keys} }}").parse().unwrap();
+        assert_eq!(overrides(&keys).len(), 1);
     }
 
     #[test]

@@ -251,11 +251,9 @@ fn keep(
     started: jiff::Timestamp,
 ) -> Result<(), ResultsError> {
     let mut folder = RunFolder::prepare(path, true)?;
-    match record {
-        Some(record) => {
-            results::write(case, record, folder, started, 1)?;
-        }
-        None => results::write_case(case, &mut folder)?,
+    results::write_case(case, &mut folder)?;
+    if let Some(record) = record {
+        results::write(case, record, folder, started, 1)?;
     }
     Ok(())
 }

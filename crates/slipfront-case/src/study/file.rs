@@ -1,5 +1,6 @@
 //! The study file: a base case, what varies in it, and how often it is repeated.
 
+use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
@@ -343,31 +344,28 @@ fn count_points(axes: &[Axis]) -> Result<usize, StudyError> {
 
 /// Axes that overwrite each other, or whose columns could not be told from others in the tables.
 fn refuse_clashes(axes: &[Axis], source: &Source) -> Result<(), CaseError> {
+    let (mut columns, mut keys) = (HashSet::new(), BTreeSet::new());
     for (k, axis) in axes.iter().enumerate() {
         let refuse = |sentence: String| Err(source.error(&format!("axes.{k}"), sentence));
-        let before = &axes[..k];
         for column in &axis.columns {
             if tables::is_column(column) || quantities::known().contains(column) {
                 return refuse(format!(
                     "the tables have a column `{column}` already: give the axis another name"
                 ));
             }
-            if before.iter().any(|other| other.columns.contains(column)) {
+            if !columns.insert(column) {
                 return refuse(format!("`{column}` stands on two axes: keep one of them"));
             }
         }
         for key in axis.keys() {
-            let overwritten = before
-                .iter()
-                .flat_map(Axis::keys)
-                .find(|earlier| axis::displaces(key, earlier));
-            if let Some(earlier) = overwritten {
+            if let Some(earlier) = axis::displaced(key, &keys) {
                 return refuse(format!(
                     "this axis sets `{key}`, which leaves nothing of `{earlier}` of an axis before it: put it before \
                      that one, or keep one of them"
                 ));
             }
         }
+        keys.extend(axis.keys());
     }
     Ok(())
 }

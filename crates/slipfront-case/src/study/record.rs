@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::StudyError;
 use super::quantities::Numbers;
-use crate::folder::{open_bounded, remove_unfinished};
+use crate::folder::{open_bounded, remove_unfinished, sync_folder};
 use crate::summary::Summary;
 
 /// Name of the record file in a study folder.
@@ -224,15 +224,6 @@ impl Records {
         self.append(&records)?;
         Ok(records.len())
     }
-}
-
-/// Forces the names in a folder to the disk.
-fn sync_folder(folder: &Path) -> std::io::Result<()> {
-    // Only Unix opens folders as files.
-    if cfg!(unix) {
-        File::open(folder)?.sync_all()?;
-    }
-    Ok(())
 }
 
 fn to_line(record: &Record) -> Vec<u8> {

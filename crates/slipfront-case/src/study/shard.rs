@@ -4,6 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::error::StudyError;
+use crate::legible::shortened;
 
 /// Part `number` of `count`, `number` from 1. It holds every `count`-th point, so that shards are equally large.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +23,7 @@ impl Shard {
     fn of_slurm(given: &str) -> Result<Self, StudyError> {
         let read = |name: &str| -> Result<usize, StudyError> {
             let refuse = |why: String| StudyError::Shard {
-                given: given.to_owned(),
+                given: shortened(given),
                 why,
             };
             let value = std::env::var(name)
@@ -33,7 +34,9 @@ impl Shard {
         };
         // An array may begin at any number.
         let first = read("SLURM_ARRAY_TASK_MIN").unwrap_or(1);
-        let number = (read("SLURM_ARRAY_TASK_ID")? + 1).saturating_sub(first);
+        let number = read("SLURM_ARRAY_TASK_ID")?
+            .saturating_add(1)
+            .saturating_sub(first);
         Self::new(number, read("SLURM_ARRAY_TASK_COUNT")?, given)
     }
 
@@ -43,7 +46,7 @@ impl Shard {
         }
         let why = format!("there is no part {number} of {count}");
         Err(StudyError::Shard {
-            given: given.to_owned(),
+            given: shortened(given),
             why,
         })
     }
@@ -57,7 +60,7 @@ impl FromStr for Shard {
             return Self::of_slurm(given);
         }
         let refuse = || StudyError::Shard {
-            given: given.to_owned(),
+            given: shortened(given),
             why: "it is not two numbers".to_owned(),
         };
         let (number, count) = given.split_once('/').ok_or_else(refuse)?;

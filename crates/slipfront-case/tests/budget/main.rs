@@ -7,8 +7,6 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use png::{BitDepth, ColorType, Encoder};
-use slipfront::observe::Observer;
-use slipfront::{RunError, Snapshot};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseFile;
 use slipfront_case::folder::RunFolder;
@@ -103,15 +101,6 @@ fn write_inputs(folder: &Path) {
     writer.finish().unwrap();
 }
 
-/// A run without a display.
-struct Unwatched;
-
-impl Observer for Unwatched {
-    fn observe(&mut self, _: &Snapshot) -> Result<(), RunError> {
-        Ok(())
-    }
-}
-
 /// The allocator counts for the whole process: one test, one thing after the other.
 #[test]
 fn what_is_said_is_what_is_taken() {
@@ -140,7 +129,7 @@ fn what_is_said_is_what_is_taken() {
         let (taken, (memory, disk)) = peak(|| {
             let file = CaseFile::parse("", "case", &overrides).unwrap();
             let case = Case::new(file, "case", folder.path()).unwrap();
-            let mut record = run::run(&case, 1, 1000, &mut Unwatched).unwrap();
+            let mut record = run::run(&case, 1).unwrap();
             let out = RunFolder::prepare(&out, false).unwrap();
             results::write(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();
             (case.budget.memory(), case.budget.disk())

@@ -55,6 +55,16 @@ fn long_lines_and_odd_characters_make_short_messages() {
     refused("[time]\nstep = 1979-05-27", &[]);
 }
 
+/// The name of a table stands before each of its keys in what is kept of a file; megabytes must not become terabytes.
+#[test]
+fn long_names_of_tables_are_not_repeated_for_every_key() {
+    let keys: String = (0..100_000).map(|key| format!("k{key}=1\n")).collect();
+    let message = refused(&format!("[{}]\n{keys}", "x".repeat(1_000_000)), &[]);
+    assert!(message.contains("unknown table `xxx"), "{message}");
+    let message = refused(&format!("[slider.{}]\n{keys}", "x".repeat(1_000_000)), &[]);
+    assert!(message.contains("unknown key `xxx"), "{message}");
+}
+
 #[test]
 fn files_that_cannot_be_read_say_why() {
     let folder = tempfile::tempdir().unwrap();

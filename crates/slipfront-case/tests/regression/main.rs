@@ -10,8 +10,6 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 use serde::Deserialize;
-use slipfront::observe::Observer;
-use slipfront::{RunError, Snapshot};
 use slipfront_case::case::Case;
 use slipfront_case::run;
 use slipfront_case::summary::Summary;
@@ -78,15 +76,6 @@ impl Pin {
     }
 }
 
-/// A run without a display.
-struct Unwatched;
-
-impl Observer for Unwatched {
-    fn observe(&mut self, _: &Snapshot) -> Result<(), RunError> {
-        Ok(())
-    }
-}
-
 fn cases() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases")
 }
@@ -115,7 +104,7 @@ fn every_case_gives_its_pinned_results() {
         .into_par_iter()
         .map(|(name, path)| {
             let case = Case::load(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
-            let record = run::run(&case, 1, u64::MAX, &mut Unwatched).unwrap();
+            let record = run::run(&case, 1).unwrap();
             (name, Pin::of(&record.summary))
         })
         .collect();

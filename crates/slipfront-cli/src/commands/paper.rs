@@ -2,7 +2,6 @@
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -10,9 +9,9 @@ use slipfront_case::folder::is_empty;
 use slipfront_case::paper::{self, Options, Stage, StepRule};
 use slipfront_case::study::{Records, StudyError};
 
-use super::study::on_signals;
 use super::{print, set_threads};
 use crate::failure::Failure;
+use crate::signals::Signals;
 
 /// Run the figures and tables of the paper again, and judge its claims one by one
 #[derive(Args)]
@@ -48,10 +47,10 @@ impl Paper {
         let threads = set_threads(self.threads)?;
         let figures = paper::figures(&self.figures).map_err(Failure::input)?;
         let mut records = open(&self.out)?;
-        let (stop, signal) = on_signals().map_err(Failure::running)?;
+        let signals = Signals::catch().map_err(Failure::running)?;
         let options = Options {
             threads,
-            stop: &stop,
+            stop: &signals.stop,
             reduced: self.reduced,
             folder: &self.out,
         };
@@ -60,12 +59,13 @@ impl Paper {
             progress.show(stage);
         });
         progress.finish();
-        let paper = match done {
-            Err(error) if error.is_interruption() => {
-                return Err(Failure::Stopped(signal.load(Ordering::Relaxed)));
+        let paper = done.map_err(|error| {
+            if error.is_interruption() {
+                Failure::stopped(&signals, error)
+            } else {
+                Failure::running(error)
             }
-            done => done.map_err(Failure::running)?,
-        };
+        })?;
         paper::write(&paper, &self.out).map_err(Failure::running)?;
         if let Some(docs) = &self.docs {
             paper::write_docs(&paper, docs).map_err(Failure::running)?;

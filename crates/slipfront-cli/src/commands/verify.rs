@@ -1,26 +1,20 @@
 //! `slipfront verify`: what stands in results folders, against what was written there.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use clap::Args;
 use jiff::Timestamp;
-use slipfront::observe::Observer;
-use slipfront::{RunError, Snapshot};
 use slipfront_case::case::Case;
 use slipfront_case::folder::RunFolder;
 use slipfront_case::manifest::Manifest;
+use slipfront_case::results;
+use slipfront_case::run::Running;
 use slipfront_case::verify::{Verdict, compare, is_study, verify};
-use slipfront_case::{results, run};
 
-use super::study::on_signals;
 use super::{print, set_threads};
 use crate::failure::Failure;
 use crate::progress::Progress;
-
-/// Whether a signal came, and which.
-type Signals = (Arc<AtomicBool>, Arc<AtomicUsize>);
+use crate::signals::Signals;
 
 /// Check that results are what was written: every file of a run against its manifest, a study against its records
 #[derive(Args)]
@@ -52,7 +46,7 @@ impl Verify {
         // A signal ends the repeated run and not the process, so that nothing of it is left behind.
         let signals = self
             .rerun
-            .then(on_signals)
+            .then(Signals::catch)
             .transpose()
             .map_err(Failure::running)?;
         let (mut different, mut unusable) = (0, 0);
@@ -95,7 +89,7 @@ impl Verify {
     }
 
     /// Runs the case of a folder again beside it, and adds what differs.
-    fn repeat(&self, folder: &Path, (stop, signal): &Signals, verdict: &mut Verdict) -> Result<(), Failure> {
+    fn repeat(&self, folder: &Path, signals: &Signals, verdict: &mut Verdict) -> Result<(), Failure> {
         let started = Timestamp::now();
         let case = folder.join("case.toml");
         // A user may hand over a case through a pipe; in a folder of results it would be waited for.
@@ -108,23 +102,22 @@ impl Verify {
         }
         let case = Case::load(&case, &[]).map_err(Failure::input)?;
         let again = tempfile::tempdir().map_err(Failure::running)?;
-        case.check_disk(again.path(), 0).map_err(Failure::input)?;
-        let mut watch = Watch {
-            progress: Progress::new(&case, self.quiet),
-            stop,
+        case.check_disk(again.path(), 0, false).map_err(Failure::input)?;
+        let mut running = Running::start(&case, rayon::current_num_threads());
+        let mut progress = Progress::new(&running, self.quiet);
+        let reason = loop {
+            if let Some(reason) = running.advance(case.steps_per_look()).map_err(Failure::running)? {
+                break reason;
+            }
+            progress.show(&running.snapshot());
+            if signals.stopped().is_some() {
+                return Err(Failure::stopped(signals, anyhow::anyhow!("stopped by a signal")));
+            }
         };
-        let done = run::run(
-            &case,
-            rayon::current_num_threads(),
-            case.steps_per_look(),
-            &mut watch,
-        );
-        watch.progress.finish();
-        if stop.load(Ordering::Relaxed) {
-            return Err(Failure::GivenUp(signal.load(Ordering::Relaxed)));
-        }
-        let mut record = done.map_err(Failure::running)?;
-        let made = RunFolder::prepare(again.path(), false).map_err(Failure::running)?;
+        progress.finish();
+        let mut record = running.record(reason);
+        let mut made = RunFolder::prepare(again.path(), false).map_err(Failure::running)?;
+        results::write_case(&case, &mut made).map_err(Failure::running)?;
         let now = results::write(&case, &mut record, made, started, 1).map_err(Failure::running)?;
         verdict
             .differences
@@ -173,19 +166,4 @@ fn no_longer_written(before: &Manifest, now: &Manifest, folder: &Path) -> Vec<St
         .filter(|file| now.files.iter().all(|other| other.name != file.name));
     gone.map(|file| format!("{} is not written now", folder.join(&file.name).display()))
         .collect()
-}
-
-/// Shows progress, and ends the run after a signal.
-struct Watch<'a> {
-    progress: Progress,
-    stop: &'a AtomicBool,
-}
-
-impl Observer for Watch<'_> {
-    fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
-        if self.stop.load(Ordering::Relaxed) {
-            return Err(RunError::Observer("stopped by a signal".to_owned()));
-        }
-        self.progress.observe(now)
-    }
 }

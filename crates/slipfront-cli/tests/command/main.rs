@@ -4,6 +4,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod broken;
+#[cfg(unix)]
+mod checkpoints;
 mod folder;
 mod input;
 mod looks;

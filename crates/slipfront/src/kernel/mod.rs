@@ -7,10 +7,13 @@ mod fused;
 mod reference;
 
 use fearless_simd::Level;
+use serde::{Deserialize, Serialize};
 
 use self::fused::Fused;
 use self::reference::Reference;
+use crate::checkpoint::{Checkpoint, Numbers};
 use crate::lattice::Bond;
+use crate::observe::Peak;
 use crate::vector_field::length;
 use crate::{FrictionLaw, Model, State};
 
@@ -75,7 +78,7 @@ pub fn simd_width() -> &'static str {
 }
 
 /// Sums over all blocks at t_n, in units of this crate.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Totals {
     /// `sum u`.
     pub displacement: [f64; 2],
@@ -96,7 +99,7 @@ pub struct Totals {
 }
 
 /// Energies held at t_n.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Held {
     /// Kinetic energy, the mean of the half steps before and after.
     pub kinetic: f64,
@@ -156,6 +159,71 @@ impl Engine {
         }
     }
 
+    /// What is needed to go on from step `number`, the present one.
+    pub(crate) fn checkpoint(
+        &self,
+        model: &Model,
+        number: u64,
+        totals: Totals,
+        peak: Peak,
+    ) -> Checkpoint<Numbers<'_>> {
+        let numbers = |of| Numbers {
+            engine: self,
+            n_blocks: model.lattice.n_blocks(),
+            of,
+        };
+        Checkpoint {
+            step: number,
+            totals,
+            peak,
+            stress_square_max: self.stress_square_max(model, number),
+            strains: match self {
+                Self::Reference(_) => None,
+                Self::Fused(kernel) => Some(kernel.strains()),
+            },
+            displacement: [
+                numbers(|engine, b| engine.motion(b)[0][0]),
+                numbers(|engine, b| engine.motion(b)[0][1]),
+            ],
+            velocity: [
+                numbers(|engine, b| engine.kept_velocity(b)[0]),
+                numbers(|engine, b| engine.kept_velocity(b)[1]),
+            ],
+            first_slip: numbers(Self::first_slip),
+        }
+    }
+
+    /// Velocity of block `b` as a checkpoint keeps it.
+    fn kept_velocity(&self, b: usize) -> [f64; 2] {
+        match self {
+            Self::Reference(kernel) => kernel.velocity_before(b),
+            Self::Fused(kernel) => kernel.motion(b)[1],
+        }
+    }
+
+    /// From a checkpoint; none if it is that of another lattice or kernel.
+    pub(crate) fn resume(
+        model: &Model,
+        dt_star: f64,
+        checkpoint: Checkpoint,
+        execution: Execution,
+    ) -> Option<Self> {
+        if !checkpoint.fits(model.lattice.n_blocks()) {
+            return None;
+        }
+        match (execution.kernel.for_law(model.law), checkpoint.strains) {
+            (Kernel::Fused, Some(strains)) => {
+                let Execution { threads, skips, .. } = execution;
+                let kernel = Fused::resume(model, dt_star, checkpoint, strains, threads, skips);
+                Some(Self::Fused(Box::new(kernel)))
+            }
+            (Kernel::Reference, None) => Some(Self::Reference(Box::new(Reference::resume(
+                model, dt_star, checkpoint,
+            )))),
+            _ => None,
+        }
+    }
+
     /// Goes to step `number`: the next one, or 0 to begin with.
     pub(crate) fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals {
         match self {
@@ -201,9 +269,13 @@ impl Engine {
 
     /// Largest contact stress of a block in contact up to step `number`, the present one.
     pub(crate) fn contact_stress_max(&self, model: &Model, number: u64) -> f64 {
+        self.stress_square_max(model, number).sqrt()
+    }
+
+    fn stress_square_max(&self, model: &Model, number: u64) -> f64 {
         match self {
-            Self::Reference(kernel) => kernel.contact_stress_max(),
-            Self::Fused(kernel) => kernel.contact_stress_max(model, number),
+            Self::Reference(kernel) => kernel.stress_square_max(),
+            Self::Fused(kernel) => kernel.stress_square_max(model, number),
         }
     }
 }

@@ -7,6 +7,7 @@
 use fearless_simd::{Level, dispatch};
 
 use super::{Block, Held, Totals};
+use crate::checkpoint::Checkpoint;
 use crate::friction::{self, Integrator, Law};
 use crate::lanes;
 use crate::lattice::Bond;
@@ -63,7 +64,23 @@ impl Reference {
         }
     }
 
-    /// Goes to step `number`: the next one, or 0 to begin with.
+    /// From a checkpoint: evaluates its instant again, which finds forces, friction and the velocities that it left.
+    pub(crate) fn resume(model: &Model, dt_star: f64, checkpoint: Checkpoint) -> Self {
+        let vectors = |[x, y]: [Vec<f64>; 2]| VectorField { x, y };
+        let state = State {
+            displacement: vectors(checkpoint.displacement),
+            velocity: vectors(checkpoint.velocity),
+        };
+        let mut kernel = Self {
+            first_slip: checkpoint.first_slip,
+            stress_square_max: checkpoint.stress_square_max,
+            ..Self::new(model, dt_star, state)
+        };
+        kernel.step(model, checkpoint.step, false);
+        kernel
+    }
+
+    /// Goes to step `number`: the next one, or the one to begin with.
     pub(crate) fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals {
         let time_star = number as f64 * self.dt_star;
         let level = Level::new();
@@ -186,9 +203,14 @@ impl Reference {
         self.first_slip[b]
     }
 
-    /// Largest contact stress of a block in contact so far.
-    pub(crate) fn contact_stress_max(&self) -> f64 {
-        self.stress_square_max.sqrt()
+    /// Velocity of block `b` half a step before the present instant.
+    pub(crate) fn velocity_before(&self, b: usize) -> [f64; 2] {
+        self.forces.velocity.at(b)
+    }
+
+    /// Largest square of a contact stress of a block in contact so far.
+    pub(crate) fn stress_square_max(&self) -> f64 {
+        self.stress_square_max
     }
 }
 

@@ -1,5 +1,7 @@
 //! The friction coefficient mu* (Eq. 9), the share of sliding blocks N*, and the first peak of mu*.
 
+use serde::{Deserialize, Serialize};
+
 use super::Observer;
 use super::energy::{Energies, Ledger};
 use crate::kernel::Totals;
@@ -7,7 +9,7 @@ use crate::vector_field::dot;
 use crate::{Model, RunError, Snapshot};
 
 /// The whole slider at one instant.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CurvePoint {
     /// mu*, the pull of the drive springs along the drive over the load; can be negative.
     pub mu_star: f64,
@@ -45,7 +47,7 @@ impl CurvePoint {
 
 /// The first peak of mu* that is followed by a fall of at least half-way to the steady level L, found while the
 /// run goes on: until such a fall is seen it is the largest mu* so far.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peak {
     /// mu* at the peak: mu_s* once `ended`.
     pub mu_star: f64,
@@ -93,7 +95,7 @@ impl Peak {
 }
 
 /// One row of the recorded curve.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CurveRow {
     /// Step.
     pub step: u64,
@@ -106,7 +108,7 @@ pub struct CurveRow {
 }
 
 /// Records the curve, and keeps the ledger of energies. To be shown every step.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Curve {
     /// Every `stride`-th step from 0, and the last one.
     pub rows: Vec<CurveRow>,
@@ -122,6 +124,12 @@ impl Curve {
             stride,
             ledger: Ledger::default(),
         }
+    }
+
+    /// Whether it can have come of this new one, shown every step up to `step`.
+    pub fn continues(&self, new: &Self, step: u64) -> bool {
+        let steps = (0..=step).step_by(new.stride.max(1) as usize);
+        self.stride == new.stride && self.rows.iter().map(|row| row.step).eq(steps)
     }
 }
 

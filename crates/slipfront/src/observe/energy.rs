@@ -2,12 +2,14 @@
 //!
 //! All in units of `P mu_s l^2` times `P mu_s l/E`.
 
+use serde::{Deserialize, Serialize};
+
 use crate::Snapshot;
 use crate::kernel::Held;
 use crate::vector_field::dot;
 
 /// Energies held at an instant, and given and lost since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energies {
     /// Kinetic energy, the mean of the half steps before and after.
     pub kinetic: f64,
@@ -47,7 +49,7 @@ impl Energies {
 }
 
 /// Powers at one instant.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Powers {
     work: f64,
     friction: f64,
@@ -68,7 +70,7 @@ impl Powers {
 }
 
 /// Sums works and losses over the steps, by the trapezoidal rule.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Ledger {
     before: Option<Powers>,
     totals: Energies,

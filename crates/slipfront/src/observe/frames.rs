@@ -1,11 +1,13 @@
 //! Fields over the lattice kept from chosen instants.
 
+use serde::{Deserialize, Serialize};
+
 use super::{CurvePoint, Observer, stress};
 use crate::kernel::Block;
-use crate::{RunError, Snapshot};
+use crate::{Lattice, RunError, Snapshot};
 
 /// A quantity with one value per block. Values are dimensionless, as everywhere in this crate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Field {
     /// Contact stress tau_c (Eq. 10), in units of `P mu_s`; not yet scaled by its maximum.
     ContactStress,
@@ -39,7 +41,7 @@ impl Field {
 }
 
 /// Fields of one instant.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     /// Step.
     pub step: u64,
@@ -52,7 +54,7 @@ pub struct Frame {
 }
 
 /// Which fields to keep, and of how many blocks.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Selection {
     /// The fields, in this order.
     pub fields: Vec<Field>,
@@ -61,10 +63,20 @@ pub struct Selection {
 }
 
 impl Selection {
+    /// Blocks of this lattice that are kept.
+    fn n_kept(&self, lattice: &Lattice) -> usize {
+        lattice.nx.div_ceil(self.stride) * lattice.ny.div_ceil(self.stride)
+    }
+
+    /// Whether a frame holds the chosen fields of this lattice.
+    pub(crate) fn fits(&self, frame: &Frame, lattice: &Lattice) -> bool {
+        let n_kept = self.n_kept(lattice);
+        frame.values.len() == self.fields.len() && frame.values.iter().all(|values| values.len() == n_kept)
+    }
+
     /// The chosen fields of this instant.
     pub fn capture(&self, now: &Snapshot) -> Frame {
-        let [columns, rows] = [now.model.lattice.nx, now.model.lattice.ny].map(|n| n.div_ceil(self.stride));
-        let room = || Vec::with_capacity(columns * rows);
+        let room = || Vec::with_capacity(self.n_kept(&now.model.lattice));
         let mut frame = Frame {
             step: 0,
             time_star: 0.0,
@@ -93,7 +105,7 @@ impl Selection {
 }
 
 /// Keeps the selected fields of every instant it is shown.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frames {
     /// What is kept.
     pub selection: Selection,
@@ -108,6 +120,15 @@ impl Frames {
             selection,
             frames: Vec::new(),
         }
+    }
+
+    /// Whether it can have come of this new one, on this lattice, up to `step`.
+    pub fn continues(&self, new: &Self, lattice: &Lattice, step: u64) -> bool {
+        let steps = self.frames.iter().map(|frame| frame.step);
+        let mut frames = self.frames.iter();
+        self.selection == new.selection
+            && steps.chain([step + 1]).is_sorted_by(|one, next| one < next)
+            && frames.all(|frame| self.selection.fits(frame, lattice))
     }
 }
 

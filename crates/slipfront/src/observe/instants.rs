@@ -4,9 +4,11 @@
 //! [t_s*, t_s* + 2.5/V*]. E: the smallest mu* from D to the start of the kinetic window. F: the middle of that
 //! window. What a later step may prove wrong is kept as a candidate and overwritten.
 
+use serde::{Deserialize, Serialize};
+
 use super::frames::{Frame, Selection};
 use super::{KineticStart, Observer};
-use crate::{RunError, Snapshot};
+use crate::{Lattice, RunError, Snapshot};
 
 /// Letters of the instants.
 const LETTERS: [char; 6] = ['A', 'B', 'C', 'D', 'E', 'F'];
@@ -18,7 +20,7 @@ const E: usize = 4;
 const F: usize = 5;
 
 /// Fields at A-F. To be shown every step.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Instants {
     selection: Selection,
     kinetic: KineticStart,
@@ -43,6 +45,15 @@ impl Instants {
             ended: false,
             known: [false; 2],
         }
+    }
+
+    /// Whether it can have come of this new one, on this lattice, up to `step`.
+    pub fn continues(&self, new: &Self, lattice: &Lattice, step: u64) -> bool {
+        let alike = self.selection == new.selection
+            && self.kinetic == new.kinetic
+            && self.end_time_star == new.end_time_star;
+        let mut frames = self.frames.iter().flatten();
+        alike && frames.all(|frame| frame.step <= step && self.selection.fits(frame, lattice))
     }
 
     /// The instants that the run had, in the order of their letters. Without a transition there is no D and E, nor

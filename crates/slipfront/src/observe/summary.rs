@@ -1,10 +1,12 @@
 //! The kinetic friction coefficient: a mean over a window after the transition, with its uncertainty.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Observer, Peak};
 use crate::{RunError, Snapshot};
 
 /// Where the kinetic window begins. It ends with the run.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum KineticStart {
     /// At t_s* + 2.5/V*; at 5/V* (twice the usual t_s*, Eq. 12) in a run without a transition.
     Auto,
@@ -57,7 +59,7 @@ pub enum Doubt {
 
 /// Keeps mu* and N* of the whole run in at most [`KineticHistory::BINS`] means over equal stretches of steps, so
 /// that memory does not grow with the run. To be shown every step.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KineticHistory {
     steps_per_bin: u64,
     in_bin: u64,
@@ -65,7 +67,7 @@ pub struct KineticHistory {
     sliding_percent_max: f64,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Bin {
     mu_star: f64,
     sliding_percent: f64,
@@ -84,6 +86,14 @@ impl KineticHistory {
             bins: Vec::with_capacity((last_step / steps_per_bin + 1) as usize),
             sliding_percent_max: 0.0,
         }
+    }
+
+    /// Whether it can have come of this new one, shown every step up to `step`.
+    pub fn continues(&self, new: &Self, step: u64) -> bool {
+        let shown = step + 1;
+        self.steps_per_bin == new.steps_per_bin
+            && self.in_bin == shown % self.steps_per_bin
+            && self.bins.len() as u64 == shown.div_ceil(self.steps_per_bin)
     }
 
     /// Largest N* of all steps.

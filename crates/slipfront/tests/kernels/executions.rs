@@ -1,11 +1,11 @@
-//! The fused kernel against itself: threads and rest change nothing, not a bit.
+//! The fused kernel against itself: threads, rest, and stops with a checkpoint change nothing, not a bit.
 
 use rstest::rstest;
 use slipfront::surface::{Orientation, Texture};
 use slipfront::{Drive, Edges, Execution, FrictionLaw, Lattice, Model, Simulation, State, Surface};
 
 use crate::common::{self, Slider, cavity, groove};
-use crate::{FUSED, bits, go, has_room};
+use crate::{FUSED, bits, go, has_room, stopped_and_resumed};
 
 /// Everything that a run shows at one instant, but for its state.
 fn shown(simulation: &Simulation) -> Vec<u64> {
@@ -41,8 +41,8 @@ fn state(simulation: &Simulation) -> Vec<u64> {
         .collect()
 }
 
-/// The fused kernel on one thread, doing every block at every step, against all other ways to execute it; energies are
-/// asked for now and then.
+/// The fused kernel on one thread, doing every block at every step, against all other ways to execute it, among them stops
+/// after so many steps; energies are asked for now and then.
 fn assert_same_bits(model: &Model, dt_star: f64, from: Option<&State>, steps: u64) {
     let of = |threads| {
         [false, true].map(|skips| Execution {
@@ -51,11 +51,23 @@ fn assert_same_bits(model: &Model, dt_star: f64, from: Option<&State>, steps: u6
             ..FUSED
         })
     };
-    let executions: Vec<_> = [1, 2, 3, 7].into_iter().flat_map(of).skip(1).collect();
+    let unstopped = [1, 2, 3, 7]
+        .into_iter()
+        .flat_map(of)
+        .skip(1)
+        .map(|execution| (execution, u64::MAX));
+    // After every step, at and between looks at the strains, and seldom.
+    let stopped = of(1).into_iter().chain(of(3)).zip([1, 5, 16, 61]);
+    let executions: Vec<_> = unstopped.chain(stopped).collect();
     let run = |execution| Simulation::executed(model, dt_star, from.cloned(), execution);
     let mut plain = run(FUSED);
-    let mut others: Vec<_> = executions.iter().map(|&execution| run(execution)).collect();
+    let mut others: Vec<_> = executions.iter().map(|&(execution, _)| run(execution)).collect();
     for step in 1..=steps {
+        for (other, &(execution, every)) in others.iter_mut().zip(&executions) {
+            if (step - 1).is_multiple_of(every) {
+                *other = stopped_and_resumed(other, model, dt_star, execution);
+            }
+        }
         let energies = step % 5 == 0 || step % 7 == 0;
         go(&mut plain, energies);
         let (here, exact) = (shown(&plain), state(&plain));

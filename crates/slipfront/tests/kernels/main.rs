@@ -6,7 +6,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
-use slipfront::{Edges, Execution, Kernel, Lattice, Simulation, Stop};
+use slipfront::{Edges, Execution, Kernel, Lattice, Model, Simulation, Stop};
 
 /// What steps the simulations of this binary that do not say.
 const KERNEL: Kernel = Kernel::Fused;
@@ -43,5 +43,18 @@ fn has_room(blocks: [usize; 2], edges: [Edges; 2]) -> bool {
     (0..2).all(|axis| edges[axis] == Edges::Free || blocks[axis] >= Lattice::MIN_PERIODIC)
 }
 
+/// The simulation that goes on from what is written down of this one.
+fn stopped_and_resumed<'m>(
+    simulation: &Simulation,
+    model: &'m Model,
+    dt_star: f64,
+    execution: Execution,
+) -> Simulation<'m> {
+    let bytes = postcard::to_stdvec(&simulation.checkpoint()).unwrap();
+    let checkpoint = postcard::from_bytes(&bytes).unwrap();
+    Simulation::resume(model, dt_star, checkpoint, execution).unwrap()
+}
+
 mod against_reference;
+mod checkpoints;
 mod executions;

@@ -4,8 +4,6 @@ mod merge;
 mod run;
 mod slurm;
 
-pub(crate) use run::on_signals;
-
 use clap::{Args, Subcommand};
 
 use crate::failure::Failure;

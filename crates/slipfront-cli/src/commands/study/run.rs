@@ -2,11 +2,8 @@
 
 use std::collections::HashMap;
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use clap::Args;
-use signal_hook::consts::{SIGINT, SIGTERM};
 use slipfront_case::study::{self, Findings, Plan, RunKey, Shard, StudyError, StudyFile, StudyFolder};
 
 use crate::commands::{print, set_threads};
@@ -14,6 +11,7 @@ use crate::failure::Failure;
 use crate::probe::seconds_per_step;
 use crate::progress::StudyProgress;
 use crate::report;
+use crate::signals::Signals;
 
 #[derive(Args)]
 pub(crate) struct StudyRun {
@@ -83,20 +81,27 @@ fn default_out(name: &str, shard: Option<Shard>) -> PathBuf {
 
 /// Runs what the folder lacks, and writes tables and pictures.
 fn complete(plan: &Plan, folder: &mut StudyFolder, threads: usize, quiet: bool) -> Result<(), Failure> {
-    let (stop, signal) = on_signals().map_err(Failure::running)?;
+    let signals = Signals::catch().map_err(Failure::running)?;
     let mut progress = StudyProgress::new(quiet);
     if !quiet {
         notes(folder);
     }
     let path = folder.path().to_owned();
-    let done = study::execute(plan, &mut folder.records, &path, threads, &stop, &mut |now| {
-        progress.show(now);
-    });
+    let done = study::execute(
+        plan,
+        &mut folder.records,
+        &path,
+        threads,
+        &signals.stop,
+        &mut |now| {
+            progress.show(now);
+        },
+    );
     progress.finish();
-    let findings = match done {
-        Err(StudyError::Interrupted) => return Err(Failure::Stopped(signal.load(Ordering::Relaxed))),
-        done => done.map_err(Failure::running)?,
-    };
+    let findings = done.map_err(|error| match error {
+        StudyError::Interrupted => Failure::stopped(&signals, error),
+        error => Failure::running(error),
+    })?;
     finish(plan, &findings, folder, quiet)
 }
 
@@ -127,18 +132,6 @@ pub(super) fn finish(
         print(&report::study(plan, findings, folder.path()))?;
     }
     failures(plan, findings)
-}
-
-/// Flags that SIGINT and SIGTERM set: that one came, and which.
-pub(crate) fn on_signals() -> std::io::Result<(Arc<AtomicBool>, Arc<AtomicUsize>)> {
-    let (stop, which) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
-    for signal in [SIGINT, SIGTERM] {
-        // A second signal ends the process at once.
-        signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&stop))?;
-        signal_hook::flag::register_usize(signal, Arc::clone(&which), signal as usize)?;
-        signal_hook::flag::register(signal, Arc::clone(&stop))?;
-    }
-    Ok((stop, which))
 }
 
 /// A study with failed runs is done, but not well.

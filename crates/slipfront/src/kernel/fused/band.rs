@@ -164,6 +164,23 @@ impl Band {
         band
     }
 
+    /// Takes over when blocks first slid. The step before counts as one in which every tile was swept: what a checkpoint
+    /// tells of contact stresses includes those of tiles at rest.
+    pub(super) fn resume(&mut self, layout: &Layout, first_slip: &[f64]) {
+        for order in &mut self.orders {
+            order.active = true;
+        }
+        for k in 0..self.len {
+            let Some(b) = layout.block(self.first + k) else {
+                continue;
+            };
+            self.first_slip[k] = first_slip[b];
+            if !first_slip[b].is_nan() {
+                self.slipped[k / LANES] |= 1 << (k % LANES);
+            }
+        }
+    }
+
     /// Elements of the band's tile `t`, counted from the band's first.
     pub(super) fn elements(&self, t: usize) -> std::ops::Range<usize> {
         t * TILE..((t + 1) * TILE).min(self.len)

@@ -30,8 +30,9 @@ use self::blocks::Step;
 use self::layout::Layout;
 use self::springs::{Series, SquareRoot};
 use super::{Held, Totals};
+use crate::checkpoint::{Checkpoint, Strains};
 use crate::lattice::K_STRAIGHT;
-use crate::{Model, State};
+use crate::{Model, State, VectorField};
 
 /// Steps from one exact look at the largest differences of displacement to the next; between, they are bounded.
 const LOOK_EVERY: u64 = 16;
@@ -84,6 +85,47 @@ impl Fused {
         skips: bool,
     ) -> Self {
         Self::at_level(model, dt_star, state, threads, skips, Level::new())
+    }
+
+    /// From a checkpoint. Every tile is swept at the next step, whether it could have been left alone or not: both
+    /// give the same bits.
+    pub(crate) fn resume(
+        model: &Model,
+        dt_star: f64,
+        checkpoint: Checkpoint,
+        strains: Strains,
+        threads: usize,
+        skips: bool,
+    ) -> Self {
+        let vectors = |[x, y]: [Vec<f64>; 2]| VectorField { x, y };
+        let state = State {
+            displacement: vectors(checkpoint.displacement),
+            velocity: vectors(checkpoint.velocity),
+        };
+        let mut kernel = Self::new(model, dt_star, Some(&state), threads, skips);
+        drop(state);
+        for band in &mut kernel.bands {
+            band.resume(&kernel.layout, &checkpoint.first_slip);
+        }
+        Self {
+            latest: checkpoint.totals,
+            stress_square_max: checkpoint.stress_square_max,
+            swept: strains.swept,
+            extent: strains.extent,
+            growth: strains.growth,
+            speed: strains.speed,
+            ..kernel
+        }
+    }
+
+    /// What the choice of springs goes by.
+    pub(crate) fn strains(&self) -> Strains {
+        Strains {
+            swept: self.swept,
+            extent: self.extent,
+            growth: self.growth,
+            speed: self.speed,
+        }
     }
 
     fn at_level(
@@ -326,8 +368,8 @@ impl Fused {
         }
     }
 
-    /// Largest contact stress of a block in contact up to step `number`, the present one.
-    pub(crate) fn contact_stress_max(&self, model: &Model, number: u64) -> f64 {
+    /// Largest square of a contact stress of a block in contact up to step `number`, the present one.
+    pub(crate) fn stress_square_max(&self, model: &Model, number: u64) -> f64 {
         let step = Step::new(model, number, self.dt_star);
         let mut square = self.stress_square_max;
         for band in &self.bands {
@@ -336,7 +378,7 @@ impl Fused {
                 square = square.max(band.resting_stress_square(t, &step));
             }
         }
-        square.sqrt()
+        square
     }
 
     /// Displacement now and velocity half a step later of block `b`.

@@ -57,7 +57,7 @@ fn history(model: &Model, level: Level, steps: u64) -> Vec<u64> {
             held.kinetic,
             held.lattice,
             held.drive_springs,
-            kernel.contact_stress_max(model, number),
+            kernel.stress_square_max(model, number),
         ];
         numbers.extend(
             [totals.displacement, totals.velocity, totals.velocity_after]

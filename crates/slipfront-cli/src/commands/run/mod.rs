@@ -1,0 +1,184 @@
+//! `slipfront run`: one case, from the file to the pictures.
+
+mod resume;
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use jiff::Timestamp;
+use slipfront_case::case::Case;
+use slipfront_case::checkpoint::Checkpoints;
+use slipfront_case::folder::{RunFolder, own_bytes};
+use slipfront_case::results;
+use slipfront_case::run::Running;
+
+use super::{CaseArgs, print, set_threads};
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::report;
+use crate::saving::{Interval, Saving};
+use crate::signals::Signals;
+
+/// Run a case: print its physics, show progress, write results and pictures
+#[derive(Args)]
+#[command(after_help = "Examples:
+  slipfront run
+  slipfront run cases/groove_across.toml --set texture.0.coverage=5 -o results/groove-5
+  slipfront run results/baseline/case.toml -o results/again    repeats a run bit for bit
+  slipfront run --resume results/baseline                      goes on with a run that was stopped
+  slipfront run --json --quiet | python3 -c 'import json,sys; print(json.load(sys.stdin)[\"static_friction_star\"])'
+
+The whole state of the run is saved in its folder every --checkpoint, on Ctrl-C (SIGINT), on SIGTERM and on SIGUSR1, after
+which it goes on. A run that was stopped and resumed, however often, writes the same bytes as one that was not.")]
+pub(crate) struct Run {
+    #[command(flatten)]
+    case: CaseArgs,
+    /// Folder for the results [default: results/ and the name of the case]
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace the files of an earlier run in that folder, and nothing else
+    #[arg(long)]
+    force: bool,
+    /// Wall time from one checkpoint to the next, such as 30s or 1h, or off; they never take more than 1 % of the run
+    #[arg(long, value_name = "TIME", default_value = "5min")]
+    checkpoint: Interval,
+    /// Go on with the run in this folder where its latest checkpoint was saved; a complete run is left as it is
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["case", "overrides", "seed", "out", "force"])]
+    resume: Option<PathBuf>,
+    /// Go on from the checkpoint before the latest one
+    #[arg(long, requires = "resume")]
+    previous: bool,
+    /// Most threads to use [default: one per core]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Show neither physics nor progress nor summary
+    #[arg(short, long)]
+    quiet: bool,
+    /// Print the summary as JSON on stdout, and nothing else there
+    #[arg(long)]
+    json: bool,
+}
+
+/// How a run is executed and shown.
+struct Manner {
+    threads: usize,
+    interval: Interval,
+    signals: Signals,
+    quiet: bool,
+    json: bool,
+}
+
+impl Manner {
+    /// Whether physics and summary are printed for a reader.
+    fn talks(&self) -> bool {
+        !self.quiet && !self.json
+    }
+}
+
+impl Run {
+    pub(crate) fn execute(self) -> Result<(), Failure> {
+        let started = Timestamp::now();
+        let manner = Manner {
+            threads: set_threads(self.threads)?,
+            interval: self.checkpoint,
+            signals: Signals::catch_all().map_err(Failure::running)?,
+            quiet: self.quiet,
+            json: self.json,
+        };
+        if let Some(folder) = &self.resume {
+            return resume::resume(folder, self.previous, manner);
+        }
+        let case_path = self.case.path().map(Path::to_owned);
+        let case = self.case.load()?;
+        let out = self.out.unwrap_or_else(|| Path::new("results").join(&case.name));
+        refuse_to_replace(case_path.as_deref(), &out)?;
+        let replaced = if self.force { own_bytes(&out) } else { 0 };
+        case.check_disk(&out, replaced, manner.interval.saves())
+            .map_err(Failure::input)?;
+        let mut folder = RunFolder::prepare(&out, self.force).map_err(Failure::input)?;
+        let inputs = case.inputs.iter().map(|input| input.name.as_str());
+        folder.expect_free(inputs).map_err(Failure::input)?;
+        // What the run needs to go on if it is stopped.
+        results::write_case(&case, &mut folder).map_err(Failure::running)?;
+        if manner.talks() {
+            print(&report::physics(&case))?;
+        }
+        complete(Running::start(&case, manner.threads), folder, started, manner)
+    }
+}
+
+/// Takes a run, begun at `started`, to its end and writes its results.
+fn complete(
+    mut running: Running,
+    folder: RunFolder,
+    started: Timestamp,
+    manner: Manner,
+) -> Result<(), Failure> {
+    let (case, out) = (running.case(), folder.path().to_owned());
+    let (threads, talks) = (manner.threads, manner.talks());
+    let checkpoints = Checkpoints::new(&out, case, started);
+    let mut saving = Saving::new(&out, checkpoints, manner.interval, manner.signals);
+    let mut progress = Progress::new(&running, manner.quiet);
+    let reason = loop {
+        match running.advance(case.steps_per_look()) {
+            Ok(Some(reason)) => break reason,
+            Ok(None) => {}
+            Err(error) => {
+                // It would diverge again: there is nothing to go on with.
+                folder.discard().map_err(Failure::running)?;
+                return Err(Failure::running(error));
+            }
+        }
+        progress.show(&running.snapshot());
+        saving.look(&running, &progress)?;
+    };
+    progress.finish();
+    let mut record = running.record(reason);
+    results::write(case, &mut record, folder, started, threads).map_err(Failure::running)?;
+    if manner.json {
+        print(&results::summary_json(&record.summary))?;
+    } else if talks {
+        print(&report::summary(case, &record.summary))?;
+        print(&files(case, &out))?;
+    }
+    Ok(())
+}
+
+/// Refuses a folder whose `case.toml` is the case to be run: with `--force` it would be gone, and lost if the run fails.
+fn refuse_to_replace(case: Option<&Path>, out: &Path) -> Result<(), Failure> {
+    let Some(case) = case.and_then(|case| case.canonicalize().ok()) else {
+        return Ok(());
+    };
+    if out.join("case.toml").canonicalize().ok() != Some(case) {
+        return Ok(());
+    }
+    let sentence = format!(
+        "the results would replace the case itself, {}: choose another folder with --out",
+        out.join("case.toml").display()
+    );
+    Err(Failure::input(anyhow::anyhow!(sentence)))
+}
+
+fn files(case: &Case, out: &Path) -> String {
+    let mut text = format!("files in {}\n", out.display());
+    for (name, what) in [
+        ("friction.svg .png", "friction and sliding blocks against time"),
+        ("stress.svg .png", "maps of the contact stress"),
+        ("series.csv", "the curve, row by row"),
+        ("fields.nc", "the fields, for ParaView, Python, MATLAB"),
+        ("summary.json", "the numbers above"),
+        ("case.toml", "the case, every default filled in"),
+    ] {
+        let exists = out.join(name.split(' ').next().unwrap_or(name)).exists();
+        if exists {
+            text += &format!("  {name:<18} {what}\n");
+        }
+    }
+    if !case.inputs.is_empty() {
+        text += &format!(
+            "  {:<18} {}\n",
+            "inputs/", "copies of the files that the case reads"
+        );
+    }
+    text
+}

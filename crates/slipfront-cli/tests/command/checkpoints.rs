@@ -1,0 +1,328 @@
+//! Runs that are stopped and resumed: the same bytes as without a stop, and never from a checkpoint that is not theirs.
+
+use std::process::{Child, Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use rstest::rstest;
+
+use super::{Bench, program};
+
+/// Around a second: long enough to be stopped several times.
+const SLOW: &str = "[slider]\nblocks = [60, 50]\nedges = ['periodic', 'free']\n[drive]\nv_star = 0.01\n\
+                    [[texture]]\nshape = 'mask'\nfile = 'spot.png'\n";
+
+/// The reference kernel, and snapshots by the step.
+const LITERAL: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.05\n[friction]\nlaw = 'reversal'\n\
+                       [output]\nsnapshots = { every = 7.5 }\n";
+
+/// Enough blocks for two threads, until the onset.
+const WIDE: &str = "[slider]\nblocks = [400, 350]\n[drive]\nv_star = 0.1\n[time]\nstop = 'after_onset'\n";
+
+fn bench() -> Bench {
+    let bench = Bench::new();
+    for (name, text) in [
+        ("slow.toml", SLOW),
+        ("literal.toml", LITERAL),
+        ("wide.toml", WIDE),
+    ] {
+        bench.write(name, text);
+    }
+    let cavity = "texture small.toml -o spot.png --set texture.0={shape=\"cavity\",coverage=15}";
+    bench.done(&format!("{cavity} --set slider.blocks=[60,50]"));
+    bench
+}
+
+fn start(bench: &Bench, line: &str) -> Child {
+    Command::new(program())
+        .args(line.split_whitespace())
+        .current_dir(bench.path())
+        .stderr(Stdio::piped())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap()
+}
+
+fn send(child: &Child, signal: &str) {
+    let kill = Command::new("kill")
+        .args([signal, &child.id().to_string()])
+        .status();
+    assert!(kill.unwrap().success());
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Waits until it is so.
+fn wait_for(what: &str, so: impl Fn() -> bool) {
+    let began = Instant::now();
+    while !so() {
+        assert!(began.elapsed() < Duration::from_secs(60), "no {what}");
+        sleep(Duration::from_millis(1));
+    }
+}
+
+/// Begins a run and asks it for checkpoints until it has saved so many, then kills it.
+fn killed_after(bench: &Bench, line: &str, folder: &str, checkpoints: usize) {
+    let latest = bench.path().join(folder).join("checkpoint.bin");
+    let saved = || std::fs::metadata(&latest).and_then(|file| file.modified()).ok();
+    let mut child = start(bench, line);
+    wait_for("case.toml", || bench.exists(&format!("{folder}/case.toml")));
+    for _ in 0..checkpoints {
+        let before = saved();
+        send(&child, "-USR1");
+        wait_for("checkpoint", || saved().is_some() && saved() != before);
+    }
+    child.kill().unwrap();
+    assert_eq!(
+        child.wait().unwrap().code(),
+        None,
+        "it was over before it was killed"
+    );
+}
+
+#[rstest]
+#[case("slow.toml", "-INT", 130)]
+#[case("literal.toml", "-TERM", 143)]
+#[case("wide.toml", "-INT", 130)]
+fn stopped_any_number_of_times_it_writes_the_same_bytes(
+    #[case] case: &str,
+    #[case] signal: &str,
+    #[case] status: i32,
+) {
+    let bench = bench();
+    bench.done(&format!("run {case} -o whole --threads 1"));
+    let mut stops = 0;
+    let mut line = format!("run {case} -o stopped");
+    loop {
+        // Any number of threads, each time another one.
+        let child = start(&bench, &format!("{line} --threads {}", 1 + stops % 3));
+        wait_for("case.toml", || bench.exists("stopped/case.toml"));
+        sleep(Duration::from_millis(60 + 37 * (stops % 4)));
+        let _ = Command::new("kill")
+            .args([signal, &child.id().to_string()])
+            .output();
+        let output = child.wait_with_output().unwrap();
+        if output.status.success() {
+            break;
+        }
+        assert_eq!(output.status.code(), Some(status), "{}", said(&output));
+        assert!(
+            said(&output).contains("run --resume stopped"),
+            "{}",
+            said(&output)
+        );
+        stops += 1;
+        line = "run --resume stopped".to_owned();
+    }
+    assert!(stops >= 2, "it was stopped {stops} times only");
+    bench.assert_same("whole", "stopped");
+    bench.done("verify stopped");
+}
+
+#[test]
+fn a_signal_saves_and_the_run_goes_on() {
+    let bench = bench();
+    bench.done("run slow.toml -o whole");
+    let child = start(&bench, "run slow.toml -o saved");
+    wait_for("case.toml", || bench.exists("saved/case.toml"));
+    send(&child, "-USR1");
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success());
+    assert!(
+        said(&output).contains("saved a checkpoint of step "),
+        "{}",
+        said(&output)
+    );
+    // A complete run needs no checkpoint.
+    bench.assert_same("whole", "saved");
+}
+
+#[test]
+fn by_the_clock_it_saves_now_and_then() {
+    let bench = bench();
+    let mut child = start(
+        &bench,
+        "run slow.toml -o clocked --checkpoint 10ms --set time.duration_star=20000",
+    );
+    wait_for("two checkpoints", || {
+        bench.exists("clocked/checkpoint-previous.bin")
+    });
+    child.kill().unwrap();
+    child.wait().unwrap();
+    // Without them, a signal has nothing to save.
+    let child = start(
+        &bench,
+        "run slow.toml -o off --checkpoint off --set time.duration_star=20000",
+    );
+    wait_for("case.toml", || bench.exists("off/case.toml"));
+    send(&child, "-USR1");
+    sleep(Duration::from_millis(50));
+    send(&child, "-INT");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    let said = said(&output);
+    assert!(
+        said.contains("no checkpoint is saved") && said.contains("nothing is saved"),
+        "{said}"
+    );
+    assert!(!bench.exists("off/checkpoint.bin"));
+    for wrong in ["soon", "-5min", "5"] {
+        let said = bench.refused(&format!("run small.toml --checkpoint={wrong}"), 2);
+        assert!(said.contains("5min, 30s or 1h") && said.contains("off"), "{said}");
+    }
+}
+
+#[test]
+fn what_is_complete_or_has_not_begun() {
+    let bench = bench();
+    bench.done("run small.toml -o whole");
+    let before = bench.files("whole");
+    assert!(bench.done("run --resume whole").contains("is complete"));
+    let summary = bench.done("run --resume whole --json");
+    assert_eq!(summary.as_bytes(), before["summary.json"]);
+    assert!(bench.files("whole") == before);
+    // Killed before its first checkpoint, or while it wrote its results.
+    let case = String::from_utf8(before["case.toml"].clone()).unwrap();
+    bench.write("begun/case.toml", &case);
+    bench.write("begun/series.csv", "half of");
+    bench.write("begun/.slipfront12345", "half of");
+    let said = bench.done("run --resume begun");
+    assert!(said.contains("goes on from the start"), "{said}");
+    bench.assert_same("whole", "begun");
+    // Where no run was begun there is none to resume, and nothing is touched.
+    bench.write("other/notes.txt", "mine");
+    for folder in ["other", "nowhere"] {
+        let said = bench.refused(&format!("run --quiet --resume {folder}"), 2);
+        assert!(said.contains("holds no run to go on with"), "{said}");
+    }
+    assert_eq!(bench.files("other").len(), 1);
+    assert!(!bench.exists("nowhere"));
+    // A run that was complete is not taken for one that was not.
+    bench.write("whole/manifest.json", "{}");
+    assert!(
+        bench
+            .refused("run --quiet --resume whole", 2)
+            .contains("manifest.json is damaged")
+    );
+    assert_eq!(bench.files("whole").len(), before.len());
+    for line in [
+        "run small.toml --resume whole",
+        "run --resume whole --seed 2",
+        "run --previous",
+    ] {
+        bench.refused(line, 2);
+    }
+}
+
+#[test]
+fn an_interrupted_run_is_not_begun_again_by_mistake() {
+    let bench = bench();
+    killed_after(&bench, "run slow.toml -o killed", "killed", 1);
+    let said = bench.refused("run slow.toml --quiet -o killed", 2);
+    assert!(
+        said.contains("slipfront run --resume killed") && said.contains("--force"),
+        "{said}"
+    );
+    let said = bench.refused("verify killed", 2);
+    assert!(said.contains("slipfront run --resume killed"), "{said}");
+    bench.done("run slow.toml -o whole");
+    bench.done("run slow.toml -o killed --force");
+    bench.assert_same("whole", "killed");
+}
+
+#[test]
+fn one_process_at_a_time_goes_on_with_a_run() {
+    let bench = bench();
+    let mut child = start(&bench, "run slow.toml -o busy");
+    wait_for("case.toml", || bench.exists("busy/case.toml"));
+    for line in [
+        "run --quiet --resume busy",
+        "run slow.toml --quiet -o busy --force",
+    ] {
+        let said = bench.refused(line, 2);
+        assert!(
+            said.contains("another process is running in the folder busy"),
+            "{said}"
+        );
+    }
+    assert!(child.wait().unwrap().success());
+}
+
+/// A checkpoint with its checksum made to fit again.
+fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    bytes.truncate(bytes.len() - blake3::OUT_LEN);
+    let seal = blake3::hash(&bytes);
+    bytes.extend(seal.as_bytes());
+    bytes
+}
+
+/// Everything that can be wrong with the latest checkpoint, each refused with its sentence; the one before it goes on.
+#[test]
+fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
+    let bench = bench();
+    bench.done("run slow.toml -o whole");
+    killed_after(&bench, "run slow.toml -o killed", "killed", 2);
+    let latest = bench.read("killed/checkpoint.bin");
+    let refused = |bytes: &[u8], why: &str| {
+        bench.write("killed/checkpoint.bin", bytes);
+        let said = bench.refused("run --quiet --resume killed", 2);
+        assert!(
+            said.contains("killed/checkpoint.bin") && said.contains(why),
+            "{why}: {said}"
+        );
+        said
+    };
+    let n = latest.len();
+    for cut in [0, 1, 100, n / 2, n - 33, n - 32, n - 1] {
+        refused(&latest[..cut], "is damaged");
+    }
+    for place in [0, 30, 150, 300, n / 3, n / 2, n - 40, n - 1] {
+        let mut flipped = latest.clone();
+        flipped[place] ^= 4;
+        let said = refused(&flipped, "is damaged");
+        assert!(said.contains("add --previous to go on from there"), "{said}");
+    }
+    refused(&[&latest[..], b"more"].concat(), "is damaged");
+    refused(&bench.read("whole/fields.nc"), "is damaged");
+    // Whole, and not its own.
+    let text = |from: &str, to: &str| {
+        let line = latest.iter().position(|&byte| byte == b'\n').unwrap();
+        let header = String::from_utf8(latest[..line].to_vec()).unwrap();
+        assert!(header.contains(from), "{header}");
+        sealed([header.replacen(from, to, 1).as_bytes(), &latest[line..]].concat())
+    };
+    refused(
+        &text("slipfront 0.", "slipfront 7."),
+        "was written by slipfront 7.",
+    );
+    refused(
+        &text("\"slipfront_checkpoint\":1", "\"slipfront_checkpoint\":2"),
+        "was written by",
+    );
+    let mut cut_state = latest.clone();
+    cut_state.remove(n / 2);
+    refused(&sealed(cut_state), "is damaged: it holds no state of a run");
+    let case = String::from_utf8(bench.read("killed/case.toml")).unwrap();
+    bench.write("killed/case.toml", case.replace("seed = 1", "seed = 2"));
+    refused(&latest, "belongs to another case");
+    bench.write("killed/case.toml", &case);
+
+    bench.write("killed/checkpoint.bin", &latest[..n / 2]);
+    bench.done("run --resume killed --previous");
+    bench.assert_same("whole", "killed");
+}
+
+/// A kill between the two renames leaves the one before alone: it is the latest then.
+#[test]
+fn where_only_the_one_before_is_left_it_is_taken() {
+    let bench = bench();
+    bench.done("run slow.toml -o whole");
+    killed_after(&bench, "run slow.toml -o killed", "killed", 2);
+    std::fs::remove_file(bench.path().join("killed/checkpoint.bin")).unwrap();
+    assert!(bench.done("run --resume killed").contains("goes on from step "));
+    bench.assert_same("whole", "killed");
+    let said = bench.refused("run --quiet --resume killed --previous", 0);
+    assert!(said.is_empty(), "{said}");
+}

@@ -1,0 +1,144 @@
+//! Stops with a checkpoint under the reference kernel, with observers, and what does not fit. Those under the fused kernel
+//! stand beside its other executions.
+
+use rstest::rstest;
+use slipfront::observe::frames::Selection;
+use slipfront::observe::{Curve, Field, Instants, KineticHistory, KineticStart, Scheduled};
+use slipfront::{Checkpoint, Execution, FrictionLaw, Simulation, Stop};
+
+use crate::common::{Slider, cavity};
+use crate::{FUSED, REFERENCE, bits, stopped_and_resumed};
+
+fn slider(law: FrictionLaw) -> Slider {
+    Slider {
+        blocks: [12, 10],
+        textures: vec![cavity([12, 10], 10.0, 1, 0.3, true)],
+        degrees: 25.0,
+        v_star: 0.1,
+        sigma_static_star: 0.1,
+        dt_star: 0.1,
+        law,
+        ..Slider::default()
+    }
+}
+
+/// Displacements, velocities, forces and friction of all blocks, first slips, and the largest contact stress.
+fn everything(simulation: &Simulation) -> Vec<u64> {
+    let now = simulation.snapshot();
+    let mut numbers = simulation.first_slip_time_star();
+    numbers.extend([now.point.mu_star, simulation.contact_stress_max()]);
+    for b in 0..now.model.lattice.n_blocks() {
+        let block = now.block(b);
+        for pair in [
+            block.displacement,
+            block.velocity,
+            block.force_drive,
+            block.force_lattice,
+            block.force_friction,
+        ] {
+            numbers.extend(pair);
+        }
+    }
+    bits(&numbers)
+}
+
+#[rstest]
+fn the_reference_kernel_under_every_law(
+    #[values(FrictionLaw::Projection, FrictionLaw::Reversal, FrictionLaw::Literal)] law: FrictionLaw,
+    #[values(1, 7)] every: u64,
+) {
+    let slider = slider(law);
+    let (model, dt_star) = (slider.model(), slider.dt_star);
+    let start = || Simulation::executed(&model, dt_star, None, REFERENCE);
+    let (mut plain, mut stopped) = (start(), start());
+    for step in 0..slider.steps(4.0) {
+        if step.is_multiple_of(every) {
+            stopped = stopped_and_resumed(&stopped, &model, dt_star, REFERENCE);
+            assert_eq!(everything(&stopped), everything(&plain), "resumed at step {step}");
+        }
+        plain.step();
+        stopped.step();
+        assert_eq!(everything(&stopped), everything(&plain), "step {step}");
+    }
+    assert!(
+        plain.first_slip_time_star().iter().any(|t| !t.is_nan()),
+        "nothing ever slips"
+    );
+}
+
+/// A run in one piece and one in pieces of every length, each of which goes on from what was written down of the run and of
+/// its observers: these have seen every instant, and once.
+#[rstest]
+fn observers_see_every_instant_once(
+    #[values(REFERENCE, FUSED)] execution: Execution,
+    #[values(1, 13, 250)] piece: u64,
+) {
+    let slider = slider(FrictionLaw::Projection);
+    let (model, dt_star) = (slider.model(), slider.dt_star);
+    let last_step = slider.steps(6.0);
+    let stop = Stop::at_step(last_step);
+    let fresh = || {
+        let selection = Selection {
+            fields: vec![Field::ContactStress, Field::Sliding],
+            stride: 2,
+        };
+        let end_star = last_step as f64 * dt_star;
+        (
+            Curve::every(7),
+            KineticHistory::new(last_step),
+            Instants::new(selection, KineticStart::Auto, end_star),
+        )
+    };
+    let start = || Simulation::executed(&model, dt_star, None, execution);
+    let (mut curve, mut history, mut instants) = fresh();
+    let mut whole = start();
+    whole
+        .run(
+            stop,
+            &mut [
+                Scheduled::always(&mut curve),
+                Scheduled::always(&mut history),
+                Scheduled::always(&mut instants),
+            ],
+        )
+        .unwrap();
+    let mut observers = fresh();
+    let mut simulation = start();
+    let mut pieces = 0;
+    loop {
+        let (curve, history, instants) = &mut observers;
+        let seen = &mut [
+            Scheduled::always(curve),
+            Scheduled::always(history),
+            Scheduled::always(instants),
+        ];
+        if simulation.advance(stop, piece, seen).unwrap().is_some() {
+            break;
+        }
+        pieces += 1;
+        simulation = stopped_and_resumed(&simulation, &model, dt_star, execution);
+        observers = postcard::from_bytes(&postcard::to_stdvec(&observers).unwrap()).unwrap();
+    }
+    assert!(pieces >= last_step / piece - 1, "{pieces} pieces");
+    let written = |observers: &(Curve, KineticHistory, Instants)| postcard::to_stdvec(observers).unwrap();
+    assert_eq!(written(&observers), written(&(curve, history, instants)));
+    assert_eq!(everything(&simulation), everything(&whole));
+}
+
+#[test]
+fn a_checkpoint_of_another_lattice_or_kernel_does_not_fit() {
+    let [model, other] = [[12, 10], [10, 10]].map(|blocks| {
+        Slider {
+            blocks,
+            ..Slider::default()
+        }
+        .model()
+    });
+    let checkpoint = || -> Checkpoint {
+        let simulation = Simulation::executed(&model, 0.1, None, FUSED);
+        postcard::from_bytes(&postcard::to_stdvec(&simulation.checkpoint()).unwrap()).unwrap()
+    };
+    assert!(Simulation::resume(&model, 0.1, checkpoint(), FUSED).is_some());
+    assert!(Simulation::resume(&model, 0.1, checkpoint(), REFERENCE).is_none());
+    assert!(Simulation::resume(&other, 0.1, checkpoint(), FUSED).is_none());
+}

@@ -1,0 +1,55 @@
+//! Seeds of the targets, and what earlier fuzzing has found.
+
+use std::path::Path;
+
+use crate::Target;
+use crate::scratch::repository;
+
+/// A named input.
+pub type Input = (String, Vec<u8>);
+
+impl Target {
+    /// Inputs that its parser was written for, or against.
+    pub fn seeds(&self) -> Vec<Input> {
+        let mut seeds: Vec<Input> = (self.made)()
+            .into_iter()
+            .enumerate()
+            .map(|(k, bytes)| (format!("made {k}"), bytes))
+            .collect();
+        for name in self.files {
+            match name.split_once("*.") {
+                Some((folder, ending)) => seeds.extend(files_of(&repository(folder), ending)),
+                None => seeds.push(((*name).to_owned(), std::fs::read(repository(name)).unwrap())),
+            }
+        }
+        seeds.extend(files_of(&own_folder("seeds", self.name), ""));
+        seeds
+    }
+
+    /// Inputs on which a check once failed.
+    pub fn findings(&self) -> Vec<Input> {
+        files_of(&own_folder("findings", self.name), "")
+    }
+
+    /// The text of its dictionary.
+    pub fn words(&self) -> String {
+        let text = |name| std::fs::read_to_string(own_folder("dictionaries", name)).unwrap();
+        self.dictionary.map(text).unwrap_or_default()
+    }
+}
+
+fn own_folder(folder: &str, name: &str) -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(folder).join(name)
+}
+
+/// The files of a folder, in order; none where there is no folder.
+fn files_of(folder: &Path, ending: &str) -> Vec<Input> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten();
+    let mut paths: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| {
+        path.is_file() && (ending.is_empty() || path.extension().is_some_and(|e| e == ending))
+    });
+    paths.sort();
+    let input = |path: &std::path::PathBuf| (path.display().to_string(), std::fs::read(path).unwrap());
+    paths.iter().map(input).collect()
+}

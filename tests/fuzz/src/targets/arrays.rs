@@ -1,0 +1,248 @@
+//! Arrays and images that a case names.
+
+use std::path::Path;
+
+use png::{BitDepth, ColorType, Encoder};
+use slipfront_case::arrays::{read_field, read_mask_npy, read_mask_png, write_mask_png};
+
+use crate::checks::readable;
+use crate::{Memory, Target, scratch};
+
+/// The lattice that arrays are read for: not square, so that rows and columns are told apart.
+const NX: usize = 3;
+const NY: usize = 2;
+
+/// Arrays of numpy: coefficients and masks.
+pub(crate) const NPY: Target = Target {
+    name: "npy",
+    check: npy,
+    made: npy_files,
+    files: &[],
+    dictionary: Some("npy.dict"),
+    longest: 1024,
+    // Headers of at most 10 000 bytes, twice in memory and as a tree.
+    memory: Memory {
+        bytes: 1 << 20,
+        per_byte: 512,
+    },
+    mutations: 3000,
+    repetitions: 20,
+};
+
+/// Tables of numbers as text.
+pub(crate) const CSV_TABLE: Target = Target {
+    name: "csv_table",
+    check: csv_table,
+    made: tables,
+    files: &["cases/mu_s.csv"],
+    dictionary: Some("table.dict"),
+    longest: 1024,
+    memory: Memory {
+        bytes: 256 << 10,
+        per_byte: 64,
+    },
+    mutations: 3000,
+    repetitions: 60,
+};
+
+/// Masks as images.
+pub(crate) const MASK_PNG: Target = Target {
+    name: "mask_png",
+    check: mask_png,
+    made: images,
+    files: &["cases/herringbone.png", "docs/images/texture-mask.png"],
+    dictionary: Some("png.dict"),
+    longest: 8192,
+    // The decoder's own buffers, and a byte for each pixel, of which at most 8 x 1040 stand in a byte of the file.
+    memory: Memory {
+        bytes: 4 << 20,
+        per_byte: 2 * 8 * 1040,
+    },
+    mutations: 500,
+    repetitions: 20,
+};
+
+fn npy_files() -> Vec<Vec<u8>> {
+    let header = |descr: &str, order: &str, shape: &str, version: u8| {
+        let mut text = format!("{{'descr': {descr}, 'fortran_order': {order}, 'shape': {shape}, }}");
+        while (10 + text.len() + 1) % 16 != 0 {
+            text.push(' ');
+        }
+        text.push('\n');
+        let mut bytes = b"\x93NUMPY".to_vec();
+        bytes.extend([version, 0]);
+        bytes.extend((text.len() as u16).to_le_bytes());
+        bytes.extend(if version > 1 { vec![0; 2] } else { Vec::new() });
+        bytes.extend(text.as_bytes());
+        bytes
+    };
+    let file = |descr: &str, order: &str, data: &[u8], version| {
+        [
+            header(&format!("'{descr}'"), order, "(2, 3)", version),
+            data.to_vec(),
+        ]
+        .concat()
+    };
+    let numbers: Vec<u8> = [0.0, 1.0, 2.5, 0.25, 4.0, 1e-3f64]
+        .iter()
+        .flat_map(|value| value.to_le_bytes())
+        .collect();
+    let mut files = vec![
+        file("<f8", "False", &numbers, 1),
+        file("<f8", "True", &numbers, 2),
+        file("<f8", "False", &numbers, 3),
+        header("[('a', '<f8')]", "False", "(2, 3)", 1),
+    ];
+    for descr in [
+        "|b1", "|u1", "|i1", "<u2", ">i2", "<i4", ">u4", "<i8", ">u8", "<f2", ">f4", ">f8", "<c16",
+    ] {
+        let size: usize = descr[2..].parse().unwrap();
+        files.push(file(descr, "False", &vec![1; 6 * size], 1));
+    }
+    files
+}
+
+fn tables() -> Vec<Vec<u8>> {
+    let texts = [
+        "1.0,0.9,1.1\n0.8,1.2,1\n",
+        "# mu_s\n1.0;0.9;1.1\n\n0.8;1.2;1",
+        "1.0\t0.9\t1.1\r\n0.8\t1.2\t1\r\n",
+        "  1.0  0.9   1.1\n  0.8  1.2  1e-3\n",
+        "\"1.0\",0.9,+1.1\n0.8,1.2,0.0\n",
+        "1,5;2,5;3,5\n1;2;3\n",
+        "1,2,nan\n1,2,-3\n",
+    ];
+    texts.map(|text| text.as_bytes().to_vec()).into()
+}
+
+/// Small images of every colour type and depth.
+fn images() -> Vec<Vec<u8>> {
+    use BitDepth::{Eight, Four, One, Sixteen, Two};
+    use ColorType::{Grayscale, GrayscaleAlpha, Indexed, Rgb, Rgba};
+    let kinds = [
+        (Grayscale, One),
+        (Grayscale, Two),
+        (Grayscale, Four),
+        (Grayscale, Eight),
+        (Grayscale, Sixteen),
+        (GrayscaleAlpha, Eight),
+        (GrayscaleAlpha, Sixteen),
+        (Rgb, Eight),
+        (Rgb, Sixteen),
+        (Rgba, Eight),
+        (Rgba, Sixteen),
+        (Indexed, One),
+        (Indexed, Two),
+        (Indexed, Eight),
+    ];
+    let (width, height) = (5, 3);
+    let image = |&(color, depth): &(ColorType, BitDepth)| {
+        let mut bytes = Vec::new();
+        let mut encoder = Encoder::new(&mut bytes, width, height);
+        encoder.set_color(color);
+        encoder.set_depth(depth);
+        if color == Indexed {
+            encoder.set_palette(vec![0, 0, 0, 255, 255, 255, 128, 0, 64]);
+            encoder.set_trns(vec![255, 128]);
+        }
+        let bits = width as usize * color.samples() * depth as usize;
+        let data: Vec<u8> = (0..bits.div_ceil(8) * height as usize)
+            .map(|k| if color == Indexed { 0x01 } else { (k * 37) as u8 })
+            .collect();
+        let mut writer = encoder.write_header().unwrap();
+        writer.write_image_data(&data).unwrap();
+        writer.finish().unwrap();
+        bytes
+    };
+    let mut images: Vec<Vec<u8>> = kinds.iter().map(image).collect();
+    // The same, said to be interlaced.
+    let mut interlaced = images[3].clone();
+    interlaced[28] = 1;
+    images.push(interlaced);
+    images
+}
+
+/// Coefficients are finite and not negative, and read back as the same bits.
+fn field(path: &Path) {
+    let values = match read_field(path, NX, NY) {
+        Ok(values) => values,
+        Err(error) => return readable(&error),
+    };
+    assert_eq!(values.len(), NX * NY);
+    assert!(values.iter().all(|value| value.is_finite() && *value >= 0.0));
+    let rows: Vec<String> = values
+        .chunks(NX)
+        .map(|row| {
+            row.iter()
+                .map(|value| format!("{value:?}"))
+                .collect::<Vec<_>>()
+                .join(",")
+        })
+        .collect();
+    let again = read_field(&scratch::file("again.csv", rows.join("\n").as_bytes()), NX, NY).unwrap();
+    let bits = |values: &[f64]| -> Vec<u64> { values.iter().map(|value| value.to_bits()).collect() };
+    assert_eq!(bits(&again), bits(&values));
+}
+
+fn npy(input: &[u8]) {
+    let path = scratch::file("field.npy", input);
+    field(&path);
+    match read_mask_npy(&path, NX, NY) {
+        Ok(mask) => assert_eq!(mask.len(), NX * NY),
+        Err(error) => readable(&error),
+    }
+}
+
+fn csv_table(input: &[u8]) {
+    field(&scratch::file("field.csv", input));
+}
+
+fn mask_png(input: &[u8]) {
+    mask(input);
+    // What is behind the checksums of the chunks.
+    mask(&with_checksums(input));
+}
+
+fn mask(input: &[u8]) {
+    let path = scratch::file("mask.png", input);
+    let image = match read_mask_png(&path, 0.5) {
+        Ok(image) => image,
+        Err(error) => return readable(&error),
+    };
+    assert_eq!(image.dark.len(), image.width * image.height);
+    if image.dark.is_empty() || image.dark.len() > 1 << 16 {
+        return;
+    }
+    let upwards: Vec<bool> = image.dark.chunks(image.width).rev().flatten().copied().collect();
+    let again = scratch::file("again.png", b"");
+    write_mask_png(&again, image.width, image.height, &upwards).unwrap();
+    assert_eq!(read_mask_png(&again, 0.5).unwrap().dark, image.dark);
+}
+
+/// The same chunks, each with the checksum that it should have.
+fn with_checksums(image: &[u8]) -> Vec<u8> {
+    let mut sealed = image.to_vec();
+    let mut start = 8;
+    while let Some(length) = image.get(start..start + 4) {
+        let length = u32::from_be_bytes(length.try_into().unwrap()) as usize;
+        let end = start + 8 + length;
+        let Some(chunk) = image.get(start + 4..end) else {
+            break;
+        };
+        let sum = crc32(chunk).to_be_bytes();
+        if let Some(place) = sealed.get_mut(end..end + 4) {
+            place.copy_from_slice(&sum);
+        }
+        start = end + 4;
+    }
+    sealed
+}
+
+/// The checksum of a PNG chunk.
+fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(!0, |sum: u32, byte| {
+        (0..8).fold(sum ^ u32::from(*byte), |sum, _| {
+            (sum >> 1) ^ if sum & 1 == 1 { 0xedb8_8320 } else { 0 }
+        })
+    })
+}

@@ -1,0 +1,111 @@
+//! Case files and their overrides, which stand in `# set: ` comments at the top.
+
+use slipfront_case::case::Case;
+use slipfront_case::case_file::CaseFile;
+
+use crate::checks::readable;
+use crate::scratch::repository;
+use crate::{Memory, Target};
+
+const CASES: &[&str] = &[
+    "cases/*.toml",
+    "cases/paper/table1/*.toml",
+    "crates/slipfront-case/tests/good/*.toml",
+    "crates/slipfront-case/tests/bad/*.toml",
+];
+
+/// The text of a case, and what is set beside it.
+pub(crate) const CASE_FILE: Target = Target {
+    name: "case_file",
+    check: case_file,
+    made: Vec::new,
+    files: CASES,
+    dictionary: Some("case.dict"),
+    longest: 4096,
+    memory: Memory {
+        bytes: 1 << 20,
+        per_byte: 512,
+    },
+    mutations: 3000,
+    repetitions: 100,
+};
+
+/// A case that is made of it, surface and all, as long as the lattice is small.
+pub(crate) const CASE: Target = Target {
+    name: "case",
+    check: case,
+    made: Vec::new,
+    files: CASES,
+    dictionary: Some("case.dict"),
+    longest: 4096,
+    // The mask of cases/mask.toml has some thousand pixels.
+    memory: Memory {
+        bytes: 8 << 20,
+        per_byte: 512,
+    },
+    mutations: 300,
+    repetitions: 30,
+};
+
+/// Most blocks of a lattice that is made: its memory is bounded by the machine's, not by the file.
+const BLOCKS: u64 = 1000;
+
+/// A case file, as far as it is one.
+fn parse(input: &[u8]) -> Option<CaseFile> {
+    let text = std::str::from_utf8(input).ok()?;
+    let comments = text.lines().take_while(|line| line.starts_with('#'));
+    let overrides: Vec<String> = comments
+        .filter_map(|line| line.strip_prefix("# set: "))
+        .map(str::to_owned)
+        .collect();
+    match CaseFile::parse(text, "case.toml", &overrides) {
+        Ok(case) => Some(case),
+        Err(error) => {
+            readable(&error);
+            let message = error.to_string();
+            assert!(
+                message.starts_with("case.toml:") || message.starts_with("--set "),
+                "no place: {message}"
+            );
+            None
+        }
+    }
+}
+
+/// What can be read can be written, and read again as the same.
+fn case_file(input: &[u8]) {
+    let Some(case) = parse(input) else { return };
+    let printed = case.to_toml().unwrap();
+    let again =
+        CaseFile::parse(&printed, "printed", &[]).unwrap_or_else(|error| panic!("{error}\n{printed}"));
+    assert_eq!(again, case);
+    assert_eq!(again.to_toml().unwrap(), printed);
+}
+
+/// A case that is within its bounds can be made, or says why not.
+fn case(input: &[u8]) {
+    let Some(mut file) = parse(input) else { return };
+    // The seeds are of the paper's size.
+    for blocks in &mut file.slider.blocks {
+        *blocks = (*blocks).min(31);
+    }
+    if file.check().is_err() || u64::from(file.slider.blocks[0]) * u64::from(file.slider.blocks[1]) > BLOCKS {
+        return;
+    }
+    match Case::new(file, "case", &repository("cases")) {
+        Err(error) => readable(&error),
+        Ok(case) => {
+            assert!(case.schedule.last_step >= 1 && case.schedule.dt_star > 0.0);
+            assert!(case.groups.v_star.is_finite() && case.groups.omega_star.is_finite());
+            assert!(case.texture.meshed_percent >= 0.0 && case.texture.meshed_percent <= 100.0);
+            for warning in case.warnings() {
+                readable(&warning);
+            }
+            let surface = &case.model.surface;
+            let coefficients = surface.mu_static.iter().chain(&surface.mu_kinetic);
+            assert!(coefficients.clone().all(|mu| mu.is_finite() && *mu >= 0.0));
+            let printed = case.file.to_toml().unwrap();
+            assert_eq!(CaseFile::parse(&printed, "printed", &[]).unwrap(), case.file);
+        }
+    }
+}

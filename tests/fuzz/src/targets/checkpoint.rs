@@ -1,0 +1,110 @@
+//! Checkpoints of runs: a header, the state and a seal over both.
+
+use std::path::Path;
+use std::sync::LazyLock;
+
+use jiff::Timestamp;
+use slipfront::StopReason;
+use slipfront_case::case::Case;
+use slipfront_case::checkpoint::{CHECKPOINT, Checkpoints};
+use slipfront_case::run::Running;
+
+use crate::checks::readable;
+use crate::{Memory, Target, scratch};
+
+/// The first byte chooses one of [`CASES`]. The file is read as it is, then with the header and the seal that it should
+/// have; a run that can go on from there does so.
+pub(crate) const CHECKPOINTS: Target = Target {
+    name: "checkpoint",
+    check: checkpoint,
+    made,
+    files: &[],
+    dictionary: Some("json.dict"),
+    longest: 16384,
+    // Postcard reserves at most 1 MiB at once for a list that says it is longer; the kernel has a few blocks.
+    memory: Memory {
+        bytes: 16 << 20,
+        per_byte: 256,
+    },
+    mutations: 300,
+    repetitions: 20,
+};
+
+/// Both kernels, and both ways to keep fields.
+const TEXTS: [&str; 3] = [
+    "[slider]\nblocks = [4, 3]\n[time]\nduration_star = 20\n[drive]\nv_star = 0.2\n",
+    "[slider]\nblocks = [3, 2]\n[time]\nduration_star = 20\n[output]\nsnapshots = [1.0, 5.0, 15.0]\nstride = 2\n",
+    "[slider]\nblocks = [3, 3]\nedges = \"periodic\"\n[time]\nduration_star = 20\nstop = \"after_onset\"\n[friction]\n\
+     law = \"literal\"\n[output]\nsnapshots = { every = 2.0 }\nfields = [\"sliding\"]\n",
+];
+
+static CASES: LazyLock<[Case; 3]> =
+    LazyLock::new(|| TEXTS.map(|text| Case::parse(text, "case", &[]).unwrap()));
+
+/// Steps of a run that goes on.
+const STEPS: u64 = 20;
+
+fn made() -> Vec<Vec<u8>> {
+    let saved = |number: usize, steps: u64| {
+        let mut running = Running::start(&CASES[number], 1);
+        running.advance(steps).unwrap();
+        [vec![number as u8], save(&scratch::folder("made"), &running)].concat()
+    };
+    vec![
+        saved(0, 0),
+        saved(0, 150),
+        saved(1, 60),
+        saved(2, 30),
+        saved(2, 100),
+    ]
+}
+
+/// The bytes of the checkpoint of a run.
+fn save(folder: &Path, running: &Running) -> Vec<u8> {
+    Checkpoints::new(folder, running.case(), Timestamp::UNIX_EPOCH)
+        .save(running)
+        .unwrap();
+    std::fs::read(folder.join(CHECKPOINT)).unwrap()
+}
+
+fn checkpoint(input: &[u8]) {
+    let Some((number, file)) = input.split_first() else {
+        return;
+    };
+    let case = &CASES[usize::from(*number) % CASES.len()];
+    go_on(case, file);
+    // The state alone, under a header and a seal that fit.
+    let folder = scratch::folder("checkpoint");
+    let whole = save(&folder, &Running::start(case, 1));
+    let length = |bytes: &[u8]| bytes.iter().position(|&byte| byte == b'\n').map(|at| at + 1);
+    let header = &whole[..length(&whole).unwrap()];
+    let begin = length(file).unwrap_or(0);
+    let state = &file[begin..file.len().saturating_sub(blake3::OUT_LEN).max(begin)];
+    let sealed = [header, state].concat();
+    let seal = blake3::hash(&sealed);
+    go_on(case, &[&sealed, seal.as_bytes().as_slice()].concat());
+}
+
+/// A run goes on from what can be read, or the reason is told; what it saves then can be read again.
+fn go_on(case: &Case, file: &[u8]) {
+    let folder = scratch::folder("checkpoint");
+    std::fs::write(folder.join(CHECKPOINT), file).unwrap();
+    let saved = match Checkpoints::load(&folder, case, false) {
+        Ok(saved) => saved.unwrap(),
+        Err(error) => return readable(&error),
+    };
+    let Some(mut running) = Running::resume(case, 1, saved.state) else {
+        return;
+    };
+    match running.advance(STEPS) {
+        Err(error) => readable(&error),
+        Ok(ended) => {
+            let bytes = save(&folder, &running);
+            let again = Checkpoints::load(&folder, case, false).unwrap().unwrap();
+            let resumed = Running::resume(case, 1, again.state).unwrap();
+            assert_eq!(save(&folder, &resumed), bytes);
+            let record = running.record(ended.unwrap_or(StopReason::End));
+            assert_eq!(record.first_slip_time_star.len(), case.model.lattice.n_blocks());
+        }
+    }
+}

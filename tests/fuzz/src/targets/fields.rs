@@ -1,0 +1,128 @@
+//! The fields of a run, `fields.nc`.
+
+use slipfront_case::fields::{
+    FieldFrame, FieldName, FieldsData, FieldsFile, StaticFields, read_fields, read_maps, thin, write_fields,
+};
+
+use crate::checks::readable;
+use crate::{Memory, Target, scratch};
+
+/// All of the file, then the maps of one field.
+pub(crate) const FIELDS: Target = Target {
+    name: "fields",
+    check: fields,
+    made: || vec![file(4, 3, 1, 2), file(5, 4, 2, 1), file(3, 2, 1, 0)],
+    files: &[],
+    dictionary: Some("netcdf.dict"),
+    longest: 8192,
+    // A number of one byte becomes one of eight, and all instants are read.
+    memory: Memory {
+        bytes: 1 << 20,
+        per_byte: 128,
+    },
+    mutations: 2000,
+    repetitions: 40,
+};
+
+/// A file of a small lattice.
+pub(crate) fn file(nx: usize, ny: usize, stride: usize, frames: usize) -> Vec<u8> {
+    let blocks = nx * ny;
+    let names = [FieldName::ContactStressStar, FieldName::Sliding];
+    let number = |block: usize| 0.1 * block as f64;
+    let frames: Vec<FieldFrame> = (0..frames)
+        .map(|k| {
+            let field = |value: f32| thin(&vec![value; blocks], nx, stride);
+            FieldFrame {
+                time_star: 16.0 * (k + 1) as f64,
+                label: ["A", "BC"][k % 2].to_owned(),
+                step: 160 * (k as u64 + 1),
+                values: vec![field(0.5 * k as f32), field(f32::NAN)],
+            }
+        })
+        .collect();
+    let textured: Vec<bool> = (0..blocks).map(|block| block % 5 == 0).collect();
+    let values: Vec<f64> = (0..blocks).map(number).collect();
+    let data = FieldsFile {
+        nx,
+        ny,
+        stride,
+        block_size: 1e-6,
+        time_unit_s: 3e-10,
+        names: &names,
+        statics: StaticFields {
+            textured: &textured,
+            mu_static: &values,
+            mu_kinetic: &values,
+            first_slip_time_star: &values,
+        },
+        frames: &frames,
+    };
+    let path = scratch::file("made.nc", b"");
+    write_fields(&path, &data).unwrap();
+    std::fs::read(path).unwrap()
+}
+
+fn fields(input: &[u8]) {
+    let path = scratch::file("run/fields.nc", input);
+    match read_fields(&path) {
+        Err(error) => readable(&error),
+        Ok(data) => {
+            fits(&data);
+            let blocks = data.columns() * data.rows();
+            for values in [&data.mu_static, &data.mu_kinetic, &data.first_slip_time_star] {
+                assert_eq!(values.len(), blocks);
+            }
+            written_again(&data);
+        }
+    }
+    for name in [FieldName::ContactStressStar, FieldName::VelocityX] {
+        match read_maps(&path, name, 6) {
+            Err(error) => readable(&error),
+            Ok(maps) => {
+                assert!(maps.frames.len() <= 6 && maps.names.iter().all(|found| *found == name));
+                fits(&maps);
+            }
+        }
+    }
+}
+
+/// Every array has a value for every block that was kept, and every field stands there once.
+fn fits(data: &FieldsData) {
+    let blocks = data.columns() * data.rows();
+    assert_eq!(data.textured.len(), blocks);
+    let mut names = data.names.clone();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), data.names.len(), "a field twice");
+    for frame in &data.frames {
+        assert_eq!(frame.values.len(), data.names.len());
+        assert!(frame.values.iter().all(|values| values.len() == blocks));
+    }
+}
+
+/// What is read is written, and read again as the same.
+fn written_again(data: &FieldsData) {
+    // Of a thinned file the other blocks are lost.
+    if data.stride > 1 {
+        return;
+    }
+    let path = scratch::file("again.nc", b"");
+    let file = FieldsFile {
+        nx: data.nx,
+        ny: data.ny,
+        stride: 1,
+        block_size: data.block_size,
+        time_unit_s: data.time_unit_s,
+        names: &data.names,
+        statics: StaticFields {
+            textured: &data.textured,
+            mu_static: &data.mu_static,
+            mu_kinetic: &data.mu_kinetic,
+            first_slip_time_star: &data.first_slip_time_star,
+        },
+        frames: &data.frames,
+    };
+    write_fields(&path, &file).unwrap();
+    let again = read_fields(&path).unwrap();
+    assert_eq!(format!("{again:?}"), format!("{data:?}"));
+}

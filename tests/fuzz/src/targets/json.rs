@@ -1,0 +1,188 @@
+//! What stands in a run folder as JSON: the summary, and the manifest under its seal.
+
+use slipfront_case::folder::{RunFolder, own_bytes};
+use slipfront_case::manifest::{Manifest, ManifestFile, Random};
+use slipfront_case::results::{read_summary, summary_json};
+use slipfront_case::summary::{InstantSummary, Summary};
+use slipfront_case::verify::verify;
+
+use crate::checks::readable;
+use crate::{Memory, Target, scratch};
+
+/// The numbers of a run.
+pub(crate) const SUMMARY: Target = Target {
+    name: "summary",
+    check: check_summary,
+    made: || {
+        vec![
+            summary_json(&summary()).into_bytes(),
+            summary_json(&Summary::default()).into_bytes(),
+        ]
+    },
+    files: &[],
+    dictionary: Some("json.dict"),
+    longest: 8192,
+    memory: Memory {
+        bytes: 256 << 10,
+        per_byte: 64,
+    },
+    mutations: 2000,
+    repetitions: 60,
+};
+
+/// The manifest as it is, then with the seal that it should have, in a folder that is verified and replaced.
+pub(crate) const MANIFEST: Target = Target {
+    name: "manifest",
+    check: check_manifest,
+    made: manifests,
+    files: &[],
+    dictionary: Some("json.dict"),
+    longest: 8192,
+    memory: Memory {
+        bytes: 1 << 20,
+        per_byte: 256,
+    },
+    mutations: 500,
+    repetitions: 40,
+};
+
+/// A summary in which nothing is missing.
+pub(crate) fn summary() -> Summary {
+    Summary {
+        static_friction_star: 0.912_345_678_901_234_5,
+        static_friction: 0.91,
+        onset_time_star: 30.5,
+        onset_time_s: 9.6e-9,
+        first_slip_time_star: Some(20.25),
+        first_slip_time_s: Some(6.4e-9),
+        kinetic_friction_star: Some(0.5),
+        kinetic_friction_star_uncertainty: Some(1e-3),
+        kinetic_friction: Some(0.5),
+        kinetic_window_star: Some([100.0, 260.0]),
+        sliding_percent_kinetic: Some(97.5),
+        sliding_percent_max: 100.0,
+        mu_star_max: 0.95,
+        transition: true,
+        instants: vec![InstantSummary {
+            instant: 'A',
+            time_star: 16.0,
+            mu_star: 0.25,
+            sliding_percent: 0.0,
+        }],
+        v_star: 0.03,
+        n_blocks: 625,
+        dt_star: 0.1,
+        steps: 2667,
+        texture_percent_asked: Some(10.0),
+        seed: 1,
+        energy_error: -1e-16,
+        warnings: vec!["16 blocks are few".to_owned()],
+        version: "0.1.0".to_owned(),
+        ..Summary::default()
+    }
+}
+
+/// What is read is written, and read again as the same bytes.
+fn check_summary(input: &[u8]) {
+    let path = scratch::file("run/summary.json", input);
+    match read_summary(path.parent().unwrap()) {
+        Err(error) => readable(&error),
+        Ok(summary) => {
+            let printed = summary_json(&summary);
+            scratch::file("run/summary.json", printed.as_bytes());
+            let again = read_summary(path.parent().unwrap()).unwrap();
+            assert_eq!(summary_json(&again), printed);
+            assert_eq!(again, summary);
+        }
+    }
+}
+
+fn manifests() -> Vec<Vec<u8>> {
+    let file = |name: &str, bytes: &[u8]| ManifestFile {
+        name: name.to_owned(),
+        bytes: bytes.len() as u64,
+        blake3: blake3::hash(bytes).to_hex().to_string(),
+    };
+    let whole = Manifest {
+        version: "0.1.0".to_owned(),
+        revision: Some("0123abc".to_owned()),
+        kernel: "fused".to_owned(),
+        simd_width: "avx2".to_owned(),
+        threads: 2,
+        host: "host".to_owned(),
+        platform: "linux x86_64".to_owned(),
+        started: "2026-01-01T00:00:00Z".to_owned(),
+        finished: "2026-01-01T00:00:01Z".to_owned(),
+        wall_time_s: 1.25,
+        case_blake3: file("case.toml", CASE).blake3,
+        random: Random {
+            generator: "ChaCha8".to_owned(),
+            seed: 1,
+            streams: [("mu_static".to_owned(), 0)].into(),
+        },
+        files: vec![
+            file("case.toml", CASE),
+            file("inputs/mask.png", b"mask"),
+            file("../keep", b"kept"),
+        ],
+        seal: String::new(),
+    };
+    let sealed = |manifest: &Manifest| sealed(&serde_json::to_vec_pretty(manifest).unwrap());
+    vec![sealed(&whole), sealed(&Manifest::default())]
+}
+
+const CASE: &[u8] = b"[drive]\nv_star = 0.1\n";
+
+/// A manifest whose seal, if it has one, fits what stands before it.
+fn sealed(manifest: &[u8]) -> Vec<u8> {
+    let name = b"\"seal\"";
+    let Some(at) = manifest.windows(name.len()).rposition(|bytes| bytes == name) else {
+        return manifest.to_vec();
+    };
+    let before = &manifest[..at];
+    let seal = format!("\"seal\": \"{}\"\n}}\n", blake3::hash(before).to_hex());
+    [before, seal.as_bytes()].concat()
+}
+
+fn check_manifest(input: &[u8]) {
+    manifest(input);
+    manifest(&sealed(input));
+}
+
+/// A manifest whose seal fits is what was written; whatever it lists, nothing outside of its folder is touched.
+fn manifest(bytes: &[u8]) {
+    let folder = scratch::folder("manifests/run");
+    let beside = scratch::file("manifests/keep", b"kept");
+    scratch::file("manifests/run/inputs/mask.png", b"mask");
+    scratch::file("manifests/run/case.toml", CASE);
+    scratch::file("manifests/run/manifest.json", bytes);
+    match Manifest::read(&folder) {
+        Err(error) => readable(&error),
+        Ok(manifest) => {
+            let printed = serde_json::to_vec_pretty(&manifest).unwrap();
+            let again: Manifest = serde_json::from_slice(&printed).unwrap();
+            assert_eq!(again, manifest);
+            readable(&manifest.program());
+        }
+    }
+    match verify(&folder) {
+        Err(error) => readable(&error),
+        Ok(verdict) => {
+            for line in [vec![verdict.what], verdict.differences, verdict.notes].concat() {
+                if !line.is_empty() {
+                    line_of_a_report(&line);
+                }
+            }
+        }
+    }
+    own_bytes(&folder);
+    RunFolder::prepare(&folder, true).unwrap();
+    assert!(!folder.join("manifest.json").exists() && !folder.join("case.toml").exists());
+    assert_eq!(std::fs::read(beside).unwrap(), b"kept");
+}
+
+/// What a manifest lists is repeated as it stands there, but as text.
+fn line_of_a_report(line: &str) {
+    let odd = line.chars().find(|c| c.is_control());
+    assert!(odd.is_none(), "a line with the character {odd:?}: {line:?}");
+}

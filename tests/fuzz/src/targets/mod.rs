@@ -1,0 +1,34 @@
+//! The targets, a file for each kind of parser.
+
+mod arrays;
+mod case;
+mod checkpoint;
+mod fields;
+mod json;
+mod plot;
+mod quantity;
+mod records;
+mod saved;
+mod series;
+mod study;
+
+use crate::Target;
+
+/// Every target, in the order of a run from case file to picture.
+pub const TARGETS: [Target; 15] = [
+    case::CASE_FILE,
+    case::CASE,
+    study::STUDY_FILE,
+    quantity::QUANTITY,
+    arrays::NPY,
+    arrays::CSV_TABLE,
+    arrays::MASK_PNG,
+    records::RECORDS,
+    saved::SAVED,
+    checkpoint::CHECKPOINTS,
+    fields::FIELDS,
+    json::SUMMARY,
+    series::SERIES,
+    json::MANIFEST,
+    plot::PLOT,
+];

@@ -1,0 +1,91 @@
+//! Numbers with units, and other words of the command line.
+
+use slipfront_case::fields::FieldName;
+use slipfront_case::quantity::{Density, Duration, Kind, Length, Pressure, Quantity, Rate, Speed};
+use slipfront_case::study::Shard;
+
+use crate::checks::readable;
+use crate::{Memory, Target};
+
+/// A quantity of every dimension, a shard, the name of a field.
+pub(crate) const QUANTITY: Target = Target {
+    name: "quantity",
+    check: quantity,
+    made,
+    files: &[],
+    dictionary: Some("quantity.dict"),
+    longest: 256,
+    memory: Memory {
+        bytes: 64 << 10,
+        per_byte: 64,
+    },
+    mutations: 5000,
+    repetitions: 20,
+};
+
+fn made() -> Vec<Vec<u8>> {
+    let texts = [
+        "1 um",
+        "25 \u{b5}m",
+        "100 GPa",
+        "10 g/cm^3",
+        "0.0949 mm/s",
+        "84 ns",
+        "3e8 1/s",
+        "2.7e+8 s^-1",
+        "-1.5e-3 kg m^-1 s\u{207b}\u{b2}",
+        "1 N/mm\u{b2}",
+        "1 kg\u{b7}m^-3",
+        "5 MHz",
+        "1.2.3 m",
+        "1e999 m",
+        "1 furlong",
+        "1 m/s/s",
+        "1 m/s s",
+        "1 m^10",
+        "3/7",
+        "contact_stress_star",
+        "",
+    ];
+    texts.map(|text| text.as_bytes().to_vec()).into()
+}
+
+fn quantity(input: &[u8]) {
+    let Ok(text) = std::str::from_utf8(input) else {
+        return;
+    };
+    read::<_>(text.parse::<Length>(), text);
+    read::<_>(text.parse::<Pressure>(), text);
+    read::<_>(text.parse::<Density>(), text);
+    read::<_>(text.parse::<Speed>(), text);
+    read::<_>(text.parse::<Duration>(), text);
+    read::<_>(text.parse::<Rate>(), text);
+    if let Some(name) = FieldName::from_name(text) {
+        assert_eq!(name.as_str(), text);
+    }
+    // That one asks the environment.
+    if text == "slurm" {
+        return;
+    }
+    match text.parse::<Shard>() {
+        Ok(shard) => {
+            assert_eq!(shard.to_string().parse::<Shard>().unwrap(), shard);
+            assert!(!shard.holds(0) || !shard.holds(1) || shard.to_string() == "1/1");
+        }
+        Err(error) => readable(&error),
+    }
+}
+
+/// A quantity prints as it was written, and its value reads back as the same bits.
+fn read<K: Kind>(quantity: Result<Quantity<K>, impl std::error::Error>, text: &str) {
+    let quantity = match quantity {
+        Ok(quantity) => quantity,
+        Err(error) => return readable(&error),
+    };
+    assert!(quantity.si().is_finite());
+    assert_eq!(quantity.to_string(), text);
+    assert_eq!(quantity.to_string().parse::<Quantity<K>>().unwrap(), quantity);
+    let printed = Quantity::<K>::from_si(quantity.si());
+    let again = printed.to_string().parse::<Quantity<K>>().unwrap();
+    assert_eq!(again.si().to_bits(), quantity.si().to_bits(), "{printed}");
+}

@@ -1,0 +1,107 @@
+//! Records of finished runs, one line each under a checksum.
+
+use slipfront_case::study::{Outcome, Record, Records};
+
+use super::json::summary;
+use crate::checks::readable;
+use crate::{Memory, Target, scratch};
+
+/// The file as it is, then with the checksums that its lines should have.
+pub(crate) const RECORDS: Target = Target {
+    name: "records",
+    check: records,
+    made,
+    files: &[],
+    dictionary: Some("json.dict"),
+    longest: 8192,
+    memory: Memory {
+        bytes: 1 << 20,
+        per_byte: 256,
+    },
+    mutations: 300,
+    repetitions: 40,
+};
+
+fn record(id: &str, outcome: Outcome) -> Record {
+    Record {
+        id: id.to_owned(),
+        wall_time_s: 0.25,
+        outcome,
+    }
+}
+
+fn made() -> Vec<Vec<u8>> {
+    let done = record("0123456789abcdef", Outcome::Done(Box::new(summary())));
+    let plain = record("a", Outcome::Done(Box::default()));
+    let failed = record("b", Outcome::Failed("the run diverged at step 12".to_owned()));
+    let line = |record: &Record| sealed(serde_json::to_string(record).unwrap().as_bytes());
+    vec![
+        line(&done),
+        line(&failed),
+        [line(&failed), line(&plain)].concat(),
+        [line(&failed), line(&failed), b"0123456789abcdef {\"id\"".to_vec()].concat(),
+        b"some notes\nof mine\n".to_vec(),
+    ]
+}
+
+/// A line with its checksum.
+fn sealed(json: &[u8]) -> Vec<u8> {
+    let sum = blake3::hash(json).to_hex();
+    [&sum.as_bytes()[..16], b" ", json, b"\n"].concat()
+}
+
+/// Without its checksum, if it has one.
+fn unsealed(line: &[u8]) -> &[u8] {
+    match line.get(16) {
+        Some(b' ') => &line[17..],
+        _ => line,
+    }
+}
+
+fn records(input: &[u8]) {
+    drop(open(input));
+    let lines: Vec<&[u8]> = input.split(|&byte| byte == b'\n').map(unsealed).collect();
+    let file: Vec<u8> = lines.iter().flat_map(|json| sealed(json)).collect();
+    let Some(records) = open(&file) else { return };
+    let mut whole = 0;
+    for json in &lines {
+        let Ok(record) = serde_json::from_slice::<Record>(json) else {
+            continue;
+        };
+        whole += 1;
+        assert!(records.get(&record.id).is_some(), "{}", record.id);
+        // A record is written as it was read.
+        let printed = serde_json::to_string(&record).unwrap();
+        let again: Record = serde_json::from_str(&printed).unwrap();
+        assert_eq!(again, record);
+        assert_eq!(serde_json::to_string(&again).unwrap(), printed);
+    }
+    assert_eq!(records.damaged, lines.len() - whole);
+}
+
+/// Opens such a file; what was in it is there again after another record has been added.
+fn open(file: &[u8]) -> Option<Records> {
+    let folder = scratch::folder("records");
+    std::fs::write(folder.join(Records::FILE), file).unwrap();
+    let mut records = match Records::open(&folder) {
+        Ok(records) => records,
+        Err(error) => {
+            readable(&error);
+            // Somebody's notes stay as they are.
+            assert_eq!(std::fs::read(folder.join(Records::FILE)).unwrap(), file);
+            return None;
+        }
+    };
+    let before = records.len();
+    let one_more = record("one more", Outcome::Failed(String::new()));
+    let known = usize::from(records.get(&one_more.id).is_some());
+    records.append(&[one_more]).unwrap();
+    drop(records);
+    let mut again = Records::open(&folder).unwrap();
+    let damaged = again.damaged;
+    assert_eq!(again.len(), before + 1 - known);
+    assert!(again.get("one more").is_some());
+    assert_eq!(again.merge(&folder).unwrap(), 0);
+    again.damaged = damaged;
+    Some(again)
+}

@@ -1,0 +1,103 @@
+//! Findings that `slipfront paper` keeps between calls, under a checksum.
+
+use std::cell::OnceCell;
+
+use slipfront_case::paper::{Drawing, Found, Number, Panel, Saved, StepRule, Table};
+use slipfront_case::pictures::{FieldMap, FieldMaps, FrictionCurve, Shape};
+
+use crate::{Memory, Target, scratch};
+
+/// The file as it is, then what is behind its checksum.
+pub(crate) const SAVED: Target = Target {
+    name: "saved",
+    check: saved,
+    made,
+    files: &[],
+    dictionary: None,
+    longest: 4096,
+    // Postcard reserves at most 1 MiB at once for a list that says it is longer.
+    memory: Memory {
+        bytes: 16 << 20,
+        per_byte: 512,
+    },
+    mutations: 2000,
+    repetitions: 40,
+};
+
+fn made() -> Vec<Vec<u8>> {
+    let mut found = Found::default();
+    found
+        .numbers
+        .insert("fig99.one".to_owned(), Number::of(&[1.0, 2.0]));
+    found
+        .numbers
+        .insert("fig99.two".to_owned(), Number::exact(f64::INFINITY));
+    let small = postcard::to_stdvec(&found).unwrap();
+    found.tables.push(Table {
+        name: "table".to_owned(),
+        caption: "a table".to_owned(),
+        header: vec!["a".to_owned(), "b".to_owned()],
+        rows: vec![vec!["1".to_owned(), "2".to_owned()]],
+    });
+    let curve = FrictionCurve {
+        label: "curve".to_owned(),
+        time_star: vec![0.0, 1.0],
+        mu_star: vec![0.0, f64::NAN],
+        sliding_percent: vec![0.0, 100.0],
+        peak: Some((1.0, 0.5)),
+        ..FrictionCurve::default()
+    };
+    let maps = FieldMaps {
+        value_title: "stress".to_owned(),
+        range: [0.0, 1.0],
+        columns: 1,
+        maps: vec![FieldMap {
+            label: "map".to_owned(),
+            note: String::new(),
+            nx: 1,
+            ny: 1,
+            values: vec![0.5],
+            textured: vec![false],
+            marks: vec![[0, 0]],
+        }],
+    };
+    let shape = Shape {
+        label: "shape".to_owned(),
+        points: vec![[0.0, 1.0]],
+    };
+    for drawing in [
+        Drawing::Curves(vec![curve]),
+        Drawing::Maps(maps),
+        Drawing::Shapes(vec![shape]),
+    ] {
+        found.panels.push(Panel {
+            name: "panel".to_owned(),
+            caption: "a panel".to_owned(),
+            drawing,
+        });
+    }
+    vec![small, postcard::to_stdvec(&found).unwrap()]
+}
+
+thread_local! {
+    /// Opening hashes the program.
+    static OPEN: OnceCell<Saved> = const { OnceCell::new() };
+}
+
+fn saved(input: &[u8]) {
+    OPEN.with(|saved| {
+        let saved = saved.get_or_init(|| Saved::open(&scratch::folder("paper"), true).unwrap());
+        let path = saved.path("fig99", StepRule::Auto);
+        let read = |bytes: &[u8]| {
+            std::fs::write(&path, bytes).unwrap();
+            saved.load("fig99", StepRule::Auto)
+        };
+        assert!(read(input).is_none(), "findings without their checksum");
+        let Some(found) = read(&saved.sealed(input)) else {
+            return;
+        };
+        let bytes = postcard::to_stdvec(&found).unwrap();
+        let again = read(&saved.sealed(&bytes)).unwrap();
+        assert_eq!(postcard::to_stdvec(&again).unwrap(), bytes);
+    });
+}

@@ -1,0 +1,57 @@
+//! The curve of a run as CSV.
+
+use slipfront_case::series::{SeriesRow, read_csv, to_csv};
+
+use crate::checks::readable;
+use crate::{Memory, Target, scratch};
+
+/// `series.csv`.
+pub(crate) const SERIES: Target = Target {
+    name: "series",
+    check: series,
+    made: || vec![csv(3), csv(1), csv(0)],
+    files: &[],
+    dictionary: Some("table.dict"),
+    longest: 4096,
+    memory: Memory {
+        bytes: 256 << 10,
+        per_byte: 256,
+    },
+    mutations: 2000,
+    repetitions: 60,
+};
+
+/// A few rows.
+pub(crate) fn csv(rows: u64) -> Vec<u8> {
+    let row = |step: u64| {
+        let time_star = step as f64 * 16.0;
+        SeriesRow {
+            step,
+            time_star,
+            time_s: 3e-10 * time_star,
+            mu_star: 0.3 * step as f64,
+            friction_coefficient: 0.3 * step as f64,
+            mu_lateral_star: -0.0,
+            sliding_percent: 12.5 * step as f64,
+            work_j: 1e-20,
+            kinetic_energy_j: 1e-300,
+            lattice_energy_j: 5e-324,
+            drive_spring_energy_j: 2.0,
+            friction_loss_j: 0.1 + 0.2,
+            damping_loss_j: f64::NAN,
+        }
+    };
+    to_csv((0..rows).map(row)).unwrap()
+}
+
+/// What is read is written, and read again as the same bits.
+fn series(input: &[u8]) {
+    let rows = match read_csv(&scratch::file("run/series.csv", input)) {
+        Ok(rows) => rows,
+        Err(error) => return readable(&error),
+    };
+    let printed = to_csv(rows.iter().copied()).unwrap();
+    let again = read_csv(&scratch::file("run/series.csv", &printed)).unwrap();
+    assert_eq!(again.len(), rows.len());
+    assert_eq!(to_csv(again.into_iter()).unwrap(), printed);
+}

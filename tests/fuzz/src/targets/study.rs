@@ -1,0 +1,66 @@
+//! Study files; the cases that they name are those of the repository.
+
+use slipfront_case::case_file::CaseFile;
+use slipfront_case::study::{StudyFile, StudyFolder};
+
+use crate::checks::readable;
+use crate::{Memory, Target, scratch};
+
+/// The text of a study, the copy in its results folder, and the cases of a few of its points.
+pub(crate) const STUDY_FILE: Target = Target {
+    name: "study_file",
+    check: study_file,
+    made: Vec::new,
+    files: &["cases/studies/*.toml"],
+    dictionary: Some("study.dict"),
+    longest: 4096,
+    // An axis has at most 100 000 levels, and points are counted before the next is made.
+    memory: Memory {
+        bytes: 512 << 20,
+        per_byte: 1024,
+    },
+    mutations: 200,
+    repetitions: 60,
+};
+
+/// Levels of each axis that are tried.
+const LEVELS: usize = 3;
+
+fn study_file(input: &[u8]) {
+    let Ok(text) = std::str::from_utf8(input) else {
+        return;
+    };
+    let folder = scratch::repository("cases/studies");
+    let study = match StudyFile::parse(text, "study.toml", "study", &folder) {
+        Ok(study) => study,
+        Err(error) => return readable(&error),
+    };
+    let axis = study.axes.iter().max_by_key(|axis| axis.levels.len());
+    for level in axis.into_iter().flat_map(|axis| axis.levels.iter().take(LEVELS)) {
+        if let Err(error) = CaseFile::parse(&study.base.text, &study.base.name, &level.overrides) {
+            readable(&error);
+        }
+    }
+    // Counting never overflows.
+    assert!(study.count_points().unwrap() as u64 <= study.count_runs().unwrap());
+
+    let out = scratch::folder("study");
+    match StudyFolder::open(&out, &study) {
+        Err(error) => readable(&error),
+        Ok(opened) => {
+            drop(opened);
+            let again = StudyFile::load(&out.join("study.toml")).unwrap();
+            assert_eq!(format!("{:?}", again.settings), format!("{:?}", study.settings));
+            if !names_files(text) {
+                assert_eq!(format!("{:?}", again.axes), format!("{:?}", study.axes));
+            }
+            // The copy of the copy is the copy.
+            assert!(!StudyFolder::open(&out, &again).unwrap().changed);
+        }
+    }
+}
+
+/// Whether names of files may have become those of copies.
+fn names_files(text: &str) -> bool {
+    text.contains("file") || text.contains("field") || text.contains('\\')
+}

@@ -1,0 +1,80 @@
+//! Every target on its seeds, on what fuzzing has found before, and on a fixed number of mutations of both.
+
+// A helper that cannot do its work fails its test.
+#![allow(clippy::unwrap_used)]
+
+use std::sync::{Mutex, PoisonError};
+
+use slipfront_fuzz::{Mutator, TARGETS, Target};
+
+/// Runs a target; an input that fails is kept in a file that is named.
+fn replay(name: &str) {
+    // Memory is counted for the whole process.
+    static ALONE: Mutex<()> = Mutex::new(());
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let target = Target::named(name).unwrap();
+    let inputs = [target.findings(), target.seeds()].concat();
+    assert!(!inputs.is_empty(), "{name} has no seeds");
+    for (name, bytes) in &inputs {
+        run(target, bytes, name);
+    }
+    let seeds: Vec<Vec<u8>> = inputs.into_iter().map(|(_, bytes)| bytes).collect();
+    let mut mutator = Mutator::new(1, &target.words(), target.longest);
+    for number in 0..target.mutations {
+        run(target, &mutator.mutated(&seeds), &format!("mutation {number}"));
+    }
+    // What grows with the square of the length shows only here.
+    for number in 0..target.repetitions {
+        run(
+            target,
+            &mutator.repeated(&seeds, LONG),
+            &format!("repetition {number}"),
+        );
+    }
+}
+
+/// Bytes of an input that is long.
+const LONG: usize = 100_000;
+
+fn run(target: &Target, bytes: &[u8], name: &str) {
+    let failed = std::panic::catch_unwind(|| target.run(bytes)).is_err();
+    assert!(
+        !failed,
+        "{} fails on {name}: {:?}",
+        target.name,
+        String::from_utf8_lossy(bytes)
+    );
+}
+
+macro_rules! replay {
+    ($($name:ident)*) => {
+        $(#[test]
+        fn $name() {
+            replay(stringify!($name));
+        })*
+
+        #[test]
+        fn every_target_is_replayed() {
+            let names: Vec<&str> = TARGETS.iter().map(|target| target.name).collect();
+            assert_eq!(names, [$(stringify!($name)),*]);
+        }
+    };
+}
+
+replay! {
+    case_file
+    case
+    study_file
+    quantity
+    npy
+    csv_table
+    mask_png
+    records
+    saved
+    checkpoint
+    fields
+    summary
+    series
+    manifest
+    plot
+}
