@@ -64,7 +64,7 @@ run_slice() {
     [ "$status" -eq 0 ] || finding="$(sed -n 's/.*Test unit written to //p' "$said" | tail -n 1)"
     [ "$status" -eq 0 ] || [ -n "$finding" ] || finding="status $status"
     local last
-    last="$(grep -E ' cov: [0-9]+ ft: ' "$said" | tail -n 1)"
+    last="$(grep -E ' cov: [0-9]+ ft: ' "$said" | tail -n 1 || true)"
     echo "$(date --utc +%FT%TZ),$revision,$name,$cpu,$(stat number_of_executed_units),$(
         sed 's/.* cov: \([0-9]*\) .*/\1/' <<< "$last"),$(sed 's/.* ft: \([0-9]*\) .*/\1/' <<< "$last"),$(
         sed 's/.* corp: \([0-9]*\)\/.*/\1/' <<< "$last"),$(stat peak_rss_mb),$finding" >> "$log"
