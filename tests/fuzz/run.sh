@@ -51,7 +51,7 @@ run_slice() {
     read -r _ longest dictionary < <(grep "^$name " "$out/targets")
     mkdir -p "$out/corpus/$name" "$out/artifacts/$name"
     said="$out/last-$name.txt"
-    local options=(-max_total_time="$seconds" -max_len="$longest" -timeout=20 -rss_limit_mb=2048 -print_final_stats=1
+    local options=(-max_total_time="$seconds" -max_len="$longest" -timeout=60 -rss_limit_mb=2048 -print_final_stats=1
         -artifact_prefix="$out/artifacts/$name/")
     [ "$dictionary" = - ] || options+=(-dict="tests/fuzz/dictionaries/$dictionary")
     TIMEFORMAT='%U %S'
