@@ -125,7 +125,7 @@ impl RunFolder {
         std::fs::create_dir_all(path).map_err(unwritable)?;
         let lock = lock(path)?;
         remove_unfinished(path);
-        if std::fs::read_dir(path).map_err(unwritable)?.next().is_some() {
+        if !is_empty(path).map_err(unwritable)? {
             if !force {
                 let path = path.to_owned();
                 return Err(if is_interrupted(&path) {
@@ -310,6 +310,14 @@ fn own_files(path: &Path) -> Vec<String> {
     names.extend(unfinished(path, "inputs/"));
     names.push(CASE.to_owned());
     names
+}
+
+/// Whether there is nothing in a folder.
+///
+/// # Errors
+/// When it cannot be read.
+pub fn is_empty(folder: &Path) -> std::io::Result<bool> {
+    Ok(std::fs::read_dir(folder)?.next().transpose()?.is_none())
 }
 
 /// The files that a resolved case names. One that is not resolved was not written by a run, and what it names may be
