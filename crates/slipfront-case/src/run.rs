@@ -91,15 +91,15 @@ impl Observers {
         }
     }
 
-    /// Whether they can be those of a run of this case.
-    fn belong_to(&self, case: &Case) -> bool {
+    /// Whether they can be those of a run of this case after `step` steps.
+    fn belong_to(&self, case: &Case, step: u64) -> bool {
         let (new, lattice) = (Self::new(case), &case.model.lattice);
         let fields = match (&self.fields, &new.fields) {
-            (Fields::Instants(old), Fields::Instants(new)) => old.continues(new, lattice),
-            (Fields::Frames(old), Fields::Frames(new)) => old.continues(new, lattice),
+            (Fields::Instants(old), Fields::Instants(new)) => old.continues(new, lattice, step),
+            (Fields::Frames(old), Fields::Frames(new)) => old.continues(new, lattice, step),
             _ => false,
         };
-        fields && self.curve.continues(&new.curve) && self.history.continues(&new.history)
+        fields && self.curve.continues(&new.curve, step) && self.history.continues(&new.history, step)
     }
 
     fn scheduled(&mut self, snapshots: &Snapshots) -> [Scheduled<'_>; 3] {
@@ -144,7 +144,8 @@ impl<'c> Running<'c> {
             simulation,
             observers,
         } = state;
-        if simulation.step > case.schedule.last_step || !observers.belong_to(case) {
+        let step = simulation.step;
+        if step > case.schedule.last_step || !observers.belong_to(case, step) {
             return None;
         }
         let execution = Self::execution(case, threads);

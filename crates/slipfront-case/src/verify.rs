@@ -3,7 +3,7 @@
 //! A run folder is held against its manifest, and against the files of a repeated run; a study folder against the
 //! tables and pictures that its records give.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
 
@@ -11,10 +11,10 @@ use thiserror::Error;
 
 use crate::case_file::CaseFile;
 use crate::checkpoint::is_of_interrupted_run;
-use crate::folder::{TEXT_MAX_BYTES, read_whole};
+use crate::folder::{FolderError, TEXT_MAX_BYTES, read_whole};
 use crate::legible::{sentence, shortened};
 use crate::manifest::{MANIFEST, Manifest, ManifestError, ManifestFile};
-use crate::study::{self, Plan, Records, StudyError, StudyFolder};
+use crate::study::{self, Finding, Findings, Plan, Records, StudyError, StudyFolder};
 
 /// What was found in a folder.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -230,21 +230,22 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
     let mut again = StudyFolder::open(temporary.path(), &file)?;
     again.records.merge(folder)?;
     let records = folder.join(Records::FILE);
-    if again.records.damaged > 0 {
-        let lines = again.records.damaged;
-        let damage = format!("{} differs: {lines} lines of it are damaged", records.display());
-        verdict.differences.push(damage);
-    }
-    match study::collect(&plan, &mut again.records) {
-        Ok(findings) => study::write(&plan, &findings, &again)?,
-        Err(StudyError::Missing { runs }) if verdict.differences.is_empty() => {
+    let (damaged, records) = (again.records.damaged, records.display());
+    let findings = match study::collect(&plan, &mut again.records) {
+        Ok(findings) => findings,
+        Err(StudyError::Missing { runs }) if damaged == 0 => {
             let path = folder.to_owned();
             return Err(VerifyError::Unfinished { path, runs });
         }
         // What its tables should be is lost with the damaged lines.
-        Err(StudyError::Missing { .. }) => return Ok(verdict),
+        Err(StudyError::Missing { .. }) => {
+            let damage = format!("{records} differs: {damaged} lines of it are damaged");
+            verdict.differences.push(damage);
+            return Ok(verdict);
+        }
         Err(error) => return Err(error.into()),
-    }
+    };
+    study::write(&plan, &findings, &again)?;
     let mut files = files_below(temporary.path(), "").map_err(VerifyError::Temporary)?;
     files.retain(|file| file.name != Records::FILE);
     verdict
@@ -253,25 +254,63 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
     let known = files.iter().map(|file| file.name.as_str());
     let known = known.chain([Records::FILE, "runs"]).collect();
     verdict.notes = strangers(folder, &known, &["inputs"]);
-    let mut kept = 0;
-    for run in std::fs::read_dir(folder.join("runs"))
-        .into_iter()
-        .flatten()
-        .flatten()
-    {
-        // Of a run that failed the case alone is kept.
-        if run.path().join(MANIFEST).exists() {
-            let of_run = verify_run(&run.path())?;
-            verdict.differences.extend(of_run.differences);
-            verdict.notes.extend(of_run.notes);
-            kept += 1;
-        }
+    if damaged > 0 {
+        let damage =
+            format!("{records} has {damaged} damaged lines, whose runs are recorded once more or not needed");
+        verdict.notes.push(damage);
     }
+    let kept = verify_kept(folder, &plan, &findings, &mut verdict)?;
     verdict.what = format!(
         "tables and pictures as its {} recorded runs give them, {kept} run folders as they were written",
         again.records.len()
     );
     Ok(verdict)
+}
+
+/// Verifies the run folders that a study has kept; gives their number.
+fn verify_kept(
+    folder: &Path,
+    plan: &Plan,
+    findings: &Findings,
+    verdict: &mut Verdict,
+) -> Result<usize, VerifyError> {
+    let runs = folder.join("runs");
+    let unreadable = |source| {
+        let path = runs.clone();
+        VerifyError::Study(FolderError::Read { path, source }.into())
+    };
+    let entries = match std::fs::read_dir(&runs) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(0),
+        Err(error) => return Err(unreadable(error)),
+    };
+    let done = findings
+        .runs
+        .iter()
+        .filter(|(_, finding)| match finding.as_ref() {
+            Finding::Done(_) => true,
+            // Of a run that failed the case alone is kept.
+            Finding::Failed(_) => false,
+        });
+    let done: HashSet<String> = done.map(|(run, _)| plan.folder_name(*run)).collect();
+    let mut kept = 0;
+    for entry in entries {
+        let entry = entry.map_err(unreadable)?;
+        let is_done = done.contains(&*entry.file_name().to_string_lossy());
+        if !is_done && !entry.path().is_dir() {
+            continue;
+        }
+        match verify_run(&entry.path()) {
+            Ok(of_run) => {
+                verdict.differences.extend(of_run.differences);
+                verdict.notes.extend(of_run.notes);
+                kept += 1;
+            }
+            Err(error) if is_done => verdict.differences.push(error.to_string()),
+            Err(_) => {}
+        }
+    }
+    Ok(kept)
 }
 
 /// Every file below a folder, named by its path from there.

@@ -43,10 +43,12 @@ pub(crate) struct Strains {
 }
 
 impl Checkpoint {
-    /// Whether it is one of a lattice of `n` blocks.
-    pub(crate) fn has_blocks(&self, n: usize) -> bool {
+    /// Whether it can be one of a lattice of `n` blocks.
+    pub(crate) fn fits(&self, n: usize) -> bool {
         let all = self.displacement.iter().chain(&self.velocity);
-        all.chain([&self.first_slip]).all(|numbers| numbers.len() == n)
+        let swept = self.strains.and_then(|strains| strains.swept);
+        swept.is_none_or(|swept| swept <= self.step)
+            && all.chain([&self.first_slip]).all(|numbers| numbers.len() == n)
     }
 }
 

@@ -8,7 +8,7 @@ use super::error::StudyError;
 use super::file::StudyFile;
 use super::inputs::Copy;
 use super::record::{RECORDS, Records};
-use crate::folder::{FolderError, TEXT_MAX_BYTES, open_bounded, read_whole, stage, write_whole};
+use crate::folder::{FolderError, TEXT_MAX_BYTES, is_empty, open_bounded, read_whole, stage, write_whole};
 
 /// The study as a table with its base inside: what `slipfront study DIR/study.toml` repeats.
 const STUDY: &str = "study.toml";
@@ -35,7 +35,7 @@ impl StudyFolder {
         };
         std::fs::create_dir_all(path).map_err(unwritable)?;
         let used = path.join(RECORDS).exists();
-        let empty = std::fs::read_dir(path).map_err(unwritable)?.next().is_none();
+        let empty = is_empty(path).map_err(unwritable)?;
         if !used && !empty {
             return Err(StudyError::NotAStudy {
                 path: path.to_owned(),

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use slipfront_case::folder::is_empty;
 use slipfront_case::paper::{self, Options, Stage, StepRule};
 use slipfront_case::study::{Records, StudyError};
 
@@ -92,8 +93,7 @@ fn open(folder: &Path) -> Result<Records, Failure> {
         ))
     };
     std::fs::create_dir_all(folder).map_err(unusable)?;
-    let mut entries = std::fs::read_dir(folder).map_err(unusable)?;
-    if entries.next().is_some() && !folder.join(Records::FILE).exists() {
+    if !is_empty(folder).map_err(unusable)? && !folder.join(Records::FILE).exists() {
         return Err(Failure::input(StudyError::NotAStudy {
             path: folder.to_owned(),
         }));

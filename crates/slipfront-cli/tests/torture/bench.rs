@@ -64,11 +64,11 @@ impl Bench {
         }
     }
 
-    /// Copies a folder.
-    pub(crate) fn copy(&self, from: &str, to: &str) {
-        self.remove(to);
-        for (name, bytes) in self.files(from) {
-            self.write(&format!("{to}/{name}"), bytes);
+    /// Makes a folder that holds these files.
+    pub(crate) fn fill(&self, folder: &str, files: &Files) {
+        self.remove(folder);
+        for (name, bytes) in files {
+            self.write(&format!("{folder}/{name}"), bytes);
         }
     }
 

@@ -1,1 +1,482 @@
-//! Damage (soon).
+//! Whatever is done to the files that a command reads, it gives no wrong answer that looks right.
+//!
+//! Files with a checksum (results, records, findings) are refused or made again; what a user writes (cases, studies,
+//! masks, arrays) is taken as it stands now, and recorded as such.
+
+use std::process::Command;
+use std::sync::OnceLock;
+
+use crate::bench::{Bench, Ended, Files};
+use crate::jobs::{JOBS, Job, bench, expect_all};
+use crate::tally::{Chance, Tally, cases, long};
+
+/// Longer than any disk, and empty.
+const ENDLESS_BYTES: u64 = 1 << 40;
+
+#[derive(Clone, Debug)]
+enum Damage {
+    /// Only so many bytes are left.
+    Cut(usize),
+    /// A bit is another.
+    Flip(usize),
+    /// Two bytes have changed places.
+    Swap(usize, usize),
+    /// Sixteen bytes from here on are zero.
+    Zero(usize),
+    /// Another file stands in its place.
+    Other(String),
+    Gone,
+    Folder,
+    /// A pipe that nobody writes to.
+    Pipe,
+    /// A link to itself.
+    Circle,
+    /// A file of a TiB.
+    Endless,
+}
+
+/// Files by what they are.
+type Others = Vec<(String, Vec<u8>)>;
+
+/// Damage to a file: at most `most` cuts, flips and the like, and everything that can stand in its place, of which the
+/// short form takes no more either.
+fn damages(bytes: &[u8], chance: &mut Chance, most: usize) -> Vec<Damage> {
+    let len = bytes.len();
+    let mut all: Vec<Damage> = Vec::new();
+    if len * 10 <= most {
+        all.extend((0..len).map(Damage::Cut));
+        all.extend((0..8 * len).map(Damage::Flip));
+    }
+    while all.len() < most && len > 0 {
+        all.push(match chance.below(8) {
+            0 | 1 => Damage::Cut(chance.below(len)),
+            2 => Damage::Swap(chance.below(len), chance.below(len)),
+            3 => Damage::Zero(chance.below(len)),
+            _ => Damage::Flip(chance.below(8 * len)),
+        });
+    }
+    let mut places = vec![
+        Damage::Cut(0),
+        Damage::Gone,
+        Damage::Folder,
+        Damage::Pipe,
+        Damage::Circle,
+        Damage::Endless,
+    ];
+    places.extend(others().iter().map(|(name, _)| Damage::Other(name.clone())));
+    all.extend(chance.some(places, cases(most, usize::MAX)));
+    all
+}
+
+impl Damage {
+    /// The bytes after it, where bytes are left and not the same.
+    fn bytes(&self, whole: &[u8]) -> Option<Vec<u8>> {
+        let mut bytes = whole.to_vec();
+        match self {
+            Self::Cut(len) => bytes.truncate(*len),
+            Self::Flip(bit) => bytes[bit / 8] ^= 1 << (bit % 8),
+            Self::Swap(one, other) => bytes.swap(*one, *other),
+            Self::Zero(from) => {
+                let to = (from + 16).min(bytes.len());
+                bytes[*from..to].fill(0);
+            }
+            Self::Other(name) => bytes.clone_from(&others().iter().find(|(other, _)| other == name)?.1),
+            Self::Gone | Self::Folder | Self::Pipe | Self::Circle | Self::Endless => return None,
+        }
+        (bytes != whole).then_some(bytes)
+    }
+
+    /// Puts it in the place of a file; says whether anything has changed.
+    fn apply(&self, bench: &Bench, name: &str, whole: &[u8]) -> bool {
+        let path = bench.path(name);
+        if let Some(bytes) = self.bytes(whole) {
+            bench.write(name, bytes);
+            return true;
+        }
+        bench.remove(name);
+        match self {
+            Self::Gone => {}
+            Self::Folder => std::fs::create_dir(path).unwrap(),
+            Self::Pipe => assert!(Command::new("mkfifo").arg(path).status().unwrap().success()),
+            Self::Circle => std::os::unix::fs::symlink(&path, &path).unwrap(),
+            Self::Endless => std::fs::File::create(path)
+                .unwrap()
+                .set_len(ENDLESS_BYTES)
+                .unwrap(),
+            _ => {
+                bench.write(name, whole);
+                return false;
+            }
+        }
+        true
+    }
+
+    /// A user may hand over a case through a pipe: it is waited for.
+    fn is_waited_for(&self) -> bool {
+        matches!(self, Self::Pipe)
+    }
+}
+
+/// A file to damage: `kind` in the tally, at most `most` cuts and flips.
+struct Target<'a> {
+    kind: &'a str,
+    name: &'a str,
+    most: usize,
+}
+
+/// Damages a file in every way, asks each time what comes of it, and mends it.
+fn torture(
+    tally: &mut Tally,
+    bench: &Bench,
+    target: &Target,
+    judge: &dyn Fn(&Damage) -> Result<&'static str, String>,
+) {
+    let Target { kind, name, most } = *target;
+    let whole = bench.read(name);
+    for damage in damages(&whole, &mut Chance::new(), most) {
+        if !damage.apply(bench, name, &whole) {
+            continue;
+        }
+        let ended = judge(&damage);
+        let case = format!("{damage:?} of {name}");
+        if long()
+            && let Err(finding) = &ended
+        {
+            eprintln!("FOUND {kind}, {case}: {finding}");
+        }
+        tally.note(kind, &case, ended);
+        bench.remove(name);
+        bench.write(name, &whole);
+    }
+}
+
+/// A file of every kind, to stand in for another: of the same case and study, and of others.
+fn others() -> &'static Others {
+    static OTHERS: OnceLock<Others> = OnceLock::new();
+    let make = || {
+        let bench = bench();
+        bench.fill("out", &JOBS[0].undisturbed());
+        let other = "run case.toml --quiet --threads 1 -o other --set drive.v_star=0.12";
+        bench.done(other).unwrap();
+        let study = String::from_utf8(bench.read("study.toml")).unwrap();
+        bench.write("other.toml", study.replace("[0.1, 0.2]", "[0.1, 0.25]"));
+        bench
+            .done("study other.toml --quiet --threads 1 -o study")
+            .unwrap();
+        let names = [
+            "case.toml",
+            "study.toml",
+            "mask.png",
+            "mask.npy",
+            "mu_s.csv",
+            "mu_k.npy",
+            "out/manifest.json",
+            "out/summary.json",
+            "out/fields.nc",
+            "other/case.toml",
+            "other/manifest.json",
+            "other/summary.json",
+            "other/series.csv",
+            "other/fields.nc",
+            "other/friction.png",
+            "study/records.jsonl",
+            "study/points.csv",
+        ];
+        names.map(|name| (name.to_owned(), bench.read(name))).into()
+    };
+    OTHERS.get_or_init(make)
+}
+
+/// A bench with the sound results of a job in `out`.
+fn with_results(job: &Job) -> (Bench, Files) {
+    let bench = bench();
+    let whole = job.undisturbed();
+    bench.fill("out", &whole);
+    (bench, whole)
+}
+
+fn refused(ended: &Ended) -> Result<&'static str, String> {
+    match ended.status {
+        2 => Ok("refused"),
+        _ => Err(format!("{ended:?}")),
+    }
+}
+
+const INPUTS: [&str; 5] = ["case.toml", "mask.png", "mask.npy", "mu_k.npy", "mu_s.csv"];
+
+#[test]
+fn of_what_a_case_reads() {
+    let (bench, whole) = with_results(&JOBS[0]);
+    let mut tally = Tally::new("damage");
+    for name in INPUTS {
+        let read = |damage: &Damage| {
+            if name == "case.toml" && damage.is_waited_for() {
+                return Ok("not tried: waited for");
+            }
+            let ended = bench.run("texture case.toml -o texture.png --force")?;
+            if ended.status == 0 {
+                Ok("taken as it is")
+            } else {
+                refused(&ended)
+            }
+        };
+        let target = Target {
+            kind: "inputs that are read",
+            name,
+            most: cases(20, 6_000),
+        };
+        torture(&mut tally, &bench, &target, &read);
+        bench.remove("again");
+        let run = |damage: &Damage| {
+            if name == "case.toml" && damage.is_waited_for() {
+                return Ok("not tried: waited for");
+            }
+            let ended = bench.run("run case.toml --quiet --threads 1 -o again --force")?;
+            match ended.status {
+                0 => {}
+                1 => return Ok("failed"),
+                _ => return refused(&ended),
+            }
+            let now = bench.files("again");
+            let copy = now.get(&format!("inputs/{name}"));
+            if copy.is_some_and(|copy| *copy != bench.read(name)) {
+                return Err("another file was recorded".to_owned());
+            }
+            let recorded = |files: &Files| {
+                let mut files = files.clone();
+                files.retain(|name, _| name == "case.toml" || name.starts_with("inputs/"));
+                files
+            };
+            if recorded(&now) == recorded(&whole) {
+                expect_all(&now, &whole)?;
+                return Ok("the same case");
+            }
+            bench.done("verify --rerun --quiet again")?;
+            Ok("recorded as another case")
+        };
+        let target = Target {
+            kind: "inputs of a run",
+            name,
+            most: cases(2, 300),
+        };
+        torture(&mut tally, &bench, &target, &run);
+    }
+    tally.close();
+}
+
+#[test]
+fn of_a_study_file() {
+    let (bench, _) = with_results(&JOBS[1]);
+    let mut tally = Tally::new("damage");
+    let read = |damage: &Damage| {
+        if damage.is_waited_for() {
+            return Ok("not tried: waited for");
+        }
+        let ended = bench.run("study slurm study.toml")?;
+        if ended.status == 0 {
+            Ok("taken as it is")
+        } else {
+            refused(&ended)
+        }
+    };
+    let target = Target {
+        kind: "study files that are read",
+        name: "study.toml",
+        most: cases(40, 10_000),
+    };
+    torture(&mut tally, &bench, &target, &read);
+    let run = |damage: &Damage| {
+        if damage.is_waited_for() {
+            return Ok("not tried: waited for");
+        }
+        bench.remove("again");
+        let ended = bench.run("study study.toml --quiet --threads 1 -o again")?;
+        match ended.status {
+            0 => bench.done("verify again").map(|_| "recorded as another study"),
+            1 => Ok("failed"),
+            _ => refused(&ended),
+        }
+    };
+    let target = Target {
+        kind: "study files that are run",
+        most: cases(2, 500),
+        ..target
+    };
+    torture(&mut tally, &bench, &target, &run);
+    tally.close();
+}
+
+/// Nothing that differs from what was written may pass.
+fn seen(bench: &Bench, line: &str) -> Result<&'static str, String> {
+    let ended = bench.run(line)?;
+    match ended.status {
+        0 => Err(format!("it is not seen: {}", ended.printed)),
+        _ => Ok("seen"),
+    }
+}
+
+#[test]
+fn of_a_run_folder() {
+    let (bench, whole) = with_results(&JOBS[0]);
+    let mut tally = Tally::new("damage");
+    for name in whole.keys() {
+        let target = Target {
+            kind: "results that are verified",
+            name: &format!("out/{name}"),
+            most: cases(8, if name.ends_with("json") { 8_000 } else { 1_000 }),
+        };
+        torture(&mut tally, &bench, &target, &|_| seen(&bench, "verify out"));
+    }
+    bench.done("plot out -o drawn").unwrap();
+    let drawn = bench.files("drawn");
+    let of = |name: &str, most: usize| (format!("out/{name}"), most);
+    let read = ["summary.json", "series.csv", "fields.nc"];
+    for (name, most) in read
+        .iter()
+        .chain(&["manifest.json"])
+        .map(|name| of(name, cases(5, 1_000)))
+    {
+        let judge = |_: &Damage| {
+            bench.remove("drawn");
+            let ended = bench.run("plot out -o drawn")?;
+            match ended.status {
+                0 if bench.files("drawn") == drawn => Ok("drawn as it was"),
+                0 => Err("a wrong picture".to_owned()),
+                _ => refused(&ended),
+            }
+        };
+        let target = Target {
+            kind: "results that are drawn",
+            name: &name,
+            most,
+        };
+        torture(&mut tally, &bench, &target, &judge);
+    }
+    // Without a manifest nobody knows what they were.
+    bench.remove("out/manifest.json");
+    for (name, most) in read.iter().map(|name| of(name, cases(3, 500))) {
+        let judge = |_: &Damage| {
+            let ended = bench.run("plot out -o drawn")?;
+            if ended.status == 0 {
+                Ok("drawn as it is")
+            } else {
+                refused(&ended)
+            }
+        };
+        let target = Target {
+            kind: "results of an unfinished run that are drawn",
+            name: &name,
+            most,
+        };
+        torture(&mut tally, &bench, &target, &judge);
+    }
+    tally.close();
+}
+
+/// A folder that is damaged, and made again or refused by the command that made it.
+fn mended(bench: &Bench, job: &Job, whole: &Files) -> Result<&'static str, String> {
+    let ended = bench.run(job.again)?;
+    let outcome = match ended.status {
+        0 => expect_all(&bench.files("out"), whole).and_then(|()| {
+            if job.verified {
+                bench.done("verify out")?;
+            }
+            Ok("mended")
+        }),
+        _ => Ok("refused"),
+    };
+    bench.fill("out", whole);
+    outcome
+}
+
+#[test]
+fn of_a_study_folder() {
+    let (bench, whole) = with_results(&JOBS[1]);
+    let mut tally = Tally::new("damage");
+    for name in whole.keys() {
+        let records = name == "records.jsonl" || name == "study.toml";
+        let target = Target {
+            kind: "studies that are verified",
+            name: &format!("out/{name}"),
+            most: cases(if records { 3 } else { 1 }, if records { 1_000 } else { 100 }),
+        };
+        torture(&mut tally, &bench, &target, &|_| seen(&bench, "verify out"));
+        if !long() && !records && !name.ends_with("points.csv") {
+            continue;
+        }
+        let target = Target {
+            kind: "studies that go on",
+            most: cases(2, if records { 300 } else { 20 }),
+            ..target
+        };
+        torture(&mut tally, &bench, &target, &|_| mended(&bench, &JOBS[1], &whole));
+    }
+    tally.close();
+}
+
+#[test]
+fn of_kept_runs() {
+    let bench = bench();
+    let mut tally = Tally::new("damage");
+    bench.done("study kept.toml --quiet --threads 1 -o out").unwrap();
+    let whole = bench.files("out");
+    let of_runs = whole.keys().filter(|name| name.starts_with("runs/")).collect();
+    for name in Chance::new().some(of_runs, cases(4, usize::MAX)) {
+        let target = Target {
+            kind: "kept runs that are verified",
+            name: &format!("out/{name}"),
+            most: cases(1, 100),
+        };
+        torture(&mut tally, &bench, &target, &|_| seen(&bench, "verify out"));
+    }
+    tally.close();
+}
+
+#[test]
+fn of_shards() {
+    let (bench, _) = with_results(&JOBS[1]);
+    let mut tally = Tally::new("damage");
+    for shard in ["1", "2"] {
+        let line = format!("study study.toml --quiet --threads 1 --shard {shard}/2 -o part{shard}");
+        bench.done(&line).unwrap();
+    }
+    let line = "study merge part1 part2 --quiet -o merged";
+    bench.done(line).unwrap();
+    let whole = bench.files("merged");
+    for name in ["part1/records.jsonl", "part2/study.toml", "part1/study.toml"] {
+        let judge = |_: &Damage| {
+            bench.remove("merged");
+            let ended = bench.run(line)?;
+            match ended.status {
+                0 => expect_all(&bench.files("merged"), &whole).map(|()| "the same all the same"),
+                _ => Ok("refused"),
+            }
+        };
+        let target = Target {
+            kind: "shards that are merged",
+            name,
+            most: cases(3, 500),
+        };
+        torture(&mut tally, &bench, &target, &judge);
+    }
+    tally.close();
+}
+
+#[test]
+fn of_a_paper() {
+    let (bench, whole) = with_results(&JOBS[2]);
+    let mut tally = Tally::new("damage");
+    for name in whole.keys() {
+        let kept = name.starts_with("found/") || name == "records.jsonl";
+        let target = Target {
+            kind: "the paper's folder",
+            name: &format!("out/{name}"),
+            most: cases(usize::from(kept), if kept { 300 } else { 20 }),
+        };
+        if !long() && !kept {
+            continue;
+        }
+        torture(&mut tally, &bench, &target, &|_| mended(&bench, &JOBS[2], &whole));
+    }
+    tally.close();
+}

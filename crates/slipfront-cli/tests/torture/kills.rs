@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use crate::bench::{Bench, Files};
-use crate::jobs::{JOBS, Job, bench, expect_all, undisturbed};
+use crate::jobs::{JOBS, Job, bench, expect_all};
 use crate::tally::{Chance, Tally, cases};
 
 /// Kills after which a job goes on to its end.
@@ -29,7 +29,7 @@ fn torture(job: &Job, kills: usize) {
     let bench = bench();
     let mut tally = Tally::new("kills at random moments");
     let mut chance = Chance::new();
-    let whole = undisturbed(&bench, job);
+    let whole = job.undisturbed();
     let began = Instant::now();
     bench.done(job.line).unwrap();
     let takes = began.elapsed();
@@ -51,12 +51,12 @@ fn torture(job: &Job, kills: usize) {
 
 #[test]
 fn a_killed_run_is_repeated() {
-    torture(&JOBS[0], cases(8, 400));
+    torture(&JOBS[0], cases(4, 200));
 }
 
 #[test]
 fn a_killed_study_goes_on() {
-    torture(&JOBS[1], cases(12, 400));
+    torture(&JOBS[1], cases(4, 200));
 }
 
 #[test]

@@ -126,9 +126,10 @@ impl Curve {
         }
     }
 
-    /// Whether it can have come of this new one.
-    pub fn continues(&self, new: &Self) -> bool {
-        self.stride == new.stride
+    /// Whether it can have come of this new one, shown every step up to `step`.
+    pub fn continues(&self, new: &Self, step: u64) -> bool {
+        let steps = (0..=step).step_by(new.stride.max(1) as usize);
+        self.stride == new.stride && self.rows.iter().map(|row| row.step).eq(steps)
     }
 }
 

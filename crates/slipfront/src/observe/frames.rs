@@ -122,10 +122,13 @@ impl Frames {
         }
     }
 
-    /// Whether it can have come of this new one, on this lattice.
-    pub fn continues(&self, new: &Self, lattice: &Lattice) -> bool {
+    /// Whether it can have come of this new one, on this lattice, up to `step`.
+    pub fn continues(&self, new: &Self, lattice: &Lattice, step: u64) -> bool {
+        let steps = self.frames.iter().map(|frame| frame.step);
         let mut frames = self.frames.iter();
-        self.selection == new.selection && frames.all(|frame| self.selection.fits(frame, lattice))
+        self.selection == new.selection
+            && steps.chain([step + 1]).is_sorted_by(|one, next| one < next)
+            && frames.all(|frame| self.selection.fits(frame, lattice))
     }
 }
 

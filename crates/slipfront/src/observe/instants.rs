@@ -47,13 +47,13 @@ impl Instants {
         }
     }
 
-    /// Whether it can have come of this new one, on this lattice.
-    pub fn continues(&self, new: &Self, lattice: &Lattice) -> bool {
+    /// Whether it can have come of this new one, on this lattice, up to `step`.
+    pub fn continues(&self, new: &Self, lattice: &Lattice, step: u64) -> bool {
         let alike = self.selection == new.selection
             && self.kinetic == new.kinetic
             && self.end_time_star == new.end_time_star;
         let mut frames = self.frames.iter().flatten();
-        alike && frames.all(|frame| self.selection.fits(frame, lattice))
+        alike && frames.all(|frame| frame.step <= step && self.selection.fits(frame, lattice))
     }
 
     /// The instants that the run had, in the order of their letters. Without a transition there is no D and E, nor

@@ -88,9 +88,12 @@ impl KineticHistory {
         }
     }
 
-    /// Whether it can have come of this new one.
-    pub fn continues(&self, new: &Self) -> bool {
-        self.steps_per_bin == new.steps_per_bin && self.in_bin < self.steps_per_bin
+    /// Whether it can have come of this new one, shown every step up to `step`.
+    pub fn continues(&self, new: &Self, step: u64) -> bool {
+        let shown = step + 1;
+        self.steps_per_bin == new.steps_per_bin
+            && self.in_bin == shown % self.steps_per_bin
+            && self.bins.len() as u64 == shown.div_ceil(self.steps_per_bin)
     }
 
     /// Largest N* of all steps.

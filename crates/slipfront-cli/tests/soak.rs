@@ -1,0 +1,106 @@
+//! Soak: ten times the steps take no more memory and no more disk, and the ledger of energy closes as well as before.
+//!
+//! `cargo test` goes to a million steps. Up to 10^8, with the figures:
+//!
+//! ```console
+//! $ SLIPFRONT_SOAK=long cargo test --release -p slipfront-cli --test soak -- --nocapture
+//! ```
+
+#![cfg(target_os = "linux")] // Where /proc tells how much memory a process has had.
+#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+/// What a run took and left.
+struct Soaked {
+    steps: u64,
+    peak_kib: u64,
+    energy_error: f64,
+    files: BTreeMap<String, u64>,
+}
+
+fn soak(folder: &Path, duration_star: f64) -> Soaked {
+    let out = folder.join(format!("{duration_star:e}"));
+    let mut child = Command::new(env!("CARGO_BIN_EXE_slipfront"))
+        .args([
+            "run",
+            "--quiet",
+            "--set",
+            "slider.blocks=[6,5]",
+            "--set",
+            "drive.v_star=0.1",
+        ])
+        .args(["--set", &format!("time.duration_star={duration_star}"), "--out"])
+        .arg(&out)
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut peak_kib = 0;
+    let status = loop {
+        // Most is taken while the pictures are drawn, for some tenths of a second at the end.
+        let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
+        let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let peak = peak.and_then(|peak| peak.trim().trim_end_matches(" kB").parse().ok());
+        peak_kib = peak_kib.max(peak.unwrap_or(0));
+        if let Some(status) = child.try_wait().unwrap() {
+            break status;
+        }
+        sleep(Duration::from_millis(1));
+    };
+    assert!(status.success(), "{status}");
+    let summary = std::fs::read(out.join("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap();
+    let files = std::fs::read_dir(&out).unwrap().map(|entry| {
+        let entry = entry.unwrap();
+        let name = entry.file_name().into_string().unwrap();
+        (name, entry.metadata().unwrap().len())
+    });
+    Soaked {
+        steps: summary["steps"].as_u64().unwrap(),
+        peak_kib,
+        energy_error: summary["energy_error"].as_f64().unwrap(),
+        files: files.collect(),
+    }
+}
+
+#[test]
+fn a_longer_run_takes_no_more() {
+    let folder = tempfile::tempdir().unwrap();
+    let long = std::env::var("SLIPFRONT_SOAK").is_ok_and(|form| form == "long");
+    let durations: &[f64] = if long { &[1e4, 1e5, 1e6, 1e7] } else { &[1e4, 1e5] };
+    let runs: Vec<Soaked> = durations
+        .iter()
+        .map(|&duration| soak(folder.path(), duration))
+        .collect();
+    for run in &runs {
+        let bytes: u64 = run.files.values().sum();
+        let (steps, peak_kib, error) = (run.steps, run.peak_kib, run.energy_error);
+        println!("{steps:>11} steps: {peak_kib} KiB at most, {bytes} bytes of files, energy to {error:.4e}");
+    }
+    let first = &runs[0];
+    assert_eq!(first.steps, 100_000);
+    for (before, run) in runs.iter().zip(&runs[1..]) {
+        assert_eq!(run.steps, 10 * before.steps);
+        // The allocator's moods make some per cent; a byte kept of every step would make a hundred.
+        let peak = run.peak_kib as f64 / first.peak_kib as f64;
+        assert!(peak < 1.1, "{} KiB after {} KiB", run.peak_kib, first.peak_kib);
+        // More digits in numbers and labels; other curves in the pictures.
+        for (name, &bytes) in &run.files {
+            let (most, was) = (1.25 * first.files[name] as f64 + 1024.0, first.files[name]);
+            assert!((bytes as f64) < most, "{name}: {bytes} bytes after {was}");
+        }
+        // Every step adds the same share to what is put in and to what is missing. Rounding alone, if it did not
+        // cancel, would add 1e-16 a step: 1e-8 in 10^8 of them.
+        let drift = (run.energy_error - first.energy_error).abs();
+        assert!(
+            drift < 0.1 * first.energy_error.abs(),
+            "{} after {}",
+            run.energy_error,
+            first.energy_error
+        );
+    }
+}
