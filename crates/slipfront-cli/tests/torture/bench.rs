@@ -167,6 +167,9 @@ pub(crate) fn program() -> &'static str {
     env!("CARGO_BIN_EXE_slipfront")
 }
 
+/// No file of a job is larger.
+const LARGE_BYTES: u64 = 1 << 30;
+
 pub(crate) type Files = BTreeMap<String, Vec<u8>>;
 
 fn collect(folder: &Path, prefix: &str, files: &mut Files) {
@@ -176,6 +179,8 @@ fn collect(folder: &Path, prefix: &str, files: &mut Files) {
         let kind = entry.file_type().unwrap();
         if kind.is_dir() {
             collect(&entry.path(), &format!("{name}/"), files);
+        } else if entry.metadata().unwrap().len() > LARGE_BYTES {
+            files.insert(name, b"very large".to_vec());
         } else if kind.is_file() {
             files.insert(name, std::fs::read(entry.path()).unwrap());
         }

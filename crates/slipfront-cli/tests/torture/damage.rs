@@ -43,7 +43,7 @@ type Others = Vec<(String, Vec<u8>)>;
 fn damages(bytes: &[u8], chance: &mut Chance, most: usize) -> Vec<Damage> {
     let len = bytes.len();
     let mut all: Vec<Damage> = Vec::new();
-    if len * 10 <= most {
+    if len * 9 <= most {
         all.extend((0..len).map(Damage::Cut));
         all.extend((0..8 * len).map(Damage::Flip));
     }
@@ -64,7 +64,8 @@ fn damages(bytes: &[u8], chance: &mut Chance, most: usize) -> Vec<Damage> {
         Damage::Endless,
     ];
     places.extend(others().iter().map(|(name, _)| Damage::Other(name.clone())));
-    all.extend(chance.some(places, cases(most, usize::MAX)));
+    let most = if long() { places.len() } else { most };
+    all.extend(chance.some(places, most));
     all
 }
 
@@ -421,7 +422,7 @@ fn of_kept_runs() {
     bench.done("study kept.toml --quiet --threads 1 -o out").unwrap();
     let whole = bench.files("out");
     let of_runs = whole.keys().filter(|name| name.starts_with("runs/")).collect();
-    for name in Chance::new().some(of_runs, cases(4, usize::MAX)) {
+    for name in Chance::new().some(of_runs, if long() { usize::MAX } else { 4 }) {
         let target = Target {
             kind: "kept runs that are verified",
             name: &format!("out/{name}"),
@@ -471,12 +472,72 @@ fn of_a_paper() {
         let target = Target {
             kind: "the paper's folder",
             name: &format!("out/{name}"),
-            most: cases(usize::from(kept), if kept { 300 } else { 20 }),
+            most: cases(usize::from(kept), if kept { 200 } else { 5 }),
         };
         if !long() && !kept {
             continue;
         }
         torture(&mut tally, &bench, &target, &|_| mended(&bench, &JOBS[2], &whole));
+    }
+    tally.close();
+}
+
+/// A run that was stopped after it had saved two checkpoints.
+fn stopped(bench: &Bench) -> Files {
+    let both = || bench.path("out/checkpoint-previous.bin").exists();
+    let mut child = bench.start(JOBS[3].line);
+    while !both() {
+        assert!(child.try_wait().unwrap().is_none(), "no checkpoints were saved");
+        if bench.path("out/case.toml").exists() {
+            let _ = Command::new("kill")
+                .args(["-USR1", &child.id().to_string()])
+                .output();
+        }
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    bench.files("out")
+}
+
+#[test]
+fn of_checkpoints() {
+    let (bench, whole) = with_results(&JOBS[3]);
+    let mut tally = Tally::new("damage");
+    bench.remove("out");
+    let interrupted = stopped(&bench);
+    let resumed = |line: &str| {
+        let ended = bench.run(line)?;
+        let now = bench.files("out");
+        bench.fill("out", &interrupted);
+        match ended.status {
+            0 => expect_all(&now, &whole).map(|()| "resumed to the same answer"),
+            _ => refused(&ended),
+        }
+    };
+    for (name, most) in [
+        ("out/checkpoint.bin", cases(12, 3_000)),
+        ("out/case.toml", cases(4, 1_000)),
+        ("out/inputs/mask.png", cases(2, 500)),
+    ] {
+        let target = Target {
+            kind: "runs that are resumed",
+            name,
+            most,
+        };
+        torture(&mut tally, &bench, &target, &|_| resumed(JOBS[3].again));
+    }
+    for (name, most) in [
+        ("out/checkpoint.bin", cases(1, 50)),
+        ("out/checkpoint-previous.bin", cases(2, 200)),
+    ] {
+        let target = Target {
+            kind: "runs that are resumed from the checkpoint before",
+            name,
+            most,
+        };
+        let line = "run --resume out --previous --quiet --threads 1";
+        torture(&mut tally, &bench, &target, &|_| resumed(line));
     }
     tally.close();
 }

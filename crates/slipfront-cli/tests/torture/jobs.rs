@@ -15,29 +15,47 @@ pub(crate) struct Job {
     pub(crate) line: &'static str,
     /// After it was stopped in any way.
     pub(crate) again: &'static str,
+    /// After it was stopped before there was anything to go on with.
+    pub(crate) anew: &'static str,
+    /// Whether SIGUSR1 makes it save what it has.
+    pub(crate) saves: bool,
     /// Whether `slipfront verify` knows such folders.
     pub(crate) verified: bool,
 }
 
 /// Every one that there is.
-pub(crate) const JOBS: [Job; 3] = [
+pub(crate) const JOBS: [Job; 4] = [
     Job {
         name: "run",
         line: "run case.toml --quiet --threads 1 -o out",
         again: "run case.toml --quiet --threads 1 -o out --force",
+        anew: "run case.toml --quiet --threads 1 -o out --force",
+        saves: false,
         verified: true,
     },
     Job {
         name: "study",
         line: "study study.toml --quiet --threads 1 -o out",
         again: "study study.toml --quiet --threads 1 -o out",
+        anew: "study study.toml --quiet --threads 1 -o out",
+        saves: false,
         verified: true,
     },
     Job {
         name: "paper",
         line: "paper fig02 fig13 --reduced --quiet --threads 1 -o out",
         again: "paper fig02 fig13 --reduced --quiet --threads 1 -o out",
+        anew: "paper fig02 fig13 --reduced --quiet --threads 1 -o out",
+        saves: false,
         verified: false,
+    },
+    Job {
+        name: "resumed run",
+        line: "run slow.toml --quiet --threads 1 --checkpoint 0s -o out",
+        again: "run --resume out --quiet --threads 1 --checkpoint 0s",
+        anew: "run slow.toml --quiet --threads 1 --checkpoint 0s -o out --force",
+        saves: true,
+        verified: true,
     },
 ];
 
@@ -61,6 +79,22 @@ duration_star = 60
 [output]
 snapshots = [30, 50]
 series = 1
+"#;
+
+/// Some tenths of a second, in which checkpoints are saved.
+const SLOW: &str = r#"
+[slider]
+blocks = [40, 30]
+[drive]
+v_star = 0.05
+[[texture]]
+shape = "mask"
+file = "mask.png"
+[time]
+duration_star = 600
+[output]
+snapshots = [30, 500]
+series = 5
 "#;
 
 const STUDY: &str = r#"# Two points, three surfaces of each.
@@ -135,6 +169,7 @@ pub(crate) fn bench() -> Bench {
     );
     bench.done("texture spot.toml -o mask.png").unwrap();
     bench.write("case.toml", CASE);
+    bench.write("slow.toml", SLOW);
     bench.write("study.toml", STUDY);
     bench.write("kept.toml", KEPT);
     bench
@@ -165,8 +200,11 @@ fn unfinished(name: &str) -> bool {
 
 /// What the disk holds of a run that is not the same each time: when it was made.
 fn told_by_time(name: &str) -> bool {
-    name.ends_with("manifest.json") || name == "records.jsonl"
+    name.ends_with("manifest.json") || name == "records.jsonl" || CHECKPOINTS.contains(&name)
 }
+
+/// What a run goes on with; it is gone when the run is complete.
+const CHECKPOINTS: [&str; 2] = ["checkpoint.bin", "checkpoint-previous.bin"];
 
 /// Outcomes of recorded runs by their identities. A run that is recorded twice is a finding.
 fn records(bytes: &[u8]) -> Result<BTreeMap<String, Value>, String> {
@@ -214,7 +252,8 @@ pub(crate) fn expect_sound(now: &Files, whole: &Files) -> Result<(), String> {
 
 /// Demands that a folder holds exactly what it should.
 pub(crate) fn expect_complete(now: &Files, whole: &Files) -> Result<(), String> {
-    if let Some(left) = now.keys().find(|name| unfinished(name)) {
+    let left_over = |name: &str| unfinished(name) || CHECKPOINTS.contains(&name);
+    if let Some(left) = now.keys().find(|name| left_over(name)) {
         return Err(format!("{left} is left behind"));
     }
     expect_all(now, whole)
@@ -240,9 +279,24 @@ pub(crate) fn expect_all(now: &Files, whole: &Files) -> Result<(), String> {
 }
 
 impl Job {
+    /// What to do next, whatever has become of the folder.
+    pub(crate) fn next(&self, bench: &Bench, whole: &Files) -> &'static str {
+        // A run goes on with its case and all that this reads.
+        let read = |name: &&String| *name == "case.toml" || name.starts_with("inputs/");
+        let whole_case = whole
+            .keys()
+            .filter(read)
+            .all(|name| bench.path("out").join(name).exists());
+        match bench.path("out").exists() {
+            false => self.line,
+            true if whole_case => self.again,
+            true => self.anew,
+        }
+    }
+
     /// Lets the job go on to its end, and demands the right answer.
     pub(crate) fn finish(&self, bench: &Bench, whole: &Files) -> Result<(), String> {
-        bench.done(self.again)?;
+        bench.done(self.next(bench, whole))?;
         expect_complete(&bench.files("out"), whole)?;
         if self.verified {
             let ended = bench.done("verify out")?;

@@ -1,5 +1,6 @@
 //! Killed at random moments, a command leaves nothing wrong behind, and goes on to the same answer.
 
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use crate::bench::{Bench, Files};
@@ -10,13 +11,16 @@ use crate::tally::{Chance, Tally, cases};
 const IN_A_ROW: usize = 4;
 
 fn kill_and_look(bench: &Bench, job: &Job, whole: &Files, after: Duration) -> Result<&'static str, String> {
-    let line = if bench.path("out").exists() {
-        job.again
-    } else {
-        job.line
-    };
+    let line = job.next(bench, whole);
     let mut child = bench.start(line);
-    std::thread::sleep(after);
+    for _ in 0..4 {
+        std::thread::sleep(after / 4);
+        if job.saves {
+            let _ = Command::new("kill")
+                .args(["-USR1", &child.id().to_string()])
+                .output();
+        }
+    }
     child.kill().unwrap();
     match child.wait().unwrap().code() {
         None => job.expect_honest(bench, whole).map(|()| "killed"),
@@ -62,4 +66,9 @@ fn a_killed_study_goes_on() {
 #[test]
 fn a_killed_paper_goes_on() {
     torture(&JOBS[2], cases(4, 200));
+}
+
+#[test]
+fn a_killed_run_is_resumed() {
+    torture(&JOBS[3], cases(8, 400));
 }

@@ -7,7 +7,7 @@
 //! $ SLIPFRONT_TORTURE=long cargo test --release -p slipfront-cli --test torture -- --nocapture
 //! ```
 //!
-//! The random choices follow from a seed, `SLIPFRONT_TORTURE_SEED`, which every failure names.
+//! A number in place of `long`, such as 0.1, takes that share of them. The random choices follow from a seed, `SLIPFRONT_TORTURE_SEED`, which every failure names.
 
 #![cfg(unix)]
 // Helpers of tests are not tests by themselves to clippy.

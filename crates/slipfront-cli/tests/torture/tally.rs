@@ -8,14 +8,22 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 /// Findings that are shown of one test.
 const SHOWN: usize = 40;
 
-/// Whether all cases are asked for.
-pub(crate) fn long() -> bool {
-    std::env::var("SLIPFRONT_TORTURE").is_ok_and(|form| form == "long")
+/// Which share of all cases is asked for; none for the short form.
+fn share() -> Option<f64> {
+    match std::env::var("SLIPFRONT_TORTURE").ok()?.as_str() {
+        "long" => Some(1.0),
+        share => Some(share.parse().unwrap()),
+    }
 }
 
-/// How many cases to try in the short form and in the long one.
+/// Whether this is not the short form.
+pub(crate) fn long() -> bool {
+    share().is_some()
+}
+
+/// How many cases to try, where there are `all` in the long form.
 pub(crate) fn cases(short: usize, all: usize) -> usize {
-    if long() { all } else { short }
+    share().map_or(short, |share| short.max((all as f64 * share) as usize))
 }
 
 fn seed() -> u64 {
