@@ -109,4 +109,8 @@ while true; do
         wait -n || true
     done
 done
+# Sums over all runs that the log tells of.
+awk -F, 'NR > 1 { cpu[$3] += $4; runs[$3] += $5; edges[$3] = $6; found[$3] += $10 != "" }
+    END { for (name in cpu) printf "%-12s %6.1f min of processor time, %10d executions, %5d edges, %d findings\n",
+        name, cpu[name] / 60, runs[name], edges[name], found[name] }' "$log" | sort
 [ ! -s "$cpu_times/failed" ]
