@@ -51,7 +51,7 @@ run_slice() {
     read -r _ longest dictionary < <(grep "^$name " "$out/targets")
     mkdir -p "$out/corpus/$name" "$out/artifacts/$name"
     said="$out/last-$name.txt"
-    local options=(-max_total_time="$seconds" -max_len="$longest" -timeout=20 -rss_limit_mb=2048 -print_final_stats=1
+    local options=(-max_total_time="$seconds" -max_len="$longest" -timeout=60 -rss_limit_mb=2048 -print_final_stats=1
         -artifact_prefix="$out/artifacts/$name/")
     [ "$dictionary" = - ] || options+=(-dict="tests/fuzz/dictionaries/$dictionary")
     TIMEFORMAT='%U %S'
@@ -64,7 +64,7 @@ run_slice() {
     [ "$status" -eq 0 ] || finding="$(sed -n 's/.*Test unit written to //p' "$said" | tail -n 1)"
     [ "$status" -eq 0 ] || [ -n "$finding" ] || finding="status $status"
     local last
-    last="$(grep -E ' cov: [0-9]+ ft: ' "$said" | tail -n 1)"
+    last="$(grep -E ' cov: [0-9]+ ft: ' "$said" | tail -n 1 || true)"
     echo "$(date --utc +%FT%TZ),$revision,$name,$cpu,$(stat number_of_executed_units),$(
         sed 's/.* cov: \([0-9]*\) .*/\1/' <<< "$last"),$(sed 's/.* ft: \([0-9]*\) .*/\1/' <<< "$last"),$(
         sed 's/.* corp: \([0-9]*\)\/.*/\1/' <<< "$last"),$(stat peak_rss_mb),$finding" >> "$log"
@@ -109,4 +109,8 @@ while true; do
         wait -n || true
     done
 done
+# Sums over all runs that the log tells of.
+awk -F, 'NR > 1 { cpu[$3] += $4; runs[$3] += $5; edges[$3] = $6; found[$3] += $10 != "" }
+    END { for (name in cpu) printf "%-12s %6.1f min of processor time, %10d executions, %5d edges, %d findings\n",
+        name, cpu[name] / 60, runs[name], edges[name], found[name] }' "$log" | sort
 [ ! -s "$cpu_times/failed" ]

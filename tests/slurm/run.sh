@@ -1,5 +1,6 @@
 #!/bin/bash
-# Runs a study on a real Slurm: a cluster of this one machine, started in a temporary folder and ended with it.
+# Runs a study and a long run on a real Slurm: a cluster of this one machine, started in a temporary folder and ended
+# with it.
 #
 # Needs Debian's slurm-wlm (slurmctld, slurmd, sbatch, scontrol) and munge, and root; it installs nothing:
 #
@@ -9,11 +10,13 @@
 #
 # A study is submitted with the script of `slipfront study slurm`, in three tasks. One task is requeued in the middle,
 # the command of another is killed, and that task is submitted again. The merged parts must be the same bytes as the
-# study run without Slurm, and no run may have been made twice. Takes about a minute. Not part of the tests that
-# always run: no continuous integration has Slurm.
+# study run without Slurm, and no run may have been made twice. Then the script of docs/guide/long.md runs a case whose
+# job gets SIGTERM twice: it puts itself back into the queue, and writes the same bytes as without. Takes about a
+# minute. Not part of the tests that always run: no continuous integration has Slurm.
 
 set -euo pipefail
 
+guide=$(realpath "$(dirname "$0")/../../docs/guide/long.md")
 slipfront=$(realpath "${1:-$(dirname "$0")/../../target/release/slipfront}")
 for command in slurmctld slurmd sbatch squeue scontrol munged mungekey; do
   PATH=$PATH:/usr/sbin command -v "$command" > /dev/null || { echo "needs $command: apt-get install slurm-wlm munge"; exit 2; }
@@ -29,7 +32,8 @@ started=()
 finish() {
   status=$?
   set +e
-  scancel --state=RUNNING,PENDING --name=study 2> /dev/null
+  scancel --name=study 2> /dev/null
+  scancel --name=long 2> /dev/null
   for ((k = ${#started[@]} - 1; k >= 0; k--)); do kill "${started[k]}" 2> /dev/null; done
   wait 2> /dev/null
   if [ $status = 0 ]; then rm -rf "$work"; else echo "failed: logs are in $work"; fi
@@ -120,7 +124,7 @@ wait_end() {
   for _ in $(seq 600); do
     [ -z "$(squeue -h -j "$1" -o %i 2> /dev/null)" ] && return
     # A requeued task waits two minutes by default; not here.
-    squeue -h -j "$1" -t PENDING -o '%F_%K %r' 2> /dev/null | awk '$2 == "BeginTime" { print $1 }' |
+    squeue -h -j "$1" -t PENDING -o '%i %r' 2> /dev/null | awk '$2 == "BeginTime" { print $1 }' |
       while read -r task; do scontrol update JobId="$task" StartTime=now; done
     sleep 0.5
   done
@@ -154,3 +158,38 @@ parts=$(cat out/shard-*/records.jsonl | wc -l)
 echo "$parts runs in three parts, $merged merged"
 [ "$parts" = "$runs" ] && [ "$merged" = "$runs" ]
 echo "passed: tables and pictures are the same bytes, and no run was made twice"
+
+# --- A long run, by the script of the guide.
+
+cat > case.toml << 'END'
+[slider]
+blocks = [250, 250]
+[drive]
+v_star = 0.005
+END
+"$slipfront" run case.toml --quiet -o once
+{ echo '#!/bin/sh'; echo "PATH=$(dirname "$slipfront"):\$PATH"; sed -n '/^```sh/,/^```$/p' "$guide" | grep -v '^```\|^#!'; } > long.body
+# Directives stand before the first command.
+{ echo '#!/bin/sh'; grep '^#SBATCH' long.body; grep -v '^#' long.body; } > long.sh
+job=$(sbatch --parsable --job-name=long --open-mode=append --output=long.log long.sh)
+for stop in 1 2; do
+  for _ in $(seq 600); do
+    [ -e results/long/case.toml ] && pgrep -f "slipfront run .*results/long" > /dev/null && break
+    squeue -h -j "$job" -t PENDING -o '%i %r' | awk '$2 == "BeginTime" { print $1 }' |
+      while read -r task; do scontrol update JobId="$task" StartTime=now; done
+    sleep 0.1
+  done
+  sleep 0.7
+  scancel --signal=TERM "$job"
+  for _ in $(seq 600); do
+    [ "$(grep -c 'stopped by a signal' long.log)" -ge "$stop" ] && break
+    sleep 0.05
+  done
+done
+wait_end "$job"
+grep 'stopped by a signal' long.log
+[ "$(grep -c 'stopped by a signal' long.log)" = 2 ]
+for file in once/*; do
+  [ "$file" = once/manifest.json ] || cmp "$file" "results/long/$(basename "$file")"
+done
+echo "passed: a job that was stopped twice wrote the same bytes"

@@ -4,6 +4,7 @@
 //! alone can tell. What remains, from units to the lattice, is the work of the case that is built from it next.
 
 mod check;
+mod depth;
 mod error;
 mod keys;
 mod motion;
@@ -25,6 +26,7 @@ use serde::de::DeserializeOwned;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+pub(crate) use depth::not_too_deep;
 pub use error::{CaseError, Invalid};
 pub(crate) use keys::{exclude_each_other, keys_of, partners_of, unknown as unknown_key};
 pub use motion::{Drive, DriveSpeed, Friction, KineticFriction, Law, Load};
@@ -86,7 +88,7 @@ impl CaseFile {
     pub fn parse(text: &str, name: &str, overrides: &[String]) -> Result<Self, CaseError> {
         let mut source = Source::new(name, text, overrides);
         let text = source.text();
-        let root = DeTable::parse(&text[..source.file_len()]);
+        let root = DeTable::parse(not_too_deep(&text[..source.file_len()]));
         let mut root = root
             .map_err(|error| CaseError::syntax(&source, 0, &error))?
             .into_inner();

@@ -65,12 +65,11 @@ impl Progress {
         }
     }
 
-    /// Says something beside the progress.
+    /// Says something beside the progress, and also where none is shown: it is asked for, or a warning.
     pub(crate) fn note(&self, text: &str) {
         match self {
-            Self::Silent => {}
             Self::Bar(bar) => bar.println(text),
-            Self::Lines(_) => eprintln!("{text}"),
+            Self::Silent | Self::Lines(_) => eprintln!("{text}"),
         }
     }
 

@@ -77,7 +77,10 @@ impl Saving {
             let began = Instant::now();
             let step = running.snapshot().step;
             match self.checkpoints.save(running) {
-                Ok(()) if asked => progress.note(&format!("saved a checkpoint of step {step}")),
+                Ok(()) if asked => {
+                    let seconds = began.elapsed().as_secs_f64();
+                    progress.note(&format!("saved a checkpoint of step {step} in {seconds:.2} s"));
+                }
                 Ok(()) => {}
                 Err(error) => progress.note(&format!(
                     "warning: cannot save a checkpoint of step {step} in {}: {error}; the run goes on, and the one before \

@@ -34,7 +34,7 @@ fn replay(name: &str) {
 }
 
 /// Bytes of an input that is long.
-const LONG: usize = 100_000;
+const LONG: usize = 300_000;
 
 fn run(target: &Target, bytes: &[u8], name: &str) {
     let failed = std::panic::catch_unwind(|| target.run(bytes)).is_err();

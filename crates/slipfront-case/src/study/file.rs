@@ -11,7 +11,7 @@ use super::axis::{self, Axis, AxisKeys};
 use super::error::StudyError;
 use super::inputs::{self, Copy};
 use super::{quantities, tables};
-use crate::case_file::{CaseError, Source, Tables, keys_of, unknown_key};
+use crate::case_file::{CaseError, Source, Tables, keys_of, not_too_deep, unknown_key};
 
 /// A study file.
 #[derive(Clone, Debug)]
@@ -187,9 +187,11 @@ impl StudyFile {
     /// When it is too odd for TOML, and when a file cannot be read.
     pub(super) fn portable(&self) -> Result<(String, Vec<Copy>), StudyError> {
         let mut table = toml::Table::new();
-        let base: toml::Table = self.base.text.parse().map_err(|error: toml::de::Error| {
-            CaseError::syntax(&Source::new(&self.base.name, &self.base.text, &[]), 0, &error)
-        })?;
+        let base: toml::Table = not_too_deep(&self.base.text)
+            .parse()
+            .map_err(|error: toml::de::Error| {
+                CaseError::syntax(&Source::new(&self.base.name, &self.base.text, &[]), 0, &error)
+            })?;
         table.insert("base".to_owned(), base.into());
         table.extend(
             self.table
@@ -237,7 +239,7 @@ impl StudyFile {
     /// A sentence that names place, value, bound and remedy.
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
         let mut source = Source::new(file, text, &[]);
-        let root = DeTable::parse(text)
+        let root = DeTable::parse(not_too_deep(text))
             .map_err(|error| CaseError::syntax(&source, 0, &error))?
             .into_inner();
         source.note_places(&root);

@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 use jiff::Timestamp;
 use slipfront::StopReason;
 use slipfront_case::case::Case;
+use slipfront_case::case_file::CaseFile;
 use slipfront_case::checkpoint::{CHECKPOINT, Checkpoints};
 use slipfront_case::run::Running;
 
@@ -38,8 +39,11 @@ const TEXTS: [&str; 3] = [
      law = \"literal\"\n[output]\nsnapshots = { every = 2.0 }\nfields = [\"sliding\"]\n",
 ];
 
-static CASES: LazyLock<[Case; 3]> =
-    LazyLock::new(|| TEXTS.map(|text| Case::parse(text, "case", &[]).unwrap()));
+static CASES: LazyLock<[Case; 3]> = LazyLock::new(|| {
+    // Not by `parse`, which asks for the memory that a run takes, if only to see whether it is there.
+    let made = |file| Case::new(file, "case", Path::new("")).unwrap();
+    TEXTS.map(|text| made(CaseFile::parse(text, "case.toml", &[]).unwrap()))
+});
 
 /// Steps of a run that goes on.
 const STEPS: u64 = 20;
@@ -99,10 +103,13 @@ fn go_on(case: &Case, file: &[u8]) {
     match running.advance(STEPS) {
         Err(error) => readable(&error),
         Ok(ended) => {
-            let bytes = save(&folder, &running);
-            let again = Checkpoints::load(&folder, case, false).unwrap().unwrap();
-            let resumed = Running::resume(case, 1, again.state).unwrap();
-            assert_eq!(save(&folder, &resumed), bytes);
+            // A run that has ended is not gone on with.
+            if ended.is_none() {
+                let bytes = save(&folder, &running);
+                let again = Checkpoints::load(&folder, case, false).unwrap().unwrap();
+                let resumed = Running::resume(case, 1, again.state).unwrap();
+                assert_eq!(save(&folder, &resumed), bytes);
+            }
             let record = running.record(ended.unwrap_or(StopReason::End));
             assert_eq!(record.first_slip_time_star.len(), case.model.lattice.n_blocks());
         }

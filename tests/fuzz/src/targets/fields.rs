@@ -11,7 +11,13 @@ use crate::{Memory, Target, scratch};
 pub(crate) const FIELDS: Target = Target {
     name: "fields",
     check: fields,
-    made: || vec![file(4, 3, 1, 2), file(5, 4, 2, 1), file(3, 2, 1, 0)],
+    made: || {
+        vec![
+            file([4, 3], 1, 2, 1e-6),
+            file([5, 4], 2, 1, 5e-324),
+            file([3, 2], 1, 0, 1e8),
+        ]
+    },
     files: &[],
     dictionary: Some("netcdf.dict"),
     longest: 8192,
@@ -25,7 +31,7 @@ pub(crate) const FIELDS: Target = Target {
 };
 
 /// A file of a small lattice.
-pub(crate) fn file(nx: usize, ny: usize, stride: usize, frames: usize) -> Vec<u8> {
+pub(crate) fn file([nx, ny]: [usize; 2], stride: usize, frames: usize, block_size: f64) -> Vec<u8> {
     let blocks = nx * ny;
     let names = [FieldName::ContactStressStar, FieldName::Sliding];
     let number = |block: usize| 0.1 * block as f64;
@@ -46,7 +52,7 @@ pub(crate) fn file(nx: usize, ny: usize, stride: usize, frames: usize) -> Vec<u8
         nx,
         ny,
         stride,
-        block_size: 1e-6,
+        block_size,
         time_unit_s: 3e-10,
         names: &names,
         statics: StaticFields {

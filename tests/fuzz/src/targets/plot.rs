@@ -20,21 +20,42 @@ pub(crate) const PLOT: Target = Target {
         bytes: 256 << 20,
         per_byte: 1024,
     },
-    mutations: 10,
+    mutations: 5,
     repetitions: 0,
 };
 
 const END: &[u8] = b"\n==\n";
 
 fn made() -> Vec<Vec<u8>> {
-    let whole = |rows, fields: Vec<u8>| {
-        let summary = summary_json(&summary()).into_bytes();
-        [summary, END.to_vec(), series::csv(rows), END.to_vec(), fields].concat()
+    let whole = |summary: &str, series: Vec<u8>, fields: Vec<u8>| {
+        [summary.as_bytes(), END, &series, END, &fields].concat()
     };
-    vec![
-        whole(3, fields::file(4, 3, 1, 2)),
-        whole(1, fields::file(3, 2, 1, 0)),
-    ]
+    let plain = summary_json(&summary());
+    let mut seeds = vec![
+        whole(&plain, series::csv(3), fields::file([4, 3], 1, 2, 1e-6)),
+        whole(&plain, series::csv(1), fields::file([3, 2], 1, 0, 1e-6)),
+    ];
+    // Numbers that leave no room between them, or too much.
+    for (odd, block_size) in [
+        ("1e99", 5e-324),
+        ("1e308", 9e8),
+        ("5e-324", 1e-308),
+        ("-1e300", 1e-150),
+    ] {
+        let numbers = plain
+            .replace(": 0.5", &format!(": {odd}"))
+            .replace(": 30.5", &format!(": {odd}"));
+        let rows = String::from_utf8(series::csv(3))
+            .unwrap()
+            .replace("16.0", odd)
+            .replace("0.3,", &format!("{odd},"));
+        seeds.push(whole(
+            &numbers,
+            rows.into_bytes(),
+            fields::file([4, 3], 1, 2, block_size),
+        ));
+    }
+    seeds
 }
 
 fn plot(input: &[u8]) {
@@ -55,10 +76,8 @@ fn plot(input: &[u8]) {
                     picture.svg.ends_with("</svg>\n") || picture.svg.ends_with("</svg>"),
                     "{name}"
                 );
-                let odd = ["NaN", "inf"]
-                    .into_iter()
-                    .find(|word| number_of(&picture.svg, word));
-                assert!(odd.is_none(), "{name}.svg has a number {odd:?}");
+                let odd = tags(&picture.svg).find(|tag| tag.contains("NaN") || tag.contains("inf"));
+                assert!(odd.is_none(), "{name}.svg has a number that is none: {odd:?}");
             }
             if input.len() % 2 == 1 {
                 draw_friction(&[folder.to_owned(), folder.to_owned()]).unwrap();
@@ -67,9 +86,8 @@ fn plot(input: &[u8]) {
     }
 }
 
-/// Whether a coordinate is this word.
-fn number_of(svg: &str, word: &str) -> bool {
-    svg.contains(&format!("\"{word}\""))
-        || svg.contains(&format!("\"-{word}\""))
-        || svg.contains(&format!(" {word} "))
+/// What stands in the tags of a document, but for images: their bytes may spell anything.
+fn tags(svg: &str) -> impl Iterator<Item = &str> {
+    let tags = svg.split('<').filter_map(|piece| piece.split('>').next());
+    tags.filter(|tag| !tag.starts_with("image"))
 }

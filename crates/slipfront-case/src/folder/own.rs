@@ -1,0 +1,102 @@
+//! Which files of a run folder are slipfront's own: those that may be replaced.
+
+use std::io::ErrorKind;
+use std::path::Path;
+
+use super::FolderError;
+use super::files::{TEXT_MAX_BYTES, read_whole, unfinished};
+use crate::case_file::CaseFile;
+use crate::checkpoint::{CHECKPOINT, PREVIOUS};
+use crate::manifest::{MANIFEST, Manifest};
+
+/// The resolved case in its folder.
+pub(super) const CASE: &str = "case.toml";
+
+/// What a run leaves beside its case and the copies in `inputs/`, the manifest first.
+const RESULTS: [&str; 8] = [
+    MANIFEST,
+    "summary.json",
+    "series.csv",
+    "fields.nc",
+    "friction.svg",
+    "friction.png",
+    "stress.svg",
+    "stress.png",
+];
+
+/// The case in a folder if it is a resolved one, byte for byte. Another was not written by a run, and what it names may be
+/// the only copy that there is.
+pub(super) fn resolved_case(folder: &Path) -> Option<CaseFile> {
+    let bytes = read_whole(&folder.join(CASE), TEXT_MAX_BYTES).ok()?;
+    let text = String::from_utf8(bytes).ok()?;
+    let case = CaseFile::parse(&text, CASE, &[]).ok()?;
+    (case.to_toml().ok()? == text).then_some(case)
+}
+
+/// The files that a resolved case names.
+fn named_by_case(folder: &Path) -> Vec<String> {
+    let case = resolved_case(folder);
+    case.map(|mut case| case.files_mut().map(|(_, name)| name.clone()).collect())
+        .unwrap_or_default()
+}
+
+/// Files of an earlier run in this folder, finished or not: its manifest first, its case last, which until then tells
+/// the copies of a run that was stopped.
+fn own_files(path: &Path) -> Vec<String> {
+    let manifest = read_whole(&path.join(MANIFEST), TEXT_MAX_BYTES).ok();
+    let manifest = manifest.and_then(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok());
+    let listed = manifest
+        .into_iter()
+        .flat_map(|manifest| manifest.files)
+        .map(|file| file.name);
+    let mut copies: Vec<String> = listed.chain(named_by_case(path)).collect();
+    copies.sort();
+    copies.dedup();
+    // They are only believed about the folder of copies: damage must not make us delete elsewhere.
+    copies.retain(|name| {
+        name.strip_prefix("inputs/")
+            .is_some_and(|plain| !plain.contains(['/', '\\']))
+    });
+    let mut names: Vec<String> = RESULTS.map(str::to_owned).to_vec();
+    names.extend([CHECKPOINT, PREVIOUS].map(str::to_owned));
+    names.extend(copies);
+    names.extend(unfinished(path, ""));
+    names.extend(unfinished(path, "inputs/"));
+    names.push(CASE.to_owned());
+    names
+}
+
+/// Removes the files of an earlier run from this folder.
+pub(super) fn remove_own(path: &Path) -> Result<(), FolderError> {
+    // The manifest goes first: from now on the folder does not look complete.
+    remove(path, own_files(path))?;
+    // Gone if it held our inputs only; a foreign file keeps it.
+    std::fs::remove_dir(path.join("inputs")).ok();
+    Ok(())
+}
+
+/// Removes the results of a run, and what a kill left of files that were being written.
+pub(super) fn remove_results(path: &Path) -> Result<(), FolderError> {
+    remove(path, RESULTS.map(str::to_owned))?;
+    remove(path, unfinished(path, ""))
+}
+
+/// Removes these files from a folder, where they are.
+fn remove(folder: &Path, names: impl IntoIterator<Item = String>) -> Result<(), FolderError> {
+    for name in names {
+        match std::fs::remove_file(folder.join(name)) {
+            Err(source) if source.kind() != ErrorKind::NotFound => {
+                let path = folder.to_owned();
+                return Err(FolderError::Unwritable { path, source });
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Bytes of an earlier run in this folder, which [`RunFolder::prepare`](super::RunFolder::prepare) would remove with `force`.
+pub fn own_bytes(path: &Path) -> u64 {
+    let length = |name| std::fs::symlink_metadata(path.join(name)).map_or(0, |file| file.len());
+    own_files(path).into_iter().map(length).sum()
+}
