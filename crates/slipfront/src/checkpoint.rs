@@ -32,8 +32,6 @@ pub struct Checkpoint<N = Vec<f64>> {
 /// What bounds the strains of all springs from one look at the displacements to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Strains {
-    /// Step of the latest sweep.
-    pub(crate) swept: Option<u64>,
     /// Largest u_x, -u_x, u_y, -u_y at the latest look.
     pub(crate) extent: [f64; 4],
     /// How much they may have grown since.
@@ -43,12 +41,10 @@ pub(crate) struct Strains {
 }
 
 impl Checkpoint {
-    /// Whether it can be one of a lattice of `n` blocks.
-    pub(crate) fn fits(&self, n: usize) -> bool {
+    /// Whether it is one of a lattice of `n` blocks.
+    pub(crate) fn has_blocks(&self, n: usize) -> bool {
         let all = self.displacement.iter().chain(&self.velocity);
-        let swept = self.strains.and_then(|strains| strains.swept);
-        swept.is_none_or(|swept| swept <= self.step)
-            && all.chain([&self.first_slip]).all(|numbers| numbers.len() == n)
+        all.chain([&self.first_slip]).all(|numbers| numbers.len() == n)
     }
 }
 

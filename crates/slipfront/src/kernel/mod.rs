@@ -208,7 +208,7 @@ impl Engine {
         checkpoint: Checkpoint,
         execution: Execution,
     ) -> Option<Self> {
-        if !checkpoint.fits(model.lattice.n_blocks()) {
+        if !checkpoint.has_blocks(model.lattice.n_blocks()) {
             return None;
         }
         match (execution.kernel.for_law(model.law), checkpoint.strains) {

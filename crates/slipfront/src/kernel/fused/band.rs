@@ -164,8 +164,8 @@ impl Band {
         band
     }
 
-    /// Takes over when blocks first slid. The step before counts as one in which every tile was swept: what a checkpoint
-    /// tells of contact stresses includes those of tiles at rest.
+    /// Takes over when blocks first slid, as if every tile had just been swept: what a checkpoint tells of contact stresses
+    /// includes those of tiles at rest.
     pub(super) fn resume(&mut self, layout: &Layout, first_slip: &[f64]) {
         for order in &mut self.orders {
             order.active = true;

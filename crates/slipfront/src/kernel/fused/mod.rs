@@ -62,8 +62,9 @@ pub(crate) struct Fused {
     near: Vec<bool>,
     /// If nothing moves: the first step at which a block may break.
     wake: u64,
-    /// Step of the latest sweep, and what it found.
+    /// Step of the latest sweep, how it computed springs, and what it found.
     swept: Option<u64>,
+    springs: Option<Springs>,
     latest: Totals,
     /// Largest u_x, -u_x, u_y, -u_y at the latest look, and how much they may have grown since.
     extent: [f64; 4],
@@ -87,8 +88,8 @@ impl Fused {
         Self::at_level(model, dt_star, state, threads, skips, Level::new())
     }
 
-    /// From a checkpoint. Every tile is swept at the next step, whether it could have been left alone or not: both
-    /// give the same bits.
+    /// From a checkpoint. Every tile is swept at the next step, whether it could have been left alone or not: both give
+    /// the same bits. The step of the checkpoint counts as one in which all were.
     pub(crate) fn resume(
         model: &Model,
         dt_star: f64,
@@ -110,7 +111,7 @@ impl Fused {
         Self {
             latest: checkpoint.totals,
             stress_square_max: checkpoint.stress_square_max,
-            swept: strains.swept,
+            swept: Some(checkpoint.step),
             extent: strains.extent,
             growth: strains.growth,
             speed: strains.speed,
@@ -121,7 +122,6 @@ impl Fused {
     /// What the choice of springs goes by.
     pub(crate) fn strains(&self) -> Strains {
         Strains {
-            swept: self.swept,
             extent: self.extent,
             growth: self.growth,
             speed: self.speed,
@@ -163,6 +163,7 @@ impl Fused {
             near: vec![false; n_tiles],
             wake: 0,
             swept: None,
+            springs: None,
             latest,
             extent: [f64::NEG_INFINITY; 4],
             growth: 0.0,
@@ -181,9 +182,11 @@ impl Fused {
             // At the start displacements are those of t_0 already.
             step.moves = 0.0;
         }
-        if !self.skips || number >= self.wake {
-            let springs = self.choose_springs(model, &step);
-            self.give_orders(number);
+        let springs = self.choose_springs(model, &step);
+        // A tile at rest keeps the energy of its springs, which is to be that of the springs of today, to the last bit.
+        let anew = self.springs != Some(springs);
+        if !self.skips || anew || number >= self.wake {
+            self.give_orders(number, anew);
             self.note_ends_of_rest(model, number);
             self.fill_halos(step.moves);
             let level = self.level;
@@ -191,7 +194,7 @@ impl Fused {
                 sweep(level, band, model, step, springs, energies);
             });
             self.copy_ghosts();
-            self.swept = Some(number);
+            (self.swept, self.springs) = (Some(number), Some(springs));
             self.add_up();
         }
         Totals {
@@ -200,11 +203,10 @@ impl Fused {
         }
     }
 
-    /// Springs of the coming sweep: by a bound on all differences of displacement, from their extent at the latest look and
-    /// the highest speeds since.
+    /// Springs of a step: by a bound on all differences of displacement, from their extent at the latest look and the
+    /// highest speeds since. To be asked at every step, swept or not, so that skipping does not change the answer.
     fn choose_springs(&mut self, model: &Model, step: &Step) -> Springs {
-        let look = |number: u64| number / LOOK_EVERY;
-        if self.swept.is_none_or(|swept| look(swept) < look(step.number)) {
+        if step.number.is_multiple_of(LOOK_EVERY) {
             let mut extent = [f64::NEG_INFINITY; 4];
             for_each(&mut self.bands, &Band::measure_extents);
             for tile in self.bands.iter().flat_map(|band| &band.tiles) {
@@ -228,8 +230,9 @@ impl Fused {
         }
     }
 
-    /// Tells every tile what to do in the sweep to step `number`.
-    fn give_orders(&mut self, number: u64) {
+    /// Tells every tile what to do in the sweep to step `number`: all are swept `anew` where springs are no longer computed
+    /// as before.
+    fn give_orders(&mut self, number: u64, anew: bool) {
         let begins = self.swept.is_none();
         let follows = self.swept.is_some_and(|swept| swept + 1 == number);
         let Self {
@@ -249,7 +252,7 @@ impl Fused {
                 let moved = touched[band.first_tile + t];
                 let (tile, order) = (&band.tiles[t], &mut band.orders[t]);
                 let rested = !(begins || follows && order.active);
-                order.active = !self.skips || moved || tile.wake <= number;
+                order.active = !self.skips || anew || moved || tile.wake <= number;
                 order.wakes = order.active && rested;
                 order.quiet = self.skips && order.active && !moved;
                 if order.active {
