@@ -6,13 +6,14 @@
 use std::fs::File;
 use std::io::{BufRead, BufReader, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::case::Case;
-use crate::folder::{UNFINISHED, open_regular, stage, sync_folder};
+use crate::folder::{open_regular, stage, sync_folder};
 use crate::manifest::Manifest;
 use crate::run::{RunState, Running};
 
@@ -28,14 +29,23 @@ const LAYOUT: u32 = 1;
 /// Longest first line.
 const HEADER_MAX_BYTES: u64 = 4096;
 
+/// How every checkpoint begins.
+pub(crate) const BEGINNING: &[u8] = b"{\"slipfront_checkpoint\":";
+
 /// The first line.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 struct Header {
     slipfront_checkpoint: u32,
     program: String,
     case_blake3: String,
     step: u64,
     started: Timestamp,
+}
+
+/// Of a first line whatever version wrote it.
+#[derive(Deserialize)]
+struct Layout {
+    slipfront_checkpoint: u32,
 }
 
 /// A checkpoint as it was read.
@@ -47,6 +57,8 @@ pub struct Saved {
     pub step: u64,
     /// When the run began.
     pub started: Timestamp,
+    /// Whether it is the latest, and not the one before.
+    latest: bool,
 }
 
 /// Why a run cannot go on from a checkpoint.
@@ -68,6 +80,17 @@ pub enum CheckpointError {
         /// What is wrong.
         why: &'static str,
     },
+    /// It is laid out as another version does.
+    #[error(
+        "{} has layout {found}, and this version reads layout {LAYOUT}: resume with the version that wrote it",
+        path.display()
+    )]
+    Layout {
+        /// The file.
+        path: PathBuf,
+        /// Its layout.
+        found: u32,
+    },
     /// It is not from this program.
     #[error(
         "{} was written by {found}, and this is {here}, which may not give the same bits: resume with that version",
@@ -82,7 +105,7 @@ pub enum CheckpointError {
         here: String,
     },
     /// It is not of this run.
-    #[error("{} belongs to another case than the case.toml beside it", path.display())]
+    #[error("{} belongs to another case than the case.toml and inputs beside it", path.display())]
     Case {
         /// The file.
         path: PathBuf,
@@ -95,38 +118,57 @@ pub struct Checkpoints {
     folder: PathBuf,
     case_blake3: String,
     started: Timestamp,
+    /// Whether the latest checkpoint there is known to be whole.
+    latest_is_whole: bool,
 }
 
 impl Checkpoints {
-    /// Those of a run of `case` in `folder` that began at `started`.
+    /// Those of a run of `case` in `folder` that begins at `started`.
     pub fn new(folder: &Path, case: &Case, started: Timestamp) -> Self {
         Self {
             folder: folder.to_owned(),
             case_blake3: hash_of(case),
             started,
+            latest_is_whole: false,
         }
     }
 
-    /// Saves the state of the run. The checkpoint that was the latest is kept as the one before; whatever happens, one of
-    /// the two is whole.
+    /// Those of a run that goes on from a checkpoint.
+    pub fn after(folder: &Path, case: &Case, saved: &Saved) -> Self {
+        Self {
+            latest_is_whole: saved.latest,
+            ..Self::new(folder, case, saved.started)
+        }
+    }
+
+    /// When the run began.
+    pub fn started(&self) -> Timestamp {
+        self.started
+    }
+
+    /// Saves the state of the run. The checkpoint that was the latest is kept as the one before, unless it is damaged;
+    /// whatever happens, one of the two is whole.
     ///
     /// # Errors
-    /// What the system says. The latest checkpoint is then what it was.
-    pub fn save(&self, running: &Running) -> std::io::Result<()> {
+    /// What the system says. A checkpoint that was there is still there, under one of the two names.
+    pub fn save(&mut self, running: &Running) -> std::io::Result<()> {
         let header = Header {
             slipfront_checkpoint: LAYOUT,
-            program: Manifest::this_program(),
+            program: program(),
             case_blake3: self.case_blake3.clone(),
             step: running.snapshot().step,
             started: self.started,
         };
         let whole = stage(&self.folder, |file| write(file, &header, running))?;
         let [latest, previous] = [CHECKPOINT, PREVIOUS].map(|name| self.folder.join(name));
-        match std::fs::rename(&latest, &previous) {
-            Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
-            _ => {}
+        if std::mem::take(&mut self.latest_is_whole) {
+            match std::fs::rename(&latest, &previous) {
+                Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
         }
         whole.persist(&latest)?;
+        self.latest_is_whole = true;
         sync_folder(&self.folder)
     }
 
@@ -159,16 +201,32 @@ impl Checkpoints {
             let path = folder.join(name);
             // A link that leads nowhere is not no checkpoint.
             if path.symlink_metadata().is_ok() {
-                return read(&path, case).map(Some);
+                let mut saved = read(&path, case)?;
+                saved.latest = *name == CHECKPOINT;
+                return Ok(Some(saved));
             }
         }
         Ok(None)
     }
 }
 
-/// Whether a name in a run folder is that of a checkpoint, or of a file that was being written.
-pub(crate) fn is_of_interrupted_run(name: &str) -> bool {
-    name == CHECKPOINT || name == PREVIOUS || name.starts_with(UNFINISHED)
+/// The program, told from any other that may not give the same bits: where its version and revision do not say it all, by
+/// the hash of its file.
+fn program() -> String {
+    static PROGRAM: LazyLock<String> = LazyLock::new(|| {
+        let program = Manifest::this_program();
+        let revision = Manifest::this_revision();
+        if revision.is_some_and(|revision| !revision.ends_with("-dirty")) {
+            return program;
+        }
+        let mut hasher = blake3::Hasher::new();
+        let file = std::env::current_exe().and_then(File::open);
+        match file.and_then(|file| hasher.update_reader(file).map(|hasher| hasher.finalize())) {
+            Ok(hash) => format!("{program}, build {}", &hash.to_hex()[..16]),
+            Err(_) => program,
+        }
+    });
+    PROGRAM.clone()
 }
 
 /// Hash of a case and of the files that it reads, by which equal cases are told.
@@ -230,14 +288,21 @@ fn read(path: &Path, case: &Case) -> Result<Saved, CheckpointError> {
     let mut line = Vec::new();
     let mut start = reader.by_ref().take(HEADER_MAX_BYTES);
     start.read_until(b'\n', &mut line).map_err(unreadable)?;
-    let header = serde_json::from_slice::<Header>(&line);
-    let header = header.map_err(|_| damaged("its first line is not that of a checkpoint"))?;
+    let unknown = || damaged("its first line is not that of a checkpoint");
+    let Layout { slipfront_checkpoint } = serde_json::from_slice(&line).map_err(|_| unknown())?;
+    if slipfront_checkpoint != LAYOUT {
+        return Err(CheckpointError::Layout {
+            path: path.to_owned(),
+            found: slipfront_checkpoint,
+        });
+    }
+    let header: Header = serde_json::from_slice(&line).map_err(|_| unknown())?;
     // Nothing is made of bytes before they are known to be those that were written.
     reader.rewind().map_err(unreadable)?;
     let sealed = check_seal(&mut reader).map_err(unreadable)?;
     let sealed = sealed.ok_or_else(|| damaged("its checksum does not fit"))?;
-    let here = Manifest::this_program();
-    if header.slipfront_checkpoint != LAYOUT || header.program != here {
+    let here = program();
+    if header.program != here {
         return Err(CheckpointError::Program {
             path: path.to_owned(),
             found: header.program,
@@ -260,6 +325,7 @@ fn read(path: &Path, case: &Case) -> Result<Saved, CheckpointError> {
             state,
             step: header.step,
             started: header.started,
+            latest: false,
         }),
         _ => Err(damaged("it holds no state of a run")),
     }

@@ -96,7 +96,7 @@ pub struct ManifestFile {
 pub enum ManifestError {
     /// There is none.
     #[error(
-        "{0} holds no manifest.json: it is no run folder, or its run did not end; `slipfront run --resume {0}` goes on with it",
+        "{0} holds no manifest.json: it is no run folder, or its run did not end; if it did not, `slipfront run --resume {0}` goes on with it",
         path.display()
     )]
     Missing {
@@ -137,7 +137,7 @@ impl Manifest {
         let finished = jiff::Timestamp::now();
         Ok(Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            revision: option_env!("SLIPFRONT_REVISION").map(str::to_owned),
+            revision: Self::this_revision().map(str::to_owned),
             kernel: Kernel::Fused.for_law(model.law).name().to_owned(),
             simd_width: simd_width().to_owned(),
             threads,
@@ -201,10 +201,15 @@ impl Manifest {
     pub fn this_program() -> String {
         Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            revision: option_env!("SLIPFRONT_REVISION").map(str::to_owned),
+            revision: Self::this_revision().map(str::to_owned),
             ..Self::default()
         }
         .program()
+    }
+
+    /// The git commit that this program was built from, as in [`Manifest::revision`].
+    pub(crate) fn this_revision() -> Option<&'static str> {
+        option_env!("SLIPFRONT_REVISION")
     }
 }
 

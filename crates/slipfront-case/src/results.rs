@@ -86,7 +86,7 @@ pub fn write_case(case: &Case, folder: &mut RunFolder) -> Result<(), ResultsErro
     for input in &case.inputs {
         folder.write(&input.name, &input.bytes)?;
     }
-    Ok(())
+    Ok(folder.sync()?)
 }
 
 fn write_fields(case: &Case, record: &mut Record, path: &Path) -> Result<(), FieldsError> {

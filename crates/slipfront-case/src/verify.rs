@@ -10,8 +10,7 @@ use std::path::{Component, Path, PathBuf};
 use thiserror::Error;
 
 use crate::case_file::CaseFile;
-use crate::checkpoint::is_of_interrupted_run;
-use crate::folder::{FolderError, TEXT_MAX_BYTES, read_whole};
+use crate::folder::{FolderError, TEXT_MAX_BYTES, is_of_interrupted_run, read_whole};
 use crate::legible::{sentence, shortened};
 use crate::manifest::{MANIFEST, Manifest, ManifestError, ManifestFile};
 use crate::study::{self, Finding, Findings, Plan, Records, StudyError, StudyFolder};

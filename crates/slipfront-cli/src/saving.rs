@@ -38,8 +38,13 @@ impl FromStr for Interval {
     }
 }
 
-/// A checkpoint is followed by this many times the time that it took, so that all of them take at most 1 % of the run.
+/// A checkpoint is followed by at least this many times the time that it took: in the long run they take 1 % at most.
 const RUN_PER_SAVE: u32 = 99;
+
+/// Wall time to the next checkpoint after one that took `cost`.
+fn pause(every: Duration, cost: Duration) -> Duration {
+    every.max(cost.saturating_mul(RUN_PER_SAVE))
+}
 
 /// Saves the checkpoints of a run.
 pub(crate) struct Saving {
@@ -88,18 +93,14 @@ impl Saving {
                     self.folder.display()
                 )),
             }
-            let every = self
-                .interval
-                .0
-                .unwrap_or_default()
-                .max(began.elapsed() * RUN_PER_SAVE);
-            self.due = Instant::now().checked_add(every);
+            let pause = pause(self.interval.0.unwrap_or_default(), began.elapsed());
+            self.due = Instant::now().checked_add(pause);
         }
         Ok(())
     }
 
     /// Saves a last checkpoint.
-    fn stop(&self, running: &Running) -> Failure {
+    fn stop(&mut self, running: &Running) -> Failure {
         let (step, last_step) = (running.snapshot().step, running.case().schedule.last_step);
         let folder = self.folder.display();
         let sentence = if !self.interval.saves() {
@@ -117,5 +118,34 @@ impl Saving {
             }
         };
         Failure::stopped(&self.signals, anyhow::anyhow!(sentence))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_checkpoint_that_took_long_is_followed_by_a_long_pause() {
+        let seconds = Duration::from_secs;
+        assert_eq!(pause(seconds(300), seconds(1)), seconds(300));
+        assert_eq!(pause(seconds(300), seconds(10)), seconds(990));
+        assert_eq!(
+            pause(Duration::ZERO, Duration::from_millis(10)),
+            Duration::from_millis(990)
+        );
+    }
+
+    #[test]
+    fn intervals_are_written_as_people_write_them() {
+        let interval = |text: &str| text.parse::<Interval>().map(|interval| interval.0);
+        let seconds = |seconds| Ok(Some(Duration::from_secs(seconds)));
+        assert_eq!(interval("5min"), seconds(300));
+        assert_eq!(interval("1h 30min"), seconds(5400));
+        assert_eq!(interval("0s"), seconds(0));
+        assert_eq!(interval("off"), Ok(None));
+        for wrong in ["", "5", "-5min", "soon", "1 fortnight"] {
+            assert!(interval(wrong).is_err(), "{wrong}");
+        }
     }
 }

@@ -37,13 +37,13 @@ impl Signals {
 
     /// Whether SIGUSR1 came since this was asked last.
     pub(crate) fn take_usr1(&self) -> bool {
-        self.usr1.swap(false, Ordering::Relaxed)
+        self.usr1.swap(false, Ordering::SeqCst)
     }
 
     /// The signal that came, if one did.
     pub(crate) fn stopped(&self) -> Option<usize> {
         self.stop
-            .load(Ordering::Relaxed)
-            .then(|| self.which.load(Ordering::Relaxed))
+            .load(Ordering::SeqCst)
+            .then(|| self.which.load(Ordering::SeqCst))
     }
 }

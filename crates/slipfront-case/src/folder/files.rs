@@ -54,11 +54,27 @@ pub(super) fn unfinished(folder: &Path, inside: &str) -> Vec<String> {
         .into_iter()
         .flatten()
         .flatten();
-    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let files = entries.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_file()));
+    let names = files.filter_map(|entry| entry.file_name().into_string().ok());
     names
-        .filter(|name| name.starts_with(UNFINISHED))
+        .filter(|name| is_unfinished(name))
         .map(|name| format!("{inside}{name}"))
         .collect()
+}
+
+/// Whether a file has the name of one that is being written: ours, and six letters or digits.
+pub(super) fn is_unfinished(name: &str) -> bool {
+    let random = name.strip_prefix(UNFINISHED).unwrap_or_default();
+    random.len() == 6 && random.bytes().all(|byte| byte.is_ascii_alphanumeric())
+}
+
+/// Whether there is nothing in a folder but what a kill left of files that were being written.
+///
+/// # Errors
+/// When it cannot be read.
+pub(super) fn holds_only_unfinished(folder: &Path) -> std::io::Result<bool> {
+    let entries = std::fs::read_dir(folder)?.collect::<std::io::Result<Vec<_>>>()?;
+    Ok(unfinished(folder, "").len() == entries.len())
 }
 
 /// Removes what a kill left of files that were being written, where nobody else writes now. A file that cannot be

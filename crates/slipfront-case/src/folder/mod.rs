@@ -11,15 +11,17 @@ use std::path::{Path, PathBuf};
 use slipfront::Model;
 use thiserror::Error;
 
+use self::files::holds_only_unfinished;
 pub(crate) use self::files::{
     TEXT_MAX_BYTES, UNFINISHED, json, open_bounded, open_regular, read_whole, remove_unfinished, stage,
     sync_folder,
 };
 pub use self::files::{is_empty, write_whole};
+pub(crate) use self::own::is_of_interrupted_run;
 pub use self::own::own_bytes;
-use self::own::{CASE, remove_own, remove_results, resolved_case};
-use crate::case::Case;
-use crate::checkpoint::Checkpoints;
+use self::own::{CASE, refuse_foreign, remove_own, remove_results, resolved_case};
+use crate::case::{Case, Input};
+use crate::checkpoint::{CHECKPOINT, Checkpoints, PREVIOUS};
 use crate::manifest::{MANIFEST, Manifest};
 
 /// What can go wrong with a run folder.
@@ -93,25 +95,27 @@ pub enum FolderError {
 pub struct RunFolder {
     path: PathBuf,
     written: Vec<String>,
+    /// Whether this process has made it ready.
+    new: bool,
     /// Held as long as the run goes on.
     _lock: Option<File>,
 }
 
 impl RunFolder {
-    /// Makes the folder ready: it is created, or empty, or with `force` rid of the files of an earlier run (and of
-    /// nothing else).
+    /// Makes the folder ready for a run that reads these `inputs`: it is created, or empty, or with `force` rid of the
+    /// files of an earlier run (and of nothing else).
     ///
     /// # Errors
-    /// When it holds something else, or cannot be written.
-    pub fn prepare(path: &Path, force: bool) -> Result<Self, FolderError> {
+    /// When it holds something else, which includes foreign files in the place of the copies, or cannot be written.
+    pub fn prepare(path: &Path, force: bool, inputs: &[Input]) -> Result<Self, FolderError> {
         let unwritable = |source| FolderError::Unwritable {
             path: path.to_owned(),
             source,
         };
         std::fs::create_dir_all(path).map_err(unwritable)?;
         let lock = lock(path)?;
-        remove_unfinished(path);
-        if !is_empty(path).map_err(unwritable)? {
+        // A kill may have come before the case was written.
+        if !holds_only_unfinished(path).map_err(unwritable)? {
             if !force {
                 let path = path.to_owned();
                 // A run that was begun, and neither completed nor removed.
@@ -122,7 +126,12 @@ impl RunFolder {
                     FolderError::NotEmpty { path }
                 });
             }
+            let names = inputs.iter().map(|input| input.name.as_str());
+            refuse_foreign(path, names.chain([CHECKPOINT, PREVIOUS]))?;
             remove_own(path)?;
+        }
+        if lock.is_some() {
+            remove_unfinished(path);
         }
         // A folder that cannot be written should say so before the run, not after it.
         tempfile::Builder::new()
@@ -132,6 +141,7 @@ impl RunFolder {
         Ok(Self {
             path: path.to_owned(),
             written: Vec::new(),
+            new: true,
             _lock: lock,
         })
     }
@@ -148,6 +158,7 @@ impl RunFolder {
         Ok(Self {
             path: path.to_owned(),
             written: Vec::new(),
+            new: false,
             _lock: lock(path)?,
         })
     }
@@ -164,31 +175,26 @@ impl RunFolder {
         Ok(())
     }
 
-    /// Removes all that was written of the run: there is nothing to go on with.
+    /// Removes what this process has written of a run that failed. What others wrote stays.
+    pub fn discard(self) {
+        if self.new {
+            // The run has failed, which is worse.
+            let _ = remove_own(&self.path);
+        }
+    }
+
+    /// Forces the names of the case and of the files that it reads to the disk.
     ///
     /// # Errors
     /// What the system says.
-    pub fn discard(self) -> Result<(), FolderError> {
-        remove_own(&self.path)
-    }
-
-    /// Refuses foreign files that stand where `names` will be written: better now than after the run.
-    ///
-    /// # Errors
-    /// [`FolderError::Foreign`], with the first of them.
-    pub fn expect_free<'n>(&self, names: impl Iterator<Item = &'n str>) -> Result<(), FolderError> {
-        for path in names.map(|name| self.path.join(name)) {
-            let parent = path.parent().filter(|parent| parent.exists() && !parent.is_dir());
-            if let Some(parent) = parent {
-                let path = parent.to_owned();
-                return Err(FolderError::Foreign { path });
-            }
-            // A link counts even if it leads nowhere.
-            if path.symlink_metadata().is_ok() {
-                return Err(FolderError::Foreign { path });
-            }
-        }
-        Ok(())
+    pub fn sync(&self) -> Result<(), FolderError> {
+        let inputs = self.path.join("inputs");
+        let folders = [self.path.as_path(), &inputs];
+        let mut there = folders.into_iter().filter(|folder| folder.is_dir());
+        there.try_for_each(|folder| {
+            let path = folder.to_owned();
+            sync_folder(folder).map_err(|source| FolderError::Write { path, source })
+        })
     }
 
     /// The folder.

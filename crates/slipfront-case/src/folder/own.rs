@@ -1,12 +1,12 @@
 //! Which files of a run folder are slipfront's own: those that may be replaced.
 
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use super::FolderError;
-use super::files::{TEXT_MAX_BYTES, read_whole, unfinished};
+use super::files::{TEXT_MAX_BYTES, is_unfinished, open_regular, read_whole, unfinished};
 use crate::case_file::CaseFile;
-use crate::checkpoint::{CHECKPOINT, PREVIOUS};
+use crate::checkpoint::{BEGINNING, CHECKPOINT, PREVIOUS};
 use crate::manifest::{MANIFEST, Manifest};
 
 /// The resolved case in its folder.
@@ -58,12 +58,48 @@ fn own_files(path: &Path) -> Vec<String> {
             .is_some_and(|plain| !plain.contains(['/', '\\']))
     });
     let mut names: Vec<String> = RESULTS.map(str::to_owned).to_vec();
-    names.extend([CHECKPOINT, PREVIOUS].map(str::to_owned));
+    let checkpoints = [CHECKPOINT, PREVIOUS].into_iter();
+    let checkpoints = checkpoints.filter(|name| begins_as_checkpoint(&path.join(name)));
+    names.extend(checkpoints.map(str::to_owned));
     names.extend(copies);
     names.extend(unfinished(path, ""));
     names.extend(unfinished(path, "inputs/"));
     names.push(CASE.to_owned());
     names
+}
+
+/// Whether a file begins as a checkpoint does: a name alone may be anybody's.
+fn begins_as_checkpoint(path: &Path) -> bool {
+    let mut beginning = Vec::new();
+    let file = open_regular(path).map(|file| file.take(BEGINNING.len() as u64));
+    file.and_then(|mut file| file.read_to_end(&mut beginning)).is_ok() && beginning == BEGINNING
+}
+
+/// Refuses files that stand where `names` will be written and are not of an earlier run.
+pub(super) fn refuse_foreign<'n>(
+    path: &Path,
+    names: impl Iterator<Item = &'n str>,
+) -> Result<(), FolderError> {
+    let own = own_files(path);
+    for name in names.filter(|name| !own.iter().any(|own| own == name)) {
+        let file = path.join(name);
+        let parent = file.parent().filter(|parent| parent.exists() && !parent.is_dir());
+        if let Some(parent) = parent {
+            let path = parent.to_owned();
+            return Err(FolderError::Foreign { path });
+        }
+        // A link counts even if it leads nowhere.
+        if file.symlink_metadata().is_ok() {
+            return Err(FolderError::Foreign { path: file });
+        }
+    }
+    Ok(())
+}
+
+/// Whether a name in a run folder is that of a checkpoint, or of a file that was being written.
+pub(crate) fn is_of_interrupted_run(name: &str) -> bool {
+    let plain = name.rsplit('/').next().unwrap_or(name);
+    name == CHECKPOINT || name == PREVIOUS || is_unfinished(plain)
 }
 
 /// Removes the files of an earlier run from this folder.
@@ -78,7 +114,8 @@ pub(super) fn remove_own(path: &Path) -> Result<(), FolderError> {
 /// Removes the results of a run, and what a kill left of files that were being written.
 pub(super) fn remove_results(path: &Path) -> Result<(), FolderError> {
     remove(path, RESULTS.map(str::to_owned))?;
-    remove(path, unfinished(path, ""))
+    remove(path, unfinished(path, ""))?;
+    remove(path, unfinished(path, "inputs/"))
 }
 
 /// Removes these files from a folder, where they are.

@@ -250,7 +250,7 @@ fn keep(
     path: &Path,
     started: jiff::Timestamp,
 ) -> Result<(), ResultsError> {
-    let mut folder = RunFolder::prepare(path, true)?;
+    let mut folder = RunFolder::prepare(path, true, &case.inputs)?;
     results::write_case(case, &mut folder)?;
     if let Some(record) = record {
         results::write(case, record, folder, started, 1)?;

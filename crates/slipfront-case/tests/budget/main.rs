@@ -130,7 +130,7 @@ fn what_is_said_is_what_is_taken() {
             let file = CaseFile::parse("", "case", &overrides).unwrap();
             let case = Case::new(file, "case", folder.path()).unwrap();
             let mut record = run::run(&case, 1).unwrap();
-            let out = RunFolder::prepare(&out, false).unwrap();
+            let out = RunFolder::prepare(&out, false, &case.inputs).unwrap();
             results::write(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();
             (case.budget.memory(), case.budget.disk())
         });

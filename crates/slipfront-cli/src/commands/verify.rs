@@ -116,7 +116,7 @@ impl Verify {
         };
         progress.finish();
         let mut record = running.record(reason);
-        let mut made = RunFolder::prepare(again.path(), false).map_err(Failure::running)?;
+        let mut made = RunFolder::prepare(again.path(), false, &case.inputs).map_err(Failure::running)?;
         results::write_case(&case, &mut made).map_err(Failure::running)?;
         let now = results::write(&case, &mut record, made, started, 1).map_err(Failure::running)?;
         verdict

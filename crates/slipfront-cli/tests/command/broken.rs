@@ -4,15 +4,14 @@ use std::process::{Command, Stdio};
 
 use super::{Bench, RUN_FILES, program};
 
+/// A step just below the limit of the linear lattice, and strains that stiffen its springs beyond it.
+pub(super) const DIVERGING: &str = "[slider]\nomega_star = 0\n[load]\npressure = '50 GPa'\n[drive]\nv_star = 10\n\
+    [friction]\nr_star = 0\nsigma_static_star = 1\n[time]\nstep = 0.9\nduration_star = 2000\n";
+
 #[test]
 fn a_run_that_diverges_says_where_and_leaves_no_results() {
     let bench = Bench::new();
-    // A step just below the limit of the linear lattice, and strains that stiffen its springs beyond it.
-    bench.write(
-        "wild.toml",
-        "[slider]\nomega_star = 0\n[load]\npressure = '50 GPa'\n[drive]\nv_star = 10\n[friction]\nr_star = 0\n\
-         sigma_static_star = 1\n[time]\nstep = 0.9\nduration_star = 2000\n",
-    );
+    bench.write("wild.toml", DIVERGING);
     let said = bench.refused("run wild.toml --quiet -o a", 1);
     let words = ["displacement of block (", "at step ", "t* = ", "diverged"];
     assert!(words.iter().all(|word| said.contains(word)), "{said}");

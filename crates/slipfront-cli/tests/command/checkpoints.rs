@@ -13,7 +13,7 @@ const SLOW: &str = "[slider]\nblocks = [60, 50]\nedges = ['periodic', 'free']\n[
                     [[texture]]\nshape = 'mask'\nfile = 'spot.png'\n";
 
 /// The reference kernel, and snapshots by the step.
-const LITERAL: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.05\n[friction]\nlaw = 'reversal'\n\
+const REVERSAL: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.05\n[friction]\nlaw = 'reversal'\n\
                        [output]\nsnapshots = { every = 7.5 }\n";
 
 /// Enough blocks for two threads, until the onset.
@@ -23,7 +23,7 @@ fn bench() -> Bench {
     let bench = Bench::new();
     for (name, text) in [
         ("slow.toml", SLOW),
-        ("literal.toml", LITERAL),
+        ("reversal.toml", REVERSAL),
         ("wide.toml", WIDE),
     ] {
         bench.write(name, text);
@@ -54,6 +54,23 @@ fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
+/// Waits until the child has caught the signals: before, they end it.
+fn wait_for_signals(child: &Child) {
+    let status = format!("/proc/{}/status", child.id());
+    // SIGUSR1 is number 10, SIGTERM number 15; who has ended needs no waiting for.
+    let caught = || {
+        let text = std::fs::read_to_string(&status).unwrap_or_default();
+        let mask = text.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+        let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+        mask.is_none_or(|mask| mask >> 9 & 1 == 1 && mask >> 14 & 1 == 1)
+    };
+    if cfg!(target_os = "linux") {
+        wait_for("signals to be caught", caught);
+    } else {
+        sleep(Duration::from_millis(300));
+    }
+}
+
 /// Waits until it is so.
 fn wait_for(what: &str, so: impl Fn() -> bool) {
     let began = Instant::now();
@@ -63,28 +80,23 @@ fn wait_for(what: &str, so: impl Fn() -> bool) {
     }
 }
 
-/// Begins a run and asks it for checkpoints until it has saved so many, then kills it.
-fn killed_after(bench: &Bench, line: &str, folder: &str, checkpoints: usize) {
-    let latest = bench.path().join(folder).join("checkpoint.bin");
-    let saved = || std::fs::metadata(&latest).and_then(|file| file.modified()).ok();
-    let mut child = start(bench, line);
-    wait_for("case.toml", || bench.exists(&format!("{folder}/case.toml")));
-    for _ in 0..checkpoints {
-        let before = saved();
-        send(&child, "-USR1");
-        wait_for("checkpoint", || saved().is_some() && saved() != before);
+/// Begins a run and stops it so many times, each of which saves a checkpoint.
+fn stopped(bench: &Bench, line: &str, folder: &str, times: usize) {
+    let mut line = line.to_owned();
+    for _ in 0..times {
+        let child = start(bench, &line);
+        wait_for_signals(&child);
+        sleep(Duration::from_millis(60));
+        send(&child, "-INT");
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "{}", said(&output));
+        line = format!("run --resume {folder}");
     }
-    child.kill().unwrap();
-    assert_eq!(
-        child.wait().unwrap().code(),
-        None,
-        "it was over before it was killed"
-    );
 }
 
 #[rstest]
 #[case("slow.toml", "-INT", 130)]
-#[case("literal.toml", "-TERM", 143)]
+#[case("reversal.toml", "-TERM", 143)]
 #[case("wide.toml", "-INT", 130)]
 fn stopped_any_number_of_times_it_writes_the_same_bytes(
     #[case] case: &str,
@@ -98,7 +110,7 @@ fn stopped_any_number_of_times_it_writes_the_same_bytes(
     loop {
         // Any number of threads, each time another one.
         let child = start(&bench, &format!("{line} --threads {}", 1 + stops % 3));
-        wait_for("case.toml", || bench.exists("stopped/case.toml"));
+        wait_for_signals(&child);
         sleep(Duration::from_millis(60 + 37 * (stops % 4)));
         let _ = Command::new("kill")
             .args([signal, &child.id().to_string()])
@@ -187,7 +199,7 @@ fn what_is_complete_or_has_not_begun() {
     let case = String::from_utf8(before["case.toml"].clone()).unwrap();
     bench.write("begun/case.toml", &case);
     bench.write("begun/series.csv", "half of");
-    bench.write("begun/.slipfront12345", "half of");
+    bench.write("begun/.slipfront123abc", "half of");
     let said = bench.done("run --resume begun");
     assert!(said.contains("goes on from the start"), "{said}");
     bench.assert_same("whole", "begun");
@@ -219,17 +231,17 @@ fn what_is_complete_or_has_not_begun() {
 #[test]
 fn an_interrupted_run_is_not_begun_again_by_mistake() {
     let bench = bench();
-    killed_after(&bench, "run slow.toml -o killed", "killed", 1);
-    let said = bench.refused("run slow.toml --quiet -o killed", 2);
+    stopped(&bench, "run slow.toml -o halted", "halted", 1);
+    let said = bench.refused("run slow.toml --quiet -o halted", 2);
     assert!(
-        said.contains("slipfront run --resume killed") && said.contains("--force"),
+        said.contains("slipfront run --resume halted") && said.contains("--force"),
         "{said}"
     );
-    let said = bench.refused("verify killed", 2);
-    assert!(said.contains("slipfront run --resume killed"), "{said}");
+    let said = bench.refused("verify halted", 2);
+    assert!(said.contains("slipfront run --resume halted"), "{said}");
     bench.done("run slow.toml -o whole");
-    bench.done("run slow.toml -o killed --force");
-    bench.assert_same("whole", "killed");
+    bench.done("run slow.toml -o halted --force");
+    bench.assert_same("whole", "halted");
 }
 
 #[test]
@@ -263,13 +275,13 @@ fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
 fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     let bench = bench();
     bench.done("run slow.toml -o whole");
-    killed_after(&bench, "run slow.toml -o killed", "killed", 2);
-    let latest = bench.read("killed/checkpoint.bin");
+    stopped(&bench, "run slow.toml -o halted", "halted", 2);
+    let latest = bench.read("halted/checkpoint.bin");
     let refused = |bytes: &[u8], why: &str| {
-        bench.write("killed/checkpoint.bin", bytes);
-        let said = bench.refused("run --quiet --resume killed", 2);
+        bench.write("halted/checkpoint.bin", bytes);
+        let said = bench.refused("run --quiet --resume halted", 2);
         assert!(
-            said.contains("killed/checkpoint.bin") && said.contains(why),
+            said.contains("halted/checkpoint.bin") && said.contains(why),
             "{why}: {said}"
         );
         said
@@ -299,20 +311,47 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     );
     refused(
         &text("\"slipfront_checkpoint\":1", "\"slipfront_checkpoint\":2"),
-        "was written by",
+        "has layout 2, and this version reads layout 1",
     );
     refused(
         &sealed(latest[..n - 8].to_vec()),
         "is damaged: it holds no state of a run",
     );
-    let case = String::from_utf8(bench.read("killed/case.toml")).unwrap();
-    bench.write("killed/case.toml", case.replace("seed = 1", "seed = 2"));
+    let case = String::from_utf8(bench.read("halted/case.toml")).unwrap();
+    bench.write("halted/case.toml", case.replace("seed = 1", "seed = 2"));
     refused(&latest, "belongs to another case");
-    bench.write("killed/case.toml", &case);
+    bench.write("halted/case.toml", &case);
 
-    bench.write("killed/checkpoint.bin", &latest[..n / 2]);
-    bench.done("run --resume killed --previous");
-    bench.assert_same("whole", "killed");
+    // A damaged one does not take the place of the one before, however often the run is stopped.
+    bench.write("halted/checkpoint.bin", &latest[..n / 2]);
+    let before = bench.read("halted/checkpoint-previous.bin");
+    let child = start(&bench, "run --resume halted --previous");
+    wait_for_signals(&child);
+    send(&child, "-INT");
+    assert_eq!(child.wait_with_output().unwrap().status.code(), Some(130));
+    assert!(bench.read("halted/checkpoint-previous.bin") == before);
+    bench.done("run --resume halted");
+    bench.assert_same("whole", "halted");
+}
+
+/// A run that diverges does so again: there is nothing to go on with, and nothing of what others wrote is removed.
+#[test]
+fn a_resumed_run_that_diverges_leaves_its_case() {
+    let bench = Bench::new();
+    bench.write("wild.toml", super::broken::DIVERGING);
+    bench.refused("run wild.toml --quiet -o gone", 1);
+    assert!(bench.files("gone").is_empty());
+    // As a study leaves a failed run that it keeps.
+    bench.write(
+        "study.toml",
+        "base = 'wild.toml'\n[study]\nkeep = 'failed'\nreplicates = 1\n",
+    );
+    bench.refused("study study.toml --quiet -o out", 1);
+    let kept = bench.files("out/runs");
+    let folder = kept.keys().next().unwrap().split('/').next().unwrap().to_owned();
+    let said = bench.refused(&format!("run --quiet --resume out/runs/{folder}"), 1);
+    assert!(said.contains("step"), "{said}");
+    assert!(bench.files("out/runs") == kept);
 }
 
 /// A kill between the two renames leaves the one before alone: it is the latest then.
@@ -320,10 +359,10 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
 fn where_only_the_one_before_is_left_it_is_taken() {
     let bench = bench();
     bench.done("run slow.toml -o whole");
-    killed_after(&bench, "run slow.toml -o killed", "killed", 2);
-    std::fs::remove_file(bench.path().join("killed/checkpoint.bin")).unwrap();
-    assert!(bench.done("run --resume killed").contains("goes on from step "));
-    bench.assert_same("whole", "killed");
-    let said = bench.refused("run --quiet --resume killed --previous", 0);
+    stopped(&bench, "run slow.toml -o halted", "halted", 2);
+    std::fs::remove_file(bench.path().join("halted/checkpoint.bin")).unwrap();
+    assert!(bench.done("run --resume halted").contains("goes on from step "));
+    bench.assert_same("whole", "halted");
+    let said = bench.done("run --quiet --resume halted --previous");
     assert!(said.is_empty(), "{said}");
 }

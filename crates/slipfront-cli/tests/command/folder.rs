@@ -66,12 +66,13 @@ fn a_foreign_file_in_the_place_of_a_copy_is_refused_before_the_run() {
         format!("{}[[texture]]\nshape='mask'\nfile='spot.png'\n", super::SMALL),
     );
     bench.write("a/inputs/spot.png", "mine");
+    bench.write("a/case.toml", "# mine");
     let said = bench.refused("run masked.toml --quiet -o a --force", 2);
     assert!(
         said.contains("spot.png is not a file of an earlier run"),
         "{said}"
     );
-    assert_eq!(bench.files("a").len(), 1);
+    assert_eq!(bench.files("a").len(), 2);
     assert_eq!(bench.read("a/inputs/spot.png"), b"mine");
     // Nor is a file taken for the folder of copies.
     bench.write("b/inputs", "mine");
@@ -197,4 +198,33 @@ fn force_takes_the_copies_of_a_killed_run_along() {
         "{said}"
     );
     assert!(bench.exists("b/inputs/spot.png"));
+}
+
+/// Files that only happen to have a name like ours.
+#[test]
+fn what_only_looks_like_ours_stays() {
+    let bench = Bench::new();
+    let names = [
+        "checkpoint.bin",
+        "checkpoint-previous.bin",
+        ".slipfrontrc",
+        ".slipfront-notes",
+    ];
+    for name in names {
+        bench.write(&format!("a/{name}"), "mine");
+    }
+    bench.refused("run small.toml --quiet -o a", 2);
+    std::fs::create_dir(bench.path().join("a/.slipfront123abc")).unwrap();
+    let said = bench.refused("run small.toml --quiet -o a --force", 2);
+    assert!(
+        said.contains("checkpoint.bin is not a file of an earlier run"),
+        "{said}"
+    );
+    for name in names {
+        assert_eq!(bench.read(&format!("a/{name}")), b"mine", "{name}");
+    }
+    // What a kill has left is no more than nothing.
+    bench.write("b/.slipfront123abc", "half a file");
+    bench.done("run small.toml -o b");
+    assert!(!bench.exists("b/.slipfront123abc"));
 }

@@ -176,7 +176,7 @@ fn manifest(bytes: &[u8]) {
         }
     }
     own_bytes(&folder);
-    RunFolder::prepare(&folder, true).unwrap();
+    RunFolder::prepare(&folder, true, &[]).unwrap();
     assert!(!folder.join("manifest.json").exists() && !folder.join("case.toml").exists());
     assert_eq!(std::fs::read(beside).unwrap(), b"kept");
 }

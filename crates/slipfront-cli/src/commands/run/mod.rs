@@ -39,7 +39,7 @@ pub(crate) struct Run {
     /// Replace the files of an earlier run in that folder, and nothing else
     #[arg(long)]
     force: bool,
-    /// Wall time from one checkpoint to the next, such as 30s or 1h, or off; they never take more than 1 % of the run
+    /// Wall time from one checkpoint to the next, such as 30s or 1h, or off; at least 99 times as long as one takes to save
     #[arg(long, value_name = "TIME", default_value = "5min")]
     checkpoint: Interval,
     /// Go on with the run in this folder where its latest checkpoint was saved; a complete run is left as it is
@@ -95,28 +95,27 @@ impl Run {
         let replaced = if self.force { own_bytes(&out) } else { 0 };
         case.check_disk(&out, replaced, manner.interval.saves())
             .map_err(Failure::input)?;
-        let mut folder = RunFolder::prepare(&out, self.force).map_err(Failure::input)?;
-        let inputs = case.inputs.iter().map(|input| input.name.as_str());
-        folder.expect_free(inputs).map_err(Failure::input)?;
+        let mut folder = RunFolder::prepare(&out, self.force, &case.inputs).map_err(Failure::input)?;
         // What the run needs to go on if it is stopped.
         results::write_case(&case, &mut folder).map_err(Failure::running)?;
         if manner.talks() {
             print(&report::physics(&case))?;
         }
-        complete(Running::start(&case, manner.threads), folder, started, manner)
+        let checkpoints = Checkpoints::new(&out, &case, started);
+        complete(Running::start(&case, manner.threads), folder, checkpoints, manner)
     }
 }
 
-/// Takes a run, begun at `started`, to its end and writes its results.
+/// Takes a run to its end and writes its results.
 fn complete(
     mut running: Running,
     folder: RunFolder,
-    started: Timestamp,
+    checkpoints: Checkpoints,
     manner: Manner,
 ) -> Result<(), Failure> {
     let (case, out) = (running.case(), folder.path().to_owned());
     let (threads, talks) = (manner.threads, manner.talks());
-    let checkpoints = Checkpoints::new(&out, case, started);
+    let started = checkpoints.started();
     let mut saving = Saving::new(&out, checkpoints, manner.interval, manner.signals);
     let mut progress = Progress::new(&running, manner.quiet);
     let reason = loop {
@@ -125,7 +124,7 @@ fn complete(
             Ok(None) => {}
             Err(error) => {
                 // It would diverge again: there is nothing to go on with.
-                folder.discard().map_err(Failure::running)?;
+                folder.discard();
                 return Err(Failure::running(error));
             }
         }
@@ -134,7 +133,13 @@ fn complete(
     };
     progress.finish();
     let mut record = running.record(reason);
-    results::write(case, &mut record, folder, started, threads).map_err(Failure::running)?;
+    results::write(case, &mut record, folder, started, threads).map_err(|error| {
+        let remedy = format!(
+            "`slipfront run --resume {}` goes on when that is mended",
+            out.display()
+        );
+        Failure::running(anyhow::anyhow!("{error}; {remedy}"))
+    })?;
     if manner.json {
         print(&results::summary_json(&record.summary))?;
     } else if talks {

@@ -22,47 +22,58 @@ pub(super) fn resume(path: &Path, previous: bool, manner: Manner) -> Result<(), 
         Err(ManifestError::Missing { .. }) => {}
         Err(error @ ManifestError::Damaged { .. }) => return Err(Failure::input(error)),
     }
-    let mut case = Case::load(&path.join("case.toml"), &[]).map_err(Failure::input)?;
-    // Results are named after their folder, not after the file in it.
-    if let Some(name) = path.file_name() {
-        case.name = name.to_string_lossy().into_owned();
-    }
+    let case = load_case(path)?;
     case.check_memory_resumed().map_err(Failure::input)?;
     let saved = load(path, &case, previous)?;
     case.check_disk(path, own_bytes(path), manner.interval.saves())
         .map_err(Failure::input)?;
+    let (running, checkpoints, from) = match saved {
+        None => {
+            let checkpoints = Checkpoints::new(path, &case, Timestamp::now());
+            let running = Running::start(&case, manner.threads);
+            (running, checkpoints, "the start: it has no checkpoint".to_owned())
+        }
+        Some(saved) => {
+            let checkpoints = Checkpoints::after(path, &case, &saved);
+            let from = format!("step {} of {}", saved.step, case.schedule.last_step);
+            let running = Running::resume(&case, manner.threads, saved.state).ok_or_else(|| {
+                let sentence = "is not one of a run of its case";
+                Failure::input(anyhow::anyhow!(
+                    "the checkpoint in {} {sentence}; {ANEW}",
+                    path.display()
+                ))
+            })?;
+            (running, checkpoints, from)
+        }
+    };
     folder.clear_results(&case).map_err(Failure::input)?;
     if manner.talks() {
         print(&report::physics(&case))?;
-    }
-    let (running, started, from) = match saved {
-        None => {
-            let running = Running::start(&case, manner.threads);
-            (
-                running,
-                Timestamp::now(),
-                "the start: it has no checkpoint".to_owned(),
-            )
-        }
-        Some(Saved { state, step, started }) => {
-            let running = Running::resume(&case, manner.threads, state).ok_or_else(|| {
-                let sentence = "does not fit its case: begin again with --force";
-                Failure::input(anyhow::anyhow!("the checkpoint in {} {sentence}", path.display()))
-            })?;
-            let from = format!("step {step} of {}", case.schedule.last_step);
-            (running, started, from)
-        }
-    };
-    if manner.talks() {
         print(&format!("goes on from {from}\n"))?;
     }
-    complete(running, folder, started, manner)
+    complete(running, folder, checkpoints, manner)
+}
+
+/// What is left where no checkpoint can be used.
+const ANEW: &str = "remove the checkpoints, and --resume begins from the start";
+
+fn load_case(path: &Path) -> Result<Case, Failure> {
+    let mut case = Case::load(&path.join("case.toml"), &[]).map_err(|error| {
+        let hint = "if the run was stopped before all its inputs were copied, begin it again with --force";
+        Failure::input(anyhow::anyhow!("{error}\n{hint}"))
+    })?;
+    // Results are named after their folder, not after the file in it.
+    let folder = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    if let Some(name) = folder.file_name() {
+        case.name = name.to_string_lossy().into_owned();
+    }
+    Ok(case)
 }
 
 /// Nothing is left to do.
 fn say_complete(path: &Path, manner: &Manner) -> Result<(), Failure> {
-    // A kill may have come between the last file and this.
-    Checkpoints::remove(path).map_err(Failure::running)?;
+    // A kill may have come between the last file and this. On a disk that cannot be written they do no harm.
+    let _ = Checkpoints::remove(path);
     if manner.json {
         let summary = results::read_summary(path).map_err(Failure::input)?;
         print(&results::summary_json(&summary))?;
@@ -96,12 +107,11 @@ fn remedy(error: &CheckpointError, path: &Path, case: &Case, previous: bool) -> 
                     "the one before it, of step {}, is whole: add --previous to go on from there",
                     saved.step
                 ),
-                _ => "no whole one is kept beside it: begin the run again".to_owned(),
+                _ => format!("no whole one is kept beside it: {ANEW}"),
             }
         }
-        CheckpointError::Case { .. } => {
-            "put back the case.toml with which it was begun, or begin again".to_owned()
-        }
-        _ => "or begin the run again".to_owned(),
+        CheckpointError::Case { .. } => format!("put back the files with which it was begun, or {ANEW}"),
+        CheckpointError::Damaged { .. } | CheckpointError::Unreadable { .. } => ANEW.to_owned(),
+        CheckpointError::Layout { .. } | CheckpointError::Program { .. } => format!("or {ANEW}"),
     }
 }
