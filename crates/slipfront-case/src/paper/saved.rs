@@ -126,6 +126,12 @@ mod tests {
             std::fs::write(&path, &whole[..cut]).unwrap();
             assert!(saved.load("fig99", StepRule::Auto).is_none(), "{cut}");
         }
+        std::fs::File::create(&path).unwrap().set_len(1 << 40).unwrap();
+        assert!(saved.load("fig99", StepRule::Auto).is_none());
+        // What a kill left is removed.
+        std::fs::write(folder.path().join("found/.slipfront123456"), "half of").unwrap();
+        Saved::open(folder.path(), true).unwrap();
+        assert_eq!(std::fs::read_dir(folder.path().join("found")).unwrap().count(), 1);
         let mut flipped = whole;
         flipped[40] ^= 1;
         std::fs::write(&path, flipped).unwrap();

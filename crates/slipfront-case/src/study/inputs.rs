@@ -167,6 +167,20 @@ mod tests {
         assert!(copy(&mut study, folder.path()).unwrap().is_empty());
     }
 
+    /// It is there, so that a point may read it the next time.
+    #[cfg(unix)]
+    #[test]
+    fn what_cannot_be_read_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("circle.png");
+        std::os::unix::fs::symlink(&path, &path).unwrap();
+        let mut study: Table = "base.texture = [{ shape = 'mask', file = 'circle.png' }]"
+            .parse()
+            .unwrap();
+        let error = copy(&mut study, folder.path()).err().unwrap().to_string();
+        assert!(error.contains("circle.png"), "{error}");
+    }
+
     #[test]
     fn files_are_found_wherever_a_study_names_them() {
         let folder = tempfile::tempdir().unwrap();

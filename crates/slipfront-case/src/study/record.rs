@@ -383,6 +383,25 @@ mod tests {
         ));
     }
 
+    /// A file without end, and what is no file, are neither read nor waited for.
+    #[cfg(unix)]
+    #[test]
+    fn what_never_ends_is_refused() {
+        let (folder, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let mut records = Records::open(other.path()).unwrap();
+        let path = folder.path().join(RECORDS);
+        let refused = |records: &mut Records| {
+            let opened = Records::open(folder.path());
+            assert!(matches!(opened, Err(StudyError::NotRecords { .. })), "{opened:?}");
+            assert!(records.merge(folder.path()).is_err());
+        };
+        File::create(&path).unwrap().set_len(1 << 40).unwrap();
+        refused(&mut records);
+        std::fs::remove_file(&path).unwrap();
+        std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
+        refused(&mut records);
+    }
+
     #[test]
     fn what_json_cannot_hold_is_a_failure() {
         let outcome = |value| {

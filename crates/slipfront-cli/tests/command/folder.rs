@@ -172,3 +172,29 @@ fn odd_names_are_names() {
     let run = "results/fünf µm [2] & #1";
     command.args([run, run]).assert().success();
 }
+
+/// A kill leaves a case, copies of what it reads, and files that were being written, but no manifest that lists them.
+#[test]
+fn force_takes_the_copies_of_a_killed_run_along() {
+    let bench = Bench::new();
+    bench.done("texture small.toml -o spot.png --set texture.0={shape=\"cavity\",coverage=15}");
+    let masked = format!("{}[[texture]]\nshape='mask'\nfile='spot.png'\n", super::SMALL);
+    bench.write("masked.toml", &masked);
+    bench.done("run masked.toml -o clean");
+    bench.done("run masked.toml -o a");
+    std::fs::remove_file(bench.path().join("a/manifest.json")).unwrap();
+    for name in ["a/.slipfront123456", "a/inputs/.slipfront123456"] {
+        bench.write(name, "half of");
+    }
+    bench.done("run masked.toml -o a --force");
+    bench.assert_same("clean", "a");
+    // A case that a user wrote may name the only copy that there is.
+    bench.write("b/case.toml", masked.replace("spot.png", "inputs/spot.png"));
+    bench.write("b/inputs/spot.png", bench.read("spot.png"));
+    let said = bench.refused("run masked.toml --quiet -o b --force", 2);
+    assert!(
+        said.contains("spot.png is not a file of an earlier run"),
+        "{said}"
+    );
+    assert!(bench.exists("b/inputs/spot.png"));
+}

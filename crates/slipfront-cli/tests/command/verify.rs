@@ -83,6 +83,34 @@ fn every_changed_byte_is_seen() {
     assert_eq!(verified(&bench, "a").0, 0);
 }
 
+/// Pictures of damaged files would look right.
+#[test]
+fn what_has_changed_is_not_drawn() {
+    let bench = bench_with_a_run();
+    for name in ["summary.json", "series.csv", "fields.nc"] {
+        let path = format!("a/{name}");
+        let bytes = bench.read(&path);
+        let mut changed = bytes.clone();
+        changed[bytes.len() / 2] ^= 1;
+        bench.write(&path, &changed);
+        for line in ["plot a -o drawn", "plot a a -o drawn"] {
+            let said = bench.refused(line, 2);
+            assert!(
+                said.contains(&format!("{path} differs: other bytes were written")),
+                "{said}"
+            );
+            assert!(said.contains("remove a/manifest.json"), "{said}");
+        }
+        bench.write(&path, bytes);
+    }
+    assert!(!bench.exists("drawn"));
+    // What pictures are not drawn from does not matter.
+    bench.write("a/friction.svg", "changed");
+    bench.done("plot a");
+    let seen = verified(&bench, "a");
+    assert_eq!(seen.0, 0, "{}", seen.1);
+}
+
 #[test]
 fn every_byte_of_the_manifest_is_under_its_seal() {
     let bench = bench_with_a_run();

@@ -89,6 +89,34 @@ fn run_folders_of_a_study_are_verified_too() {
         status == 1 && said.contains("series.csv differs: it has 7 bytes"),
         "{said}"
     );
+    std::fs::remove_file(run.path().join("manifest.json")).unwrap();
+    let (status, said, _) = verified(&bench, "out");
+    assert!(status == 1 && said.contains("holds no manifest.json"), "{said}");
+    // A user may have no use for them.
+    std::fs::remove_dir_all(results.path.join("runs")).unwrap();
+    let (status, said, _) = verified(&bench, "out");
+    assert!(status == 0 && said.contains(", 0 run folders"), "{said}");
+}
+
+#[test]
+fn records_that_were_damaged_and_mended_are_whole() {
+    let bench = Bench::with(SMALL);
+    let results = bench.study("out");
+    let mut bytes = std::fs::read(results.records()).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    std::fs::write(results.records(), bytes).unwrap();
+    let (status, said, _) = verified(&bench, "out");
+    assert!(
+        status == 1 && said.contains("1 lines of it are damaged"),
+        "{said}"
+    );
+    bench.study("out");
+    let (status, said, _) = verified(&bench, "out");
+    assert!(
+        status == 0 && said.contains("note: out/records.jsonl has 1 damaged lines"),
+        "{said}"
+    );
 }
 
 #[test]

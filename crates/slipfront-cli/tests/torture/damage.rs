@@ -224,7 +224,7 @@ fn of_what_a_case_reads() {
         let target = Target {
             kind: "inputs that are read",
             name,
-            most: cases(20, 6_000),
+            most: cases(12, 6_000),
         };
         torture(&mut tally, &bench, &target, &read);
         bench.remove("again");
@@ -258,7 +258,7 @@ fn of_what_a_case_reads() {
         let target = Target {
             kind: "inputs of a run",
             name,
-            most: cases(2, 300),
+            most: cases(1, 300),
         };
         torture(&mut tally, &bench, &target, &run);
     }
@@ -283,7 +283,7 @@ fn of_a_study_file() {
     let target = Target {
         kind: "study files that are read",
         name: "study.toml",
-        most: cases(40, 10_000),
+        most: cases(25, 10_000),
     };
     torture(&mut tally, &bench, &target, &read);
     let run = |damage: &Damage| {
@@ -324,7 +324,7 @@ fn of_a_run_folder() {
         let target = Target {
             kind: "results that are verified",
             name: &format!("out/{name}"),
-            most: cases(8, if name.ends_with("json") { 8_000 } else { 1_000 }),
+            most: cases(4, if name.ends_with("json") { 8_000 } else { 1_000 }),
         };
         torture(&mut tally, &bench, &target, &|_| seen(&bench, "verify out"));
     }
@@ -335,7 +335,7 @@ fn of_a_run_folder() {
     for (name, most) in read
         .iter()
         .chain(&["manifest.json"])
-        .map(|name| of(name, cases(5, 1_000)))
+        .map(|name| of(name, cases(3, 1_000)))
     {
         let judge = |_: &Damage| {
             bench.remove("drawn");
@@ -355,7 +355,7 @@ fn of_a_run_folder() {
     }
     // Without a manifest nobody knows what they were.
     bench.remove("out/manifest.json");
-    for (name, most) in read.iter().map(|name| of(name, cases(3, 500))) {
+    for (name, most) in read.iter().map(|name| of(name, cases(2, 500))) {
         let judge = |_: &Damage| {
             let ended = bench.run("plot out -o drawn")?;
             if ended.status == 0 {
@@ -399,7 +399,7 @@ fn of_a_study_folder() {
         let target = Target {
             kind: "studies that are verified",
             name: &format!("out/{name}"),
-            most: cases(if records { 3 } else { 1 }, if records { 1_000 } else { 100 }),
+            most: cases(if records { 2 } else { 1 }, if records { 1_000 } else { 100 }),
         };
         torture(&mut tally, &bench, &target, &|_| seen(&bench, "verify out"));
         if !long() && !records && !name.ends_with("points.csv") {
@@ -407,7 +407,7 @@ fn of_a_study_folder() {
         }
         let target = Target {
             kind: "studies that go on",
-            most: cases(2, if records { 300 } else { 20 }),
+            most: cases(1, if records { 300 } else { 20 }),
             ..target
         };
         torture(&mut tally, &bench, &target, &|_| mended(&bench, &JOBS[1], &whole));
@@ -456,7 +456,7 @@ fn of_shards() {
         let target = Target {
             kind: "shards that are merged",
             name,
-            most: cases(3, 500),
+            most: cases(2, 500),
         };
         torture(&mut tally, &bench, &target, &judge);
     }
@@ -516,7 +516,7 @@ fn of_checkpoints() {
         }
     };
     for (name, most) in [
-        ("out/checkpoint.bin", cases(12, 3_000)),
+        ("out/checkpoint.bin", cases(8, 3_000)),
         ("out/case.toml", cases(4, 1_000)),
         ("out/inputs/mask.png", cases(2, 500)),
     ] {
@@ -529,7 +529,7 @@ fn of_checkpoints() {
     }
     for (name, most) in [
         ("out/checkpoint.bin", cases(1, 50)),
-        ("out/checkpoint-previous.bin", cases(2, 200)),
+        ("out/checkpoint-previous.bin", cases(1, 200)),
     ] {
         let target = Target {
             kind: "runs that are resumed from the checkpoint before",

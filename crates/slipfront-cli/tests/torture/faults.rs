@@ -264,22 +264,22 @@ fn torture(job: &Job, short: usize) {
 
 #[test]
 fn of_a_run() {
-    torture(&JOBS[0], 8);
+    torture(&JOBS[0], 5);
 }
 
 #[test]
 fn of_a_study() {
-    torture(&JOBS[1], 6);
+    torture(&JOBS[1], 4);
 }
 
 #[test]
 fn of_a_paper() {
-    torture(&JOBS[2], 4);
+    torture(&JOBS[2], 3);
 }
 
 #[test]
 fn of_a_run_with_checkpoints() {
-    torture(&JOBS[3], 6);
+    torture(&JOBS[3], 4);
 }
 
 /// What only reads: its answer is the right one, or there is none.
@@ -310,10 +310,10 @@ fn of_those_who_read() {
     };
     let drawn = pictures("out");
     for (line, status, short) in [
-        ("verify out", 0, 12),
-        ("verify study", 0, 5),
-        ("verify damaged", 1, 12),
-        ("verify kept", 1, 5),
+        ("verify out", 0, 8),
+        ("verify study", 0, 3),
+        ("verify damaged", 1, 8),
+        ("verify kept", 1, 3),
     ] {
         let judge = |fault: Fault, ended: Option<Ended>, _: &Call| match ended {
             None if fault.kills() => Ok("killed"),
@@ -351,7 +351,7 @@ fn of_those_who_read() {
         &bench,
         "plot",
         "plot out -o drawn",
-        6,
+        3,
         &judge,
         &|| bench.remove("drawn"),
     );

@@ -287,9 +287,11 @@ impl Job {
             .keys()
             .filter(read)
             .all(|name| bench.path("out").join(name).exists());
+        let complete = bench.path("out/manifest.json").exists();
         match bench.path("out").exists() {
             false => self.line,
-            true if whole_case => self.again,
+            // To resume a complete run is to do nothing.
+            true if whole_case && !(complete && self.saves) => self.again,
             true => self.anew,
         }
     }

@@ -70,5 +70,5 @@ fn a_killed_paper_goes_on() {
 
 #[test]
 fn a_killed_run_is_resumed() {
-    torture(&JOBS[3], cases(8, 400));
+    torture(&JOBS[3], cases(4, 200));
 }
