@@ -13,6 +13,7 @@ use thiserror::Error;
 
 use crate::case::Case;
 use crate::folder::{UNFINISHED, open_regular, stage, sync_folder};
+use crate::legible::shortened;
 use crate::manifest::Manifest;
 use crate::run::{RunState, Running};
 
@@ -240,7 +241,7 @@ fn read(path: &Path, case: &Case) -> Result<Saved, CheckpointError> {
     if header.slipfront_checkpoint != LAYOUT || header.program != here {
         return Err(CheckpointError::Program {
             path: path.to_owned(),
-            found: header.program,
+            found: shortened(&header.program),
             here,
         });
     }
