@@ -11,7 +11,6 @@ use slipfront::surface::MaskImage;
 
 use super::{ArrayError, open, read_error};
 use crate::folder::write_whole;
-use crate::legible::sentence;
 
 /// More pixels than any lattice has blocks.
 const PIXELS_MAX: u64 = 1 << 28;
@@ -155,7 +154,7 @@ fn broken(path: &Path, detail: String) -> ArrayError {
     ArrayError::Broken {
         path: path.to_owned(),
         format: ".png",
-        detail: sentence(&detail),
+        detail,
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 
 use super::{ArrayError, open, read_error};
-use crate::legible::{sentence, shortened};
+use crate::legible::shortened;
 
 /// Numpy itself refuses longer headers.
 pub(super) const HEADER_MAX_BYTES: usize = 10_000;
@@ -160,7 +160,7 @@ fn broken(path: &Path, detail: String) -> ArrayError {
     ArrayError::Broken {
         path: path.to_owned(),
         format: ".npy",
-        detail: sentence(&detail),
+        detail,
     }
 }
 

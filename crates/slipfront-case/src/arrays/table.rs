@@ -7,7 +7,6 @@ use std::path::Path;
 use csv::{ReaderBuilder, StringRecord, Trim};
 
 use super::{ArrayError, longest, open, read_error};
-use crate::legible::sentence;
 
 /// Comment lines longer than this in total are not looked through for the separator.
 pub(super) const PREAMBLE_MAX_BYTES: u64 = 1 << 20;
@@ -122,7 +121,7 @@ fn unreadable(path: &Path, source: csv::Error) -> ArrayError {
         _ => ArrayError::Broken {
             path: path.to_owned(),
             format: ".csv",
-            detail: sentence(&detail),
+            detail,
         },
     }
 }
