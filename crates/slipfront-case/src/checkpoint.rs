@@ -14,6 +14,7 @@ use thiserror::Error;
 
 use crate::case::Case;
 use crate::folder::{open_regular, stage, sync_folder};
+use crate::legible::shortened;
 use crate::manifest::Manifest;
 use crate::run::{RunState, Running};
 
@@ -305,7 +306,7 @@ fn read(path: &Path, case: &Case) -> Result<Saved, CheckpointError> {
     if header.program != here {
         return Err(CheckpointError::Program {
             path: path.to_owned(),
-            found: header.program,
+            found: shortened(&header.program),
             here,
         });
     }

@@ -16,6 +16,8 @@ use std::path::{Path, PathBuf};
 pub use mask::{read_mask_png, write_mask_png};
 pub use npy::read_mask_npy;
 
+use crate::legible::sentence;
+
 /// What is wrong with an array or image file: one sentence that ends with the remedy.
 #[derive(Debug, thiserror::Error)]
 pub enum ArrayError {
@@ -47,7 +49,7 @@ pub enum ArrayError {
         known: &'static str,
     },
     /// The bytes are not what the format wants: wrong magic, truncated, corrupt.
-    #[error("`{}` is not a readable {format} file: {detail}; write the file again", path.display())]
+    #[error("`{}` is not a readable {format} file: {}; write the file again", path.display(), sentence(detail))]
     Broken {
         /// The file.
         path: PathBuf,

@@ -6,6 +6,7 @@ use std::path::Path;
 use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 
 use super::{ArrayError, open, read_error};
+use crate::legible::shortened;
 
 /// Numpy itself refuses longer headers.
 pub(super) const HEADER_MAX_BYTES: usize = 10_000;
@@ -44,7 +45,7 @@ pub(super) fn read(path: &Path, nx: usize, ny: usize) -> Result<Vec<f64>, ArrayE
 
     let number = Number::of(&header.dtype()).ok_or_else(|| ArrayError::Dtype {
         path: path.to_owned(),
-        found: header.dtype().descr(),
+        found: shortened(&header.dtype().descr()),
     })?;
     if header.shape() != [ny as u64, nx as u64] {
         return Err(wrong_shape(path, header.shape(), nx, ny));

@@ -84,11 +84,11 @@ fn read_chosen(
     if !records.is_empty() && file.dimension(TIME)? != 0 {
         return Err(Fault::Broken(format!("`{TIME}` has a fixed length")));
     }
-    // A file without instants has no dimension `time`.
+    // A file without instants has no fields, even if it defines some.
     let names: Vec<FieldName> = file
         .variables_over(&[TIME, Y, X])
         .filter_map(FieldName::from_name)
-        .filter(|name| chosen(*name))
+        .filter(|name| chosen(*name) && !records.is_empty())
         .collect();
     let frames = records
         .iter()

@@ -1,7 +1,7 @@
 //! Which files of a run folder are slipfront's own: those that may be replaced.
 
 use std::io::{ErrorKind, Read};
-use std::path::Path;
+use std::path::{Component, Path};
 
 use super::FolderError;
 use super::files::{TEXT_MAX_BYTES, is_unfinished, open_regular, read_whole, unfinished};
@@ -53,10 +53,7 @@ fn own_files(path: &Path) -> Vec<String> {
     copies.sort();
     copies.dedup();
     // They are only believed about the folder of copies: damage must not make us delete elsewhere.
-    copies.retain(|name| {
-        name.strip_prefix("inputs/")
-            .is_some_and(|plain| !plain.contains(['/', '\\']))
-    });
+    copies.retain(|name| name.strip_prefix("inputs/").is_some_and(is_plain));
     let mut names: Vec<String> = RESULTS.map(str::to_owned).to_vec();
     let checkpoints = [CHECKPOINT, PREVIOUS].into_iter();
     let checkpoints = checkpoints.filter(|name| begins_as_checkpoint(&path.join(name)));
@@ -66,6 +63,15 @@ fn own_files(path: &Path) -> Vec<String> {
     names.extend(unfinished(path, "inputs/"));
     names.push(CASE.to_owned());
     names
+}
+
+/// Whether this is the name of a file, without any way: not that of a folder above, nor one that no file can have.
+fn is_plain(name: &str) -> bool {
+    const LONGEST: usize = 255;
+    let mut parts = Path::new(name).components();
+    matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None))
+        && !name.contains(['/', '\\', '\0'])
+        && name.len() <= LONGEST
 }
 
 /// Whether a file begins as a checkpoint does: a name alone may be anybody's.

@@ -13,8 +13,8 @@ use slipfront_case::run::Running;
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
 
-/// The first byte chooses one of [`CASES`]. The file is read as it is, then with the header and the seal that it should
-/// have; a run that can go on from there does so.
+/// The first byte chooses one of [`CASES`]. The file is read as it is, with the seal that it should have, and with that and
+/// the header; a run that can go on from there does so.
 pub(crate) const CHECKPOINTS: Target = Target {
     name: "checkpoint",
     check: checkpoint,
@@ -77,16 +77,21 @@ fn checkpoint(input: &[u8]) {
     };
     let case = &CASES[usize::from(*number) % CASES.len()];
     go_on(case, file);
-    // The state alone, under a header and a seal that fit.
+    let unsealed = &file[..file.len().saturating_sub(blake3::OUT_LEN)];
+    go_on(case, &sealed(unsealed));
+    // The state alone, under a header that fits as well.
     let folder = scratch::folder("checkpoint");
     let whole = save(&folder, &Running::start(case, 1));
     let length = |bytes: &[u8]| bytes.iter().position(|&byte| byte == b'\n').map(|at| at + 1);
     let header = &whole[..length(&whole).unwrap()];
     let begin = length(file).unwrap_or(0);
-    let state = &file[begin..file.len().saturating_sub(blake3::OUT_LEN).max(begin)];
-    let sealed = [header, state].concat();
-    let seal = blake3::hash(&sealed);
-    go_on(case, &[&sealed, seal.as_bytes().as_slice()].concat());
+    let state = unsealed.get(begin..).unwrap_or_default();
+    go_on(case, &sealed(&[header, state].concat()));
+}
+
+/// With the seal that fits.
+fn sealed(bytes: &[u8]) -> Vec<u8> {
+    [bytes, blake3::hash(bytes).as_bytes()].concat()
 }
 
 /// A run goes on from what can be read, or the reason is told; what it saves then can be read again.

@@ -127,8 +127,20 @@ fn manifests() -> Vec<Vec<u8>> {
         ],
         seal: String::new(),
     };
+    let mut odd = whole.clone();
+    let long = format!("inputs/{}", "a".repeat(300));
+    let names = [
+        "inputs/..",
+        "inputs/.",
+        "inputs/",
+        "inputs/a\0b",
+        "inputs/a/../../keep",
+        "/dev/zero",
+        &long,
+    ];
+    odd.files.extend(names.map(|name| file(name, b"")));
     let sealed = |manifest: &Manifest| sealed(&serde_json::to_vec_pretty(manifest).unwrap());
-    vec![sealed(&whole), sealed(&Manifest::default())]
+    vec![sealed(&whole), sealed(&Manifest::default()), sealed(&odd)]
 }
 
 const CASE: &[u8] = b"[drive]\nv_star = 0.1\n";
