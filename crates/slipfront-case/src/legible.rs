@@ -1,5 +1,7 @@
 //! Texts of strangers in messages: short, and without characters that a terminal would obey.
 
+use std::path::Path;
+
 /// The longest piece of a text that a message repeats, in characters.
 pub(crate) const MAX_PIECE: usize = 100;
 /// The longest sentence, in characters: a text that it repeats may be as long as its file.
@@ -13,6 +15,11 @@ pub(crate) fn shortened(text: &str) -> String {
 /// A sentence that may repeat what stands in a file: at most 1000 characters, on one line.
 pub(crate) fn sentence(text: &str) -> String {
     cut(text, MAX_SENTENCE)
+}
+
+/// A path that may be made of names in a file.
+pub(crate) fn shown(path: &Path) -> String {
+    sentence(&path.display().to_string())
 }
 
 fn cut(text: &str, most: usize) -> String {

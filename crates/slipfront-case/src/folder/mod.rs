@@ -22,6 +22,7 @@ pub use self::own::own_bytes;
 use self::own::{CASE, refuse_foreign, remove_own, remove_results, resolved_case};
 use crate::case::{Case, Input};
 use crate::checkpoint::{CHECKPOINT, Checkpoints, PREVIOUS};
+use crate::legible::shown;
 use crate::manifest::{MANIFEST, Manifest};
 
 /// What can go wrong with a run folder.
@@ -59,7 +60,10 @@ pub enum FolderError {
         path: PathBuf,
     },
     /// A file that is not slipfront's stands where one would be written.
-    #[error("{} is not a file of an earlier run: move it away or choose another folder with --out", path.display())]
+    #[error(
+        "{} is not a file of an earlier run: move it away or choose another folder with --out",
+        shown(path)
+    )]
     Foreign {
         /// The file.
         path: PathBuf,
@@ -73,7 +77,10 @@ pub enum FolderError {
         source: std::io::Error,
     },
     /// A file could not be written.
-    #[error("cannot write {}: {source}; the folder is left without manifest.json, as incomplete", path.display())]
+    #[error(
+        "cannot write {}: {source}; the folder is left without manifest.json, as incomplete",
+        shown(path)
+    )]
     Write {
         /// The file.
         path: PathBuf,
@@ -81,7 +88,7 @@ pub enum FolderError {
         source: std::io::Error,
     },
     /// A file could not be read back.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {source}", shown(path))]
     Read {
         /// The file.
         path: PathBuf,
