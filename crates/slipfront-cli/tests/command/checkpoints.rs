@@ -13,8 +13,8 @@ const SLOW: &str = "[slider]\nblocks = [60, 50]\nedges = ['periodic', 'free']\n[
                     [[texture]]\nshape = 'mask'\nfile = 'spot.png'\n";
 
 /// The reference kernel, and snapshots by the step.
-const REVERSAL: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.05\n[friction]\nlaw = 'reversal'\n\
-                       [output]\nsnapshots = { every = 7.5 }\n";
+const REVERSAL: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.004\n[friction]\nlaw = 'reversal'\n\
+                       [output]\nsnapshots = { every = 75 }\n";
 
 /// Enough blocks for two threads, until the onset.
 const WIDE: &str = "[slider]\nblocks = [400, 350]\n[drive]\nv_star = 0.1\n[time]\nstop = 'after_onset'\n";
@@ -111,7 +111,7 @@ fn stopped_any_number_of_times_it_writes_the_same_bytes(
         // Any number of threads, each time another one.
         let child = start(&bench, &format!("{line} --threads {}", 1 + stops % 3));
         wait_for_signals(&child);
-        sleep(Duration::from_millis(60 + 37 * (stops % 4)));
+        sleep(Duration::from_millis(40 + 37 * (stops % 4)));
         let _ = Command::new("kill")
             .args([signal, &child.id().to_string()])
             .output();

@@ -152,7 +152,7 @@ fn missing_and_cut_files_are_named() {
 #[test]
 fn files_of_others_are_named() {
     let bench = bench_with_a_run();
-    for name in ["notes.txt", "inputs/other.png", ".slipfrontAbC", "more/notes.txt"] {
+    for name in ["notes.txt", "inputs/other.png", ".slipfrontAbC123", "more/notes.txt"] {
         bench.write(&format!("a/{name}"), "mine");
     }
     let (status, said, errors) = verified(&bench, "a");
@@ -161,7 +161,7 @@ fn files_of_others_are_named() {
     assert_eq!(
         notes,
         [
-            "note: a/.slipfrontAbC was left by a run that was interrupted",
+            "note: a/.slipfrontAbC123 was left by a run that was interrupted",
             "note: a/inputs/other.png is not slipfront's",
             "note: a/more is not slipfront's",
             "note: a/notes.txt is not slipfront's",
