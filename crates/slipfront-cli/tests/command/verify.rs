@@ -152,7 +152,12 @@ fn missing_and_cut_files_are_named() {
 #[test]
 fn files_of_others_are_named() {
     let bench = bench_with_a_run();
-    for name in ["notes.txt", "inputs/other.png", ".slipfrontAbC123", "more/notes.txt"] {
+    for name in [
+        "notes.txt",
+        "inputs/other.png",
+        ".slipfrontAbC123",
+        "more/notes.txt",
+    ] {
         bench.write(&format!("a/{name}"), "mine");
     }
     let (status, said, errors) = verified(&bench, "a");
