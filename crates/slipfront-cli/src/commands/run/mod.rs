@@ -28,8 +28,8 @@ use crate::signals::Signals;
   slipfront run --resume results/baseline                      goes on with a run that was stopped
   slipfront run --json --quiet | python3 -c 'import json,sys; print(json.load(sys.stdin)[\"static_friction_star\"])'
 
-The whole state of the run is saved in its folder every --checkpoint, on Ctrl-C (SIGINT), on SIGTERM and on SIGUSR1, after
-which it goes on. A run that was stopped and resumed, however often, writes the same bytes as one that was not.")]
+The whole state of the run is saved in its folder every --checkpoint, on Ctrl-C (SIGINT), on SIGTERM and on SIGUSR1, \
+after which it goes on. A run that was stopped and resumed, however often, writes the same bytes as one that was not.")]
 pub(crate) struct Run {
     #[command(flatten)]
     case: CaseArgs,
