@@ -12,7 +12,7 @@ use crate::folder::open_bounded;
 use crate::legible;
 
 /// One row of `series.csv`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SeriesRow {
     /// Step.
     pub step: u64,
@@ -86,14 +86,19 @@ pub fn to_csv(rows: impl Iterator<Item = SeriesRow>) -> Result<Vec<u8>, csv::Err
 /// # Errors
 /// When the file is missing or is no series.
 pub fn read_csv(path: &Path) -> Result<Vec<SeriesRow>, SeriesError> {
-    let read = || -> Result<_, csv::Error> {
-        let file = BoundedLines::new(open_bounded(path, u64::MAX)?);
-        csv::Reader::from_reader(file).deserialize().collect()
-    };
+    let read = || rows_of(open_bounded(path, u64::MAX)?);
     read().map_err(|source| SeriesError {
         path: path.to_owned(),
         source,
     })
+}
+
+fn rows_of(file: impl Read) -> Result<Vec<SeriesRow>, csv::Error> {
+    let mut reader = csv::Reader::from_reader(BoundedLines::new(file));
+    // The crate's own iterator takes names that cannot be read for none, and goes on with what follows them.
+    let names = reader.headers()?.clone();
+    let rows = reader.records().map(|row| row?.deserialize(Some(&names)));
+    rows.collect()
 }
 
 /// The longest line of a series: more than its header, and than thirteen numbers take.
@@ -132,6 +137,39 @@ impl<R: Read> Read for BoundedLines<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A disk that fails to give the n-th piece, and gives all others.
+    struct Failing<'a> {
+        file: &'a [u8],
+        reads: usize,
+        failing: usize,
+    }
+
+    impl Read for Failing<'_> {
+        fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+            self.reads += 1;
+            if self.reads == self.failing {
+                return Err(std::io::Error::other("it fails"));
+            }
+            let most = buffer.len().min(300);
+            self.file.read(&mut buffer[..most])
+        }
+    }
+
+    #[test]
+    fn a_read_that_fails_is_never_taken_for_the_end() {
+        let rows = vec![SeriesRow::default(); 20];
+        let text = to_csv(rows.iter().copied()).unwrap();
+        let pieces = text.len().div_ceil(300);
+        for failing in 1..=pieces {
+            let (file, reads) = (text.as_slice(), 0);
+            assert!(
+                rows_of(Failing { file, reads, failing }).is_err(),
+                "piece {failing} of {pieces}"
+            );
+        }
+        assert_eq!(rows_of(text.as_slice()).unwrap(), rows);
+    }
 
     #[test]
     fn a_line_without_end_is_refused() {
