@@ -140,7 +140,8 @@ impl Results {
         let whole = text.split_inclusive('\n').filter(|line| line.ends_with('\n'));
         whole
             .filter_map(|line| serde_json::from_str::<serde_json::Value>(line.get(17..)?).ok())
-            .map(|record| record["id"].as_str().unwrap().to_owned())
+            // A damaged line may have lost its very name.
+            .filter_map(|record| Some(record["id"].as_str()?.to_owned()))
             .collect()
     }
 
