@@ -47,7 +47,19 @@ impl Snapshot<'_> {
     /// Displacement, velocity and forces of block `b`. Forces are found anew: to be asked for now and then, not at every
     /// step.
     pub fn block(&self, b: usize) -> Block {
-        self.engine.block(self.model, self.step, self.dt_star, b)
+        let mut block = [Block::default()];
+        self.look(b, &mut block);
+        block[0]
+    }
+
+    /// The same of blocks `first`, `first + 1`, ..., as many as there is room for: of many together it takes a tenth of the
+    /// time that it takes of one by one.
+    ///
+    /// # Panics
+    /// If the lattice has fewer.
+    pub fn look(&self, first: usize, blocks: &mut [Block]) {
+        self.engine
+            .look(self.model, self.step, self.dt_star, first, blocks);
     }
 
     /// Energies held now.

@@ -4,17 +4,17 @@
 //! [`Simulation`](crate::Simulation) steps either and shows observers what it found.
 
 mod fused;
+mod look;
 mod reference;
 
 use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
 
 use self::fused::Fused;
+use self::look::{TOGETHER, look};
 use self::reference::Reference;
 use crate::checkpoint::{Checkpoint, Numbers};
-use crate::lattice::Bond;
 use crate::observe::Peak;
-use crate::vector_field::length;
 use crate::{FrictionLaw, Model, State};
 
 /// Which kernel computes the steps.
@@ -232,20 +232,18 @@ impl Engine {
         }
     }
 
-    /// Block `b` at step `number`, the present one.
-    pub(crate) fn block(&self, model: &Model, number: u64, dt_star: f64, b: usize) -> Block {
+    /// Blocks `first`, `first + 1`, ... at step `number`, the present one.
+    pub(crate) fn look(&self, model: &Model, number: u64, dt_star: f64, first: usize, blocks: &mut [Block]) {
         match self {
-            Self::Reference(kernel) => kernel.block(b),
+            Self::Reference(kernel) => {
+                for (b, block) in (first..).zip(blocks) {
+                    *block = kernel.block(b);
+                }
+            }
             Self::Fused(kernel) => {
-                let [displacement, velocity] = kernel.motion(b);
-                let force_drive = model.drive.force(displacement, number as f64 * dt_star);
-                let force_lattice = lattice_force(model, b, displacement, |b| kernel.motion(b)[0]);
-                Block {
-                    displacement,
-                    velocity,
-                    force_drive,
-                    force_lattice,
-                    force_friction: friction(model, b, velocity, force_drive, force_lattice),
+                let time_star = number as f64 * dt_star;
+                for (first, blocks) in (first..).step_by(TOGETHER).zip(blocks.chunks_mut(TOGETHER)) {
+                    look(model, time_star, first, blocks, |b| kernel.motion(b));
                 }
             }
         }
@@ -278,33 +276,4 @@ impl Engine {
             Self::Fused(kernel) => kernel.stress_square_max(model, number),
         }
     }
-}
-
-/// Eq. 3 for one block, summed as the kernels do.
-fn lattice_force(model: &Model, b: usize, u: [f64; 2], displacement: impl Fn(usize) -> [f64; 2]) -> [f64; 2] {
-    let lattice = &model.lattice;
-    let (i, j) = lattice.column_row(b);
-    let pair = |bond: &Bond| {
-        let [di, dj] = bond.offset;
-        let own = lattice.neighbour(i, j, [di, dj]).map_or([0.0; 2], |other| {
-            let v = displacement(other);
-            bond.force([v[0] - u[0], v[1] - u[1]], model.epsilon)
-        });
-        let behind = lattice.neighbour(i, j, [-di, -dj]).map_or([0.0; 2], |other| {
-            let v = displacement(other);
-            bond.force([u[0] - v[0], u[1] - v[1]], model.epsilon)
-        });
-        [own[0] - behind[0], own[1] - behind[1]]
-    };
-    let [e, n, ne, nw] = Bond::ALL.each_ref().map(pair);
-    [(e[0] + n[0]) + (ne[0] + nw[0]), (e[1] + n[1]) + (ne[1] + nw[1])]
-}
-
-/// `F_f` of the projection law, from the velocity that it left: against it, or balancing the other forces at rest.
-fn friction(model: &Model, b: usize, velocity: [f64; 2], drive: [f64; 2], lattice: [f64; 2]) -> [f64; 2] {
-    if velocity == [0.0, 0.0] {
-        return [-(drive[0] + lattice[0]), -(drive[1] + lattice[1])];
-    }
-    let pull = model.surface.slide(b) / length(velocity);
-    [-pull * velocity[0], -pull * velocity[1]]
 }

@@ -40,6 +40,9 @@ impl Field {
     }
 }
 
+/// Blocks that are looked at together.
+const TOGETHER: usize = 64;
+
 /// Fields of one instant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
@@ -92,12 +95,16 @@ impl Selection {
         (frame.step, frame.time_star, frame.point) = (now.step, now.time_star, now.point);
         let (lattice, textured) = (&now.model.lattice, &now.model.surface.textured);
         frame.values.iter_mut().for_each(Vec::clear);
+        let mut blocks = [Block::default(); TOGETHER];
         for j in (0..lattice.ny).step_by(self.stride) {
-            for i in (0..lattice.nx).step_by(self.stride) {
-                let b = lattice.block(i, j);
-                let block = now.block(b);
-                for (field, values) in self.fields.iter().zip(&mut frame.values) {
-                    values.push(field.value(&block, textured[b]) as f32);
+            for begin in (0..lattice.nx).step_by(TOGETHER) {
+                let n = TOGETHER.min(lattice.nx - begin);
+                let first = lattice.block(begin, j);
+                now.look(first, &mut blocks[..n]);
+                for k in (0..n).filter(|k| (begin + k).is_multiple_of(self.stride)) {
+                    for (field, values) in self.fields.iter().zip(&mut frame.values) {
+                        values.push(field.value(&blocks[k], textured[first + k]) as f32);
+                    }
                 }
             }
         }

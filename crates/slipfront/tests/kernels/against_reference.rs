@@ -1,7 +1,7 @@
 //! The fused kernel against the reference: the same to rounding.
 
 use rstest::rstest;
-use slipfront::kernel::Totals;
+use slipfront::kernel::{Block, Totals};
 use slipfront::surface::{Orientation, Texture};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, State, Surface, VectorField};
 
@@ -93,8 +93,11 @@ fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
     assert_eq!(bits(&fused.first_slip_time_star()), bits(&first));
     // What is shown of a block is found anew from its motion.
     let bound = ROUNDING * largest(&reference.state().displacement);
-    for b in 0..model.lattice.n_blocks() {
+    let mut together = vec![Block::default(); model.lattice.n_blocks()];
+    fused.snapshot().look(0, &mut together);
+    for (b, together) in together.into_iter().enumerate() {
         let (here, there) = (fused.snapshot().block(b), reference.snapshot().block(b));
+        assert_eq!(here, together, "block {b} looks otherwise alone");
         let forces = [
             (here.force_drive, there.force_drive),
             (here.force_lattice, there.force_lattice),

@@ -2,6 +2,7 @@
 //! stand beside its other executions.
 
 use rstest::rstest;
+use slipfront::kernel::Block;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{Curve, Field, Instants, KineticHistory, KineticStart, Scheduled};
 use slipfront::{Checkpoint, Execution, FrictionLaw, Simulation, Stop};
@@ -27,8 +28,9 @@ fn everything(simulation: &Simulation) -> Vec<u64> {
     let now = simulation.snapshot();
     let mut numbers = simulation.first_slip_time_star();
     numbers.extend([now.point.mu_star, simulation.contact_stress_max()]);
-    for b in 0..now.model.lattice.n_blocks() {
-        let block = now.block(b);
+    let mut blocks = vec![Block::default(); now.model.lattice.n_blocks()];
+    now.look(0, &mut blocks);
+    for block in blocks {
         for pair in [
             block.displacement,
             block.velocity,
