@@ -6,14 +6,13 @@
 use std::fs::File;
 use std::io::{BufRead, BufReader, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::sync::LazyLock;
 
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::case::Case;
-use crate::folder::{open_regular, stage, sync_folder};
+use crate::folder::{open_regular, remove_if_there, stage, sync_folder};
 use crate::legible::shortened;
 use crate::manifest::Manifest;
 use crate::run::{RunState, Running};
@@ -103,7 +102,7 @@ pub enum CheckpointError {
         /// The program that wrote it.
         found: String,
         /// The program that reads it.
-        here: String,
+        here: &'static str,
     },
     /// It is not of this run.
     #[error("{} belongs to another case than the case.toml and inputs beside it", path.display())]
@@ -155,7 +154,7 @@ impl Checkpoints {
     pub fn save(&mut self, running: &Running) -> std::io::Result<()> {
         let header = Header {
             slipfront_checkpoint: LAYOUT,
-            program: program(),
+            program: Manifest::this_build().to_owned(),
             case_blake3: self.case_blake3.clone(),
             step: running.snapshot().step,
             started: self.started,
@@ -179,10 +178,7 @@ impl Checkpoints {
     /// What the system says.
     pub fn remove(folder: &Path) -> std::io::Result<()> {
         for name in [CHECKPOINT, PREVIOUS] {
-            match std::fs::remove_file(folder.join(name)) {
-                Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
-                _ => {}
-            }
+            remove_if_there(&folder.join(name))?;
         }
         Ok(())
     }
@@ -209,25 +205,6 @@ impl Checkpoints {
         }
         Ok(None)
     }
-}
-
-/// The program, told from any other that may not give the same bits: where its version and revision do not say it all, by
-/// the hash of its file.
-fn program() -> String {
-    static PROGRAM: LazyLock<String> = LazyLock::new(|| {
-        let program = Manifest::this_program();
-        let revision = Manifest::this_revision();
-        if revision.is_some_and(|revision| !revision.ends_with("-dirty")) {
-            return program;
-        }
-        let mut hasher = blake3::Hasher::new();
-        let file = std::env::current_exe().and_then(File::open);
-        match file.and_then(|file| hasher.update_reader(file).map(|hasher| hasher.finalize())) {
-            Ok(hash) => format!("{program}, build {}", &hash.to_hex()[..16]),
-            Err(_) => program,
-        }
-    });
-    PROGRAM.clone()
 }
 
 /// Hash of a case and of the files that it reads, by which equal cases are told.
@@ -302,7 +279,7 @@ fn read(path: &Path, case: &Case) -> Result<Saved, CheckpointError> {
     reader.rewind().map_err(unreadable)?;
     let sealed = check_seal(&mut reader).map_err(unreadable)?;
     let sealed = sealed.ok_or_else(|| damaged("its checksum does not fit"))?;
-    let here = program();
+    let here = Manifest::this_build();
     if header.program != here {
         return Err(CheckpointError::Program {
             path: path.to_owned(),

@@ -5,6 +5,7 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 use slipfront::surface::STREAMS;
@@ -205,6 +206,25 @@ impl Manifest {
             ..Self::default()
         }
         .program()
+    }
+
+    /// The program that reads this, told from any other that may not give the same bits: where its version and revision do
+    /// not say it all, by the hash of its file.
+    pub(crate) fn this_build() -> &'static str {
+        static BUILD: LazyLock<String> = LazyLock::new(|| {
+            let program = Manifest::this_program();
+            let revision = Manifest::this_revision();
+            if revision.is_some_and(|revision| !revision.ends_with("-dirty")) {
+                return program;
+            }
+            let mut hasher = blake3::Hasher::new();
+            let file = std::env::current_exe().and_then(File::open);
+            match file.and_then(|file| hasher.update_reader(file).map(|hasher| hasher.finalize())) {
+                Ok(hash) => format!("{program}, build {}", &hash.to_hex()[..16]),
+                Err(_) => program,
+            }
+        });
+        &BUILD
     }
 
     /// The git commit that this program was built from, as in [`Manifest::revision`].

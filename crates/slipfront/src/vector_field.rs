@@ -35,6 +35,12 @@ impl VectorField {
     }
 }
 
+impl From<[Vec<f64>; 2]> for VectorField {
+    fn from([x, y]: [Vec<f64>; 2]) -> Self {
+        Self { x, y }
+    }
+}
+
 /// Scalar product of two plane vectors.
 #[inline(always)]
 pub(crate) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {

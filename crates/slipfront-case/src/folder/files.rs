@@ -1,6 +1,6 @@
 //! Files and folders: written whole or not at all, read within bounds.
 
-use std::fs::File;
+use std::fs::{DirEntry, File};
 use std::io::{ErrorKind, Read, Take, Write};
 use std::path::Path;
 
@@ -54,12 +54,15 @@ pub(super) fn unfinished(folder: &Path, inside: &str) -> Vec<String> {
         .into_iter()
         .flatten()
         .flatten();
-    let files = entries.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_file()));
-    let names = files.filter_map(|entry| entry.file_name().into_string().ok());
+    let names = entries.filter(is_unfinished_file).map(|entry| entry.file_name());
     names
-        .filter(|name| is_unfinished(name))
-        .map(|name| format!("{inside}{name}"))
+        .map(|name| format!("{inside}{}", name.to_string_lossy()))
         .collect()
+}
+
+fn is_unfinished_file(entry: &DirEntry) -> bool {
+    let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+    is_file && entry.file_name().to_str().is_some_and(is_unfinished)
 }
 
 /// Whether a file has the name of one that is being written: ours, and six letters or digits.
@@ -73,8 +76,12 @@ pub(super) fn is_unfinished(name: &str) -> bool {
 /// # Errors
 /// When it cannot be read.
 pub(super) fn holds_only_unfinished(folder: &Path) -> std::io::Result<bool> {
-    let entries = std::fs::read_dir(folder)?.collect::<std::io::Result<Vec<_>>>()?;
-    Ok(unfinished(folder, "").len() == entries.len())
+    for entry in std::fs::read_dir(folder)? {
+        if !is_unfinished_file(&entry?) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 /// Removes what a kill left of files that were being written, where nobody else writes now. A file that cannot be
@@ -82,6 +89,17 @@ pub(super) fn holds_only_unfinished(folder: &Path) -> std::io::Result<bool> {
 pub(crate) fn remove_unfinished(folder: &Path) {
     for name in unfinished(folder, "") {
         let _ = std::fs::remove_file(folder.join(name));
+    }
+}
+
+/// Removes a file, if it is there.
+///
+/// # Errors
+/// What the system says.
+pub(crate) fn remove_if_there(path: &Path) -> std::io::Result<()> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
     }
 }
 

@@ -1,10 +1,10 @@
 //! Which files of a run folder are slipfront's own: those that may be replaced.
 
-use std::io::{ErrorKind, Read};
+use std::io::Read;
 use std::path::{Component, Path};
 
 use super::FolderError;
-use super::files::{TEXT_MAX_BYTES, is_unfinished, open_regular, read_whole, unfinished};
+use super::files::{TEXT_MAX_BYTES, is_unfinished, open_regular, read_whole, remove_if_there, unfinished};
 use crate::case_file::CaseFile;
 use crate::checkpoint::{BEGINNING, CHECKPOINT, PREVIOUS};
 use crate::manifest::{MANIFEST, Manifest};
@@ -127,13 +127,10 @@ pub(super) fn remove_results(path: &Path) -> Result<(), FolderError> {
 /// Removes these files from a folder, where they are.
 fn remove(folder: &Path, names: impl IntoIterator<Item = String>) -> Result<(), FolderError> {
     for name in names {
-        match std::fs::remove_file(folder.join(name)) {
-            Err(source) if source.kind() != ErrorKind::NotFound => {
-                let path = folder.to_owned();
-                return Err(FolderError::Unwritable { path, source });
-            }
-            _ => {}
-        }
+        remove_if_there(&folder.join(name)).map_err(|source| FolderError::Unwritable {
+            path: folder.to_owned(),
+            source,
+        })?;
     }
     Ok(())
 }

@@ -10,6 +10,7 @@ use super::error::PaperError;
 use super::files::FILES;
 use super::found::Found;
 use crate::folder::{FolderError, read_whole, remove_unfinished, write_whole};
+use crate::manifest::Manifest;
 
 /// A longer file holds something else: a figure's findings take some megabytes at the most.
 const MAX_BYTES: u64 = 1 << 28;
@@ -36,10 +37,7 @@ impl Saved {
         // The records of the folder above are open, so that nobody else writes here.
         remove_unfinished(&folder);
         let mut hasher = blake3::Hasher::new();
-        // A program that was built anew may find something else, whatever its version says.
-        if let Ok(program) = std::env::current_exe().and_then(std::fs::File::open) {
-            hasher.update_reader(program).ok();
-        }
+        hasher.update(Manifest::this_build().as_bytes());
         for (name, text) in FILES {
             hasher.update(name.as_bytes()).update(text.as_bytes());
         }

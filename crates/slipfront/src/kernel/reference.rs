@@ -66,10 +66,9 @@ impl Reference {
 
     /// From a checkpoint: evaluates its instant again, which finds forces, friction and the velocities that it left.
     pub(crate) fn resume(model: &Model, dt_star: f64, checkpoint: Checkpoint) -> Self {
-        let vectors = |[x, y]: [Vec<f64>; 2]| VectorField { x, y };
         let state = State {
-            displacement: vectors(checkpoint.displacement),
-            velocity: vectors(checkpoint.velocity),
+            displacement: checkpoint.displacement.into(),
+            velocity: checkpoint.velocity.into(),
         };
         let mut kernel = Self {
             first_slip: checkpoint.first_slip,

@@ -32,7 +32,7 @@ use self::springs::{Series, SquareRoot};
 use super::{Held, Totals};
 use crate::checkpoint::{Checkpoint, Strains};
 use crate::lattice::K_STRAIGHT;
-use crate::{Model, State, VectorField};
+use crate::{Model, State};
 
 /// Steps from one exact look at the largest differences of displacement to the next; between, they are bounded.
 const LOOK_EVERY: u64 = 16;
@@ -98,10 +98,9 @@ impl Fused {
         threads: usize,
         skips: bool,
     ) -> Self {
-        let vectors = |[x, y]: [Vec<f64>; 2]| VectorField { x, y };
         let state = State {
-            displacement: vectors(checkpoint.displacement),
-            velocity: vectors(checkpoint.velocity),
+            displacement: checkpoint.displacement.into(),
+            velocity: checkpoint.velocity.into(),
         };
         let mut kernel = Self::new(model, dt_star, Some(&state), threads, skips);
         drop(state);
