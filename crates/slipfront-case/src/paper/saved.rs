@@ -24,7 +24,7 @@ pub struct Saved {
 }
 
 impl Saved {
-    /// Those in `folder`, made by this very program.
+    /// Those in `folder`, made by this build of the program.
     ///
     /// # Errors
     /// When the folder cannot be made.

@@ -1,0 +1,81 @@
+//! What a case writes, and when.
+
+use super::Schedule;
+use crate::case_file::{self, AutoOr, CaseError, CaseFile};
+use crate::fields::FieldName;
+
+/// What is written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// When fields are kept.
+    pub snapshots: Snapshots,
+    /// Which fields.
+    pub fields: Vec<FieldName>,
+    /// Every n-th block of each axis in the fields file.
+    pub stride: usize,
+    /// Steps between rows of the series.
+    pub series_stride: u64,
+}
+
+/// When fields are kept.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Snapshots {
+    /// At the instants A-F.
+    Instants,
+    /// At these steps.
+    At(Vec<u64>),
+    /// Every n-th step from 0.
+    Every(u64),
+}
+
+/// Longest series that is written unless a spacing is asked for.
+const SERIES_ROWS: u64 = 20_000;
+
+impl Output {
+    /// What a case file asks for.
+    ///
+    /// # Errors
+    /// When the run has no such steps.
+    pub(super) fn of(file: &CaseFile, schedule: &Schedule) -> Result<Self, CaseError> {
+        let Schedule {
+            dt_star, last_step, ..
+        } = *schedule;
+        let spacing = |key: &str, time: f64| -> Result<u64, CaseError> {
+            let steps = (time / dt_star).round();
+            if steps >= 1.0 {
+                return Ok(steps as u64);
+            }
+            Err(file.source.error(
+                key,
+                format!("a spacing of {time} in t* is less than one step of {dt_star}: raise it"),
+            ))
+        };
+        let snapshots = match &file.output.snapshots {
+            case_file::Snapshots::Auto => Snapshots::Instants,
+            case_file::Snapshots::Every(every) => Snapshots::Every(spacing("output.snapshots", *every)?),
+            case_file::Snapshots::At(times) => {
+                let mut steps: Vec<u64> = times.iter().map(|time| (time / dt_star).round() as u64).collect();
+                if let Some((_, time)) = steps.iter().zip(times).find(|&(&step, _)| step > last_step) {
+                    let sentence = format!(
+                        "no snapshot can be taken at t* = {time}: the run ends at {:.4}",
+                        schedule.end_star()
+                    );
+                    return Err(file.source.error("output.snapshots", sentence));
+                }
+                steps.dedup();
+                Snapshots::At(steps)
+            }
+        };
+        let series_stride = match file.output.series {
+            AutoOr::Auto => last_step.div_ceil(SERIES_ROWS),
+            AutoOr::Number(time) => spacing("output.series", time)?,
+        };
+        let stride = file.output.stride as usize;
+        Ok(Output {
+            snapshots,
+            fields: file.output.fields.clone(),
+            stride,
+            series_stride,
+        })
+    }
+}

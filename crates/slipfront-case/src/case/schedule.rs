@@ -1,0 +1,90 @@
+//! Time of a case, and its steps.
+
+use slipfront::lattice::dt_star_limit;
+use slipfront::observe::KineticStart;
+use slipfront::{Scales, Stop};
+
+use super::Groups;
+use crate::case_file::{self, AutoOr, CaseError, CaseFile};
+
+/// Time and its steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Schedule {
+    /// dt*.
+    pub dt_star: f64,
+    /// Number of steps.
+    pub last_step: u64,
+    /// When the run ends.
+    pub stop: Stop,
+    /// Where the kinetic window begins.
+    pub kinetic: KineticStart,
+}
+
+/// Longest run, in steps.
+const MAX_STEPS: f64 = 1e11;
+
+impl Schedule {
+    /// The schedule of a case file.
+    ///
+    /// # Errors
+    /// When it is not stable, too long, or leaves no kinetic window.
+    pub(super) fn of(file: &CaseFile, scales: &Scales, groups: &Groups) -> Result<Self, CaseError> {
+        let time = &file.time;
+        let dt_star = match time.step {
+            case_file::Step::Auto => 0.1,
+            case_file::Step::Paper => 2.0 / 3.0 * groups.v_star,
+            case_file::Step::Number(dt_star) => dt_star,
+        };
+        if dt_star >= dt_star_limit() {
+            let sentence = format!(
+                "the step dt* = {dt_star:.4} is not stable: it must be less than {:.4}; \"auto\" takes 0.1",
+                dt_star_limit()
+            );
+            return Err(file.source.error("time.step", sentence));
+        }
+        let end_star = match &time.duration {
+            case_file::RunTime::Auto => 8.0 / groups.v_star,
+            case_file::RunTime::Star(duration) => *duration,
+            case_file::RunTime::Duration(duration) => duration.si() / scales.time(),
+        };
+        // A duration that is a whole number of steps up to rounding must not gain one.
+        let steps = (end_star / dt_star - 1e-6).ceil().max(1.0);
+        if steps > MAX_STEPS {
+            let sentence = format!(
+                "a run to t* = {end_star:.4e} in steps of {dt_star} takes {steps:.2e} steps, more than {MAX_STEPS:.0e}: \
+                 shorten it or raise the step"
+            );
+            let key = if file.source.has("time.duration") {
+                "time.duration"
+            } else {
+                "time.duration_star"
+            };
+            return Err(file.source.error(key, sentence));
+        }
+        let kinetic = match time.kinetic_from_star {
+            AutoOr::Auto => KineticStart::Auto,
+            AutoOr::Number(from) if from < end_star => KineticStart::At(from),
+            AutoOr::Number(from) => {
+                let sentence =
+                    format!("the kinetic window cannot begin at t* = {from}: the run ends at {end_star:.4}");
+                return Err(file.source.error("time.kinetic_from_star", sentence));
+            }
+        };
+        let last_step = steps as u64;
+        let stop = match time.stop {
+            case_file::Stop::End => Stop::at_step(last_step),
+            case_file::Stop::AfterOnset => Stop::after_onset(last_step),
+        };
+        Ok(Schedule {
+            dt_star,
+            last_step,
+            stop,
+            kinetic,
+        })
+    }
+
+    /// t* of the last step.
+    pub fn end_star(&self) -> f64 {
+        self.last_step as f64 * self.dt_star
+    }
+}

@@ -1,0 +1,178 @@
+//! Textures of a case file as shapes in blocks.
+
+use std::path::Path;
+
+use slipfront::{Lattice, Scales, surface};
+
+use super::inputs::Inputs;
+use crate::arrays;
+use crate::case_file::{self, CaseError, CaseFile};
+use crate::quantity::Length;
+
+/// The shapes of all textures.
+pub(super) struct Textures {
+    pub(super) shapes: Vec<surface::Texture>,
+    /// See [`TextureReport`](super::TextureReport).
+    pub(super) asked_percent: Option<f64>,
+}
+
+/// Reads the masks among them, too.
+pub(super) fn textures(
+    file: &mut CaseFile,
+    scales: &Scales,
+    lattice: &Lattice,
+    inputs: &mut Inputs,
+) -> Result<Textures, CaseError> {
+    let mut shapes = Vec::new();
+    let mut asked = Some(0.0);
+    for index in 0..file.texture.len() {
+        let (shape, percent) = match &file.texture[index] {
+            case_file::Texture::Cavity(cavity) => cavity_in_blocks(cavity, scales, lattice),
+            case_file::Texture::Groove(groove) => groove_in_blocks(groove, scales, lattice),
+            case_file::Texture::Polygon(polygon) => {
+                let points = polygon
+                    .points
+                    .iter()
+                    .map(|point| in_blocks(scales, point))
+                    .collect();
+                (surface::Texture::Polygon(points), None)
+            }
+            case_file::Texture::Mask(mask) => {
+                let key = format!("texture.{index}.file");
+                let path = inputs.find(file, &key, &mask.file)?;
+                let shape = read_mask(&path, mask.threshold, lattice)
+                    .map_err(|error| file.source.error(&key, error.to_string()))?;
+                inputs.budget.add_mask(match &shape {
+                    surface::Texture::Image(image) => image.dark.len(),
+                    _ => lattice.n_blocks(),
+                });
+                let copy = inputs.keep(file, &key, &path, lattice)?;
+                if let case_file::Texture::Mask(mask) = &mut file.texture[index] {
+                    mask.file = copy;
+                }
+                (shape, None)
+            }
+        };
+        within_reach(&shape, lattice).map_err(|sentence| {
+            let key = format!("texture.{index}");
+            file.source.error(&key, sentence)
+        })?;
+        shapes.push(shape);
+        asked = asked.zip(percent).map(|(sum, percent)| sum + percent);
+    }
+    Ok(Textures {
+        shapes,
+        asked_percent: asked,
+    })
+}
+
+/// How far a texture may reach, in slider lengths: farther off it is a slip of the pen, and where edges wrap, its place
+/// is lost to rounding.
+const REACH: f64 = 100.0;
+
+fn within_reach(shape: &surface::Texture, lattice: &Lattice) -> Result<(), String> {
+    let farthest = |lengths: &[f64]| {
+        lengths
+            .iter()
+            .fold(0.0, |most: f64, length| most.max(length.abs()))
+    };
+    let reach = match shape {
+        surface::Texture::Cavity(cavity) => farthest(&cavity.center) + 2.0 * cavity.lambda,
+        surface::Texture::Groove(groove) => groove.offset.abs() + groove.width,
+        surface::Texture::Polygon(points) => farthest(points.as_flattened()),
+        surface::Texture::Image(_) | surface::Texture::Blocks(_) => 0.0,
+    };
+    let slider = lattice.nx.max(lattice.ny) as f64;
+    if reach <= REACH * slider {
+        return Ok(());
+    }
+    Err(format!(
+        "the texture reaches {reach:.1e} blocks far, more than {REACH} times the slider's {slider} blocks: look at its \
+         units, and at `slider.block_size`"
+    ))
+}
+
+fn in_blocks(scales: &Scales, [x, y]: &[Length; 2]) -> [f64; 2] {
+    [scales.in_blocks(x.si()), scales.in_blocks(y.si())]
+}
+
+fn cavity_in_blocks(
+    cavity: &case_file::Cavity,
+    scales: &Scales,
+    lattice: &Lattice,
+) -> (surface::Texture, Option<f64>) {
+    let n_blocks = lattice.n_blocks();
+    let array = cavity.array.map(|count| count as usize);
+    let count = array[0] * array[1];
+    let (lambda, percent) = match &cavity.size {
+        case_file::CavitySize::Coverage(percent) => (
+            surface::cavity_lambda(*percent, n_blocks, cavity.s, cavity.w, count),
+            *percent,
+        ),
+        case_file::CavitySize::Lambda(lambda) => {
+            let lambda = scales.in_blocks(lambda.si());
+            (
+                lambda,
+                surface::cavity_percent(lambda, n_blocks, cavity.s, cavity.w, count),
+            )
+        }
+    };
+    let center = match &cavity.center {
+        case_file::Center::Middle => [0.5 * lattice.nx as f64, 0.5 * lattice.ny as f64],
+        case_file::Center::At(center) => in_blocks(scales, center),
+    };
+    let &case_file::Cavity {
+        s, w, across, rotate, ..
+    } = cavity;
+    (
+        surface::Texture::Cavity(surface::Cavity {
+            center,
+            lambda,
+            s,
+            w,
+            across,
+            rotate,
+            array,
+        }),
+        Some(percent),
+    )
+}
+
+fn groove_in_blocks(
+    groove: &case_file::Groove,
+    scales: &Scales,
+    lattice: &Lattice,
+) -> (surface::Texture, Option<f64>) {
+    let (orientation, breadth) = match groove.orientation {
+        case_file::Orientation::Across => (surface::Orientation::Across, lattice.nx as f64),
+        case_file::Orientation::Along => (surface::Orientation::Along, lattice.ny as f64),
+    };
+    let (width, percent) = match &groove.size {
+        case_file::GrooveSize::Coverage(percent) => (breadth * percent / 100.0, *percent),
+        case_file::GrooveSize::Width(width) => {
+            let width = scales.in_blocks(width.si());
+            (width, 100.0 * width / breadth)
+        }
+    };
+    let offset = scales.in_blocks(groove.offset.si());
+    (
+        surface::Texture::Groove(surface::Groove {
+            orientation,
+            width,
+            offset,
+        }),
+        Some(percent),
+    )
+}
+
+fn read_mask(path: &Path, threshold: f64, lattice: &Lattice) -> Result<surface::Texture, arrays::ArrayError> {
+    if path
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("npy"))
+    {
+        return Ok(surface::Texture::Blocks(arrays::read_mask_npy(
+            path, lattice.nx, lattice.ny,
+        )?));
+    }
+    Ok(surface::Texture::Image(arrays::read_mask_png(path, threshold)?))
+}
