@@ -12,7 +12,7 @@ use slipfront::surface::STREAMS;
 use slipfront::{Kernel, Model, simd_width};
 use thiserror::Error;
 
-use crate::folder::{FolderError, TEXT_MAX_BYTES, json, read_whole};
+use crate::folder::{FolderError, TEXT_MAX_BYTES, json, read_whole, resume_command};
 use crate::legible::{self, shortened};
 
 /// Name of the manifest in its folder.
@@ -97,8 +97,9 @@ pub struct ManifestFile {
 pub enum ManifestError {
     /// There is none.
     #[error(
-        "{0} holds no manifest.json: it is no run folder, or its run did not end; if it did not, `slipfront run --resume {0}` goes on with it",
-        path.display()
+        "{} holds no manifest.json: it is no run folder, or its run did not end; if it did not, `{}` goes on with it",
+        path.display(),
+        resume_command(path)
     )]
     Missing {
         /// The folder.

@@ -5,6 +5,7 @@ use std::str::FromStr;
 use std::time::{Duration, Instant};
 
 use slipfront_case::checkpoint::Checkpoints;
+use slipfront_case::folder::resume_command;
 use slipfront_case::run::Running;
 
 use crate::failure::Failure;
@@ -102,7 +103,6 @@ impl Saving {
     /// Saves a last checkpoint.
     fn stop(&mut self, running: &Running) -> Failure {
         let (step, last_step) = (running.snapshot().step, running.case().schedule.last_step);
-        let folder = self.folder.display();
         let sentence = if !self.interval.saves() {
             format!(
                 "stopped by a signal at step {step} of {last_step}; nothing is saved, since --checkpoint is off"
@@ -110,10 +110,12 @@ impl Saving {
         } else {
             match self.checkpoints.save(running) {
                 Ok(()) => format!(
-                    "stopped by a signal at step {step} of {last_step}, which is saved: `slipfront run --resume {folder}` goes on"
+                    "stopped by a signal at step {step} of {last_step}, which is saved: `{}` goes on",
+                    resume_command(&self.folder)
                 ),
                 Err(error) => format!(
-                    "stopped by a signal at step {step} of {last_step}, which cannot be saved in {folder}: {error}"
+                    "stopped by a signal at step {step} of {last_step}, which cannot be saved in {}: {error}",
+                    self.folder.display()
                 ),
             }
         };

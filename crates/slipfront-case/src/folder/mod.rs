@@ -39,9 +39,10 @@ pub enum FolderError {
     },
     /// There is a run in it that was interrupted.
     #[error(
-        "the folder {0} holds a run that was interrupted: go on with it by `slipfront run --resume {0}`, choose another \
-         with --out, or begin again with --force",
-        path.display()
+        "the folder {} holds a run that was interrupted: go on with it by `{}`, choose another with --out, or begin again \
+         with --force",
+        path.display(),
+        resume_command(path)
     )]
     Interrupted {
         /// The folder.
@@ -95,6 +96,14 @@ pub enum FolderError {
         /// What the system says.
         source: std::io::Error,
     },
+}
+
+/// The command that goes on with the run in a folder, as a shell reads it.
+pub fn resume_command(folder: &Path) -> String {
+    let folder = shown(folder);
+    // What cannot be quoted is a zero byte, which no path has.
+    let quoted = shlex::try_quote(&folder).unwrap_or_default();
+    format!("slipfront run --resume {quoted}")
 }
 
 /// A folder that a run is being written to.
@@ -277,5 +286,18 @@ fn lock(path: &Path) -> Result<Option<File>, FolderError> {
             path: path.to_owned(),
         }),
         Err(TryLockError::Error(_)) => Ok(None),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_suggested_command_can_be_typed() {
+        let of = |name: &str| resume_command(Path::new(name));
+        assert_eq!(of("results/a-1"), "slipfront run --resume results/a-1");
+        assert_eq!(of("my run"), "slipfront run --resume 'my run'");
+        assert_eq!(of("$HOME"), "slipfront run --resume '$HOME'");
     }
 }

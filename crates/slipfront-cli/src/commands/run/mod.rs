@@ -8,7 +8,7 @@ use clap::Args;
 use jiff::Timestamp;
 use slipfront_case::case::Case;
 use slipfront_case::checkpoint::Checkpoints;
-use slipfront_case::folder::{RunFolder, own_bytes};
+use slipfront_case::folder::{RunFolder, own_bytes, resume_command};
 use slipfront_case::results;
 use slipfront_case::run::Running;
 
@@ -134,11 +134,10 @@ fn complete(
     progress.finish();
     let mut record = running.record(reason);
     results::write(case, &mut record, folder, started, threads).map_err(|error| {
-        let remedy = format!(
-            "`slipfront run --resume {}` goes on when that is mended",
-            out.display()
-        );
-        Failure::running(anyhow::anyhow!("{error}; {remedy}"))
+        let command = resume_command(&out);
+        Failure::running(anyhow::anyhow!(
+            "{error}; `{command}` goes on when that is mended"
+        ))
     })?;
     if manner.json {
         print(&results::summary_json(&record.summary))?;
