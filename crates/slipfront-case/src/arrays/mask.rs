@@ -1,7 +1,6 @@
 //! Masks as PNG images: dark pixels are texture.
 
-use std::fs::File;
-use std::io::{self, BufReader, ErrorKind};
+use std::io::{self, Cursor};
 use std::path::Path;
 
 use png::Transformations;
@@ -9,7 +8,7 @@ use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, I
 
 use slipfront::surface::MaskImage;
 
-use super::{ArrayError, open, read_error};
+use super::ArrayError;
 use crate::folder::write_whole;
 
 /// More pixels than any lattice has blocks.
@@ -19,7 +18,7 @@ pub(super) const FILE_MAX_BYTES: u64 = PIXELS_MAX;
 /// Deflate cannot pack more than about 1030 bytes into one.
 const DEFLATE_MAX_RATIO: u64 = 1040;
 
-/// Reads a PNG image of any colour type and depth and tells its dark pixels.
+/// The dark pixels of the bytes of a PNG image called `path`, of any colour type and depth.
 ///
 /// A pixel is dark when its luminance, in 0 to 1, lies below `threshold`. The luminance is
 ///
@@ -32,18 +31,10 @@ const DEFLATE_MAX_RATIO: u64 = 1040;
 ///
 /// # Errors
 ///
-/// [`ArrayError`] if the file is missing, not a PNG image, corrupt, or has more than 2^28 pixels or bytes.
-pub fn read_mask_png(path: &Path, threshold: f64) -> Result<MaskImage, ArrayError> {
-    let (file, file_bytes) = open(path)?;
-    if file_bytes > FILE_MAX_BYTES {
-        return Err(ArrayError::TooLong {
-            path: path.to_owned(),
-            found: file_bytes,
-            wanted: format!("an image takes at most {FILE_MAX_BYTES}"),
-            remedy: "scale it down",
-        });
-    }
-    let mut decoder = Decoder::new(BufReader::new(file));
+/// [`ArrayError`] if the bytes are not those of a PNG image, corrupt, or have more than 2^28 pixels.
+pub fn mask_png(path: &Path, bytes: &[u8], threshold: f64) -> Result<MaskImage, ArrayError> {
+    let file_bytes = bytes.len() as u64;
+    let mut decoder = Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(Transformations::EXPAND);
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);
@@ -90,7 +81,7 @@ fn check_palette(path: &Path, palette: Option<&[u8]>) -> Result<(), ArrayError> 
 }
 
 /// Decodes row by row, so that only one byte per pixel is kept.
-fn read_rows(mut reader: Reader<BufReader<File>>, threshold: f64) -> Result<MaskImage, DecodingError> {
+fn read_rows(mut reader: Reader<Cursor<&[u8]>>, threshold: f64) -> Result<MaskImage, DecodingError> {
     let (width, height) = (reader.info().width as usize, reader.info().height as usize);
     let (color, depth) = reader.output_color_type();
     let mut dark = vec![0; width * height];
@@ -160,9 +151,6 @@ fn broken(path: &Path, detail: String) -> ArrayError {
 
 fn decoding_error(path: &Path, source: DecodingError) -> ArrayError {
     match source {
-        DecodingError::IoError(source) if source.kind() != ErrorKind::UnexpectedEof => {
-            read_error(path, source)
-        }
         DecodingError::IoError(_) => broken(path, "it ends before the last pixel".to_owned()),
         other => broken(path, other.to_string().trim_end_matches('.').to_owned()),
     }
@@ -171,7 +159,7 @@ fn decoding_error(path: &Path, source: DecodingError) -> ArrayError {
 /// Writes a texture as a black and white PNG image: one pixel per block, textured = black.
 ///
 /// `textured` holds `nx * ny` values in row-major order, row j = 0 (the smallest y) first; the top row of the
-/// image is the largest y. [`read_mask_png`] gives the same mask back.
+/// image is the largest y. [`mask_png`] gives the same mask back.
 ///
 /// # Errors
 ///

@@ -1,20 +1,19 @@
 //! Arrays and images that a user hands over: friction coefficients block by block, and texture masks.
 //!
-//! The files come from strangers, so every reader compares what the header announces with the length of the
-//! file before it reserves memory, takes no file that is longer than its lattice can need, and answers with an
-//! [`ArrayError`] whatever the bytes are. Arrays are (ny, nx) and row-major, row j = 0 (the smallest y) first. The
-//! case parser reads next.
+//! The files come from strangers, so every parser compares what the header announces with the length of the
+//! file before it reserves memory, no file is read that is longer than its lattice can need, and the answer is an
+//! [`ArrayError`] whatever the bytes are. Arrays are (ny, nx) and row-major, row j = 0 (the smallest y) first.
 
 mod mask;
 mod npy;
 mod table;
 
 use std::fs::File;
-use std::io;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-pub use mask::{read_mask_png, write_mask_png};
-pub use npy::read_mask_npy;
+pub use mask::{mask_png, write_mask_png};
+pub use npy::mask_npy;
 
 use crate::legible::sentence;
 
@@ -137,7 +136,47 @@ pub enum ArrayError {
     },
 }
 
-/// Reads one number per block from a `.npy` or `.csv` file.
+/// Reads the bytes of a file that is meant for a lattice of `nx` x `ny` blocks: what is made of them and what is kept of
+/// them are then the same, whatever becomes of the file.
+///
+/// # Errors
+///
+/// [`ArrayError`] if the file is missing, not a regular file, or longer than it can be meant to be.
+pub fn read_file(path: &Path, nx: usize, ny: usize) -> Result<Vec<u8>, ArrayError> {
+    let read_error = |source| ArrayError::Read {
+        path: path.to_owned(),
+        source,
+    };
+    // The check comes before the opening, because opening a named pipe waits for a writer.
+    let metadata = std::fs::metadata(path).map_err(read_error)?;
+    if !metadata.is_file() {
+        return Err(ArrayError::NotAFile {
+            path: path.to_owned(),
+        });
+    }
+    let longest = longest(path, nx, ny);
+    if metadata.len() > longest {
+        let (wanted, remedy) = match extension(path).as_str() {
+            "npy" | "csv" => (
+                format!("{ny} rows of {nx} numbers take at most {longest}"),
+                "write one number per block, or change `blocks`",
+            ),
+            _ => (format!("an image takes at most {longest}"), "scale it down"),
+        };
+        return Err(ArrayError::TooLong {
+            path: path.to_owned(),
+            found: metadata.len(),
+            wanted,
+            remedy,
+        });
+    }
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(read_error)?;
+    file.take(longest).read_to_end(&mut bytes).map_err(read_error)?;
+    Ok(bytes)
+}
+
+/// One number per block, of the bytes of a `.npy` or `.csv` file called `path`.
 ///
 /// `nx` and `ny` are the numbers of blocks along x and y. A `.npy` file has the shape (ny, nx), any real, integer
 /// or boolean type, either byte order and either memory order. A `.csv` file has `ny` lines of `nx` numbers with
@@ -147,13 +186,12 @@ pub enum ArrayError {
 ///
 /// # Errors
 ///
-/// [`ArrayError`] if the file is missing, of another format or shape, or has a value that is not finite or is
-/// below zero.
-pub fn read_field(path: &Path, nx: usize, ny: usize) -> Result<Vec<f64>, ArrayError> {
+/// [`ArrayError`] if the bytes are of another format or shape, or have a value that is not finite or is below zero.
+pub fn field(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<f64>, ArrayError> {
     let known = ".npy or .csv";
     let values = match extension(path).as_str() {
-        "npy" => npy::read(path, nx, ny)?,
-        "csv" => table::read(path, nx, ny)?,
+        "npy" => npy::values(path, bytes, nx, ny)?,
+        "csv" => table::values(path, bytes, nx, ny)?,
         other => return Err(unknown_extension(path, other, known)),
     };
     match values.iter().position(|value| !value.is_finite() || *value < 0.0) {
@@ -172,7 +210,7 @@ pub fn read_field(path: &Path, nx: usize, ny: usize) -> Result<Vec<f64>, ArrayEr
 ///
 /// A `.npy` holds a header and 64 bits per block, a line of a `.csv` numbers and what is written beside them, an image
 /// no more than it may have pixels.
-pub(crate) fn longest(path: &Path, nx: usize, ny: usize) -> u64 {
+fn longest(path: &Path, nx: usize, ny: usize) -> u64 {
     let blocks = (nx as u64).saturating_mul(ny as u64);
     match extension(path).as_str() {
         "npy" => blocks
@@ -201,27 +239,6 @@ fn unknown_extension(path: &Path, extension: &str, known: &'static str) -> Array
         path: path.to_owned(),
         found,
         known,
-    }
-}
-
-/// Opens a regular file and gives its length in bytes.
-///
-/// The check comes before the opening, because opening a named pipe waits for a writer.
-fn open(path: &Path) -> Result<(File, u64), ArrayError> {
-    let metadata = std::fs::metadata(path).map_err(|source| read_error(path, source))?;
-    if !metadata.is_file() {
-        return Err(ArrayError::NotAFile {
-            path: path.to_owned(),
-        });
-    }
-    let file = File::open(path).map_err(|source| read_error(path, source))?;
-    Ok((file, metadata.len()))
-}
-
-fn read_error(path: &Path, source: io::Error) -> ArrayError {
-    ArrayError::Read {
-        path: path.to_owned(),
-        source,
     }
 }
 

@@ -1,11 +1,10 @@
 //! The `.npy` files of numpy: the header through `npyz`, the numbers here.
 
-use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 
-use super::{ArrayError, open, read_error};
+use super::ArrayError;
 use crate::legible::shortened;
 
 /// Numpy itself refuses longer headers.
@@ -15,16 +14,16 @@ const HEADER_MAX_NESTING: usize = 4;
 /// All numbers of a header together: their product then fits into 64 bits, whatever the radix they are written in.
 const HEADER_MAX_DIGITS: usize = 18;
 
-/// Reads a mask from a `.npy` file of shape (ny, nx): nonzero = textured.
+/// A mask of the bytes of a `.npy` file called `path`, of shape (ny, nx): nonzero = textured.
 ///
 /// Any real, integer or boolean type is accepted, in either byte and memory order. Returns `nx * ny` values in
 /// row-major order, row j = 0 (the smallest y) first.
 ///
 /// # Errors
 ///
-/// [`ArrayError`] if the file is missing, not a `.npy` file, of another shape, or has a value that is not finite.
-pub fn read_mask_npy(path: &Path, nx: usize, ny: usize) -> Result<Vec<bool>, ArrayError> {
-    let values = read(path, nx, ny)?;
+/// [`ArrayError`] if the bytes are not those of a `.npy` file, of another shape, or have a value that is not finite.
+pub fn mask_npy(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<bool>, ArrayError> {
+    let values = values(path, bytes, nx, ny)?;
     match values.iter().position(|value| !value.is_finite()) {
         None => Ok(values.iter().map(|value| *value != 0.0).collect()),
         Some(at) => Err(ArrayError::Value {
@@ -37,11 +36,9 @@ pub fn read_mask_npy(path: &Path, nx: usize, ny: usize) -> Result<Vec<bool>, Arr
     }
 }
 
-/// Reads an array of shape (ny, nx) in row-major order; the values may be anything, NaN included.
-pub(super) fn read(path: &Path, nx: usize, ny: usize) -> Result<Vec<f64>, ArrayError> {
-    let (file, file_bytes) = open(path)?;
-    let mut reader = BufReader::new(file);
-    let (header, data_start) = read_header(&mut reader, path)?;
+/// An array of shape (ny, nx) in row-major order; the values may be anything, NaN included.
+pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<f64>, ArrayError> {
+    let (header, data_start) = read_header(bytes, path)?;
 
     let number = Number::of(&header.dtype()).ok_or_else(|| ArrayError::Dtype {
         path: path.to_owned(),
@@ -51,21 +48,17 @@ pub(super) fn read(path: &Path, nx: usize, ny: usize) -> Result<Vec<f64>, ArrayE
         return Err(wrong_shape(path, header.shape(), nx, ny));
     }
     let wanted_bytes = data_start as u64 + number.size as u64 * nx as u64 * ny as u64;
-    if file_bytes < wanted_bytes {
-        let detail = format!("it has {file_bytes} bytes where its header asks for {wanted_bytes}");
+    if (bytes.len() as u64) < wanted_bytes {
+        let detail = format!(
+            "it has {} bytes where its header asks for {wanted_bytes}",
+            bytes.len()
+        );
         return Err(broken(path, detail));
     }
 
-    reader
-        .seek(SeekFrom::Start(data_start as u64))
-        .map_err(|source| read_error(path, source))?;
     let mut values = vec![0.0; nx * ny];
-    let mut bytes = [0; 8];
-    let bytes = &mut bytes[..number.size];
-    for stored in 0..nx * ny {
-        reader
-            .read_exact(bytes)
-            .map_err(|source| read_error(path, source))?;
+    let numbers = bytes[data_start..].chunks_exact(number.size).take(nx * ny);
+    for (stored, bytes) in numbers.enumerate() {
         let at = match header.order() {
             Order::C => stored,
             Order::Fortran => (stored % ny) * nx + stored / ny,
@@ -79,19 +72,15 @@ pub(super) fn read(path: &Path, nx: usize, ny: usize) -> Result<Vec<f64>, ArrayE
 ///
 /// `npyz` reserves what the header asks for, recurses without bound and overflows on the product of an absurd
 /// shape, hence the checks on the bytes before it sees them.
-fn read_header(reader: &mut impl Read, path: &Path) -> Result<(NpyHeader, usize), ArrayError> {
-    let mut head = Vec::new();
-    reader
-        .take(HEADER_MAX_BYTES as u64)
-        .read_to_end(&mut head)
-        .map_err(|source| read_error(path, source))?;
+fn read_header(bytes: &[u8], path: &Path) -> Result<(NpyHeader, usize), ArrayError> {
+    let head = &bytes[..bytes.len().min(HEADER_MAX_BYTES)];
     if !head.starts_with(b"\x93NUMPY") {
         return Err(broken(
             path,
             "it does not begin with the signature of numpy".to_owned(),
         ));
     }
-    let (text_start, text_bytes) = match head.as_slice() {
+    let (text_start, text_bytes) = match head {
         [_, _, _, _, _, _, 1, _, a, b, ..] => (10, usize::from(u16::from_le_bytes([*a, *b]))),
         [_, _, _, _, _, _, 2 | 3, _, a, b, c, d, ..] => (12, u32::from_le_bytes([*a, *b, *c, *d]) as usize),
         [_, _, _, _, _, _, major, minor, ..] if !(1..=3).contains(major) => {

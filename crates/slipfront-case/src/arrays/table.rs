@@ -1,49 +1,38 @@
 //! Tables of numbers as text (`.csv`).
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 
-use super::{ArrayError, longest, open, read_error};
+use super::ArrayError;
 
 /// Comment lines longer than this in total are not looked through for the separator.
 pub(super) const PREAMBLE_MAX_BYTES: u64 = 1 << 20;
 /// A number with its separator and blanks, and its share of comments: numpy's longest takes 25.
 pub(super) const NUMBER_MAX_BYTES: u64 = 64;
 
-/// Reads `ny` lines of `nx` numbers in row-major order; the values may be anything that is written as a number.
-pub(super) fn read(path: &Path, nx: usize, ny: usize) -> Result<Vec<f64>, ArrayError> {
-    let (mut file, file_bytes) = open(path)?;
-    // A line is read before it is looked at, and may be the whole file.
-    let longest = longest(path, nx, ny);
-    if file_bytes > longest {
-        return Err(ArrayError::TooLong {
-            path: path.to_owned(),
-            found: file_bytes,
-            wanted: format!("{ny} lines of {nx} numbers take at most {longest}"),
-            remedy: "write one number per block, or change `blocks`",
-        });
-    }
-    let separator = separator(&file).map_err(|source| read_error(path, source))?;
-    file.seek(SeekFrom::Start(0))
-        .map_err(|source| read_error(path, source))?;
+/// `ny` lines of `nx` numbers in row-major order; the values may be anything that is written as a number.
+pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<f64>, ArrayError> {
+    let separator = separator(bytes);
     let mut table = ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
         .comment(Some(b'#'))
         .trim(Trim::All)
         .delimiter(separator)
-        .from_reader(BufReader::new(file));
+        .from_reader(bytes);
 
     // A number and what separates it from the next take two bytes at the least.
-    let mut values = Vec::with_capacity((nx * ny).min(file_bytes as usize / 2 + 1));
+    let mut values = Vec::with_capacity((nx * ny).min(bytes.len() / 2 + 1));
     let mut record = StringRecord::new();
     let mut row = 0;
     while table
         .read_record(&mut record)
-        .map_err(|source| unreadable(path, source))?
+        .map_err(|source| ArrayError::Broken {
+            path: path.to_owned(),
+            format: ".csv",
+            detail: source.to_string(),
+        })?
     {
         let line = record.position().map_or(0, csv::Position::line);
         // Numbers in columns are padded with several blanks.
@@ -88,21 +77,15 @@ pub(super) fn read(path: &Path, nx: usize, ny: usize) -> Result<Vec<f64>, ArrayE
 /// What separates the numbers of the first line that is no comment: a semicolon, a tab, a comma or a blank.
 ///
 /// The semicolon comes before the comma, so that a decimal comma is told as such and not as a wrong shape.
-fn separator(file: &File) -> std::io::Result<u8> {
-    let mut reader = BufReader::new(file.take(PREAMBLE_MAX_BYTES));
-    let mut line = Vec::new();
-    while reader.read_until(b'\n', &mut line)? > 0 {
-        let text = line.trim_ascii();
-        if !text.is_empty() && !text.starts_with(b"#") {
-            let separators = [b';', b'\t', b',', b' '];
-            return Ok(separators
-                .into_iter()
-                .find(|byte| text.contains(byte))
-                .unwrap_or(b','));
-        }
-        line.clear();
-    }
-    Ok(b',')
+fn separator(bytes: &[u8]) -> u8 {
+    let preamble = &bytes[..bytes.len().min(PREAMBLE_MAX_BYTES as usize)];
+    let mut lines = preamble.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
+    let numbers = lines.find(|line| !line.is_empty() && !line.starts_with(b"#"));
+    let separators = [b';', b'\t', b',', b' '];
+    separators
+        .into_iter()
+        .find(|byte| numbers.unwrap_or_default().contains(byte))
+        .unwrap_or(b',')
 }
 
 fn wrong_shape(path: &Path, found: String, nx: usize, ny: usize) -> ArrayError {
@@ -111,18 +94,6 @@ fn wrong_shape(path: &Path, found: String, nx: usize, ny: usize) -> ArrayError {
         found,
         wanted: format!("one line per row of blocks, {ny} lines of {nx} numbers,"),
         remedy: "write one number per block, or change `blocks`",
-    }
-}
-
-fn unreadable(path: &Path, source: csv::Error) -> ArrayError {
-    let detail = source.to_string();
-    match source.into_kind() {
-        csv::ErrorKind::Io(source) => read_error(path, source),
-        _ => ArrayError::Broken {
-            path: path.to_owned(),
-            format: ".csv",
-            detail,
-        },
     }
 }
 

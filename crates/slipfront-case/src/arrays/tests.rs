@@ -5,6 +5,8 @@ use png::{BitDepth, ColorType, Encoder};
 use rstest::rstest;
 use tempfile::TempDir;
 
+use slipfront::surface::MaskImage;
+
 use super::*;
 
 /// A folder that is removed afterwards, and a file in it.
@@ -38,6 +40,18 @@ const FIELD: [f64; 6] = [0.0, 1.0, 2.0, 3.0, 4.0, 120.0];
 
 fn field_npy() -> Vec<u8> {
     npy_bytes("'<f8'", "False", "(2, 3)", &f64_bytes(&FIELD))
+}
+
+fn read_field(path: &Path, nx: usize, ny: usize) -> Result<Vec<f64>, ArrayError> {
+    field(path, &read_file(path, nx, ny)?, nx, ny)
+}
+
+fn read_mask_npy(path: &Path, nx: usize, ny: usize) -> Result<Vec<bool>, ArrayError> {
+    mask_npy(path, &read_file(path, nx, ny)?, nx, ny)
+}
+
+fn read_mask_png(path: &Path, threshold: f64) -> Result<MaskImage, ArrayError> {
+    mask_png(path, &read_file(path, 25, 25)?, threshold)
 }
 
 fn message(result: Result<impl std::fmt::Debug, ArrayError>) -> String {

@@ -19,10 +19,10 @@ pub(super) fn coefficients(
         let Some(written) = name.as_ref() else {
             return Ok(None);
         };
-        let path = inputs.find(file, key, written)?;
-        let field = arrays::read_field(&path, lattice.nx, lattice.ny)
+        let given = inputs.read(file, key, written, lattice)?;
+        let field = arrays::field(&given.path, &given.bytes, lattice.nx, lattice.ny)
             .map_err(|error| file.source.error(key, error.to_string()))?;
-        *name = Some(inputs.keep(file, key, &path, lattice)?);
+        *name = Some(inputs.keep(file, given)?);
         Ok(Some(field))
     };
     let (mut static_name, mut kinetic_name) = (

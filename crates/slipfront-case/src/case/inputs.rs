@@ -8,21 +8,28 @@ use super::within_budget;
 use crate::arrays;
 use crate::budget::Budget;
 use crate::case_file::{CaseError, CaseFile};
-use crate::folder::read_whole;
 
 /// A file that a case reads, kept so that the run folder can hold a copy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
     /// Path in the run folder.
     pub name: String,
+    /// Where it was read.
+    pub original: PathBuf,
     /// Its bytes.
     pub bytes: Vec<u8>,
 }
 
-/// Files read so far, and what the case needs with them.
+/// A file that was read.
+pub(super) struct Given {
+    pub(super) path: PathBuf,
+    pub(super) bytes: Vec<u8>,
+}
+
+/// Files kept so far, and what the case needs with them.
 pub(super) struct Inputs {
     folder: PathBuf,
-    pub(super) read: Vec<Input>,
+    pub(super) kept: Vec<Input>,
     pub(super) budget: Budget,
 }
 
@@ -30,13 +37,19 @@ impl Inputs {
     pub(super) fn new(folder: &Path, budget: Budget) -> Self {
         Self {
             folder: folder.to_owned(),
-            read: Vec::new(),
+            kept: Vec::new(),
             budget,
         }
     }
 
-    /// The path of a file that the case names.
-    pub(super) fn find(&self, file: &CaseFile, key: &str, written: &str) -> Result<PathBuf, CaseError> {
+    /// Reads a file that the case names, once: what is made of it is what its copy holds.
+    pub(super) fn read(
+        &self,
+        file: &CaseFile,
+        key: &str,
+        written: &str,
+        lattice: &Lattice,
+    ) -> Result<Given, CaseError> {
         let path = self.folder.join(written);
         let metadata = std::fs::metadata(&path).map_err(|error| unreadable(file, key, &path, &error))?;
         // A pipe would be waited for, and a device such as /dev/zero never ends.
@@ -44,26 +57,21 @@ impl Inputs {
             let sentence = format!("{} is not a regular file: name a file that is", path.display());
             return Err(file.source.error(key, sentence));
         }
-        Ok(path)
+        let bytes = arrays::read_file(&path, lattice.nx, lattice.ny)
+            .map_err(|error| file.source.error(key, error.to_string()))?;
+        Ok(Given { path, bytes })
     }
 
-    /// Notes a file that has been read; gives the path of its copy in the run folder.
-    pub(super) fn keep(
-        &mut self,
-        file: &CaseFile,
-        key: &str,
-        path: &Path,
-        lattice: &Lattice,
-    ) -> Result<String, CaseError> {
-        let longest = arrays::longest(path, lattice.nx, lattice.ny);
-        let bytes = read_whole(path, longest).map_err(|error| unreadable(file, key, path, &error))?;
+    /// Notes a file that something was made of; gives the path of its copy in the run folder.
+    pub(super) fn keep(&mut self, file: &CaseFile, given: Given) -> Result<String, CaseError> {
+        let Given { path, bytes } = given;
         let plain = path
             .file_name()
             .map_or_else(|| "input".into(), |name| name.to_string_lossy().into_owned());
         let mut name = format!("inputs/{plain}");
         let mut copies = 1;
         // Two files of one name from different folders stay two files.
-        while let Some(other) = self.read.iter().find(|input| input.name == name) {
+        while let Some(other) = self.kept.iter().find(|input| input.name == name) {
             if other.bytes == bytes {
                 return Ok(name);
             }
@@ -71,8 +79,9 @@ impl Inputs {
             name = format!("inputs/{copies}-{plain}");
         }
         self.budget.add_input(bytes.len());
-        self.read.push(Input {
+        self.kept.push(Input {
             name: name.clone(),
+            original: path,
             bytes,
         });
         within_budget(file, self.budget.check_making())?;

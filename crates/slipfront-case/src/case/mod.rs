@@ -147,7 +147,7 @@ impl Case {
             name: name.to_owned(),
             file,
             budget: inputs.budget,
-            inputs: inputs.read,
+            inputs: inputs.kept,
             scales,
             groups,
             model,

@@ -1,11 +1,9 @@
 //! Textures of a case file as shapes in blocks.
 
-use std::path::Path;
-
 use slipfront::{Lattice, Scales, surface};
 
-use super::inputs::Inputs;
-use crate::arrays;
+use super::inputs::{Given, Inputs};
+use crate::arrays::{self, ArrayError};
 use crate::case_file::{self, CaseError, CaseFile};
 use crate::quantity::Length;
 
@@ -39,14 +37,14 @@ pub(super) fn textures(
             }
             case_file::Texture::Mask(mask) => {
                 let key = format!("texture.{index}.file");
-                let path = inputs.find(file, &key, &mask.file)?;
-                let shape = read_mask(&path, mask.threshold, lattice)
+                let given = inputs.read(file, &key, &mask.file, lattice)?;
+                let shape = mask_of(&given, mask.threshold, lattice)
                     .map_err(|error| file.source.error(&key, error.to_string()))?;
                 inputs.budget.add_mask(match &shape {
                     surface::Texture::Image(image) => image.dark.len(),
                     _ => lattice.n_blocks(),
                 });
-                let copy = inputs.keep(file, &key, &path, lattice)?;
+                let copy = inputs.keep(file, given)?;
                 if let case_file::Texture::Mask(mask) = &mut file.texture[index] {
                     mask.file = copy;
                 }
@@ -165,14 +163,14 @@ fn groove_in_blocks(
     )
 }
 
-fn read_mask(path: &Path, threshold: f64, lattice: &Lattice) -> Result<surface::Texture, arrays::ArrayError> {
-    if path
+fn mask_of(given: &Given, threshold: f64, lattice: &Lattice) -> Result<surface::Texture, ArrayError> {
+    let Given { path, bytes } = given;
+    let is_npy = path
         .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("npy"))
-    {
-        return Ok(surface::Texture::Blocks(arrays::read_mask_npy(
-            path, lattice.nx, lattice.ny,
-        )?));
-    }
-    Ok(surface::Texture::Image(arrays::read_mask_png(path, threshold)?))
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("npy"));
+    Ok(if is_npy {
+        surface::Texture::Blocks(arrays::mask_npy(path, bytes, lattice.nx, lattice.ny)?)
+    } else {
+        surface::Texture::Image(arrays::mask_png(path, bytes, threshold)?)
+    })
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use png::{BitDepth, ColorType, Encoder};
-use slipfront_case::arrays::{read_field, read_mask_npy, read_mask_png, write_mask_png};
+use slipfront_case::arrays::{self, mask_npy, write_mask_png};
 
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
@@ -164,8 +164,8 @@ fn images() -> Vec<Vec<u8>> {
 }
 
 /// Coefficients are finite and not negative, and read back as the same bits.
-fn field(path: &Path) {
-    let values = match read_field(path, NX, NY) {
+fn field(name: &str, input: &[u8]) {
+    let values = match arrays::field(Path::new(name), input, NX, NY) {
         Ok(values) => values,
         Err(error) => return readable(&error),
     };
@@ -180,22 +180,21 @@ fn field(path: &Path) {
                 .join(",")
         })
         .collect();
-    let again = read_field(&scratch::file("again.csv", rows.join("\n").as_bytes()), NX, NY).unwrap();
+    let again = arrays::field(Path::new("again.csv"), rows.join("\n").as_bytes(), NX, NY).unwrap();
     let bits = |values: &[f64]| -> Vec<u64> { values.iter().map(|value| value.to_bits()).collect() };
     assert_eq!(bits(&again), bits(&values));
 }
 
 fn npy(input: &[u8]) {
-    let path = scratch::file("field.npy", input);
-    field(&path);
-    match read_mask_npy(&path, NX, NY) {
+    field("field.npy", input);
+    match mask_npy(Path::new("field.npy"), input, NX, NY) {
         Ok(mask) => assert_eq!(mask.len(), NX * NY),
         Err(error) => readable(&error),
     }
 }
 
 fn csv_table(input: &[u8]) {
-    field(&scratch::file("field.csv", input));
+    field("field.csv", input);
 }
 
 fn mask_png(input: &[u8]) {
@@ -205,8 +204,7 @@ fn mask_png(input: &[u8]) {
 }
 
 fn mask(input: &[u8]) {
-    let path = scratch::file("mask.png", input);
-    let image = match read_mask_png(&path, 0.5) {
+    let image = match arrays::mask_png(Path::new("mask.png"), input, 0.5) {
         Ok(image) => image,
         Err(error) => return readable(&error),
     };
@@ -217,7 +215,9 @@ fn mask(input: &[u8]) {
     let upwards: Vec<bool> = image.dark.chunks(image.width).rev().flatten().copied().collect();
     let again = scratch::file("again.png", b"");
     write_mask_png(&again, image.width, image.height, &upwards).unwrap();
-    assert_eq!(read_mask_png(&again, 0.5).unwrap().dark, image.dark);
+    let written = std::fs::read(&again).unwrap();
+    let read = arrays::mask_png(&again, &written, 0.5).unwrap();
+    assert_eq!(read.dark, image.dark);
 }
 
 /// The same chunks, each with the checksum that it should have.
