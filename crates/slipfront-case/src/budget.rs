@@ -37,6 +37,8 @@ const FUSED: f64 = 7.0 * NUMBER + 2.0;
 const REFERENCE: f64 = 23.0 * NUMBER + CONTACT;
 /// A block in a checkpoint: two vectors, a time.
 const SAVED: f64 = 5.0 * NUMBER;
+/// Room for what is read of it, which grows by an eighth at a time.
+const ROOM_TO_READ: f64 = 1.125;
 /// [`slipfront::observe::FirstSlip`].
 const FIRST_SLIP: f64 = NUMBER;
 
@@ -233,7 +235,7 @@ impl Budget {
     /// The same run when it goes on from a checkpoint, which is in memory until the kernel has taken it over.
     pub(crate) fn resumed(self) -> Self {
         Self {
-            kernel: self.kernel + SAVED,
+            kernel: self.kernel + ROOM_TO_READ * SAVED,
             ..self
         }
     }
@@ -325,8 +327,8 @@ impl Budget {
             (String::new(), "")
         };
         let sentence = format!(
-            "the files of this run take about {} ({most}){beside} where {} are free in {}: {remedy}{without}, or choose \
-             another folder",
+            "the files of this run take about {} ({most}){beside} where {} are free in {}: free some, {remedy}{without}, \
+             or choose another folder",
             shown(self.disk()),
             shown(free),
             folder.display()

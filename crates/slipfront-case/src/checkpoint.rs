@@ -116,10 +116,13 @@ pub enum CheckpointError {
 #[derive(Debug)]
 pub struct Checkpoints {
     folder: PathBuf,
+    program: &'static str,
     case_blake3: String,
     started: Timestamp,
     /// Whether the latest checkpoint there is known to be whole.
     latest_is_whole: bool,
+    /// Step of the latest one that was saved or gone on from.
+    saved_step: Option<u64>,
 }
 
 impl Checkpoints {
@@ -127,9 +130,11 @@ impl Checkpoints {
     pub fn new(folder: &Path, case: &Case, started: Timestamp) -> Self {
         Self {
             folder: folder.to_owned(),
+            program: Manifest::this_build(),
             case_blake3: hash_of(case),
             started,
             latest_is_whole: false,
+            saved_step: None,
         }
     }
 
@@ -137,8 +142,14 @@ impl Checkpoints {
     pub fn after(folder: &Path, case: &Case, saved: &Saved) -> Self {
         Self {
             latest_is_whole: saved.latest,
+            saved_step: Some(saved.step),
             ..Self::new(folder, case, saved.started)
         }
+    }
+
+    /// The step from which the run would go on, if any was saved.
+    pub fn saved_step(&self) -> Option<u64> {
+        self.saved_step
     }
 
     /// When the run began.
@@ -154,7 +165,7 @@ impl Checkpoints {
     pub fn save(&mut self, running: &Running) -> std::io::Result<()> {
         let header = Header {
             slipfront_checkpoint: LAYOUT,
-            program: Manifest::this_build().to_owned(),
+            program: self.program.to_owned(),
             case_blake3: self.case_blake3.clone(),
             step: running.snapshot().step,
             started: self.started,
@@ -169,6 +180,7 @@ impl Checkpoints {
         }
         whole.persist(&latest)?;
         self.latest_is_whole = true;
+        self.saved_step = Some(header.step);
         sync_folder(&self.folder)
     }
 

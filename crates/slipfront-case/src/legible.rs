@@ -22,6 +22,12 @@ pub(crate) fn shown(path: &Path) -> String {
     sentence(&path.display().to_string())
 }
 
+/// A word as a shell reads it.
+pub(crate) fn quoted(word: &str) -> String {
+    // What cannot be quoted is a zero byte, which no argument can have.
+    shlex::try_quote(word).unwrap_or_default().into_owned()
+}
+
 fn cut(text: &str, most: usize) -> String {
     let mut shown: String = text.chars().take(most).collect();
     if shown.len() < text.len() {

@@ -122,7 +122,7 @@ impl Manifest {
     /// When a file cannot be read back.
     pub(crate) fn of(
         folder: &Path,
-        names: &[String],
+        names: &[&str],
         started: jiff::Timestamp,
         threads: usize,
         model: &Model,
@@ -130,7 +130,7 @@ impl Manifest {
     ) -> Result<Self, FolderError> {
         let files: Vec<ManifestFile> = names
             .iter()
-            .map(|name| {
+            .map(|&name| {
                 let path = folder.join(name);
                 ManifestFile::of(folder, name).map_err(|source| FolderError::Read { path, source })
             })
@@ -218,11 +218,18 @@ impl Manifest {
             if revision.is_some_and(|revision| !revision.ends_with("-dirty")) {
                 return program;
             }
+            // Where there is this link, it leads to the file even when another has taken its name.
+            let link = Path::new("/proc/self/exe");
+            let file = File::open(link).or_else(|_| std::env::current_exe().and_then(File::open));
             let mut hasher = blake3::Hasher::new();
-            let file = std::env::current_exe().and_then(File::open);
             match file.and_then(|file| hasher.update_reader(file).map(|hasher| hasher.finalize())) {
                 Ok(hash) => format!("{program}, build {}", &hash.to_hex()[..16]),
-                Err(_) => program,
+                // Nothing is taken for its own that may not be.
+                Err(_) => format!(
+                    "{program}, build unknown, of {} (process {})",
+                    jiff::Timestamp::now(),
+                    std::process::id()
+                ),
             }
         });
         &BUILD

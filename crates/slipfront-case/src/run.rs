@@ -1,6 +1,7 @@
 //! [`Case`] -> [`Record`]: one run with all observers that its files need.
 
 use serde::{Deserialize, Serialize};
+use slipfront::checkpoint::BlockNumbers;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{
     Curve, CurveRow, FirstSlip, Frame, Frames, Instants, KineticHistory, Observer, Schedule, Scheduled,
@@ -65,7 +66,7 @@ enum Fields {
 
 /// All that a run needs to go on later, written down as [`Running::state`].
 #[derive(Debug, Serialize, Deserialize)]
-pub struct RunState<N = Vec<f64>, O = Observers> {
+pub struct RunState<N = BlockNumbers, O = Observers> {
     simulation: Checkpoint<N>,
     observers: O,
 }

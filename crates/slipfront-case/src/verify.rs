@@ -87,18 +87,18 @@ pub fn is_study(folder: &Path) -> bool {
     study::is_study(folder) && folder.join(Records::FILE).exists()
 }
 
-/// Refuses files of a finished run that are not as they were written; without a manifest nothing is known of them.
+/// Refuses files `which` of a finished run that are not as they were written; without a manifest nothing is known of them.
 ///
 /// # Errors
 /// When one differs, or the manifest is damaged.
-pub fn expect_as_written(folder: &Path, names: &[&str]) -> Result<(), VerifyError> {
+pub fn expect_as_written(folder: &Path, which: impl Fn(&str) -> bool) -> Result<(), VerifyError> {
     let manifest = match Manifest::read(folder) {
         Ok(manifest) => manifest,
         Err(ManifestError::Missing { .. }) => return Ok(()),
         Err(error) => return Err(error.into()),
     };
     let mut files = manifest.files;
-    files.retain(|file| names.contains(&file.name.as_str()));
+    files.retain(|file| which(&file.name));
     match compare(&files, folder, "were written").into_iter().next() {
         None => Ok(()),
         Some(difference) => Err(VerifyError::Changed {

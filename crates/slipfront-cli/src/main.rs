@@ -1,7 +1,7 @@
 //! The command `slipfront`: one file per subcommand under `commands/`, each thin.
 //!
 //! Errors go to stderr as sentences, results to stdout. Exit status: 0 done, 1 a run failed, 2 bad input or
-//! usage, 130 and 143 stopped by SIGINT and SIGTERM.
+//! usage, 129, 130 and 143 stopped by SIGHUP, SIGINT and SIGTERM.
 
 mod commands;
 mod failure;

@@ -164,14 +164,15 @@ impl StudyProgress {
                     return;
                 }
                 *next = Instant::now() + LINE_EVERY;
-                let rate = now.here as f64 / began.elapsed().as_secs_f64();
-                let left = (now.total - now.done) as f64 / rate;
-                eprintln!(
-                    "{} of {} runs  {rate:.1} runs/s  {} left{failed}{worst}",
-                    now.done,
-                    now.total,
-                    HumanDuration(Duration::from_secs_f64(left.clamp(0.0, 1e15))),
-                );
+                // What was done before says nothing of the rate.
+                let rate = if now.here > 0 {
+                    let rate = now.here as f64 / began.elapsed().as_secs_f64();
+                    let left = Duration::from_secs_f64((now.total - now.done) as f64 / rate);
+                    format!("  {rate:.1} runs/s  {} left", HumanDuration(left))
+                } else {
+                    String::new()
+                };
+                eprintln!("{} of {} runs{rate}{failed}{worst}", now.done, now.total);
             }
         }
     }
@@ -180,5 +181,27 @@ impl StudyProgress {
         if let Self::Bar(bar) = self {
             bar.finish_and_clear();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All runs were recorded before: there is no rate.
+    #[test]
+    fn a_study_in_which_nothing_is_left_has_no_rate() {
+        let now = Instant::now();
+        let mut progress = StudyProgress::Lines {
+            began: now,
+            next: now,
+        };
+        progress.show(&StudyState {
+            done: 7,
+            total: 7,
+            here: 0,
+            failed: 0,
+            worst: None,
+        });
     }
 }

@@ -88,11 +88,16 @@ impl Saving {
                     progress.note(&format!("saved a checkpoint of step {step} in {seconds:.2} s"));
                 }
                 Ok(()) => {}
-                Err(error) => progress.note(&format!(
-                    "warning: cannot save a checkpoint of step {step} in {}: {error}; the run goes on, and the one before \
-                     is kept",
-                    self.folder.display()
-                )),
+                Err(error) => {
+                    let kept = self.checkpoints.saved_step().map_or_else(
+                        || "there is none before it".to_owned(),
+                        |step| format!("that of step {step} is kept"),
+                    );
+                    progress.note(&format!(
+                        "warning: cannot save a checkpoint of step {step} in {}: {error}; the run goes on, and {kept}",
+                        self.folder.display()
+                    ));
+                }
             }
             let pause = pause(self.interval.0.unwrap_or_default(), began.elapsed());
             self.due = Instant::now().checked_add(pause);
@@ -103,23 +108,37 @@ impl Saving {
     /// Saves a last checkpoint.
     fn stop(&mut self, running: &Running) -> Failure {
         let (step, last_step) = (running.snapshot().step, running.case().schedule.last_step);
-        let sentence = if !self.interval.saves() {
-            format!(
-                "stopped by a signal at step {step} of {last_step}; nothing is saved, since --checkpoint is off"
-            )
-        } else {
-            match self.checkpoints.save(running) {
-                Ok(()) => format!(
-                    "stopped by a signal at step {step} of {last_step}, which is saved: `{}` goes on",
+        let stopped = format!("stopped by a signal at step {step} of {last_step}");
+        if !self.interval.saves() {
+            let sentence = format!("{stopped}; nothing is saved, since --checkpoint is off");
+            return Failure::stopped(&self.signals, anyhow::anyhow!(sentence));
+        }
+        match self.checkpoints.save(running) {
+            Ok(()) => {
+                let sentence = format!(
+                    "{stopped}, which is saved: `{}` goes on",
                     resume_command(&self.folder)
-                ),
-                Err(error) => format!(
-                    "stopped by a signal at step {step} of {last_step}, which cannot be saved in {}: {error}",
-                    self.folder.display()
-                ),
+                );
+                Failure::stopped(&self.signals, anyhow::anyhow!(sentence))
             }
-        };
-        Failure::stopped(&self.signals, anyhow::anyhow!(sentence))
+            // Not stopped as a signal should: a job script must not take it for one that has lost nothing.
+            Err(error) => {
+                let (folder, remedy) = (self.folder.display(), self.remedy());
+                Failure::running(anyhow::anyhow!(
+                    "{stopped}, which cannot be saved in {folder}: {error}; {remedy}"
+                ))
+            }
+        }
+    }
+
+    /// What is left to do when the disk has refused something.
+    pub(crate) fn remedy(&self) -> String {
+        let command = resume_command(&self.folder);
+        let from = self
+            .checkpoints
+            .saved_step()
+            .map_or("from the start".to_owned(), |step| format!("from step {step}"));
+        format!("`{command}` goes on {from} when that is mended")
     }
 }
 

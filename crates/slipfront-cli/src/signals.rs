@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 
-/// Whether SIGINT, SIGTERM or SIGUSR1 came.
+/// Whether SIGINT, SIGTERM, SIGHUP or SIGUSR1 came.
 #[derive(Clone, Debug)]
 pub(crate) struct Signals {
     /// Set when one came.
@@ -15,10 +15,11 @@ pub(crate) struct Signals {
 }
 
 impl Signals {
-    /// Keeps SIGINT and SIGTERM from ending the process. A second one ends it at once.
+    /// Keeps SIGINT, SIGTERM and, where a terminal that closes sends it, SIGHUP from ending the process. A second one ends it
+    /// at once.
     pub(crate) fn catch() -> std::io::Result<Self> {
         let (stop, which) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
-        for signal in [SIGINT, SIGTERM] {
+        for signal in [SIGINT, SIGTERM].into_iter().chain(hangup()) {
             signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&stop))?;
             signal_hook::flag::register_usize(signal, Arc::clone(&which), signal as usize)?;
             signal_hook::flag::register(signal, Arc::clone(&stop))?;
@@ -46,4 +47,13 @@ impl Signals {
             .load(Ordering::SeqCst)
             .then(|| self.which.load(Ordering::SeqCst))
     }
+}
+
+/// SIGHUP, unless it is ignored, as under `nohup`; of systems that do not tell it is left alone.
+fn hangup() -> Option<i32> {
+    const SIGHUP: i32 = 1;
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"))?;
+    let ignored = u64::from_str_radix(ignored.trim(), 16).ok()?;
+    (ignored & (1 << (SIGHUP - 1)) == 0).then_some(SIGHUP)
 }

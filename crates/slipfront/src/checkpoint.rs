@@ -4,7 +4,10 @@
 //! lays out its arrays, on the number of threads or on the SIMD width. Everything else that a kernel keeps is found again
 //! by its next sweep.
 
-use serde::{Deserialize, Serialize, Serializer};
+use std::fmt::Formatter;
+
+use serde::de::{SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::kernel::{Engine, Totals};
 use crate::observe::Peak;
@@ -12,7 +15,7 @@ use crate::observe::Peak;
 /// A run between two steps. `N` is one number per block: of a running simulation they are read off its arrays as they are
 /// written, so that a checkpoint takes no memory.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Checkpoint<N = Vec<f64>> {
+pub struct Checkpoint<N = BlockNumbers> {
     /// Number of steps done.
     pub step: u64,
     pub(crate) totals: Totals,
@@ -44,7 +47,38 @@ impl Checkpoint {
     /// Whether it is one of a lattice of `n` blocks.
     pub(crate) fn has_blocks(&self, n: usize) -> bool {
         let all = self.displacement.iter().chain(&self.velocity);
-        all.chain([&self.first_slip]).all(|numbers| numbers.len() == n)
+        all.chain([&self.first_slip]).all(|numbers| numbers.0.len() == n)
+    }
+}
+
+/// One number of every block, read back. However many there are said to be, room is made for those that come, an eighth
+/// more at a time: twice as much would be more than a large lattice leaves.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BlockNumbers(pub(crate) Vec<f64>);
+
+impl<'de> Deserialize<'de> for BlockNumbers {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Numbers;
+        impl<'de> Visitor<'de> for Numbers {
+            type Value = Vec<f64>;
+
+            fn expecting(&self, formatter: &mut Formatter) -> std::fmt::Result {
+                formatter.write_str("one number per block")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut read: A) -> Result<Vec<f64>, A::Error> {
+                const ROOM: usize = 1 << 13;
+                let mut numbers = Vec::new();
+                while let Some(number) = read.next_element()? {
+                    if numbers.len() == numbers.capacity() {
+                        numbers.reserve_exact(ROOM.max(numbers.len() / 8));
+                    }
+                    numbers.push(number);
+                }
+                Ok(numbers)
+            }
+        }
+        deserializer.deserialize_seq(Numbers).map(Self)
     }
 }
 

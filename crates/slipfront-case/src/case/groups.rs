@@ -45,7 +45,12 @@ impl Groups {
             case_file::DriveSpeed::VStar(v_star) => *v_star,
             case_file::DriveSpeed::Speed(speed) => speed.si() / scales.speed(),
         };
-        within(file, "drive.speed", "V*", v_star, MIN_V_STAR, MAX_V_STAR)?;
+        let key = if file.source.has("drive.speed") {
+            "drive.speed"
+        } else {
+            "drive.v_star"
+        };
+        within(file, key, "V*", v_star, MIN_V_STAR, MAX_V_STAR)?;
         let r_star = match file.friction.kinetic {
             case_file::KineticFriction::RStar(r_star) => r_star,
             case_file::KineticFriction::MuKinetic(mu) => mu / scales.mu_static_mean,
@@ -54,14 +59,12 @@ impl Groups {
             case_file::Damping::OmegaStar(omega_star) => *omega_star,
             case_file::Damping::Rate(rate) => scales.omega_star(rate.si()),
         };
-        within(
-            file,
-            "slider.damping_rate",
-            "Omega*",
-            omega_star,
-            0.0,
-            MAX_OMEGA_STAR,
-        )?;
+        let key = if file.source.has("slider.damping_rate") {
+            "slider.damping_rate"
+        } else {
+            "slider.omega_star"
+        };
+        within(file, key, "Omega*", omega_star, 0.0, MAX_OMEGA_STAR)?;
         Ok(Groups {
             v_star,
             r_star,

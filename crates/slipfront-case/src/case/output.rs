@@ -47,7 +47,7 @@ impl Output {
             }
             Err(file.source.error(
                 key,
-                format!("a spacing of {time} in t* is less than one step of {dt_star}: raise it"),
+                format!("a spacing of {time:?} in t* is less than one step of {dt_star}: raise it"),
             ))
         };
         let snapshots = match &file.output.snapshots {

@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 use std::fmt::Debug;
-use std::fs::Permissions;
+use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::rc::Rc;
@@ -14,7 +14,7 @@ use super::names::{
     TIME_STAR, TIME_UNIT, X, Y,
 };
 use super::{FieldName, FieldsError, FieldsFile, thin};
-use crate::folder::UNFINISHED;
+use crate::folder::fill_whole;
 
 /// The largest variable (or record of one) that every reader of 64-bit offset files takes.
 const VARIABLE_MAX_BYTES: usize = i32::MAX as usize - 3;
@@ -31,7 +31,8 @@ const VARIABLE_MAX_BYTES: usize = i32::MAX as usize - 3;
 /// than 2 GiB, or the file cannot be written in full.
 pub fn write_fields(path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
     check(path, file)?;
-    write_beside(path, file).map_err(|source| FieldsError::Write {
+    let fill = |output: &mut File| write_to(output.try_clone()?, file).map(drop);
+    fill_whole(path, fill).map_err(|source| FieldsError::Write {
         path: path.to_owned(),
         source,
     })
@@ -111,35 +112,6 @@ impl FieldsFile<'_> {
     fn rows(&self) -> usize {
         self.ny.div_ceil(self.stride)
     }
-}
-
-/// Writes into a temporary file of the same folder, then renames it.
-fn write_beside(path: &Path, file: &FieldsFile) -> io::Result<()> {
-    let folder = match path.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(UNFINISHED);
-    if let Some(permissions) = permissions_of_a_new_file() {
-        builder.permissions(permissions);
-    }
-    let (output, temporary) = builder.tempfile_in(folder)?.into_parts();
-    let output = write_to(output, file)?;
-    output.sync_all()?;
-    temporary.persist(path).map_err(|failed| failed.error)
-}
-
-/// Temporary files are for their owner alone; results are for everybody whom the umask lets in.
-#[cfg(unix)]
-fn permissions_of_a_new_file() -> Option<Permissions> {
-    use std::os::unix::fs::PermissionsExt;
-    Some(Permissions::from_mode(0o666))
-}
-
-#[cfg(not(unix))]
-fn permissions_of_a_new_file() -> Option<Permissions> {
-    None
 }
 
 /// Writes the whole file and gives the output back, with nothing left in a buffer.

@@ -15,11 +15,19 @@ pub(crate) const UNFINISHED: &str = ".slipfront";
 /// # Errors
 /// What the system says; nothing is left behind then.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    fill_whole(path, |file| file.write_all(bytes))
+}
+
+/// The same of a file that somebody else fills.
+pub(crate) fn fill_whole(
+    path: &Path,
+    fill: impl FnOnce(&mut File) -> std::io::Result<()>,
+) -> std::io::Result<()> {
     let folder = path
         .parent()
         .filter(|parent| !parent.as_os_str().is_empty())
         .unwrap_or(Path::new("."));
-    stage(folder, |file| file.write_all(bytes))?.persist(path)?;
+    stage(folder, fill)?.persist(path)?;
     Ok(())
 }
 

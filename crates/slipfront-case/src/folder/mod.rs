@@ -13,7 +13,7 @@ use thiserror::Error;
 
 use self::files::holds_only_unfinished;
 pub(crate) use self::files::{
-    TEXT_MAX_BYTES, UNFINISHED, json, open_bounded, open_regular, read_whole, remove_if_there,
+    TEXT_MAX_BYTES, UNFINISHED, fill_whole, json, open_bounded, open_regular, read_whole, remove_if_there,
     remove_unfinished, stage, sync_folder,
 };
 pub use self::files::{is_empty, write_whole};
@@ -21,8 +21,8 @@ pub(crate) use self::own::is_of_interrupted_run;
 pub use self::own::own_bytes;
 use self::own::{CASE, refuse_foreign, remove_own, remove_results, resolved_case};
 use crate::case::{Case, Input};
-use crate::checkpoint::{CHECKPOINT, Checkpoints, PREVIOUS};
-use crate::legible::shown;
+use crate::checkpoint::Checkpoints;
+use crate::legible::{quoted, shown};
 use crate::manifest::{MANIFEST, Manifest};
 
 /// What can go wrong with a run folder.
@@ -49,10 +49,12 @@ pub enum FolderError {
         path: PathBuf,
     },
     /// There is no run in it to go on with.
-    #[error("{} holds no run to go on with: it has no case.toml that a run of this version wrote", path.display())]
+    #[error("{} is no folder of a run to go on with: {why}", path.display())]
     NoRun {
         /// The folder.
         path: PathBuf,
+        /// What is missing.
+        why: &'static str,
     },
     /// Somebody else writes there.
     #[error("another process is running in the folder {}: wait for it, or choose another folder", path.display())]
@@ -70,7 +72,7 @@ pub enum FolderError {
         path: PathBuf,
     },
     /// It cannot be made or written to.
-    #[error("cannot write to the folder {}: {source}; choose another with --out", path.display())]
+    #[error("cannot write to the folder {}: {source}; make it writable, or choose another", path.display())]
     Unwritable {
         /// The folder.
         path: PathBuf,
@@ -88,6 +90,16 @@ pub enum FolderError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// A file was changed before the run was complete.
+    #[error(
+        "{} was changed while the run went on, so that it does not tell what was run; the folder is left without \
+         manifest.json, as incomplete: put the file back as it was",
+        shown(path)
+    )]
+    Changed {
+        /// The file.
+        path: PathBuf,
+    },
     /// A file could not be read back.
     #[error("cannot read {}: {source}", shown(path))]
     Read {
@@ -100,17 +112,20 @@ pub enum FolderError {
 
 /// The command that goes on with the run in a folder, as a shell reads it.
 pub fn resume_command(folder: &Path) -> String {
-    let folder = shown(folder);
-    // What cannot be quoted is a zero byte, which no path has.
-    let quoted = shlex::try_quote(&folder).unwrap_or_default();
-    format!("slipfront run --resume {quoted}")
+    let mut folder = shown(folder);
+    // Else it would be taken for an option.
+    if folder.starts_with('-') {
+        folder.insert_str(0, "./");
+    }
+    format!("slipfront run --resume {}", quoted(&folder))
 }
 
 /// A folder that a run is being written to.
 #[derive(Debug)]
 pub struct RunFolder {
     path: PathBuf,
-    written: Vec<String>,
+    /// Files of the run, and what is known to stand in them.
+    written: Vec<(String, Option<blake3::Hash>)>,
     /// Whether this process has made it ready.
     new: bool,
     /// Held as long as the run goes on.
@@ -143,7 +158,7 @@ impl RunFolder {
                 });
             }
             let names = inputs.iter().map(|input| input.name.as_str());
-            refuse_foreign(path, names.chain([CHECKPOINT, PREVIOUS]))?;
+            refuse_foreign(path, names)?;
             remove_own(path)?;
         }
         if lock.is_some() {
@@ -168,8 +183,17 @@ impl RunFolder {
     /// When there is no such run, or another process goes on with it.
     pub fn reopen(path: &Path) -> Result<Self, FolderError> {
         if resolved_case(path).is_none() {
+            let why = if !path.exists() {
+                "there is none of this name"
+            } else if !path.is_dir() {
+                "it is a file: name its folder"
+            } else if !path.join(CASE).exists() {
+                "it has no case.toml"
+            } else {
+                "its case.toml is not as this version wrote it; put it back as it was, or run it to another folder"
+            };
             let path = path.to_owned();
-            return Err(FolderError::NoRun { path });
+            return Err(FolderError::NoRun { path, why });
         }
         Ok(Self {
             path: path.to_owned(),
@@ -186,8 +210,15 @@ impl RunFolder {
     /// What the system says.
     pub fn clear_results(&mut self, case: &Case) -> Result<(), FolderError> {
         remove_results(&self.path)?;
-        let inputs = case.inputs.iter().map(|input| input.name.clone());
-        self.written = [CASE.to_owned()].into_iter().chain(inputs).collect();
+        let inputs = case.inputs.iter();
+        let inputs = inputs.map(|input| (input.name.clone(), input.bytes.clone()));
+        // A case that was loaded can be written.
+        let text = case.file.to_toml().unwrap_or_default().into_bytes();
+        self.written = [(CASE.to_owned(), text)]
+            .into_iter()
+            .chain(inputs)
+            .map(|(name, bytes)| (name, Some(blake3::hash(&bytes))))
+            .collect();
         Ok(())
     }
 
@@ -225,6 +256,9 @@ impl RunFolder {
     pub fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
         let path = self.claim(name)?;
         write_whole(&path, bytes).map_err(|source| FolderError::Write { path, source })?;
+        if let Some((_, hash)) = self.written.last_mut() {
+            *hash = Some(blake3::hash(bytes));
+        }
         Ok(())
     }
 
@@ -243,14 +277,14 @@ impl RunFolder {
                 source,
             })?;
         }
-        self.written.push(name.to_owned());
+        self.written.push((name.to_owned(), None));
         Ok(path)
     }
 
     /// Writes the manifest: the run is complete.
     ///
     /// # Errors
-    /// When a file cannot be read back or the manifest cannot be written.
+    /// When a file cannot be read back or is no longer as it was written, and when the manifest cannot be written.
     pub fn complete(
         self,
         started: jiff::Timestamp,
@@ -258,8 +292,15 @@ impl RunFolder {
         model: &Model,
         seed: u64,
     ) -> Result<Manifest, FolderError> {
-        let (manifest, bytes) =
-            Manifest::of(&self.path, &self.written, started, threads, model, seed)?.sealed();
+        let names: Vec<&str> = self.written.iter().map(|(name, _)| name.as_str()).collect();
+        let manifest = Manifest::of(&self.path, &names, started, threads, model, seed)?;
+        for (file, (name, hash)) in manifest.files.iter().zip(&self.written) {
+            if hash.is_some_and(|hash| file.blake3 != hash.to_hex().as_str()) {
+                let path = self.path.join(name);
+                return Err(FolderError::Changed { path });
+            }
+        }
+        let (manifest, bytes) = manifest.sealed();
         let path = self.path.join(MANIFEST);
         write_whole(&path, &bytes)
             .and_then(|()| sync_folder(&self.path))
@@ -299,5 +340,6 @@ mod tests {
         assert_eq!(of("results/a-1"), "slipfront run --resume results/a-1");
         assert_eq!(of("my run"), "slipfront run --resume 'my run'");
         assert_eq!(of("$HOME"), "slipfront run --resume '$HOME'");
+        assert_eq!(of("-o"), "slipfront run --resume ./-o");
     }
 }

@@ -33,35 +33,35 @@ pub(super) fn resolved_case(folder: &Path) -> Option<CaseFile> {
     (case.to_toml().ok()? == text).then_some(case)
 }
 
-/// The files that a resolved case names.
-fn named_by_case(folder: &Path) -> Vec<String> {
-    let case = resolved_case(folder);
-    case.map(|mut case| case.files_mut().map(|(_, name)| name.clone()).collect())
-        .unwrap_or_default()
-}
-
 /// Files of an earlier run in this folder, finished or not: its manifest first, its case last, which until then tells
-/// the copies of a run that was stopped.
+/// the copies of a run that was stopped. Where there is neither, nothing is a run's, whatever it is called.
 fn own_files(path: &Path) -> Vec<String> {
     let manifest = read_whole(&path.join(MANIFEST), TEXT_MAX_BYTES).ok();
     let manifest = manifest.and_then(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok());
-    let listed = manifest
-        .into_iter()
-        .flat_map(|manifest| manifest.files)
-        .map(|file| file.name);
-    let mut copies: Vec<String> = listed.chain(named_by_case(path)).collect();
+    let mut case = resolved_case(path);
+    let listed: Option<Vec<String>> =
+        manifest.map(|manifest| manifest.files.into_iter().map(|file| file.name).collect());
+    let is_result = |name: &&str| match &listed {
+        Some(listed) => *name == MANIFEST || listed.iter().any(|file| file == name),
+        // Not complete: how far it had come is not known.
+        None => case.is_some(),
+    };
+    let results = RESULTS.into_iter().filter(is_result).map(str::to_owned);
+    let mut names: Vec<String> = results.collect();
+    let checkpoints = [CHECKPOINT, PREVIOUS].into_iter();
+    let checkpoints = checkpoints.filter(|name| begins_as_checkpoint(&path.join(name)));
+    names.extend(checkpoints.map(str::to_owned));
+    let read = case.iter_mut().flat_map(CaseFile::files_mut);
+    let mut copies: Vec<String> = read.map(|(_, name)| name.clone()).collect();
+    copies.extend(listed.into_iter().flatten());
     copies.sort();
     copies.dedup();
     // They are only believed about the folder of copies: damage must not make us delete elsewhere.
     copies.retain(|name| name.strip_prefix("inputs/").is_some_and(is_plain));
-    let mut names: Vec<String> = RESULTS.map(str::to_owned).to_vec();
-    let checkpoints = [CHECKPOINT, PREVIOUS].into_iter();
-    let checkpoints = checkpoints.filter(|name| begins_as_checkpoint(&path.join(name)));
-    names.extend(checkpoints.map(str::to_owned));
     names.extend(copies);
     names.extend(unfinished(path, ""));
     names.extend(unfinished(path, "inputs/"));
-    names.push(CASE.to_owned());
+    names.extend(case.map(|_| CASE.to_owned()));
     names
 }
 
@@ -81,12 +81,17 @@ fn begins_as_checkpoint(path: &Path) -> bool {
     file.and_then(|mut file| file.read_to_end(&mut beginning)).is_ok() && beginning == BEGINNING
 }
 
-/// Refuses files that stand where `names` will be written and are not of an earlier run.
+/// Refuses files that stand where those of a run will be written, with copies of these `inputs`, and are not of an earlier
+/// run.
 pub(super) fn refuse_foreign<'n>(
     path: &Path,
-    names: impl Iterator<Item = &'n str>,
+    inputs: impl Iterator<Item = &'n str>,
 ) -> Result<(), FolderError> {
     let own = own_files(path);
+    let names = RESULTS
+        .into_iter()
+        .chain([CASE, CHECKPOINT, PREVIOUS])
+        .chain(inputs);
     for name in names.filter(|name| !own.iter().any(|own| own == name)) {
         let file = path.join(name);
         let parent = file.parent().filter(|parent| parent.exists() && !parent.is_dir());

@@ -3,7 +3,7 @@
 use super::axis::{Axis, range, widened};
 use super::canvas::{Area, Canvas};
 use super::friction::FrictionCurve;
-use super::sides::{LOWER_ROOM, left_room, left_side, lower_title, placed};
+use super::sides::{LOWER_ROOM, left_room, left_side, lower_title, placed, right_end};
 use super::style::{BLACK, COLUMN_WIDTH, MARGIN, SIZE_LABEL, TICK_LENGTH, WIDTH_LEADER};
 use super::text::Text;
 
@@ -56,17 +56,14 @@ impl Panels {
         };
         let left = left_room(&[placed(&mu, 6), placed(&sliding, 2)].concat());
         // The last number on the time axis may stand half beyond its end.
-        let right = COLUMN_WIDTH.round() - 28.0;
-        Self {
-            time: Axis {
-                lo: from,
-                hi: to,
-                start: left,
-                end: right,
-            },
-            mu,
-            sliding,
-        }
+        let mut time = Axis {
+            lo: from,
+            hi: to,
+            start: left,
+            end: COLUMN_WIDTH.round() - 28.0,
+        };
+        time.end = right_end(&placed(&time, 6), left, time.end, COLUMN_WIDTH);
+        Self { time, mu, sliding }
     }
 
     /// The same panels, further down.
@@ -130,5 +127,27 @@ pub(super) fn between(from: f64, to: f64, start: f64, end: f64) -> Area {
         y: start.min(end),
         width: to - from,
         height: (end - start).abs(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_number_on_the_time_axis_is_cut_off() {
+        for end in [0.3, 100.0, 267.0, 2000.0, 4000.0, 30_000.0, 999_999.0, 1e9, 3e-7] {
+            let curve = FrictionCurve {
+                time_star: vec![0.0, end],
+                mu_star: vec![0.0, 1.0],
+                sliding_percent: vec![0.0, 100.0],
+                ..FrictionCurve::default()
+            };
+            let panels = Panels::of(&[curve]);
+            for (x, text) in placed(&panels.time, 6) {
+                assert!(x + 0.5 * text.width() <= COLUMN_WIDTH, "t* = {end}");
+            }
+            assert!(panels.time.end > 0.8 * COLUMN_WIDTH, "t* = {end}");
+        }
     }
 }

@@ -8,7 +8,7 @@ use super::legend::{Legend, Sample};
 use super::markers::marker;
 use super::scale::{Scale, Way};
 use super::series::pieces;
-use super::sides::{LOWER_ROOM, left_room, left_side, lower_side, short_ticks};
+use super::sides::{LOWER_ROOM, left_room, left_side, lower_side, right_end, short_ticks};
 use super::style::{
     COLUMN_WIDTH, GREY, MARGIN, RADIUS_MARKER, Rgb, WIDTH_CURVE, WIDTH_LEADER, WIDTH_MARK, curve_colour,
 };
@@ -75,6 +75,7 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
     let y = Scale::around(&ys, responses.log_y, 0.06);
     let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Way::Y));
     let right = COLUMN_WIDTH.round() - RIGHT;
+    let right = right_end(&x.placed(left, right).ticks(Way::X), left, right, COLUMN_WIDTH);
     let mut legend = Legend::default();
     if curves.len() > 1 {
         let labels: Vec<&str> = responses.curves.iter().map(|c| c.label.as_str()).collect();

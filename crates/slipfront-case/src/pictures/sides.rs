@@ -30,6 +30,21 @@ pub(super) fn left_room(ticks: &[Tick]) -> f64 {
     (MARGIN + f64::from(SIZE_LABEL) + 14.0 + widest(ticks) + TICK_LENGTH + 7.0).round()
 }
 
+/// Where a panel from `left` to `right` must end in a picture of this width, so that no number below it is cut off.
+pub(super) fn right_end(ticks: &[Tick], left: f64, right: f64, width: f64) -> f64 {
+    const EDGE: f64 = 4.0;
+    let end = |(x, text): &Tick| {
+        let share = (x - left) / (right - left);
+        let room = width - EDGE - 0.5 * text.width() - left;
+        if share * (right - left) > room {
+            left + room / share
+        } else {
+            right
+        }
+    };
+    ticks.iter().map(end).fold(right, f64::min).floor()
+}
+
 /// The room below a panel for numbers and a title.
 pub(super) const LOWER_ROOM: f64 = TICK_LENGTH + 7.0 + SIZE_TICK as f64 + SIZE_LABEL as f64 + MARGIN;
 

@@ -317,7 +317,7 @@ impl<'a> Manager<'a> {
         watch: &mut dyn FnMut(&Progress),
     ) -> Result<(), StudyError> {
         self.begin()?;
-        watch(&self.progress);
+        self.tell(watch);
         while !self.waiting.is_empty() {
             let stopped = stop.load(Ordering::Relaxed);
             let first = match finished.recv_timeout(Duration::from_millis(100)) {
@@ -330,7 +330,7 @@ impl<'a> Manager<'a> {
             if stopped {
                 return Err(StudyError::Interrupted);
             }
-            watch(&self.progress);
+            self.tell(watch);
         }
         Ok(())
     }
@@ -464,8 +464,13 @@ impl<'a> Manager<'a> {
         if state.found.is_none() && wanted >= settings.max_replicates() {
             state.found = found(wanted, Some(false));
         }
+    }
+
+    /// Tells how far the study has come.
+    fn tell(&mut self, watch: &mut dyn FnMut(&Progress)) {
         let widths = self.points.iter().filter_map(|point| point.half_width);
         self.progress.worst = widths.reduce(f64::max);
+        watch(&self.progress);
     }
 
     fn findings(self) -> Findings {

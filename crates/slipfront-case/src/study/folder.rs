@@ -21,6 +21,8 @@ pub struct StudyFolder {
     pub records: Records,
     /// Whether the study was another one when the folder was last used.
     pub changed: bool,
+    /// The study as it stands in the folder, where it reads copies of its files.
+    pub(super) study: StudyFile,
 }
 
 impl StudyFolder {
@@ -49,6 +51,7 @@ impl StudyFolder {
             path: path.to_owned(),
             records,
             changed,
+            study: StudyFile::parse(&text, &path.join(STUDY).display().to_string(), &study.name, path)?,
         };
         folder.copy(&copies)?;
         folder.write(STUDY, text.as_bytes())?;

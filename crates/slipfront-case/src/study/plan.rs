@@ -9,9 +9,11 @@ use super::error::StudyError;
 use super::file::{Base, Keep, Settings, StudyFile};
 use super::folder::StudyFolder;
 use super::shard::Shard;
-use crate::budget::{Budget, PROGRAM, available_memory, free_disk, shown};
+use crate::budget::{self, Budget, PROGRAM, available_memory, free_disk};
 use crate::case::{Case, check_fields};
 use crate::case_file::{AutoOr, CaseError, CaseFile, Output, Snapshots};
+use crate::legible::shown;
+use crate::manifest::Manifest;
 
 /// Every run that a study may need.
 #[derive(Clone, Debug)]
@@ -149,31 +151,15 @@ impl Plan {
         CaseFile::parse(&self.base.text, &self.base.name, &overrides)
     }
 
-    /// Tries a point and notes what its runs are. What tells runs apart is the physics of their cases, the contents
-    /// of their files and the version; not names of files, nor what is written.
+    /// Tries a point and notes what its runs are.
     fn outline(&self, point: &Point, role: Role, alone: &Mutex<()>) -> Result<Outline, CaseError> {
         let file = self.case_file(point, role)?;
         let blocks: u64 = file.slider.blocks.into_iter().map(u64::from).product();
         let _alone = (blocks > LARGE).then(|| alone.lock());
         let case = self.trimmed(file, "point")?;
-        let mut file = case.file.clone();
-        let seed = std::mem::take(&mut file.friction.seed);
-        file.output = Output::default();
-        for (_, name) in file.files_mut() {
-            let hash = case
-                .inputs
-                .iter()
-                .find(|input| input.name == *name)
-                .map(|input| blake3::hash(&input.bytes).to_hex());
-            let ending = name.rsplit('.').next().unwrap_or_default();
-            *name = format!("{}.{ending}", hash.unwrap_or_default());
-        }
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
-        hasher.update(file.to_toml()?.as_bytes());
         Ok(Outline {
-            seed,
-            physics: hasher.finalize(),
+            seed: case.file.friction.seed,
+            physics: physics(&case)?,
             block_steps: case.block_steps(),
             n_blocks: case.model.lattice.n_blocks(),
             budget: case.budget,
@@ -187,7 +173,31 @@ impl Plan {
     pub fn case(&self, run: RunKey) -> Result<Case, CaseError> {
         let mut file = self.case_file(&self.points[run.point], run.role)?;
         file.friction.seed = self.seed(run);
-        self.trimmed(file, &self.folder_name(run))
+        let case = self.trimmed(file, &self.folder_name(run))?;
+        // Only files can have become others.
+        if !case.inputs.is_empty() && physics(&case)? != self.outline_of(run).physics {
+            let names: Vec<String> = case.inputs.iter().map(|input| shown(&input.original)).collect();
+            let sentence = format!(
+                "a file that a run reads is no longer what it was when the study began: run the study again, and leave {} as it \
+                 is meanwhile",
+                names.join(", ")
+            );
+            return Err(case.file.source.error("", sentence));
+        }
+        Ok(case)
+    }
+
+    /// The same plan, whose runs read the copies of their files that stand in the folder: what happens to the originals
+    /// while the study goes on is of no matter.
+    #[must_use]
+    pub fn reading_copies(self, folder: &StudyFolder) -> Self {
+        let study = &folder.study;
+        Self {
+            axes: study.axes.clone(),
+            base: study.base.clone(),
+            reference: study.settings.reference.as_ref().map(axis::overrides),
+            ..self
+        }
     }
 
     /// A case that writes no more than the study keeps.
@@ -272,17 +282,17 @@ impl Plan {
             return Ok(());
         }
         let fit = ((available - PROGRAM - self.planning()) / largest).max(0.0) as usize;
-        let available = shown(available);
+        let available = budget::shown(available);
         if fit == 0 {
             return Err(StudyError::PointMemory {
                 point: self.describe(&self.points[run.point]),
-                needed: shown(largest),
+                needed: budget::shown(largest),
                 available,
             });
         }
         Err(StudyError::Memory {
             threads,
-            needed: shown(needed),
+            needed: budget::shown(needed),
             available,
             fit,
         })
@@ -306,8 +316,8 @@ impl Plan {
         let needed = self.disk(self.runs(self.settings.min_replicates()).filter(lacking));
         match free_disk(folder.path()) {
             Some(free) if needed > free => Err(StudyError::Disk {
-                needed: shown(needed),
-                free: shown(free),
+                needed: budget::shown(needed),
+                free: budget::shown(free),
                 path: folder.path().to_owned(),
             }),
             _ => Ok(()),
@@ -353,6 +363,27 @@ impl Plan {
     }
 }
 
+/// Hash of what tells runs apart, but for the seed: the physics of a case, the contents of its files and the program; not
+/// names of files, nor what is written.
+fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
+    let mut file = case.file.clone();
+    file.friction.seed = 0;
+    file.output = Output::default();
+    for (_, name) in file.files_mut() {
+        let hash = case
+            .inputs
+            .iter()
+            .find(|input| input.name == *name)
+            .map(|input| blake3::hash(&input.bytes).to_hex());
+        let ending = name.rsplit('.').next().unwrap_or_default();
+        *name = format!("{}.{ending}", hash.unwrap_or_default());
+    }
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(Manifest::this_program().as_bytes());
+    hasher.update(file.to_toml()?.as_bytes());
+    Ok(hasher.finalize())
+}
+
 /// Levels of point `index`, the last axis fastest.
 fn levels(axes: &[Axis], mut index: usize) -> Vec<usize> {
     let mut levels: Vec<usize> = axes
@@ -373,6 +404,31 @@ mod tests {
     use std::path::Path;
 
     use super::*;
+
+    /// Originals may change while a study goes on; a copy that does is noticed.
+    #[test]
+    fn runs_read_what_their_identity_was_made_of() {
+        let folder = tempfile::tempdir().unwrap();
+        let table = |value: f64| format!("{value},{value}\n").repeat(2);
+        let original = folder.path().join("mu.csv");
+        std::fs::write(&original, table(0.9)).unwrap();
+        let text = "[base]\nslider.blocks = [2, 2]\nfriction.mu_static_field = 'mu.csv'";
+        let file = StudyFile::parse(text, "study.toml", "study", folder.path()).unwrap();
+        let plan = Plan::new(&file, None).unwrap();
+        let run = plan.runs(1).next().unwrap();
+        let out = StudyFolder::open(&folder.path().join("out"), &file).unwrap();
+        std::fs::write(&original, table(0.8)).unwrap();
+        let said = plan.case(run).unwrap_err().to_string();
+        assert!(
+            said.contains("no longer what it was when the study began"),
+            "{said}"
+        );
+        let plan = plan.reading_copies(&out);
+        let case = plan.case(run).unwrap();
+        assert_eq!(case.inputs[0].bytes, table(0.9).as_bytes());
+        std::fs::write(folder.path().join("out/inputs/mu.csv"), table(0.7)).unwrap();
+        assert!(plan.case(run).is_err());
+    }
 
     /// Runs at once count with the largest of them, and not with more than there are.
     #[test]

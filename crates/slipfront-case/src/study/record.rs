@@ -4,8 +4,8 @@
 //! counts as not run; the file is cut back to its last whole line before anything is appended.
 
 use std::collections::HashMap;
-use std::fs::{File, OpenOptions};
-use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -111,16 +111,11 @@ impl Records {
         if !metadata.is_file() {
             return Err(StudyError::NotRecords { path });
         }
-        let locked = file.try_lock().map_err(|error| match error {
-            std::fs::TryLockError::WouldBlock => StudyError::Busy {
+        // Some file systems of clusters have no locks; the study runs there without.
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            return Err(StudyError::Busy {
                 path: folder.to_owned(),
-            },
-            std::fs::TryLockError::Error(source) => cannot_open(&path, source),
-        });
-        match locked {
-            // Some file systems of clusters have no locks; the study runs there without.
-            Err(StudyError::Records { source, .. }) if source.kind() == ErrorKind::Unsupported => {}
-            locked => locked?,
+            });
         }
         // Nobody else writes in the folder from now on.
         remove_unfinished(folder);
@@ -176,7 +171,12 @@ impl Records {
             return Ok(());
         }
         let lines: Vec<u8> = records.iter().flat_map(to_line).collect();
-        let before = self.file.stream_position().unwrap_or(0);
+        let failed = |source| StudyError::Records {
+            action: "write to",
+            path: self.path.clone(),
+            source,
+        };
+        let before = self.file.stream_position().map_err(failed)?;
         let written = self.file.write_all(&lines).and_then(|()| self.file.sync_data());
         written.map_err(|source| {
             // What fits stays, all but a part of a line; if even that cannot be cut off, the next start does it.
@@ -190,11 +190,7 @@ impl Records {
                 .rposition(|&byte| byte == b'\n')
                 .map_or(0, |end| end + 1);
             let _ = self.file.set_len(before + whole as u64);
-            StudyError::Records {
-                action: "write to",
-                path: self.path.clone(),
-                source,
-            }
+            failed(source)
         })?;
         for record in records {
             self.findings

@@ -1,5 +1,7 @@
 //! A batch script for Slurm: few tasks, each a shard that uses all cores of its node.
 
+use crate::legible::quoted;
+
 /// What a batch script is made for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Batch {
@@ -24,7 +26,7 @@ pub fn script(batch: &Batch) -> String {
         out,
         tasks,
     } = batch;
-    let (command, study, out) = (quote(command), quote(study), quote(out));
+    let [command, study, out] = [command, study, out].map(|word| quoted(word));
     let name: String = name
         .chars()
         .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
@@ -52,16 +54,6 @@ exec {command} study {study} --yes --shard "$SLURM_ARRAY_TASK_ID/{tasks}" --out 
   --threads "${{SLURM_CPUS_ON_NODE:-$(nproc)}}"
 "#
     )
-}
-
-/// A word for the shell.
-fn quote(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "_-./".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! `slipfront plot`: pictures again, from the files of runs.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use slipfront_case::folder::write_whole;
+use slipfront_case::manifest::MANIFEST;
 use slipfront_case::pictures::Picture;
 use slipfront_case::results;
 use slipfront_case::verify::expect_as_written;
@@ -23,12 +24,16 @@ pub(crate) struct Plot {
     /// Folder for the pictures [default: the run's own; results/overlay for several]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Replace pictures that stand there
+    #[arg(long)]
+    force: bool,
 }
 
 impl Plot {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         for folder in &self.folders {
-            expect_as_written(folder, &results::DRAWN_FROM).map_err(Failure::input)?;
+            expect_results(folder)?;
+            expect_as_written(folder, |name| results::DRAWN_FROM.contains(&name)).map_err(Failure::input)?;
         }
         let (out, drawn) = match self.folders.as_slice() {
             [folder] => (folder.clone(), results::draw(folder).map_err(Failure::input)?),
@@ -44,15 +49,60 @@ impl Plot {
                 out.display()
             ))
         };
+        let files: Vec<(PathBuf, &[u8])> = drawn
+            .iter()
+            .flat_map(|(name, Picture { svg, png })| {
+                [("svg", svg.as_bytes()), ("png", png)]
+                    .map(|(ending, bytes)| (out.join(format!("{name}.{ending}")), bytes))
+            })
+            .collect();
+        let own = matches!(self.folders.as_slice(), [folder] if is_same(folder, &out));
+        if !own {
+            refuse_to_replace(&out, files.iter().map(|(path, _)| path), self.force)?;
+        }
         std::fs::create_dir_all(&out).map_err(failed)?;
         let mut written = String::new();
-        for (name, Picture { svg, png }) in drawn {
-            for (ending, bytes) in [("svg", svg.as_bytes()), ("png", &png)] {
-                let path = out.join(format!("{name}.{ending}"));
-                write_whole(&path, bytes).map_err(failed)?;
-                written += &format!("{}\n", path.display());
-            }
+        for (path, bytes) in files {
+            write_whole(&path, bytes).map_err(failed)?;
+            written += &format!("{}\n", path.display());
         }
         print(&written)
     }
+}
+
+fn expect_results(folder: &Path) -> Result<(), Failure> {
+    if folder.join("summary.json").exists() {
+        return Ok(());
+    }
+    Err(Failure::input(anyhow::anyhow!(
+        "{} holds no summary.json: name the folder of a run that is finished",
+        folder.display()
+    )))
+}
+
+fn is_same(folder: &Path, other: &Path) -> bool {
+    let [folder, other] = [folder, other].map(|folder| folder.canonicalize().ok());
+    folder.is_some() && folder == other
+}
+
+/// Refuses the folder of a run that these are not the pictures of, and pictures that are there already.
+fn refuse_to_replace<'p>(
+    out: &Path,
+    mut files: impl Iterator<Item = &'p PathBuf>,
+    force: bool,
+) -> Result<(), Failure> {
+    let sentence = if out.join(MANIFEST).exists() {
+        format!(
+            "{} holds a run, and these are not its pictures: choose another folder with --out",
+            out.display()
+        )
+    } else if let Some(path) = files.find(|path| !force && path.symlink_metadata().is_ok()) {
+        format!(
+            "{} exists: choose another folder with --out, or replace it with --force",
+            path.display()
+        )
+    } else {
+        return Ok(());
+    };
+    Err(Failure::input(anyhow::anyhow!(sentence)))
 }

@@ -9,7 +9,7 @@ use slipfront_case::folder::RunFolder;
 use slipfront_case::manifest::Manifest;
 use slipfront_case::results;
 use slipfront_case::run::Running;
-use slipfront_case::verify::{Verdict, compare, is_study, verify};
+use slipfront_case::verify::{Verdict, VerifyError, compare, is_study, verify};
 
 use super::{print, set_threads};
 use crate::failure::Failure;
@@ -101,7 +101,7 @@ impl Verify {
             return Err(Failure::input(anyhow::anyhow!(sentence)));
         }
         let case = Case::load(&case, &[]).map_err(Failure::input)?;
-        let again = tempfile::tempdir().map_err(Failure::running)?;
+        let again = tempfile::tempdir().map_err(|error| Failure::running(VerifyError::Temporary(error)))?;
         case.check_disk(again.path(), 0, false).map_err(Failure::input)?;
         let mut running = Running::start(&case, rayon::current_num_threads());
         let mut progress = Progress::new(&running, self.quiet);

@@ -205,12 +205,22 @@ fn what_is_complete_or_has_not_begun() {
     bench.assert_same("whole", "begun");
     // Where no run was begun there is none to resume, and nothing is touched.
     bench.write("other/notes.txt", "mine");
-    for folder in ["other", "nowhere"] {
+    for (folder, why) in [
+        ("other", "it has no case.toml"),
+        ("nowhere", "there is none of this name"),
+        ("whole/case.toml", "it is a file: name its folder"),
+    ] {
         let said = bench.refused(&format!("run --quiet --resume {folder}"), 2);
-        assert!(said.contains("holds no run to go on with"), "{said}");
+        assert!(said.contains(why), "{said}");
     }
     assert_eq!(bench.files("other").len(), 1);
     assert!(!bench.exists("nowhere"));
+    // Whoever wants more of it may have changed its case.
+    bench.write("whole/case.toml", case.replace("v_star = 0.1", "v_star = 0.2"));
+    let said = bench.refused("run --quiet --resume whole", 2);
+    assert!(said.contains("whole/case.toml differs"), "{said}");
+    assert!(said.contains("is complete"), "{said}");
+    bench.write("whole/case.toml", &case);
     // A run that was complete is not taken for one that was not.
     bench.write("whole/manifest.json", "{}");
     assert!(
@@ -365,4 +375,78 @@ fn where_only_the_one_before_is_left_it_is_taken() {
     bench.assert_same("whole", "halted");
     let said = bench.done("run --quiet --resume halted --previous");
     assert!(said.is_empty(), "{said}");
+}
+
+/// The manifest says what made the results: it is not written over another case than was run.
+#[test]
+fn a_case_that_is_changed_during_the_run_is_not_called_its_own() {
+    let bench = bench();
+    bench.done("run slow.toml -o whole");
+    for file in ["case.toml", "inputs/spot.png"] {
+        let child = start(&bench, "run slow.toml --quiet -o edited");
+        wait_for_signals(&child);
+        wait_for("case", || bench.exists("edited/inputs/spot.png"));
+        let path = format!("edited/{file}");
+        let before = bench.read(&path);
+        bench.write(&path, [&before[..], b"\n# more"].concat());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+        let changed = format!("{path} was changed while the run went on");
+        assert!(said(&output).contains(&changed), "{}", said(&output));
+        assert!(!bench.exists("edited/manifest.json"));
+        bench.write(&path, before);
+        bench.done("run --resume edited");
+        bench.assert_same("whole", "edited");
+        std::fs::remove_dir_all(bench.path().join("edited")).unwrap();
+    }
+}
+
+/// A terminal that closes saves the run, unless it was told not to mind.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_terminal_that_closes_loses_nothing() {
+    let bench = bench();
+    bench.done("run slow.toml -o whole");
+    let child = start(&bench, "run slow.toml --quiet -o halted");
+    wait_for_signals(&child);
+    wait_for("case", || bench.exists("halted/inputs/spot.png"));
+    send(&child, "-HUP");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(129), "{}", said(&output));
+    assert!(said(&output).contains("which is saved"), "{}", said(&output));
+    bench.done("run --resume halted");
+    bench.assert_same("whole", "halted");
+    let child = Command::new("nohup")
+        .arg(program())
+        .args("run slow.toml --quiet -o ignored".split(' '))
+        .current_dir(bench.path())
+        .stderr(Stdio::piped())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    wait_for_signals(&child);
+    wait_for("case", || bench.exists("ignored/inputs/spot.png"));
+    send(&child, "-HUP");
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    bench.assert_same("whole", "ignored");
+}
+
+/// A job script must not take a run that could not be saved for one that has only to be repeated.
+#[test]
+fn a_stop_that_saves_nothing_is_a_failure() {
+    let bench = bench();
+    let child = start(&bench, "run slow.toml --quiet -o gone");
+    wait_for_signals(&child);
+    wait_for("case", || bench.exists("gone/inputs/spot.png"));
+    std::fs::remove_dir_all(bench.path().join("gone")).unwrap();
+    send(&child, "-TERM");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    assert!(
+        said(&output).contains("which cannot be saved in gone")
+            && said(&output).contains("goes on from the start when that is mended"),
+        "{}",
+        said(&output)
+    );
 }

@@ -66,13 +66,12 @@ fn a_foreign_file_in_the_place_of_a_copy_is_refused_before_the_run() {
         format!("{}[[texture]]\nshape='mask'\nfile='spot.png'\n", super::SMALL),
     );
     bench.write("a/inputs/spot.png", "mine");
-    bench.write("a/case.toml", "# mine");
     let said = bench.refused("run masked.toml --quiet -o a --force", 2);
     assert!(
         said.contains("spot.png is not a file of an earlier run"),
         "{said}"
     );
-    assert_eq!(bench.files("a").len(), 2);
+    assert_eq!(bench.files("a").len(), 1);
     assert_eq!(bench.read("a/inputs/spot.png"), b"mine");
     // Nor is a file taken for the folder of copies.
     bench.write("b/inputs", "mine");
@@ -117,7 +116,10 @@ fn the_case_itself_is_never_replaced() {
         "run mine/case.toml --quiet -o mine/../mine",
     ] {
         let said = bench.refused(line, 2);
-        assert!(said.contains("would replace the case itself"), "{said}");
+        assert!(
+            said.contains("would replace mine/") && said.contains("case.toml, which the run reads"),
+            "{said}"
+        );
     }
     assert_eq!(bench.read("mine/case.toml"), super::SMALL.as_bytes());
     assert_eq!(bench.files("mine").len(), 1);
@@ -194,10 +196,10 @@ fn force_takes_the_copies_of_a_killed_run_along() {
     bench.write("b/inputs/spot.png", bench.read("spot.png"));
     let said = bench.refused("run masked.toml --quiet -o b --force", 2);
     assert!(
-        said.contains("spot.png is not a file of an earlier run"),
+        said.contains("b/case.toml is not a file of an earlier run"),
         "{said}"
     );
-    assert!(bench.exists("b/inputs/spot.png"));
+    assert_eq!(bench.files("b").len(), 2);
 }
 
 /// Files that only happen to have a name like ours.
@@ -227,4 +229,83 @@ fn what_only_looks_like_ours_stays() {
     bench.write("b/.slipfront123abc", "half a file");
     bench.done("run small.toml -o b");
     assert!(!bench.exists("b/.slipfront123abc"));
+}
+
+/// Names alone make no run: these files are somebody's.
+#[test]
+fn a_folder_that_never_held_a_run_loses_nothing() {
+    let bench = Bench::new();
+    let own = |bench: &Bench| {
+        for name in ["case.toml", "series.csv", "stress.png"] {
+            bench.write(&format!("mine/{name}"), "# mine");
+        }
+    };
+    own(&bench);
+    for name in ["case.toml", "series.csv", "stress.png"] {
+        let said = bench.refused(
+            "run small.toml --quiet -o mine --force --set output.snapshots=[]",
+            2,
+        );
+        assert!(said.contains("is not a file of an earlier run"), "{said}");
+        assert_eq!(bench.read(&format!("mine/{name}")), b"# mine");
+        std::fs::remove_file(bench.path().join("mine").join(name)).unwrap();
+    }
+    bench.write("mine/notes.txt", "mine");
+    bench.done("run small.toml -o mine --force");
+    // Where there was a run, what it has not written is not its own either.
+    std::fs::remove_dir_all(bench.path().join("mine")).unwrap();
+    bench.done("run small.toml -o mine --set output.snapshots=[]");
+    bench.write("mine/stress.png", "mine");
+    let said = bench.refused("run small.toml --quiet -o mine --force", 2);
+    assert!(
+        said.contains("stress.png is not a file of an earlier run"),
+        "{said}"
+    );
+    assert_eq!(bench.read("mine/stress.png"), b"mine");
+}
+
+/// The copy in the folder may be the only one that there is.
+#[test]
+fn a_file_that_the_run_reads_is_not_replaced() {
+    let bench = Bench::new();
+    bench.done("texture small.toml -o spot.png --set texture.0={shape=\"cavity\",coverage=15}");
+    bench.write(
+        "masked.toml",
+        format!("{}[[texture]]\nshape='mask'\nfile='spot.png'\n", super::SMALL),
+    );
+    bench.done("run masked.toml -o a");
+    bench.write("a/new.toml", bench.read("a/case.toml"));
+    let said = bench.refused("run a/new.toml --quiet -o a --force --seed 2", 2);
+    assert!(said.contains("would replace a/inputs/spot.png"), "{said}");
+    bench.done("run a/new.toml -o b --seed 2");
+    bench.done("verify a");
+}
+
+#[test]
+fn pictures_of_others_are_not_replaced() {
+    let bench = Bench::new();
+    bench.done("run small.toml -o a");
+    bench.done("run small.toml -o b --seed 2");
+    let before = bench.files("b");
+    for line in ["plot a -o b", "plot a b -o b", "plot a -o b --force"] {
+        let said = bench.refused(line, 2);
+        assert!(
+            said.contains("b holds a run, and these are not its pictures"),
+            "{said}"
+        );
+    }
+    assert_eq!(bench.files("b"), before);
+    bench.write("mine/friction.png", "mine");
+    let said = bench.refused("plot a -o mine", 2);
+    assert!(
+        said.contains("mine/friction.png exists") && said.contains("--force"),
+        "{said}"
+    );
+    assert_eq!(bench.files("mine").len(), 1);
+    bench.done("plot a -o mine --force");
+    bench.done("plot a");
+    bench.done("plot a -o ./a");
+    bench.done("verify a");
+    let said = bench.refused("plot mine", 2);
+    assert!(said.contains("mine holds no summary.json"), "{said}");
 }

@@ -9,7 +9,7 @@ use crate::lattice::Bond;
 use crate::vector_field::length;
 
 /// Blocks that are looked at together, one after the other in the order of the lattice.
-pub(super) const TOGETHER: usize = 64;
+pub(crate) const TOGETHER: usize = 64;
 
 /// Components x and y of so many displacements, and of one more at either end.
 type Row = [[f64; TOGETHER + 2]; 2];

@@ -11,7 +11,8 @@ use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
 
 use self::fused::Fused;
-use self::look::{TOGETHER, look};
+pub(crate) use self::look::TOGETHER;
+use self::look::look;
 use self::reference::Reference;
 use crate::checkpoint::{Checkpoint, Numbers};
 use crate::observe::Peak;

@@ -67,11 +67,11 @@ impl Reference {
     /// From a checkpoint: evaluates its instant again, which finds forces, friction and the velocities that it left.
     pub(crate) fn resume(model: &Model, dt_star: f64, checkpoint: Checkpoint) -> Self {
         let state = State {
-            displacement: checkpoint.displacement.into(),
-            velocity: checkpoint.velocity.into(),
+            displacement: checkpoint.displacement.map(|read| read.0).into(),
+            velocity: checkpoint.velocity.map(|read| read.0).into(),
         };
         let mut kernel = Self {
-            first_slip: checkpoint.first_slip,
+            first_slip: checkpoint.first_slip.0,
             stress_square_max: checkpoint.stress_square_max,
             ..Self::new(model, dt_star, state)
         };

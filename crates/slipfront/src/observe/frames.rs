@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{CurvePoint, Observer, stress};
-use crate::kernel::Block;
+use crate::kernel::{Block, TOGETHER};
 use crate::{Lattice, RunError, Snapshot};
 
 /// A quantity with one value per block. Values are dimensionless, as everywhere in this crate.
@@ -39,9 +39,6 @@ impl Field {
         }
     }
 }
-
-/// Blocks that are looked at together.
-const TOGETHER: usize = 64;
 
 /// Fields of one instant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -8,7 +8,7 @@ use clap::Args;
 use jiff::Timestamp;
 use slipfront_case::case::Case;
 use slipfront_case::checkpoint::Checkpoints;
-use slipfront_case::folder::{RunFolder, own_bytes, resume_command};
+use slipfront_case::folder::{RunFolder, own_bytes};
 use slipfront_case::results;
 use slipfront_case::run::Running;
 
@@ -91,7 +91,7 @@ impl Run {
         let case_path = self.case.path().map(Path::to_owned);
         let case = self.case.load()?;
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&case.name));
-        refuse_to_replace(case_path.as_deref(), &out)?;
+        refuse_to_replace(case_path.as_deref(), &case, &out)?;
         let replaced = if self.force { own_bytes(&out) } else { 0 };
         case.check_disk(&out, replaced, manner.interval.saves())
             .map_err(Failure::input)?;
@@ -133,12 +133,8 @@ fn complete(
     };
     progress.finish();
     let mut record = running.record(reason);
-    results::write(case, &mut record, folder, started, threads).map_err(|error| {
-        let command = resume_command(&out);
-        Failure::running(anyhow::anyhow!(
-            "{error}; `{command}` goes on when that is mended"
-        ))
-    })?;
+    results::write(case, &mut record, folder, started, threads)
+        .map_err(|error| Failure::running(anyhow::anyhow!("{error}; {}", saving.remedy())))?;
     if manner.json {
         print(&results::summary_json(&record.summary))?;
     } else if talks {
@@ -148,17 +144,21 @@ fn complete(
     Ok(())
 }
 
-/// Refuses a folder whose `case.toml` is the case to be run: with `--force` it would be gone, and lost if the run fails.
-fn refuse_to_replace(case: Option<&Path>, out: &Path) -> Result<(), Failure> {
-    let Some(case) = case.and_then(|case| case.canonicalize().ok()) else {
-        return Ok(());
-    };
-    if out.join("case.toml").canonicalize().ok() != Some(case) {
-        return Ok(());
-    }
+/// Refuses a folder that holds the case to be run, or a file that it reads, where the results go: with `--force` it would be
+/// gone, and lost if the run fails.
+fn refuse_to_replace(path: Option<&Path>, case: &Case, out: &Path) -> Result<(), Failure> {
+    let inputs = case.inputs.iter().map(|input| input.original.as_path());
+    let replaced = path.into_iter().chain(inputs).find(|path| {
+        let [own, copies] = [out.to_owned(), out.join("inputs")].map(|folder| folder.canonicalize().ok());
+        let path = path.canonicalize().ok();
+        let is_case = path.as_ref().is_some_and(|path| path.ends_with("case.toml"));
+        let folder = path.as_deref().and_then(Path::parent).map(Path::to_owned);
+        folder.is_some() && ((is_case && folder == own) || folder == copies)
+    });
+    let Some(path) = replaced else { return Ok(()) };
     let sentence = format!(
-        "the results would replace the case itself, {}: choose another folder with --out",
-        out.join("case.toml").display()
+        "the results would replace {}, which the run reads: choose another folder with --out",
+        path.display()
     );
     Err(Failure::input(anyhow::anyhow!(sentence)))
 }

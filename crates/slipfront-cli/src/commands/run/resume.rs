@@ -9,6 +9,7 @@ use slipfront_case::folder::{RunFolder, own_bytes};
 use slipfront_case::manifest::{Manifest, ManifestError};
 use slipfront_case::results;
 use slipfront_case::run::Running;
+use slipfront_case::verify::{VerifyError, expect_as_written};
 
 use super::{Manner, complete};
 use crate::commands::print;
@@ -74,6 +75,15 @@ fn load_case(path: &Path) -> Result<Case, Failure> {
 fn say_complete(path: &Path, manner: &Manner) -> Result<(), Failure> {
     // A kill may have come between the last file and this. On a disk that cannot be written they do no harm.
     let _ = Checkpoints::remove(path);
+    // Whoever wants a longer run may have changed its case.
+    let is_case = |name: &str| name == "case.toml" || name.starts_with("inputs/");
+    expect_as_written(path, is_case).map_err(|error| match error {
+        VerifyError::Changed { difference, .. } => Failure::input(anyhow::anyhow!(
+            "{difference}, and the run in {} is complete: run a changed case to another folder with --out",
+            path.display()
+        )),
+        error => Failure::input(error),
+    })?;
     if manner.json {
         let summary = results::read_summary(path).map_err(Failure::input)?;
         print(&results::summary_json(&summary))?;

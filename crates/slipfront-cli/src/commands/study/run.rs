@@ -66,6 +66,7 @@ impl StudyRun {
         let out = self.out.unwrap_or_else(|| default_out(&file.name, self.shard));
         let mut folder = StudyFolder::open(&out, &file).map_err(Failure::input)?;
         plan.check_disk(&folder).map_err(Failure::input)?;
+        let plan = plan.reading_copies(&folder);
         complete(&plan, &mut folder, threads, self.quiet)
     }
 }

@@ -99,13 +99,13 @@ impl Fused {
         skips: bool,
     ) -> Self {
         let state = State {
-            displacement: checkpoint.displacement.into(),
-            velocity: checkpoint.velocity.into(),
+            displacement: checkpoint.displacement.map(|read| read.0).into(),
+            velocity: checkpoint.velocity.map(|read| read.0).into(),
         };
         let mut kernel = Self::new(model, dt_star, Some(&state), threads, skips);
         drop(state);
         for band in &mut kernel.bands {
-            band.resume(&kernel.layout, &checkpoint.first_slip);
+            band.resume(&kernel.layout, &checkpoint.first_slip.0);
         }
         Self {
             latest: checkpoint.totals,
