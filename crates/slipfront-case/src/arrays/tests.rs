@@ -269,11 +269,13 @@ fn paths_that_are_no_files() {
     ] {
         assert!(text.contains("is not a regular file"), "{text}");
     }
+    fs::write(folder.path().join("mu.txt"), "1").unwrap();
     let text = message(read_field(&folder.path().join("mu.txt"), 3, 2));
     assert!(
         text.contains("the extension `.txt`; name a file that ends in .npy or .csv"),
         "{text}"
     );
+    fs::write(folder.path().join("mu"), "1").unwrap();
     let text = message(read_field(&folder.path().join("mu"), 3, 2));
     assert!(text.contains("a name without extension"), "{text}");
 }
@@ -450,7 +452,7 @@ fn files_longer_than_can_be_meant_are_not_read() {
     let (_folder, path) = stretched("mu.csv", b"1,2,3\n4,5,6\n#", most + 1);
     let text = message(read_field(&path, 3, 2));
     let wanted = format!(
-        "has {} bytes where 2 lines of 3 numbers take at most {most};",
+        "has {} bytes where 2 rows of 3 numbers take at most {most};",
         most + 1
     );
     assert!(text.contains(&wanted), "{text}");
@@ -460,8 +462,14 @@ fn files_longer_than_can_be_meant_are_not_read() {
         text.contains("where an image takes at most 268435456; scale it down"),
         "{text}"
     );
-    // Of an array only as much is read as the lattice has blocks.
     let (_folder, path) = stretched("mu.npy", &field_npy(), 1 << 40);
+    let text = message(read_field(&path, 3, 2));
+    assert!(
+        text.contains("where 2 rows of 3 numbers take at most 10048;"),
+        "{text}"
+    );
+    // Of an array only as much is looked at as the lattice has blocks.
+    let (_folder, path) = stretched("mu.npy", &field_npy(), 5000);
     assert_eq!(read_field(&path, 3, 2).unwrap(), FIELD);
 }
 
