@@ -7,7 +7,7 @@ use super::FolderError;
 use super::files::{TEXT_MAX_BYTES, is_unfinished, open_regular, read_whole, remove_if_there, unfinished};
 use crate::case_file::CaseFile;
 use crate::checkpoint::{BEGINNING, CHECKPOINT, PREVIOUS};
-use crate::manifest::{MANIFEST, Manifest};
+use crate::manifest::{MANIFEST, Manifest, ManifestFile};
 
 /// The resolved case in its folder.
 pub(super) const CASE: &str = "case.toml";
@@ -39,13 +39,18 @@ fn own_files(path: &Path) -> Vec<String> {
     let manifest = read_whole(&path.join(MANIFEST), TEXT_MAX_BYTES).ok();
     let manifest = manifest.and_then(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok());
     let mut case = resolved_case(path);
-    let listed: Option<Vec<String>> =
-        manifest.map(|manifest| manifest.files.into_iter().map(|file| file.name).collect());
+    let listed = manifest.map(|manifest| manifest.files);
     let is_result = |name: &&str| match &listed {
-        Some(listed) => *name == MANIFEST || listed.iter().any(|file| file == name),
+        Some(listed) => *name == MANIFEST || listed.iter().any(|file| file.name == *name),
         // Not complete: how far it had come is not known.
         None => case.is_some(),
     };
+    // One that another version wrote may look otherwise today.
+    let as_listed = |listed: &Vec<ManifestFile>| {
+        let now = ManifestFile::of(path, CASE);
+        now.is_ok_and(|now| listed.contains(&now))
+    };
+    let is_own_case = case.is_some() || listed.as_ref().is_some_and(as_listed);
     let results = RESULTS.into_iter().filter(is_result).map(str::to_owned);
     let mut names: Vec<String> = results.collect();
     let checkpoints = [CHECKPOINT, PREVIOUS].into_iter();
@@ -53,7 +58,7 @@ fn own_files(path: &Path) -> Vec<String> {
     names.extend(checkpoints.map(str::to_owned));
     let read = case.iter_mut().flat_map(CaseFile::files_mut);
     let mut copies: Vec<String> = read.map(|(_, name)| name.clone()).collect();
-    copies.extend(listed.into_iter().flatten());
+    copies.extend(listed.into_iter().flatten().map(|file| file.name));
     copies.sort();
     copies.dedup();
     // They are only believed about the folder of copies: damage must not make us delete elsewhere.
@@ -61,7 +66,7 @@ fn own_files(path: &Path) -> Vec<String> {
     names.extend(copies);
     names.extend(unfinished(path, ""));
     names.extend(unfinished(path, "inputs/"));
-    names.extend(case.map(|_| CASE.to_owned()));
+    names.extend(is_own_case.then(|| CASE.to_owned()));
     names
 }
 

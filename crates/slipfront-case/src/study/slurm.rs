@@ -69,7 +69,10 @@ mod tests {
             out: "/data/out".to_owned(),
             tasks: 3,
         });
-        assert!(script.contains(r#"study "/data/it's mine/study.toml" --yes"#), "{script}");
+        assert!(
+            script.contains(r#"study "/data/it's mine/study.toml" --yes"#),
+            "{script}"
+        );
         assert!(script.contains("#SBATCH --job-name=my-study\n#SBATCH --array=1-3\n"));
     }
 }

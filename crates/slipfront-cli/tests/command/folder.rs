@@ -41,12 +41,7 @@ fn force_replaces_own_files_only() {
 
 #[test]
 fn force_takes_copies_of_an_earlier_run_along() {
-    let bench = Bench::new();
-    bench.done("texture small.toml -o spot.png --set texture.0={shape=\"cavity\",coverage=15}");
-    bench.write(
-        "masked.toml",
-        format!("{}[[texture]]\nshape='mask'\nfile='spot.png'\n", super::SMALL),
-    );
+    let bench = Bench::masked();
     bench.done("run masked.toml -o a");
     bench.done("run masked.toml -o a --force");
     assert!(bench.exists("a/inputs/spot.png"));
@@ -59,12 +54,7 @@ fn force_takes_copies_of_an_earlier_run_along() {
 
 #[test]
 fn a_foreign_file_in_the_place_of_a_copy_is_refused_before_the_run() {
-    let bench = Bench::new();
-    bench.done("texture small.toml -o spot.png --set texture.0={shape=\"cavity\",coverage=15}");
-    bench.write(
-        "masked.toml",
-        format!("{}[[texture]]\nshape='mask'\nfile='spot.png'\n", super::SMALL),
-    );
+    let bench = Bench::masked();
     bench.write("a/inputs/spot.png", "mine");
     let said = bench.refused("run masked.toml --quiet -o a --force", 2);
     assert!(
@@ -179,10 +169,7 @@ fn odd_names_are_names() {
 /// A kill leaves a case, copies of what it reads, and files that were being written, but no manifest that lists them.
 #[test]
 fn force_takes_the_copies_of_a_killed_run_along() {
-    let bench = Bench::new();
-    bench.done("texture small.toml -o spot.png --set texture.0={shape=\"cavity\",coverage=15}");
-    let masked = format!("{}[[texture]]\nshape='mask'\nfile='spot.png'\n", super::SMALL);
-    bench.write("masked.toml", &masked);
+    let bench = Bench::masked();
     bench.done("run masked.toml -o clean");
     bench.done("run masked.toml -o a");
     std::fs::remove_file(bench.path().join("a/manifest.json")).unwrap();
@@ -192,7 +179,10 @@ fn force_takes_the_copies_of_a_killed_run_along() {
     bench.done("run masked.toml -o a --force");
     bench.assert_same("clean", "a");
     // A case that a user wrote may name the only copy that there is.
-    bench.write("b/case.toml", masked.replace("spot.png", "inputs/spot.png"));
+    bench.write(
+        "b/case.toml",
+        super::MASKED.replace("spot.png", "inputs/spot.png"),
+    );
     bench.write("b/inputs/spot.png", bench.read("spot.png"));
     let said = bench.refused("run masked.toml --quiet -o b --force", 2);
     assert!(
@@ -267,12 +257,7 @@ fn a_folder_that_never_held_a_run_loses_nothing() {
 /// The copy in the folder may be the only one that there is.
 #[test]
 fn a_file_that_the_run_reads_is_not_replaced() {
-    let bench = Bench::new();
-    bench.done("texture small.toml -o spot.png --set texture.0={shape=\"cavity\",coverage=15}");
-    bench.write(
-        "masked.toml",
-        format!("{}[[texture]]\nshape='mask'\nfile='spot.png'\n", super::SMALL),
-    );
+    let bench = Bench::masked();
     bench.done("run masked.toml -o a");
     bench.write("a/new.toml", bench.read("a/case.toml"));
     let said = bench.refused("run a/new.toml --quiet -o a --force --seed 2", 2);

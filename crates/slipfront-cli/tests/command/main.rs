@@ -23,6 +23,10 @@ use tempfile::TempDir;
 /// A small and quick case: 30 blocks, 800 steps.
 const SMALL: &str = "[slider]\nblocks = [6, 5]\n[drive]\nv_star = 0.1\n";
 
+/// The same with a mask.
+const MASKED: &str =
+    "[slider]\nblocks = [6, 5]\n[drive]\nv_star = 0.1\n[[texture]]\nshape='mask'\nfile='spot.png'\n";
+
 /// Every file of a run without inputs (design, section 3).
 const RUN_FILES: [&str; 9] = [
     "case.toml",
@@ -46,6 +50,14 @@ impl Bench {
         let folder = TempDir::new().unwrap();
         let bench = Self { folder };
         bench.write("small.toml", SMALL);
+        bench
+    }
+
+    /// The same, with `masked.toml`, which reads the mask `spot.png`.
+    fn masked() -> Self {
+        let bench = Self::new();
+        bench.done("texture small.toml -o spot.png --set texture.0={shape=\"cavity\",coverage=15}");
+        bench.write("masked.toml", MASKED);
         bench
     }
 

@@ -14,12 +14,7 @@ fn verified(bench: &Bench, line: &str) -> (i32, String, String) {
 
 /// A run with an input, so that every kind of file is there.
 fn bench_with_a_run() -> Bench {
-    let bench = Bench::new();
-    bench.done("texture small.toml -o spot.png --set texture.0={shape=\"cavity\",coverage=15}");
-    bench.write(
-        "masked.toml",
-        format!("{}[[texture]]\nshape='mask'\nfile='spot.png'\n", super::SMALL),
-    );
+    let bench = Bench::masked();
     bench.done("run masked.toml -o a");
     bench
 }

@@ -115,34 +115,17 @@ fn copies_do_not_overwrite_what_is_still_to_be_copied() {
     bench.write("one/mu.csv", table(1.0));
     bench.write("two/mu.csv", table(0.9));
     let study = |files: &str| format!("{BASE}[[axes]]\nkey = 'friction.mu_static_field'\nlist = [{files}]\n");
+    let twice = |files: &str| format!("[study]\nreplicates = 2\n{}", study(files));
     bench.write("first/study.toml", study("'../two/mu.csv'"));
     bench.run(&["first/study.toml", "-o", "out"]);
-    bench.write("out/study.toml", study("'../one/mu.csv', 'inputs/mu.csv'"));
+    bench.write("out/study.toml", twice("'../one/mu.csv', 'inputs/mu.csv'"));
     bench.run(&["out/study.toml", "-o", "out"]);
     for (copy, value) in [("mu.csv", 1.0), ("2-mu.csv", 0.9)] {
         let copied = std::fs::read_to_string(bench.path("out/inputs").join(copy)).unwrap();
         assert_eq!(copied, table(value), "{copy}");
     }
-}
-
-/// A copy has another name from now on, and the runs that are still to come read what they are recorded by.
-#[test]
-fn runs_read_the_files_that_they_are_recorded_by() {
-    let bench = Bench::new();
-    let table = |value: f64| format!("{value},{value},{value},{value}\n").repeat(4);
-    bench.write("one/mu.csv", table(1.0));
-    bench.write("two/mu.csv", table(0.9));
-    let study = |files: &str| format!("{BASE}[[axes]]\nkey = 'friction.mu_static_field'\nlist = [{files}]\n");
-    bench.write("first/study.toml", study("'../two/mu.csv'"));
-    bench.run(&["first/study.toml", "-o", "out"]);
-    let twice = "[study]\nreplicates = 2\n";
-    let both = study("'../one/mu.csv', 'inputs/mu.csv'");
-    bench.write("out/study.toml", format!("{twice}{both}"));
-    bench.run(&["out/study.toml", "-o", "out"]);
-    bench.write(
-        "fresh/study.toml",
-        format!("{twice}{}", study("'../one/mu.csv', '../two/mu.csv'")),
-    );
+    // A copy had another name from then on, and the runs that were still to come read what they are recorded by.
+    bench.write("fresh/study.toml", twice("'../one/mu.csv', '../two/mu.csv'"));
     bench.run(&["fresh/study.toml", "-o", "fresh_out"]);
     let points = |folder: &str| std::fs::read_to_string(bench.path(folder).join("points.csv")).unwrap();
     assert_eq!(points("out"), points("fresh_out"));
