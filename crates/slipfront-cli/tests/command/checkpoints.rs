@@ -411,9 +411,17 @@ fn a_terminal_that_closes_loses_nothing() {
     wait_for("case", || bench.exists("halted/inputs/spot.png"));
     send(&child, "-HUP");
     let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(129), "{}", said(&output));
-    assert!(said(&output).contains("which is saved"), "{}", said(&output));
-    bench.done("run --resume halted");
+    // Whoever started these tests under `nohup` has told the runs in them as well.
+    let status = std::fs::read_to_string("/proc/self/status").unwrap();
+    let ignored = status
+        .lines()
+        .find_map(|line| line.strip_prefix("SigIgn:"))
+        .unwrap();
+    if u64::from_str_radix(ignored.trim(), 16).unwrap() & 1 == 0 {
+        assert_eq!(output.status.code(), Some(129), "{}", said(&output));
+        assert!(said(&output).contains("which is saved"), "{}", said(&output));
+        bench.done("run --resume halted");
+    }
     bench.assert_same("whole", "halted");
     let child = Command::new("nohup")
         .arg(program())
