@@ -71,13 +71,16 @@ impl Plot {
 }
 
 fn expect_results(folder: &Path) -> Result<(), Failure> {
-    if folder.join("summary.json").exists() {
-        return Ok(());
-    }
-    Err(Failure::input(anyhow::anyhow!(
-        "{} holds no summary.json: name the folder of a run that is finished",
-        folder.display()
-    )))
+    let path = folder.join("summary.json");
+    let sentence = match path.try_exists() {
+        Ok(true) => return Ok(()),
+        Ok(false) => format!(
+            "{} holds no summary.json: name the folder of a run that is finished",
+            folder.display()
+        ),
+        Err(error) => format!("cannot read {}: {error}", path.display()),
+    };
+    Err(Failure::input(anyhow::anyhow!(sentence)))
 }
 
 fn is_same(folder: &Path, other: &Path) -> bool {
@@ -91,7 +94,11 @@ fn refuse_to_replace<'p>(
     mut files: impl Iterator<Item = &'p PathBuf>,
     force: bool,
 ) -> Result<(), Failure> {
-    let sentence = if out.join(MANIFEST).exists() {
+    let manifest = out.join(MANIFEST);
+    let holds_a_run = manifest
+        .try_exists()
+        .map_err(|error| Failure::input(anyhow::anyhow!("cannot read {}: {error}", manifest.display())))?;
+    let sentence = if holds_a_run {
         format!(
             "{} holds a run, and these are not its pictures: choose another folder with --out",
             out.display()
