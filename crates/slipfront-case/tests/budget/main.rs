@@ -167,6 +167,7 @@ fn study(folder: &Path) {
                 list = [[10, 10], [500, 500]]";
     let file = StudyFile::parse(text, "study.toml", "study", folder).unwrap();
     let plan = Plan::new(&file, None).unwrap();
+    let mut alone = 0.0;
     for threads in [1, 2] {
         let records = tempfile::tempdir().unwrap();
         // The fonts of the pictures before, which a study has not yet when it runs.
@@ -176,10 +177,12 @@ fn study(folder: &Path) {
             let never = AtomicBool::new(false);
             study::execute(&plan, &mut records, folder, threads, &never, &mut |_| {}).unwrap();
         });
-        assert_honest(
-            &format!("{threads} runs at once"),
-            plan.memory(threads),
-            taken - before,
-        );
+        let taken = taken - before;
+        if threads == 1 {
+            alone = taken;
+        }
+        // Whether the largest of two meet is up to the system: they may.
+        let most = taken.max(threads as f64 * alone);
+        assert_honest(&format!("{threads} runs at once"), plan.memory(threads), most);
     }
 }
