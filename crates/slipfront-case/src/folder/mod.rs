@@ -210,14 +210,14 @@ impl RunFolder {
     /// What the system says.
     pub fn clear_results(&mut self, case: &Case) -> Result<(), FolderError> {
         remove_results(&self.path)?;
-        let inputs = case.inputs.iter();
-        let inputs = inputs.map(|input| (input.name.clone(), input.bytes.clone()));
         // A case that was loaded can be written.
-        let text = case.file.to_toml().unwrap_or_default().into_bytes();
-        self.written = [(CASE.to_owned(), text)]
+        let text = case.file.to_toml().unwrap_or_default();
+        let inputs = case.inputs.iter();
+        let inputs = inputs.map(|input| (input.name.as_str(), input.bytes.as_slice()));
+        self.written = [(CASE, text.as_bytes())]
             .into_iter()
             .chain(inputs)
-            .map(|(name, bytes)| (name, Some(blake3::hash(&bytes))))
+            .map(|(name, bytes)| (name.to_owned(), Some(blake3::hash(bytes))))
             .collect();
         Ok(())
     }
