@@ -12,7 +12,7 @@ use slipfront::surface::STREAMS;
 use slipfront::{Kernel, Model, simd_width};
 use thiserror::Error;
 
-use crate::folder::{FolderError, TEXT_MAX_BYTES, json, read_whole, resume_command};
+use crate::folder::{FolderError, TEXT_MAX_BYTES, json, open_regular, read_whole, resume_command};
 use crate::legible::{self, shortened};
 
 /// Name of the manifest in its folder.
@@ -250,13 +250,8 @@ fn seal_of(manifest: &[u8]) -> Option<String> {
 impl ManifestFile {
     /// A regular file of a folder as it is now.
     pub(crate) fn of(folder: &Path, name: &str) -> std::io::Result<Self> {
-        let path = folder.join(name);
-        // A pipe would be waited for, and a device never ends.
-        if !std::fs::metadata(&path)?.is_file() {
-            return Err(std::io::Error::other("it is not a regular file"));
-        }
         let mut hasher = blake3::Hasher::new();
-        hasher.update_reader(File::open(path)?)?;
+        hasher.update_reader(open_regular(&folder.join(name))?)?;
         Ok(Self {
             name: name.to_owned(),
             bytes: hasher.count(),

@@ -8,31 +8,28 @@ mod mask;
 mod npy;
 mod table;
 
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 pub use mask::{mask_png, write_mask_png};
 pub use npy::mask_npy;
 
+use crate::folder::open_regular;
 use crate::legible::sentence;
 
 /// What is wrong with an array or image file: one sentence that ends with the remedy.
 #[derive(Debug, thiserror::Error)]
 pub enum ArrayError {
     /// The file cannot be opened or read.
-    #[error("cannot read `{}`: {source}; check the path and its permissions", path.display())]
+    #[error(
+        "cannot read `{}`: {source}; check the path (relative to the case file) and its permissions",
+        path.display()
+    )]
     Read {
         /// The file.
         path: PathBuf,
         /// What the operating system said.
         source: io::Error,
-    },
-    /// The path names a directory or a device.
-    #[error("`{}` is not a regular file; name a file that ends in .npy, .csv or .png", path.display())]
-    NotAFile {
-        /// The path.
-        path: PathBuf,
     },
     /// The extension tells nothing about the format.
     #[error(
@@ -147,15 +144,10 @@ pub fn read_file(path: &Path, nx: usize, ny: usize) -> Result<Vec<u8>, ArrayErro
         path: path.to_owned(),
         source,
     };
-    // The check comes before the opening, because opening a named pipe waits for a writer.
-    let metadata = std::fs::metadata(path).map_err(read_error)?;
-    if !metadata.is_file() {
-        return Err(ArrayError::NotAFile {
-            path: path.to_owned(),
-        });
-    }
+    let file = open_regular(path).map_err(read_error)?;
+    let found = file.metadata().map_err(read_error)?.len();
     let longest = longest(path, nx, ny);
-    if metadata.len() > longest {
+    if found > longest {
         let (wanted, remedy) = match extension(path).as_str() {
             "npy" | "csv" => (
                 format!("{ny} rows of {nx} numbers take at most {longest}"),
@@ -165,13 +157,12 @@ pub fn read_file(path: &Path, nx: usize, ny: usize) -> Result<Vec<u8>, ArrayErro
         };
         return Err(ArrayError::TooLong {
             path: path.to_owned(),
-            found: metadata.len(),
+            found,
             wanted,
             remedy,
         });
     }
     let mut bytes = Vec::new();
-    let file = File::open(path).map_err(read_error)?;
     file.take(longest).read_to_end(&mut bytes).map_err(read_error)?;
     Ok(bytes)
 }

@@ -51,12 +51,6 @@ impl Inputs {
         lattice: &Lattice,
     ) -> Result<Given, CaseError> {
         let path = self.folder.join(written);
-        let metadata = std::fs::metadata(&path).map_err(|error| unreadable(file, key, &path, &error))?;
-        // A pipe would be waited for, and a device such as /dev/zero never ends.
-        if !metadata.is_file() {
-            let sentence = format!("{} is not a regular file: name a file that is", path.display());
-            return Err(file.source.error(key, sentence));
-        }
         let bytes = arrays::read_file(&path, lattice.nx, lattice.ny)
             .map_err(|error| file.source.error(key, error.to_string()))?;
         Ok(Given { path, bytes })
@@ -87,12 +81,4 @@ impl Inputs {
         within_budget(file, self.budget.check_making())?;
         Ok(name)
     }
-}
-
-fn unreadable(file: &CaseFile, key: &str, path: &Path, error: &std::io::Error) -> CaseError {
-    let sentence = format!(
-        "cannot read {}: {error}; paths are relative to the case file",
-        path.display()
-    );
-    file.source.error(key, sentence)
 }

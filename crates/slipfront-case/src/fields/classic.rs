@@ -8,6 +8,8 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
+use crate::folder::open_regular;
+
 /// Headers of fields files take a few kilobytes.
 const HEADER_MAX_BYTES: u64 = 1 << 20;
 
@@ -108,10 +110,7 @@ impl Kind {
 impl Classic {
     /// Opens a file and reads its header.
     pub(super) fn open(path: &Path) -> Result<Classic, Fault> {
-        if !std::fs::metadata(path)?.is_file() {
-            return Err(Fault::Broken("it is not a regular file".to_owned()));
-        }
-        let mut file = File::open(path)?;
+        let mut file = open_regular(path)?;
         let file_bytes = file.metadata()?.len();
         let mut bytes = Vec::new();
         Read::by_ref(&mut file)

@@ -69,7 +69,10 @@ fn inputs_are_files() {
             &format!("run small.toml --set friction.mu_static_field={name}"),
             2,
         );
-        assert!(said.contains(&format!("{name} is not a regular file")), "{said}");
+        assert!(
+            said.contains(&format!("{name}`: it is not a regular file")),
+            "{said}"
+        );
     }
 }
 
