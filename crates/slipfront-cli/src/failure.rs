@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use crate::say::say;
 use crate::signals::Signals;
 
 /// Why a command ends, which decides its exit status.
@@ -35,7 +36,7 @@ impl Failure {
             Self::Running(error) => (error, 1),
             Self::Stopped(signal, error) => (error, 128 + signal as u8),
         };
-        eprintln!("error: {error}");
+        say(&format!("error: {error}"));
         ExitCode::from(status)
     }
 }

@@ -1,7 +1,10 @@
 //! The command `slipfront`: one file per subcommand under `commands/`, each thin.
 //!
 //! Errors go to stderr as sentences, results to stdout. Exit status: 0 done, 1 a run failed, 2 bad input or
-//! usage, 129, 130 and 143 stopped by SIGHUP, SIGINT and SIGTERM.
+//! usage, 128 + its number stopped by a signal: 129, 130 and 143 by SIGHUP, SIGINT and SIGTERM.
+
+// These end the process where they cannot print.
+#![deny(clippy::print_stderr, clippy::print_stdout)]
 
 mod commands;
 mod failure;
@@ -9,6 +12,7 @@ mod probe;
 mod progress;
 mod report;
 mod saving;
+mod say;
 mod signals;
 
 use std::process::ExitCode;
@@ -42,7 +46,10 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let done = match Cli::parse().command {
+    let command = Cli::parse().command;
+    // Without it, files are written all the same.
+    let _ = signals::let_writes_fail();
+    let done = match command {
         Command::Run(run) => run.execute(),
         Command::Check(check) => check.execute(),
         Command::Study(study) => study.execute(),

@@ -1,4 +1,4 @@
-//! Progress of a run on stderr: a bar on a terminal, else a plain line every few seconds.
+//! Progress of a run on stderr: a bar on a terminal, else a plain line now and then.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -8,8 +8,12 @@ use slipfront::Snapshot;
 use slipfront_case::run::Running;
 use slipfront_case::study::Progress as StudyState;
 
-/// Time between plain lines.
-const LINE_EVERY: Duration = Duration::from_secs(5);
+use crate::say::say;
+
+/// Time from one plain line to the next after so long a time: 5 seconds at first, a minute in the log of hours.
+fn pause(passed: Duration) -> Duration {
+    (passed / 12).clamp(Duration::from_secs(5), Duration::from_secs(60))
+}
 
 /// Shows how far a run has come.
 pub(crate) enum Progress {
@@ -45,7 +49,7 @@ impl Progress {
                 end_star,
                 first_step,
                 began: now,
-                next: now + LINE_EVERY,
+                next: now + pause(Duration::ZERO),
             });
         }
         let bar = ProgressBar::new(last_step);
@@ -69,7 +73,7 @@ impl Progress {
     pub(crate) fn note(&self, text: &str) {
         match self {
             Self::Bar(bar) => bar.println(text),
-            Self::Silent | Self::Lines(_) => eprintln!("{text}"),
+            Self::Silent | Self::Lines(_) => say(text),
         }
     }
 
@@ -93,11 +97,11 @@ impl Lines {
         if Instant::now() < self.next || now.step == self.first_step {
             return;
         }
-        self.next += LINE_EVERY;
         let passed = self.began.elapsed();
+        self.next = Instant::now() + pause(passed);
         let rate = (now.step - self.first_step) as f64 / passed.as_secs_f64();
         let left = (self.last_step - now.step) as f64 / rate;
-        eprintln!(
+        say(&format!(
             "{:3.0} %  t* = {:.1} of {:.1}  mu* = {:.3}  {:.1} million block-steps/s  {} left",
             100.0 * now.step as f64 / self.last_step as f64,
             now.time_star,
@@ -105,7 +109,7 @@ impl Lines {
             now.point.mu_star,
             rate * self.n_blocks as f64 / 1e6,
             HumanDuration(Duration::from_secs_f64(left)),
-        );
+        ));
     }
 }
 
@@ -125,7 +129,7 @@ impl StudyProgress {
             let now = Instant::now();
             return Self::Lines {
                 began: now,
-                next: now + LINE_EVERY,
+                next: now + pause(Duration::ZERO),
             };
         }
         let bar = ProgressBar::new(0);
@@ -163,7 +167,7 @@ impl StudyProgress {
                 if Instant::now() < *next {
                     return;
                 }
-                *next = Instant::now() + LINE_EVERY;
+                *next = Instant::now() + pause(began.elapsed());
                 // What was done before says nothing of the rate.
                 let rate = if now.here > 0 {
                     let rate = now.here as f64 / began.elapsed().as_secs_f64();
@@ -172,7 +176,8 @@ impl StudyProgress {
                 } else {
                     String::new()
                 };
-                eprintln!("{} of {} runs{rate}{failed}{worst}", now.done, now.total);
+                let (done, total) = (now.done, now.total);
+                say(&format!("{done} of {total} runs{rate}{failed}{worst}"));
             }
         }
     }

@@ -13,6 +13,7 @@ use std::time::{Duration, Instant};
 
 use super::error::StudyError;
 use super::file::Keep;
+use super::folder::RUNS;
 use super::plan::{Plan, Role, RunKey};
 use super::quantities::{Quantity, reduction_percent};
 use super::record::{Finding, Outcome, Record, Records};
@@ -61,6 +62,30 @@ impl Findings {
     /// A number of a run of a point, or its reduction against the reference of the same seed.
     pub fn value(&self, point: usize, replicate: usize, quantity: Quantity) -> Option<f64> {
         value(&self.runs, point, replicate, quantity)
+    }
+
+    /// How many of the runs of a point, with those of its references, had no transition, and how many there are.
+    pub fn without_transition(&self, point: usize) -> (usize, usize) {
+        let Some(Quantity::Number(transition)) = Quantity::named("transition") else {
+            return (0, 0);
+        };
+        let first = RunKey {
+            point,
+            replicate: 0,
+            role: Role::Point,
+        };
+        let after = RunKey {
+            point: point + 1,
+            ..first
+        };
+        let of_point = self.runs.range(first..after);
+        let had: Vec<bool> = of_point
+            .filter_map(|(_, finding)| match finding.as_ref() {
+                Finding::Done(numbers) => Some(numbers.get(transition)? == 1.0),
+                Finding::Failed(_) => None,
+            })
+            .collect();
+        (had.iter().filter(|had| !**had).count(), had.len())
     }
 
     /// Runs that failed and why.
@@ -116,7 +141,7 @@ pub fn execute(
     stop: &AtomicBool,
     watch: &mut dyn FnMut(&Progress),
 ) -> Result<Findings, StudyError> {
-    let runs = folder.join("runs");
+    let runs = folder.join(RUNS);
     let runner = |run: RunKey, ends: &Ends| run_one(plan, &runs, run, ends);
     execute_with(plan, records, &runner, threads, stop, watch)
 }
@@ -158,23 +183,27 @@ fn execute_with(
     let abandon = AtomicBool::new(false);
     let ends = || stop.load(Ordering::Relaxed) || abandon.load(Ordering::Relaxed);
     std::thread::scope(|scope| {
+        let _abandon = SetWhenLeft(&abandon);
         for _ in 0..threads {
             let (tasks, ends, to_manager) = (&tasks, &ends, to_manager.clone());
             let spawned = std::thread::Builder::new()
                 .spawn_scoped(scope, move || work(runner, tasks, &to_manager, ends));
-            if let Err(error) = spawned {
-                abandon.store(true, Ordering::Relaxed);
-                drop(to_workers);
-                return Err(StudyError::Threads(error));
-            }
+            spawned.map_err(StudyError::Threads)?;
         }
         drop(to_manager);
         let mut manager = Manager::new(plan, records, to_workers, threads);
-        let managed = manager.manage(&finished, stop, watch);
-        abandon.store(true, Ordering::Relaxed);
-        managed?;
+        manager.manage(&finished, stop, watch)?;
         Ok(manager.findings())
     })
+}
+
+/// Set when the scope that holds this is left in whatever way, a panic included: nobody records what is run from then on.
+struct SetWhenLeft<'a>(&'a AtomicBool);
+
+impl Drop for SetWhenLeft<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
 }
 
 /// A run to be done.
@@ -611,6 +640,29 @@ mod tests {
             [(1, "it diverged"), (3, "a fault of the program: out of bounds")]
         );
         assert_eq!((found.runs.len(), recorded), (6, 6));
+    }
+
+    /// Nobody would record what else is run.
+    #[test]
+    fn a_fault_of_the_manager_ends_the_workers() {
+        let plan = plan("base.slider.blocks = [2, 2]\nstudy.replicates = 500");
+        let folder = tempfile::tempdir().unwrap();
+        let mut records = Records::open(folder.path()).unwrap();
+        let made = std::sync::atomic::AtomicUsize::new(0);
+        let runner = |run: RunKey, _: &Ends| {
+            made.fetch_add(1, Ordering::Relaxed);
+            std::thread::sleep(Duration::from_millis(1));
+            Ok(Some(pretend(run)))
+        };
+        let never = AtomicBool::new(false);
+        let watch = &mut |now: &Progress| assert!(now.here < 5, "a fault of the manager");
+        let ended = catch_unwind(AssertUnwindSafe(|| {
+            execute_with(&plan, &mut records, &runner, 2, &never, watch).map(|_| ())
+        }));
+        assert!(ended.is_err());
+        // Those that were under way when it happened, and some more that a slow machine lets pass.
+        let made = made.into_inner();
+        assert!(made < 400, "{made} of 500");
     }
 
     #[test]

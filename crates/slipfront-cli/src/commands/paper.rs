@@ -11,6 +11,7 @@ use slipfront_case::study::{Records, StudyError};
 
 use super::{print, set_threads};
 use crate::failure::Failure;
+use crate::say::say;
 use crate::signals::Signals;
 
 /// Run the figures and tables of the paper again, and judge its claims one by one
@@ -140,12 +141,12 @@ impl Progress {
             }
             Self::Lines => {
                 if stage.study.is_none() {
-                    eprintln!(
+                    say(&format!(
                         "{:>2} of {}: {}{step}",
                         stage.done + 1,
                         stage.total,
                         stage.figure.title
-                    );
+                    ));
                 }
             }
         }

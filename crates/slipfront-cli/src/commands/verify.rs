@@ -14,6 +14,7 @@ use slipfront_case::verify::{Verdict, VerifyError, compare, is_study, verify};
 use super::{print, set_threads};
 use crate::failure::Failure;
 use crate::progress::Progress;
+use crate::say::say;
 use crate::signals::Signals;
 
 /// Check that results are what was written: every file of a run against its manifest, a study against its records
@@ -60,7 +61,7 @@ impl Verify {
                 // The others are looked at all the same.
                 Err(Failure::Input(error)) => {
                     unusable += 1;
-                    eprintln!("error: {error}");
+                    say(&format!("error: {error}"));
                 }
                 Err(failure) => return Err(failure),
             }

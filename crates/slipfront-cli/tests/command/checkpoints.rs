@@ -1,5 +1,6 @@
 //! Runs that are stopped and resumed: the same bytes as without a stop, and never from a checkpoint that is not theirs.
 
+use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
@@ -58,12 +59,12 @@ fn said(output: &Output) -> String {
 /// Waits until the child has caught the signals: before, they end it.
 fn wait_for_signals(child: &Child) {
     let status = format!("/proc/{}/status", child.id());
-    // SIGUSR1 is number 10, SIGTERM number 15; who has ended needs no waiting for.
+    // SIGXCPU, number 24, is caught last; who has ended needs no waiting for.
     let caught = || {
         let text = std::fs::read_to_string(&status).unwrap_or_default();
         let mask = text.lines().find_map(|line| line.strip_prefix("SigCgt:"));
         let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
-        mask.is_none_or(|mask| mask >> 9 & 1 == 1 && mask >> 14 & 1 == 1)
+        mask.is_none_or(|mask| mask >> 23 & 1 == 1)
     };
     if cfg!(target_os = "linux") {
         wait_for("signals to be caught", caught);
@@ -132,6 +133,53 @@ fn stopped_any_number_of_times_it_writes_the_same_bytes(
     assert!(stops >= 2, "it was stopped {stops} times only");
     bench.assert_same("whole", "stopped");
     bench.done("verify stopped");
+}
+
+/// Signals with which queues warn before they kill.
+#[cfg(target_os = "linux")]
+#[rstest]
+#[case("-USR2", 140)]
+#[case("-XCPU", 152)]
+fn a_warning_of_the_queue_stops_it(#[case] signal: &str, #[case] status: i32) {
+    let bench = bench();
+    let child = start(&bench, "run slow.toml --quiet -o warned");
+    wait_for_signals(&child);
+    send(&child, signal);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(status), "{}", said(&output));
+    assert!(
+        said(&output).contains("`slipfront run --resume warned` goes on"),
+        "{}",
+        said(&output)
+    );
+    bench.done("run --resume warned");
+    bench.done("verify warned");
+}
+
+/// A full disk under the log, or a terminal that has gone, costs what would have been said, and nothing else.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_cannot_be_said_is_no_failure() {
+    let bench = bench();
+    let full = || File::options().write(true).open("/dev/full").unwrap();
+    let start = |line: &str| {
+        let mut command = std::process::Command::new(super::program());
+        command.current_dir(bench.path()).args(line.split_whitespace());
+        command.stdout(Stdio::null()).stderr(full()).spawn().unwrap()
+    };
+    let status = |line: &str, signal: Option<&str>| {
+        let mut child = start(line);
+        if let Some(signal) = signal {
+            wait_for("case", || bench.exists("mute/case.toml"));
+            wait_for_signals(&child);
+            send(&child, signal);
+        }
+        child.wait().unwrap().code()
+    };
+    assert_eq!(status("run nowhere.toml", None), Some(2));
+    assert_eq!(status("run slow.toml -o mute", Some("-TERM")), Some(143));
+    assert_eq!(status("run --resume mute", Some("-USR1")), Some(0));
+    bench.done("verify mute");
 }
 
 #[test]
@@ -214,6 +262,12 @@ fn what_is_complete_or_has_not_begun() {
     }
     assert_eq!(bench.files("other").len(), 1);
     assert!(!bench.exists("nowhere"));
+    // Numbers that are not those of the run are not given out as such.
+    let summary = summary.replacen("\": 0.", "\": 9.", 1);
+    bench.write("whole/summary.json", summary);
+    let said = bench.refused("run --resume whole --json", 2);
+    assert!(said.contains("whole/summary.json differs"), "{said}");
+    bench.write("whole/summary.json", &before["summary.json"]);
     // Whoever wants more of it may have changed its case.
     bench.write("whole/case.toml", case.replace("v_star = 0.1", "v_star = 0.2"));
     let said = bench.refused("run --quiet --resume whole", 2);

@@ -92,10 +92,13 @@ fn signals_stop_it_with_their_status_and_it_goes_on() {
         let results = bench.results("stopped");
         let child = start(&bench, "stopped");
         wait_for(&results, 3);
-        let kill = Command::new("kill")
-            .args([signal, &child.id().to_string()])
-            .status();
-        assert!(kill.unwrap().success());
+        // The first of them is no reason to stop.
+        for signal in ["-USR1", signal] {
+            let kill = Command::new("kill")
+                .args([signal, &child.id().to_string()])
+                .status();
+            assert!(kill.unwrap().success());
+        }
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(status), "{}", errors(&output));
         assert!(
@@ -114,7 +117,7 @@ fn signals_stop_it_with_their_status_and_it_goes_on() {
 fn a_full_disk_ends_it_with_a_sentence_and_it_goes_on() {
     let bench = Bench::with(crate::bench::SMALL);
     let limited = format!(
-        "trap '' XFSZ; ulimit -f 16; exec {} study study.toml --quiet -o full",
+        "ulimit -f 16; exec {} study study.toml --quiet -o full",
         env!("CARGO_BIN_EXE_slipfront")
     );
     let output = Command::new("sh")
@@ -133,6 +136,30 @@ fn a_full_disk_ends_it_with_a_sentence_and_it_goes_on() {
     let full = bench.study("full");
     full.assert_each_run_once(crate::bench::SMALL_RUNS);
     full.assert_same(&bench.study("whole"));
+}
+
+/// As `run` does, and not with an abort in the middle.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_the_system_does_not_give_is_refused_before_it_begins() {
+    let bench =
+        Bench::with("base.slider.blocks = [1500, 1500]\nbase.time.duration_star = 1\nstudy.replicates = 1");
+    let limited = format!(
+        "ulimit -v 200000; exec {} study study.toml --quiet --threads 1 -o out",
+        env!("CARGO_BIN_EXE_slipfront")
+    );
+    let output = Command::new("sh")
+        .args(["-c", &limited])
+        .current_dir(bench.path(""))
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", errors(&output));
+    assert!(
+        errors(&output).contains("are available to this process: lower `slider.blocks`"),
+        "{}",
+        errors(&output)
+    );
+    assert!(!bench.path("out").exists());
 }
 
 #[test]

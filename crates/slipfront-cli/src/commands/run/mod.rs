@@ -21,15 +21,19 @@ use crate::signals::Signals;
 
 /// Run a case: print its physics, show progress, write results and pictures
 #[derive(Args)]
-#[command(after_help = "Examples:
+#[command(
+    override_usage = "slipfront run [OPTIONS] [CASE.toml]\n       slipfront run [OPTIONS] --resume <DIR>",
+    after_help = "Examples:
   slipfront run
   slipfront run cases/groove_across.toml --set texture.0.coverage=5 -o results/groove-5
   slipfront run results/baseline/case.toml -o results/again    repeats a run bit for bit
   slipfront run --resume results/baseline                      goes on with a run that was stopped
-  slipfront run --json --quiet | python3 -c 'import json,sys; print(json.load(sys.stdin)[\"static_friction_star\"])'
+  slipfront run --json | jq .static_friction_star
 
-The whole state of the run is saved in its folder every --checkpoint, on Ctrl-C (SIGINT), on SIGTERM and on SIGUSR1, \
-after which it goes on. A run that was stopped and resumed, however often, writes the same bytes as one that was not.")]
+The whole state of the run is saved in its folder every --checkpoint and on SIGUSR1, after which it goes on, and on Ctrl-C, \
+SIGTERM and SIGHUP, which stop it with status 130, 143 and 129. A run that was stopped and resumed, however often, writes \
+the same bytes as one that was not."
+)]
 pub(crate) struct Run {
     #[command(flatten)]
     case: CaseArgs,
@@ -81,7 +85,7 @@ impl Run {
         let manner = Manner {
             threads: set_threads(self.threads)?,
             interval: self.checkpoint,
-            signals: Signals::catch_all().map_err(Failure::running)?,
+            signals: Signals::catch().map_err(Failure::running)?,
             quiet: self.quiet,
             json: self.json,
         };

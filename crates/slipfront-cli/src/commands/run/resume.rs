@@ -75,16 +75,24 @@ fn load_case(path: &Path) -> Result<Case, Failure> {
 fn say_complete(path: &Path, manner: &Manner) -> Result<(), Failure> {
     // A kill may have come between the last file and this. On a disk that cannot be written they do no harm.
     let _ = Checkpoints::remove(path);
+    let unchanged = |which: &dyn Fn(&str) -> bool, remedy: &str| {
+        expect_as_written(path, which).map_err(|error| match error {
+            VerifyError::Changed { difference, .. } => Failure::input(anyhow::anyhow!(
+                "{difference}, and the run in {} is complete: {remedy}",
+                path.display()
+            )),
+            error => Failure::input(error),
+        })
+    };
     // Whoever wants a longer run may have changed its case.
     let is_case = |name: &str| name == "case.toml" || name.starts_with("inputs/");
-    expect_as_written(path, is_case).map_err(|error| match error {
-        VerifyError::Changed { difference, .. } => Failure::input(anyhow::anyhow!(
-            "{difference}, and the run in {} is complete: run a changed case to another folder with --out",
-            path.display()
-        )),
-        error => Failure::input(error),
-    })?;
+    unchanged(&is_case, "run a changed case to another folder with --out")?;
     if manner.json {
+        let is_summary = |name: &str| name == "summary.json";
+        unchanged(
+            &is_summary,
+            "run its case.toml again, to another folder with --out",
+        )?;
         let summary = results::read_summary(path).map_err(Failure::input)?;
         print(&results::summary_json(&summary))?;
     } else if manner.talks() {

@@ -11,6 +11,7 @@ use crate::failure::Failure;
 use crate::probe::seconds_per_step;
 use crate::progress::StudyProgress;
 use crate::report;
+use crate::say::say;
 use crate::signals::Signals;
 
 #[derive(Args)]
@@ -109,14 +110,14 @@ fn complete(plan: &Plan, folder: &mut StudyFolder, threads: usize, quiet: bool) 
 /// What is to be known of a folder that has been used before.
 fn notes(folder: &StudyFolder) {
     if folder.records.damaged > 0 {
-        eprintln!(
+        say(&format!(
             "note: {} damaged lines of the record file are passed over; their runs count as not run",
             folder.records.damaged
-        );
+        ));
     }
     if folder.changed {
-        eprintln!(
-            "note: the study has changed since this folder was last used; runs that still belong to it are kept"
+        say(
+            "note: the study has changed since this folder was last used; runs that still belong to it are kept",
         );
     }
 }
