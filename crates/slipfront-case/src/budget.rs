@@ -106,6 +106,17 @@ impl Bytes {
     }
 }
 
+/// What memory is needed for.
+#[derive(Clone, Copy, Debug)]
+enum Needs {
+    /// To make the case.
+    Case,
+    /// To run it.
+    Run,
+    /// To go on from a checkpoint of it.
+    Resumed,
+}
+
 /// A need that exceeds what there is.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Excess {
@@ -233,7 +244,7 @@ impl Budget {
     }
 
     /// The same run when it goes on from a checkpoint, which is in memory until the kernel has taken it over.
-    pub(crate) fn resumed(self) -> Self {
+    pub fn resumed(self) -> Self {
         Self {
             kernel: self.kernel + ROOM_TO_READ * SAVED,
             ..self
@@ -272,19 +283,25 @@ impl Budget {
         if self.making().total() < SMALL {
             return Ok(());
         }
-        self.compare_memory("this case", &self.making(), 0.0, available_memory())
+        self.compare_memory(Needs::Case, &self.making(), 0.0, available_memory())
     }
 
     /// Refuses a run that needs more memory than there is; what a case takes is there already if it is `made`.
     pub(crate) fn check_memory(&self, made: bool) -> Result<(), Excess> {
         let made = if made { self.making().total() } else { 0.0 };
-        self.compare_memory("a run of this case", &self.largest(), made, available_memory())
+        self.compare_memory(Needs::Run, &self.largest(), made, available_memory())
+    }
+
+    /// Refuses to go on from a checkpoint with a case that is made, where there is less memory than that needs.
+    pub(crate) fn check_memory_resumed(&self) -> Result<(), Excess> {
+        let (resumed, made) = (self.resumed(), self.making().total());
+        resumed.compare_memory(Needs::Resumed, &resumed.largest(), made, available_memory())
     }
 
     /// `had` is what has been taken of `bytes` already, `available` what there is beside it.
     fn compare_memory(
         &self,
-        whose: &str,
+        needs: Needs,
         bytes: &Bytes,
         had: f64,
         available: Option<f64>,
@@ -298,6 +315,15 @@ impl Budget {
             _ => return Ok(()),
         };
         let (key, most, remedy) = self.most(bytes);
+        let (whose, remedy) = match needs {
+            Needs::Case => ("this case", remedy),
+            Needs::Run => ("a run of this case", remedy),
+            // Its case can be changed no more.
+            Needs::Resumed => (
+                "going on with this run",
+                "give it more, in a queue for example with `--mem`",
+            ),
+        };
         let sentence = format!(
             "{whose} takes about {} of memory ({most}) where {bound}: {remedy}",
             shown(needed)
@@ -402,6 +428,18 @@ pub fn available_memory() -> Option<f64> {
     least.map(|bytes| bytes as f64)
 }
 
+/// How much of so many bytes the system gives at once.
+pub(crate) fn most_at_once(bytes: f64) -> f64 {
+    const PARTS: u32 = 64;
+    let parts = (1..=PARTS)
+        .rev()
+        .map(|part| bytes * f64::from(part) / f64::from(PARTS));
+    parts
+        .into_iter()
+        .find(|&part| can_be_had(part))
+        .unwrap_or_default()
+}
+
 /// Asks the system for so many bytes at once, and gives them back untouched.
 fn can_be_had(bytes: f64) -> bool {
     let mut all = Vec::<u8>::new();
@@ -457,7 +495,7 @@ mod tests {
         ] {
             let budget = budget(&sets);
             let refused = budget
-                .compare_memory("it", &budget.largest(), 0.0, Some(2e8))
+                .compare_memory(Needs::Run, &budget.largest(), 0.0, Some(2e8))
                 .unwrap_err();
             assert_eq!(refused.key, key);
             for word in ["where 190.7 MiB are available"].iter().chain(&words) {
@@ -472,20 +510,33 @@ mod tests {
         let budget = budget(&["slider.blocks=[2000,1000]", "output.snapshots=[]"]);
         let (run, made) = (budget.largest(), budget.making().total());
         let enough = budget.memory() - made;
-        assert!(budget.compare_memory("it", &run, made, Some(enough)).is_ok());
         assert!(
             budget
-                .compare_memory("it", &run, made, Some(0.99 * enough))
+                .compare_memory(Needs::Run, &run, made, Some(enough))
+                .is_ok()
+        );
+        assert!(
+            budget
+                .compare_memory(Needs::Run, &run, made, Some(0.99 * enough))
                 .is_err()
         );
         // A system that does not say what it has is asked for all of it.
-        assert!(budget.compare_memory("it", &run, made, None).is_ok());
+        assert!(budget.compare_memory(Needs::Run, &run, made, None).is_ok());
         let all = Bytes {
             blocks: 1e18,
             ..Bytes::default()
         };
-        let refused = budget.compare_memory("it", &all, 0.0, None).unwrap_err();
+        let refused = budget.compare_memory(Needs::Run, &all, 0.0, None).unwrap_err();
         assert!(refused.sentence.contains("ulimit -v"), "{}", refused.sentence);
+        // Of a run that has begun no key can be changed.
+        let refused = budget
+            .compare_memory(Needs::Resumed, &run, made, Some(0.0))
+            .unwrap_err();
+        assert!(
+            refused.sentence.contains("give it more") && !refused.sentence.contains("lower"),
+            "{}",
+            refused.sentence
+        );
     }
 
     #[test]

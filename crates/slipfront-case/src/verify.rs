@@ -13,7 +13,7 @@ use crate::case_file::CaseFile;
 use crate::folder::{FolderError, TEXT_MAX_BYTES, is_of_interrupted_run, read_whole};
 use crate::legible::{sentence, shortened};
 use crate::manifest::{MANIFEST, Manifest, ManifestError, ManifestFile};
-use crate::study::{self, Finding, Findings, Plan, Records, StudyError, StudyFolder};
+use crate::study::{self, Finding, Findings, Keep, Plan, RUNS, Records, StudyError, StudyFolder};
 
 /// What was found in a folder.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -57,6 +57,19 @@ pub enum VerifyError {
         path: PathBuf,
         /// Runs that are not recorded.
         runs: usize,
+    },
+    /// A study none of whose runs is recorded, where others are.
+    #[error(
+        "the {recorded} runs recorded in {} are of another program than {}, or of a study that was changed since: verify it \
+         with the program that ran it, or run it again",
+        path.display(),
+        Manifest::this_program()
+    )]
+    OtherRuns {
+        /// The folder.
+        path: PathBuf,
+        /// Runs that are recorded.
+        recorded: usize,
     },
     /// A study that cannot be read, or made again.
     #[error(transparent)]
@@ -233,8 +246,14 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
     let findings = match study::collect(&plan, &mut again.records) {
         Ok(findings) => findings,
         Err(StudyError::Missing { runs }) if damaged == 0 => {
-            let path = folder.to_owned();
-            return Err(VerifyError::Unfinished { path, runs });
+            let (path, recorded) = (folder.to_owned(), again.records.len());
+            let mut needed = plan.runs(plan.settings.min_replicates());
+            let is_begun = needed.any(|run| again.records.get(&plan.identity(run)).is_some());
+            return Err(if is_begun || recorded == 0 {
+                VerifyError::Unfinished { path, runs }
+            } else {
+                VerifyError::OtherRuns { path, recorded }
+            });
         }
         // What its tables should be is lost with the damaged lines.
         Err(StudyError::Missing { .. }) => {
@@ -251,7 +270,7 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
         .differences
         .extend(compare(&files, folder, "follow from the records"));
     let known = files.iter().map(|file| file.name.as_str());
-    let known = known.chain([Records::FILE, "runs"]).collect();
+    let known = known.chain([Records::FILE, RUNS]).collect();
     verdict.notes = strangers(folder, &known, &["inputs"]);
     if damaged > 0 {
         let damage =
@@ -273,14 +292,14 @@ fn verify_kept(
     findings: &Findings,
     verdict: &mut Verdict,
 ) -> Result<usize, VerifyError> {
-    let runs = folder.join("runs");
+    let runs = folder.join(RUNS);
     let unreadable = |source| {
         let path = runs.clone();
         VerifyError::Study(FolderError::Read { path, source }.into())
     };
     let entries = match std::fs::read_dir(&runs) {
-        Ok(entries) => entries,
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(0),
+        Ok(entries) => Some(entries),
+        Err(error) if error.kind() == ErrorKind::NotFound => None,
         Err(error) => return Err(unreadable(error)),
     };
     let done = findings
@@ -292,10 +311,10 @@ fn verify_kept(
             Finding::Failed(_) => false,
         });
     let done: HashSet<String> = done.map(|(run, _)| plan.folder_name(*run)).collect();
-    let mut kept = 0;
-    for entry in entries {
+    let (mut kept, mut missing) = (0, done.clone());
+    for entry in entries.into_iter().flatten() {
         let entry = entry.map_err(unreadable)?;
-        let is_done = done.contains(&*entry.file_name().to_string_lossy());
+        let is_done = missing.remove(&*entry.file_name().to_string_lossy());
         if !is_done && !entry.path().is_dir() {
             continue;
         }
@@ -308,6 +327,15 @@ fn verify_kept(
             Err(error) if is_done => verdict.differences.push(error.to_string()),
             Err(_) => {}
         }
+    }
+    // They may have been removed on purpose, or have run before the study was told to keep them.
+    if plan.settings.keep == Keep::All && !missing.is_empty() {
+        verdict.notes.push(format!(
+            "{} of {} runs have no folder in {}, where the study keeps all",
+            missing.len(),
+            done.len(),
+            runs.display()
+        ));
     }
     Ok(kept)
 }

@@ -113,15 +113,21 @@ pub(crate) fn texture(case: &Case) -> String {
 pub(crate) fn cost(case: &Case, seconds: f64) -> String {
     let (schedule, budget) = (&case.schedule, &case.budget);
     let v_star = case.groups.v_star;
-    let onset = |star: f64| format!("t* = {} ({})", plain(star), si(star * case.scales.time(), "s"));
+    let at = |star: f64| format!("t* = {} ({})", plain(star), si(star * case.scales.time(), "s"));
+    let late = |star: f64| {
+        if star > schedule.end_star() {
+            ", after the end of the run: lengthen `time.duration_star`"
+        } else {
+            ""
+        }
+    };
     let mut text = String::new();
     if case.file.texture.is_empty() {
-        text += &format!(
-            "first slip        {}, exactly\n",
-            onset(case.model.first_slip_estimate())
-        );
+        let first = case.model.first_slip_estimate();
+        text += &format!("first slip        {}, exactly{}\n", at(first), late(first));
     }
-    text += &format!("onset expected    about {} (Eq. 12)\n", onset(2.5 / v_star));
+    let onset = 2.5 / v_star;
+    text += &format!("onset expected    about {} (Eq. 12){}\n", at(onset), late(onset));
     text += &format!("steady level      mu* = {}\n", plain(case.model.steady_level()));
     text += &format!(
         "scales            time {}, displacement {}, stress {}\n",
@@ -139,10 +145,17 @@ pub(crate) fn cost(case: &Case, seconds: f64) -> String {
         case.block_steps(),
         duration(seconds)
     );
+    let resumed = budget.resumed().memory();
     text += &format!(
-        "memory            {}{}\n",
+        "memory            {}{}{}\n",
         shown(budget.memory()),
-        available_memory().map_or(String::new(), |there| format!(" of {} available", shown(there)))
+        available_memory().map_or(String::new(), |there| format!(" of {} available", shown(there))),
+        // Of a small run, pictures take the most in any case.
+        if resumed > budget.memory() {
+            format!("; {} to go on from a checkpoint", shown(resumed))
+        } else {
+            String::new()
+        }
     );
     text += &format!(
         "disk              {}, the snapshots {} of it; {} more for checkpoints while it runs\n",
@@ -267,12 +280,22 @@ pub(crate) fn study(plan: &Plan, findings: &Findings, folder: &Path) -> String {
     let mut text = String::new();
     let name = study::main_quantity(plan);
     text += &format!("{name}\n");
+    let steady: Vec<(usize, usize)> = (0..plan.points.len())
+        .map(|position| findings.without_transition(position))
+        .collect();
     let rows: Vec<(String, String)> = (0..plan.points.len())
         .take(MOST_ROWS)
         .map(|position| {
             let value = study::sample(plan, findings, position, name).map_or("failed".to_owned(), |sample| {
                 let wide = findings.points[position].narrow == Some(false);
-                let note = if wide { "   (interval still too wide)" } else { "" };
+                let mut note = String::new();
+                if wide {
+                    note += "   (interval still too wide)";
+                }
+                let (without, runs) = steady[position];
+                if without > 0 {
+                    note += &format!("   (no transition in {without} of {runs} runs)");
+                }
                 format!(
                     "{}   n = {}{note}",
                     with_uncertainty(sample.mean, sample.half_width),
@@ -294,6 +317,13 @@ pub(crate) fn study(plan: &Plan, findings: &Findings, folder: &Path) -> String {
         text += &format!(
             "  and {} more points in points.csv\n",
             plan.points.len() - MOST_ROWS
+        );
+    }
+    let without: usize = steady.iter().map(|(without, _)| without).sum();
+    if without > 0 {
+        text += &format!(
+            "note: {without} runs had no transition, and static_friction_star is the largest mu* of them: lengthen \
+             `time.duration_star`, unless they were expected to have none\n"
         );
     }
     if findings.strangers > 0 {

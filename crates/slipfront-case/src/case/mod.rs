@@ -170,9 +170,9 @@ impl Case {
     /// Refuses to go on from a checkpoint where there is no memory for that.
     ///
     /// # Errors
-    /// With the figures, and which key to change.
+    /// With the figures.
     pub fn check_memory_resumed(&self) -> Result<(), CaseError> {
-        within_budget(&self.file, self.budget.resumed().check_memory(true))
+        within_budget(&self.file, self.budget.check_memory_resumed())
     }
 
     /// Steps times blocks: what the run costs.

@@ -14,7 +14,7 @@ use thiserror::Error;
 use self::files::holds_only_unfinished;
 pub(crate) use self::files::{
     TEXT_MAX_BYTES, UNFINISHED, fill_whole, json, open_bounded, open_regular, read_whole, remove_if_there,
-    remove_unfinished, stage, sync_folder,
+    remove_unfinished, remove_unfinished_folders, stage, stage_folder, sync_folder,
 };
 pub use self::files::{is_empty, write_whole};
 pub(crate) use self::own::is_of_interrupted_run;
@@ -87,6 +87,20 @@ pub enum FolderError {
     Write {
         /// The file.
         path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The folder of a run could not be copied.
+    #[error(
+        "cannot copy {} to {}: {source}; what is there is whole, and the command may be repeated",
+        shown(from),
+        shown(to)
+    )]
+    Copy {
+        /// The folder.
+        from: PathBuf,
+        /// Where it should have gone.
+        to: PathBuf,
         /// What the system says.
         source: std::io::Error,
     },

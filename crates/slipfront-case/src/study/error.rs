@@ -39,7 +39,8 @@ pub enum StudyError {
     },
     /// As many runs at once as there is no memory for.
     #[error(
-        "{threads} runs at once take about {needed} of memory where {available} are available: give --threads {fit}"
+        "{threads} runs at once take about {needed} of memory where {available} are available to this process: give \
+        --threads {fit}"
     )]
     Memory {
         /// Runs at once.
@@ -53,8 +54,8 @@ pub enum StudyError {
     },
     /// A run that there is no memory for.
     #[error(
-        "a run of the point {point} takes about {needed} of memory where {available} are available: lower \
-        `slider.blocks`, or keep no run folders (`study.keep`)"
+        "a run of the point {point} takes about {needed} of memory where {available} are available to this process: \
+        lower `slider.blocks`, or keep no run folders (`study.keep`)"
     )]
     PointMemory {
         /// Its levels.
@@ -105,7 +106,7 @@ pub enum StudyError {
         source: std::io::Error,
     },
     /// A file that is no record file.
-    #[error("{} is not the record file of a study", path.display())]
+    #[error("{} is not the record file of a study: move it away, or choose another folder with --out", path.display())]
     NotRecords {
         /// The file.
         path: PathBuf,

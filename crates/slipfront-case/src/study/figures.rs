@@ -21,28 +21,42 @@ pub(super) const QUANTITIES: [&str; 3] = ["static_friction_star", "kinetic_frict
 /// Most curves in one picture.
 const MOST_CURVES: usize = 9;
 
+/// Names of all pictures that a study of these axes may get.
+pub(super) fn names(axes: &[Axis]) -> impl Iterator<Item = String> {
+    QUANTITIES
+        .into_iter()
+        .flat_map(|quantity| sketches(axes, quantity))
+        .map(|sketch| sketch.name)
+}
+
 /// Draws the pictures of a study, each with the name of its files.
 ///
 /// # Errors
 /// When one cannot be drawn.
 pub(super) fn draw(plan: &Plan, findings: &Findings) -> Result<Vec<(String, Picture)>, StudyError> {
-    let of_quantity = |quantity: &&str| {
+    let axes = &plan.axes;
+    let of_quantity = |quantity: &&str| -> Result<Vec<(String, Picture)>, StudyError> {
         let values = Values::of(plan, findings, quantity);
         // A study that stops at the onset knows no kinetic friction, one without reference no reduction.
         if values.0.values().all(|[mean, ..]| mean.is_nan()) {
-            return Vec::new();
+            return Ok(Vec::new());
         }
-        draw_quantity(plan, quantity, &values)
+        let drawn = sketches(axes, quantity).into_iter().map(|Sketch { name, kind }| {
+            let picture = match &kind {
+                Kind::Bars => bars(axes, quantity, &values),
+                Kind::Curves { x, fixed, varied } => curves(axes, *x, fixed, varied, quantity, &values),
+                Kind::Map { x, y } => map(axes, *x, *y, quantity, &values),
+            };
+            match picture {
+                Ok(picture) => Ok((name, picture)),
+                Err(source) => Err(StudyError::Picture { name, source }),
+            }
+        });
+        drawn.collect()
     };
-    let drawn: Vec<Vec<Drawn>> = QUANTITIES.par_iter().map(of_quantity).collect();
-    drawn
-        .into_iter()
-        .flatten()
-        .map(|(name, picture)| match picture {
-            Ok(picture) => Ok((name, picture)),
-            Err(source) => Err(StudyError::Picture { name, source }),
-        })
-        .collect()
+    let drawn: Vec<_> = QUANTITIES.par_iter().map(of_quantity).collect();
+    let drawn: Result<Vec<_>, StudyError> = drawn.into_iter().collect();
+    Ok(drawn?.into_iter().flatten().collect())
 }
 
 /// Mean and interval of a quantity by the levels of a point; not a number where it has none.
@@ -71,30 +85,53 @@ impl<'a> Values<'a> {
     }
 }
 
-type Drawn = (String, Result<Picture, PictureError>);
+/// A picture before it is drawn.
+struct Sketch {
+    name: String,
+    kind: Kind,
+}
 
-fn draw_quantity(plan: &Plan, quantity: &str, values: &Values) -> Vec<Drawn> {
-    let axes = &plan.axes;
+enum Kind {
+    /// Bars for names.
+    Bars,
+    /// Curves over axis `x`, one for each combination of levels of the `varied` axes, at these levels of the others.
+    Curves {
+        x: usize,
+        fixed: Levels,
+        varied: Vec<usize>,
+    },
+    /// A map over two axes.
+    Map { x: usize, y: usize },
+}
+
+/// The pictures of a quantity, by the axes alone.
+fn sketches(axes: &[Axis], quantity: &str) -> Vec<Sketch> {
     let numeric: Vec<usize> = (0..axes.len())
         .filter(|&axis| axes[axis].spacing != Spacing::Named)
         .collect();
     match (numeric.first(), axes.len()) {
         (_, 0) => Vec::new(),
-        (None, 1 | 2) => vec![(quantity.to_owned(), bars(axes, quantity, values))],
+        (None, 1 | 2) => vec![Sketch {
+            name: quantity.to_owned(),
+            kind: Kind::Bars,
+        }],
         // Names alone on three axes or more: the tables serve better.
         (None, _) => Vec::new(),
         (Some(&x), _) => {
-            let mut drawn = curves(axes, x, quantity, values);
-            if let ([x, y], 2) = (numeric.as_slice(), axes.len()) {
-                drawn.push((format!("{quantity}_map"), map(axes, *x, *y, quantity, values)));
+            let mut sketches = sketches_of_curves(axes, x, quantity);
+            if let (&[x, y], 2) = (numeric.as_slice(), axes.len()) {
+                sketches.push(Sketch {
+                    name: format!("{quantity}_map"),
+                    kind: Kind::Map { x, y },
+                });
             }
-            drawn
+            sketches
         }
     }
 }
 
 /// Curves over axis `x`, one for each combination of levels of the others; more pictures where these are many.
-fn curves(axes: &[Axis], x: usize, quantity: &str, values: &Values) -> Vec<Drawn> {
+fn sketches_of_curves(axes: &[Axis], x: usize, quantity: &str) -> Vec<Sketch> {
     let others: Vec<usize> = (0..axes.len()).filter(|&axis| axis != x).collect();
     let count: usize = others.iter().map(|&axis| axes[axis].levels.len()).product();
     // The axes in front are split off into pictures of their own until one picture can hold the rest.
@@ -108,31 +145,46 @@ fn curves(axes: &[Axis], x: usize, quantity: &str, values: &Values) -> Vec<Drawn
         return Vec::new();
     }
     let (front, back) = others.split_at(split);
-    combinations(axes, front)
+    let sketch = |fixed: Levels| {
+        let suffix: String = fixed
+            .iter()
+            .map(|&(axis, level)| format!("-{}", file_word(&axes[axis].levels[level].labels.join("-"))))
+            .collect();
+        Sketch {
+            name: format!("{quantity}{suffix}"),
+            kind: Kind::Curves {
+                x,
+                fixed,
+                varied: back.to_vec(),
+            },
+        }
+    };
+    combinations(axes, front).into_iter().map(sketch).collect()
+}
+
+fn curves(
+    axes: &[Axis],
+    x: usize,
+    fixed: &[(usize, usize)],
+    varied: &[usize],
+    quantity: &str,
+    values: &Values,
+) -> Result<Picture, PictureError> {
+    let curves = combinations(axes, varied)
         .into_iter()
-        .map(|fixed| {
-            let curves = combinations(axes, back)
-                .into_iter()
-                .map(|varied| curve(axes, x, &[fixed.clone(), varied].concat(), back, values))
-                .collect();
-            let responses = Responses {
-                x_title: title(axes[x].title()),
-                log_x: axes[x].spacing == Spacing::Logarithmic,
-                log_y: false,
-                y_title: title(quantity),
-                legend_title: match back {
-                    [axis] => symbol(axes[*axis].title()),
-                    _ => String::new(),
-                },
-                curves,
-            };
-            let suffix: String = fixed
-                .iter()
-                .map(|&(axis, level)| format!("-{}", file_word(&axes[axis].levels[level].labels.join("-"))))
-                .collect();
-            (format!("{quantity}{suffix}"), pictures::response(&responses))
-        })
-        .collect()
+        .map(|at| curve(axes, x, &[fixed, &at].concat(), varied, values))
+        .collect();
+    pictures::response(&Responses {
+        x_title: title(axes[x].title()),
+        log_x: axes[x].spacing == Spacing::Logarithmic,
+        log_y: false,
+        y_title: title(quantity),
+        legend_title: match varied {
+            [axis] => symbol(axes[*axis].title()),
+            _ => String::new(),
+        },
+        curves,
+    })
 }
 
 /// Levels of some axes: pairs of axis and level.

@@ -1,17 +1,26 @@
 //! The study folder: the study itself, the records, the tables and the pictures.
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use super::error::StudyError;
+use super::execute::Findings;
+use super::figures;
 use super::file::StudyFile;
 use super::inputs::Copy;
+use super::plan::Plan;
 use super::record::{RECORDS, Records};
-use crate::folder::{FolderError, TEXT_MAX_BYTES, is_empty, open_bounded, read_whole, stage, write_whole};
+use crate::folder::{
+    FolderError, TEXT_MAX_BYTES, is_empty, open_bounded, open_regular, read_whole, remove_if_there,
+    remove_unfinished_folders, stage, stage_folder, sync_folder, write_whole,
+};
 
 /// The study as a table with its base inside: what `slipfront study DIR/study.toml` repeats.
 const STUDY: &str = "study.toml";
+
+/// Folder of the run folders that a study keeps.
+pub(crate) const RUNS: &str = "runs";
 
 /// A study folder with its records open.
 #[derive(Debug)]
@@ -45,14 +54,24 @@ impl StudyFolder {
         }
         let records = Records::open(path)?;
         let (text, copies) = study.portable()?;
+        let parse = |text: &str| {
+            let name = path.join(STUDY).display().to_string();
+            StudyFile::parse(text, &name, &study.name, path)
+        };
         let before = read_whole(&path.join(STUDY), TEXT_MAX_BYTES).ok();
-        let changed = before.is_some_and(|before| before != text.as_bytes());
+        let before = before.filter(|before| before != text.as_bytes());
         let folder = Self {
             path: path.to_owned(),
             records,
-            changed,
-            study: StudyFile::parse(&text, &path.join(STUDY).display().to_string(), &study.name, path)?,
+            changed: before.is_some(),
+            study: parse(&text)?,
         };
+        // Pictures of what the study was are of no other use; one that cannot be read now has none that are known.
+        let before = before.and_then(|before| parse(str::from_utf8(&before).ok()?).ok());
+        if let Some(before) = before {
+            let still: HashSet<String> = figures::names(&folder.study.axes).collect();
+            folder.remove_pictures(figures::names(&before.axes).filter(|name| !still.contains(name)));
+        }
         folder.copy(&copies)?;
         folder.write(STUDY, text.as_bytes())?;
         Ok(folder)
@@ -97,18 +116,61 @@ impl StudyFolder {
         Ok(())
     }
 
-    /// Removes pictures of these quantities that the study no longer has; one that cannot be removed does no harm.
-    pub(super) fn remove_other_pictures(&self, pictures: &HashSet<String>, quantities: &[&str]) {
-        let which = |name: &str| {
-            let ours = quantities.iter().any(|quantity| name.starts_with(quantity));
-            ours && (name.ends_with(".svg") || name.ends_with(".png")) && !pictures.contains(name)
-        };
-        for entry in std::fs::read_dir(&self.path).into_iter().flatten().flatten() {
-            if entry.file_name().to_str().is_some_and(which) {
-                let _ = std::fs::remove_file(entry.path());
+    /// Copies the run folders that a shard has kept and this folder lacks, each whole or not at all; gives their number.
+    ///
+    /// # Errors
+    /// When one cannot be copied.
+    pub fn take_kept(&self, plan: &Plan, findings: &Findings, shard: &Path) -> Result<usize, StudyError> {
+        remove_unfinished_folders(&self.path.join(RUNS));
+        let names: BTreeSet<String> = findings.runs.keys().map(|run| plan.folder_name(*run)).collect();
+        let mut taken = 0;
+        for name in names {
+            let (from, to) = (shard.join(RUNS).join(&name), self.path.join(RUNS).join(&name));
+            if !from.is_dir() || to.exists() {
+                continue;
+            }
+            copy_folder(&from, &to).map_err(|source| FolderError::Copy { from, to, source })?;
+            taken += 1;
+        }
+        Ok(taken)
+    }
+
+    /// Removes pictures of these names, and none of others; one that cannot be removed does no harm.
+    pub(super) fn remove_pictures(&self, names: impl Iterator<Item = String>) {
+        for name in names {
+            for ending in ["svg", "png"] {
+                let _ = remove_if_there(&self.path.join(format!("{name}.{ending}")));
             }
         }
     }
+}
+
+/// Copies a folder to one of another name, which is there when all of it is on the disk.
+fn copy_folder(from: &Path, to: &Path) -> std::io::Result<()> {
+    let beside = to.parent().unwrap_or(to);
+    std::fs::create_dir_all(beside)?;
+    let staged = stage_folder(beside)?;
+    copy_files(from, staged.path())?;
+    std::fs::rename(staged.path(), to)?;
+    // There is nothing left to remove.
+    let _ = staged.keep();
+    sync_folder(beside)
+}
+
+fn copy_files(from: &Path, to: &Path) -> std::io::Result<()> {
+    for entry in std::fs::read_dir(from)? {
+        let entry = entry?;
+        let (from, to) = (entry.path(), to.join(entry.file_name()));
+        if entry.file_type()?.is_dir() {
+            std::fs::create_dir(&to)?;
+            copy_files(&from, &to)?;
+        } else {
+            let mut copy = File::create_new(to)?;
+            std::io::copy(&mut open_regular(&from)?, &mut copy)?;
+            copy.sync_all()?;
+        }
+    }
+    sync_folder(to)
 }
 
 /// Whether a study has used the folder.

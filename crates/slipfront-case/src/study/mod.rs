@@ -27,6 +27,7 @@ pub use axis::{Axis, Level, Spacing};
 pub use error::StudyError;
 pub use execute::{Findings, PointFindings, Progress, collect, execute};
 pub use file::{Base, Keep, Settings, StudyFile, Until};
+pub(crate) use folder::RUNS;
 pub use folder::{StudyFolder, is_study, refuse_foreign, study_of};
 pub use plan::{Plan, Point, Role, RunKey};
 pub use quantities::{Numbers, Quantity, REDUCTION, known as quantities};
@@ -44,20 +45,19 @@ pub fn main_quantity(plan: &Plan) -> &'static str {
     }
 }
 
-/// Writes tables and pictures of a study to its folder, and removes pictures that it no longer has.
+/// Writes tables and pictures of a study to its folder, and removes those of its pictures that it no longer has.
 ///
 /// # Errors
 /// When a file cannot be written.
 pub fn write(plan: &Plan, findings: &Findings, folder: &StudyFolder) -> Result<(), StudyError> {
     folder.write("runs.csv", &tables::runs(plan, findings)?)?;
     folder.write("points.csv", &tables::points(plan, findings)?)?;
-    let mut pictures = HashSet::new();
+    let mut drawn = HashSet::new();
     for (name, picture) in figures::draw(plan, findings)? {
-        let (svg, png) = (format!("{name}.svg"), format!("{name}.png"));
-        folder.write(&svg, picture.svg.as_bytes())?;
-        folder.write(&png, &picture.png)?;
-        pictures.extend([svg, png]);
+        folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
+        folder.write(&format!("{name}.png"), &picture.png)?;
+        drawn.insert(name);
     }
-    folder.remove_other_pictures(&pictures, &figures::QUANTITIES);
+    folder.remove_pictures(figures::names(&plan.axes).filter(|name| !drawn.contains(name)));
     Ok(())
 }

@@ -270,7 +270,10 @@ impl Plan {
     /// # Errors
     /// [`StudyError::Memory`] with how many there is memory for, [`StudyError::PointMemory`] if it is not even one.
     pub fn check_memory(&self, threads: usize) -> Result<(), StudyError> {
-        available_memory().map_or(Ok(()), |available| self.compare_memory(threads, available))
+        let available = available_memory().unwrap_or(f64::INFINITY);
+        // A process may be given less than the machine has.
+        let given = budget::most_at_once(self.memory(threads).min(available));
+        self.compare_memory(threads, given)
     }
 
     fn compare_memory(&self, threads: usize, available: f64) -> Result<(), StudyError> {
@@ -379,7 +382,7 @@ fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
         *name = format!("{}.{ending}", hash.unwrap_or_default());
     }
     let mut hasher = blake3::Hasher::new();
-    hasher.update(Manifest::this_program().as_bytes());
+    hasher.update(Manifest::this_build().as_bytes());
     hasher.update(file.to_toml()?.as_bytes());
     Ok(hasher.finalize())
 }

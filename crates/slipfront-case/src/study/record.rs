@@ -1,7 +1,7 @@
 //! Records of finished runs: one line each, appended, checksummed and forced to the disk.
 //!
 //! A line is `<checksum> <json>`. A line that a crash cut short, or that was damaged later, fails its checksum and
-//! counts as not run; the file is cut back to its last whole line before anything is appended.
+//! counts as not run; the file is cut back to its last whole record before anything is appended.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions, TryLockError};
@@ -123,10 +123,16 @@ impl Records {
         if lines.are_foreign() {
             return Err(StudyError::NotRecords { path });
         }
-        // What a crash left of a line must not swallow the next one.
-        if lines.whole_bytes < lines.bytes {
-            file.set_len(lines.whole_bytes)
-                .map_err(|source| cannot_write(&path, source))?;
+        // What a crash left of a line must not swallow the next one; a record that lacks its line break alone gets it.
+        match lines.end {
+            End::Whole => {}
+            End::NoBreak => file
+                .write_all(b"\n")
+                .and_then(|()| file.sync_data())
+                .map_err(|source| cannot_write(&path, source))?,
+            End::Cut { whole_bytes } => file
+                .set_len(whole_bytes)
+                .map_err(|source| cannot_write(&path, source))?,
         }
         file.seek(SeekFrom::End(0))
             .map_err(|source| cannot_open(&path, source))?;
@@ -242,8 +248,19 @@ struct Lines {
     /// Whether a line is longer than any record.
     too_long: bool,
     bytes: u64,
-    /// The same up to the last line break.
-    whole_bytes: u64,
+    end: End,
+}
+
+/// How a record file ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum End {
+    /// With a line break, or it is empty.
+    #[default]
+    Whole,
+    /// With a record that lacks its line break.
+    NoBreak,
+    /// With a part of a line, after so many bytes.
+    Cut { whole_bytes: u64 },
 }
 
 impl Lines {
@@ -258,32 +275,32 @@ impl Lines {
             if read == 0 {
                 break;
             }
+            let whole_bytes = lines.bytes;
             lines.bytes += read;
-            if line.last() == Some(&b'\n') {
-                lines.whole_bytes = lines.bytes;
-                line.pop();
-            } else {
-                lines.too_long = read == LINE_MAX_BYTES;
+            let broken = line.pop_if(|last| *last == b'\n').is_some();
+            lines.too_long = !broken && read == LINE_MAX_BYTES;
+            if line.is_empty() {
+                continue;
             }
-            lines.take(&line);
+            let record = parse_line(&line);
+            if !broken {
+                lines.end = match record {
+                    Some(_) => End::NoBreak,
+                    None => End::Cut { whole_bytes },
+                };
+            }
+            lines.ours |= looks_like_ours(&line) || (!broken && may_begin_ours(&line));
+            match record {
+                Some(record) => lines.records.push(record),
+                None => lines.damaged += 1,
+            }
         }
         Ok(lines)
     }
 
-    fn take(&mut self, line: &[u8]) {
-        if line.is_empty() {
-            return;
-        }
-        self.ours |= looks_like_ours(line);
-        match parse_line(line) {
-            Some(record) => self.records.push(record),
-            None => self.damaged += 1,
-        }
-    }
-
     /// Whether this is no record file, not even a damaged one.
     fn are_foreign(&self) -> bool {
-        self.too_long || (self.damaged > 0 && self.whole_bytes > 0 && !self.ours)
+        self.too_long || (self.damaged > 0 && !self.ours)
     }
 }
 
@@ -299,6 +316,13 @@ fn parse_line(line: &[u8]) -> Option<Record> {
 /// Whether a line may once have been a record, to tell a damaged file from a foreign one.
 fn looks_like_ours(line: &[u8]) -> bool {
     line.get(CHECKSUM) == Some(&b' ') && line.get(CHECKSUM + 1) == Some(&b'{')
+}
+
+/// Whether a record may once have been meant to go on after this: it is cut within its checksum, or a power cut left zeros.
+fn may_begin_ours(line: &[u8]) -> bool {
+    let (sum, blank) = line.split_at(line.len().min(CHECKSUM));
+    let is_beginning = sum.iter().all(u8::is_ascii_hexdigit) && b" ".starts_with(blank);
+    is_beginning || line.iter().all(|&byte| byte == 0)
 }
 
 /// Characters of a checksum.
@@ -320,6 +344,7 @@ mod tests {
         }
     }
 
+    /// One cut short by its line break alone is whole.
     #[test]
     fn a_line_cut_short_anywhere_is_not_run_and_does_not_harm_the_next() {
         let whole = to_line(&record("a"));
@@ -327,20 +352,26 @@ mod tests {
         // Every place would be a thousand waits for the disk.
         for cut in (0..40)
             .chain((40..next.len() - 1).step_by(97))
-            .chain([next.len() - 2])
+            .chain([next.len() - 2, next.len() - 1])
         {
+            let left = usize::from(cut == next.len() - 1);
             let folder = tempfile::tempdir().unwrap();
             std::fs::write(folder.path().join(RECORDS), [&whole[..], &next[..cut]].concat()).unwrap();
             let mut records = Records::open(folder.path()).unwrap();
             assert_eq!(
-                (records.len(), records.get("b").is_none()),
-                (1, true),
+                (records.len(), records.get("b").is_some()),
+                (1 + left, left == 1),
                 "cut at {cut}"
             );
             records.append(&[record("c")]).unwrap();
             drop(records);
             let records = Records::open(folder.path()).unwrap();
-            assert_eq!((records.len(), records.damaged), (2, 0), "cut at {cut}");
+            assert_eq!((records.len(), records.damaged), (2 + left, 0), "cut at {cut}");
+            // The first line of all may be cut as well.
+            std::fs::write(folder.path().join(RECORDS), &next[..cut]).unwrap();
+            drop(records);
+            let records = Records::open(folder.path()).unwrap();
+            assert_eq!(records.len(), left, "cut at {cut}");
         }
     }
 
@@ -372,11 +403,18 @@ mod tests {
             Err(StudyError::Busy { .. })
         ));
         drop(first);
-        std::fs::write(folder.path().join(RECORDS), "some notes\nof mine\n").unwrap();
-        assert!(matches!(
-            Records::open(folder.path()),
-            Err(StudyError::NotRecords { .. })
-        ));
+        // Whatever it is called, and whether or not its last line ends.
+        let path = folder.path().join(RECORDS);
+        for mine in [
+            "some notes\nof mine\n",
+            "{\"my\": \"notes\"}",
+            "deadbeef, and more",
+        ] {
+            std::fs::write(&path, mine).unwrap();
+            let opened = Records::open(folder.path());
+            assert!(matches!(opened, Err(StudyError::NotRecords { .. })), "{mine}");
+            assert_eq!(std::fs::read(&path).unwrap(), mine.as_bytes());
+        }
     }
 
     /// A file without end, and what is no file, are neither read nor waited for.

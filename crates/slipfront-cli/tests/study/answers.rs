@@ -228,3 +228,22 @@ fn pictures_are_those_that_the_axes_ask_for() {
         !two_numbers.has("static_friction_star_map.svg") && !two_numbers.has("static_reduction_percent.png")
     );
 }
+
+/// Its mu_s* is that of a run which never slid: a mean of it must not pass for one.
+#[test]
+fn runs_without_a_transition_are_pointed_out() {
+    let bench = Bench::with(&SMALL.replace("stop = \"after_onset\"", "duration_star = 25"));
+    let said = bench.run(&["study.toml", "-o", "out"]);
+    let row = |speed: &str| {
+        let mut rows = said
+            .lines()
+            .filter(|line| line.contains(&format!("v_star = {speed} ")));
+        rows.next().unwrap_or_else(|| panic!("{said}")).to_owned()
+    };
+    assert!(row("0.08").contains("(no transition in 6 of 6 runs)"), "{said}");
+    assert!(!row("0.18").contains("no transition"), "{said}");
+    assert!(
+        said.contains("runs had no transition, and static_friction_star is the largest mu*"),
+        "{said}"
+    );
+}

@@ -114,6 +114,29 @@ fn a_folder_with_other_things_is_left_alone() {
     }
 }
 
+/// Whatever they are called: only what a study has drawn is its own.
+#[test]
+fn pictures_of_others_stay() {
+    let bench = Bench::with(SMALL);
+    let results = bench.study("out");
+    let mine = [
+        "static_friction_star_vs_experiment.png",
+        "static_friction_star-mine.svg",
+    ];
+    for name in mine {
+        bench.write(&format!("out/{name}"), "mine");
+    }
+    bench.study("out");
+    bench.write(
+        "study.toml",
+        SMALL.replace("[0.08, 0.1, 0.12", "[0.2, 0.22, 0.24"),
+    );
+    bench.study("out");
+    for name in mine {
+        assert!(results.has(name), "{name}");
+    }
+}
+
 #[test]
 fn output_that_cannot_be_written_is_bad_input() {
     let bench = Bench::with(SMALL);

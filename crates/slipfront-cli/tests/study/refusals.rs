@@ -106,10 +106,7 @@ fn bad_studies_are_refused_with_a_sentence() {
         ),
         ("[studdy]\nreplicates = 2".to_owned(), "did you mean `study`?"),
         ("replicates = 2".to_owned(), "it belongs in [study]"),
-        (
-            "base = 'nowhere.toml'".to_owned(),
-            "cannot read the case file nowhere.toml",
-        ),
+        ("base = 'nowhere.toml'".to_owned(), "cannot read nowhere.toml"),
         ("base = 3".to_owned(), "`base` must be the path of a case file"),
         (
             "[base.slider]\nbloks = [4, 4]".to_owned(),

@@ -40,6 +40,47 @@ fn two_shards_merged_are_one_study() {
 }
 
 #[test]
+fn run_folders_that_shards_kept_are_taken_over() {
+    let kept = SMALL
+        .replace("replicates = 3", "replicates = 1\nkeep = 'all'")
+        .replace("[0.08, 0.1, 0.12, 0.14, 0.16, 0.18]", "[0.1, 0.12]");
+    let bench = Bench::with(&kept);
+    bench.study("whole");
+    for part in ["1", "2"] {
+        let out = format!("part{part}");
+        bench.run(&["study.toml", "--shard", &format!("{part}/2"), "-o", &out]);
+    }
+    // What a kill left of an earlier try.
+    bench.write("merged/runs/.slipfrontAbCdEf/case.toml", "half of");
+    bench.write("merged/records.jsonl", "");
+    for _ in 0..2 {
+        bench.run(&["merge", "part1", "part2", "-o", "merged"]);
+        let names = |out: &str| -> std::collections::BTreeSet<_> {
+            let runs = std::fs::read_dir(bench.path(out).join("runs")).unwrap();
+            runs.map(|entry| entry.unwrap().file_name()).collect()
+        };
+        assert_eq!(names("merged"), names("whole"));
+        for run in names("whole") {
+            for file in ["fields.nc", "summary.json", "case.toml"] {
+                let read =
+                    |out: &str| std::fs::read(bench.path(out).join("runs").join(&run).join(file)).unwrap();
+                assert!(read("merged") == read("whole"), "{run:?}/{file}");
+            }
+        }
+    }
+    let verify = assert_cmd::Command::new(env!("CARGO_BIN_EXE_slipfront"))
+        .current_dir(bench.path(""))
+        .args(["verify", "merged"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&verify.stdout);
+    assert!(
+        verify.status.success() && said.contains("4 run folders") && !said.contains("note"),
+        "{said}"
+    );
+}
+
+#[test]
 fn foreign_shards_are_refused() {
     let bench = Bench::with(SMALL);
     bench.write("other.toml", SMALL.replace("0.08", "0.09"));

@@ -96,6 +96,25 @@ fn run_folders_of_a_study_are_verified_too() {
     std::fs::remove_dir_all(results.path.join("runs")).unwrap();
     let (status, said, _) = verified(&bench, "out");
     assert!(status == 0 && said.contains(", 0 run folders"), "{said}");
+    assert!(
+        said.contains("note: 2 of 2 runs have no folder in out/runs"),
+        "{said}"
+    );
+}
+
+/// As after a new version of the program, whose runs would be others.
+#[test]
+fn records_of_something_else_are_called_so() {
+    let bench = Bench::with(SMALL);
+    bench.study("out");
+    let text = std::fs::read_to_string(bench.path("out/study.toml")).unwrap();
+    bench.write("out/study.toml", format!("{text}\n[base.friction]\nseed = 77\n"));
+    let (status, _, problems) = verified(&bench, "out");
+    assert_eq!(status, 2);
+    assert!(
+        problems.contains("the 36 runs recorded in out are of another program than slipfront "),
+        "{problems}"
+    );
 }
 
 #[test]

@@ -7,6 +7,7 @@ use slipfront_case::study::{Plan, StudyFolder, collect, is_study, refuse_foreign
 
 use super::run::finish;
 use crate::failure::Failure;
+use crate::say::say;
 
 /// Unite the shards of a study: their records, tables and pictures; may be repeated
 #[derive(Args)]
@@ -36,9 +37,17 @@ impl Merge {
             taken += folder.records.merge(shard).map_err(Failure::running)?;
         }
         if !self.quiet {
-            eprintln!("{taken} runs taken over from {} shards", self.shards.len());
+            say(&format!(
+                "{taken} runs taken over from {} shards",
+                self.shards.len()
+            ));
         }
         let findings = collect(&plan, &mut folder.records).map_err(Failure::running)?;
+        for shard in &self.shards {
+            folder
+                .take_kept(&plan, &findings, shard)
+                .map_err(Failure::running)?;
+        }
         finish(&plan, &findings, &folder, self.quiet)
     }
 }
