@@ -8,7 +8,7 @@ use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, I
 
 use slipfront::surface::MaskImage;
 
-use super::ArrayError;
+use super::{ArrayError, extension, unknown_extension};
 use crate::folder::write_whole;
 
 /// More pixels than any lattice has blocks.
@@ -163,8 +163,12 @@ fn decoding_error(path: &Path, source: DecodingError) -> ArrayError {
 ///
 /// # Errors
 ///
-/// [`ArrayError`] if `textured` has another length or the file cannot be written.
+/// [`ArrayError`] if the name does not end in `.png`, `textured` has another length or the file cannot be written.
 pub fn write_mask_png(path: &Path, nx: usize, ny: usize, textured: &[bool]) -> Result<(), ArrayError> {
+    let ending = extension(path);
+    if ending != "png" {
+        return Err(unknown_extension(path, &ending, ".png"));
+    }
     if textured.len() != nx * ny || textured.is_empty() {
         return Err(ArrayError::Shape {
             path: path.to_owned(),

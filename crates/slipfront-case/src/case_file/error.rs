@@ -15,7 +15,7 @@ use crate::legible::{self, shortened};
 #[non_exhaustive]
 pub enum CaseError {
     /// The file cannot be read.
-    #[error("cannot read the case file {}: {source}", path.display())]
+    #[error("cannot read {}: {source}", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -23,13 +23,13 @@ pub enum CaseError {
         source: io::Error,
     },
     /// The path names a folder.
-    #[error("{} is a folder: name the case file in it", path.display())]
+    #[error("{} is a folder: name the file in it", path.display())]
     Folder {
         /// The folder.
         path: PathBuf,
     },
     /// The file is larger than any case file is.
-    #[error("{} is larger than {limit_mib} MiB, so it is no case file", path.display())]
+    #[error("{} is larger than {limit_mib} MiB, so it is no case or study file", path.display())]
     TooLarge {
         /// The file.
         path: PathBuf,
@@ -37,7 +37,7 @@ pub enum CaseError {
         limit_mib: u64,
     },
     /// The file is not text.
-    #[error("{}:{line}: the case file is not UTF-8 text", path.display())]
+    #[error("{}:{line}: the file is not UTF-8 text", path.display())]
     NotText {
         /// The file.
         path: PathBuf,

@@ -25,7 +25,10 @@ const PAIRS: [(&str, [&str; 2]); 6] = [
 ];
 
 /// The names of the tables, in the order of the design.
-pub(super) const TABLES: [&str; 7] = ["slider", "load", "drive", "friction", "texture", "time", "output"];
+pub(crate) const TABLES: [&str; 7] = ["slider", "load", "drive", "friction", "texture", "time", "output"];
+
+/// Those of a study file.
+pub(crate) const STUDY_TABLES: [&str; 3] = ["base", "study", "axes"];
 
 /// A table's header as it stands in the file.
 pub(super) fn header(table: &str) -> String {
@@ -140,6 +143,11 @@ pub(crate) fn unknown(key: &str, header: &str, known: &[&str]) -> String {
 pub(super) fn unknown_table(key: &str) -> String {
     if let Some(home) = home_of(key) {
         return format!("`{key}` stands outside its table: it belongs in {home}");
+    }
+    if STUDY_TABLES.contains(&key) {
+        return format!(
+            "`{key}` belongs in a study file, which `slipfront study` runs: this is read as a case file"
+        );
     }
     let list = TABLES.map(header).join(", ");
     match nearest(key, &TABLES) {

@@ -11,7 +11,9 @@ use super::axis::{self, Axis, AxisKeys};
 use super::error::StudyError;
 use super::inputs::{self, Copy};
 use super::{quantities, tables};
-use crate::case_file::{CaseError, Source, Tables, keys_of, not_too_deep, unknown_key};
+use crate::case_file::{
+    CASE_TABLES, CaseError, STUDY_TABLES, Source, Tables, keys_of, not_too_deep, unknown_key,
+};
 
 /// A study file.
 #[derive(Clone, Debug)]
@@ -177,9 +179,6 @@ impl Settings {
     }
 }
 
-/// Tables of a study file.
-const TABLES: [&str; 3] = ["base", "study", "axes"];
-
 impl StudyFile {
     /// The study with its base case inside and its files beside it, for the results folder.
     ///
@@ -257,8 +256,13 @@ impl StudyFile {
                     "`{}` stands outside its table: it belongs in [study]",
                     key.get_ref()
                 )
+            } else if CASE_TABLES.contains(&key.get_ref().as_ref()) {
+                let key = key.get_ref();
+                format!(
+                    "`{key}` belongs in a case file, which `slipfront run` runs: in a study file, write it as [base.{key}]"
+                )
             } else {
-                unknown_key(key.get_ref(), "a study file", &TABLES)
+                unknown_key(key.get_ref(), "a study file", &STUDY_TABLES)
             };
             Err(source.error_at(key.span(), sentence))?;
         }

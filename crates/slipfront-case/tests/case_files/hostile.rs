@@ -80,17 +80,17 @@ fn files_that_cannot_be_read_say_why() {
     let path = folder.path().join("case.toml");
     let load = |path: &Path| CaseFile::load(path, &[]).unwrap_err();
     assert!(matches!(load(&path), CaseError::Unreadable { .. }));
-    assert!(load(&path).to_string().starts_with("cannot read the case file "));
+    assert!(load(&path).to_string().starts_with("cannot read "));
     assert!(
         load(folder.path())
             .to_string()
-            .ends_with("is a folder: name the case file in it")
+            .ends_with("is a folder: name the file in it")
     );
     fs::write(&path, b"[load]\n# \xff\n").unwrap();
     assert!(
         load(&path)
             .to_string()
-            .ends_with("case.toml:2: the case file is not UTF-8 text")
+            .ends_with("case.toml:2: the file is not UTF-8 text")
     );
     fs::write(&path, vec![b'\n'; (16 << 20) + 1]).unwrap();
     assert!(load(&path).to_string().contains("is larger than 16 MiB"));

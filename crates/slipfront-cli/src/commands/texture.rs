@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use slipfront_case::arrays;
+use slipfront_case::arrays::{self, ArrayError};
 
 use super::{CaseArgs, print};
 use crate::failure::Failure;
@@ -35,8 +35,12 @@ impl Texture {
             return Err(Failure::input(anyhow::anyhow!(sentence)));
         }
         let lattice = &case.model.lattice;
-        arrays::write_mask_png(&self.out, lattice.nx, lattice.ny, &case.model.surface.textured)
-            .map_err(Failure::running)?;
+        arrays::write_mask_png(&self.out, lattice.nx, lattice.ny, &case.model.surface.textured).map_err(
+            |error| match error {
+                ArrayError::Extension { .. } => Failure::input(error),
+                error => Failure::running(error),
+            },
+        )?;
         print(&format!("{}\n{}\n", report::texture(&case), self.out.display()))
     }
 }

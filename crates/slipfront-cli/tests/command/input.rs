@@ -51,7 +51,7 @@ fn a_case_that_is_no_file_is_refused() {
     assert!(
         bench
             .refused("run missing.toml", 2)
-            .contains("cannot read the case file missing.toml")
+            .contains("cannot read missing.toml")
     );
     assert!(bench.refused("run folder", 2).contains("is a folder"));
     assert!(bench.refused("run binary.toml", 2).contains("not UTF-8"));

@@ -44,4 +44,6 @@ fn a_picture_is_replaced_only_by_force() {
     bench.done("texture small.toml -o mask.png --force");
     assert_eq!(bench.read("mask.png")[1..4], *b"PNG");
     bench.refused("texture small.toml -o no/such/folder/mask.png", 1);
+    let said = bench.refused("texture small.toml -o mask.jpg", 2);
+    assert!(said.contains("name a file that ends in .png"), "{said}");
 }
