@@ -189,16 +189,6 @@ fn label_one(
         let candidates = along_window(panels, &text, from, to, mu.clamped(window.mean));
         write(canvas, placer, &text, candidates, CURVES[1]);
     }
-    if let Some(slip) = curve.first_slip_time_star.filter(|&slip| time.holds(slip)) {
-        let text = Text::plain("first slip", SIZE_LABEL);
-        write(
-            canvas,
-            placer,
-            &text,
-            beside_line(panels, &text, time.at(slip)),
-            GREY,
-        );
-    }
     // Instants at the peak share its label: several labels of one point would take its neighbours' places.
     let at_peak = |instant: &Instant| {
         let (x, y) = point(instant.time_star, instant.mu_star);
@@ -221,14 +211,24 @@ fn label_one(
             canvas,
             placer,
             &text,
-            around(point(t, value), box_of(&text)),
+            around(point(t, value), box_of(&text), &dots),
             BLACK,
+        );
+    }
+    if let Some(slip) = curve.first_slip_time_star.filter(|&slip| time.holds(slip)) {
+        let text = Text::plain("first slip", SIZE_LABEL);
+        write(
+            canvas,
+            placer,
+            &text,
+            beside_line(panels, &text, time.at(slip)),
+            GREY,
         );
     }
     for instant in instants.into_iter().filter(|i| !at_peak(i)) {
         let text = Text::plain(&instant.letter.to_string(), SIZE_LABEL);
         let place = point(instant.time_star, instant.mu_star);
-        write(canvas, placer, &text, around(place, box_of(&text)), BLACK);
+        write(canvas, placer, &text, around(place, box_of(&text), &dots), BLACK);
     }
     for dot in dots {
         canvas.dot(dot, DOT, BLACK);
@@ -279,9 +279,10 @@ fn letter(canvas: &mut Canvas, panels: &Panels, placer: &mut Placer, curve: &Fri
             height: 2.0 * DOT,
         });
     }
+    let dots: Vec<(f64, f64)> = places.iter().map(|(_, place)| *place).collect();
     for (instant, place) in places {
         let text = Text::plain(&instant.letter.to_string(), SIZE_LABEL);
-        write(canvas, placer, &text, around(place, box_of(&text)), BLACK);
+        write(canvas, placer, &text, around(place, box_of(&text), &dots), BLACK);
         canvas.dot(place, DOT, BLACK);
     }
 }

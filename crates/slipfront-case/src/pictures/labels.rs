@@ -90,8 +90,9 @@ impl Placer {
     }
 }
 
-/// Places around `point` for a label of this size, near ones first; far ones get a leader.
-pub(super) fn around(point: (f64, f64), (width, height): (f64, f64)) -> Vec<Candidate> {
+/// Places around `point` for a label of this size, near ones first. Far ones get a leader, and so do those which one of the
+/// other `dots` is as near to: there it would be taken for theirs.
+pub(super) fn around(point: (f64, f64), (width, height): (f64, f64), dots: &[(f64, f64)]) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for gap in [14.0, 22.0, 34.0, 50.0, 70.0, 95.0, 130.0, 180.0] {
         for step in 0..24 {
@@ -109,18 +110,27 @@ pub(super) fn around(point: (f64, f64), (width, height): (f64, f64)) -> Vec<Cand
                 width,
                 height,
             };
-            let end = (
-                point.0.clamp(area.x - 3.0, area.right() + 3.0),
-                point.1.clamp(area.y - 3.0, area.bottom() + 3.0),
-            );
-            let (dx, dy) = (end.0 - point.0, end.1 - point.1);
+            let to_label = |dot: (f64, f64)| {
+                (
+                    dot.0.clamp(area.x - 3.0, area.right() + 3.0) - dot.0,
+                    dot.1.clamp(area.y - 3.0, area.bottom() + 3.0) - dot.1,
+                )
+            };
+            let (dx, dy) = to_label(point);
             let distance = dx.hypot(dy);
+            let is_near = |&dot: &(f64, f64)| {
+                let (dx, dy) = to_label(dot);
+                dot != point && dx.hypot(dy) < 1.5 * distance
+            };
+            let strays = dots.iter().any(is_near);
             // The leader starts off its dot, so that it never counts as crossing it.
             let start = (point.0 + dx / distance * 12.0, point.1 + dy / distance * 12.0);
-            let leader = (distance > 30.0).then_some([start, end]);
+            let end = (point.0 + dx, point.1 + dy);
+            let leader = (distance > if strays { 20.0 } else { 30.0 }).then_some([start, end]);
+            let unclear = if strays && leader.is_none() { 30.0 } else { 0.0 };
             candidates.push(Candidate {
                 area,
-                penalty: gap + 2.0 * turn.abs(),
+                penalty: gap + 2.0 * turn.abs() + unclear,
                 leader,
             });
         }
@@ -180,7 +190,7 @@ mod tests {
         let areas: Vec<Area> = (0..10)
             .filter_map(|index| {
                 placer
-                    .place(around((845.0 - 1.2 * f64::from(index), 10.0), (24.0, 24.0)))
+                    .place(around((845.0 - 1.2 * f64::from(index), 10.0), (24.0, 24.0), &[]))
                     .map(|c| c.area)
             })
             .collect();
@@ -196,8 +206,23 @@ mod tests {
         let mut placer = Placer::new(BOUNDS);
         let curve = [(0.0, 480.0), (430.0, 100.0), (860.0, 480.0)];
         placer.avoid(&curve);
-        let area = placer.place(around(curve[1], (150.0, 30.0))).unwrap().area;
+        let area = placer.place(around(curve[1], (150.0, 30.0), &[])).unwrap().area;
         assert!(!crosses([curve[0], curve[1]], &area) && !crosses([curve[1], curve[2]], &area));
+    }
+
+    /// Of two dots side by side each label stands nearer to its own, or is joined to it.
+    #[test]
+    fn a_label_is_not_taken_for_that_of_another_dot() {
+        let dots = [(400.0, 300.0), (425.0, 300.0)];
+        let mut placer = Placer::new(BOUNDS);
+        for (own, other) in [(dots[0], dots[1]), (dots[1], dots[0])] {
+            let placed = placer.place(around(own, (24.0, 24.0), &dots)).unwrap();
+            let distance = |dot: (f64, f64)| {
+                let x = dot.0.clamp(placed.area.x, placed.area.right()) - dot.0;
+                x.hypot(dot.1.clamp(placed.area.y, placed.area.bottom()) - dot.1)
+            };
+            assert!(placed.leader.is_some() || distance(own) < distance(other));
+        }
     }
 
     #[test]
