@@ -1,4 +1,4 @@
-//! Every command line in the book is one that the command understands.
+//! Every command line in the book is one that the command understands, and every link in it leads somewhere.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use assert_cmd::Command;
 fn pages() -> Vec<PathBuf> {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut pages = vec![repository.join("README.md")];
-    for folder in ["docs", "docs/guide", "docs/validation"] {
+    for folder in ["docs", "docs/guide", "docs/reference", "docs/validation"] {
         let entries = std::fs::read_dir(repository.join(folder)).expect("the book can be listed");
         pages.extend(entries.flatten().map(|entry| entry.path()));
     }
@@ -88,4 +88,63 @@ fn lines_are_split_as_a_shell_does() {
         ["run", "--set", "drive.speed=1 mm/s", "-o", "a b"]
     );
     assert_eq!(words("run --json | jq ."), ["run", "--json"]);
+}
+
+/// The lines of a page outside of its fenced blocks.
+fn prose(page: &str) -> impl Iterator<Item = &str> {
+    let mut fenced = false;
+    page.lines().filter(move |line| {
+        let fence = line.trim_start().starts_with("```");
+        fenced ^= fence;
+        !fenced && !fence
+    })
+}
+
+/// The anchor of a heading: small letters, a hyphen for each blank, nothing else but digits, hyphens and underscores.
+fn anchor(heading: &str) -> String {
+    heading
+        .trim()
+        .to_lowercase()
+        .replace(' ', "-")
+        .chars()
+        .filter(|&c| c.is_alphanumeric() || c == '-' || c == '_')
+        .collect()
+}
+
+fn anchors(page: &str) -> Vec<String> {
+    prose(page)
+        .filter(|line| line.starts_with('#'))
+        .map(|line| anchor(line.trim_start_matches('#')))
+        .collect()
+}
+
+#[test]
+fn every_link_in_the_book_leads_somewhere() {
+    let (mut count, mut broken) = (0, String::new());
+    for page in pages() {
+        let text = std::fs::read_to_string(&page).unwrap();
+        let parts = prose(&text).flat_map(|line| line.split("](").skip(1));
+        for target in parts.filter_map(|part| part.split(')').next()) {
+            if target.starts_with("http") {
+                continue;
+            }
+            count += 1;
+            let (file, place) = target.split_once('#').unwrap_or((target, ""));
+            let path = match file {
+                "" => page.clone(),
+                file => page.parent().unwrap().join(file),
+            };
+            let leads = match place {
+                "" => path.exists(),
+                place => std::fs::read_to_string(&path)
+                    .is_ok_and(|text| anchors(&text).iter().any(|anchor| anchor == place)),
+            };
+            if !leads {
+                broken += &format!("{}: {target}\n", page.display());
+            }
+        }
+    }
+    assert!(broken.is_empty(), "{broken}");
+    assert!(count >= 50, "only {count} links were found");
+    assert_eq!(anchor(" What 31 % means"), "what-31--means");
 }
