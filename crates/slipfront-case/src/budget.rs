@@ -428,16 +428,21 @@ pub fn available_memory() -> Option<f64> {
     least.map(|bytes| bytes as f64)
 }
 
-/// How much of so many bytes the system gives at once.
+/// How much of so many bytes the system gives at once, to a ten-thousandth.
 pub(crate) fn most_at_once(bytes: f64) -> f64 {
-    const PARTS: u32 = 64;
-    let parts = (1..=PARTS)
-        .rev()
-        .map(|part| bytes * f64::from(part) / f64::from(PARTS));
-    parts
-        .into_iter()
-        .find(|&part| can_be_had(part))
-        .unwrap_or_default()
+    if can_be_had(bytes) {
+        return bytes;
+    }
+    let (mut given, mut refused) = (0.0, bytes);
+    while refused - given > 1e-4 * bytes {
+        let between = 0.5 * (given + refused);
+        if can_be_had(between) {
+            given = between;
+        } else {
+            refused = between;
+        }
+    }
+    given
 }
 
 /// Asks the system for so many bytes at once, and gives them back untouched.

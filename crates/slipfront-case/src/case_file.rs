@@ -29,7 +29,8 @@ use toml::de::{DeTable, DeValue};
 pub(crate) use depth::not_too_deep;
 pub use error::{CaseError, Invalid};
 pub(crate) use keys::{
-    STUDY_TABLES, TABLES as CASE_TABLES, exclude_each_other, keys_of, partners_of, unknown as unknown_key,
+    STUDY_TABLES, TABLES as CASE_TABLES, exclude_each_other, header_below, keys_of, partners_of,
+    unknown as unknown_key,
 };
 pub use motion::{Drive, DriveSpeed, Friction, KineticFriction, Law, Load};
 pub use output::{Output, Snapshots};

@@ -51,25 +51,18 @@ pub enum VerifyError {
         manifest: PathBuf,
     },
     /// A study that has not all its runs.
-    #[error("the study in {} lacks {runs} runs: finish it, or merge it with its other shards, and verify it then", path.display())]
+    #[error(
+        "the study in {} lacks {runs} runs{}: finish it, or merge it with its other shards, and verify it then",
+        path.display(),
+        study::of_others(*others)
+    )]
     Unfinished {
         /// The folder.
         path: PathBuf,
         /// Runs that are not recorded.
         runs: usize,
-    },
-    /// A study none of whose runs is recorded, where others are.
-    #[error(
-        "the {recorded} runs recorded in {} are of another program than {}, or of a study that was changed since: verify it \
-         with the program that ran it, or run it again",
-        path.display(),
-        Manifest::this_program()
-    )]
-    OtherRuns {
-        /// The folder.
-        path: PathBuf,
-        /// Runs that are recorded.
-        recorded: usize,
+        /// Recorded runs that it does not ask for.
+        others: usize,
     },
     /// A study that cannot be read, or made again.
     #[error(transparent)]
@@ -245,15 +238,9 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
     let (damaged, records) = (again.records.damaged, records.display());
     let findings = match study::collect(&plan, &mut again.records) {
         Ok(findings) => findings,
-        Err(StudyError::Missing { runs }) if damaged == 0 => {
-            let (path, recorded) = (folder.to_owned(), again.records.len());
-            let mut needed = plan.runs(plan.settings.min_replicates());
-            let is_begun = needed.any(|run| again.records.get(&plan.identity(run)).is_some());
-            return Err(if is_begun || recorded == 0 {
-                VerifyError::Unfinished { path, runs }
-            } else {
-                VerifyError::OtherRuns { path, recorded }
-            });
+        Err(StudyError::Missing { runs, others }) if damaged == 0 => {
+            let path = folder.to_owned();
+            return Err(VerifyError::Unfinished { path, runs, others });
         }
         // What its tables should be is lost with the damaged lines.
         Err(StudyError::Missing { .. }) => {

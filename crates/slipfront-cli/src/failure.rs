@@ -12,7 +12,7 @@ pub(crate) enum Failure {
     /// Failed while running: status 1.
     Running(anyhow::Error),
     /// Stopped by this signal: status 128 + signal.
-    Stopped(usize, anyhow::Error),
+    Stopped(i32, anyhow::Error),
 }
 
 impl Failure {

@@ -1,12 +1,13 @@
 //! What the commands print: the physics of a case as a tree, its cost, the summary of a run.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use slipfront::lattice::dt_star_limit;
 use slipfront_case::budget::{available_memory, shown};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Law;
-use slipfront_case::study::{self, Findings, Plan};
+use slipfront_case::study::{self, Findings, Plan, RunKey};
 use slipfront_case::summary::Summary;
 
 /// The resolved physics of a case.
@@ -280,9 +281,8 @@ pub(crate) fn study(plan: &Plan, findings: &Findings, folder: &Path) -> String {
     let mut text = String::new();
     let name = study::main_quantity(plan);
     text += &format!("{name}\n");
-    let steady: Vec<(usize, usize)> = (0..plan.points.len())
-        .map(|position| findings.without_transition(position))
-        .collect();
+    let without: Vec<RunKey> = findings.without_transition().collect();
+    let of_point = |position: usize| move |run: &&RunKey| run.point == position;
     let rows: Vec<(String, String)> = (0..plan.points.len())
         .take(MOST_ROWS)
         .map(|position| {
@@ -292,8 +292,9 @@ pub(crate) fn study(plan: &Plan, findings: &Findings, folder: &Path) -> String {
                 if wide {
                     note += "   (interval still too wide)";
                 }
-                let (without, runs) = steady[position];
+                let without = without.iter().filter(of_point(position)).count();
                 if without > 0 {
+                    let runs = findings.runs.keys().filter(of_point(position)).count();
                     note += &format!("   (no transition in {without} of {runs} runs)");
                 }
                 format!(
@@ -319,11 +320,13 @@ pub(crate) fn study(plan: &Plan, findings: &Findings, folder: &Path) -> String {
             plan.points.len() - MOST_ROWS
         );
     }
-    let without: usize = steady.iter().map(|(without, _)| without).sum();
-    if without > 0 {
+    // Points share references.
+    let without: HashSet<String> = without.into_iter().map(|run| plan.identity(run)).collect();
+    if !without.is_empty() {
         text += &format!(
-            "note: {without} runs had no transition, and static_friction_star is the largest mu* of them: lengthen \
-             `time.duration_star`, unless they were expected to have none\n"
+            "note: mu* never fell half-way to its steady level in {} runs, and static_friction_star is the largest mu* of them: \
+             lengthen `time.duration_star` of the base, unless they were expected to have no transition\n",
+            without.len()
         );
     }
     if findings.strangers > 0 {

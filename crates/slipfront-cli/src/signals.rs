@@ -1,51 +1,53 @@
 //! Signals, as flags that are looked at now and then.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 
-/// Whether a signal came that stops the program, or SIGUSR1.
+/// Which signals came.
 #[derive(Clone, Debug)]
 pub(crate) struct Signals {
-    /// Set when one came that stops.
+    /// Set when one came that stops the program.
     pub(crate) stop: Arc<AtomicBool>,
-    which: Arc<AtomicUsize>,
+    /// Those that do, and whether each came; the first of them that did gives the status.
+    stops: Vec<(i32, Arc<AtomicBool>)>,
     usr1: Arc<AtomicBool>,
 }
 
 impl Signals {
     /// Keeps what queues, users and terminals send from ending the process: SIGINT, SIGTERM, SIGHUP, SIGUSR2 and SIGXCPU stop
-    /// it when it looks, and a second one at once; SIGUSR1 does not. Systems without some of them never see those.
+    /// it when it looks, a second one of the first three at once; SIGUSR1 does not stop it. Systems without some of them
+    /// never see those.
     pub(crate) fn catch() -> std::io::Result<Self> {
-        let (stop, which) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
-        let signals = Self {
-            stop,
-            which,
+        let mut signals = Self {
+            stop: Arc::default(),
+            stops: Vec::new(),
             usr1: Arc::default(),
         };
-        for signal in [SIGINT, SIGTERM].into_iter().chain(hangup()) {
-            signal_hook::flag::register_conditional_shutdown(
-                signal,
-                128 + signal,
-                Arc::clone(&signals.stop),
-            )?;
+        let asked = Arc::new(AtomicBool::new(false));
+        for signal in [SIGTERM, SIGINT].into_iter().chain(hangup()) {
+            signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&asked))?;
+            signal_hook::flag::register(signal, Arc::clone(&asked))?;
             signals.stop_on(signal)?;
         }
         #[cfg(unix)]
         {
             use signal_hook::consts::{SIGUSR1, SIGUSR2, SIGXCPU};
             signal_hook::flag::register(SIGUSR1, Arc::clone(&signals.usr1))?;
-            // Warnings of queues. SIGXCPU comes again every second, while what has been computed is still being saved.
+            // Warnings of queues, which leave time to save: SIGXCPU comes again every second meanwhile.
             signals.stop_on(SIGUSR2)?;
             signals.stop_on(SIGXCPU)?;
         }
         Ok(signals)
     }
 
-    fn stop_on(&self, signal: i32) -> std::io::Result<()> {
-        signal_hook::flag::register_usize(signal, Arc::clone(&self.which), signal as usize)?;
+    fn stop_on(&mut self, signal: i32) -> std::io::Result<()> {
+        let came = Arc::new(AtomicBool::new(false));
+        signal_hook::flag::register(signal, Arc::clone(&came))?;
+        // Whoever sees that it is to stop can see why.
         signal_hook::flag::register(signal, Arc::clone(&self.stop))?;
+        self.stops.push((signal, came));
         Ok(())
     }
 
@@ -55,10 +57,11 @@ impl Signals {
     }
 
     /// The signal that came, if one did.
-    pub(crate) fn stopped(&self) -> Option<usize> {
-        self.stop
-            .load(Ordering::SeqCst)
-            .then(|| self.which.load(Ordering::SeqCst))
+    pub(crate) fn stopped(&self) -> Option<i32> {
+        let mut stops = self.stops.iter();
+        stops
+            .find(|(_, came)| came.load(Ordering::SeqCst))
+            .map(|(signal, _)| *signal)
     }
 }
 

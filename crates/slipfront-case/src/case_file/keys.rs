@@ -32,10 +32,15 @@ pub(crate) const STUDY_TABLES: [&str; 3] = ["base", "study", "axes"];
 
 /// A table's header as it stands in the file.
 pub(super) fn header(table: &str) -> String {
+    header_below("", table)
+}
+
+/// The same in a table `above`, which ends in a dot.
+pub(crate) fn header_below(above: &str, table: &str) -> String {
     if table == "texture" {
-        "[[texture]]".to_owned()
+        format!("[[{above}{table}]]")
     } else {
-        format!("[{table}]")
+        format!("[{above}{table}]")
     }
 }
 

@@ -64,7 +64,7 @@ pub enum FolderError {
     },
     /// A file that is not slipfront's stands where one would be written.
     #[error(
-        "{} is not a file of an earlier run: move it away or choose another folder with --out",
+        "{} is not a file of slipfront: move it away or choose another folder with --out",
         shown(path)
     )]
     Foreign {

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use crate::case_file::CaseError;
 use crate::folder::FolderError;
+use crate::manifest::Manifest;
 use crate::pictures::PictureError;
 use crate::results::ResultsError;
 
@@ -106,7 +107,7 @@ pub enum StudyError {
         source: std::io::Error,
     },
     /// A file that is no record file.
-    #[error("{} is not the record file of a study: move it away, or choose another folder with --out", path.display())]
+    #[error("{} is not the record file of a study", path.display())]
     NotRecords {
         /// The file.
         path: PathBuf,
@@ -119,12 +120,15 @@ pub enum StudyError {
     Keep(#[from] ResultsError),
     /// Shards that do not hold all runs.
     #[error(
-        "{runs} runs are in none of the shards: finish them, or run the rest with `slipfront study` on the \
-        study.toml of the united folder, with --out the folder itself"
+        "{runs} runs are in none of the shards{}: finish them, or run the rest with `slipfront study` on the \
+        study.toml of the united folder, with --out the folder itself",
+        of_others(*others)
     )]
     Missing {
         /// Runs that are not there, as far as is known.
         runs: usize,
+        /// Recorded runs that no point asks for.
+        others: usize,
     },
     /// Shards of different studies.
     #[error("{} belongs to another study than {}: merge shards of one study only", other.display(), first.display())]
@@ -159,4 +163,15 @@ pub enum StudyError {
     /// A signal asked to stop.
     #[error("stopped by a signal: finished runs are safe, and the same command goes on from there")]
     Interrupted,
+}
+
+/// What recorded runs that no point asks for may be, for the middle of a sentence.
+pub(crate) fn of_others(runs: usize) -> String {
+    match runs {
+        0 => String::new(),
+        _ => format!(
+            ", and {runs} recorded runs are of another program than {}, or of a study that was changed since",
+            Manifest::this_program()
+        ),
+    }
 }

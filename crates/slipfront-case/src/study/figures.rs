@@ -21,6 +21,12 @@ pub(super) const QUANTITIES: [&str; 3] = ["static_friction_star", "kinetic_frict
 /// Most curves in one picture.
 const MOST_CURVES: usize = 9;
 
+/// Most pictures of curves of a quantity: who has more looks at the tables.
+const MOST_PICTURES: usize = 1000;
+
+/// Most characters of a level in the name of a picture: names of files are bounded.
+const MOST_OF_A_LEVEL: usize = 40;
+
 /// Names of all pictures that a study of these axes may get.
 pub(super) fn names(axes: &[Axis]) -> impl Iterator<Item = String> {
     QUANTITIES
@@ -141,14 +147,19 @@ fn sketches_of_curves(axes: &[Axis], x: usize, quantity: &str) -> Vec<Sketch> {
         held /= axes[others[split]].levels.len();
         split += 1;
     }
-    if held > MOST_CURVES {
+    if held > MOST_CURVES || count / held > MOST_PICTURES {
         return Vec::new();
     }
     let (front, back) = others.split_at(split);
     let sketch = |fixed: Levels| {
         let suffix: String = fixed
             .iter()
-            .map(|&(axis, level)| format!("-{}", file_word(&axes[axis].levels[level].labels.join("-"))))
+            .map(|&(axis, level)| {
+                format!(
+                    "-{}",
+                    file_word(&axes[axis].levels[level].labels.join("-"), level)
+                )
+            })
             .collect();
         Sketch {
             name: format!("{quantity}{suffix}"),
@@ -301,16 +312,11 @@ fn bars(axes: &[Axis], quantity: &str, values: &Values) -> Result<Picture, Pictu
     })
 }
 
-/// A word that every file system takes.
-fn file_word(label: &str) -> String {
-    label
-        .chars()
-        .map(|c| {
-            if c.is_ascii_alphanumeric() || "._-".contains(c) {
-                c
-            } else {
-                '_'
-            }
-        })
-        .collect()
+/// A level as a word that every file system takes; a long one is cut, and told from others by its number.
+fn file_word(label: &str, level: usize) -> String {
+    let word = |text: &str| text.replace(|c: char| !c.is_ascii_alphanumeric() && !"._-".contains(c), "_");
+    match label.char_indices().nth(MOST_OF_A_LEVEL) {
+        None => word(label),
+        Some((end, _)) => format!("{}_{}", word(&label[..end]), level + 1),
+    }
 }

@@ -12,7 +12,7 @@ use super::error::StudyError;
 use super::inputs::{self, Copy};
 use super::{quantities, tables};
 use crate::case_file::{
-    CASE_TABLES, CaseError, STUDY_TABLES, Source, Tables, keys_of, not_too_deep, unknown_key,
+    CASE_TABLES, CaseError, STUDY_TABLES, Source, Tables, header_below, keys_of, not_too_deep, unknown_key,
 };
 
 /// A study file.
@@ -257,9 +257,10 @@ impl StudyFile {
                     key.get_ref()
                 )
             } else if CASE_TABLES.contains(&key.get_ref().as_ref()) {
-                let key = key.get_ref();
+                let [key, below] = ["", "base."].map(|above| header_below(above, key.get_ref()));
                 format!(
-                    "`{key}` belongs in a case file, which `slipfront run` runs: in a study file, write it as [base.{key}]"
+                    "{key} belongs in a case file, which `slipfront run` runs: in a study file, write {below}, or name the \
+                     case file with `base`"
                 )
             } else {
                 unknown_key(key.get_ref(), "a study file", &STUDY_TABLES)

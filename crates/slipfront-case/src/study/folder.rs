@@ -1,6 +1,6 @@
 //! The study folder: the study itself, the records, the tables and the pictures.
 
-use std::collections::{BTreeSet, HashSet};
+use std::collections::HashSet;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -10,11 +10,12 @@ use super::figures;
 use super::file::StudyFile;
 use super::inputs::Copy;
 use super::plan::Plan;
-use super::record::{RECORDS, Records};
+use super::record::{Finding, RECORDS, Records};
 use crate::folder::{
     FolderError, TEXT_MAX_BYTES, is_empty, open_bounded, open_regular, read_whole, remove_if_there,
     remove_unfinished_folders, stage, stage_folder, sync_folder, write_whole,
 };
+use crate::manifest::Manifest;
 
 /// The study as a table with its base inside: what `slipfront study DIR/study.toml` repeats.
 const STUDY: &str = "study.toml";
@@ -52,7 +53,10 @@ impl StudyFolder {
                 path: path.to_owned(),
             });
         }
-        let records = Records::open(path)?;
+        let records = Records::open(path).map_err(|error| match error {
+            StudyError::NotRecords { path } => FolderError::Foreign { path }.into(),
+            error => error,
+        })?;
         let (text, copies) = study.portable()?;
         let parse = |text: &str| {
             let name = path.join(STUDY).display().to_string();
@@ -116,17 +120,23 @@ impl StudyFolder {
         Ok(())
     }
 
-    /// Copies the run folders that a shard has kept and this folder lacks, each whole or not at all; gives their number.
+    /// Copies the complete run folders that a shard has kept and this folder lacks, each whole or not at all, and the cases of
+    /// failed runs; gives their number.
     ///
     /// # Errors
     /// When one cannot be copied.
     pub fn take_kept(&self, plan: &Plan, findings: &Findings, shard: &Path) -> Result<usize, StudyError> {
         remove_unfinished_folders(&self.path.join(RUNS));
-        let names: BTreeSet<String> = findings.runs.keys().map(|run| plan.folder_name(*run)).collect();
         let mut taken = 0;
-        for name in names {
+        for (run, finding) in &findings.runs {
+            let name = plan.folder_name(*run);
+            let is_whole = |folder: &Path| match finding.as_ref() {
+                // A kill may have come while it was written.
+                Finding::Done(_) => Manifest::read(folder).is_ok(),
+                Finding::Failed(_) => folder.is_dir(),
+            };
             let (from, to) = (shard.join(RUNS).join(&name), self.path.join(RUNS).join(&name));
-            if !from.is_dir() || to.exists() {
+            if !is_whole(&from) || is_whole(&to) {
                 continue;
             }
             copy_folder(&from, &to).map_err(|source| FolderError::Copy { from, to, source })?;
@@ -151,6 +161,10 @@ fn copy_folder(from: &Path, to: &Path) -> std::io::Result<()> {
     std::fs::create_dir_all(beside)?;
     let staged = stage_folder(beside)?;
     copy_files(from, staged.path())?;
+    // What a kill left of one.
+    if to.exists() {
+        std::fs::remove_dir_all(to)?;
+    }
     std::fs::rename(staged.path(), to)?;
     // There is nothing left to remove.
     let _ = staged.keep();

@@ -25,6 +25,7 @@ mod tables;
 
 pub use axis::{Axis, Level, Spacing};
 pub use error::StudyError;
+pub(crate) use error::of_others;
 pub use execute::{Findings, PointFindings, Progress, collect, execute};
 pub use file::{Base, Keep, Settings, StudyFile, Until};
 pub(crate) use folder::RUNS;

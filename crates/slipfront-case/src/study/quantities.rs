@@ -50,6 +50,8 @@ impl Quantity {
 pub struct Numbers {
     values: Box<[Option<f64>]>,
     static_friction_star: f64,
+    /// Whether its static friction is that of a transition.
+    pub(super) transition: bool,
 }
 
 impl Numbers {
@@ -57,6 +59,7 @@ impl Numbers {
         Self {
             values: named(summary).into_iter().map(|(_, value)| value).collect(),
             static_friction_star: summary.static_friction_star,
+            transition: summary.transition,
         }
     }
 

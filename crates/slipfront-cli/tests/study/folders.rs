@@ -106,7 +106,10 @@ fn a_folder_with_other_things_is_left_alone() {
     let bench = Bench::with(SMALL);
     bench.write("out/thesis.tex", "years of work");
     bench.write("notes/records.jsonl", "my own records\nof something\n");
-    for (out, sentence) in [("out", "holds other things"), ("notes", "is not the record file")] {
+    for (out, sentence) in [
+        ("out", "holds other things"),
+        ("notes", "records.jsonl is not a file of slipfront"),
+    ] {
         let output = bench.output(&["study.toml", "-o", out]);
         assert_eq!(output.status.code(), Some(2));
         assert!(errors(&output).contains(sentence), "{}", errors(&output));

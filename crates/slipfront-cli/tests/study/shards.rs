@@ -50,9 +50,15 @@ fn run_folders_that_shards_kept_are_taken_over() {
         let out = format!("part{part}");
         bench.run(&["study.toml", "--shard", &format!("{part}/2"), "-o", &out]);
     }
-    // What a kill left of an earlier try.
-    bench.write("merged/runs/.slipfrontAbCdEf/case.toml", "half of");
+    // What kills left: of an earlier try, of a run in the folder, and of one in a shard which another one holds whole.
     bench.write("merged/records.jsonl", "");
+    bench.write("merged/runs/.slipfrontAbCdEf/case.toml", "half of");
+    for run in std::fs::read_dir(bench.path("part2/runs")).unwrap() {
+        let run = run.unwrap().file_name().into_string().unwrap();
+        for out in ["merged", "part1"] {
+            bench.write(&format!("{out}/runs/{run}/case.toml"), "half of");
+        }
+    }
     for _ in 0..2 {
         bench.run(&["merge", "part1", "part2", "-o", "merged"]);
         let names = |out: &str| -> std::collections::BTreeSet<_> {

@@ -112,7 +112,7 @@ fn records_of_something_else_are_called_so() {
     let (status, _, problems) = verified(&bench, "out");
     assert_eq!(status, 2);
     assert!(
-        problems.contains("the 36 runs recorded in out are of another program than slipfront "),
+        problems.contains("lacks 36 runs, and 36 recorded runs are of another program than slipfront "),
         "{problems}"
     );
 }
