@@ -37,6 +37,7 @@ pub use output::{Output, Snapshots};
 pub use slider::{Damping, Edge, Slider};
 pub use source::{Place, Source};
 pub(crate) use tables::Tables;
+pub(crate) use texture::DEFAULT_THRESHOLD;
 pub use texture::{Cavity, CavitySize, Center, Groove, GrooveSize, Mask, Orientation, Polygon, Texture};
 pub use time::{RunTime, Step, Stop, Time};
 pub use values::AutoOr;

@@ -7,7 +7,7 @@ use slipfront::lattice::dt_star_limit;
 use slipfront_case::budget::{available_memory, shown};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Law;
-use slipfront_case::study::{self, Findings, Plan, RunKey};
+use slipfront_case::study::{self, Finding, Findings, Plan, RunKey};
 use slipfront_case::summary::Summary;
 
 /// The resolved physics of a case.
@@ -269,11 +269,32 @@ pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) 
         "  {block_steps:.2e} block-steps, {} on {threads} threads of this machine\n",
         duration(seconds)
     );
-    text + &format!(
+    text += &format!(
         "  {} of memory for {threads} runs at once, {} on the disk\n",
         shown(plan.memory(threads)),
         shown(plan.disk(plan.runs(settings.min_replicates())))
-    )
+    );
+    text + &warnings_of_plan(plan)
+}
+
+/// What is the matter with the cases of a study.
+fn warnings_of_plan(plan: &Plan) -> String {
+    let all = plan.warnings();
+    let mut text = String::new();
+    for warning in all.iter().take(MOST_WARNINGS) {
+        let first = plan.describe(&plan.points[warning.first]);
+        let place = match (warning.points, plan.points.len()) {
+            (some, all) if some == all => "at every point".to_owned(),
+            (1, _) => format!("at the point {first}"),
+            (some, _) => format!("at {some} points, the first {first}"),
+        };
+        text += &format!("note: {} ({place})\n", warning.sentence);
+    }
+    if all.len() > MOST_WARNINGS {
+        let more = all.len() - MOST_WARNINGS;
+        text += &format!("note: and {more} more of the kind, which `slipfront check` tells for a case\n");
+    }
+    text
 }
 
 /// What a study has found, and where it is.
@@ -282,27 +303,29 @@ pub(crate) fn study(plan: &Plan, findings: &Findings, folder: &Path) -> String {
     let name = study::main_quantity(plan);
     text += &format!("{name}\n");
     let without: Vec<RunKey> = findings.without_transition().collect();
-    let of_point = |position: usize| move |run: &&RunKey| run.point == position;
     let rows: Vec<(String, String)> = (0..plan.points.len())
         .take(MOST_ROWS)
         .map(|position| {
-            let value = study::sample(plan, findings, position, name).map_or("failed".to_owned(), |sample| {
-                let wide = findings.points[position].narrow == Some(false);
-                let mut note = String::new();
-                if wide {
-                    note += "   (interval still too wide)";
-                }
-                let without = without.iter().filter(of_point(position)).count();
-                if without > 0 {
-                    let runs = findings.runs.keys().filter(of_point(position)).count();
-                    note += &format!("   (no transition in {without} of {runs} runs)");
-                }
-                format!(
-                    "{}   n = {}{note}",
+            let mut of_point = findings.runs.iter().filter(|(run, _)| run.point == position);
+            let mut value = match study::sample(plan, findings, position, name) {
+                Some(sample) => format!(
+                    "{}   n = {}",
                     with_uncertainty(sample.mean, sample.half_width),
                     sample.n
-                )
-            });
+                ),
+                None if of_point.any(|(_, finding)| matches!(**finding, Finding::Done(_))) => {
+                    "none".to_owned()
+                }
+                None => "failed".to_owned(),
+            };
+            if findings.points[position].narrow == Some(false) {
+                value += "   (interval still too wide)";
+            }
+            let without = without.iter().filter(|run| run.point == position).count();
+            if without > 0 {
+                let runs = findings.runs.keys().filter(|run| run.point == position).count();
+                value += &format!("   (no transition in {without} of {runs} runs)");
+            }
             (plan.describe(&plan.points[position]), value)
         })
         .collect();
@@ -329,6 +352,7 @@ pub(crate) fn study(plan: &Plan, findings: &Findings, folder: &Path) -> String {
             without.len()
         );
     }
+    text += &warnings_of_plan(plan);
     if findings.strangers > 0 {
         text += &format!(
             "note: {} recorded runs are not part of the study as it is now; they stay in records.jsonl\n",
@@ -340,6 +364,9 @@ pub(crate) fn study(plan: &Plan, findings: &Findings, folder: &Path) -> String {
 
 /// Most levels of an axis that are printed.
 const MOST_LEVELS: usize = 10;
+
+/// Most warnings about the cases of a study that are printed.
+const MOST_WARNINGS: usize = 8;
 
 /// Most points that are printed.
 const MOST_ROWS: usize = 40;

@@ -14,24 +14,25 @@ const HEADER_MAX_NESTING: usize = 4;
 /// All numbers of a header together: their product then fits into 64 bits, whatever the radix they are written in.
 const HEADER_MAX_DIGITS: usize = 18;
 
-/// A mask of the bytes of a `.npy` file called `path`, of shape (ny, nx): nonzero = textured.
+/// A mask of the bytes of a `.npy` file called `path`, of shape (ny, nx): 1 or true = textured, 0 or false = not.
 ///
 /// Any real, integer or boolean type is accepted, in either byte and memory order. Returns `nx * ny` values in
 /// row-major order, row j = 0 (the smallest y) first.
 ///
 /// # Errors
 ///
-/// [`ArrayError`] if the bytes are not those of a `.npy` file, of another shape, or have a value that is not finite.
+/// [`ArrayError`] if the bytes are not those of a `.npy` file, of another shape, or have another value:
+/// a picture or a height map has no one reading as a mask.
 pub fn mask_npy(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<bool>, ArrayError> {
     let values = values(path, bytes, nx, ny)?;
-    match values.iter().position(|value| !value.is_finite()) {
-        None => Ok(values.iter().map(|value| *value != 0.0).collect()),
+    match values.iter().position(|value| ![0.0, 1.0].contains(value)) {
+        None => Ok(values.iter().map(|value| *value == 1.0).collect()),
         Some(at) => Err(ArrayError::Value {
             path: path.to_owned(),
             row: at / nx,
             column: at % nx,
             value: values[at].to_string(),
-            wanted: "a finite number",
+            wanted: "0 or 1, 1 being textured,",
         }),
     }
 }

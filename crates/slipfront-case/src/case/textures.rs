@@ -4,7 +4,7 @@ use slipfront::{Lattice, Scales, surface};
 
 use super::inputs::{Given, Inputs};
 use crate::arrays::{self, ArrayError};
-use crate::case_file::{self, CaseError, CaseFile};
+use crate::case_file::{self, CaseError, CaseFile, DEFAULT_THRESHOLD};
 use crate::quantity::Length;
 
 /// The shapes of all textures.
@@ -40,6 +40,14 @@ pub(super) fn textures(
                 let given = inputs.read(file, &key, &mask.file, lattice)?;
                 let shape = mask_of(&given, mask.threshold, lattice)
                     .map_err(|error| file.source.error(&key, error.to_string()))?;
+                if matches!(shape, surface::Texture::Blocks(_)) && mask.threshold != DEFAULT_THRESHOLD {
+                    let sentence = format!(
+                        "`threshold` = {} is for images, and an array says of each block by 0 or 1 whether it is textured: \
+                         leave it out",
+                        mask.threshold
+                    );
+                    return Err(file.source.error(&format!("texture.{index}.threshold"), sentence));
+                }
                 inputs.budget.add_mask(match &shape {
                     surface::Texture::Image(image) => image.dark.len(),
                     _ => lattice.n_blocks(),

@@ -102,15 +102,18 @@ pub struct Polygon {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Mask {
-    /// A `.png` (dark pixels are textured) or a `.npy` of shape (ny, nx), relative to the case file.
+    /// A `.png` (dark pixels are textured) or a `.npy` of shape (ny, nx) of 0 and 1 (textured), relative to the case file.
     pub file: String,
-    /// A pixel is dark below this share of white, more than 0, less than 1.
+    /// A pixel of an image is dark below this share of white, more than 0, less than 1.
     #[serde(default = "default_threshold")]
     pub threshold: f64,
 }
 
+/// Halfway to white.
+pub(crate) const DEFAULT_THRESHOLD: f64 = 0.5;
+
 fn default_threshold() -> f64 {
-    0.5
+    DEFAULT_THRESHOLD
 }
 
 /// The keys of a cavity as they stand in the file.

@@ -5,7 +5,7 @@ use std::io::{ErrorKind, Read, Take, Write};
 use std::path::Path;
 
 use serde::Serialize;
-use tempfile::{TempDir, TempPath};
+use tempfile::TempPath;
 
 /// How the names of files begin while they are being written.
 pub(crate) const UNFINISHED: &str = ".slipfront";
@@ -45,16 +45,6 @@ pub(crate) fn stage(
     fill(file.as_file_mut())?;
     file.as_file().sync_all()?;
     Ok(file.into_temp_path())
-}
-
-/// Makes a folder in another that still has to take its name and goes away if it does not.
-pub(crate) fn stage_folder(folder: &Path) -> std::io::Result<TempDir> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(UNFINISHED);
-    // As for files.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-    builder.tempdir_in(folder)
 }
 
 /// Forces the names in a folder to the disk.
@@ -107,15 +97,6 @@ pub(super) fn holds_only_unfinished(folder: &Path) -> std::io::Result<bool> {
 pub(crate) fn remove_unfinished(folder: &Path) {
     for name in unfinished(folder, "") {
         let _ = std::fs::remove_file(folder.join(name));
-    }
-}
-
-/// The same of folders.
-pub(crate) fn remove_unfinished_folders(folder: &Path) {
-    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
-        if entry.file_name().to_str().is_some_and(is_unfinished) {
-            let _ = std::fs::remove_dir_all(entry.path());
-        }
     }
 }
 

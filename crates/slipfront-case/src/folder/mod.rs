@@ -14,7 +14,7 @@ use thiserror::Error;
 use self::files::holds_only_unfinished;
 pub(crate) use self::files::{
     TEXT_MAX_BYTES, UNFINISHED, fill_whole, json, open_bounded, open_regular, read_whole, remove_if_there,
-    remove_unfinished, remove_unfinished_folders, stage, stage_folder, sync_folder,
+    remove_unfinished, stage, sync_folder,
 };
 pub use self::files::{is_empty, write_whole};
 pub(crate) use self::own::is_of_interrupted_run;
@@ -64,7 +64,7 @@ pub enum FolderError {
     },
     /// A file that is not slipfront's stands where one would be written.
     #[error(
-        "{} is not a file of slipfront: move it away or choose another folder with --out",
+        "{} is not a file of an earlier run: move it away or choose another folder with --out",
         shown(path)
     )]
     Foreign {

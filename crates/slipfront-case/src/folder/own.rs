@@ -63,11 +63,18 @@ fn own_files(path: &Path) -> Vec<String> {
     copies.dedup();
     // They are only believed about the folder of copies: damage must not make us delete elsewhere.
     copies.retain(|name| name.strip_prefix("inputs/").is_some_and(is_plain));
-    names.extend(copies);
     names.extend(unfinished(path, ""));
-    names.extend(unfinished(path, "inputs/"));
+    if is_folder(&path.join("inputs")) {
+        names.extend(copies);
+        names.extend(unfinished(path, "inputs/"));
+    }
     names.extend(is_own_case.then(|| CASE.to_owned()));
     names
+}
+
+/// Whether this is a folder by itself: one that a link leads to holds what is somebody else's.
+fn is_folder(path: &Path) -> bool {
+    path.symlink_metadata().is_ok_and(|found| found.is_dir())
 }
 
 /// Whether this is the name of a file, without any way: not that of a folder above, nor one that no file can have.
@@ -99,8 +106,9 @@ pub(super) fn refuse_foreign<'n>(
         .chain(inputs);
     for name in names.filter(|name| !own.iter().any(|own| own == name)) {
         let file = path.join(name);
-        let parent = file.parent().filter(|parent| parent.exists() && !parent.is_dir());
-        if let Some(parent) = parent {
+        let parent = file.parent().filter(|parent| *parent != path);
+        if let Some(parent) = parent.filter(|parent| parent.symlink_metadata().is_ok() && !is_folder(parent))
+        {
             let path = parent.to_owned();
             return Err(FolderError::Foreign { path });
         }
@@ -131,7 +139,10 @@ pub(super) fn remove_own(path: &Path) -> Result<(), FolderError> {
 pub(super) fn remove_results(path: &Path) -> Result<(), FolderError> {
     remove(path, RESULTS.map(str::to_owned))?;
     remove(path, unfinished(path, ""))?;
-    remove(path, unfinished(path, "inputs/"))
+    if is_folder(&path.join("inputs")) {
+        remove(path, unfinished(path, "inputs/"))?;
+    }
+    Ok(())
 }
 
 /// Removes these files from a folder, where they are.

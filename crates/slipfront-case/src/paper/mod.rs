@@ -44,8 +44,9 @@ pub use claims::{Claim, Condition, Judged, Verdict, claims};
 pub use drawing::Drawing;
 pub use error::PaperError;
 pub use found::{Found, Number, Panel, Table};
-pub use report::{docs_page, summary, write, write_docs};
+pub use report::{docs_page, refuse_foreign_docs, summary, write, write_docs};
 #[doc(hidden)] // Read by the fuzz target of these files.
+pub(crate) use saved::FOUND;
 pub use saved::Saved;
 
 use crate::study::{self, Records};
@@ -166,7 +167,7 @@ impl Paper {
     }
 }
 
-/// Runs figures and judges the claims about them, with both time steps.
+/// Runs figures and judges the claims about them, and about those that earlier calls have finished, with both time steps.
 ///
 /// # Errors
 /// When a run fails, a record cannot be written, or a signal asks to stop.
@@ -181,12 +182,19 @@ pub fn run(
         false => &[StepRule::Auto, StepRule::Paper],
     };
     let saved = Saved::open(options.folder, options.reduced)?;
+    // What earlier calls have finished costs nothing, and the report is of all that is there.
+    let is_there = |figure: &Figure| rules.iter().all(|&rule| saved.load(figure.name, rule).is_some());
+    let is_wanted = |figure: &Figure| figures.iter().any(|wanted| wanted.name == figure.name);
+    let figures: Vec<Figure> = FIGURES
+        .into_iter()
+        .filter(|figure| is_wanted(figure) || is_there(figure))
+        .collect();
     let total = figures.len() * rules.len();
     let mut done = 0;
     let mut passes = Vec::new();
     for &step in rules {
         let mut pass = Vec::new();
-        for figure in figures {
+        for figure in &figures {
             let stage = Stage {
                 done,
                 total,

@@ -3,6 +3,7 @@
 mod html;
 mod markdown;
 
+use std::io::Read;
 use std::path::Path;
 
 use rayon::prelude::*;
@@ -10,7 +11,7 @@ use rayon::prelude::*;
 use super::claims::Verdict;
 use super::error::PaperError;
 use super::{Figure, Found, Judged, Paper, StepRule};
-use crate::folder::{FolderError, write_whole};
+use crate::folder::{FolderError, open_regular, write_whole};
 use crate::pictures::Picture;
 
 /// A drawn picture with its name and caption.
@@ -44,6 +45,40 @@ pub fn write(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
     write_file(folder, "report.html", html::page(paper, &drawn).as_bytes())
 }
 
+/// Refuses a folder where [`write_docs`] would replace files of others.
+///
+/// # Errors
+/// [`FolderError::Foreign`] names the first.
+pub fn refuse_foreign_docs(folder: &Path) -> Result<(), FolderError> {
+    let page = folder.join(PAGE);
+    let begins = open_regular(&page).and_then(|file| {
+        let mut beginning = Vec::new();
+        file.take(markdown::TITLE.len() as u64)
+            .read_to_end(&mut beginning)?;
+        Ok(beginning == markdown::TITLE.as_bytes())
+    });
+    if begins.is_ok_and(|begins| begins) {
+        return Ok(());
+    }
+    let pictures = markdown::SHOWN.iter().map(|name| folder.join(docs_picture(name)));
+    match [page]
+        .into_iter()
+        .chain(pictures)
+        .find(|path| path.symlink_metadata().is_ok())
+    {
+        Some(path) => Err(FolderError::Foreign { path }),
+        None => Ok(()),
+    }
+}
+
+/// The page of the claims.
+const PAGE: &str = "paper.md";
+
+/// The path of a picture of that page.
+fn docs_picture(name: &str) -> String {
+    format!("images/paper-{name}.png")
+}
+
 /// Writes the claims table as `paper.md` with some of its pictures: what stands in `docs/validation`.
 ///
 /// # Errors
@@ -52,11 +87,11 @@ pub fn write_docs(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
     for (_, found) in &paper.figures {
         for Drawn { name, picture, .. } in draw(found)? {
             if markdown::SHOWN.contains(&name.as_str()) {
-                write_file(folder, &format!("images/paper-{name}.png"), &picture.png)?;
+                write_file(folder, &docs_picture(&name), &picture.png)?;
             }
         }
     }
-    write_file(folder, "paper.md", docs_page(paper).as_bytes())
+    write_file(folder, PAGE, docs_page(paper).as_bytes())
 }
 
 /// The text of `paper.md`.

@@ -12,6 +12,9 @@ use super::found::Found;
 use crate::folder::{FolderError, read_whole, remove_unfinished, write_whole};
 use crate::manifest::Manifest;
 
+/// Where they stand.
+pub(crate) const FOUND: &str = "found";
+
 /// A longer file holds something else: a figure's findings take some megabytes at the most.
 const MAX_BYTES: u64 = 1 << 28;
 
@@ -29,7 +32,7 @@ impl Saved {
     /// # Errors
     /// When the folder cannot be made.
     pub fn open(folder: &Path, reduced: bool) -> Result<Self, PaperError> {
-        let folder = folder.join("found");
+        let folder = folder.join(FOUND);
         std::fs::create_dir_all(&folder).map_err(|source| FolderError::Unwritable {
             path: folder.clone(),
             source,

@@ -147,6 +147,30 @@ impl Axis {
                 axis.columns.join("`, `")
             ));
         }
+        for key in axis.keys() {
+            if key.contains(char::is_whitespace) {
+                return Err(format!(
+                    "the key `{key}` of an axis has a blank in it: take it out"
+                ));
+            }
+            if key == "output" || key.starts_with("output.") {
+                return Err(format!(
+                    "`{key}` changes what is written and nothing that a run finds: set it in the base, and not on an axis"
+                ));
+            }
+        }
+        for level in &axis.levels {
+            let mut earlier = BTreeSet::new();
+            for key in level.overrides.iter().map(|set| key_of(set)) {
+                if let Some(other) = clash(key, &earlier) {
+                    return Err(format!(
+                        "the level {} sets `{key}` and `{other}`, of which one leaves nothing of the other: keep one of them",
+                        shortened(&level.labels.join(", "))
+                    ));
+                }
+                earlier.insert(key);
+            }
+        }
         let mut seen = HashSet::new();
         if let Some(twice) = axis.levels.iter().find(|level| !seen.insert(&level.overrides)) {
             return Err(format!(
@@ -323,6 +347,12 @@ pub(super) fn displaces(key: &str, earlier: &str) -> bool {
         .strip_prefix(key)
         .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
         || crate::case_file::exclude_each_other(key, earlier)
+}
+
+/// The first of the `other` keys of which setting `key` leaves nothing, or which leaves nothing of it.
+fn clash<'k>(key: &str, other: &BTreeSet<&'k str>) -> Option<&'k str> {
+    let around = || other.iter().copied().find(|other| displaces(other, key));
+    displaced(key, other).or_else(around)
 }
 
 /// The first of `earlier` keys of which setting `key` leaves nothing.

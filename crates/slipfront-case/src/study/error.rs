@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use crate::case_file::CaseError;
 use crate::folder::FolderError;
+use crate::legible::shown;
 use crate::manifest::Manifest;
 use crate::pictures::PictureError;
 use crate::results::ResultsError;
@@ -101,6 +102,17 @@ pub enum StudyError {
     Records {
         /// What was tried.
         action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// Another file of it could not be written.
+    #[error(
+        "cannot write {}: {source}; finished runs are safe, and the study goes on from there when started again",
+        shown(path)
+    )]
+    Write {
         /// The file.
         path: PathBuf,
         /// What the system says.

@@ -471,8 +471,14 @@ impl<'a> Manager<'a> {
             let values: Vec<f64> = values[..replicates].iter().filter_map(|value| *value).collect();
             state.half_width = Sample::of(&values, until.confidence).and_then(|sample| sample.half_width);
             state.judged = replicates;
-            if state.half_width.is_some_and(|half| half <= until.half_width) {
+            // A run may have no such number, and few values are soon close together.
+            let enough = values.len() >= settings.min_replicates();
+            if enough && state.half_width.is_some_and(|half| half <= until.half_width) {
                 state.found = found(replicates, Some(true));
+                break;
+            }
+            if values.is_empty() {
+                state.found = found(replicates, Some(false));
                 break;
             }
         }

@@ -1,6 +1,6 @@
 //! Which pictures a study gets: curves over numbers, maps over two of them, bars for names.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use rayon::prelude::*;
 
@@ -154,12 +154,7 @@ fn sketches_of_curves(axes: &[Axis], x: usize, quantity: &str) -> Vec<Sketch> {
     let sketch = |fixed: Levels| {
         let suffix: String = fixed
             .iter()
-            .map(|&(axis, level)| {
-                format!(
-                    "-{}",
-                    file_word(&axes[axis].levels[level].labels.join("-"), level)
-                )
-            })
+            .map(|&(axis, level)| format!("-{}", file_word(&axes[axis].levels[level].labels.join("-"))))
             .collect();
         Sketch {
             name: format!("{quantity}{suffix}"),
@@ -170,7 +165,15 @@ fn sketches_of_curves(axes: &[Axis], x: usize, quantity: &str) -> Vec<Sketch> {
             },
         }
     };
-    combinations(axes, front).into_iter().map(sketch).collect()
+    let mut sketches: Vec<Sketch> = combinations(axes, front).into_iter().map(sketch).collect();
+    // Words that differ only in letters which a file name does not take are told apart by their number.
+    let names: HashSet<&String> = sketches.iter().map(|sketch| &sketch.name).collect();
+    if names.len() < sketches.len() {
+        for (k, sketch) in sketches.iter_mut().enumerate() {
+            sketch.name += &format!("_{}", k + 1);
+        }
+    }
+    sketches
 }
 
 fn curves(
@@ -312,11 +315,65 @@ fn bars(axes: &[Axis], quantity: &str, values: &Values) -> Result<Picture, Pictu
     })
 }
 
-/// A level as a word that every file system takes; a long one is cut, and told from others by its number.
-fn file_word(label: &str, level: usize) -> String {
-    let word = |text: &str| text.replace(|c: char| !c.is_ascii_alphanumeric() && !"._-".contains(c), "_");
-    match label.char_indices().nth(MOST_OF_A_LEVEL) {
-        None => word(label),
-        Some((end, _)) => format!("{}_{}", word(&label[..end]), level + 1),
+/// A level as a word that every file system takes, cut if it is long.
+fn file_word(label: &str) -> String {
+    let word = label.chars().take(MOST_OF_A_LEVEL);
+    word.map(|c| {
+        if c.is_ascii_alphanumeric() || "._-".contains(c) {
+            c
+        } else {
+            '_'
+        }
+    })
+    .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::study::StudyFile;
+
+    fn names_of(axes: &str) -> Vec<String> {
+        let text = format!("base.slider.blocks = [2, 2]\n{axes}");
+        let file = StudyFile::parse(&text, "study.toml", "study", Path::new("")).unwrap();
+        names(&file.axes)
+            .filter(|name| name.starts_with("static_friction_star"))
+            .collect()
+    }
+
+    /// Whatever the levels are called: no picture takes the place of another, and no name is longer than one can be.
+    #[test]
+    fn every_picture_has_a_name_of_its_own() {
+        let long = "x".repeat(300);
+        let rest = "[[axes]]\nkey = 'load.pressure'\nlist = ['1 MPa', '2 MPa', '3 MPa', '4 MPa', '5 MPa']\n\
+                    [[axes]]\nkey = 'drive.v_star'\nlist = [0.1, 0.2]";
+        for [one, other] in [
+            ["rau \u{b5}", "rau \u{3c3}"],
+            ["a b", "a_b"],
+            [&long, &format!("{long}y")],
+        ] {
+            let variants = format!(
+                "[[axes]]\nname = 'surface'\nvariants = {{ '{one}' = {{ drive.direction = 0 }}, '{other}' = {{ drive.direction = 1 }} }}\n"
+            );
+            let names = names_of(&format!("{variants}{rest}"));
+            let distinct: HashSet<&String> = names.iter().collect();
+            assert_eq!((names.len(), distinct.len()), (2, 2), "{names:?}");
+            assert!(names.iter().all(|name| name.len() < 200), "{names:?}");
+        }
+        assert_eq!(
+            names_of("[[axes]]\nkey = 'drive.v_star'\nlist = [0.1, 0.2]"),
+            ["static_friction_star"]
+        );
+    }
+
+    /// A line of a file can ask for a million.
+    #[test]
+    fn more_pictures_than_anyone_looks_at_are_not_drawn() {
+        let many = "[[axes]]\nkey = 'drive.v_star'\nlinspace = [0.1, 0.2, 100]\n\
+                    [[axes]]\nkey = 'drive.direction'\nlinspace = [0, 1, 2000]\n\
+                    [[axes]]\nkey = 'load.pressure'\nlist = ['1 MPa', '2 MPa']";
+        assert!(names_of(many).is_empty());
     }
 }

@@ -138,6 +138,15 @@ impl Settings {
             );
             return refuse("study.replicates", sentence);
         }
+        let reference = self.reference.iter().flat_map(axis::overrides);
+        if reference
+            .into_iter()
+            .any(|set| axis::key_of(&set) == "friction.seed")
+        {
+            let sentence =
+                "a reduction is that against the same surface: leave `friction.seed` out of the reference";
+            return refuse("study.reference", sentence.to_owned());
+        }
         let Some(until) = &self.until else { return Ok(()) };
         if source.has("study.replicates") {
             return refuse(
@@ -200,6 +209,11 @@ impl StudyFile {
         );
         let copies = inputs::copy(&mut table, &self.base.folder)?;
         Ok((toml::to_string(&table).map_err(CaseError::from)?, copies))
+    }
+
+    /// Whether its base is a file of its own, and not a table in it.
+    pub fn has_base_file(&self) -> bool {
+        self.table.get("base").is_some_and(toml::Value::is_str)
     }
 
     /// Points of the whole study.

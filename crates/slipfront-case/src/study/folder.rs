@@ -1,6 +1,5 @@
 //! The study folder: the study itself, the records, the tables and the pictures.
 
-use std::collections::HashSet;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -11,14 +10,19 @@ use super::file::StudyFile;
 use super::inputs::Copy;
 use super::plan::Plan;
 use super::record::{Finding, RECORDS, Records};
+use crate::case_file::not_too_deep;
 use crate::folder::{
-    FolderError, TEXT_MAX_BYTES, is_empty, open_bounded, open_regular, read_whole, remove_if_there,
-    remove_unfinished_folders, stage, stage_folder, sync_folder, write_whole,
+    FolderError, TEXT_MAX_BYTES, fill_whole, is_empty, open_bounded, open_regular, read_whole,
+    remove_if_there, remove_unfinished, stage, sync_folder, write_whole,
 };
-use crate::manifest::Manifest;
+use crate::manifest::{MANIFEST, Manifest};
+use crate::paper::FOUND;
 
 /// The study as a table with its base inside: what `slipfront study DIR/study.toml` repeats.
 const STUDY: &str = "study.toml";
+
+/// One row a run, and one for each point and quantity.
+pub(super) const TABLES: [&str; 2] = ["runs.csv", "points.csv"];
 
 /// Folder of the run folders that a study keeps.
 pub(crate) const RUNS: &str = "runs";
@@ -48,7 +52,9 @@ impl StudyFolder {
         std::fs::create_dir_all(path).map_err(unwritable)?;
         let used = path.join(RECORDS).exists();
         let empty = is_empty(path).map_err(unwritable)?;
-        if !used && !empty {
+        // The findings of `slipfront paper` stand beside records as well.
+        let of_paper = path.join(FOUND).is_dir() && !is_study(path);
+        if (!used && !empty) || of_paper {
             return Err(StudyError::NotAStudy {
                 path: path.to_owned(),
             });
@@ -63,21 +69,28 @@ impl StudyFolder {
             StudyFile::parse(text, &name, &study.name, path)
         };
         let before = read_whole(&path.join(STUDY), TEXT_MAX_BYTES).ok();
-        let before = before.filter(|before| before != text.as_bytes());
+        let before = before.filter(|before| !says_the_same(before, &text));
         let folder = Self {
             path: path.to_owned(),
             records,
             changed: before.is_some(),
             study: parse(&text)?,
         };
-        // Pictures of what the study was are of no other use; one that cannot be read now has none that are known.
-        let before = before.and_then(|before| parse(str::from_utf8(&before).ok()?).ok());
+        // Its tables and pictures would stand beside another study, and follow from the records at any time. One that cannot
+        // be read now has no pictures that are known.
         if let Some(before) = before {
-            let still: HashSet<String> = figures::names(&folder.study.axes).collect();
-            folder.remove_pictures(figures::names(&before.axes).filter(|name| !still.contains(name)));
+            if let Ok(before) = parse(&String::from_utf8_lossy(&before)) {
+                folder.remove_pictures(figures::names(&before.axes));
+            }
+            for table in TABLES {
+                let _ = remove_if_there(&path.join(table));
+            }
         }
         folder.copy(&copies)?;
-        folder.write(STUDY, text.as_bytes())?;
+        // One that says the same may have been written, and commented, by hand.
+        if folder.changed || !is_study(path) {
+            folder.write(STUDY, text.as_bytes())?;
+        }
         Ok(folder)
     }
 
@@ -94,14 +107,14 @@ impl StudyFolder {
         let path = self.path.join(name);
         let folder = path.parent().unwrap_or(&self.path);
         let written = std::fs::create_dir_all(folder).and_then(|()| write_whole(&path, bytes));
-        written.map_err(|source| FolderError::Write { path, source }.into())
+        written.map_err(|source| StudyError::Write { path, source })
     }
 
     /// Copies files, one after the other. None takes its name before all are read: it may be that of an original.
-    fn copy(&self, copies: &[Copy]) -> Result<(), FolderError> {
+    fn copy(&self, copies: &[Copy]) -> Result<(), StudyError> {
         let failed = |path: &Path| {
             let path = path.to_owned();
-            |source| FolderError::Write { path, source }
+            |source| StudyError::Write { path, source }
         };
         let mut staged = Vec::new();
         for Copy { name, original, .. } in copies {
@@ -126,7 +139,6 @@ impl StudyFolder {
     /// # Errors
     /// When one cannot be copied.
     pub fn take_kept(&self, plan: &Plan, findings: &Findings, shard: &Path) -> Result<usize, StudyError> {
-        remove_unfinished_folders(&self.path.join(RUNS));
         let mut taken = 0;
         for (run, finding) in &findings.runs {
             let name = plan.folder_name(*run);
@@ -139,7 +151,7 @@ impl StudyFolder {
             if !is_whole(&from) || is_whole(&to) {
                 continue;
             }
-            copy_folder(&from, &to).map_err(|source| FolderError::Copy { from, to, source })?;
+            copy_run(&from, &to).map_err(|source| FolderError::Copy { from, to, source })?;
             taken += 1;
         }
         Ok(taken)
@@ -155,36 +167,36 @@ impl StudyFolder {
     }
 }
 
-/// Copies a folder to one of another name, which is there when all of it is on the disk.
-fn copy_folder(from: &Path, to: &Path) -> std::io::Result<()> {
-    let beside = to.parent().unwrap_or(to);
-    std::fs::create_dir_all(beside)?;
-    let staged = stage_folder(beside)?;
-    copy_files(from, staged.path())?;
-    // What a kill left of one.
-    if to.exists() {
-        std::fs::remove_dir_all(to)?;
-    }
-    std::fs::rename(staged.path(), to)?;
-    // There is nothing left to remove.
-    let _ = staged.keep();
-    sync_folder(beside)
-}
-
-fn copy_files(from: &Path, to: &Path) -> std::io::Result<()> {
+/// Copies the files of a run folder, the manifest last: without it, a run is not complete.
+fn copy_run(from: &Path, to: &Path) -> std::io::Result<()> {
+    std::fs::create_dir_all(to)?;
+    remove_unfinished(to);
+    let mut manifest = None;
     for entry in std::fs::read_dir(from)? {
         let entry = entry?;
         let (from, to) = (entry.path(), to.join(entry.file_name()));
         if entry.file_type()?.is_dir() {
-            std::fs::create_dir(&to)?;
-            copy_files(&from, &to)?;
+            copy_run(&from, &to)?;
+        } else if entry.file_name() == MANIFEST {
+            manifest = Some((from, to));
         } else {
-            let mut copy = File::create_new(to)?;
-            std::io::copy(&mut open_regular(&from)?, &mut copy)?;
-            copy.sync_all()?;
+            copy_file(&from, &to)?;
         }
     }
-    sync_folder(to)
+    sync_folder(to)?;
+    manifest.map_or(Ok(()), |(from, to)| copy_file(&from, &to))
+}
+
+fn copy_file(from: &Path, to: &Path) -> std::io::Result<()> {
+    let mut from = open_regular(from)?;
+    fill_whole(to, |to| std::io::copy(&mut from, to).map(|_| ()))
+}
+
+/// Whether two texts are the same table.
+fn says_the_same(before: &[u8], now: &str) -> bool {
+    let table = |text: &str| not_too_deep(text).parse::<toml::Table>().ok();
+    str::from_utf8(before)
+        .is_ok_and(|before| before == now || table(before).is_some_and(|before| table(now) == Some(before)))
 }
 
 /// Whether a study has used the folder.

@@ -30,16 +30,19 @@ pub use execute::{Findings, PointFindings, Progress, collect, execute};
 pub use file::{Base, Keep, Settings, StudyFile, Until};
 pub(crate) use folder::RUNS;
 pub use folder::{StudyFolder, is_study, refuse_foreign, study_of};
-pub use plan::{Plan, Point, Role, RunKey};
+pub use plan::{Plan, Point, Role, RunKey, Warning};
 pub use quantities::{Numbers, Quantity, REDUCTION, known as quantities};
 pub use record::{Finding, Outcome, Record, Records};
 pub use shard::Shard;
 pub use statistics::Sample;
 pub use tables::sample;
 
-/// The quantity that a study is mostly about: the reduction if it has a reference, else mu_s*.
-pub fn main_quantity(plan: &Plan) -> &'static str {
-    if plan.has_reference() {
+/// The quantity that a study is mostly about: the one that decides on its replicates, else the reduction if it has a reference,
+/// else mu_s*.
+pub fn main_quantity(plan: &Plan) -> &str {
+    if let Some(until) = &plan.settings.until {
+        &until.key
+    } else if plan.has_reference() {
         REDUCTION
     } else {
         "static_friction_star"
@@ -51,8 +54,9 @@ pub fn main_quantity(plan: &Plan) -> &'static str {
 /// # Errors
 /// When a file cannot be written.
 pub fn write(plan: &Plan, findings: &Findings, folder: &StudyFolder) -> Result<(), StudyError> {
-    folder.write("runs.csv", &tables::runs(plan, findings)?)?;
-    folder.write("points.csv", &tables::points(plan, findings)?)?;
+    let [runs, points] = folder::TABLES;
+    folder.write(runs, &tables::runs(plan, findings)?)?;
+    folder.write(points, &tables::points(plan, findings)?)?;
     let mut drawn = HashSet::new();
     for (name, picture) in figures::draw(plan, findings)? {
         folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;

@@ -1,5 +1,6 @@
 //! The plan of a study: its points, and what each run of a point is.
 
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Mutex;
 
 use rayon::prelude::*;
@@ -52,6 +53,19 @@ struct Outline {
     block_steps: f64,
     n_blocks: usize,
     budget: Budget,
+    /// What deserves a word before a run of it.
+    warnings: Vec<String>,
+}
+
+/// A warning about points of a study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Warning {
+    /// What is the matter.
+    pub sentence: String,
+    /// Number of points.
+    pub points: usize,
+    /// Position of the first of them in the plan.
+    pub first: usize,
 }
 
 /// Lattices of more blocks are tried one at a time: of one for each thread at once no machine may have room.
@@ -163,7 +177,29 @@ impl Plan {
             block_steps: case.block_steps(),
             n_blocks: case.model.lattice.n_blocks(),
             budget: case.budget,
+            warnings: case.warnings(),
         })
+    }
+
+    /// What deserves a word before the study is run: each warning about its cases once.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let mut warnings: Vec<Warning> = Vec::new();
+        let mut known: HashMap<&str, usize> = HashMap::new();
+        for (position, point) in self.points.iter().enumerate() {
+            let of_point: BTreeSet<&String> = point.outlines.iter().flat_map(|run| &run.warnings).collect();
+            for sentence in of_point {
+                let at = *known.entry(sentence).or_insert(warnings.len());
+                match warnings.get_mut(at) {
+                    Some(warning) => warning.points += 1,
+                    None => warnings.push(Warning {
+                        sentence: sentence.clone(),
+                        points: 1,
+                        first: position,
+                    }),
+                }
+            }
+        }
+        warnings
     }
 
     /// The case of a run, ready to run.

@@ -107,20 +107,23 @@ pub(super) fn points(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyE
     let quantities = quantities(plan);
     for (position, point) in plan.points.iter().enumerate() {
         for &(name, _) in &quantities {
-            let Some(sample) = sample(plan, findings, position, name) else {
+            let sample = sample(plan, findings, position, name);
+            let until = plan.settings.until.as_ref();
+            let decides = until.is_some_and(|until| until.key == name);
+            // That no run has the number which decides is told as well.
+            if sample.is_none() && !decides {
                 continue;
-            };
+            }
             let mut row = vec![point.index.to_string()];
             row.extend(plan.columns(point).into_iter().map(|(_, value)| value.to_owned()));
-            let [low, high] = sample.interval().map_or([None; 2], |interval| interval.map(Some));
-            row.extend([name.to_owned(), sample.n.to_string(), number_cell(sample.mean)]);
-            row.extend([cell(sample.deviation), cell(low), cell(high)]);
-            row.extend([number_cell(sample.min), number_cell(sample.max)]);
-            let decides = plan
-                .settings
-                .until
-                .as_ref()
-                .is_some_and(|until| until.key == name);
+            row.extend([name.to_owned(), sample.map_or(0, |sample| sample.n).to_string()]);
+            let number = |of: fn(Sample) -> Option<f64>| cell(sample.and_then(of));
+            row.push(number(|sample| Some(sample.mean)));
+            row.push(number(|sample| sample.deviation));
+            row.push(number(|sample| sample.interval().map(|[low, _]| low)));
+            row.push(number(|sample| sample.interval().map(|[_, high]| high)));
+            row.push(number(|sample| Some(sample.min)));
+            row.push(number(|sample| Some(sample.max)));
             let narrow = findings.points[position].narrow.filter(|_| decides);
             row.push(narrow.map_or(String::new(), |narrow| narrow.to_string()));
             table.write_record(row)?;

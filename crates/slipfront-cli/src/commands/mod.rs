@@ -72,3 +72,8 @@ pub(crate) fn set_threads(threads: Option<u16>) -> Result<usize, Failure> {
     pool.build_global().map_err(Failure::running)?;
     Ok(rayon::current_num_threads())
 }
+
+/// Whether two paths lead to one file.
+pub(crate) fn is_same(one: &Path, other: &Path) -> bool {
+    matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
+}

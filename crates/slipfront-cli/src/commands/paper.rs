@@ -7,7 +7,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use slipfront_case::folder::is_empty;
 use slipfront_case::paper::{self, Options, Stage, StepRule};
-use slipfront_case::study::{Records, StudyError};
+use slipfront_case::study::{Records, is_study};
 
 use super::{print, set_threads};
 use crate::failure::Failure;
@@ -23,7 +23,7 @@ use crate::signals::Signals;
 
 Exit status 0 says that every verdict is the expected one, 1 that one is not.")]
 pub(crate) struct Paper {
-    /// Figures: fig2 ... fig18, table1, sensitivity, or all
+    /// Figures: fig2 ... fig18, table1, sensitivity, or all; those finished in the folder are reported in any case
     #[arg(value_name = "FIGURE")]
     figures: Vec<String>,
     /// Folder for the results; what an earlier call there has finished is not run again
@@ -47,6 +47,9 @@ impl Paper {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let threads = set_threads(self.threads)?;
         let figures = paper::figures(&self.figures).map_err(Failure::input)?;
+        if let Some(docs) = &self.docs {
+            paper::refuse_foreign_docs(docs).map_err(Failure::input)?;
+        }
         let mut records = open(&self.out)?;
         let signals = Signals::catch().map_err(Failure::running)?;
         let options = Options {
@@ -94,10 +97,13 @@ fn open(folder: &Path) -> Result<Records, Failure> {
         ))
     };
     std::fs::create_dir_all(folder).map_err(unusable)?;
-    if !is_empty(folder).map_err(unusable)? && !folder.join(Records::FILE).exists() {
-        return Err(Failure::input(StudyError::NotAStudy {
-            path: folder.to_owned(),
-        }));
+    let used = folder.join(Records::FILE).exists() && !is_study(folder);
+    if !used && !is_empty(folder).map_err(unusable)? {
+        let sentence = "holds other things than figures of the paper: choose another with --out";
+        return Err(Failure::input(anyhow::anyhow!(
+            "the folder {} {sentence}",
+            folder.display()
+        )));
     }
     Records::open(folder).map_err(Failure::input)
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use slipfront_case::arrays::{self, ArrayError};
 
-use super::{CaseArgs, print};
+use super::{CaseArgs, is_same, print};
 use crate::failure::Failure;
 use crate::report;
 
@@ -27,7 +27,19 @@ pub(crate) struct Texture {
 impl Texture {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let case = self.case.load()?;
-        if self.out.exists() && !self.force {
+        let input = case
+            .inputs
+            .iter()
+            .find(|input| is_same(&input.original, &self.out));
+        if let Some(input) = input {
+            let sentence = format!(
+                "the mask would replace {}, which the case reads: choose another name",
+                input.original.display()
+            );
+            return Err(Failure::input(anyhow::anyhow!(sentence)));
+        }
+        // A link counts even if it leads nowhere.
+        if self.out.symlink_metadata().is_ok() && !self.force {
             let sentence = format!(
                 "{} exists: choose another name, or replace it with --force",
                 self.out.display()

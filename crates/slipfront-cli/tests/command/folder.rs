@@ -192,6 +192,24 @@ fn force_takes_the_copies_of_a_killed_run_along() {
     assert_eq!(bench.files("b").len(), 2);
 }
 
+/// What a link leads to is somebody else's.
+#[cfg(unix)]
+#[test]
+fn copies_behind_a_link_are_originals() {
+    let bench = Bench::masked();
+    bench.done("run masked.toml -o a");
+    bench.write("masks/spot.png", bench.read("spot.png"));
+    std::fs::remove_dir_all(bench.path().join("a/inputs")).unwrap();
+    std::os::unix::fs::symlink("../masks", bench.path().join("a/inputs")).unwrap();
+    let said = bench.refused("run masked.toml --quiet -o a --force", 2);
+    assert!(
+        said.contains("a/inputs is not a file of an earlier run"),
+        "{said}"
+    );
+    bench.done("run small.toml -o a --force");
+    assert_eq!(bench.read("masks/spot.png"), bench.read("spot.png"));
+}
+
 /// Files that only happen to have a name like ours.
 #[test]
 fn what_only_looks_like_ours_stays() {

@@ -23,6 +23,10 @@ fn bad_cases_are_refused_with_a_remedy() {
         ("[drive]\nv_star = nan\n", &["`drive.v_star`"]),
         ("[drive\n", &["not valid TOML"]),
         (
+            "study.replicates = 3\n",
+            &["belongs in a study file", "`slipfront study`"],
+        ),
+        (
             "[[texture]]\nshape = 'mask'\nfile = 'none.png'\n",
             &["none.png", "relative to the case file"],
         ),

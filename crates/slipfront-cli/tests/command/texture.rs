@@ -44,6 +44,13 @@ fn a_picture_is_replaced_only_by_force() {
     bench.done("texture small.toml -o mask.png --force");
     assert_eq!(bench.read("mask.png")[1..4], *b"PNG");
     bench.refused("texture small.toml -o no/such/folder/mask.png", 1);
+    // Not even then a file that the case reads.
+    bench.write("masked.toml", super::MASKED.replace("spot.png", "mask.png"));
+    let said = bench.refused("texture masked.toml -o mask.png --force", 2);
+    assert!(
+        said.contains("would replace mask.png, which the case reads"),
+        "{said}"
+    );
     let said = bench.refused("texture small.toml -o mask.jpg", 2);
     assert!(said.contains("name a file that ends in .png"), "{said}");
 }

@@ -256,3 +256,38 @@ fn runs_without_a_transition_are_pointed_out() {
     let note = format!("steady level in {} runs", without.len());
     assert!(said.contains(&note), "{said}");
 }
+
+/// The cases of a study have no other place to say it.
+#[test]
+fn what_deserves_a_word_is_said_once() {
+    let bench = Bench::with(
+        "base.slider.blocks = [30, 30]\nbase.time.stop = 'after_onset'\n\
+         base.texture = [{ shape = 'cavity', coverage = 5, array = [10, 10] }]\n[study]\nreplicates = 1\n\
+         [[axes]]\nkey = 'texture.0.coverage'\nlist = [0.2, 11]",
+    );
+    for arguments in [&["study.toml", "--dry-run"][..], &["study.toml", "-o", "out"]] {
+        let said = bench.run(arguments);
+        let note = "of the blocks instead of 0.20 %: it is clipped, overlaps, or is too fine for the blocks \
+                    (at the point texture.0.coverage = 0.2)";
+        assert_eq!(said.matches(note).count(), 1, "{said}");
+        assert_eq!(said.matches("note: ").count(), 1, "{said}");
+    }
+}
+
+/// Few values are soon close together, and none never: neither is an interval that is narrow enough.
+#[test]
+fn runs_without_the_number_that_decides_do_not_count_for_it() {
+    let until = "base.slider.blocks = [4, 4]\nbase.time.stop = 'after_onset'\n\
+                 study.until = { key = 'kinetic_friction_star', half_width = 1, min = 3, max = 50 }\n";
+    let bench = Bench::with(until);
+    let said = bench.run(&["study.toml", "-o", "out"]);
+    assert!(said.contains("none   (interval still too wide)"), "{said}");
+    let results = bench.results("out");
+    assert_eq!(results.recorded().len(), 3);
+    let rows = results.table("points.csv");
+    let row = rows
+        .iter()
+        .find(|row| row["quantity"] == "kinetic_friction_star")
+        .unwrap();
+    assert_eq!((row["n"].as_str(), row["narrow_enough"].as_str()), ("0", "false"));
+}

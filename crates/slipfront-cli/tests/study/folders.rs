@@ -108,13 +108,70 @@ fn a_folder_with_other_things_is_left_alone() {
     bench.write("notes/records.jsonl", "my own records\nof something\n");
     for (out, sentence) in [
         ("out", "holds other things"),
-        ("notes", "records.jsonl is not a file of slipfront"),
+        ("notes", "records.jsonl is not a file of an earlier run"),
     ] {
         let output = bench.output(&["study.toml", "-o", out]);
         assert_eq!(output.status.code(), Some(2));
         assert!(errors(&output).contains(sentence), "{}", errors(&output));
         assert_eq!(std::fs::read_dir(bench.path(out)).unwrap().count(), 1);
     }
+}
+
+/// Numbers of the study that was must not stand beside the one that is, should this be stopped.
+#[test]
+fn a_changed_study_leaves_no_tables_of_what_it_was() {
+    let bench = Bench::with(SMALL);
+    let results = bench.study("out");
+    bench.write("study.toml", SMALL.replace("[6, 6]", "[300, 300]"));
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_slipfront"))
+        .args(["study", "study.toml", "--quiet", "--out", "out"])
+        .current_dir(bench.path(""))
+        .spawn()
+        .unwrap();
+    let changed =
+        || std::fs::read_to_string(bench.path("out/study.toml")).is_ok_and(|text| text.contains("300"));
+    let began = std::time::Instant::now();
+    while !changed() {
+        assert!(began.elapsed().as_secs() < 60, "it does not begin");
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    for name in ["runs.csv", "points.csv", "static_friction_star.svg"] {
+        assert!(!results.has(name), "{name}");
+    }
+    // They follow from the records at any time.
+    bench.write("study.toml", SMALL);
+    bench.study("out").assert_same(&bench.study("fresh"));
+}
+
+/// By hand, or as the program wrote it: what a study is read from is not lost.
+#[test]
+fn a_study_file_in_its_own_folder_stays() {
+    let bench = Bench::with(SMALL);
+    bench.study("out");
+    let written = std::fs::read_to_string(bench.path("out/study.toml")).unwrap();
+    let commented = format!("# mine\n{written}");
+    bench.write("out/study.toml", &commented);
+    bench.run(&["out/study.toml", "-o", "out"]);
+    assert_eq!(
+        std::fs::read_to_string(bench.path("out/study.toml")).unwrap(),
+        commented
+    );
+    bench.write("case.toml", "slider.blocks = [6, 6]\n");
+    let based = "# mine\nbase = '../case.toml'\n";
+    bench.write("out/study.toml", based);
+    let output = bench.output(&["out/study.toml", "-o", "out"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        errors(&output).contains("would replace out/study.toml"),
+        "{}",
+        errors(&output)
+    );
+    assert_eq!(
+        std::fs::read_to_string(bench.path("out/study.toml")).unwrap(),
+        based
+    );
 }
 
 /// Whatever they are called: only what a study has drawn is its own.

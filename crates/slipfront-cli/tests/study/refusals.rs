@@ -72,6 +72,27 @@ fn bad_studies_are_refused_with_a_sentence() {
             axis("key = 'drive.v_star'\nlist = [0.1, -1]"),
             "the point drive.v_star = -1 is not a valid case",
         ),
+        (
+            axis("zip = { 'texture.0.coverage' = [5], texture = [[{ shape = 'groove', coverage = 30 }]] }"),
+            "of which one leaves nothing of the other",
+        ),
+        (
+            axis("name = 'a'\nvariants = { b = { drive.v_star = 0.1, drive.speed = '1 mm/s' } }"),
+            "of which one leaves nothing of the other",
+        ),
+        (axis("key = 'drive.v_star '\nlist = [0.1]"), "has a blank in it"),
+        (
+            axis("key = 'output.stride'\nlist = [1, 2]"),
+            "changes what is written and nothing that a run finds",
+        ),
+        (
+            study("reference = { friction.seed = 77 }"),
+            "leave `friction.seed` out of the reference",
+        ),
+        (
+            "[[texture]]\nshape = 'cavity'".to_owned(),
+            "in a study file, write [[base.texture]]",
+        ),
         (study("replicates = 0"), "must lie between 1 and"),
         (study("replicate = 2"), "did you mean `replicates`?"),
         (study("keep = 'al'"), "did you mean \"all\"?"),

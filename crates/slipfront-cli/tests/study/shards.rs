@@ -52,11 +52,11 @@ fn run_folders_that_shards_kept_are_taken_over() {
     }
     // What kills left: of an earlier try, of a run in the folder, and of one in a shard which another one holds whole.
     bench.write("merged/records.jsonl", "");
-    bench.write("merged/runs/.slipfrontAbCdEf/case.toml", "half of");
     for run in std::fs::read_dir(bench.path("part2/runs")).unwrap() {
         let run = run.unwrap().file_name().into_string().unwrap();
         for out in ["merged", "part1"] {
             bench.write(&format!("{out}/runs/{run}/case.toml"), "half of");
+            bench.write(&format!("{out}/runs/{run}/.slipfrontAbCdEf"), "half of");
         }
     }
     for _ in 0..2 {
@@ -72,6 +72,13 @@ fn run_folders_that_shards_kept_are_taken_over() {
                     |out: &str| std::fs::read(bench.path(out).join("runs").join(&run).join(file)).unwrap();
                 assert!(read("merged") == read("whole"), "{run:?}/{file}");
             }
+            assert!(
+                !bench
+                    .path("merged/runs")
+                    .join(&run)
+                    .join(".slipfrontAbCdEf")
+                    .exists()
+            );
         }
     }
     let verify = assert_cmd::Command::new(env!("CARGO_BIN_EXE_slipfront"))

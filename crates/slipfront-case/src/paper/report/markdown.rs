@@ -10,11 +10,14 @@ pub(super) const SHOWN: [&str; 8] = [
     "fig03", "fig04", "fig06", "fig12", "fig14", "fig15", "fig16", "fig18a",
 ];
 
+/// How the page begins.
+pub(super) const TITLE: &str = "# The paper, claim by claim\n";
+
 /// The page.
 pub(super) fn page(paper: &Paper) -> String {
     let [holds, conditioned, fails] = counts(&paper.judged);
     let mut text = format!(
-        "# The paper, claim by claim\n\n\
+        "{TITLE}\n\
          What becomes of every claim of the paper's text when its figures are run again:\n\n\
          ```console\n$ slipfront paper --docs docs/validation\n```\n\n\
          Criteria and expected verdicts stand in [cases/paper/claims.toml](../../cases/paper/claims.toml). Numbers D1 to D12 are\n\

@@ -1,12 +1,12 @@
 //! `slipfront study STUDY.toml`: run what is missing, then write tables and pictures.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use slipfront_case::study::{self, Findings, Plan, RunKey, Shard, StudyError, StudyFile, StudyFolder};
 
-use crate::commands::{print, set_threads};
+use crate::commands::{is_same, print, set_threads};
 use crate::failure::Failure;
 use crate::probe::seconds_per_step;
 use crate::progress::StudyProgress;
@@ -65,11 +65,24 @@ impl StudyRun {
         }
         plan.check_memory(threads).map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| default_out(&file.name, self.shard));
+        refuse_to_replace(&path, &file, &out)?;
         let mut folder = StudyFolder::open(&out, &file).map_err(Failure::input)?;
         plan.check_disk(&folder).map_err(Failure::input)?;
         let plan = plan.reading_copies(&folder);
         complete(&plan, &mut folder, threads, self.quiet)
     }
+}
+
+/// Refuses a folder where the study with its base inside would take the place of the file that names the base.
+fn refuse_to_replace(path: &Path, file: &StudyFile, out: &Path) -> Result<(), Failure> {
+    if !file.has_base_file() || !is_same(path, &out.join("study.toml")) {
+        return Ok(());
+    }
+    let sentence = format!(
+        "the results would replace {}, which the study is read from: move it out of the folder, or choose another with --out",
+        path.display()
+    );
+    Err(Failure::input(anyhow::anyhow!(sentence)))
 }
 
 /// Shards of one study do not share a folder.
