@@ -313,10 +313,10 @@ pub(crate) fn study(plan: &Plan, findings: &Findings, folder: &Path) -> String {
                     with_uncertainty(sample.mean, sample.half_width),
                     sample.n
                 ),
-                None if of_point.any(|(_, finding)| matches!(**finding, Finding::Done(_))) => {
-                    "none".to_owned()
+                None if of_point.any(|(_, finding)| matches!(**finding, Finding::Failed(_))) => {
+                    "failed".to_owned()
                 }
-                None => "failed".to_owned(),
+                None => "none".to_owned(),
             };
             if findings.points[position].narrow == Some(false) {
                 value += "   (interval still too wide)";
@@ -399,8 +399,17 @@ fn with_uncertainty(value: f64, uncertainty: Option<f64>) -> String {
             let places = (1 - error.log10().floor() as i32).clamp(0, 12) as usize;
             format!("{value:.places$} \u{b1} {error:.places$}")
         }
-        Some(_) => format!("{value:.4} \u{b1} 0"),
-        None => format!("{value:.4}"),
+        Some(_) => format!("{} \u{b1} 0", to_four_places(value)),
+        None => to_four_places(value),
+    }
+}
+
+/// A number to four places, or to four digits where that would leave none of it.
+fn to_four_places(value: f64) -> String {
+    if value != 0.0 && value.abs() < 1e-3 {
+        plain(value)
+    } else {
+        format!("{value:.4}")
     }
 }
 

@@ -87,10 +87,7 @@ fn what_others_have_written_stays() {
     let output = paper(&out).args(["fig13", "--docs"]).arg(&docs).output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(
-        said.contains("paper.md is not a file of an earlier run"),
-        "{said}"
-    );
+    assert!(said.contains("paper.md is not of an earlier call"), "{said}");
     assert!(!out.exists());
     for (name, text) in [("records.jsonl", ""), ("study.toml", "study.replicates = 1")] {
         std::fs::create_dir_all(&out).unwrap();

@@ -1,10 +1,12 @@
 //! Textures of a case file as shapes in blocks.
 
+use std::path::Path;
+
 use slipfront::{Lattice, Scales, surface};
 
 use super::inputs::{Given, Inputs};
 use crate::arrays::{self, ArrayError};
-use crate::case_file::{self, CaseError, CaseFile, DEFAULT_THRESHOLD};
+use crate::case_file::{self, CaseError, CaseFile};
 use crate::quantity::Length;
 
 /// The shapes of all textures.
@@ -40,14 +42,6 @@ pub(super) fn textures(
                 let given = inputs.read(file, &key, &mask.file, lattice)?;
                 let shape = mask_of(&given, mask.threshold, lattice)
                     .map_err(|error| file.source.error(&key, error.to_string()))?;
-                if matches!(shape, surface::Texture::Blocks(_)) && mask.threshold != DEFAULT_THRESHOLD {
-                    let sentence = format!(
-                        "`threshold` = {} is for images, and an array says of each block by 0 or 1 whether it is textured: \
-                         leave it out",
-                        mask.threshold
-                    );
-                    return Err(file.source.error(&format!("texture.{index}.threshold"), sentence));
-                }
                 inputs.budget.add_mask(match &shape {
                     surface::Texture::Image(image) => image.dark.len(),
                     _ => lattice.n_blocks(),
@@ -173,12 +167,15 @@ fn groove_in_blocks(
 
 fn mask_of(given: &Given, threshold: f64, lattice: &Lattice) -> Result<surface::Texture, ArrayError> {
     let Given { path, bytes } = given;
-    let is_npy = path
-        .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("npy"));
-    Ok(if is_npy {
+    Ok(if is_array(path) {
         surface::Texture::Blocks(arrays::mask_npy(path, bytes, lattice.nx, lattice.ny)?)
     } else {
         surface::Texture::Image(arrays::mask_png(path, bytes, threshold)?)
     })
+}
+
+/// Whether the file of a mask is an array, and not an image.
+pub(super) fn is_array(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("npy"))
 }

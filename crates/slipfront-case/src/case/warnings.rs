@@ -1,8 +1,12 @@
 //! What deserves a word before a case is run.
 
+use std::path::Path;
+
 use slipfront::FrictionLaw;
 
 use super::Case;
+use super::textures::is_array;
+use crate::case_file::{DEFAULT_THRESHOLD, Texture};
 
 /// Difference between the texture as asked and as meshed, relative to what was asked, that deserves a word.
 const LARGE_MISFIT: f64 = 0.25;
@@ -33,6 +37,18 @@ impl Case {
                     texture + 1
                 ),
             );
+        }
+        for (index, texture) in self.file.texture.iter().enumerate() {
+            if let Texture::Mask(mask) = texture {
+                warn(
+                    mask.threshold != DEFAULT_THRESHOLD && is_array(Path::new(&mask.file)),
+                    format!(
+                        "`threshold` = {} of texture {} is for images: an array says by 0 or 1 what is textured",
+                        mask.threshold,
+                        index + 1
+                    ),
+                );
+            }
         }
         let meshed = self.texture.meshed_percent;
         match self.texture.asked_percent {

@@ -17,9 +17,9 @@ pub(crate) use self::files::{
     remove_unfinished, stage, sync_folder,
 };
 pub use self::files::{is_empty, write_whole};
-pub(crate) use self::own::is_of_interrupted_run;
 pub use self::own::own_bytes;
-use self::own::{CASE, refuse_foreign, remove_own, remove_results, resolved_case};
+pub(crate) use self::own::{CASE, is_folder, is_of_interrupted_run};
+use self::own::{refuse_foreign, remove_own, remove_results, resolved_case};
 use crate::case::{Case, Input};
 use crate::checkpoint::Checkpoints;
 use crate::legible::{quoted, shown};

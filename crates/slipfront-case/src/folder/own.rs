@@ -10,7 +10,7 @@ use crate::checkpoint::{BEGINNING, CHECKPOINT, PREVIOUS};
 use crate::manifest::{MANIFEST, Manifest, ManifestFile};
 
 /// The resolved case in its folder.
-pub(super) const CASE: &str = "case.toml";
+pub(crate) const CASE: &str = "case.toml";
 
 /// What a run leaves beside its case and the copies in `inputs/`, the manifest first.
 const RESULTS: [&str; 8] = [
@@ -73,7 +73,7 @@ fn own_files(path: &Path) -> Vec<String> {
 }
 
 /// Whether this is a folder by itself: one that a link leads to holds what is somebody else's.
-fn is_folder(path: &Path) -> bool {
+pub(crate) fn is_folder(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|found| found.is_dir())
 }
 

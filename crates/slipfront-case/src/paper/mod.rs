@@ -44,7 +44,7 @@ pub use claims::{Claim, Condition, Judged, Verdict, claims};
 pub use drawing::Drawing;
 pub use error::PaperError;
 pub use found::{Found, Number, Panel, Table};
-pub use report::{docs_page, refuse_foreign_docs, summary, write, write_docs};
+pub use report::{docs_page, foreign_docs, summary, write, write_docs};
 #[doc(hidden)] // Read by the fuzz target of these files.
 pub(crate) use saved::FOUND;
 pub use saved::Saved;

@@ -4,7 +4,7 @@ mod html;
 mod markdown;
 
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
@@ -45,11 +45,8 @@ pub fn write(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
     write_file(folder, "report.html", html::page(paper, &drawn).as_bytes())
 }
 
-/// Refuses a folder where [`write_docs`] would replace files of others.
-///
-/// # Errors
-/// [`FolderError::Foreign`] names the first.
-pub fn refuse_foreign_docs(folder: &Path) -> Result<(), FolderError> {
+/// The first file of others that [`write_docs`] would replace in a folder.
+pub fn foreign_docs(folder: &Path) -> Option<PathBuf> {
     let page = folder.join(PAGE);
     let begins = open_regular(&page).and_then(|file| {
         let mut beginning = Vec::new();
@@ -58,17 +55,13 @@ pub fn refuse_foreign_docs(folder: &Path) -> Result<(), FolderError> {
         Ok(beginning == markdown::TITLE.as_bytes())
     });
     if begins.is_ok_and(|begins| begins) {
-        return Ok(());
+        return None;
     }
     let pictures = markdown::SHOWN.iter().map(|name| folder.join(docs_picture(name)));
-    match [page]
+    [page]
         .into_iter()
         .chain(pictures)
         .find(|path| path.symlink_metadata().is_ok())
-    {
-        Some(path) => Err(FolderError::Foreign { path }),
-        None => Ok(()),
-    }
 }
 
 /// The page of the claims.
@@ -84,6 +77,8 @@ fn docs_picture(name: &str) -> String {
 /// # Errors
 /// When a picture cannot be drawn or a file not be written.
 pub fn write_docs(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
+    // First, since it tells that the pictures are of an earlier call.
+    write_file(folder, PAGE, docs_page(paper).as_bytes())?;
     for (_, found) in &paper.figures {
         for Drawn { name, picture, .. } in draw(found)? {
             if markdown::SHOWN.contains(&name.as_str()) {
@@ -91,7 +86,7 @@ pub fn write_docs(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
             }
         }
     }
-    write_file(folder, PAGE, docs_page(paper).as_bytes())
+    Ok(())
 }
 
 /// The text of `paper.md`.

@@ -24,8 +24,8 @@ const MOST_CURVES: usize = 9;
 /// Most pictures of curves of a quantity: who has more looks at the tables.
 const MOST_PICTURES: usize = 1000;
 
-/// Most characters of a level in the name of a picture: names of files are bounded.
-const MOST_OF_A_LEVEL: usize = 40;
+/// Most characters of the levels in the name of a picture: names of files are bounded.
+const MOST_OF_LEVELS: usize = 100;
 
 /// Names of all pictures that a study of these axes may get.
 pub(super) fn names(axes: &[Axis]) -> impl Iterator<Item = String> {
@@ -152,10 +152,11 @@ fn sketches_of_curves(axes: &[Axis], x: usize, quantity: &str) -> Vec<Sketch> {
     }
     let (front, back) = others.split_at(split);
     let sketch = |fixed: Levels| {
-        let suffix: String = fixed
+        let labels = fixed
             .iter()
-            .map(|&(axis, level)| format!("-{}", file_word(&axes[axis].levels[level].labels.join("-"))))
-            .collect();
+            .flat_map(|&(axis, level)| &axes[axis].levels[level].labels);
+        let letters = labels.flat_map(|label| ['-'].into_iter().chain(label.chars()));
+        let suffix: String = letters.map(for_file).take(MOST_OF_LEVELS).collect();
         Sketch {
             name: format!("{quantity}{suffix}"),
             kind: Kind::Curves {
@@ -166,7 +167,7 @@ fn sketches_of_curves(axes: &[Axis], x: usize, quantity: &str) -> Vec<Sketch> {
         }
     };
     let mut sketches: Vec<Sketch> = combinations(axes, front).into_iter().map(sketch).collect();
-    // Words that differ only in letters which a file name does not take are told apart by their number.
+    // Names that differ only in what a file name does not take, or late, are told apart by their number.
     let names: HashSet<&String> = sketches.iter().map(|sketch| &sketch.name).collect();
     if names.len() < sketches.len() {
         for (k, sketch) in sketches.iter_mut().enumerate() {
@@ -315,17 +316,13 @@ fn bars(axes: &[Axis], quantity: &str, values: &Values) -> Result<Picture, Pictu
     })
 }
 
-/// A level as a word that every file system takes, cut if it is long.
-fn file_word(label: &str) -> String {
-    let word = label.chars().take(MOST_OF_A_LEVEL);
-    word.map(|c| {
-        if c.is_ascii_alphanumeric() || "._-".contains(c) {
-            c
-        } else {
-            '_'
-        }
-    })
-    .collect()
+/// A letter as every file system takes it.
+fn for_file(letter: char) -> char {
+    if letter.is_ascii_alphanumeric() || "._-".contains(letter) {
+        letter
+    } else {
+        '_'
+    }
 }
 
 #[cfg(test)]

@@ -208,7 +208,7 @@ impl StudyFile {
                 .map(|(key, value)| (key.clone(), value.clone())),
         );
         let copies = inputs::copy(&mut table, &self.base.folder)?;
-        Ok((toml::to_string(&table).map_err(CaseError::from)?, copies))
+        Ok((portable_text(table)?, copies))
     }
 
     /// Whether its base is a file of its own, and not a table in it.
@@ -294,6 +294,28 @@ impl StudyFile {
             table,
         })
     }
+}
+
+/// The text of a study. What stands in an axis or under `[study]` keeps its order, which is that of columns and points: a
+/// table in full would have its lists of tables behind all else.
+fn portable_text(mut study: toml::Table) -> Result<String, CaseError> {
+    let mut text = String::new();
+    if let Some(base) = study.remove("base") {
+        text += &toml::to_string(&toml::Table::from_iter([("base".to_owned(), base)]))?;
+    }
+    for (name, value) in study {
+        let (header, tables) = match value {
+            toml::Value::Array(tables) => (format!("[[{name}]]"), tables),
+            table => (format!("[{name}]"), vec![table]),
+        };
+        for table in tables {
+            text += &format!("\n{header}\n");
+            for (key, value) in table.as_table().into_iter().flatten() {
+                text += &format!("{key} = {value}\n");
+            }
+        }
+    }
+    Ok(text)
 }
 
 fn read_base(tables: &mut Tables, file: &str, folder: &Path) -> Result<Base, StudyError> {

@@ -10,10 +10,9 @@ use super::file::StudyFile;
 use super::inputs::Copy;
 use super::plan::Plan;
 use super::record::{Finding, RECORDS, Records};
-use crate::case_file::not_too_deep;
 use crate::folder::{
-    FolderError, TEXT_MAX_BYTES, fill_whole, is_empty, open_bounded, open_regular, read_whole,
-    remove_if_there, remove_unfinished, stage, sync_folder, write_whole,
+    CASE, FolderError, TEXT_MAX_BYTES, fill_whole, is_empty, is_folder, open_bounded, open_regular,
+    read_whole, remove_if_there, remove_unfinished, stage, sync_folder, write_whole,
 };
 use crate::manifest::{MANIFEST, Manifest};
 use crate::paper::FOUND;
@@ -69,7 +68,7 @@ impl StudyFolder {
             StudyFile::parse(text, &name, &study.name, path)
         };
         let before = read_whole(&path.join(STUDY), TEXT_MAX_BYTES).ok();
-        let before = before.filter(|before| !says_the_same(before, &text));
+        let before = before.filter(|before| before != text.as_bytes());
         let folder = Self {
             path: path.to_owned(),
             records,
@@ -87,10 +86,7 @@ impl StudyFolder {
             }
         }
         folder.copy(&copies)?;
-        // One that says the same may have been written, and commented, by hand.
-        if folder.changed || !is_study(path) {
-            folder.write(STUDY, text.as_bytes())?;
-        }
+        folder.write(STUDY, text.as_bytes())?;
         Ok(folder)
     }
 
@@ -119,6 +115,12 @@ impl StudyFolder {
         let mut staged = Vec::new();
         for Copy { name, original, .. } in copies {
             let path = self.path.join(name);
+            // What a link leads to is somebody else's.
+            let mut above = path.ancestors().skip(1).take_while(|above| *above != self.path);
+            if let Some(link) = above.find(|above| above.symlink_metadata().is_ok() && !is_folder(above)) {
+                let path = link.to_owned();
+                return Err(FolderError::Foreign { path }.into());
+            }
             let copied = stage(&self.path, |to| {
                 std::io::copy(&mut File::open(original)?, to).map(|_| ())
             });
@@ -133,8 +135,8 @@ impl StudyFolder {
         Ok(())
     }
 
-    /// Copies the complete run folders that a shard has kept and this folder lacks, each whole or not at all, and the cases of
-    /// failed runs; gives their number.
+    /// Copies the run folders that a shard has kept whole and this folder lacks, and the cases of failed runs; gives their
+    /// number.
     ///
     /// # Errors
     /// When one cannot be copied.
@@ -145,7 +147,7 @@ impl StudyFolder {
             let is_whole = |folder: &Path| match finding.as_ref() {
                 // A kill may have come while it was written.
                 Finding::Done(_) => Manifest::read(folder).is_ok(),
-                Finding::Failed(_) => folder.is_dir(),
+                Finding::Failed(_) => folder.join(CASE).is_file(),
             };
             let (from, to) = (shard.join(RUNS).join(&name), self.path.join(RUNS).join(&name));
             if !is_whole(&from) || is_whole(&to) {
@@ -167,36 +169,30 @@ impl StudyFolder {
     }
 }
 
-/// Copies the files of a run folder, the manifest last: without it, a run is not complete.
+/// Copies the files of a run folder. Its case and its manifest come last: without them, it is not taken for whole.
 fn copy_run(from: &Path, to: &Path) -> std::io::Result<()> {
     std::fs::create_dir_all(to)?;
     remove_unfinished(to);
-    let mut manifest = None;
+    let last = [CASE, MANIFEST];
     for entry in std::fs::read_dir(from)? {
         let entry = entry?;
-        let (from, to) = (entry.path(), to.join(entry.file_name()));
+        let (from, to, name) = (entry.path(), to.join(entry.file_name()), entry.file_name());
         if entry.file_type()?.is_dir() {
             copy_run(&from, &to)?;
-        } else if entry.file_name() == MANIFEST {
-            manifest = Some((from, to));
-        } else {
+        } else if !last.iter().any(|last| name == *last) {
             copy_file(&from, &to)?;
         }
     }
     sync_folder(to)?;
-    manifest.map_or(Ok(()), |(from, to)| copy_file(&from, &to))
+    for name in last.into_iter().filter(|name| from.join(name).exists()) {
+        copy_file(&from.join(name), &to.join(name))?;
+    }
+    Ok(())
 }
 
 fn copy_file(from: &Path, to: &Path) -> std::io::Result<()> {
     let mut from = open_regular(from)?;
     fill_whole(to, |to| std::io::copy(&mut from, to).map(|_| ()))
-}
-
-/// Whether two texts are the same table.
-fn says_the_same(before: &[u8], now: &str) -> bool {
-    let table = |text: &str| not_too_deep(text).parse::<toml::Table>().ok();
-    str::from_utf8(before)
-        .is_ok_and(|before| before == now || table(before).is_some_and(|before| table(now) == Some(before)))
 }
 
 /// Whether a study has used the folder.

@@ -1,6 +1,6 @@
 //! The plan of a study: its points, and what each run of a point is.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Mutex;
 
 use rayon::prelude::*;
@@ -181,14 +181,17 @@ impl Plan {
         })
     }
 
-    /// What deserves a word before the study is run: each warning about its cases once.
+    /// What deserves a word before the study is run: the first warning of each kind about its cases.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings: Vec<Warning> = Vec::new();
-        let mut known: HashMap<&str, usize> = HashMap::new();
+        // Sentences of one kind differ in their figures.
+        let kind = |sentence: &str| sentence.replace(|c: char| c.is_ascii_digit() || c == '.', "");
+        let mut known: HashMap<String, usize> = HashMap::new();
         for (position, point) in self.points.iter().enumerate() {
-            let of_point: BTreeSet<&String> = point.outlines.iter().flat_map(|run| &run.warnings).collect();
-            for sentence in of_point {
-                let at = *known.entry(sentence).or_insert(warnings.len());
+            let of_runs = point.outlines.iter().flat_map(|run| &run.warnings);
+            let of_point: BTreeMap<String, &String> = of_runs.map(|one| (kind(one), one)).rev().collect();
+            for (kind, sentence) in of_point {
+                let at = *known.entry(kind).or_insert(warnings.len());
                 match warnings.get_mut(at) {
                     Some(warning) => warning.points += 1,
                     None => warnings.push(Warning {

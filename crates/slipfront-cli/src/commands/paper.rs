@@ -48,7 +48,7 @@ impl Paper {
         let threads = set_threads(self.threads)?;
         let figures = paper::figures(&self.figures).map_err(Failure::input)?;
         if let Some(docs) = &self.docs {
-            paper::refuse_foreign_docs(docs).map_err(Failure::input)?;
+            refuse_foreign(docs)?;
         }
         let mut records = open(&self.out)?;
         let signals = Signals::catch().map_err(Failure::running)?;
@@ -86,6 +86,18 @@ impl Paper {
             ))),
         }
     }
+}
+
+/// Refuses to replace pages that others have written.
+fn refuse_foreign(docs: &Path) -> Result<(), Failure> {
+    let Some(path) = paper::foreign_docs(docs) else {
+        return Ok(());
+    };
+    let remedy = "move it away, or choose another folder with --docs";
+    Err(Failure::input(anyhow::anyhow!(
+        "{} is not of an earlier call: {remedy}",
+        path.display()
+    )))
 }
 
 /// Opens the records of an earlier call, or begins them in an empty folder.

@@ -1,6 +1,6 @@
 //! What can be written in a study file.
 
-use crate::bench::Bench;
+use crate::bench::{Bench, errors};
 
 const BASE: &str = "[base.slider]\nblocks = [4, 4]\n[base.time]\nstop = 'after_onset'\n";
 
@@ -129,4 +129,32 @@ fn copies_do_not_overwrite_what_is_still_to_be_copied() {
     bench.run(&["fresh/study.toml", "-o", "fresh_out"]);
     let points = |folder: &str| std::fs::read_to_string(bench.path(folder).join("points.csv")).unwrap();
     assert_eq!(points("out"), points("fresh_out"));
+}
+
+/// What a link leads to is somebody else's.
+#[cfg(unix)]
+#[test]
+fn copies_do_not_go_behind_a_link() {
+    let bench = Bench::new();
+    let table = |value: f64| format!("{value},{value},{value},{value}\n").repeat(4);
+    bench.write("mu.csv", table(1.0));
+    bench.write("theirs/mu.csv", table(0.9));
+    bench.write(
+        "study.toml",
+        format!("{BASE}[[axes]]\nkey = 'friction.mu_static_field'\nlist = ['mu.csv']\n"),
+    );
+    bench.run(&["study.toml", "-o", "out"]);
+    std::fs::remove_dir_all(bench.path("out/inputs")).unwrap();
+    std::os::unix::fs::symlink("../theirs", bench.path("out/inputs")).unwrap();
+    let output = bench.output(&["study.toml", "-o", "out"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        errors(&output).contains("out/inputs is not a file of an earlier run"),
+        "{}",
+        errors(&output)
+    );
+    assert_eq!(
+        std::fs::read_to_string(bench.path("theirs/mu.csv")).unwrap(),
+        table(0.9)
+    );
 }

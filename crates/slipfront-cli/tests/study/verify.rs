@@ -166,3 +166,16 @@ fn single_runs_are_repeated_and_studies_are_not() {
         errors(&output)
     );
 }
+
+/// Lists of tables stand last in a table that TOML writes in full; the columns follow the study as it was written.
+#[test]
+fn the_study_in_the_folder_has_its_axes_in_order() {
+    let bench = Bench::with(
+        "base.slider.blocks = [4, 4]\nbase.time.stop = 'after_onset'\n[study]\nreplicates = 2\n\
+         [[axes]]\nzip = { 'texture.0' = [{ shape = 'groove', coverage = 25 }, { shape = 'cavity', coverage = 25 }], \
+         'drive.v_star' = [0.1, 0.2] }",
+    );
+    bench.study("out");
+    let (status, said, problems) = verified(&bench, "out");
+    assert_eq!(status, 0, "{said}{problems}");
+}
