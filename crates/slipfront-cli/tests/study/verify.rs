@@ -175,7 +175,9 @@ fn the_study_in_the_folder_has_its_axes_in_order() {
          [[axes]]\nzip = { 'texture.0' = [{ shape = 'groove', coverage = 25 }, { shape = 'cavity', coverage = 25 }], \
          'drive.v_star' = [0.1, 0.2] }",
     );
-    bench.study("out");
+    let results = bench.study("out");
+    let points = std::fs::read_to_string(results.path.join("points.csv")).unwrap();
+    assert!(points.starts_with("point,texture.0,drive.v_star,"), "{points}");
     let (status, said, problems) = verified(&bench, "out");
     assert_eq!(status, 0, "{said}{problems}");
 }
