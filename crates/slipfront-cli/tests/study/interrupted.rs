@@ -1,6 +1,6 @@
 //! Killed, stopped, without disk: nothing is lost and nothing repeated.
 
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -113,18 +113,19 @@ fn signals_stop_it_with_their_status_and_it_goes_on() {
     bench.results("stopped").assert_same(&bench.study("whole"));
 }
 
+/// Runs `study.toml` under a limit of `ulimit`.
+fn limited(bench: &Bench, limit: &str, arguments: &str) -> Output {
+    let program = env!("CARGO_BIN_EXE_slipfront");
+    let script = format!("ulimit {limit}; exec {program} study study.toml --quiet {arguments}");
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &script]).current_dir(bench.path(""));
+    shell.output().unwrap()
+}
+
 #[test]
 fn a_full_disk_ends_it_with_a_sentence_and_it_goes_on() {
     let bench = Bench::with(crate::bench::SMALL);
-    let limited = format!(
-        "ulimit -f 16; exec {} study study.toml --quiet -o full",
-        env!("CARGO_BIN_EXE_slipfront")
-    );
-    let output = Command::new("sh")
-        .args(["-c", &limited])
-        .current_dir(bench.path(""))
-        .output()
-        .unwrap();
+    let output = limited(&bench, "-f 16", "-o full");
     assert_eq!(output.status.code(), Some(1), "{}", errors(&output));
     let said = errors(&output);
     assert!(
@@ -144,15 +145,7 @@ fn a_full_disk_ends_it_with_a_sentence_and_it_goes_on() {
 fn what_the_system_does_not_give_is_refused_before_it_begins() {
     let bench =
         Bench::with("base.slider.blocks = [1500, 1500]\nbase.time.duration_star = 1\nstudy.replicates = 1");
-    let limited = format!(
-        "ulimit -v 200000; exec {} study study.toml --quiet --threads 1 -o out",
-        env!("CARGO_BIN_EXE_slipfront")
-    );
-    let output = Command::new("sh")
-        .args(["-c", &limited])
-        .current_dir(bench.path(""))
-        .output()
-        .unwrap();
+    let output = limited(&bench, "-v 200000", "--threads 1 -o out");
     assert_eq!(output.status.code(), Some(2), "{}", errors(&output));
     assert!(
         errors(&output).contains("are available to this process: lower `slider.blocks`"),
