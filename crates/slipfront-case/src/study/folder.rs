@@ -75,6 +75,7 @@ impl StudyFolder {
             changed: before.is_some(),
             study: parse(&text)?,
         };
+        folder.copy(&copies)?;
         // Its tables and pictures would stand beside another study, and follow from the records at any time. One that cannot
         // be read now has no pictures that are known.
         if let Some(before) = before {
@@ -85,7 +86,6 @@ impl StudyFolder {
                 let _ = remove_if_there(&path.join(table));
             }
         }
-        folder.copy(&copies)?;
         folder.write(STUDY, text.as_bytes())?;
         Ok(folder)
     }
