@@ -215,7 +215,7 @@ fn longest(path: &Path, nx: usize, ny: usize) -> u64 {
 }
 
 /// The extension in lower case, empty if there is none.
-fn extension(path: &Path) -> String {
+pub(crate) fn extension(path: &Path) -> String {
     path.extension()
         .map(|text| text.to_string_lossy().to_lowercase())
         .unwrap_or_default()

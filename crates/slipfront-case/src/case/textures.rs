@@ -176,6 +176,5 @@ fn mask_of(given: &Given, threshold: f64, lattice: &Lattice) -> Result<surface::
 
 /// Whether the file of a mask is an array, and not an image.
 pub(super) fn is_array(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("npy"))
+    arrays::extension(path) == "npy"
 }

@@ -127,6 +127,13 @@ pub(crate) fn open_regular(path: &Path) -> std::io::Result<File> {
     File::open(path)
 }
 
+/// Whether a regular file begins so.
+pub(crate) fn begins_with(path: &Path, beginning: &[u8]) -> bool {
+    let mut found = Vec::new();
+    let file = open_regular(path).map(|file| file.take(beginning.len() as u64));
+    file.and_then(|mut file| file.read_to_end(&mut found)).is_ok() && found == beginning
+}
+
 /// Opens a regular file that can have no more than `most` bytes if it is what it should be.
 ///
 /// A file of many gigabytes in the place of a small one would take all memory before anyone looked at it.

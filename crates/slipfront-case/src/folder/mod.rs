@@ -13,8 +13,8 @@ use thiserror::Error;
 
 use self::files::holds_only_unfinished;
 pub(crate) use self::files::{
-    TEXT_MAX_BYTES, UNFINISHED, fill_whole, json, open_bounded, open_regular, read_whole, remove_if_there,
-    remove_unfinished, stage, sync_folder,
+    TEXT_MAX_BYTES, UNFINISHED, begins_with, fill_whole, json, open_bounded, open_regular, read_whole,
+    remove_if_there, remove_unfinished, stage, sync_folder,
 };
 pub use self::files::{is_empty, write_whole};
 pub use self::own::own_bytes;

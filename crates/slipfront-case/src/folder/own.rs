@@ -1,10 +1,9 @@
 //! Which files of a run folder are slipfront's own: those that may be replaced.
 
-use std::io::Read;
 use std::path::{Component, Path};
 
 use super::FolderError;
-use super::files::{TEXT_MAX_BYTES, is_unfinished, open_regular, read_whole, remove_if_there, unfinished};
+use super::files::{TEXT_MAX_BYTES, begins_with, is_unfinished, read_whole, remove_if_there, unfinished};
 use crate::case_file::CaseFile;
 use crate::checkpoint::{BEGINNING, CHECKPOINT, PREVIOUS};
 use crate::manifest::{MANIFEST, Manifest, ManifestFile};
@@ -53,8 +52,9 @@ fn own_files(path: &Path) -> Vec<String> {
     let is_own_case = case.is_some() || listed.as_ref().is_some_and(as_listed);
     let results = RESULTS.into_iter().filter(is_result).map(str::to_owned);
     let mut names: Vec<String> = results.collect();
+    // A name alone may be anybody's.
     let checkpoints = [CHECKPOINT, PREVIOUS].into_iter();
-    let checkpoints = checkpoints.filter(|name| begins_as_checkpoint(&path.join(name)));
+    let checkpoints = checkpoints.filter(|name| begins_with(&path.join(name), BEGINNING));
     names.extend(checkpoints.map(str::to_owned));
     let read = case.iter_mut().flat_map(CaseFile::files_mut);
     let mut copies: Vec<String> = read.map(|(_, name)| name.clone()).collect();
@@ -84,13 +84,6 @@ fn is_plain(name: &str) -> bool {
     matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None))
         && !name.contains(['/', '\\', '\0'])
         && name.len() <= LONGEST
-}
-
-/// Whether a file begins as a checkpoint does: a name alone may be anybody's.
-fn begins_as_checkpoint(path: &Path) -> bool {
-    let mut beginning = Vec::new();
-    let file = open_regular(path).map(|file| file.take(BEGINNING.len() as u64));
-    file.and_then(|mut file| file.read_to_end(&mut beginning)).is_ok() && beginning == BEGINNING
 }
 
 /// Refuses files that stand where those of a run will be written, with copies of these `inputs`, and are not of an earlier

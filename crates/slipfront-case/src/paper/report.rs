@@ -3,7 +3,6 @@
 mod html;
 mod markdown;
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
@@ -11,7 +10,7 @@ use rayon::prelude::*;
 use super::claims::Verdict;
 use super::error::PaperError;
 use super::{Figure, Found, Judged, Paper, StepRule};
-use crate::folder::{FolderError, open_regular, write_whole};
+use crate::folder::{FolderError, begins_with, write_whole};
 use crate::pictures::Picture;
 
 /// A drawn picture with its name and caption.
@@ -48,13 +47,7 @@ pub fn write(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
 /// The first file of others that [`write_docs`] would replace in a folder.
 pub fn foreign_docs(folder: &Path) -> Option<PathBuf> {
     let page = folder.join(PAGE);
-    let begins = open_regular(&page).and_then(|file| {
-        let mut beginning = Vec::new();
-        file.take(markdown::TITLE.len() as u64)
-            .read_to_end(&mut beginning)?;
-        Ok(beginning == markdown::TITLE.as_bytes())
-    });
-    if begins.is_ok_and(|begins| begins) {
+    if begins_with(&page, markdown::TITLE.as_bytes()) {
         return None;
     }
     let pictures = markdown::SHOWN.iter().map(|name| folder.join(docs_picture(name)));

@@ -138,11 +138,8 @@ impl Settings {
             );
             return refuse("study.replicates", sentence);
         }
-        let reference = self.reference.iter().flat_map(axis::overrides);
-        if reference
-            .into_iter()
-            .any(|set| axis::key_of(&set) == "friction.seed")
-        {
+        let mut reference = self.reference.iter().flat_map(axis::overrides);
+        if reference.any(|set| axis::key_of(&set) == "friction.seed") {
             let sentence =
                 "a reduction is that against the same surface: leave `friction.seed` out of the reference";
             return refuse("study.reference", sentence.to_owned());

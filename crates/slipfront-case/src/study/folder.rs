@@ -135,13 +135,11 @@ impl StudyFolder {
         Ok(())
     }
 
-    /// Copies the run folders that a shard has kept whole and this folder lacks, and the cases of failed runs; gives their
-    /// number.
+    /// Copies the run folders that a shard has kept whole and this folder lacks, and the cases of failed runs.
     ///
     /// # Errors
     /// When one cannot be copied.
-    pub fn take_kept(&self, plan: &Plan, findings: &Findings, shard: &Path) -> Result<usize, StudyError> {
-        let mut taken = 0;
+    pub fn take_kept(&self, plan: &Plan, findings: &Findings, shard: &Path) -> Result<(), StudyError> {
         for (run, finding) in &findings.runs {
             let name = plan.folder_name(*run);
             let is_whole = |folder: &Path| match finding.as_ref() {
@@ -154,9 +152,8 @@ impl StudyFolder {
                 continue;
             }
             copy_run(&from, &to).map_err(|source| FolderError::Copy { from, to, source })?;
-            taken += 1;
         }
-        Ok(taken)
+        Ok(())
     }
 
     /// Removes pictures of these names, and none of others; one that cannot be removed does no harm.
