@@ -1,27 +1,16 @@
-//! Case files in, results out: everything between a user's text and the physics of [`slipfront`].
+//! Text and files in, a case out: everything between what a user writes and the physics of [`slipfront`].
 //!
 //! ```text
-//! text -> CaseFile -> Case (valid by construction) -> Record -> files -> pictures
+//! text -> CaseFile -> Case (valid by construction)
 //! ```
 //!
-//! Each arrow is one function: [`case_file::CaseFile::load`], [`case::Case::new`], [`run::run`],
-//! [`results::write`], [`results::draw`].
+//! Each arrow is one function: [`case_file::CaseFile::load`], [`case::Case::new`].
 
 pub mod arrays;
-pub mod budget;
 pub mod case;
 pub mod case_file;
-pub mod checkpoint;
-pub mod fields;
-pub mod folder;
-mod legible;
-pub mod manifest;
-pub mod paper;
-pub mod pictures;
+pub mod disk;
+pub mod field_name;
+pub mod machine;
 pub mod quantity;
-pub mod results;
-pub mod run;
-pub mod series;
-pub mod study;
-pub mod summary;
-pub mod verify;
+pub mod text;

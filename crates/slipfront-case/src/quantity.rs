@@ -12,7 +12,7 @@ use serde::de::{Deserialize, Deserializer, Visitor};
 use serde::ser::{Serialize, Serializer};
 use thiserror::Error;
 
-use crate::legible::shortened;
+use crate::text::shortened;
 
 /// The longest text that is read as a quantity, in bytes.
 const MAX_TEXT: usize = 200;

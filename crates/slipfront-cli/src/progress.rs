@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use slipfront::Snapshot;
-use slipfront_case::run::Running;
-use slipfront_case::study::Progress as StudyState;
+use slipfront_run::running::Running;
+use slipfront_run::study::Progress as StudyState;
 
 use crate::say::say;
 

@@ -4,11 +4,12 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use slipfront::lattice::dt_star_limit;
-use slipfront_case::budget::{available_memory, shown};
+use slipfront_case::machine::{available_memory, shown};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Law;
-use slipfront_case::study::{self, Finding, Findings, Plan, RunKey};
-use slipfront_case::summary::Summary;
+use slipfront_run::study;
+use slipfront_run::study::{Finding, Findings, Plan, RunKey};
+use slipfront_run::summary::Summary;
 
 /// The resolved physics of a case.
 pub(crate) fn physics(case: &Case) -> String {

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::{Duration, Instant};
 
-use slipfront_case::checkpoint::Checkpoints;
-use slipfront_case::folder::resume_command;
-use slipfront_case::run::Running;
+use slipfront_run::checkpoint::Checkpoints;
+use slipfront_run::run_folder::resume_command::resume_command;
+use slipfront_run::running::Running;
 
 use crate::failure::Failure;
 use crate::progress::Progress;

@@ -3,13 +3,12 @@
 use std::io::{self, Cursor};
 use std::path::Path;
 
-use png::Transformations;
-use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, InterlaceInfo, Reader};
+use png::{Transformations, BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, InterlaceInfo, Reader};
 
 use slipfront::surface::MaskImage;
 
 use super::{ArrayError, extension, unknown_extension};
-use crate::folder::write_whole;
+use crate::disk::write_whole;
 
 /// More pixels than any lattice has blocks.
 const PIXELS_MAX: u64 = 1 << 28;

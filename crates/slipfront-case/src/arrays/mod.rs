@@ -14,8 +14,8 @@ use std::path::{Path, PathBuf};
 pub use mask::{mask_png, write_mask_png};
 pub use npy::mask_npy;
 
-use crate::folder::open_regular;
-use crate::legible::sentence;
+use crate::disk::open_regular;
+use crate::text::sentence;
 
 /// What is wrong with an array or image file: one sentence that ends with the remedy.
 #[derive(Debug, thiserror::Error)]
@@ -215,7 +215,7 @@ fn longest(path: &Path, nx: usize, ny: usize) -> u64 {
 }
 
 /// The extension in lower case, empty if there is none.
-pub(crate) fn extension(path: &Path) -> String {
+pub fn extension(path: &Path) -> String {
     path.extension()
         .map(|text| text.to_string_lossy().to_lowercase())
         .unwrap_or_default()

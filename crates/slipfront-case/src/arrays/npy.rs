@@ -5,7 +5,7 @@ use std::path::Path;
 use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 
 use super::ArrayError;
-use crate::legible::shortened;
+use crate::text::shortened;
 
 /// Numpy itself refuses longer headers.
 pub(super) const HEADER_MAX_BYTES: usize = 10_000;

@@ -3,7 +3,7 @@
 use slipfront::Lattice;
 use slipfront::surface::{Coefficients, Distribution};
 
-use super::Groups;
+use super::groups::Groups;
 use super::inputs::Inputs;
 use crate::arrays;
 use crate::case_file::{CaseError, CaseFile};

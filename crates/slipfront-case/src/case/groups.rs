@@ -2,7 +2,8 @@
 
 use slipfront::Scales;
 
-use crate::case_file::{self, CaseError, CaseFile};
+use crate::case_file;
+use crate::case_file::{CaseError, CaseFile};
 
 /// The dimensionless groups on which the model depends (Eq. 11).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,9 +4,8 @@ use std::path::{Path, PathBuf};
 
 use slipfront::Lattice;
 
-use super::within_budget;
 use crate::arrays;
-use crate::budget::Budget;
+use super::budget::{Budget, within_budget};
 use crate::case_file::{CaseError, CaseFile};
 
 /// A file that a case reads, kept so that the run folder can hold a copy.

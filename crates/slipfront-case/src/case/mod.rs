@@ -1,9 +1,11 @@
 //! `CaseFile` -> [`Case`]: a case that can be run, with every length counted in blocks and every file read.
 
+mod budget;
 mod coefficients;
 mod groups;
 mod inputs;
 mod output;
+mod parameters;
 mod schedule;
 mod textures;
 mod warnings;
@@ -12,18 +14,21 @@ use std::path::Path;
 
 use slipfront::scales::damping;
 use slipfront::surface::{Load, mesh};
-use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Scales, Surface};
+use slipfront::{Drive, Model, Scales, Surface};
 
 use self::coefficients::coefficients;
 pub use self::groups::Groups;
 pub use self::inputs::Input;
 use self::inputs::Inputs;
-pub use self::output::{Output, Snapshots};
+pub use self::output::{MAX_MAPS, Output, Snapshots, VARIABLE_MAX_BYTES, smallest_stride};
 pub use self::schedule::Schedule;
 use self::textures::textures;
-use crate::budget::{Budget, Excess};
-use crate::case_file::{self, CaseError, CaseFile};
-use crate::fields;
+pub use self::budget::Budget;
+use self::budget::within_budget;
+pub use self::budget::{PROGRAM, SERIES_ROW};
+pub use self::parameters::check_fields;
+use self::parameters::{Parameters, law};
+use crate::case_file::{CaseError, CaseFile};
 
 /// A case, valid by construction.
 #[derive(Debug)]
@@ -88,12 +93,12 @@ impl Case {
     }
 
     fn to_run(file: CaseFile, name: &str, folder: &Path) -> Result<Self, CaseError> {
-        let Numbers {
+        let Parameters {
             lattice,
             output,
             budget,
             ..
-        } = Numbers::of(&file)?;
+        } = Parameters::of(&file)?;
         within_budget(&file, budget.check_memory(false))?;
         check_fields(&file, &lattice, &output)?;
         let case = Self::new(file, name, folder)?;
@@ -108,14 +113,14 @@ impl Case {
     /// # Errors
     /// A sentence that names place, value, bound and remedy.
     pub fn new(mut file: CaseFile, name: &str, folder: &Path) -> Result<Self, CaseError> {
-        let Numbers {
+        let Parameters {
             scales,
             groups,
             lattice,
             schedule,
             output,
             budget,
-        } = Numbers::of(&file)?;
+        } = Parameters::of(&file)?;
         within_budget(&file, budget.check_making())?;
         let mut inputs = Inputs::new(folder, budget);
         let textures = textures(&mut file, &scales, &lattice, &mut inputs)?;
@@ -184,100 +189,5 @@ impl Case {
     pub fn steps_per_look(&self) -> u64 {
         const BLOCK_STEPS: u64 = 200_000;
         (BLOCK_STEPS / self.model.lattice.n_blocks() as u64).max(1)
-    }
-}
-
-/// All that a case file says without its files, before any array of the lattice is made.
-struct Numbers {
-    scales: Scales,
-    groups: Groups,
-    lattice: Lattice,
-    schedule: Schedule,
-    output: Output,
-    budget: Budget,
-}
-
-fn law(file: &CaseFile) -> FrictionLaw {
-    match file.friction.law {
-        case_file::Law::Projection => FrictionLaw::Projection,
-        case_file::Law::Reversal => FrictionLaw::Reversal,
-        case_file::Law::Literal => FrictionLaw::Literal,
-    }
-}
-
-impl Numbers {
-    fn of(file: &CaseFile) -> Result<Self, CaseError> {
-        let scales = scales(file);
-        let groups = Groups::of(file, &scales)?;
-        let lattice = lattice(file);
-        let schedule = Schedule::of(file, &scales, &groups)?;
-        let output = Output::of(file, &schedule)?;
-        let budget = Budget::new(&lattice, law(file), &schedule, &output);
-        Ok(Self {
-            scales,
-            groups,
-            lattice,
-            schedule,
-            output,
-            budget,
-        })
-    }
-}
-
-fn within_budget(file: &CaseFile, checked: Result<(), Excess>) -> Result<(), CaseError> {
-    checked.map_err(|excess| file.source.error(excess.key, excess.sentence))
-}
-
-/// Refuses fields that their file could not hold when the run is over.
-pub(crate) fn check_fields(file: &CaseFile, lattice: &Lattice, output: &Output) -> Result<(), CaseError> {
-    let Lattice { nx, ny, .. } = lattice;
-    let needed = fields::smallest_stride(*nx, *ny, output.stride);
-    if needed == output.stride {
-        return Ok(());
-    }
-    let sentence = format!(
-        "one field of {nx} x {ny} blocks takes more than the 2 GiB that the format of fields.nc holds: set \
-         `output.stride` to {needed} or more"
-    );
-    Err(file.source.error("output.stride", sentence))
-}
-
-fn scales(file: &CaseFile) -> Scales {
-    Scales {
-        block_size: file.slider.block_size.si(),
-        young_modulus: file.slider.young_modulus.si(),
-        density: file.slider.density.si(),
-        pressure: file.load.pressure.si(),
-        mu_static_mean: file.friction.mu_static,
-    }
-}
-
-fn lattice(file: &CaseFile) -> Lattice {
-    let edges = file.slider.edges.map(|edge| match edge {
-        case_file::Edge::Free => Edges::Free,
-        case_file::Edge::Periodic => Edges::Periodic,
-    });
-    let [nx, ny] = file.slider.blocks.map(|count| count as usize);
-    Lattice::with_edges(nx, ny, edges)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn fields_that_no_file_holds_are_refused_before_the_run() {
-        let check = |text: &str| {
-            let file = CaseFile::parse(text, "case.toml", &[]).unwrap();
-            let Numbers { lattice, output, .. } = Numbers::of(&file).unwrap();
-            check_fields(&file, &lattice, &output)
-        };
-        let large = "[slider]\nblocks = [40000, 20000]\n[output]\nstride =";
-        assert!(check(&format!("{large} 2")).is_ok());
-        let said = check(&format!("{large} 1")).unwrap_err().to_string();
-        assert!(
-            said.contains("case.toml:4:10: ") && said.contains("set `output.stride` to 2 or more"),
-            "{said}"
-        );
     }
 }

@@ -1,8 +1,9 @@
 //! What a case writes, and when.
 
-use super::Schedule;
-use crate::case_file::{self, AutoOr, CaseError, CaseFile};
-use crate::fields::FieldName;
+use super::schedule::Schedule;
+use crate::case_file;
+use crate::case_file::{AutoOr, CaseError, CaseFile};
+use crate::field_name::FieldName;
 
 /// What is written.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +28,12 @@ pub enum Snapshots {
     /// Every n-th step from 0.
     Every(u64),
 }
+
+/// Most maps in the picture of the stress: of more snapshots, six spread over the run are shown.
+pub const MAX_MAPS: usize = 6;
+
+/// The largest variable (or record of one) that every reader of 64-bit offset files takes.
+pub const VARIABLE_MAX_BYTES: usize = i32::MAX as usize - 3;
 
 /// Longest series that is written unless a spacing is asked for.
 const SERIES_ROWS: u64 = 20_000;
@@ -78,4 +85,14 @@ impl Output {
             series_stride,
         })
     }
+}
+
+/// The smallest stride from `stride` on with which one variable holds a lattice of `nx` x `ny` blocks.
+pub fn smallest_stride(nx: usize, ny: usize, stride: usize) -> usize {
+    let enough = (stride..).find(|stride| fits(nx.div_ceil(*stride), ny.div_ceil(*stride)));
+    enough.unwrap_or(usize::MAX)
+}
+
+fn fits(columns: usize, rows: usize) -> bool {
+    columns.saturating_mul(rows).saturating_mul(size_of::<f64>()) <= VARIABLE_MAX_BYTES
 }

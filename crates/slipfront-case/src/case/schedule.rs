@@ -4,8 +4,9 @@ use slipfront::lattice::dt_star_limit;
 use slipfront::observe::KineticStart;
 use slipfront::{Scales, Stop};
 
-use super::Groups;
-use crate::case_file::{self, AutoOr, CaseError, CaseFile};
+use super::groups::Groups;
+use crate::case_file;
+use crate::case_file::{AutoOr, CaseError, CaseFile};
 
 /// Time and its steps.
 #[derive(Clone, Copy, Debug, PartialEq)]

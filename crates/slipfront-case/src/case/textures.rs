@@ -5,8 +5,9 @@ use std::path::Path;
 use slipfront::{Lattice, Scales, surface};
 
 use super::inputs::{Given, Inputs};
-use crate::arrays::{self, ArrayError};
-use crate::case_file::{self, CaseError, CaseFile};
+use crate::{arrays, case_file};
+use crate::arrays::ArrayError;
+use crate::case_file::{CaseError, CaseFile};
 use crate::quantity::Length;
 
 /// The shapes of all textures.

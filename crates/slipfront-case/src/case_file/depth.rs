@@ -10,7 +10,7 @@ use toml_parser::lexer::TokenKind;
 const MOST: usize = 200;
 
 /// The text up to the place where it is nested too deep: its brackets are open there, so that it is not valid TOML either.
-pub(crate) fn not_too_deep(text: &str) -> &str {
+pub fn not_too_deep(text: &str) -> &str {
     let mut open = Vec::new();
     for token in Source::new(text).lex() {
         match token.kind() {

@@ -8,7 +8,8 @@ use thiserror::Error;
 
 use super::keys;
 use super::source::{Place, Source};
-use crate::legible::{self, shortened};
+use crate::text;
+use crate::text::shortened;
 
 /// A case file that cannot be used.
 #[derive(Debug, Error)]
@@ -65,7 +66,7 @@ pub struct Invalid {
 
 impl CaseError {
     pub(super) fn invalid(place: Option<Place>, sentence: impl Into<String>) -> Self {
-        let sentence = legible::sentence(&sentence.into());
+        let sentence = text::sentence(&sentence.into());
         Self::Invalid(Box::new(Invalid { place, sentence }))
     }
 

@@ -25,10 +25,10 @@ const PAIRS: [(&str, [&str; 2]); 6] = [
 ];
 
 /// The names of the tables, in the order of the design.
-pub(crate) const TABLES: [&str; 7] = ["slider", "load", "drive", "friction", "texture", "time", "output"];
+pub const TABLES: [&str; 7] = ["slider", "load", "drive", "friction", "texture", "time", "output"];
 
 /// Those of a study file.
-pub(crate) const STUDY_TABLES: [&str; 3] = ["base", "study", "axes"];
+pub const STUDY_TABLES: [&str; 3] = ["base", "study", "axes"];
 
 /// A table's header as it stands in the file.
 pub(super) fn header(table: &str) -> String {
@@ -36,7 +36,7 @@ pub(super) fn header(table: &str) -> String {
 }
 
 /// The same in a table `above`, which ends in a dot.
-pub(crate) fn header_below(above: &str, table: &str) -> String {
+pub fn header_below(above: &str, table: &str) -> String {
     if table == "texture" {
         format!("[[{above}{table}]]")
     } else {
@@ -86,7 +86,7 @@ pub(super) fn partners<'k>(table: &'k str, key: &'k str) -> impl Iterator<Item =
 }
 
 /// The keys that set the same thing as a key such as `drive.v_star`, which has `drive.speed`.
-pub(crate) fn partners_of(key: &str) -> Vec<String> {
+pub fn partners_of(key: &str) -> Vec<String> {
     let Some((table, leaf)) = key.rsplit_once('.') else {
         return Vec::new();
     };
@@ -97,7 +97,7 @@ pub(crate) fn partners_of(key: &str) -> Vec<String> {
 }
 
 /// Whether two keys, such as `drive.v_star` and `drive.speed`, set the same thing.
-pub(crate) fn exclude_each_other(one: &str, other: &str) -> bool {
+pub fn exclude_each_other(one: &str, other: &str) -> bool {
     partners_of(one).iter().any(|partner| partner == other)
 }
 
@@ -133,7 +133,7 @@ pub(super) fn refuse_both(root: &DeTable<'_>, source: &Source) -> Result<(), Cas
 }
 
 /// The sentence about a key that the table under `header` does not have.
-pub(crate) fn unknown(key: &str, header: &str, known: &[&str]) -> String {
+pub fn unknown(key: &str, header: &str, known: &[&str]) -> String {
     let list = known.join(", ");
     let advice = match (home_of(key), nearest(key, known)) {
         (Some(home), _) => format!(": it belongs in {home}"),
@@ -193,7 +193,7 @@ pub(super) fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
 }
 
 /// The fields that `T` reads, in their order.
-pub(crate) fn keys_of<T: DeserializeOwned>() -> &'static [&'static str] {
+pub fn keys_of<T: DeserializeOwned>() -> &'static [&'static str] {
     let mut fields: &'static [&'static str] = &[];
     // The probe gives nothing to read, so this always ends in an error: after the fields were noted.
     let _ = T::deserialize(Probe(&mut fields));

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::values::{AutoOr, words};
-use crate::fields::FieldName;
+use crate::field_name::FieldName;
 
 /// `[output]`: snapshots, fields and the series.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

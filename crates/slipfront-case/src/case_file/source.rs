@@ -9,7 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::CaseError;
-use crate::legible::{MAX_PIECE, shortened};
+use crate::text::{MAX_PIECE, shortened};
 
 /// The longest key whose place is noted, in bytes: all known ones are shorter. The keys below one of many megabytes
 /// would take that length each.

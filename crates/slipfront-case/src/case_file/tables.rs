@@ -9,14 +9,16 @@ use super::keys;
 use super::source::Source;
 
 /// The tables of a parsed file that are still to be read.
-pub(crate) struct Tables<'a, 'i> {
-    pub(crate) root: DeTable<'i>,
-    pub(crate) source: &'a Source,
+pub struct Tables<'a, 'i> {
+    /// The tables that have not been read yet.
+    pub root: DeTable<'i>,
+    /// The text, for places of errors.
+    pub source: &'a Source,
 }
 
 impl<'i> Tables<'_, 'i> {
     /// The table `[name]`, or its default where the file has none.
-    pub(crate) fn read<T: Default + DeserializeOwned>(&mut self, name: &str) -> Result<T, CaseError> {
+    pub fn read<T: Default + DeserializeOwned>(&mut self, name: &str) -> Result<T, CaseError> {
         match self.root.remove(name) {
             None => Ok(T::default()),
             Some(value) if value.get_ref().is_table() => {
@@ -30,7 +32,7 @@ impl<'i> Tables<'_, 'i> {
     }
 
     /// A table that stands under `header` and has the `known` keys.
-    pub(crate) fn read_table<T: DeserializeOwned>(
+    pub fn read_table<T: DeserializeOwned>(
         &self,
         table: Spanned<DeValue<'i>>,
         header: &str,

@@ -110,7 +110,7 @@ pub struct Mask {
 }
 
 /// Halfway to white.
-pub(crate) const DEFAULT_THRESHOLD: f64 = 0.5;
+pub const DEFAULT_THRESHOLD: f64 = 0.5;
 
 fn default_threshold() -> f64 {
     DEFAULT_THRESHOLD

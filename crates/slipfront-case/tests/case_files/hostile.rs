@@ -2,7 +2,7 @@ use std::fs;
 use std::path::Path;
 
 use slipfront_case::case_file::{CaseError, CaseFile};
-use slipfront_case::study::StudyFile;
+use slipfront_run::study::StudyFile;
 
 fn refused(text: &str, overrides: &[&str]) -> String {
     let overrides: Vec<String> = overrides.iter().map(|&entry| entry.to_owned()).collect();

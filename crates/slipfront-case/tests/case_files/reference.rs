@@ -2,7 +2,7 @@ use std::fs;
 use std::path::Path;
 
 use slipfront_case::case_file::CaseFile;
-use slipfront_case::study::{Plan, StudyFile};
+use slipfront_run::study::{Plan, StudyFile};
 
 /// The TOML blocks of the reference are cases that can be read, and every key of the default is explained there.
 #[test]

@@ -1,12 +1,8 @@
 use proptest::prelude::*;
 use proptest::sample::{select, subsequence};
 
-use slipfront_case::case_file::{
-    AutoOr, CaseFile, Cavity, CavitySize, Center, Damping, Drive, DriveSpeed, Edge, Friction, Groove,
-    GrooveSize, KineticFriction, Law, Load, Mask, Orientation, Output, Polygon, RunTime, Slider, Snapshots,
-    Source, Step, Stop, Texture, Time,
-};
-use slipfront_case::fields::FieldName;
+use slipfront_case::case_file::{AutoOr, CaseFile, Cavity, CavitySize, Center, Damping, Drive, DriveSpeed, Edge, Friction, Groove, GrooveSize, KineticFriction, Law, Load, Mask, Orientation, Output, Polygon, RunTime, Slider, Snapshots, Source, Step, Stop, Texture, Time};
+use slipfront_case::field_name::FieldName;
 use slipfront_case::quantity::{Kind, Length, Quantity};
 
 /// Quantities of many sizes, some as a user writes them and some printed from their value.

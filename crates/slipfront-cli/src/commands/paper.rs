@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use slipfront_case::folder::is_empty;
-use slipfront_case::paper::{self, Options, Stage, StepRule};
-use slipfront_case::study::{Records, is_study};
+use slipfront_case::disk::is_empty;
+use slipfront_paper;
+use slipfront_paper::{Options, Stage, StepRule};
+use slipfront_run::study::{Records, is_study};
 
 use super::{print, set_threads};
 use crate::failure::Failure;

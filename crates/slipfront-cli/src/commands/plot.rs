@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use slipfront_case::folder::write_whole;
-use slipfront_case::manifest::MANIFEST;
-use slipfront_case::pictures::Picture;
-use slipfront_case::results;
-use slipfront_case::verify::expect_as_written;
+use slipfront_case::disk::write_whole;
+use slipfront_run::names::MANIFEST;
+use slipfront_plot::Picture;
+use slipfront_run::results;
+use slipfront_run::verify::expect_as_written;
 
 use super::print;
 use crate::failure::Failure;

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use slipfront_case::arrays::{self, ArrayError};
+use slipfront_case::arrays;
+use slipfront_case::arrays::ArrayError;
 
 use super::{CaseArgs, is_same, print};
 use crate::failure::Failure;

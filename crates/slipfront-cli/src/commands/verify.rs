@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use jiff::Timestamp;
 use slipfront_case::case::Case;
-use slipfront_case::folder::RunFolder;
-use slipfront_case::manifest::Manifest;
-use slipfront_case::results;
-use slipfront_case::run::Running;
-use slipfront_case::verify::{Verdict, VerifyError, compare, is_study, verify};
+use slipfront_run::run_folder::RunFolder;
+use slipfront_run::manifest::Manifest;
+use slipfront_run::results;
+use slipfront_run::running::Running;
+use slipfront_run::verify::{Verdict, VerifyError, compare, is_study, verify};
 
 use super::{print, set_threads};
 use crate::failure::Failure;

@@ -1,6 +1,6 @@
 //! What a run leaves behind, and what `[output]`, `[time]` and `edges` make of it.
 
-use slipfront_case::fields::{FieldsData, read_fields};
+use slipfront_run::fields::{FieldsData, read_fields};
 
 use super::{Bench, RUN_FILES};
 

@@ -5,7 +5,8 @@ use slipfront_case::case_file::CaseFile;
 
 use crate::checks::readable;
 use crate::scratch::repository;
-use crate::{Memory, Target};
+use crate::Memory;
+use crate::Target;
 
 const CASES: &[&str] = &[
     "cases/*.toml",

@@ -1,10 +1,14 @@
 //! Records of finished runs, one line each under a checksum.
 
-use slipfront_case::study::{Outcome, Record, Records};
+use slipfront_run::study::Outcome;
+use slipfront_run::study::Record;
+use slipfront_run::study::Records;
 
 use super::json::summary;
 use crate::checks::readable;
-use crate::{Memory, Target, scratch};
+use crate::Memory;
+use crate::Target;
+use crate::scratch;
 
 /// The file as it is, then with the checksums that its lines should have.
 pub(crate) const RECORDS: Target = Target {

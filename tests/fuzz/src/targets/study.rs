@@ -1,10 +1,13 @@
 //! Study files; the cases that they name are those of the repository.
 
 use slipfront_case::case_file::CaseFile;
-use slipfront_case::study::{StudyFile, StudyFolder};
+use slipfront_run::study::StudyFile;
+use slipfront_run::study::StudyFolder;
 
 use crate::checks::readable;
-use crate::{Memory, Target, scratch};
+use crate::Memory;
+use crate::Target;
+use crate::scratch;
 
 /// The text of a study, the copy in its results folder, and the cases of a few of its points.
 pub(crate) const STUDY_FILE: Target = Target {

@@ -7,10 +7,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use jiff::Timestamp;
 use slipfront_case::case::Case;
-use slipfront_case::checkpoint::Checkpoints;
-use slipfront_case::folder::{RunFolder, own_bytes};
-use slipfront_case::results;
-use slipfront_case::run::Running;
+use slipfront_run::checkpoint::Checkpoints;
+use slipfront_run::run_folder::RunFolder;
+use slipfront_run::run_folder::contents::own_bytes;
+use slipfront_run::results;
+use slipfront_run::running::Running;
 
 use super::{CaseArgs, print, set_threads};
 use crate::failure::Failure;

@@ -4,12 +4,13 @@ use std::path::Path;
 
 use jiff::Timestamp;
 use slipfront_case::case::Case;
-use slipfront_case::checkpoint::{CheckpointError, Checkpoints, Saved};
-use slipfront_case::folder::{RunFolder, own_bytes};
-use slipfront_case::manifest::{Manifest, ManifestError};
-use slipfront_case::results;
-use slipfront_case::run::Running;
-use slipfront_case::verify::{VerifyError, expect_as_written};
+use slipfront_run::checkpoint::{CheckpointError, Checkpoints, Saved};
+use slipfront_run::run_folder::RunFolder;
+use slipfront_run::run_folder::contents::own_bytes;
+use slipfront_run::manifest::{Manifest, ManifestError};
+use slipfront_run::results;
+use slipfront_run::running::Running;
+use slipfront_run::verify::{VerifyError, expect_as_written};
 
 use super::{Manner, complete};
 use crate::commands::print;

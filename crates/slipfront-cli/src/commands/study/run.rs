@@ -4,7 +4,8 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use slipfront_case::study::{self, Findings, Plan, RunKey, Shard, StudyError, StudyFile, StudyFolder};
+use slipfront_run::study;
+use slipfront_run::study::{Findings, Plan, RunKey, Shard, StudyError, StudyFile, StudyFolder};
 
 use crate::commands::{is_same, print, set_threads};
 use crate::failure::Failure;

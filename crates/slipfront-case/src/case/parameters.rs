@@ -1,0 +1,100 @@
+//! All that a case file says without the files it names.
+
+use slipfront::{Edges, FrictionLaw, Lattice, Scales};
+
+use super::budget::Budget;
+use super::groups::Groups;
+use super::output::{Output, smallest_stride};
+use super::schedule::Schedule;
+use crate::case_file::{self, CaseError, CaseFile};
+
+/// All that a case file says without its files, before any array of the lattice is made.
+pub(super) struct Parameters {
+    pub(super) scales: Scales,
+    pub(super) groups: Groups,
+    pub(super) lattice: Lattice,
+    pub(super) schedule: Schedule,
+    pub(super) output: Output,
+    pub(super) budget: Budget,
+}
+
+pub(super) fn law(file: &CaseFile) -> FrictionLaw {
+    match file.friction.law {
+        case_file::Law::Projection => FrictionLaw::Projection,
+        case_file::Law::Reversal => FrictionLaw::Reversal,
+        case_file::Law::Literal => FrictionLaw::Literal,
+    }
+}
+
+impl Parameters {
+    pub(super) fn of(file: &CaseFile) -> Result<Self, CaseError> {
+        let scales = scales(file);
+        let groups = Groups::of(file, &scales)?;
+        let lattice = lattice(file);
+        let schedule = Schedule::of(file, &scales, &groups)?;
+        let output = Output::of(file, &schedule)?;
+        let budget = Budget::new(&lattice, law(file), &schedule, &output);
+        Ok(Self {
+            scales,
+            groups,
+            lattice,
+            schedule,
+            output,
+            budget,
+        })
+    }
+}
+
+/// Refuses fields that their file could not hold when the run is over.
+pub fn check_fields(file: &CaseFile, lattice: &Lattice, output: &Output) -> Result<(), CaseError> {
+    let Lattice { nx, ny, .. } = lattice;
+    let needed = smallest_stride(*nx, *ny, output.stride);
+    if needed == output.stride {
+        return Ok(());
+    }
+    let sentence = format!(
+        "one field of {nx} x {ny} blocks takes more than the 2 GiB that the format of fields.nc holds: set \
+         `output.stride` to {needed} or more"
+    );
+    Err(file.source.error("output.stride", sentence))
+}
+
+fn scales(file: &CaseFile) -> Scales {
+    Scales {
+        block_size: file.slider.block_size.si(),
+        young_modulus: file.slider.young_modulus.si(),
+        density: file.slider.density.si(),
+        pressure: file.load.pressure.si(),
+        mu_static_mean: file.friction.mu_static,
+    }
+}
+
+fn lattice(file: &CaseFile) -> Lattice {
+    let edges = file.slider.edges.map(|edge| match edge {
+        case_file::Edge::Free => Edges::Free,
+        case_file::Edge::Periodic => Edges::Periodic,
+    });
+    let [nx, ny] = file.slider.blocks.map(|count| count as usize);
+    Lattice::with_edges(nx, ny, edges)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_that_no_file_holds_are_refused_before_the_run() {
+        let check = |text: &str| {
+            let file = CaseFile::parse(text, "case.toml", &[]).unwrap();
+            let Parameters { lattice, output, .. } = Parameters::of(&file).unwrap();
+            check_fields(&file, &lattice, &output)
+        };
+        let large = "[slider]\nblocks = [40000, 20000]\n[output]\nstride =";
+        assert!(check(&format!("{large} 2")).is_ok());
+        let said = check(&format!("{large} 1")).unwrap_err().to_string();
+        assert!(
+            said.contains("case.toml:4:10: ") && said.contains("set `output.stride` to 2 or more"),
+            "{said}"
+        );
+    }
+}

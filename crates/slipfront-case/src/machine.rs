@@ -1,0 +1,66 @@
+//! What this machine has left: memory and disk.
+
+use std::path::Path;
+
+/// Memory that this process may still take, in bytes: what the machine has left without swapping, or its control
+/// group if that is less. None if the system does not say.
+pub fn available_memory() -> Option<f64> {
+    use sysinfo::{ProcessRefreshKind, ProcessesToUpdate, System};
+    let mut system = System::new().ok()?;
+    system.refresh_memory();
+    let of_machine = Some(system.available_memory()).filter(|&bytes| bytes > 0);
+    let group = sysinfo::get_current_pid().ok().and_then(|own| {
+        system.refresh_processes_specifics(
+            ProcessesToUpdate::Some(&[own]),
+            false,
+            ProcessRefreshKind::nothing(),
+        );
+        system.process(own)?.cgroup_limits()
+    });
+    // What files of the group lie in memory for reading, such as those just written, is given back when asked for.
+    let of_group = group.map(|limits| limits.total_memory.saturating_sub(limits.rss));
+    let least = of_machine.into_iter().chain(of_group).min();
+    least.map(|bytes| bytes as f64)
+}
+
+/// How much of so many bytes the system gives at once, to a ten-thousandth.
+pub fn most_at_once(bytes: f64) -> f64 {
+    if can_be_had(bytes) {
+        return bytes;
+    }
+    let (mut given, mut refused) = (0.0, bytes);
+    while refused - given > 1e-4 * bytes {
+        let between = 0.5 * (given + refused);
+        if can_be_had(between) {
+            given = between;
+        } else {
+            refused = between;
+        }
+    }
+    given
+}
+
+/// Asks the system for so many bytes at once, and gives them back untouched.
+pub fn can_be_had(bytes: f64) -> bool {
+    let mut all = Vec::<u8>::new();
+    let reserved = all.try_reserve_exact(bytes as usize);
+    // Memory that nobody looks at need not be asked for, as far as the compiler is concerned.
+    std::hint::black_box(&mut all);
+    reserved.is_ok()
+}
+
+/// Bytes free in a folder, or where it will be made. None if the system does not say.
+pub fn free_disk(folder: &Path) -> Option<f64> {
+    let whole = std::path::absolute(folder).ok()?;
+    let there = whole.ancestors().find(|path| path.is_dir())?;
+    Some(fs4::available_space(there).ok()? as f64)
+}
+
+/// Bytes as a person reads them: 22.9 GiB.
+pub fn shown(bytes: f64) -> String {
+    const UNITS: [&str; 7] = ["B", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
+    let power = ((bytes.max(1.0).log2() / 10.0) as usize).min(UNITS.len() - 1);
+    let digits = usize::from(power > 0);
+    format!("{:.digits$} {}", bytes / 1024f64.powi(power as i32), UNITS[power])
+}
+

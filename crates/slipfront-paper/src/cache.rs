@@ -1,0 +1,142 @@
+//! What figures found, kept on disk as soon as it is found: a call that was stopped does not begin again.
+//!
+//! A file holds a checksum and the figure's findings. One that is damaged, or that another program, other cases or
+//! other options made, counts as not there.
+
+use std::path::{Path, PathBuf};
+
+use crate::runner::StepRule;
+use crate::error::PaperError;
+use crate::embedded_cases::FILES;
+use crate::measurements::Found;
+use slipfront_run::run_folder::error::FolderError;
+use slipfront_case::disk::{read_whole, remove_unfinished, write_whole};
+use slipfront_run::manifest::Manifest;
+
+/// Where they stand.
+pub(crate) const FOUND: &str = "found";
+
+/// A longer file holds something else: a figure's findings take some megabytes at the most.
+const MAX_BYTES: u64 = 1 << 28;
+
+/// Findings of earlier calls in one folder.
+#[derive(Debug)]
+pub struct Saved {
+    folder: PathBuf,
+    /// Hash of the program, its cases and the options: what findings depend on besides figure and step.
+    origin: blake3::Hash,
+}
+
+impl Saved {
+    /// Those in `folder`, made by this build of the program.
+    ///
+    /// # Errors
+    /// When the folder cannot be made.
+    pub fn open(folder: &Path, reduced: bool) -> Result<Self, PaperError> {
+        let folder = folder.join(FOUND);
+        std::fs::create_dir_all(&folder).map_err(|source| FolderError::Unwritable {
+            path: folder.clone(),
+            source,
+        })?;
+        // The records of the folder above are open, so that nobody else writes here.
+        remove_unfinished(&folder);
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(Manifest::this_build().as_bytes());
+        for (name, text) in FILES {
+            hasher.update(name.as_bytes()).update(text.as_bytes());
+        }
+        hasher.update(&[u8::from(reduced)]);
+        Ok(Self {
+            folder,
+            origin: hasher.finalize(),
+        })
+    }
+
+    /// The file of a figure's findings.
+    pub fn path(&self, figure: &str, step: StepRule) -> PathBuf {
+        let step = match step {
+            StepRule::Auto => "auto",
+            StepRule::Paper => "paper",
+        };
+        self.folder.join(format!("{figure}-{step}.bin"))
+    }
+
+    /// Hash of a file's contents and of what made them.
+    fn checksum(&self, findings: &[u8]) -> blake3::Hash {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(self.origin.as_bytes()).update(findings);
+        hasher.finalize()
+    }
+
+    /// The bytes of a file: findings under their checksum.
+    pub fn sealed(&self, findings: &[u8]) -> Vec<u8> {
+        [self.checksum(findings).as_bytes(), findings].concat()
+    }
+
+    /// What a figure found in an earlier call.
+    pub fn load(&self, figure: &str, step: StepRule) -> Option<Found> {
+        let bytes = read_whole(&self.path(figure, step), MAX_BYTES).ok()?;
+        let (checksum, findings) = bytes.split_at_checked(blake3::OUT_LEN)?;
+        if self.checksum(findings).as_bytes() != checksum {
+            return None;
+        }
+        postcard::from_bytes(findings).ok()
+    }
+
+    /// Keeps what a figure found.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn save(&self, figure: &str, step: StepRule, found: &Found) -> Result<(), PaperError> {
+        let path = self.path(figure, step);
+        // Plain data: it always has a binary form.
+        let Ok(findings) = postcard::to_stdvec(found) else {
+            return Ok(());
+        };
+        Ok(write_whole(&path, &self.sealed(&findings))
+            .map_err(|source| FolderError::Write { path, source })?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::crate::measurements::Number;
+    use super::*;
+
+    #[test]
+    fn findings_come_back_unless_damaged_or_made_otherwise() {
+        let folder = tempfile::tempdir().unwrap();
+        let saved = Saved::open(folder.path(), true).unwrap();
+        let mut found = Found::default();
+        found.number("fig99.one", Number::of(&[1.0, 2.0]));
+        found.value("fig99.none", f64::INFINITY);
+        saved.save("fig99", StepRule::Auto, &found).unwrap();
+        assert_eq!(
+            saved.load("fig99", StepRule::Auto).unwrap().numbers,
+            found.numbers
+        );
+        assert!(saved.load("fig99", StepRule::Paper).is_none());
+        assert!(
+            Saved::open(folder.path(), false)
+                .unwrap()
+                .load("fig99", StepRule::Auto)
+                .is_none()
+        );
+        let path = saved.path("fig99", StepRule::Auto);
+        let whole = std::fs::read(&path).unwrap();
+        for cut in [0, 31, whole.len() - 1] {
+            std::fs::write(&path, &whole[..cut]).unwrap();
+            assert!(saved.load("fig99", StepRule::Auto).is_none(), "{cut}");
+        }
+        std::fs::File::create(&path).unwrap().set_len(1 << 40).unwrap();
+        assert!(saved.load("fig99", StepRule::Auto).is_none());
+        // What a kill left is removed.
+        std::fs::write(folder.path().join("found/.slipfront123456"), "half of").unwrap();
+        Saved::open(folder.path(), true).unwrap();
+        assert_eq!(std::fs::read_dir(folder.path().join("found")).unwrap().count(), 1);
+        let mut flipped = whole;
+        flipped[40] ^= 1;
+        std::fs::write(&path, flipped).unwrap();
+        assert!(saved.load("fig99", StepRule::Auto).is_none());
+    }
+}

@@ -1,0 +1,326 @@
+//! The claims of the paper: data in `cases/paper/claims.toml`, judged against what the figures have measured.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+use crate::error::PaperError;
+use crate::embedded_cases::CLAIMS;
+use crate::measurements::Number;
+
+/// A claim of the paper and how it is judged.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Claim {
+    /// Its number.
+    pub number: u32,
+    /// Where the paper makes it: section, then figure, table or equation.
+    pub place: String,
+    /// What it says, in our words.
+    pub claim: String,
+    /// What was measured, in words.
+    pub measured: String,
+    /// The number that was measured; its first part is the figure that measures it.
+    pub quantity: String,
+    /// Unit of that number; may be empty.
+    #[serde(default)]
+    pub unit: String,
+    /// Digits after the point with which it is shown.
+    #[serde(default = "three")]
+    pub digits: usize,
+    /// Where the number must lie for the claim to hold, ends included.
+    pub within: [f64; 2],
+    /// What must be so too for the claim to hold without a condition.
+    pub condition: Option<Condition>,
+    /// What comes out; anything else is a failure of the program, or news.
+    pub expected: Verdict,
+    /// Number of the deviation that explains it.
+    pub deviation: Option<String>,
+    /// What else a reader should know.
+    #[serde(default)]
+    pub remark: String,
+    /// Whether the reduced version measures it well enough to judge.
+    #[serde(default = "yes")]
+    pub reduced: bool,
+}
+
+/// What must be so for a claim to hold without a condition.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Condition {
+    /// The number that decides.
+    pub quantity: String,
+    /// Where it must lie, ends included.
+    pub within: [f64; 2],
+    /// Under which condition alone the claim holds otherwise.
+    pub only: String,
+}
+
+fn three() -> usize {
+    3
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// What came of a claim.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// It holds.
+    Holds,
+    /// It holds under a condition that the paper does not state.
+    HoldsWithCondition,
+    /// It does not hold.
+    DoesNotHold,
+}
+
+impl Verdict {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::HoldsWithCondition => "holds with a condition",
+            Self::DoesNotHold => "does not hold",
+        }
+    }
+}
+
+/// A claim with what was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judged {
+    /// The claim.
+    pub claim: Claim,
+    /// The number that it is about.
+    pub number: Number,
+    /// The number of its condition.
+    pub condition: Option<Number>,
+    /// What came out.
+    pub verdict: Verdict,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct List {
+    claim: Vec<Claim>,
+}
+
+/// All claims, in order.
+///
+/// # Errors
+/// When the file is no list of claims.
+pub fn claims() -> Result<Vec<Claim>, PaperError> {
+    let list: List = toml::from_str(CLAIMS)?;
+    Ok(list.claim)
+}
+
+impl Claim {
+    /// The figure that measures it.
+    pub fn figure(&self) -> &str {
+        self.quantity.split('.').next().unwrap_or(&self.quantity)
+    }
+
+    /// The criterion, in words.
+    pub fn criterion(&self) -> String {
+        bounds(self.within, &self.unit)
+    }
+
+    /// Judges it by the measured numbers.
+    ///
+    /// # Errors
+    /// [`PaperError::Unmeasured`] when its number is not among them.
+    pub fn judge(self, numbers: &BTreeMap<String, Number>) -> Result<Judged, PaperError> {
+        let measured = |quantity: &String| {
+            numbers
+                .get(quantity)
+                .copied()
+                .ok_or_else(|| PaperError::Unmeasured {
+                    number: self.number,
+                    quantity: quantity.clone(),
+                })
+        };
+        let number = measured(&self.quantity)?;
+        let condition = self
+            .condition
+            .as_ref()
+            .map(|condition| measured(&condition.quantity))
+            .transpose()?;
+        let inside = |number: &Number, [low, high]: [f64; 2]| (low..=high).contains(&number.value);
+        let general = match (&self.condition, &condition) {
+            (Some(bound), Some(number)) => inside(number, bound.within),
+            _ => true,
+        };
+        let verdict = match (inside(&number, self.within), general) {
+            (false, _) => Verdict::DoesNotHold,
+            (true, true) => Verdict::Holds,
+            (true, false) => Verdict::HoldsWithCondition,
+        };
+        Ok(Judged {
+            claim: self,
+            number,
+            condition,
+            verdict,
+        })
+    }
+}
+
+impl Judged {
+    /// Whether the verdict is the expected one.
+    pub fn as_expected(&self) -> bool {
+        self.verdict == self.claim.expected
+    }
+
+    /// The measured number with its interval and unit.
+    pub fn measured(&self) -> String {
+        let number = with_interval(&self.number, self.claim.digits);
+        match self.claim.unit.as_str() {
+            "" => number,
+            unit => format!("{number} {unit}"),
+        }
+    }
+}
+
+/// A number with the half width of its interval. Less than half a last digit is written as a power of ten.
+pub(super) fn with_interval(number: &Number, digits: usize) -> String {
+    let small = number.value != 0.0 && number.value.abs() < 0.5 * 0.1_f64.powi(digits as i32);
+    let value = if number.value == 0.0 {
+        "0".to_owned()
+    } else if small {
+        format!("{:.1e}", number.value)
+    } else {
+        format!("{:.digits$}", number.value)
+    };
+    match number.interval {
+        Some([low, high]) if high > low => {
+            let half = 0.5 * (high - low);
+            format!("{value} \u{b1} {half:.digits$}")
+        }
+        _ => value,
+    }
+}
+
+/// A range in words.
+fn bounds([low, high]: [f64; 2], unit: &str) -> String {
+    let unit = if unit.is_empty() {
+        String::new()
+    } else {
+        format!(" {unit}")
+    };
+    match (low.is_finite(), high.is_finite()) {
+        (true, true) if low == high => format!("{low}{unit}"),
+        (true, true) => format!("{low} to {high}{unit}"),
+        (true, false) => format!("at least {low}{unit}"),
+        (false, true) => format!("at most {high}{unit}"),
+        (false, false) => "any".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn claim(within: [f64; 2], condition: Option<[f64; 2]>) -> Claim {
+        Claim {
+            number: 1,
+            place: "3.1".to_owned(),
+            claim: "it is so".to_owned(),
+            measured: "how much".to_owned(),
+            quantity: "fig99.main".to_owned(),
+            unit: String::new(),
+            digits: 2,
+            within,
+            condition: condition.map(|within| Condition {
+                quantity: "fig99.other".to_owned(),
+                within,
+                only: "on Sundays".to_owned(),
+            }),
+            expected: Verdict::Holds,
+            deviation: None,
+            remark: String::new(),
+            reduced: true,
+        }
+    }
+
+    fn verdict(claim: Claim, main: f64, other: f64) -> Verdict {
+        let numbers = [("fig99.main", main), ("fig99.other", other)];
+        let numbers = numbers.map(|(name, value)| (name.to_owned(), Number::exact(value)));
+        claim.judge(&BTreeMap::from(numbers)).unwrap().verdict
+    }
+
+    #[test]
+    fn a_claim_stands_and_falls_with_its_number() {
+        assert_eq!(verdict(claim([0.0, 1.0], None), 1.0, 9.0), Verdict::Holds);
+        assert_eq!(verdict(claim([0.0, 1.0], None), 1.001, 9.0), Verdict::DoesNotHold);
+        // What could not be measured does not hold.
+        assert_eq!(
+            verdict(claim([0.0, f64::INFINITY], None), f64::NAN, 9.0),
+            Verdict::DoesNotHold
+        );
+    }
+
+    #[test]
+    fn a_condition_tells_where_it_holds_and_saves_nothing() {
+        let conditioned = || claim([0.0, 1.0], Some([0.0, 1.0]));
+        assert_eq!(verdict(conditioned(), 0.5, 0.5), Verdict::Holds);
+        assert_eq!(verdict(conditioned(), 0.5, 2.0), Verdict::HoldsWithCondition);
+        assert_eq!(verdict(conditioned(), 2.0, 0.5), Verdict::DoesNotHold);
+    }
+
+    #[test]
+    fn another_verdict_than_the_expected_one_is_noticed() {
+        let judged = |value| {
+            let numbers = BTreeMap::from([("fig99.main".to_owned(), Number::exact(value))]);
+            claim([0.0, 1.0], None).judge(&numbers).unwrap()
+        };
+        assert!(judged(0.5).as_expected() && !judged(2.0).as_expected());
+    }
+
+    #[test]
+    fn a_claim_about_nothing_measured_is_refused() {
+        let error = claim([0.0, 1.0], None)
+            .judge(&BTreeMap::new())
+            .unwrap_err()
+            .to_string();
+        assert_eq!(error, "claim 1 is about `fig99.main`, which is not measured");
+    }
+
+    #[test]
+    fn numbers_show_what_is_known_of_them() {
+        let number = |value: f64, interval| with_interval(&Number { value, interval }, 2);
+        assert_eq!(number(0.126, Some([0.1, 0.152])), "0.13 \u{b1} 0.03");
+        assert_eq!(number(-0.126, None), "-0.13");
+        assert_eq!(number(0.0, None), "0");
+        assert_eq!(number(0.00021, None), "2.1e-4");
+    }
+
+    #[test]
+    fn the_list_of_the_paper_is_whole() {
+        let claims = claims().unwrap();
+        assert!(claims.len() >= 30);
+        for (index, claim) in claims.iter().enumerate() {
+            assert_eq!(claim.number as usize, index + 1);
+            assert!(
+                super::super::FIGURES
+                    .iter()
+                    .any(|figure| figure.name == claim.figure()),
+                "{}",
+                claim.quantity
+            );
+            assert!(claim.within[0] <= claim.within[1], "claim {}", claim.number);
+            // What fails, and what holds with a condition only, owes the reader a reason.
+            let reasoned = claim.deviation.is_some() || claim.condition.is_some() || !claim.remark.is_empty();
+            assert!(
+                claim.expected == Verdict::Holds || reasoned,
+                "claim {}",
+                claim.number
+            );
+            assert_eq!(
+                claim.expected == Verdict::HoldsWithCondition,
+                claim.condition.is_some(),
+                "claim {}",
+                claim.number
+            );
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! Pictures as data: drawn when they are wanted, and written as CSV beside.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::PaperError;
+use crate::measurements::Number;
+use slipfront_plot;
+use slipfront_plot::{BarChart, FieldMaps, FrictionCurve, Picture, PictureError, Response, Responses, Shape};
+
+/// What is drawn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Drawing {
+    /// mu* and N* against t*.
+    Curves(Vec<FrictionCurve>),
+    /// Fields over the blocks.
+    Maps(FieldMaps),
+    /// Quantities against what was varied.
+    Responses(Responses),
+    /// Quantities of named variants.
+    Bars(BarChart),
+    /// Outlines.
+    Shapes(Vec<Shape>),
+}
+
+impl Drawing {
+    /// The picture.
+    ///
+    /// # Errors
+    /// When there is nothing to draw.
+    pub fn draw(&self) -> Result<Picture, PictureError> {
+        match self {
+            Self::Curves(curves) => pictures::friction(curves),
+            Self::Maps(maps) => pictures::field_maps(maps),
+            Self::Responses(responses) => pictures::response(responses),
+            Self::Bars(chart) => pictures::bars(chart),
+            Self::Shapes(shapes) => pictures::shapes(shapes),
+        }
+    }
+
+    /// Its numbers as CSV, the shortest that read back as the same bits.
+    ///
+    /// # Errors
+    /// When they cannot be put into words.
+    pub fn csv(&self) -> Result<Vec<u8>, PaperError> {
+        let mut table = csv::Writer::from_writer(Vec::new());
+        match self {
+            Self::Curves(curves) => {
+                table.write_record(["curve", "time_star", "mu_star", "sliding_percent"])?;
+                for curve in curves {
+                    for (k, time) in curve.time_star.iter().enumerate() {
+                        table.serialize((&curve.label, time, curve.mu_star[k], curve.sliding_percent[k]))?;
+                    }
+                }
+            }
+            Self::Maps(maps) => {
+                table.write_record(["map", "i", "j", "value"])?;
+                for map in &maps.maps {
+                    for (block, value) in map.values.iter().enumerate() {
+                        let value = (!value.is_nan()).then_some(value);
+                        table.serialize((&map.label, block % map.nx, block / map.nx, value))?;
+                    }
+                }
+            }
+            Self::Responses(responses) => {
+                table.write_record(["curve", "x", "mean", "low", "high"])?;
+                for curve in &responses.curves {
+                    for (k, x) in curve.x.iter().enumerate() {
+                        let [mean, low, high] = [curve.mean[k], curve.low[k], curve.high[k]].map(known);
+                        table.serialize((&curve.label, x, mean, low, high))?;
+                    }
+                }
+            }
+            Self::Bars(chart) => {
+                table.write_record(["group", "bar", "mean", "low", "high"])?;
+                for group in &chart.groups {
+                    for bar in &group.bars {
+                        let [mean, low, high] = [bar.mean, bar.low, bar.high].map(known);
+                        table.serialize((&group.label, &bar.label, mean, low, high))?;
+                    }
+                }
+            }
+            Self::Shapes(shapes) => {
+                table.write_record(["outline", "x", "y"])?;
+                for shape in shapes {
+                    for [x, y] in &shape.points {
+                        table.serialize((&shape.label, x, y))?;
+                    }
+                }
+            }
+        }
+        table
+            .into_inner()
+            .map_err(|error| csv::Error::from(error.into_error()).into())
+    }
+}
+
+fn known(value: f64) -> Option<f64> {
+    (!value.is_nan()).then_some(value)
+}
+
+/// A measured curve of a response picture.
+pub(super) fn measured(label: &str, x: &[f64], numbers: &[Number]) -> Response {
+    let column = |which: usize| numbers.iter().map(|number| number.ends()[which]).collect();
+    Response {
+        label: label.to_owned(),
+        x: x.to_vec(),
+        mean: column(0),
+        low: column(1),
+        high: column(2),
+        line: false,
+    }
+}
+
+/// A formula beside what was measured.
+pub(super) fn formula(label: &str, x: &[f64], value: impl Fn(f64) -> f64) -> Response {
+    let blank = vec![f64::NAN; x.len()];
+    Response {
+        label: label.to_owned(),
+        x: x.to_vec(),
+        mean: x.iter().map(|&x| value(x)).collect(),
+        low: blank.clone(),
+        high: blank,
+        line: true,
+    }
+}
+
+/// Maps of tau_c*, from 0 to its maximum in the run.
+pub(super) fn stress_maps(maps: Vec<pictures::FieldMap>, columns: usize) -> Drawing {
+    Drawing::Maps(FieldMaps {
+        value_title: "\u{3c4}_c*".to_owned(),
+        range: [0.0, 1.0],
+        columns,
+        maps,
+    })
+}

@@ -1,0 +1,52 @@
+//! Fig. 5: the same material in three sizes.
+
+use crate::runner::Bench;
+use crate::drawing::{Drawing, stress_maps};
+use crate::error::PaperError;
+use crate::measurements::{Found, mean};
+
+pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
+    let mut found = Found::default();
+    let sweep = bench.study("fig05")?;
+    let cases = (0..3)
+        .map(|size| sweep.case(&[size], 0))
+        .collect::<Result<_, _>>()?;
+    let runs = bench.run(cases)?;
+    let sides = sweep.axis(0);
+    let name = |size: usize| format!("{0} \u{d7} {0} blocks", sides[size]);
+    let curves = runs.iter().enumerate().map(|(size, run)| run.curve(&name(size)));
+    found.panel(
+        "fig05",
+        "Friction and sliding blocks of sliders of 5 x 5, 25 x 25 and 75 x 75 blocks.",
+        Drawing::Curves(curves.collect()),
+    );
+    let mut maps = Vec::new();
+    for (size, run) in runs.iter().enumerate() {
+        for letter in ['C', 'D', 'E'] {
+            maps.push(run.stress_map(run.instant(letter)?, &format!("{}, {letter}", name(size)))?);
+        }
+    }
+    found.panel(
+        "fig05c",
+        "Contact stress in the three sizes at the peak of friction (C), when most blocks slide (D), and at the least \
+         friction after it (E).",
+        stress_maps(maps, 3),
+    );
+    // Each surface against the mean of the largest size: scatter counts as much as bias, as for one run.
+    let long = bench.study("fig05_long")?;
+    for (sweep, quantity) in [(&sweep, "static_friction_star"), (&long, "kinetic_friction_star")] {
+        let largest_size = mean(&sweep.values(&[2], quantity));
+        let errors = |size: usize| -> Vec<f64> {
+            let values = sweep.values(&[size], quantity);
+            values.iter().map(|value| (value - largest_size).abs()).collect()
+        };
+        let (small, middle) = (errors(0), errors(1));
+        found.values(&format!("fig05.{quantity}_error_5"), &small);
+        found.values(&format!("fig05.{quantity}_error_25"), &middle);
+        found.value(
+            &format!("fig05.{quantity}_error_ratio"),
+            mean(&middle) / mean(&small),
+        );
+    }
+    Ok(found)
+}

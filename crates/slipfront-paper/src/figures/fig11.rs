@@ -1,0 +1,135 @@
+//! Fig. 11: where slip begins, and how its fronts spread over a rough surface.
+
+use slipfront::Lattice;
+
+use crate::runner::{Bench, Run, seen_at};
+use crate::drawing::{Drawing, stress_maps};
+use crate::error::PaperError;
+use crate::figures::fig04::first_block;
+use crate::measurements::{Found, largest};
+use slipfront_plot::{FieldMap, FieldMaps};
+
+/// Minima of mu_si that are marked.
+const MARKED: usize = 6;
+/// Shares of the slider that have slipped in the panels b-d.
+const SHARES: [f64; 3] = [0.03, 0.2, 0.6];
+
+pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
+    let mut found = Found::default();
+    let seeds = (1..=bench.surfaces()).map(|seed| bench.case("fig11", &[&format!("friction.seed={seed}")]));
+    let runs = bench.run(seeds.collect::<Result<_, _>>()?)?;
+    let [main, ..] = &runs[..] else { return Ok(found) };
+    draw(bench, main, &mut found)?;
+    let shares: Vec<f64> = runs.iter().map(nucleations_at_minima).collect();
+    found.values("fig11.nucleations_at_minima_percent", &shares);
+    let places = runs.iter().map(first_block).collect::<Result<Vec<usize>, _>>()?;
+    let repeated = (0..places.len())
+        .filter(|&k| places[..k].contains(&places[k]))
+        .count();
+    found.value("fig11.repeated_first_places", repeated as f64);
+    // The same draw with another spread: the place of the first slip stays, its time moves.
+    let mut times = Vec::new();
+    let mut moved = 0;
+    for sigma in ["0.025", "0.05", "0.1"] {
+        let run = bench.run_one(bench.case("fig11", &[&format!("friction.sigma_static_star={sigma}")])?)?;
+        moved += usize::from(first_block(&run)? != places[0]);
+        times.push(run.first_slip()?);
+    }
+    found.value("fig11.first_places_moved_by_sigma", moved as f64);
+    found.value(
+        "fig11.largest_rise_of_first_slip",
+        largest(crate::measurements::rises(&times)),
+    );
+    Ok(found)
+}
+
+fn draw(bench: &Bench, main: &Run, found: &mut Found) -> Result<(), PaperError> {
+    let (lattice, surface) = (&main.case.model.lattice, &main.case.model.surface);
+    let mut minima = minima(lattice, &surface.mu_static);
+    minima.truncate(MARKED);
+    let marks: Vec<[usize; 2]> = minima
+        .iter()
+        .map(|&block| lattice.column_row(block).into())
+        .collect();
+    let reach = 3.0 * main.case.groups.sigma_static_star;
+    let mean = main.case.scales.mu_static_mean;
+    found.panel(
+        "fig11a",
+        "Local static friction coefficients; circles around the six lowest of their local minima.",
+        Drawing::Maps(FieldMaps {
+            value_title: "\u{3bc}_s/\u{27e8}\u{3bc}_s\u{27e9}".to_owned(),
+            range: [1.0 - reach, 1.0 + reach],
+            columns: 1,
+            maps: vec![FieldMap {
+                values: surface.mu_static.iter().map(|mu| (mu / mean) as f32).collect(),
+                marks: marks.clone(),
+                ..main.blank_map("a")
+            }],
+        }),
+    );
+    let times = SHARES.map(|share| main.time_of_share(share));
+    let times = times.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let run = bench.run_one(seen_at(bench.case("fig11", &[])?, &times))?;
+    let mut maps = Vec::new();
+    for ((_, frame), label) in run.record.frames.iter().zip(["b", "c", "d"]) {
+        maps.push(FieldMap {
+            marks: marks.clone(),
+            ..run.stress_map(frame, label)?
+        });
+    }
+    found.panel(
+        "fig11bcd",
+        "Contact stress when 3, 20 and 60 % of the blocks have slipped: fronts start at the circles and grow together.",
+        stress_maps(maps, 3),
+    );
+    Ok(())
+}
+
+/// Blocks whose coefficient is below those of all their neighbours, the lowest first.
+fn minima(lattice: &Lattice, mu_static: &[f64]) -> Vec<usize> {
+    let mut minima: Vec<usize> = (0..mu_static.len())
+        .filter(|&block| neighbours(lattice, block).all(|neighbour| mu_static[neighbour] > mu_static[block]))
+        .collect();
+    minima.sort_by(|&a, &b| mu_static[a].total_cmp(&mu_static[b]));
+    minima
+}
+
+fn neighbours(lattice: &Lattice, block: usize) -> impl Iterator<Item = usize> {
+    let (i, j) = lattice.column_row(block);
+    let around = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| [dx, dy]));
+    around
+        .filter(|&offset| offset != [0, 0])
+        .filter_map(move |offset| lattice.neighbour(i, j, offset))
+}
+
+/// Of the places where slip begins before the peak, ahead of all blocks around them, the share that are local minima
+/// of mu_si, %.
+fn nucleations_at_minima(run: &Run) -> f64 {
+    let (lattice, surface) = (&run.case.model.lattice, &run.case.model.surface);
+    let times = &run.record.first_slip_time_star;
+    let minima = minima(lattice, &surface.mu_static);
+    let before_all = |block: usize| {
+        neighbours(lattice, block).all(|other| times[other].is_nan() || times[other] > times[block])
+    };
+    let starts: Vec<usize> = (0..times.len())
+        .filter(|&block| times[block] <= run.record.summary.onset_time_star && before_all(block))
+        .collect();
+    let at_minima = starts.iter().filter(|block| minima.contains(block)).count();
+    100.0 * at_minima as f64 / starts.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn minima_are_below_all_their_neighbours() {
+        let lattice = Lattice::free(4, 3);
+        let mu = [
+            0.5, 1.0, 1.0, 0.9, //
+            1.0, 1.0, 1.0, 1.0, //
+            0.7, 1.0, 0.6, 0.8,
+        ];
+        assert_eq!(minima(&lattice, &mu), [0, 10, 8, 3]);
+    }
+}

@@ -1,0 +1,130 @@
+//! Fig. 14: slip fronts around a circular cavity.
+
+use crate::runner::{Bench, Run, seen_at};
+use crate::drawing::stress_maps;
+use crate::error::PaperError;
+use crate::measurements::{Found, mean};
+
+/// Shares of the blocks in contact that have slipped, from the left to the right of a panel.
+const SHARES: [f64; 5] = [0.02, 0.1, 0.3, 0.5, 0.8];
+
+pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
+    let mut found = Found::default();
+    let sweep = bench.plan("fig14")?;
+    let names = sweep.names(0);
+    let mut maps = Vec::new();
+    for (k, name) in names.iter().enumerate() {
+        let run = bench.run_one(sweep.case(&[k], 0)?)?;
+        let times = SHARES.map(|share| run.time_of_share(share));
+        let times = times.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let again = bench.run_one(seen_at(sweep.case(&[k], 0)?, &times))?;
+        for ((_, frame), share) in again.record.frames.iter().zip(SHARES) {
+            let slipped = 100.0 * share;
+            maps.push(again.stress_map(frame, &format!("{name}: {slipped:.0} % slipped"))?);
+        }
+        match name.as_str() {
+            "a" => found.value("fig14.nearness_of_first_slips", nearness(&run, 0.05)),
+            "b" => {
+                found.value("fig14.first_slips_at_the_rim_percent", first_at_rim(&run));
+                found.value("fig14.asymmetry_percent", asymmetry(&run));
+                found.value("fig14.elongation", elongation(&run, 0.3)?);
+            }
+            _ => found.value("fig14.elongation_at_45_degrees", elongation(&run, 0.3)?),
+        }
+    }
+    found.panel(
+        "fig14",
+        "Contact stress around a circular cavity under 5 % of the slider while slip spreads. a: on a rough surface; b: \
+         on a smooth one, driven to the right; c: the same, driven to the upper right.",
+        stress_maps(maps, SHARES.len()),
+    );
+    Ok(found)
+}
+
+/// Distance of a block from the middle of the slider, along the drive and across it.
+fn place(run: &Run, block: usize) -> [f64; 2] {
+    let (lattice, [dx, dy]) = (&run.case.model.lattice, run.case.model.drive.direction);
+    let (i, j) = lattice.column_row(block);
+    let x = i as f64 + 0.5 - 0.5 * lattice.nx as f64;
+    let y = j as f64 + 0.5 - 0.5 * lattice.ny as f64;
+    [x * dx + y * dy, y * dx - x * dy]
+}
+
+/// Blocks in contact that slip before this share has slipped.
+fn slipped(run: &Run, share: f64) -> Result<Vec<usize>, PaperError> {
+    let until = run.time_of_share(share)?;
+    let times = &run.record.first_slip_time_star;
+    Ok((0..times.len()).filter(|&block| times[block] <= until).collect())
+}
+
+/// Mean distance from the rim of the cavity of the first blocks to slip, over that of all blocks in contact.
+fn nearness(run: &Run, share: f64) -> f64 {
+    let textured = &run.case.model.surface.textured;
+    let cavity = textured.iter().filter(|&&textured| textured).count();
+    let radius = (cavity as f64 / std::f64::consts::PI).sqrt();
+    let distance = |block: usize| {
+        let [x, y] = place(run, block);
+        (libm::hypot(x, y) - radius).max(0.0)
+    };
+    let all: Vec<f64> = (0..textured.len())
+        .filter(|&block| !textured[block])
+        .map(distance)
+        .collect();
+    let first: Vec<f64> = slipped(run, share)
+        .unwrap_or_default()
+        .into_iter()
+        .map(distance)
+        .collect();
+    mean(&first) / mean(&all)
+}
+
+/// Of the blocks that slip at the very first, the share that touch the cavity, %.
+fn first_at_rim(run: &Run) -> f64 {
+    let (lattice, textured) = (&run.case.model.lattice, &run.case.model.surface.textured);
+    let times = &run.record.first_slip_time_star;
+    let earliest = run.record.summary.first_slip_time_star;
+    let first: Vec<usize> = (0..times.len())
+        .filter(|&block| Some(times[block]) == earliest)
+        .collect();
+    let touches = |&&block: &&usize| {
+        let (i, j) = lattice.column_row(block);
+        let mut around = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| [dx, dy]));
+        around.any(|offset| {
+            lattice
+                .neighbour(i, j, offset)
+                .is_some_and(|other| textured[other])
+        })
+    };
+    100.0 * first.iter().filter(touches).count() as f64 / first.len() as f64
+}
+
+/// How far the times of first slip differ from those of the mirror image across the drive, over their range, %.
+fn asymmetry(run: &Run) -> f64 {
+    let lattice = &run.case.model.lattice;
+    let times = &run.record.first_slip_time_star;
+    let mirrored = |block: usize| {
+        let (i, j) = lattice.column_row(block);
+        times[lattice.block(i, lattice.ny - 1 - j)]
+    };
+    let differences: Vec<f64> = (0..times.len())
+        .map(|block| (times[block] - mirrored(block)).abs())
+        .filter(|difference| !difference.is_nan())
+        .collect();
+    let range = run.slip_times();
+    let span = range
+        .last()
+        .zip(range.first())
+        .map_or(f64::NAN, |(last, first)| last - first);
+    100.0 * mean(&differences) / span
+}
+
+/// Extent of the slipped area along the drive over that across it, as root mean squares about the cavity.
+fn elongation(run: &Run, share: f64) -> Result<f64, PaperError> {
+    let (mut along, mut across) = (0.0, 0.0);
+    for block in slipped(run, share)? {
+        let [x, y] = place(run, block);
+        along += x * x;
+        across += y * y;
+    }
+    Ok((along / across).sqrt())
+}

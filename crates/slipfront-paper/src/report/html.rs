@@ -1,0 +1,187 @@
+//! `report.html`: one file that opens from disk, prints, and reads on a phone.
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD as BASE64;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::{Drawn, claims_of, counts, greek, step_name};
+use crate::{Figure, Found, Judged, Paper, StepRule, Table, Verdict};
+
+const STYLE: &str = include_str!("style.css");
+
+/// The whole page; `drawn` holds the pictures of each figure.
+pub(super) fn page(paper: &Paper, drawn: &[Vec<Drawn>]) -> String {
+    let [holds, conditioned, fails] = counts(&paper.judged);
+    let surprises = paper.surprises().count();
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { "The paper, run again" }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                header {
+                    h1 { "The paper, run again" }
+                    p {
+                        "Every figure and claim of " cite { "2D Spring-block model to study the transition from static \
+                        to kinetic friction of complex-micro-textured contact surfaces" } ", Tribology International 2023, "
+                        a href="https://doi.org/10.1016/j.triboint.2023.108866" { "doi 10.1016/j.triboint.2023.108866" }
+                        ", measured with slipfront " (env!("CARGO_PKG_VERSION")) "."
+                    }
+                    p.count {
+                        strong { (paper.judged.len()) } " claims: " strong { (holds) } " hold, "
+                        strong { (conditioned) } " hold with a condition, " strong { (fails) } " do not hold. "
+                        @if surprises == 0 { "Every verdict is the expected one." }
+                        @else { strong { (surprises) " verdicts are not the expected ones." } }
+                    }
+                    @if paper.reduced { p { "Reduced version: two random surfaces, one time step." } }
+                }
+                main {
+                    section {
+                        h2 { "Claims" }
+                        p {
+                            "Intervals are 95 % confidence intervals of the mean over random surfaces. Numbers D1 to D12 are \
+                             the deviations from the paper's print that the documentation of the model explains."
+                            @if !paper.judged_by_paper_step.is_empty() {
+                                " Each claim was measured twice: with " (text(step_name(StepRule::Auto)))
+                                ", and with the paper's " (text(step_name(StepRule::Paper))) " (Eq. 13)."
+                            }
+                        }
+                        (claims_table(paper))
+                    }
+                    nav { h2 { "Figures" } ul { @for (figure, _) in &paper.figures {
+                        li { a href={ "#" (figure.name) } { (figure.title) } }
+                    } } }
+                    @for ((figure, found), pictures) in paper.figures.iter().zip(drawn) {
+                        (section(paper, figure, found, pictures))
+                    }
+                }
+            }
+        }
+    };
+    page.into_string()
+}
+
+fn claims_table(paper: &Paper) -> Markup {
+    html! {
+        table.claims {
+            thead { tr {
+                th { "" } th { "Claim" } th { "Verdict" } th { "Measured" } th { "Holds if" }
+                @if !paper.judged_by_paper_step.is_empty() { th { "With the paper's step" } }
+            } }
+            tbody { @for (k, judged) in paper.judged.iter().enumerate() {
+                (claim_row(judged, paper.judged_by_paper_step.get(k)))
+            } }
+        }
+    }
+}
+
+fn claim_row(judged: &Judged, other: Option<&Judged>) -> Markup {
+    let claim = &judged.claim;
+    html! {
+        tr id={ "claim-" (claim.number) } {
+            td.number { (claim.number) }
+            td {
+                (text(&claim.claim)) " "
+                a.place href={ "#" (claim.figure()) } { (claim.place) }
+                @if !claim.remark.is_empty() { p.remark { (text(&claim.remark)) } }
+            }
+            td class=(class(judged.verdict)) {
+                (judged.verdict.words())
+                @if let (Verdict::HoldsWithCondition, Some(condition)) = (judged.verdict, &claim.condition) {
+                    ": " (text(&condition.only))
+                }
+                @if let Some(deviation) = &claim.deviation { " (" (deviation) ")" }
+                @if !judged.as_expected() { strong { " not as expected" } }
+            }
+            td data-label="measured" { span.value { (judged.measured()) } " " span.what { (text(&claim.measured)) } }
+            td data-label="holds if" { (claim.criterion()) }
+            @if let Some(other) = other {
+                td data-label="with the paper's step" {
+                    span.value { (other.measured()) }
+                    @if other.verdict == judged.verdict { ", same verdict" }
+                    @else { strong { ", " (other.verdict.words()) } }
+                }
+            }
+        }
+    }
+}
+
+/// A text with its Greek letters and subscripts.
+fn text(text: &str) -> Markup {
+    let text = greek(text);
+    let mut parts = text.split('_');
+    let first = parts.next().unwrap_or_default();
+    html! {
+        (first)
+        @for part in parts {
+            @let (subscript, rest) = part.split_at(part.find(|c: char| !c.is_ascii_lowercase()).unwrap_or(part.len()));
+            sub { (subscript) } (rest)
+        }
+    }
+}
+
+fn class(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Holds => "verdict holds",
+        Verdict::HoldsWithCondition => "verdict conditioned",
+        Verdict::DoesNotHold => "verdict fails",
+    }
+}
+
+fn section(paper: &Paper, figure: &Figure, found: &Found, pictures: &[Drawn]) -> Markup {
+    html! {
+        section id=(figure.name) {
+            h2 { (figure.title) }
+            @for Drawn { name, caption, picture } in pictures {
+                figure {
+                    img src={ "data:image/png;base64," (BASE64.encode(&picture.png)) } alt=(caption) style=(width(&picture.svg));
+                    figcaption { (caption) " Numbers: " (name) ".csv." }
+                }
+            }
+            @for table in &found.tables { (plain_table(table)) }
+            @let claims = claims_of(paper, figure);
+            @if !claims.is_empty() {
+                ul.verdicts { @for (judged, _) in claims {
+                    li { a href={ "#claim-" (judged.claim.number) } { "Claim " (judged.claim.number) } ": "
+                        (text(&judged.claim.claim)) " " span class=(class(judged.verdict)) { (judged.verdict.words()) } }
+                } }
+            }
+        }
+    }
+}
+
+/// The physical width that the picture is made for.
+fn width(svg: &str) -> String {
+    let width = svg
+        .split_once("width=\"")
+        .and_then(|(_, rest)| rest.split_once('"'));
+    width.map_or(String::new(), |(width, _)| format!("width:{width}"))
+}
+
+fn plain_table(table: &Table) -> Markup {
+    html! {
+        div.wide { table {
+            caption { (text(&table.caption)) }
+            thead { tr { @for name in &table.header { th { (text(name)) } } } }
+            tbody { @for row in &table.rows { tr { @for cell in row { td { (text(cell)) } } } } }
+        } }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn subscripts_are_lowered_and_markup_is_escaped() {
+        let seen = text("mu_s* < 1 at sigma_s* & t_s*").into_string();
+        assert_eq!(
+            seen,
+            "\u{3bc}<sub>s</sub>* &lt; 1 at \u{3c3}<sub>s</sub>* &amp; t<sub>s</sub>*"
+        );
+    }
+}

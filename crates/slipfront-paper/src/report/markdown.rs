@@ -1,0 +1,105 @@
+//! `docs/validation/paper.md`: the claims table and a few figures.
+
+use std::fmt::Write as _;
+
+use super::{counts, greek, step_name};
+use crate::{Judged, Paper, StepRule, Verdict};
+
+/// The pictures that the page shows.
+pub(super) const SHOWN: [&str; 8] = [
+    "fig03", "fig04", "fig06", "fig12", "fig14", "fig15", "fig16", "fig18a",
+];
+
+/// How the page begins.
+pub(super) const TITLE: &str = "# The paper, claim by claim\n";
+
+/// The page.
+pub(super) fn page(paper: &Paper) -> String {
+    let [holds, conditioned, fails] = counts(&paper.judged);
+    let mut text = format!(
+        "{TITLE}\n\
+         What becomes of every claim of the paper's text when its figures are run again:\n\n\
+         ```console\n$ slipfront paper --docs docs/validation\n```\n\n\
+         Criteria and expected verdicts stand in [cases/paper/claims.toml](../../cases/paper/claims.toml). Numbers D1 to D12 are\n\
+         the [deviations from the paper's print](../model.md#deviations-from-the-papers-print). Intervals are 95 % confidence\n\
+         intervals of the mean over five random surfaces. Measured with {}; the last column holds what the paper's own step,\n\
+         {}, gives in its place; {}.\n\n\
+         {} claims: {holds} hold, {conditioned} hold with a condition, {fails} do not hold.\n\n\
+         | | claim | place | measured | holds if | verdict | paper's step |\n\
+         |---:|---|---|---|---|---|---|\n",
+        greek(step_name(StepRule::Auto)),
+        greek(step_name(StepRule::Paper)),
+        other_verdicts(paper),
+        paper.judged.len()
+    );
+    for (k, judged) in paper.judged.iter().enumerate() {
+        let claim = &judged.claim;
+        let mut verdict = judged.verdict.words().to_owned();
+        if let (Verdict::HoldsWithCondition, Some(condition)) = (judged.verdict, &claim.condition) {
+            let _ = write!(verdict, ": {}", condition.only);
+        }
+        if let Some(deviation) = &claim.deviation {
+            let _ = write!(verdict, " ({deviation})");
+        }
+        let other = paper
+            .judged_by_paper_step
+            .get(k)
+            .map_or(String::new(), Judged::measured);
+        let remark = if claim.remark.is_empty() {
+            String::new()
+        } else {
+            format!(" *{}*", claim.remark)
+        };
+        let cells = [
+            claim.number.to_string(),
+            format!("{}.{remark}", claim.claim),
+            claim.place.clone(),
+            format!("{}: {}", claim.measured, judged.measured()),
+            claim.criterion(),
+            verdict,
+            other,
+        ];
+        let _ = writeln!(
+            text,
+            "| {} |",
+            cells.map(|cell| greek(&cell).replace('|', "\\|")).join(" | ")
+        );
+    }
+    write_figures(paper, &mut text);
+    text
+}
+
+/// In how many verdicts the paper's step differs.
+fn other_verdicts(paper: &Paper) -> String {
+    let pairs = paper.judged.iter().zip(&paper.judged_by_paper_step);
+    match pairs.filter(|(one, other)| one.verdict != other.verdict).count() {
+        0 => "no verdict differs".to_owned(),
+        1 => "one verdict differs".to_owned(),
+        count => format!("{count} verdicts differ"),
+    }
+}
+
+/// Some of the pictures, and all tables.
+fn write_figures(paper: &Paper, text: &mut String) {
+    for (figure, found) in &paper.figures {
+        for panel in found
+            .panels
+            .iter()
+            .filter(|panel| SHOWN.contains(&panel.name.as_str()))
+        {
+            let _ = write!(
+                text,
+                "\n## {}\n\n{}\n\n![{}](images/paper-{}.png)\n",
+                figure.title, panel.caption, figure.title, panel.name
+            );
+        }
+        for table in &found.tables {
+            let _ = write!(text, "\n## {}\n\n{}\n\n", figure.title, greek(&table.caption));
+            let _ = writeln!(text, "| {} |", greek(&table.header.join(" | ")));
+            let _ = writeln!(text, "|{}", "---|".repeat(table.header.len()));
+            for row in &table.rows {
+                let _ = writeln!(text, "| {} |", greek(&row.join(" | ")));
+            }
+        }
+    }
+}

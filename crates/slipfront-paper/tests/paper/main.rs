@@ -1,0 +1,166 @@
+//! The paper on two random surfaces in place of five: every figure is drawn and every verdict is the expected one.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+
+use slipfront_paper::{FIGURES, Options, Paper};
+use slipfront_run::study::{Records, StudyError};
+
+fn options<'a>(folder: &'a Path, stop: &'a AtomicBool) -> Options<'a> {
+    Options {
+        threads: std::thread::available_parallelism().map_or(1, usize::from),
+        stop,
+        reduced: true,
+        folder,
+    }
+}
+
+fn run(names: &[&str], folder: &Path, stop: &AtomicBool) -> Result<Paper, slipfront_paper::PaperError> {
+    let names: Vec<String> = names.iter().map(|&name| name.to_owned()).collect();
+    let mut records = Records::open(folder)?;
+    slipfront_paper::run(
+        &slipfront_paper::figures(&names)?,
+        &mut records,
+        &options(folder, stop),
+        &mut |_| {},
+    )
+}
+
+#[test]
+fn every_verdict_is_the_expected_one_and_the_documentation_tells_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let never = AtomicBool::new(false);
+    let paper = run(&["all"], folder.path(), &never).unwrap();
+    let surprises: Vec<String> = paper
+        .surprises()
+        .map(|(_, judged)| {
+            format!(
+                "{}: {} {}",
+                judged.claim.number,
+                judged.verdict.words(),
+                judged.measured()
+            )
+        })
+        .collect();
+    assert!(surprises.is_empty(), "{surprises:#?}");
+    assert!(paper.judged.len() >= 60);
+
+    slipfront_paper::write(&paper, folder.path()).unwrap();
+    let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    let pictures: usize = paper.figures.iter().map(|(_, found)| found.panels.len()).sum();
+    assert_eq!(report.matches("data:image/png;base64,").count(), pictures);
+    // Nothing is fetched when it is opened.
+    assert!(!report.contains("src=\"http") && !report.contains("<link") && !report.contains("<script"));
+    for (_, found) in &paper.figures {
+        for panel in &found.panels {
+            for ending in ["svg", "png", "csv"] {
+                assert!(
+                    folder.path().join(format!("{}.{ending}", panel.name)).exists(),
+                    "{}",
+                    panel.name
+                );
+            }
+        }
+    }
+
+    // docs/validation/paper.md is a full run's: its claims, criteria and verdicts are these.
+    let page = slipfront_paper::docs_page(&paper);
+    let (here, told) = (
+        rows(&page),
+        rows(include_str!("../../../../docs/validation/paper.md")),
+    );
+    for claim in slipfront_paper::claims().unwrap() {
+        let told = &told[&claim.number];
+        assert!(
+            told[5].starts_with(claim.expected.words()),
+            "claim {}",
+            claim.number
+        );
+        if let Some(here) = here.get(&claim.number) {
+            // Number, claim, place, criterion, verdict: all but the measured numbers.
+            for column in [0, 1, 2, 4, 5] {
+                assert_eq!(here[column], told[column], "claim {}", claim.number);
+            }
+        }
+    }
+    assert_eq!(told.len(), slipfront_paper::claims().unwrap().len());
+}
+
+/// The rows of the claims table, each by its number.
+fn rows(page: &str) -> BTreeMap<u32, Vec<&str>> {
+    let table = page.split("\n## ").next().unwrap_or_default();
+    let cells = |line| -> Option<Vec<&str>> { Some(str::strip_prefix(line, "| ")?.split(" | ").collect()) };
+    let rows = table.lines().filter_map(cells);
+    rows.filter_map(|cells| Some((cells[0].parse().ok()?, cells)))
+        .collect()
+}
+
+#[test]
+fn finished_runs_of_a_figure_that_was_not_finished_are_not_run_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let never = AtomicBool::new(false);
+    let first = run(&["fig8"], folder.path(), &never).unwrap();
+    let runs = Records::open(folder.path()).unwrap().len();
+    std::fs::remove_dir_all(folder.path().join("found")).unwrap();
+    let names = ["fig08".to_owned()];
+    let mut records = Records::open(folder.path()).unwrap();
+    let mut here = 0;
+    let figures = slipfront_paper::figures(&names).unwrap();
+    let second = slipfront_paper::run(
+        &figures,
+        &mut records,
+        &options(folder.path(), &never),
+        &mut |stage| {
+            here = here.max(stage.study.map_or(0, |study| study.here));
+        },
+    );
+    assert_eq!((here, records.len()), (0, runs));
+    assert_eq!(second.unwrap().judged, first.judged);
+    assert!(first.judged.iter().all(|judged| judged.claim.figure() == "fig08"));
+}
+
+#[test]
+fn a_stop_flag_ends_it() {
+    let folder = tempfile::tempdir().unwrap();
+    for figure in ["fig4", "fig8"] {
+        let error = run(&[figure], folder.path(), &AtomicBool::new(true)).unwrap_err();
+        assert!(error.is_interruption(), "{figure}: {error}");
+    }
+    assert!(matches!(
+        run(&["fig8"], folder.path(), &AtomicBool::new(true)),
+        Err(slipfront_paper::PaperError::Study(StudyError::Interrupted))
+    ));
+}
+
+#[test]
+fn figures_are_known_by_their_short_names_too() {
+    let names = |given: &[&str]| -> Vec<&str> {
+        let given: Vec<String> = given.iter().map(|&name| name.to_owned()).collect();
+        slipfront_paper::figures(&given)
+            .unwrap()
+            .iter()
+            .map(|figure| figure.name)
+            .collect()
+    };
+    assert_eq!(names(&["fig15", "fig3"]), ["fig03", "fig15"]);
+    assert_eq!(names(&["table1"]), ["table1"]);
+    assert_eq!(names(&[]).len(), FIGURES.len());
+    let error = slipfront_paper::figures(&["fig19".to_owned()]).unwrap_err().to_string();
+    assert!(
+        error.starts_with("the paper has no `fig19`: take fig02, table1, fig03"),
+        "{error}"
+    );
+}
+
+/// A stopped call loses no finished figure: what is there is not run again, so that no signal can end it.
+#[test]
+fn a_finished_figure_is_not_run_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let (never, at_once) = (AtomicBool::new(false), AtomicBool::new(true));
+    let first = run(&["fig4"], folder.path(), &never).unwrap();
+    let second = run(&["fig4"], folder.path(), &at_once).unwrap();
+    assert_eq!(first.figures[0].1.numbers, second.figures[0].1.numbers);
+    assert_eq!(first.figures[0].1.panels.len(), second.figures[0].1.panels.len());
+}

@@ -1,0 +1,327 @@
+//! Checkpoints of a run in its folder: what it needs to go on after it was stopped, with the same bytes in every file.
+//!
+//! A file is a line of JSON that tells whose checkpoint it is, the state in postcard's binary form, and the BLAKE3 hash of
+//! both. It takes its name when it is whole; the one before it is kept beside it.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use slipfront_case::case::Case;
+use slipfront_case::disk::{open_regular, remove_if_there, stage, sync_folder};
+use slipfront_case::text::shortened;
+use crate::manifest::Manifest;
+use crate::names::{CHECKPOINT, CHECKPOINT_BEGINNING, PREVIOUS};
+use crate::running::{RunState, Running};
+
+/// How the file is laid out. A program reads no other layout.
+const LAYOUT: u32 = 1;
+
+/// Longest first line.
+const HEADER_MAX_BYTES: u64 = 4096;
+
+/// The first line.
+#[derive(Debug, Serialize, Deserialize)]
+struct Header {
+    slipfront_checkpoint: u32,
+    program: String,
+    case_blake3: String,
+    step: u64,
+    started: Timestamp,
+}
+
+/// Of a first line whatever version wrote it.
+#[derive(Deserialize)]
+struct Layout {
+    slipfront_checkpoint: u32,
+}
+
+/// A checkpoint as it was read.
+#[derive(Debug)]
+pub struct Saved {
+    /// The state of the run.
+    pub state: RunState,
+    /// Its step.
+    pub step: u64,
+    /// When the run began.
+    pub started: Timestamp,
+    /// Whether it is the latest, and not the one before.
+    latest: bool,
+}
+
+/// Why a run cannot go on from a checkpoint.
+#[derive(Debug, Error)]
+pub enum CheckpointError {
+    /// It cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// It is not as it was written.
+    #[error("{} is damaged: {why}", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        why: &'static str,
+    },
+    /// It is laid out as another version does.
+    #[error(
+        "{} has layout {found}, and this version reads layout {LAYOUT}: resume with the version that wrote it",
+        path.display()
+    )]
+    Layout {
+        /// The file.
+        path: PathBuf,
+        /// Its layout.
+        found: u32,
+    },
+    /// It is not from this program.
+    #[error(
+        "{} was written by {found}, and this is {here}, which may not give the same bits: resume with that version",
+        path.display()
+    )]
+    Program {
+        /// The file.
+        path: PathBuf,
+        /// The program that wrote it.
+        found: String,
+        /// The program that reads it.
+        here: &'static str,
+    },
+    /// It is not of this run.
+    #[error("{} belongs to another case than the case.toml and inputs beside it", path.display())]
+    Case {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+/// Saves the checkpoints of one run.
+#[derive(Debug)]
+pub struct Checkpoints {
+    folder: PathBuf,
+    program: &'static str,
+    case_blake3: String,
+    started: Timestamp,
+    /// Whether the latest checkpoint there is known to be whole.
+    latest_is_whole: bool,
+    /// Step of the latest one that was saved or gone on from.
+    saved_step: Option<u64>,
+}
+
+impl Checkpoints {
+    /// Those of a run of `case` in `folder` that begins at `started`.
+    pub fn new(folder: &Path, case: &Case, started: Timestamp) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            program: Manifest::this_build(),
+            case_blake3: hash_of(case),
+            started,
+            latest_is_whole: false,
+            saved_step: None,
+        }
+    }
+
+    /// Those of a run that goes on from a checkpoint.
+    pub fn after(folder: &Path, case: &Case, saved: &Saved) -> Self {
+        Self {
+            latest_is_whole: saved.latest,
+            saved_step: Some(saved.step),
+            ..Self::new(folder, case, saved.started)
+        }
+    }
+
+    /// The step from which the run would go on, if any was saved.
+    pub fn saved_step(&self) -> Option<u64> {
+        self.saved_step
+    }
+
+    /// When the run began.
+    pub fn started(&self) -> Timestamp {
+        self.started
+    }
+
+    /// Saves the state of the run. The checkpoint that was the latest is kept as the one before, unless it is damaged;
+    /// whatever happens, one of the two is whole.
+    ///
+    /// # Errors
+    /// What the system says. A checkpoint that was there is still there, under one of the two names.
+    pub fn save(&mut self, running: &Running) -> std::io::Result<()> {
+        let header = Header {
+            slipfront_checkpoint: LAYOUT,
+            program: self.program.to_owned(),
+            case_blake3: self.case_blake3.clone(),
+            step: running.snapshot().step,
+            started: self.started,
+        };
+        let whole = stage(&self.folder, |file| write(file, &header, running))?;
+        let [latest, previous] = [CHECKPOINT, PREVIOUS].map(|name| self.folder.join(name));
+        if std::mem::take(&mut self.latest_is_whole) {
+            match std::fs::rename(&latest, &previous) {
+                Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
+        }
+        whole.persist(&latest)?;
+        self.latest_is_whole = true;
+        self.saved_step = Some(header.step);
+        sync_folder(&self.folder)
+    }
+
+    /// Removes all checkpoints: the run is complete.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn remove(folder: &Path) -> std::io::Result<()> {
+        for name in [CHECKPOINT, PREVIOUS] {
+            remove_if_there(&folder.join(name))?;
+        }
+        Ok(())
+    }
+
+    /// Reads the latest checkpoint of a run folder, or the one before it; none if there is none. Where a kill has left
+    /// only the one before, that is the latest.
+    ///
+    /// # Errors
+    /// When it cannot be read, is damaged, or is that of another program or case.
+    pub fn load(folder: &Path, case: &Case, previous: bool) -> Result<Option<Saved>, CheckpointError> {
+        let names: &[&str] = if previous {
+            &[PREVIOUS]
+        } else {
+            &[CHECKPOINT, PREVIOUS]
+        };
+        for name in names {
+            let path = folder.join(name);
+            // A link that leads nowhere is not no checkpoint.
+            if path.symlink_metadata().is_ok() {
+                let mut saved = read(&path, case)?;
+                saved.latest = *name == CHECKPOINT;
+                return Ok(Some(saved));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// Hash of a case and of the files that it reads, by which equal cases are told.
+fn hash_of(case: &Case) -> String {
+    let mut hasher = blake3::Hasher::new();
+    // A case that was loaded can be written.
+    hasher.update(case.file.to_toml().unwrap_or_default().as_bytes());
+    for input in &case.inputs {
+        hasher.update(&(input.bytes.len() as u64).to_le_bytes());
+        hasher.update(&input.bytes);
+    }
+    hasher.finalize().to_hex().to_string()
+}
+
+/// Hands on what is written, and hashes it.
+struct Sealing<W> {
+    inner: W,
+    hasher: blake3::Hasher,
+}
+
+impl<W: Write> Write for Sealing<W> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.inner.write(bytes)?;
+        self.hasher.update(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.inner.flush()
+    }
+}
+
+fn write(file: &mut File, header: &Header, running: &Running) -> std::io::Result<()> {
+    let hasher = blake3::Hasher::new();
+    let mut sealing = BufWriter::with_capacity(1 << 20, Sealing { inner: file, hasher });
+    serde_json::to_writer(&mut sealing, header)?;
+    sealing.write_all(b"\n")?;
+    // Postcard swallows what the system says of a failed write: it is asked again.
+    let written = postcard::to_io(&running.state(), &mut sealing).map(|_| ());
+    sealing.flush()?;
+    written.map_err(std::io::Error::other)?;
+    let Sealing { inner, hasher } = sealing
+        .into_inner()
+        .map_err(std::io::IntoInnerError::into_error)?;
+    inner.write_all(hasher.finalize().as_bytes())
+}
+
+fn read(path: &Path, case: &Case) -> Result<Saved, CheckpointError> {
+    let unreadable = |source| CheckpointError::Unreadable {
+        path: path.to_owned(),
+        source,
+    };
+    let damaged = |why| CheckpointError::Damaged {
+        path: path.to_owned(),
+        why,
+    };
+    let file = open_regular(path).map_err(unreadable)?;
+    let mut reader = BufReader::with_capacity(1 << 20, file);
+    let mut line = Vec::new();
+    let mut start = reader.by_ref().take(HEADER_MAX_BYTES);
+    start.read_until(b'\n', &mut line).map_err(unreadable)?;
+    let unknown = || damaged("its first line is not that of a checkpoint");
+    let Layout { slipfront_checkpoint } = serde_json::from_slice(&line).map_err(|_| unknown())?;
+    if slipfront_checkpoint != LAYOUT {
+        return Err(CheckpointError::Layout {
+            path: path.to_owned(),
+            found: slipfront_checkpoint,
+        });
+    }
+    let header: Header = serde_json::from_slice(&line).map_err(|_| unknown())?;
+    // Nothing is made of bytes before they are known to be those that were written.
+    reader.rewind().map_err(unreadable)?;
+    let sealed = check_seal(&mut reader).map_err(unreadable)?;
+    let sealed = sealed.ok_or_else(|| damaged("its checksum does not fit"))?;
+    let here = Manifest::this_build();
+    if header.program != here {
+        return Err(CheckpointError::Program {
+            path: path.to_owned(),
+            found: shortened(&header.program),
+            here,
+        });
+    }
+    if header.case_blake3 != hash_of(case) {
+        return Err(CheckpointError::Case {
+            path: path.to_owned(),
+        });
+    }
+    let begin = line.len() as u64;
+    reader.seek(SeekFrom::Start(begin)).map_err(unreadable)?;
+    let mut body = reader.take(sealed - begin);
+    // Room for one number at a time.
+    let mut number = [0; 16];
+    let state = postcard::from_io((&mut body, &mut number)).map(|(state, _)| state);
+    match state {
+        Ok(state) if body.limit() == 0 => Ok(Saved {
+            state,
+            step: header.step,
+            started: header.started,
+            latest: false,
+        }),
+        _ => Err(damaged("it holds no state of a run")),
+    }
+}
+
+/// Number of bytes under the seal; none if it does not fit.
+fn check_seal(reader: &mut BufReader<File>) -> std::io::Result<Option<u64>> {
+    let length = reader.get_ref().metadata()?.len();
+    let Some(sealed) = length.checked_sub(blake3::OUT_LEN as u64) else {
+        return Ok(None);
+    };
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(reader.by_ref().take(sealed))?;
+    let mut seal = Vec::new();
+    reader.read_to_end(&mut seal)?;
+    Ok((hasher.finalize().as_bytes() == seal.as_slice()).then_some(sealed))
+}

@@ -1,0 +1,376 @@
+//! The NetCDF-3 format, read only.
+//!
+//! The reader of `netcdf3` reserves what a header asks for before it looks for the bytes, so that one damaged
+//! byte can end the process. Here every number of a header is held against the bytes that are left.
+
+use std::collections::HashSet;
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use slipfront_case::disk::open_regular;
+
+/// Headers of fields files take a few kilobytes.
+const HEADER_MAX_BYTES: u64 = 1 << 20;
+
+/// What is wrong with a file.
+pub(super) enum Fault {
+    Io(io::Error),
+    Broken(String),
+}
+
+impl From<io::Error> for Fault {
+    fn from(source: io::Error) -> Fault {
+        Fault::Io(source)
+    }
+}
+
+/// An open file and what its header says.
+pub(super) struct Classic {
+    file: File,
+    file_bytes: u64,
+    records: usize,
+    record_bytes: u64,
+    dimensions: Vec<Dimension>,
+    attributes: Vec<Attribute>,
+    variables: Vec<Variable>,
+}
+
+/// A length of 0 marks the record dimension.
+struct Dimension {
+    name: String,
+    length: usize,
+}
+
+/// Text counts as numbers too, one per byte.
+struct Attribute {
+    name: String,
+    values: Vec<f64>,
+}
+
+struct Variable {
+    name: String,
+    /// Indices into the dimensions.
+    dimensions: Vec<usize>,
+    kind: Kind,
+    offset: u64,
+}
+
+/// How a number is stored, big-endian.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Byte,
+    Char,
+    Short,
+    Int,
+    Float,
+    Double,
+}
+
+impl Kind {
+    fn of(code: u32) -> Option<Kind> {
+        [
+            Kind::Byte,
+            Kind::Char,
+            Kind::Short,
+            Kind::Int,
+            Kind::Float,
+            Kind::Double,
+        ]
+        .get((code as usize).checked_sub(1)?)
+        .copied()
+    }
+
+    fn bytes(self) -> usize {
+        match self {
+            Kind::Byte | Kind::Char => 1,
+            Kind::Short => 2,
+            Kind::Int | Kind::Float => 4,
+            Kind::Double => 8,
+        }
+    }
+
+    fn decode(self, bytes: &[u8]) -> Vec<f64> {
+        bytes
+            .chunks_exact(self.bytes())
+            .map(|number| match (self, number) {
+                (Kind::Byte, [a]) => f64::from(i8::from_be_bytes([*a])),
+                (Kind::Short, [a, b]) => f64::from(i16::from_be_bytes([*a, *b])),
+                (Kind::Int, [a, b, c, d]) => f64::from(i32::from_be_bytes([*a, *b, *c, *d])),
+                (Kind::Float, [a, b, c, d]) => f64::from(f32::from_be_bytes([*a, *b, *c, *d])),
+                (Kind::Double, [a, b, c, d, e, f, g, h]) => {
+                    f64::from_be_bytes([*a, *b, *c, *d, *e, *f, *g, *h])
+                }
+                (_, number) => number.first().copied().map_or(0.0, f64::from),
+            })
+            .collect()
+    }
+}
+
+impl Classic {
+    /// Opens a file and reads its header.
+    pub(super) fn open(path: &Path) -> Result<Classic, Fault> {
+        let mut file = open_regular(path)?;
+        let file_bytes = file.metadata()?.len();
+        let mut bytes = Vec::new();
+        Read::by_ref(&mut file)
+            .take(HEADER_MAX_BYTES)
+            .read_to_end(&mut bytes)?;
+        let mut header = Header { rest: &bytes };
+
+        if header.take(4)? != b"CDF\x02" {
+            return Err(Fault::Broken(
+                "it does not begin like NetCDF-3 with 64-bit offsets".to_owned(),
+            ));
+        }
+        let records = header.number()? as usize;
+        let dimensions = header.list(0x0a, 8, |header| {
+            Ok(Dimension {
+                name: header.name()?,
+                length: header.number()? as usize,
+            })
+        })?;
+        let attributes = header.list(0x0c, 12, Header::attribute)?;
+        let variables = header.list(0x0b, 28, |header| header.variable(dimensions.len()))?;
+
+        each_once(dimensions.iter().map(|dimension| &dimension.name))?;
+        each_once(variables.iter().map(|variable| &variable.name))?;
+
+        let mut classic = Classic {
+            file,
+            file_bytes,
+            records,
+            record_bytes: 0,
+            dimensions,
+            attributes,
+            variables,
+        };
+        let with_records = classic
+            .variables
+            .iter()
+            .filter(|variable| classic.has_records(variable));
+        let record_bytes = with_records
+            .map(|variable| classic.bytes_at_once(variable))
+            .try_fold(0, |total: u64, bytes| {
+                total.checked_add(bytes?.checked_next_multiple_of(4)?)
+            });
+        classic.record_bytes = record_bytes.ok_or_else(|| absurd("one record"))?;
+        classic.check_records()?;
+        Ok(classic)
+    }
+
+    /// Number of records, that is of instants.
+    pub(super) fn records(&self) -> usize {
+        self.records
+    }
+
+    /// The number of records stands in the header alone: it counts only as far as the file holds their bytes.
+    fn check_records(&self) -> Result<(), Fault> {
+        let held = self.file_bytes.checked_div(self.record_bytes).unwrap_or(0);
+        if self.records as u64 <= held {
+            return Ok(());
+        }
+        Err(Fault::Broken(format!(
+            "its header promises {} instants where {} bytes hold at most {held}",
+            self.records, self.file_bytes
+        )))
+    }
+
+    /// The names of the variables that have exactly these dimensions.
+    pub(super) fn variables_over<'a>(&'a self, dimensions: &'a [&str]) -> impl Iterator<Item = &'a str> {
+        self.variables
+            .iter()
+            .filter(|variable| self.is_over(variable, dimensions))
+            .map(|variable| variable.name.as_str())
+    }
+
+    /// The numbers of a global attribute.
+    pub(super) fn attribute(&self, name: &str) -> Result<&[f64], Fault> {
+        match self.attributes.iter().find(|attribute| attribute.name == name) {
+            Some(attribute) => Ok(&attribute.values),
+            None => Err(Fault::Broken(format!("it has no attribute `{name}`"))),
+        }
+    }
+
+    /// The length of a dimension; 0 for the record dimension.
+    pub(super) fn dimension(&self, name: &str) -> Result<usize, Fault> {
+        match self.dimensions.iter().find(|dimension| dimension.name == name) {
+            Some(dimension) => Ok(dimension.length),
+            None => Err(Fault::Broken(format!("it has no dimension `{name}`"))),
+        }
+    }
+
+    /// The values of a variable over exactly these dimensions: all of them, or those of one record if the first
+    /// dimension is the record dimension.
+    pub(super) fn values(
+        &mut self,
+        name: &str,
+        dimensions: &[&str],
+        record: usize,
+    ) -> Result<Vec<f64>, Fault> {
+        let variable = self
+            .variables
+            .iter()
+            .find(|variable| variable.name == name && self.is_over(variable, dimensions))
+            .ok_or_else(|| {
+                Fault::Broken(format!("it has no variable `{name}({})`", dimensions.join(", ")))
+            })?;
+        let bytes = self.bytes_at_once(variable).ok_or_else(|| absurd(name))?;
+        let skipped = if self.has_records(variable) {
+            self.record_bytes.checked_mul(record as u64)
+        } else {
+            Some(0)
+        };
+        let start = skipped.and_then(|skipped| skipped.checked_add(variable.offset));
+        let end = start.and_then(|start| start.checked_add(bytes));
+        let (Some(start), Some(end)) = (start, end) else {
+            return Err(absurd(name));
+        };
+        if end > self.file_bytes {
+            let detail = format!(
+                "it has {} bytes where `{name}` ends at byte {end}",
+                self.file_bytes
+            );
+            return Err(Fault::Broken(detail));
+        }
+        let mut data = vec![0; bytes as usize];
+        self.file.seek(SeekFrom::Start(start))?;
+        self.file.read_exact(&mut data)?;
+        Ok(variable.kind.decode(&data))
+    }
+
+    fn is_over(&self, variable: &Variable, dimensions: &[&str]) -> bool {
+        variable.dimensions.len() == dimensions.len()
+            && variable
+                .dimensions
+                .iter()
+                .zip(dimensions)
+                .all(|(id, name)| self.dimensions[*id].name == *name)
+    }
+
+    fn has_records(&self, variable: &Variable) -> bool {
+        variable
+            .dimensions
+            .first()
+            .is_some_and(|id| self.dimensions[*id].length == 0)
+    }
+
+    /// The bytes of a whole variable or of one record of it, without padding.
+    fn bytes_at_once(&self, variable: &Variable) -> Option<u64> {
+        let skipped = usize::from(self.has_records(variable));
+        let mut lengths = variable
+            .dimensions
+            .iter()
+            .skip(skipped)
+            .map(|id| self.dimensions[*id].length as u64);
+        lengths.try_fold(variable.kind.bytes() as u64, u64::checked_mul)
+    }
+}
+
+/// Names that stand twice would be read twice, however long their arrays are.
+fn each_once<'a>(mut names: impl Iterator<Item = &'a String>) -> Result<(), Fault> {
+    let mut seen = HashSet::new();
+    names.find(|name| !seen.insert(*name)).map_or(Ok(()), |twice| {
+        Err(Fault::Broken(format!("its header defines `{twice}` twice")))
+    })
+}
+
+fn absurd(variable: &str) -> Fault {
+    Fault::Broken(format!("`{variable}` has an absurd size"))
+}
+
+/// The bytes of a header that are still to be read.
+struct Header<'a> {
+    rest: &'a [u8],
+}
+
+impl<'a> Header<'a> {
+    fn take(&mut self, bytes: usize) -> Result<&'a [u8], Fault> {
+        let (taken, rest) = self
+            .rest
+            .split_at_checked(bytes)
+            .ok_or_else(|| Fault::Broken("its header is corrupt or cut short".to_owned()))?;
+        self.rest = rest;
+        Ok(taken)
+    }
+
+    /// Takes `bytes` and the padding up to a multiple of 4.
+    fn padded(&mut self, bytes: usize) -> Result<&'a [u8], Fault> {
+        let taken = self.take(bytes)?;
+        self.take(bytes.next_multiple_of(4) - bytes)?;
+        Ok(taken)
+    }
+
+    fn number(&mut self) -> Result<u32, Fault> {
+        let bytes = self.take(4)?;
+        Ok(bytes
+            .iter()
+            .fold(0, |number, byte| number << 8 | u32::from(*byte)))
+    }
+
+    fn name(&mut self) -> Result<String, Fault> {
+        let bytes = self.number()? as usize;
+        Ok(String::from_utf8_lossy(self.padded(bytes)?).into_owned())
+    }
+
+    /// A list of elements of at least `element_bytes` each, or nothing.
+    fn list<T>(
+        &mut self,
+        tag: u32,
+        element_bytes: usize,
+        element: impl Fn(&mut Self) -> Result<T, Fault>,
+    ) -> Result<Vec<T>, Fault> {
+        let (found, count) = (self.number()?, self.number()? as usize);
+        let known = found == tag || (found == 0 && count == 0);
+        if !known || count > self.rest.len() / element_bytes {
+            return Err(Fault::Broken("its header is corrupt or cut short".to_owned()));
+        }
+        (0..count).map(|_| element(self)).collect()
+    }
+
+    fn kind(&mut self) -> Result<Kind, Fault> {
+        let code = self.number()?;
+        Kind::of(code).ok_or_else(|| Fault::Broken(format!("its header names the unknown type {code}")))
+    }
+
+    fn attribute(&mut self) -> Result<Attribute, Fault> {
+        let name = self.name()?;
+        let kind = self.kind()?;
+        let count = self.number()? as usize;
+        Ok(Attribute {
+            name,
+            values: kind.decode(self.padded(count.saturating_mul(kind.bytes()))?),
+        })
+    }
+
+    fn variable(&mut self, dimensions_known: usize) -> Result<Variable, Fault> {
+        let name = self.name()?;
+        let count = self.number()? as usize;
+        if count > dimensions_known {
+            return Err(Fault::Broken(format!(
+                "`{name}` has {count} dimensions where {dimensions_known} are known"
+            )));
+        }
+        let mut dimensions = Vec::new();
+        for _ in 0..count {
+            let id = self.number()? as usize;
+            if id >= dimensions_known {
+                return Err(Fault::Broken(format!(
+                    "`{name}` has a dimension that is not known"
+                )));
+            }
+            dimensions.push(id);
+        }
+        self.list(0x0c, 12, Header::attribute)?;
+        let kind = self.kind()?;
+        // The size stands here too; it follows from the dimensions.
+        self.number()?;
+        let offset = u64::from(self.number()?) << 32 | u64::from(self.number()?);
+        Ok(Variable {
+            name,
+            dimensions,
+            kind,
+            offset,
+        })
+    }
+}

@@ -1,0 +1,162 @@
+//! Reading what `write_fields` has written.
+
+use std::path::Path;
+
+use super::netcdf3_reader::{Classic, Fault};
+use super::names::{
+    BLOCK_SIZE, BLOCKS, FIRST_SLIP, LABEL, LABEL_LENGTH, MU_KINETIC, MU_STATIC, STEP, STRIDE, TEXTURED, TIME,
+    TIME_STAR, TIME_UNIT, X, Y,
+};
+use super::{FieldFrame, FieldName, FieldsData, FieldsError};
+use slipfront_case::text;
+
+/// Reads a `fields.nc` that [`write_fields`](super::write_fields) has written.
+///
+/// Variables that slipfront does not know are skipped.
+///
+/// # Errors
+///
+/// [`FieldsError`] if the file is missing, cut short, damaged, or not a fields file.
+pub fn read_fields(path: &Path) -> Result<FieldsData, FieldsError> {
+    let read = || {
+        let mut file = Classic::open(path)?;
+        let all: Vec<usize> = (0..file.records()).collect();
+        let data = read_chosen(&mut file, |_| true, &all)?;
+        Ok(FieldsData {
+            mu_static: file.values(MU_STATIC, &[Y, X], 0)?,
+            mu_kinetic: file.values(MU_KINETIC, &[Y, X], 0)?,
+            first_slip_time_star: file.values(FIRST_SLIP, &[Y, X], 0)?,
+            ..data
+        })
+    };
+    read().map_err(|fault| in_words(fault, path))
+}
+
+/// Reads what a picture of one field takes, however long the file is: this field alone, at no more than `most`
+/// instants spread over the run, and of what never changes the texture alone.
+///
+/// # Errors
+///
+/// As for [`read_fields`].
+pub fn read_maps(path: &Path, field: FieldName, most: usize) -> Result<FieldsData, FieldsError> {
+    let read = || {
+        let mut file = Classic::open(path)?;
+        let records = file.records();
+        let shown = records.min(most);
+        let spread: Vec<usize> = (0..shown)
+            .map(|k| k * (records - 1) / (shown - 1).max(1))
+            .collect();
+        read_chosen(&mut file, |name| name == field, &spread)
+    };
+    read().map_err(|fault| in_words(fault, path))
+}
+
+fn in_words(fault: Fault, path: &Path) -> FieldsError {
+    let path = path.to_owned();
+    match fault {
+        Fault::Io(source) => FieldsError::Read { path, source },
+        Fault::Broken(detail) => FieldsError::Broken {
+            path,
+            detail: text::sentence(&detail),
+        },
+    }
+}
+
+/// Some fields at some instants, and the texture; the other arrays are left empty.
+fn read_chosen(
+    file: &mut Classic,
+    chosen: impl Fn(FieldName) -> bool,
+    records: &[usize],
+) -> Result<FieldsData, Fault> {
+    let [nx, ny] = counts(file, BLOCKS)?;
+    let [stride] = counts(file, STRIDE)?;
+    let [block_size] = numbers(file, BLOCK_SIZE)?;
+    let [time_unit_s] = numbers(file, TIME_UNIT)?;
+    for (name, blocks) in [(X, nx), (Y, ny)] {
+        let (found, wanted) = (file.dimension(name)?, blocks.div_ceil(stride));
+        if found != wanted {
+            return Err(Fault::Broken(format!(
+                "`{name}` has the length {found} where {wanted} is wanted"
+            )));
+        }
+    }
+    // The instants are records: otherwise the whole of an array would be read for each of them.
+    if !records.is_empty() && file.dimension(TIME)? != 0 {
+        return Err(Fault::Broken(format!("`{TIME}` has a fixed length")));
+    }
+    // A file without instants has no fields, even if it defines some.
+    let names: Vec<FieldName> = file
+        .variables_over(&[TIME, Y, X])
+        .filter_map(FieldName::from_name)
+        .filter(|name| chosen(*name) && !records.is_empty())
+        .collect();
+    let frames = records
+        .iter()
+        .map(|&record| read_frame(file, &names, record))
+        .collect::<Result<_, _>>()?;
+    Ok(FieldsData {
+        nx,
+        ny,
+        stride,
+        block_size,
+        time_unit_s,
+        names,
+        textured: file
+            .values(TEXTURED, &[Y, X], 0)?
+            .iter()
+            .map(|value| *value != 0.0)
+            .collect(),
+        mu_static: Vec::new(),
+        mu_kinetic: Vec::new(),
+        first_slip_time_star: Vec::new(),
+        frames,
+    })
+}
+
+fn read_frame(file: &mut Classic, names: &[FieldName], record: usize) -> Result<FieldFrame, Fault> {
+    let time_star = only(TIME_STAR, &file.values(TIME_STAR, &[TIME], record)?)?;
+    let step = only(STEP, &file.values(STEP, &[TIME], record)?)? as u64;
+    let label = file.values(LABEL, &[TIME, LABEL_LENGTH], record)?;
+    let label: Vec<u8> = label
+        .iter()
+        .map(|byte| *byte as u8)
+        .take_while(|byte| *byte != 0)
+        .collect();
+    let mut values = Vec::with_capacity(names.len());
+    for name in names {
+        let field = file.values(name.as_str(), &[TIME, Y, X], record)?;
+        values.push(field.iter().map(|value| *value as f32).collect());
+    }
+    Ok(FieldFrame {
+        time_star,
+        label: String::from_utf8_lossy(&label).into_owned(),
+        step,
+        values,
+    })
+}
+
+/// A global attribute of N positive numbers.
+fn numbers<const N: usize>(file: &Classic, name: &str) -> Result<[f64; N], Fault> {
+    match <[f64; N]>::try_from(file.attribute(name)?) {
+        Ok(values) if values.iter().all(|value| value.is_finite() && *value > 0.0) => Ok(values),
+        _ => Err(Fault::Broken(format!(
+            "the attribute `{name}` does not hold positive numbers, {N} in all"
+        ))),
+    }
+}
+
+/// The same for whole numbers; they fit, because the file stores them with 32 bits.
+fn counts<const N: usize>(file: &Classic, name: &str) -> Result<[usize; N], Fault> {
+    let values = numbers::<N>(file, name)?.map(|value| value as usize);
+    if values.contains(&0) {
+        return Err(Fault::Broken(format!("the attribute `{name}` is below 1")));
+    }
+    Ok(values)
+}
+
+fn only(name: &str, values: &[f64]) -> Result<f64, Fault> {
+    values
+        .first()
+        .copied()
+        .ok_or_else(|| Fault::Broken(format!("`{name}` is empty")))
+}

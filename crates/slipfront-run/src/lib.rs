@@ -1,0 +1,21 @@
+//! A case is run, and its results are written, read, verified and multiplied into studies.
+//!
+//! ```text
+//! Case -> Record -> files -> pictures
+//! ```
+//!
+//! Each arrow is one function: [`running::run`], [`results::write`], `pictures::draw` (with the feature `plot`).
+
+pub mod checkpoint;
+pub mod fields;
+pub mod manifest;
+pub mod names;
+#[cfg(feature = "plot")]
+pub mod pictures;
+pub mod results;
+pub mod run_folder;
+pub mod running;
+pub mod series;
+pub mod study;
+pub mod summary;
+pub mod verify;

@@ -1,0 +1,263 @@
+//! `manifest.json`: what was written to a run folder, by which program, when and where.
+//!
+//! It is the only file of a run that another run of the same case does not repeat, and the last to be written.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+use serde::{Deserialize, Serialize};
+use slipfront::surface::STREAMS;
+use slipfront::{Kernel, Model, simd_width};
+use thiserror::Error;
+
+use crate::names::MANIFEST;
+
+use crate::run_folder::error::FolderError;
+use slipfront_case::disk::{TEXT_MAX_BYTES, json, open_regular, read_whole};
+use crate::run_folder::resume_command::resume_command;
+use slipfront_case::text;
+use slipfront_case::text::shortened;
+
+/// How the last key of a manifest begins in its file: all before it is under the seal.
+const SEAL: &[u8] = b"\"seal\"";
+
+/// What was written, and how it came about. Keys that an earlier version did not write are empty.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of slipfront.
+    pub version: String,
+    /// The git commit that it was built from, with `-dirty` if its sources were changed; null outside of git.
+    #[serde(default)]
+    pub revision: Option<String>,
+    /// The kernel that made the steps.
+    #[serde(default)]
+    pub kernel: String,
+    /// The SIMD width at which it was compiled; results do not depend on it.
+    #[serde(default)]
+    pub simd_width: String,
+    /// Threads that it was allowed; results do not depend on them.
+    pub threads: usize,
+    /// Name of the machine.
+    pub host: String,
+    /// Operating system and processor.
+    pub platform: String,
+    /// When the run began, UTC.
+    pub started: String,
+    /// When its last file was written, UTC.
+    pub finished: String,
+    /// Seconds in between.
+    pub wall_time_s: f64,
+    /// BLAKE3 hash of `case.toml`, by which equal cases are told.
+    #[serde(default)]
+    pub case_blake3: String,
+    /// Where its random numbers come from.
+    #[serde(default)]
+    pub random: Random,
+    /// Every other file of the run.
+    pub files: Vec<ManifestFile>,
+    /// BLAKE3 hash of the manifest itself up to this key.
+    #[serde(default)]
+    pub seal: String,
+}
+
+/// Seed and streams of the random numbers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Random {
+    /// The generator.
+    pub generator: String,
+    /// The seed.
+    pub seed: u64,
+    /// The streams by what is drawn from them.
+    pub streams: BTreeMap<String, u64>,
+}
+
+impl Random {
+    fn of_seed(seed: u64) -> Self {
+        Self {
+            generator: "ChaCha8".to_owned(),
+            seed,
+            streams: STREAMS.map(|(name, number)| (name.to_owned(), number)).into(),
+        }
+    }
+}
+
+/// A file and its checksum.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ManifestFile {
+    /// Path in the folder.
+    pub name: String,
+    /// Length.
+    pub bytes: u64,
+    /// BLAKE3 hash, hexadecimal.
+    pub blake3: String,
+}
+
+/// A manifest that cannot be used.
+#[derive(Debug, Error)]
+pub enum ManifestError {
+    /// There is none.
+    #[error(
+        "{} holds no manifest.json: it is no run folder, or its run did not end; if it did not, `{}` goes on with it",
+        path.display(),
+        resume_command(path)
+    )]
+    Missing {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// It is not what was written.
+    #[error("{} is damaged: {why}", path.display())]
+    Damaged {
+        /// The manifest.
+        path: PathBuf,
+        /// What is wrong.
+        why: String,
+    },
+}
+
+impl Manifest {
+    /// Takes stock of the files of a run that ends now.
+    ///
+    /// # Errors
+    /// When a file cannot be read back.
+    pub(crate) fn of(
+        folder: &Path,
+        names: &[&str],
+        started: jiff::Timestamp,
+        threads: usize,
+        model: &Model,
+        seed: u64,
+    ) -> Result<Self, FolderError> {
+        let files: Vec<ManifestFile> = names
+            .iter()
+            .map(|&name| {
+                let path = folder.join(name);
+                ManifestFile::of(folder, name).map_err(|source| FolderError::Read { path, source })
+            })
+            .collect::<Result<_, _>>()?;
+        let case = files.iter().find(|file| file.name == "case.toml");
+        let finished = jiff::Timestamp::now();
+        Ok(Self {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            revision: Self::this_revision().map(str::to_owned),
+            kernel: Kernel::Fused.for_law(model.law).name().to_owned(),
+            simd_width: simd_width().to_owned(),
+            threads,
+            host: gethostname::gethostname().to_string_lossy().into_owned(),
+            platform: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+            started: started.to_string(),
+            finished: finished.to_string(),
+            wall_time_s: finished.duration_since(started).as_secs_f64(),
+            case_blake3: case.map_or(String::new(), |case| case.blake3.clone()),
+            random: Random::of_seed(seed),
+            files,
+            seal: String::new(),
+        })
+    }
+
+    /// The bytes of the file, sealed.
+    pub(crate) fn sealed(mut self) -> (Self, Vec<u8>) {
+        self.seal = String::new();
+        self.seal = seal_of(&json(&self)).unwrap_or_default();
+        let bytes = json(&self);
+        (self, bytes)
+    }
+
+    /// Reads the manifest of a run folder.
+    ///
+    /// # Errors
+    /// When there is none, or it is not as it was written.
+    pub fn read(folder: &Path) -> Result<Self, ManifestError> {
+        let path = folder.join(MANIFEST);
+        let bytes = match read_whole(&path, TEXT_MAX_BYTES) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                let path = folder.to_owned();
+                return Err(ManifestError::Missing { path });
+            }
+            Err(error) => {
+                let why = error.to_string();
+                return Err(ManifestError::Damaged { path, why });
+            }
+        };
+        let why = match serde_json::from_slice::<Self>(&bytes) {
+            Ok(manifest) if seal_of(&bytes).as_ref() == Some(&manifest.seal) => return Ok(manifest),
+            Ok(manifest) if manifest.seal.is_empty() => {
+                "it has no seal, by which changes of it are seen".to_owned()
+            }
+            Ok(_) => "its seal does not fit, so that it was changed after the run".to_owned(),
+            Err(error) => text::sentence(&error.to_string()),
+        };
+        Err(ManifestError::Damaged { path, why })
+    }
+
+    /// The program that wrote it, in words.
+    pub fn program(&self) -> String {
+        match &self.revision {
+            Some(revision) => shortened(&format!("slipfront {} ({revision})", self.version)),
+            None => shortened(&format!("slipfront {}", self.version)),
+        }
+    }
+
+    /// The program that reads this, in words.
+    pub fn this_program() -> String {
+        Self {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            revision: Self::this_revision().map(str::to_owned),
+            ..Self::default()
+        }
+        .program()
+    }
+
+    /// The program that reads this, told from any other that may not give the same bits: where its version and revision do
+    /// not say it all, by the hash of its file.
+    pub(crate) fn this_build() -> &'static str {
+        static BUILD: LazyLock<String> = LazyLock::new(|| {
+            let program = Manifest::this_program();
+            let revision = Manifest::this_revision();
+            if revision.is_some_and(|revision| !revision.ends_with("-dirty")) {
+                return program;
+            }
+            // Where there is this link, it leads to the file even when another has taken its name.
+            let link = Path::new("/proc/self/exe");
+            let file = File::open(link).or_else(|_| std::env::current_exe().and_then(File::open));
+            let mut hasher = blake3::Hasher::new();
+            match file.and_then(|file| hasher.update_reader(file).map(|hasher| hasher.finalize())) {
+                Ok(hash) => format!("{program}, build {}", &hash.to_hex()[..16]),
+                // Nothing is taken for its own that may not be.
+                Err(_) => format!(
+                    "{program}, build unknown, of {} (process {})",
+                    jiff::Timestamp::now(),
+                    std::process::id()
+                ),
+            }
+        });
+        &BUILD
+    }
+
+    /// The git commit that this program was built from, as in [`Manifest::revision`].
+    pub(crate) fn this_revision() -> Option<&'static str> {
+        option_env!("SLIPFRONT_REVISION")
+    }
+}
+
+/// The hash of all before the seal; none if there is no seal.
+fn seal_of(manifest: &[u8]) -> Option<String> {
+    let before = manifest.windows(SEAL.len()).rposition(|bytes| bytes == SEAL)?;
+    Some(blake3::hash(&manifest[..before]).to_hex().to_string())
+}
+
+impl ManifestFile {
+    /// A regular file of a folder as it is now.
+    pub(crate) fn of(folder: &Path, name: &str) -> std::io::Result<Self> {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update_reader(open_regular(&folder.join(name))?)?;
+        Ok(Self {
+            name: name.to_owned(),
+            bytes: hasher.count(),
+            blake3: hasher.finalize().to_hex().to_string(),
+        })
+    }
+}

@@ -1,0 +1,183 @@
+//! `series.csv`: the curve of a run, one row per recorded step, names with units in the header.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use slipfront::Scales;
+use slipfront::observe::CurveRow;
+use thiserror::Error;
+
+use slipfront_case::disk::open_bounded;
+use slipfront_case::text;
+
+/// One row of `series.csv`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SeriesRow {
+    /// Step.
+    pub step: u64,
+    /// t*.
+    pub time_star: f64,
+    /// Time, s.
+    pub time_s: f64,
+    /// mu* (Eq. 9 over mu_s).
+    pub mu_star: f64,
+    /// mu (Eq. 9).
+    pub friction_coefficient: f64,
+    /// The component of mu* across the drive.
+    pub mu_lateral_star: f64,
+    /// N*, %.
+    pub sliding_percent: f64,
+    /// Work of the drive since the start, J.
+    pub work_j: f64,
+    /// Kinetic energy, J.
+    pub kinetic_energy_j: f64,
+    /// Energy of the springs between blocks, J.
+    pub lattice_energy_j: f64,
+    /// Energy of the drive springs, J.
+    pub drive_spring_energy_j: f64,
+    /// Lost to friction since the start, J.
+    pub friction_loss_j: f64,
+    /// Lost to damping since the start, J.
+    pub damping_loss_j: f64,
+}
+
+/// A series that cannot be read.
+#[derive(Debug, Error)]
+#[error("cannot read {}: {}; it should be the series.csv of a slipfront run", path.display(), text::sentence(&source.to_string()))]
+pub struct SeriesError {
+    path: PathBuf,
+    source: csv::Error,
+}
+
+impl SeriesRow {
+    /// A recorded row with its units.
+    pub fn new(row: &CurveRow, scales: &Scales) -> Self {
+        let energy = scales.energy();
+        Self {
+            step: row.step,
+            time_star: row.time_star,
+            time_s: row.time_star * scales.time(),
+            mu_star: row.point.mu_star,
+            friction_coefficient: row.point.mu_star * scales.mu_static_mean,
+            mu_lateral_star: row.point.mu_lateral_star,
+            sliding_percent: row.point.sliding_percent,
+            work_j: row.energies.work * energy,
+            kinetic_energy_j: row.energies.kinetic * energy,
+            lattice_energy_j: row.energies.lattice * energy,
+            drive_spring_energy_j: row.energies.drive_springs * energy,
+            friction_loss_j: row.energies.friction_loss * energy,
+            damping_loss_j: row.energies.damping_loss * energy,
+        }
+    }
+}
+
+/// The rows as CSV. Numbers are the shortest that read back as the same bits.
+pub fn to_csv(rows: impl Iterator<Item = SeriesRow>) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.serialize(row)?;
+    }
+    writer.into_inner().map_err(|error| error.into_error().into())
+}
+
+/// Reads a series back.
+///
+/// # Errors
+/// When the file is missing or is no series.
+pub fn read_csv(path: &Path) -> Result<Vec<SeriesRow>, SeriesError> {
+    let read = || rows_of(open_bounded(path, u64::MAX)?);
+    read().map_err(|source| SeriesError {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+fn rows_of(file: impl Read) -> Result<Vec<SeriesRow>, csv::Error> {
+    let mut reader = csv::Reader::from_reader(BoundedLines::new(file));
+    // The crate's own iterator takes names that cannot be read for none, and goes on with what follows them.
+    let names = reader.headers()?.clone();
+    let rows = reader.records().map(|row| row?.deserialize(Some(&names)));
+    rows.collect()
+}
+
+/// The longest line of a series: more than its header, and than thirteen numbers take.
+const LINE_MAX_BYTES: usize = 4096;
+
+/// A file whose lines are not too long: the csv crate would keep one of any length in memory.
+struct BoundedLines<R> {
+    file: R,
+    /// Bytes since the last line break.
+    line_bytes: usize,
+}
+
+impl<R> BoundedLines<R> {
+    fn new(file: R) -> Self {
+        Self { file, line_bytes: 0 }
+    }
+}
+
+impl<R: Read> Read for BoundedLines<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        // Of a larger buffer a line that is too long could hide in one piece.
+        let most = buffer.len().min(LINE_MAX_BYTES);
+        let bytes = self.file.read(&mut buffer[..most])?;
+        self.line_bytes = match buffer[..bytes].iter().rposition(|&byte| byte == b'\n') {
+            Some(end) => bytes - end - 1,
+            None => self.line_bytes + bytes,
+        };
+        if self.line_bytes > LINE_MAX_BYTES {
+            let sentence = format!("a line of it has more than {LINE_MAX_BYTES} bytes");
+            return Err(std::io::Error::new(std::io::ErrorKind::InvalidData, sentence));
+        }
+        Ok(bytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A disk that fails to give the n-th piece, and gives all others.
+    struct Failing<'a> {
+        file: &'a [u8],
+        reads: usize,
+        failing: usize,
+    }
+
+    impl Read for Failing<'_> {
+        fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+            self.reads += 1;
+            if self.reads == self.failing {
+                return Err(std::io::Error::other("it fails"));
+            }
+            let most = buffer.len().min(300);
+            self.file.read(&mut buffer[..most])
+        }
+    }
+
+    #[test]
+    fn a_read_that_fails_is_never_taken_for_the_end() {
+        let rows = vec![SeriesRow::default(); 20];
+        let text = to_csv(rows.iter().copied()).unwrap();
+        let pieces = text.len().div_ceil(300);
+        for failing in 1..=pieces {
+            let (file, reads) = (text.as_slice(), 0);
+            assert!(
+                rows_of(Failing { file, reads, failing }).is_err(),
+                "piece {failing} of {pieces}"
+            );
+        }
+        assert_eq!(rows_of(text.as_slice()).unwrap(), rows);
+    }
+
+    #[test]
+    fn a_line_without_end_is_refused() {
+        let text = |line: usize| ["a".repeat(line), "b".repeat(line)].join("\n").into_bytes();
+        let read = |bytes: &[u8]| std::io::read_to_string(BoundedLines::new(bytes));
+        let longest = text(LINE_MAX_BYTES);
+        assert_eq!(read(&longest).unwrap().into_bytes(), longest);
+        let error = read(&text(2 * LINE_MAX_BYTES + 1)).unwrap_err();
+        assert!(error.to_string().contains("more than 4096 bytes"), "{error}");
+    }
+}

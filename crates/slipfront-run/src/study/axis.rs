@@ -1,0 +1,575 @@
+//! An axis of a study: the levels that one key, several keys together, or a set of named variants take.
+
+use std::collections::{BTreeSet, HashSet};
+use std::ops::Bound;
+
+use serde::Deserialize;
+use toml::Value;
+
+use super::input_copies::{names_a_file, plain_name};
+use slipfront_case::text::shortened;
+
+/// An axis and its levels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// Names of its columns in the tables: the keys, or the name of the variants.
+    pub columns: Vec<String>,
+    /// Its levels, in order.
+    pub levels: Vec<Level>,
+    /// How its levels are spaced.
+    pub spacing: Spacing,
+}
+
+/// One level of an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Level {
+    /// What stands in its columns.
+    pub labels: Vec<String>,
+    /// Its number, if it is one.
+    pub number: Option<f64>,
+    /// Keys of the case and their values, as for `--set`.
+    pub overrides: Vec<String>,
+}
+
+impl Level {
+    /// How pictures name it: a square's pair of blocks by one number.
+    pub(super) fn shown(&self) -> String {
+        match (self.labels.as_slice(), self.number) {
+            ([_], Some(number)) => number.to_string(),
+            (labels, _) => labels.join(" "),
+        }
+    }
+}
+
+/// How the levels of an axis are spaced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spacing {
+    /// Names or other things without order.
+    Named,
+    /// Numbers.
+    Linear,
+    /// Numbers in equal ratios.
+    Logarithmic,
+}
+
+/// `[[axes]]` as it stands in the file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AxisKeys {
+    key: Option<String>,
+    list: Option<Vec<Value>>,
+    linspace: Option<(f64, f64, usize)>,
+    logspace: Option<(f64, f64, usize)>,
+    zip: Option<toml::Table>,
+    name: Option<String>,
+    variants: Option<toml::Table>,
+}
+
+/// Most levels of one axis.
+const MAX_LEVELS: usize = 100_000;
+
+/// The longest key of an axis, in bytes: all of a case are shorter. It is repeated in every level.
+const MAX_KEY: usize = 100;
+
+impl Axis {
+    pub(super) fn new(keys: AxisKeys) -> Result<Self, String> {
+        let all = keys.key.iter().chain(keys.zip.iter().flat_map(toml::Table::keys));
+        if let Some(long) = all.into_iter().find(|key| key.len() > MAX_KEY) {
+            return Err(format!(
+                "the key `{}` of an axis has {} bytes, more than {MAX_KEY}: name one of a case, such as drive.v_star",
+                shortened(long),
+                long.len()
+            ));
+        }
+        let axis = match keys {
+            AxisKeys {
+                key: Some(key),
+                zip: None,
+                name: None,
+                variants: None,
+                list,
+                linspace,
+                logspace,
+            } => {
+                let (values, spacing) = match (list, linspace, logspace) {
+                    (Some(list), None, None) => (list, Spacing::Linear),
+                    (None, Some((from, to, count)), None) => {
+                        (spaced(from, to, count, linear)?, Spacing::Linear)
+                    }
+                    (None, None, Some((from, to, count))) => {
+                        if !(from > 0.0 && to > 0.0) {
+                            return Err(format!("`logspace` from {from} to {to} must lie above 0"));
+                        }
+                        (spaced(from, to, count, logarithmic)?, Spacing::Logarithmic)
+                    }
+                    _ => {
+                        return Err(format!(
+                            "the axis of `{key}` needs one of `list`, `linspace` and `logspace`"
+                        ));
+                    }
+                };
+                let levels = values.iter().map(|value| level(&[&key], &[value])).collect();
+                Self {
+                    columns: vec![key],
+                    levels,
+                    spacing,
+                }
+            }
+            AxisKeys {
+                zip: Some(zip),
+                key: None,
+                name: None,
+                variants: None,
+                list: None,
+                linspace: None,
+                logspace: None,
+            } => zipped(&zip)?,
+            AxisKeys {
+                name: Some(name),
+                variants: Some(variants),
+                key: None,
+                zip: None,
+                list: None,
+                linspace: None,
+                logspace: None,
+            } => named(name, &variants)?,
+            _ => {
+                return Err(
+                    "an axis has `key` with `list`, `linspace` or `logspace`; or `zip`; or `name` with \
+                            `variants`: nothing else together"
+                        .to_owned(),
+                );
+            }
+        };
+        if axis.levels.is_empty() {
+            return Err(format!(
+                "the axis of `{}` is empty: give it at least one level",
+                axis.columns.join("`, `")
+            ));
+        }
+        for key in axis.keys() {
+            if key.contains(char::is_whitespace) {
+                return Err(format!(
+                    "the key `{key}` of an axis has a blank in it: take it out"
+                ));
+            }
+            if key == "output" || key.starts_with("output.") {
+                return Err(format!(
+                    "`{key}` changes what is written and nothing that a run finds: set it in the base, and not on an axis"
+                ));
+            }
+        }
+        for level in &axis.levels {
+            let mut earlier = BTreeSet::new();
+            for key in level.overrides.iter().map(|set| key_of(set)) {
+                if let Some(other) = clash(key, &earlier) {
+                    return Err(format!(
+                        "the level {} sets `{key}` and `{other}`, of which one leaves nothing of the other: keep one of them",
+                        shortened(&level.labels.join(", "))
+                    ));
+                }
+                earlier.insert(key);
+            }
+        }
+        let mut seen = HashSet::new();
+        if let Some(twice) = axis.levels.iter().find(|level| !seen.insert(&level.overrides)) {
+            return Err(format!(
+                "the level {} stands twice on the axis of `{}`: keep one",
+                twice.labels.join(", "),
+                axis.columns.join("`, `")
+            ));
+        }
+        Ok(axis.with_numbers_or_names())
+    }
+
+    /// An axis is one of numbers only if all its levels are, each another one: zipped keys may repeat the first.
+    fn with_numbers_or_names(mut self) -> Self {
+        let mut seen = HashSet::new();
+        let mut differs = |level: &Level| level.number.is_some_and(|number| seen.insert(number.to_bits()));
+        if !self.levels.iter().all(&mut differs) {
+            self.spacing = Spacing::Named;
+        } else if self.spacing == Spacing::Linear && self.is_nearer_to_ratios() {
+            self.spacing = Spacing::Logarithmic;
+        }
+        self
+    }
+
+    /// Whether the numbers of a list, such as 0.01, 0.03, 0.1, are better shown in equal ratios: they span a decade,
+    /// and their median lies nearer to the geometric mean of their ends than to the arithmetic one.
+    fn is_nearer_to_ratios(&self) -> bool {
+        let mut numbers: Vec<f64> = self.levels.iter().filter_map(|level| level.number).collect();
+        numbers.sort_by(f64::total_cmp);
+        let (Some(&least), Some(&most)) = (numbers.first(), numbers.last()) else {
+            return false;
+        };
+        let median = 0.5 * (numbers[(numbers.len() - 1) / 2] + numbers[numbers.len() / 2]);
+        let ratio = |mean: f64| (median / mean).ln().abs();
+        least > 0.0 && most >= 10.0 * least && ratio((least * most).sqrt()) < ratio(0.5 * (least + most))
+    }
+
+    /// Keys of the case that its levels set.
+    pub(super) fn keys(&self) -> BTreeSet<&str> {
+        let overrides = self.levels.iter().flat_map(|level| &level.overrides);
+        overrides.map(|set| key_of(set)).collect()
+    }
+
+    /// The name under which pictures show it.
+    pub fn title(&self) -> &str {
+        &self.columns[0]
+    }
+}
+
+/// Values of several keys that change together.
+fn zipped(zip: &toml::Table) -> Result<Axis, String> {
+    let mut lists = Vec::new();
+    for (key, values) in zip {
+        let Value::Array(values) = values else {
+            return Err(format!(
+                "`{key}` in `zip` must be a list; keys with a dot stand in quotes: \"drive.v_star\""
+            ));
+        };
+        lists.push((key.as_str(), values));
+    }
+    let count = lists.first().map_or(0, |(_, values)| values.len());
+    if let Some((key, values)) = lists.iter().find(|(_, values)| values.len() != count) {
+        return Err(format!(
+            "the lists of `zip` must be equally long: `{key}` has {}, not {count}",
+            values.len()
+        ));
+    }
+    let keys: Vec<&str> = lists.iter().map(|(key, _)| *key).collect();
+    let levels = (0..count)
+        .map(|k| {
+            level(
+                &keys,
+                &lists.iter().map(|(_, values)| &values[k]).collect::<Vec<_>>(),
+            )
+        })
+        .collect();
+    Ok(Axis {
+        columns: keys.into_iter().map(str::to_owned).collect(),
+        levels,
+        spacing: Spacing::Linear,
+    })
+}
+
+fn named(name: String, variants: &toml::Table) -> Result<Axis, String> {
+    let level = |(variant, keys): (&String, &Value)| match keys {
+        Value::Table(keys) => Ok(Level {
+            labels: vec![variant.clone()],
+            number: None,
+            overrides: overrides(keys),
+        }),
+        _ => Err(format!(
+            "the variant `{variant}` must be a set of keys, such as {{ drive.v_star = 0.05 }}"
+        )),
+    };
+    let levels = variants.iter().map(level).collect::<Result<_, _>>()?;
+    Ok(Axis {
+        columns: vec![name],
+        levels,
+        spacing: Spacing::Named,
+    })
+}
+
+fn level(keys: &[&str], values: &[&Value]) -> Level {
+    Level {
+        labels: keys
+            .iter()
+            .zip(values)
+            .map(|(key, value)| label(key, value))
+            .collect(),
+        number: values.first().and_then(|value| number(value)),
+        overrides: keys
+            .iter()
+            .zip(values)
+            .map(|(key, value)| format!("{key}={value}"))
+            .collect(),
+    }
+}
+
+/// The number of a level. A pair of equal ones counts as one: the blocks along each side of a square.
+fn number(value: &Value) -> Option<f64> {
+    match value {
+        Value::Integer(number) => Some(*number as f64),
+        Value::Float(number) => Some(*number),
+        Value::Array(pair) => match pair.as_slice() {
+            [one, other] if one == other => number(one),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+fn label(key: &str, value: &Value) -> String {
+    match value.as_str() {
+        // The same wherever the file stands: beside its case, or copied into a results folder.
+        Some(text) if names_a_file(key) => plain_name(text),
+        Some(text) => text.to_owned(),
+        None => value.to_string(),
+    }
+}
+
+/// Keys of a table, `{ drive.v_star = 0.05 }` or `{ "drive.v_star" = 0.05 }`, as for `--set`.
+pub(super) fn overrides(keys: &toml::Table) -> Vec<String> {
+    let mut list = Vec::new();
+    for (key, value) in keys {
+        flatten(key, value, &mut list);
+    }
+    list
+}
+
+fn flatten(key: &str, value: &Value, list: &mut Vec<String>) {
+    // Tables of the case, `drive`, and elements of its lists, `texture.0`, are ways to keys; all others are values,
+    // and so is a texture in full.
+    let is_number = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
+    let leads_on = !key.contains('.') || key.rsplit('.').next().is_some_and(is_number);
+    // A key that no case has is refused as it stands, not once for everything in it.
+    let leads_on = leads_on && key.len() <= MAX_KEY;
+    match value {
+        Value::Table(inner) if leads_on && !inner.contains_key("shape") => {
+            for (name, value) in inner {
+                flatten(&format!("{key}.{name}"), value, list);
+            }
+        }
+        _ => list.push(format!("{key}={value}")),
+    }
+}
+
+/// The key of an override.
+pub(super) fn key_of(set: &str) -> &str {
+    set.split_once('=').map_or(set, |(key, _)| key)
+}
+
+/// Whether setting `key` leaves nothing of what `earlier` has set: it is the same key, or a table or list around it.
+pub(super) fn displaces(key: &str, earlier: &str) -> bool {
+    earlier
+        .strip_prefix(key)
+        .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        || slipfront_case::case_file::exclude_each_other(key, earlier)
+}
+
+/// The first of the `other` keys of which setting `key` leaves nothing, or which leaves nothing of it.
+fn clash<'k>(key: &str, other: &BTreeSet<&'k str>) -> Option<&'k str> {
+    let around = || other.iter().copied().find(|other| displaces(other, key));
+    displaced(key, other).or_else(around)
+}
+
+/// The first of `earlier` keys of which setting `key` leaves nothing.
+pub(super) fn displaced<'k>(key: &str, earlier: &BTreeSet<&'k str>) -> Option<&'k str> {
+    let below = format!("{key}.");
+    let partners = slipfront_case::case_file::partners_of(key);
+    let same = earlier
+        .get(key)
+        .or_else(|| partners.iter().find_map(|partner| earlier.get(partner.as_str())));
+    let inside = || {
+        earlier
+            .range::<str, _>((Bound::Included(below.as_str()), Bound::Unbounded))
+            .next()
+            .filter(|found| found.starts_with(&below))
+    };
+    same.or_else(inside).copied()
+}
+
+/// `count` values from `from` to `to`, both exactly.
+fn spaced(from: f64, to: f64, count: usize, between: fn(f64, f64, f64) -> f64) -> Result<Vec<Value>, String> {
+    if !(2..=MAX_LEVELS).contains(&count) {
+        return Err(format!(
+            "a spacing of {count} values cannot be: give 2 to {MAX_LEVELS}"
+        ));
+    }
+    if !(from.is_finite() && to.is_finite()) {
+        return Err(format!("a spacing from {from} to {to} must have finite ends"));
+    }
+    let value = |k: usize| match k {
+        0 => from,
+        k if k == count - 1 => to,
+        k => twelve_digits(between(from, to, k as f64 / (count - 1) as f64)),
+    };
+    Ok((0..count).map(|k| whole_or_not(value(k))).collect())
+}
+
+/// Legible in the tables, and the same on every machine.
+fn twelve_digits(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
+}
+
+/// Keys that count, such as a seed, take whole numbers only; all others take them too.
+fn whole_or_not(value: f64) -> Value {
+    const LARGEST: f64 = 9e15;
+    if value.fract() == 0.0 && value.abs() < LARGEST {
+        Value::Integer(value as i64)
+    } else {
+        Value::Float(value)
+    }
+}
+
+fn linear(from: f64, to: f64, share: f64) -> f64 {
+    // Symmetric, so that a spacing from -1 to 1 meets 0.
+    from * (1.0 - share) + to * share
+}
+
+/// Equal ratios.
+fn logarithmic(from: f64, to: f64, share: f64) -> f64 {
+    from * libm::pow(to / from, share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn axis(text: &str) -> Result<Axis, String> {
+        Axis::new(toml::from_str(text).unwrap())
+    }
+
+    #[test]
+    fn spacings_end_exactly_where_they_should() {
+        let axis = axis("key = 'drive.v_star'\nlogspace = [0.01, 0.2, 6]").unwrap();
+        let numbers: Vec<f64> = axis.levels.iter().filter_map(|level| level.number).collect();
+        assert_eq!((numbers[0], numbers[5], numbers.len()), (0.01, 0.2, 6));
+        assert!((numbers[1] / numbers[0] - 20f64.powf(0.2)).abs() < 1e-10);
+        assert_eq!(axis.spacing, Spacing::Logarithmic);
+    }
+
+    #[test]
+    fn spacings_are_legible_and_count_where_they_can() {
+        let labels = |text: &str| -> Vec<String> {
+            let levels = axis(text).unwrap().levels;
+            levels.into_iter().flat_map(|level| level.labels).collect()
+        };
+        assert_eq!(
+            labels("key = 'a.b'\nlinspace = [0, 1, 11]").join(" "),
+            "0 0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8 0.9 1"
+        );
+        assert_eq!(
+            labels("key = 'a.b'\nlinspace = [-0.3, 0.3, 5]").join(" "),
+            "-0.3 -0.15 0 0.15 0.3"
+        );
+        assert_eq!(
+            labels("key = 'a.b'\nlogspace = [1, 100, 3]").join(" "),
+            "1 10 100"
+        );
+    }
+
+    #[test]
+    fn lists_are_spaced_as_they_look() {
+        for (list, spacing) in [
+            ("[0.005, 0.01, 0.03, 0.05, 0.1]", Spacing::Logarithmic),
+            ("[1, 10]", Spacing::Linear),
+            ("[1, 10, 100]", Spacing::Logarithmic),
+            ("[1, 2, 5, 10, 20, 30, 40, 50]", Spacing::Linear),
+            ("[0, 1, 10]", Spacing::Linear),
+            ("[1, 2, 4]", Spacing::Linear),
+            ("[[25, 25], [50, 50]]", Spacing::Linear),
+            ("[1, 'two']", Spacing::Named),
+        ] {
+            let axis = axis(&format!("key = 'a.b'\nlist = {list}")).unwrap();
+            assert_eq!(axis.spacing, spacing, "{list}");
+        }
+        let square = axis("key = 'slider.blocks'\nlist = [[25, 25]]").unwrap();
+        assert_eq!(square.levels[0].shown(), "25");
+    }
+
+    #[test]
+    fn a_level_twice_is_refused_and_repeated_numbers_are_names() {
+        assert!(axis("key = 'a.b'\nlist = [1, 2, 1]").is_err());
+        let zipped = axis("zip = { 'a.b' = [1, 1], 'c.d' = [1, 2] }").unwrap();
+        assert_eq!(zipped.spacing, Spacing::Named);
+    }
+
+    #[test]
+    fn elements_of_lists_are_ways_to_keys() {
+        let keys: toml::Table = toml::from_str(
+            "texture.0.coverage = 5\ntexture.1 = { shape = 'groove' }\noutput.snapshots = { every = 2.0 }",
+        )
+        .unwrap();
+        assert_eq!(
+            overrides(&keys),
+            [
+                "texture.0.coverage=5",
+                "texture.1={ shape = \"groove\" }",
+                "output.snapshots={ every = 2.0 }"
+            ]
+        );
+    }
+
+    #[test]
+    fn what_displaces_what() {
+        assert!(displaces("texture", "texture.0.coverage"));
+        assert!(displaces("drive.v_star", "drive.v_star"));
+        assert!(displaces("drive.speed", "drive.v_star"));
+        assert!(!displaces("texture.0.coverage", "texture"));
+        assert!(!displaces("drive.v", "drive.v_star"));
+        let earlier = ["drive.v_star", "slider.blocks", "texture.0.coverage", "texture0"].into();
+        assert_eq!(displaced("texture", &earlier), Some("texture.0.coverage"));
+        assert_eq!(displaced("drive.v_star", &earlier), Some("drive.v_star"));
+        assert_eq!(displaced("drive.speed", &earlier), Some("drive.v_star"));
+        assert_eq!(
+            displaced("texture.0.lambda", &earlier),
+            Some("texture.0.coverage")
+        );
+        for other in ["drive.v", "texture.0.coverage.x", "slider.omega_star", "tex"] {
+            assert_eq!(displaced(other, &earlier), None);
+        }
+    }
+
+    #[test]
+    fn variants_keep_their_order_and_flatten_their_keys() {
+        let text = "name = 'shape'\n[variants]\nzebra = { texture = [{ shape = 'groove', coverage = 10 }] }\n\
+                    apple = { drive.v_star = 0.1, 'load.redistribute' = false }";
+        let axis = axis(text).unwrap();
+        assert_eq!(axis.levels[0].labels, ["zebra"]);
+        assert_eq!(
+            axis.levels[0].overrides,
+            ["texture=[{ shape = \"groove\", coverage = 10 }]"]
+        );
+        assert_eq!(
+            axis.levels[1].overrides,
+            ["drive.v_star=0.1", "load.redistribute=false"]
+        );
+    }
+
+    #[test]
+    fn zipped_keys_change_together() {
+        let axis =
+            axis("zip = { 'slider.blocks' = [[25, 25], [50, 50]], 'friction.seed' = [1, 2] }").unwrap();
+        assert_eq!(axis.columns, ["slider.blocks", "friction.seed"]);
+        assert_eq!(
+            axis.levels[1].overrides,
+            ["slider.blocks=[50, 50]", "friction.seed=2"]
+        );
+        assert_eq!(axis.levels[1].number, Some(50.0));
+        assert!(super::Axis::new(toml::from_str("zip = { a = [1], b = [1, 2] }").unwrap()).is_err());
+    }
+
+    /// A few megabytes of text must not become terabytes.
+    #[test]
+    fn long_keys_are_not_repeated_in_every_level() {
+        let long = "k".repeat(100_000);
+        for text in [
+            format!("key = '{long}'\nlinspace = [0, 1, 100000]"),
+            format!("zip = {{ {long} = [1, 2, 3] }}"),
+        ] {
+            let said = axis(&text).unwrap_err();
+            assert!(
+                said.contains("has 100000 bytes, more than 100") && said.len() < 300,
+                "{said}"
+            );
+        }
+        let keys: String = (0..1000).map(|k| format!("k{k} = 1, ")).collect();
+        let keys: toml::Table = format!("{long} = {{ {keys} }}").parse().unwrap();
+        assert_eq!(overrides(&keys).len(), 1);
+    }
+
+    #[test]
+    fn empty_and_ambiguous_axes_are_refused() {
+        for text in [
+            "key = 'a'\nlist = []",
+            "key = 'a'",
+            "key = 'a'\nlist = [1]\nlinspace = [0, 1, 2]",
+            "name = 'x'",
+        ] {
+            assert!(axis(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! Files that the cases of a study read, copied so that a results folder can repeat the study on its own.
+
+use std::fs::File;
+use std::io::ErrorKind;
+use std::path::{Component, Path, PathBuf};
+
+use toml::{Table, Value};
+
+use crate::run_folder::error::FolderError;
+
+/// Keys of a case that name files.
+const FILE_KEYS: [&str; 3] = ["file", "mu_static_field", "mu_kinetic_field"];
+
+/// Whether a key of a case, such as `texture.0.file`, names a file.
+pub(super) fn names_a_file(key: &str) -> bool {
+    FILE_KEYS.contains(&key.rsplit('.').next().unwrap_or(key))
+}
+
+/// Folder of the copies.
+const FOLDER: &str = "inputs";
+
+/// The name of a file without the way to it: its path below the case, or the last part of one that leads elsewhere.
+/// A copy has the plain name of its original.
+pub(super) fn plain_name(written: &str) -> String {
+    let path = Path::new(written);
+    let inside = path
+        .components()
+        .all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+    let last = path
+        .file_name()
+        .map_or_else(|| written.into(), |name| name.to_string_lossy().into_owned());
+    if !inside {
+        return last;
+    }
+    let below = path.strip_prefix(FOLDER).unwrap_or(path);
+    let parts: Vec<_> = below
+        .components()
+        .filter(|part| matches!(part, Component::Normal(_)))
+        .map(|part| part.as_os_str().to_string_lossy())
+        .collect();
+    parts.join("/")
+}
+
+/// A copy to be made of a file.
+pub(super) struct Copy {
+    /// Its path in the results folder.
+    pub(super) name: String,
+    /// The file.
+    pub(super) original: PathBuf,
+    hash: blake3::Hash,
+}
+
+/// Replaces the names of all files of a study, which stand relative to `folder`, by those of copies.
+///
+/// # Errors
+/// When a file is there and cannot be read.
+pub(super) fn copy(study: &mut Table, folder: &Path) -> Result<Vec<Copy>, FolderError> {
+    let mut copies = Copies {
+        folder,
+        made: Vec::new(),
+        failed: None,
+    };
+    copies.visit_table(study);
+    copies.failed.map_or(Ok(copies.made), Err)
+}
+
+struct Copies<'a> {
+    folder: &'a Path,
+    made: Vec<Copy>,
+    failed: Option<FolderError>,
+}
+
+impl Copies<'_> {
+    fn visit_table(&mut self, table: &mut Table) {
+        // An axis names the key beside its values.
+        let lists_files = table.get("key").and_then(Value::as_str).is_some_and(names_a_file);
+        for (key, value) in table.iter_mut() {
+            let is_file = names_a_file(key) || (lists_files && key == "list");
+            self.visit(value, is_file);
+        }
+    }
+
+    fn visit(&mut self, value: &mut Value, is_file: bool) {
+        match value {
+            Value::String(name) if is_file => self.replace(name),
+            Value::Array(values) => values.iter_mut().for_each(|value| self.visit(value, is_file)),
+            Value::Table(table) => self.visit_table(table),
+            _ => {}
+        }
+    }
+
+    fn replace(&mut self, name: &mut String) {
+        let original = self.folder.join(&*name);
+        let hash = match hash(&original) {
+            Ok(Some(hash)) => hash,
+            // Every point was valid, so that a file that is not there is one that no point reads.
+            Ok(None) => return,
+            Err(source) => {
+                let path = original;
+                self.failed.get_or_insert(FolderError::Read { path, source });
+                return;
+            }
+        };
+        let plain = plain_name(name);
+        let mut copy = format!("{FOLDER}/{plain}");
+        let mut copies = 1;
+        // Two files of one name from different folders stay two files.
+        while let Some(made) = self.made.iter().find(|made| made.name == copy) {
+            if made.hash == hash {
+                *name = copy;
+                return;
+            }
+            copies += 1;
+            copy = format!("{FOLDER}/{copies}-{plain}");
+        }
+        name.clone_from(&copy);
+        self.made.push(Copy {
+            name: copy,
+            original,
+            hash,
+        });
+    }
+}
+
+/// The hash of a regular file; none if there is no such file.
+fn hash(path: &Path) -> std::io::Result<Option<blake3::Hash>> {
+    match std::fs::metadata(path) {
+        Ok(metadata) if metadata.is_file() => {}
+        // A pipe would be waited for, and a device never ends.
+        Ok(_) => return Ok(None),
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            return Ok(None);
+        }
+        Err(error) => return Err(error),
+    }
+    let mut hasher = blake3::Hasher::new();
+    Ok(Some(hasher.update_reader(File::open(path)?)?.finalize()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_copy_has_the_plain_name_of_its_original() {
+        for (written, plain) in [
+            ("mask.png", "mask.png"),
+            ("./masks/a.png", "masks/a.png"),
+            ("../masks/a.png", "a.png"),
+            ("/data/a.png", "a.png"),
+            ("inputs/masks/a.png", "masks/a.png"),
+        ] {
+            assert_eq!(plain_name(written), plain);
+            assert_eq!(plain_name(&format!("inputs/{plain}")), plain);
+        }
+    }
+
+    /// No point reads it, so that no case has looked at it.
+    #[cfg(unix)]
+    #[test]
+    fn what_never_ends_is_not_copied() {
+        let folder = tempfile::tempdir().unwrap();
+        std::os::unix::fs::symlink("/dev/zero", folder.path().join("endless.png")).unwrap();
+        let mut study: Table = "base.texture = [{ shape = 'mask', file = 'endless.png' }]"
+            .parse()
+            .unwrap();
+        assert!(copy(&mut study, folder.path()).unwrap().is_empty());
+    }
+
+    /// It is there, so that a point may read it the next time.
+    #[cfg(unix)]
+    #[test]
+    fn what_cannot_be_read_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("circle.png");
+        std::os::unix::fs::symlink(&path, &path).unwrap();
+        let mut study: Table = "base.texture = [{ shape = 'mask', file = 'circle.png' }]"
+            .parse()
+            .unwrap();
+        let error = copy(&mut study, folder.path()).err().unwrap().to_string();
+        assert!(error.contains("circle.png"), "{error}");
+    }
+
+    #[test]
+    fn files_are_found_wherever_a_study_names_them() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a.png", "b.png", "c.npy", "sub/a.png"] {
+            let path = folder.path().join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, name).unwrap();
+        }
+        std::fs::write(folder.path().join("sub/again.png"), "a.png").unwrap();
+        let text = r#"
+            base.texture = [{ shape = "mask", file = "a.png" }]
+            axes = [
+                { key = "texture.0.file", list = ["a.png", "sub/a.png", "missing.png"] },
+                { zip = { "friction.mu_static_field" = ["c.npy"] } },
+                { name = "shape", variants = { b = { texture = [{ shape = "mask", file = "b.png" }] } } },
+            ]"#;
+        let mut study: Table = text.parse().unwrap();
+        let copies = copy(&mut study, folder.path()).unwrap();
+        let names: Vec<&str> = copies.iter().map(|copy| copy.name.as_str()).collect();
+        assert_eq!(
+            names,
+            ["inputs/a.png", "inputs/sub/a.png", "inputs/c.npy", "inputs/b.png"]
+        );
+        let printed = study.to_string();
+        for name in names.iter().chain(&["\"missing.png\""]) {
+            assert!(printed.contains(name), "{name} in {printed}");
+        }
+    }
+}

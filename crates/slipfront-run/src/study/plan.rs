@@ -1,0 +1,511 @@
+//! The plan of a study: its points, and what each run of a point is.
+
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Mutex;
+
+use rayon::prelude::*;
+
+use super::axis::{self, Axis};
+use super::error::StudyError;
+use super::study_file::{Base, Keep, Settings, StudyFile};
+use super::folder::StudyFolder;
+use super::shard::Shard;
+use slipfront_case::case::{budget, Case, check_fields};
+use slipfront_case::case::budget::{Budget, PROGRAM};
+use slipfront_case::machine::{available_memory, free_disk};
+use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Output, Snapshots};
+use slipfront_case::text::shown;
+use crate::manifest::Manifest;
+
+/// Every run that a study may need.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Name of the study.
+    pub name: String,
+    /// Repetition, reference and what is kept.
+    pub settings: Settings,
+    /// What varies.
+    pub axes: Vec<Axis>,
+    /// Every combination of levels, the last axis fastest.
+    pub points: Vec<Point>,
+    base: Base,
+    reference: Option<Vec<String>>,
+}
+
+/// A combination of levels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// Place in the whole study, from 0: the same in every shard.
+    pub index: usize,
+    /// Level of each axis.
+    pub levels: Vec<usize>,
+    /// What its runs are, for each role.
+    outlines: Vec<Outline>,
+}
+
+/// What is known of the runs of a point before any is made.
+#[derive(Clone, Debug, PartialEq)]
+struct Outline {
+    /// Seed of replicate 0.
+    seed: u64,
+    /// Hash of all that decides the numbers of a run, but for the seed.
+    physics: blake3::Hash,
+    /// Steps times blocks of a run, at most.
+    block_steps: f64,
+    n_blocks: usize,
+    budget: Budget,
+    /// What deserves a word before a run of it.
+    warnings: Vec<String>,
+}
+
+/// A warning about points of a study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Warning {
+    /// What is the matter.
+    pub sentence: String,
+    /// Number of points.
+    pub points: usize,
+    /// Position of the first of them in the plan.
+    pub first: usize,
+}
+
+/// Lattices of more blocks are tried one at a time: of one for each thread at once no machine may have room.
+const LARGE: u64 = 250_000;
+
+/// A line of the records and a row of the tables.
+const RECORD_BYTES: f64 = 4096.0;
+
+/// What a run of a point is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Role {
+    /// The point itself.
+    Point,
+    /// What its reduction is measured against.
+    Reference,
+}
+
+/// One run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct RunKey {
+    /// Position of the point in the plan.
+    pub point: usize,
+    /// Replicate, from 0.
+    pub replicate: usize,
+    /// What it is for.
+    pub role: Role,
+}
+
+impl Plan {
+    /// Multiplies the axes out and tries every point: the first that is no valid case is named.
+    ///
+    /// # Errors
+    /// [`StudyError::Point`], [`StudyError::TooLarge`].
+    pub fn new(file: &StudyFile, shard: Option<Shard>) -> Result<Self, StudyError> {
+        let points = (0..file.count_points()?)
+            .filter(|&index| shard.is_none_or(|shard| shard.holds(index)))
+            .map(|index| Point {
+                index,
+                levels: levels(&file.axes, index),
+                outlines: Vec::new(),
+            })
+            .collect();
+        let mut plan = Self {
+            name: file.name.clone(),
+            settings: file.settings.clone(),
+            axes: file.axes.clone(),
+            points,
+            base: file.base.clone(),
+            reference: file.settings.reference.as_ref().map(axis::overrides),
+        };
+        let alone = Mutex::new(());
+        let outlines: Vec<Result<Vec<Outline>, CaseError>> = plan
+            .points
+            .par_iter()
+            .map(|point| {
+                plan.roles()
+                    .map(|role| plan.outline(point, role, &alone))
+                    .collect()
+            })
+            .collect();
+        for (position, outlines) in outlines.into_iter().enumerate() {
+            plan.points[position].outlines = outlines.map_err(|source| StudyError::Point {
+                point: plan.describe(&plan.points[position]),
+                source,
+            })?;
+        }
+        Ok(plan)
+    }
+
+    /// What runs a point has: itself, and its reference if the study has one.
+    pub fn roles(&self) -> impl Iterator<Item = Role> + use<> {
+        [Role::Point]
+            .into_iter()
+            .chain(self.reference.as_ref().map(|_| Role::Reference))
+    }
+
+    /// Whether reductions are measured.
+    pub fn has_reference(&self) -> bool {
+        self.reference.is_some()
+    }
+
+    /// The case file of replicate 0.
+    fn case_file(&self, point: &Point, role: Role) -> Result<CaseFile, CaseError> {
+        let mut overrides: Vec<String> = Vec::new();
+        for (axis, &level) in self.axes.iter().zip(&point.levels) {
+            overrides.extend_from_slice(&axis.levels[level].overrides);
+        }
+        if role == Role::Reference {
+            let reference = self.reference.iter().flatten();
+            overrides.retain(|set| {
+                reference
+                    .clone()
+                    .all(|other| !axis::displaces(axis::key_of(other), axis::key_of(set)))
+            });
+            overrides.extend(reference.cloned());
+        }
+        CaseFile::parse(&self.base.text, &self.base.name, &overrides)
+    }
+
+    /// Tries a point and notes what its runs are.
+    fn outline(&self, point: &Point, role: Role, alone: &Mutex<()>) -> Result<Outline, CaseError> {
+        let file = self.case_file(point, role)?;
+        let blocks: u64 = file.slider.blocks.into_iter().map(u64::from).product();
+        let _alone = (blocks > LARGE).then(|| alone.lock());
+        let case = self.trimmed(file, "point")?;
+        Ok(Outline {
+            seed: case.file.friction.seed,
+            physics: physics(&case)?,
+            block_steps: case.block_steps(),
+            n_blocks: case.model.lattice.n_blocks(),
+            budget: case.budget,
+            warnings: case.warnings(),
+        })
+    }
+
+    /// What deserves a word before the study is run: the first warning of each kind about its cases.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let mut warnings: Vec<Warning> = Vec::new();
+        // Sentences of one kind differ in their figures.
+        let kind = |sentence: &str| sentence.replace(|c: char| c.is_ascii_digit() || c == '.', "");
+        let mut known: HashMap<String, usize> = HashMap::new();
+        for (position, point) in self.points.iter().enumerate() {
+            let of_runs = point.outlines.iter().flat_map(|run| &run.warnings);
+            let of_point: BTreeMap<String, &String> = of_runs.map(|one| (kind(one), one)).rev().collect();
+            for (kind, sentence) in of_point {
+                let at = *known.entry(kind).or_insert(warnings.len());
+                match warnings.get_mut(at) {
+                    Some(warning) => warning.points += 1,
+                    None => warnings.push(Warning {
+                        sentence: sentence.clone(),
+                        points: 1,
+                        first: position,
+                    }),
+                }
+            }
+        }
+        warnings
+    }
+
+    /// The case of a run, ready to run.
+    ///
+    /// # Errors
+    /// When a file that it reads is no longer what it was.
+    pub fn case(&self, run: RunKey) -> Result<Case, CaseError> {
+        let mut file = self.case_file(&self.points[run.point], run.role)?;
+        file.friction.seed = self.seed(run);
+        let case = self.trimmed(file, &self.folder_name(run))?;
+        // Only files can have become others.
+        if !case.inputs.is_empty() && physics(&case)? != self.outline_of(run).physics {
+            let names: Vec<String> = case.inputs.iter().map(|input| shown(&input.original)).collect();
+            let sentence = format!(
+                "a file that a run reads is no longer what it was when the study began: run the study again, and leave {} as it \
+                 is meanwhile",
+                names.join(", ")
+            );
+            return Err(case.file.source.error("", sentence));
+        }
+        Ok(case)
+    }
+
+    /// The same plan, whose runs read the copies of their files that stand in the folder: what happens to the originals
+    /// while the study goes on is of no matter.
+    #[must_use]
+    pub fn reading_copies(self, folder: &StudyFolder) -> Self {
+        let study = &folder.study;
+        Self {
+            axes: study.axes.clone(),
+            base: study.base.clone(),
+            reference: study.settings.reference.as_ref().map(axis::overrides),
+            ..self
+        }
+    }
+
+    /// A case that writes no more than the study keeps.
+    fn trimmed(&self, mut file: CaseFile, name: &str) -> Result<Case, CaseError> {
+        if self.settings.keep == Keep::All {
+            let case = Case::new(file, name, &self.base.folder)?;
+            check_fields(&case.file, &case.model.lattice, &case.output)?;
+            return Ok(case);
+        }
+        // Nobody will look at fields or curves, and the numbers do not depend on them.
+        file.output.snapshots = Snapshots::At(Vec::new());
+        file.output.series = AutoOr::Auto;
+        let mut case = Case::new(file, name, &self.base.folder)?;
+        case.output.series_stride = case.schedule.last_step;
+        Ok(case)
+    }
+
+    fn outline_of(&self, run: RunKey) -> &Outline {
+        &self.points[run.point].outlines[usize::from(run.role == Role::Reference)]
+    }
+
+    /// Seed of a run. It alone tells replicates apart, so that all points meet the same surfaces.
+    pub fn seed(&self, run: RunKey) -> u64 {
+        self.outline_of(run).seed.wrapping_add(run.replicate as u64) & i64::MAX as u64
+    }
+
+    /// What tells a run from all others. Points share a run that is the same, such as their reference.
+    pub fn identity(&self, run: RunKey) -> String {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(self.outline_of(run).physics.as_bytes());
+        hasher.update(&self.seed(run).to_le_bytes());
+        hasher.finalize().to_hex()[..32].to_owned()
+    }
+
+    /// Name of the folder of a run, where it is kept: the beginning of its identity, so that it stays true when the
+    /// study grows.
+    pub fn folder_name(&self, run: RunKey) -> String {
+        self.identity(run)[..12].to_owned()
+    }
+
+    /// Steps times blocks of a run, at most, and its blocks: what it will cost.
+    pub fn cost(&self, run: RunKey) -> (f64, usize) {
+        let outline = self.outline_of(run);
+        (outline.block_steps, outline.n_blocks)
+    }
+
+    /// Memory of `threads` runs at once, if they are the largest, in bytes.
+    pub fn memory(&self, threads: usize) -> f64 {
+        let runs = self.runs(self.settings.max_replicates()).take(threads).count();
+        let largest = self.largest_run().map_or(0.0, |(_, bytes)| bytes);
+        PROGRAM + self.planning() + runs as f64 * largest
+    }
+
+    /// Memory in which cases were tried, and which the allocator keeps for others of their size, in bytes.
+    fn planning(&self) -> f64 {
+        let made = |run| self.outline_of(run).budget.memory_of_case();
+        self.runs(1).map(made).fold(0.0, f64::max)
+    }
+
+    /// The run that takes the most memory, and how much, in bytes.
+    fn largest_run(&self) -> Option<(RunKey, f64)> {
+        let writes = self.settings.keep == Keep::All;
+        self.runs(1)
+            .map(|run| (run, self.outline_of(run).budget.memory_beside_others(writes)))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Refuses as many runs at once as there is no memory for.
+    ///
+    /// # Errors
+    /// [`StudyError::Memory`] with how many there is memory for, [`StudyError::PointMemory`] if it is not even one.
+    pub fn check_memory(&self, threads: usize) -> Result<(), StudyError> {
+        let available = available_memory().unwrap_or(f64::INFINITY);
+        // A process may be given less than the machine has.
+        let given = budget::most_at_once(self.memory(threads).min(available));
+        self.compare_memory(threads, given)
+    }
+
+    fn compare_memory(&self, threads: usize, available: f64) -> Result<(), StudyError> {
+        let Some((run, largest)) = self.largest_run() else {
+            return Ok(());
+        };
+        let needed = self.memory(threads);
+        if needed <= available {
+            return Ok(());
+        }
+        let fit = ((available - PROGRAM - self.planning()) / largest).max(0.0) as usize;
+        let available = budget::shown(available);
+        if fit == 0 {
+            return Err(StudyError::PointMemory {
+                point: self.describe(&self.points[run.point]),
+                needed: budget::shown(largest),
+                available,
+            });
+        }
+        Err(StudyError::Memory {
+            threads,
+            needed: budget::shown(needed),
+            available,
+            fit,
+        })
+    }
+
+    /// Room that these runs will take on the disk, in bytes.
+    pub fn disk(&self, runs: impl Iterator<Item = RunKey>) -> f64 {
+        let kept = |run| match self.settings.keep {
+            Keep::All => self.outline_of(run).budget.disk(),
+            Keep::None | Keep::Failed => 0.0,
+        };
+        runs.map(|run| RECORD_BYTES + kept(run)).sum()
+    }
+
+    /// Refuses a study that has no room in its folder for the runs that it still lacks, as far as these are known.
+    ///
+    /// # Errors
+    /// [`StudyError::Disk`].
+    pub fn check_disk(&self, folder: &StudyFolder) -> Result<(), StudyError> {
+        let lacking = |run: &RunKey| folder.records.get(&self.identity(*run)).is_none();
+        let needed = self.disk(self.runs(self.settings.min_replicates()).filter(lacking));
+        match free_disk(folder.path()) {
+            Some(free) if needed > free => Err(StudyError::Disk {
+                needed: budget::shown(needed),
+                free: budget::shown(free),
+                path: folder.path().to_owned(),
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// The levels of a point, as a reader would name it.
+    pub fn describe(&self, point: &Point) -> String {
+        let levels: Vec<String> = self
+            .columns(point)
+            .into_iter()
+            .map(|(name, value)| format!("{name} = {value}"))
+            .collect();
+        if levels.is_empty() {
+            "of the base case".to_owned()
+        } else {
+            levels.join(", ")
+        }
+    }
+
+    /// Columns of the axes, and what stands in them at a point.
+    pub fn columns(&self, point: &Point) -> Vec<(&str, &str)> {
+        let mut columns = Vec::new();
+        for (axis, &level) in self.axes.iter().zip(&point.levels) {
+            let names = axis.columns.iter().map(String::as_str);
+            columns.extend(names.zip(axis.levels[level].labels.iter().map(String::as_str)));
+        }
+        columns
+    }
+
+    /// Every run of `replicates` replicates; references that points share are counted for each.
+    pub fn runs(&self, replicates: usize) -> impl Iterator<Item = RunKey> {
+        let of_point = move |point| {
+            (0..replicates).flat_map(move |replicate| {
+                self.roles().map(move |role| RunKey {
+                    point,
+                    replicate,
+                    role,
+                })
+            })
+        };
+        (0..self.points.len()).flat_map(of_point)
+    }
+}
+
+/// Hash of what tells runs apart, but for the seed: the physics of a case, the contents of its files and the program; not
+/// names of files, nor what is written.
+fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
+    let mut file = case.file.clone();
+    file.friction.seed = 0;
+    file.output = Output::default();
+    for (_, name) in file.files_mut() {
+        let hash = case
+            .inputs
+            .iter()
+            .find(|input| input.name == *name)
+            .map(|input| blake3::hash(&input.bytes).to_hex());
+        let ending = name.rsplit('.').next().unwrap_or_default();
+        *name = format!("{}.{ending}", hash.unwrap_or_default());
+    }
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(Manifest::this_build().as_bytes());
+    hasher.update(file.to_toml()?.as_bytes());
+    Ok(hasher.finalize())
+}
+
+/// Levels of point `index`, the last axis fastest.
+fn levels(axes: &[Axis], mut index: usize) -> Vec<usize> {
+    let mut levels: Vec<usize> = axes
+        .iter()
+        .rev()
+        .map(|axis| {
+            let level = index % axis.levels.len();
+            index /= axis.levels.len();
+            level
+        })
+        .collect();
+    levels.reverse();
+    levels
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    /// Originals may change while a study goes on; a copy that does is noticed.
+    #[test]
+    fn runs_read_what_their_identity_was_made_of() {
+        let folder = tempfile::tempdir().unwrap();
+        let table = |value: f64| format!("{value},{value}\n").repeat(2);
+        let original = folder.path().join("mu.csv");
+        std::fs::write(&original, table(0.9)).unwrap();
+        let text = "[base]\nslider.blocks = [2, 2]\nfriction.mu_static_field = 'mu.csv'";
+        let file = StudyFile::parse(text, "study.toml", "study", folder.path()).unwrap();
+        let plan = Plan::new(&file, None).unwrap();
+        let run = plan.runs(1).next().unwrap();
+        let out = StudyFolder::open(&folder.path().join("out"), &file).unwrap();
+        std::fs::write(&original, table(0.8)).unwrap();
+        let said = plan.case(run).unwrap_err().to_string();
+        assert!(
+            said.contains("no longer what it was when the study began"),
+            "{said}"
+        );
+        let plan = plan.reading_copies(&out);
+        let case = plan.case(run).unwrap();
+        assert_eq!(case.inputs[0].bytes, table(0.9).as_bytes());
+        std::fs::write(folder.path().join("out/inputs/mu.csv"), table(0.7)).unwrap();
+        assert!(plan.case(run).is_err());
+    }
+
+    /// Runs at once count with the largest of them, and not with more than there are.
+    #[test]
+    fn threads_are_held_against_the_memory() {
+        let text = "[study]\nreplicates = 2\n[[axes]]\nkey = 'slider.blocks'\nlist = [[4, 4], [300, 300]]";
+        let file = StudyFile::parse(text, "study.toml", "study", Path::new("")).unwrap();
+        let plan = Plan::new(&file, None).unwrap();
+        let one = plan.memory(2) - plan.memory(1);
+        assert_eq!(plan.memory(3), plan.memory(1) + 2.0 * one);
+        assert_eq!(plan.memory(64), plan.memory(4));
+        let available = plan.memory(2) + 0.5 * one;
+        assert!(plan.compare_memory(2, available).is_ok());
+        assert!(matches!(
+            plan.compare_memory(3, available),
+            Err(StudyError::Memory {
+                threads: 3,
+                fit: 2,
+                ..
+            })
+        ));
+        let said = plan
+            .compare_memory(2, plan.memory(1) - 0.5 * one)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            said.contains("slider.blocks = [300, 300]") && said.contains("lower `slider.blocks`"),
+            "{said}"
+        );
+        // Every run that is kept writes its fields and draws its pictures.
+        let kept = text.replace("replicates = 2", "replicates = 2\nkeep = 'all'");
+        let kept = StudyFile::parse(&kept, "study.toml", "study", Path::new("")).unwrap();
+        let kept = Plan::new(&kept, None).unwrap();
+        assert!(kept.memory(1) > 2.0 * plan.memory(1));
+        let disk = |plan: &Plan| plan.disk(plan.runs(2));
+        assert!(disk(&kept) > 100.0 * disk(&plan));
+    }
+}

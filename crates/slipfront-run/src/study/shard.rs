@@ -1,0 +1,92 @@
+//! A shard: a part of the points of a study, the same whoever asks.
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::error::StudyError;
+use slipfront_case::text::shortened;
+
+/// Part `number` of `count`, `number` from 1. It holds every `count`-th point, so that shards are equally large.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    number: usize,
+    count: usize,
+}
+
+impl Shard {
+    /// Whether it holds the point with this index.
+    pub fn holds(self, index: usize) -> bool {
+        index % self.count == self.number - 1
+    }
+
+    /// The shard of a task of a Slurm array, from its environment.
+    fn of_slurm(given: &str) -> Result<Self, StudyError> {
+        let read = |name: &str| -> Result<usize, StudyError> {
+            let refuse = |why: String| StudyError::Shard {
+                given: shortened(given),
+                why,
+            };
+            let value = std::env::var(name)
+                .map_err(|_| refuse(format!("{name} is not set: this is no array task")))?;
+            value
+                .parse()
+                .map_err(|_| refuse(format!("{name} = {value} is no number")))
+        };
+        // An array may begin at any number.
+        let first = read("SLURM_ARRAY_TASK_MIN").unwrap_or(1);
+        let number = read("SLURM_ARRAY_TASK_ID")?
+            .saturating_add(1)
+            .saturating_sub(first);
+        Self::new(number, read("SLURM_ARRAY_TASK_COUNT")?, given)
+    }
+
+    fn new(number: usize, count: usize, given: &str) -> Result<Self, StudyError> {
+        if (1..=count).contains(&number) {
+            return Ok(Self { number, count });
+        }
+        let why = format!("there is no part {number} of {count}");
+        Err(StudyError::Shard {
+            given: shortened(given),
+            why,
+        })
+    }
+}
+
+impl FromStr for Shard {
+    type Err = StudyError;
+
+    fn from_str(given: &str) -> Result<Self, StudyError> {
+        if given == "slurm" {
+            return Self::of_slurm(given);
+        }
+        let refuse = || StudyError::Shard {
+            given: shortened(given),
+            why: "it is not two numbers".to_owned(),
+        };
+        let (number, count) = given.split_once('/').ok_or_else(refuse)?;
+        let read = |text: &str| text.trim().parse::<usize>().map_err(|_| refuse());
+        Self::new(read(number)?, read(count)?, given)
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}/{}", self.number, self.count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shards_hold_every_point_once() {
+        let shards: Vec<Shard> = (1..=3).map(|k| format!("{k}/3").parse().unwrap()).collect();
+        for index in 0..20 {
+            assert_eq!(shards.iter().filter(|shard| shard.holds(index)).count(), 1);
+        }
+        for wrong in ["0/3", "4/3", "1", "a/b", "1/0"] {
+            assert!(wrong.parse::<Shard>().is_err(), "{wrong}");
+        }
+    }
+}

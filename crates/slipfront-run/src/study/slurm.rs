@@ -1,0 +1,78 @@
+//! A batch script for Slurm: few tasks, each a shard that uses all cores of its node.
+
+use slipfront_case::text::quoted;
+
+/// What a batch script is made for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Batch {
+    /// Name of the job.
+    pub name: String,
+    /// Path of the command, as the job will see it.
+    pub command: String,
+    /// Path of the study file, as the job will see it.
+    pub study: String,
+    /// Folder of the results; every task has one of its own in it.
+    pub out: String,
+    /// Number of tasks.
+    pub tasks: usize,
+}
+
+/// The script.
+pub fn script(batch: &Batch) -> String {
+    let Batch {
+        name,
+        command,
+        study,
+        out,
+        tasks,
+    } = batch;
+    let [command, study, out] = [command, study, out].map(|word| quoted(word));
+    let name: String = name
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
+        .collect();
+    format!(
+        r#"#!/bin/bash
+# {tasks} tasks, each a part of the points of the study on a node of its own. Submit this file with `sbatch`, and
+# add what your cluster asks for there, such as --time and --account. A task that is killed or requeued goes on
+# where it was: finished runs are recorded and never repeated. When all are done, unite them:
+#
+#   {command} study merge {out}/shard-* --out {out}/merged
+#
+#SBATCH --job-name={name}
+#SBATCH --array=1-{tasks}
+#SBATCH --nodes=1
+#SBATCH --ntasks=1
+#SBATCH --exclusive
+#SBATCH --requeue
+#SBATCH --open-mode=append
+#SBATCH --output=slurm-{name}-%a.log
+
+# --exclusive gives the whole node: all its cores are used, one run on each. The number of parts stands here in
+# figures, so that a single task that is submitted again is the same part.
+exec {command} study {study} --yes --shard "$SLURM_ARRAY_TASK_ID/{tasks}" --out {out}/shard-"$SLURM_ARRAY_TASK_ID" \
+  --threads "${{SLURM_CPUS_ON_NODE:-$(nproc)}}"
+"#
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_words_of_the_shell() {
+        let script = script(&Batch {
+            name: "my study".to_owned(),
+            command: "/opt/slipfront".to_owned(),
+            study: "/data/it's mine/study.toml".to_owned(),
+            out: "/data/out".to_owned(),
+            tasks: 3,
+        });
+        assert!(
+            script.contains(r#"study "/data/it's mine/study.toml" --yes"#),
+            "{script}"
+        );
+        assert!(script.contains("#SBATCH --job-name=my-study\n#SBATCH --array=1-3\n"));
+    }
+}

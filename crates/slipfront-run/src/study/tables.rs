@@ -1,0 +1,165 @@
+//! `runs.csv`, one row a run, and `points.csv`, the statistics, one row for each point and quantity.
+
+use super::error::StudyError;
+use super::scheduler::Findings;
+use super::plan::{Plan, Role};
+use super::summary_values::{Quantity, REDUCTION, known};
+use super::journal::Finding;
+use super::statistics::Sample;
+
+/// Columns of `runs.csv` before those of the axes, and after them, before the quantities.
+const BEFORE_AXES: [&str; 3] = ["point", "replicate", "role"];
+const AFTER_AXES: [&str; 4] = ["seed", "run", "status", "reason"];
+
+/// Columns of `points.csv` after those of the axes.
+const STATISTICS: [&str; 9] = [
+    "quantity",
+    "n",
+    "mean",
+    "deviation",
+    "low",
+    "high",
+    "min",
+    "max",
+    "narrow_enough",
+];
+
+/// Whether a column other than those of the quantities has this name, so that no axis can.
+pub(super) fn is_column(name: &str) -> bool {
+    [&BEFORE_AXES[..], &AFTER_AXES, &STATISTICS]
+        .concat()
+        .contains(&name)
+}
+
+/// Columns of all axes.
+fn axis_columns(plan: &Plan) -> impl Iterator<Item = &str> {
+    plan.axes
+        .iter()
+        .flat_map(|axis| &axis.columns)
+        .map(String::as_str)
+}
+
+/// `runs.csv`: what varied, the seed, every number of the summary, and whether the run failed. A reference has rows
+/// of its own.
+///
+/// # Errors
+/// When it cannot be put into words.
+pub(super) fn runs(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyError> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    let quantities = quantities(plan);
+    table.write_record(
+        BEFORE_AXES
+            .into_iter()
+            .chain(axis_columns(plan))
+            .chain(AFTER_AXES)
+            .chain(quantities.iter().map(|(name, _)| *name)),
+    )?;
+    // Sorted by point, replicate and role.
+    for (&run, finding) in &findings.runs {
+        let point = &plan.points[run.point];
+        let mut row = vec![
+            point.index.to_string(),
+            run.replicate.to_string(),
+            role_name(run.role).to_owned(),
+        ];
+        row.extend(plan.columns(point).into_iter().map(|(_, value)| value.to_owned()));
+        row.extend([plan.seed(run).to_string(), plan.folder_name(run)]);
+        let numbers = match finding.as_ref() {
+            Finding::Done(numbers) => {
+                row.extend(["done".to_owned(), String::new()]);
+                Some(numbers)
+            }
+            Finding::Failed(reason) => {
+                row.extend(["failed".to_owned(), reason.clone()]);
+                None
+            }
+        };
+        for &(_, quantity) in &quantities {
+            let value = match (quantity, run.role) {
+                (Quantity::Number(position), _) => numbers.and_then(|numbers| numbers.get(position)),
+                (Quantity::Reduction, Role::Point) => findings.value(run.point, run.replicate, quantity),
+                (Quantity::Reduction, Role::Reference) => None,
+            };
+            row.push(cell(value));
+        }
+        table.write_record(row)?;
+    }
+    finish(table)
+}
+
+/// The quantities that the tables of a study have: a reduction only against a reference.
+fn quantities(plan: &Plan) -> Vec<(&'static str, Quantity)> {
+    known()
+        .iter()
+        .filter(|name| plan.has_reference() || *name != REDUCTION)
+        .filter_map(|name| Some((name.as_str(), Quantity::named(name)?)))
+        .collect()
+}
+
+/// `points.csv`: for each point and quantity the number of values, their mean, standard deviation, confidence
+/// interval of the mean, smallest and largest; reductions are paired by seed.
+///
+/// # Errors
+/// When it cannot be put into words.
+pub(super) fn points(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyError> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    table.write_record(["point"].into_iter().chain(axis_columns(plan)).chain(STATISTICS))?;
+    let quantities = quantities(plan);
+    for (position, point) in plan.points.iter().enumerate() {
+        for &(name, _) in &quantities {
+            let sample = sample(plan, findings, position, name);
+            let until = plan.settings.until.as_ref();
+            let decides = until.is_some_and(|until| until.key == name);
+            // That no run has the number which decides is told as well.
+            if sample.is_none() && !decides {
+                continue;
+            }
+            let mut row = vec![point.index.to_string()];
+            row.extend(plan.columns(point).into_iter().map(|(_, value)| value.to_owned()));
+            row.extend([name.to_owned(), sample.map_or(0, |sample| sample.n).to_string()]);
+            let number = |of: fn(Sample) -> Option<f64>| cell(sample.and_then(of));
+            row.push(number(|sample| Some(sample.mean)));
+            row.push(number(|sample| sample.deviation));
+            row.push(number(|sample| sample.interval().map(|[low, _]| low)));
+            row.push(number(|sample| sample.interval().map(|[_, high]| high)));
+            row.push(number(|sample| Some(sample.min)));
+            row.push(number(|sample| Some(sample.max)));
+            let narrow = findings.points[position].narrow.filter(|_| decides);
+            row.push(narrow.map_or(String::new(), |narrow| narrow.to_string()));
+            table.write_record(row)?;
+        }
+    }
+    finish(table)
+}
+
+/// Statistics of a quantity at the point at `position` of the plan; none without values.
+pub fn sample(plan: &Plan, findings: &Findings, position: usize, name: &str) -> Option<Sample> {
+    let quantity = Quantity::named(name)?;
+    let replicates = findings.points.get(position)?.replicates;
+    let values: Vec<f64> = (0..replicates)
+        .filter_map(|replicate| findings.value(position, replicate, quantity))
+        .collect();
+    Sample::of(&values, plan.settings.confidence())
+}
+
+fn role_name(role: Role) -> &'static str {
+    match role {
+        Role::Point => "point",
+        Role::Reference => "reference",
+    }
+}
+
+fn cell(value: Option<f64>) -> String {
+    value.map_or(String::new(), number_cell)
+}
+
+/// The shortest number that reads back as the same bits.
+fn number_cell(value: f64) -> String {
+    format!("{value:?}")
+}
+
+fn finish(table: csv::Writer<Vec<u8>>) -> Result<Vec<u8>, StudyError> {
+    table
+        .into_inner()
+        .map_err(|error| csv::Error::from(error.into_error()).into())
+}

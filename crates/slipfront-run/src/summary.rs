@@ -1,0 +1,215 @@
+//! The numbers of a run: what `summary.json` holds.
+
+use serde::{Deserialize, Serialize};
+use slipfront::StopReason;
+use slipfront::observe::{Doubt, Energies, Frame, Kinetic, Peak};
+
+use slipfront_case::case::Case;
+
+/// The numbers of a run. Starred quantities are dimensionless (Eq. 11); times without a star are in s.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Summary {
+    /// mu_s*, the first peak of mu* (or its largest value where there is no transition).
+    pub static_friction_star: f64,
+    /// mu_s.
+    pub static_friction: f64,
+    /// t_s*.
+    pub onset_time_star: f64,
+    /// t_s, s.
+    pub onset_time_s: f64,
+    /// t* of the first slip of a block in contact.
+    pub first_slip_time_star: Option<f64>,
+    /// The same in s.
+    pub first_slip_time_s: Option<f64>,
+    /// mu_k*, the mean of mu* over the kinetic window.
+    pub kinetic_friction_star: Option<f64>,
+    /// Standard error of mu_k*; none where the window supports none (see the warnings).
+    pub kinetic_friction_star_uncertainty: Option<f64>,
+    /// mu_k.
+    pub kinetic_friction: Option<f64>,
+    /// [t1*, t2*] of that mean.
+    pub kinetic_window_star: Option<[f64; 2]>,
+    /// Mean N* over the kinetic window, %.
+    pub sliding_percent_kinetic: Option<f64>,
+    /// Largest N*, %.
+    pub sliding_percent_max: f64,
+    /// Largest mu* of the whole run; above mu_s* where a later peak is higher than the first.
+    pub mu_star_max: f64,
+    /// Whether mu* fell at least half-way to the steady level after its first peak.
+    pub transition: bool,
+    /// The instants A-F that were found.
+    pub instants: Vec<InstantSummary>,
+    /// V*.
+    pub v_star: f64,
+    /// R*.
+    pub r_star: f64,
+    /// Omega*.
+    pub omega_star: f64,
+    /// sigma_s*.
+    pub sigma_static_star: f64,
+    /// sigma_k*.
+    pub sigma_kinetic_star: f64,
+    /// eps = P mu_s/E.
+    pub epsilon: f64,
+    /// N.
+    pub n_blocks: usize,
+    /// A* as meshed, %.
+    pub texture_percent: f64,
+    /// A* as asked for, %; none where a mask or polygon says so block by block only.
+    pub texture_percent_asked: Option<f64>,
+    /// dt*.
+    pub dt_star: f64,
+    /// Steps done.
+    pub steps: u64,
+    /// Seed of the random coefficients.
+    pub seed: u64,
+    /// Negative draws of the coefficients that were set to 0.
+    pub negative_draws: usize,
+    /// What the energy ledger lacks, relative to the energy put in.
+    pub energy_error: f64,
+    /// Work of the drive, J.
+    pub work_j: f64,
+    /// Lost to friction, J.
+    pub friction_loss_j: f64,
+    /// Lost to damping, J.
+    pub damping_loss_j: f64,
+    /// What a reader should know before trusting the numbers.
+    pub warnings: Vec<String>,
+    /// Version of slipfront.
+    pub version: String,
+}
+
+/// One of the instants A-F.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InstantSummary {
+    /// A-F.
+    pub instant: char,
+    /// t*.
+    pub time_star: f64,
+    /// mu*.
+    pub mu_star: f64,
+    /// N*, %.
+    pub sliding_percent: f64,
+}
+
+/// What the observers of a run have found.
+pub(crate) struct Observed<'a> {
+    pub reason: StopReason,
+    pub steps: u64,
+    pub peak: Peak,
+    pub kinetic: Option<Kinetic>,
+    pub first_slip: Option<f64>,
+    pub sliding_percent_max: f64,
+    pub energies: Energies,
+    pub instants: &'a [(char, Frame)],
+}
+
+impl Summary {
+    pub(crate) fn new(case: &Case, found: &Observed) -> Self {
+        let Observed {
+            peak,
+            kinetic,
+            first_slip,
+            energies,
+            ..
+        } = found;
+        let (mean, time) = (case.scales.mu_static_mean, case.scales.time());
+        let energy = case.scales.energy();
+        let instants = found
+            .instants
+            .iter()
+            .map(|(letter, frame)| InstantSummary {
+                instant: *letter,
+                time_star: frame.time_star,
+                mu_star: frame.point.mu_star,
+                sliding_percent: frame.point.sliding_percent,
+            })
+            .collect();
+        Self {
+            static_friction_star: peak.mu_star,
+            static_friction: peak.mu_star * mean,
+            onset_time_star: peak.time_star,
+            onset_time_s: peak.time_star * time,
+            first_slip_time_star: *first_slip,
+            first_slip_time_s: first_slip.map(|star| star * time),
+            kinetic_friction_star: kinetic.map(|k| k.mu_star),
+            kinetic_friction_star_uncertainty: kinetic.and_then(|k| k.uncertainty.ok()),
+            kinetic_friction: kinetic.map(|k| k.mu_star * mean),
+            kinetic_window_star: kinetic.map(|k| k.window_star),
+            sliding_percent_kinetic: kinetic.map(|k| k.sliding_percent),
+            sliding_percent_max: found.sliding_percent_max,
+            mu_star_max: peak.mu_star_max,
+            transition: peak.ended,
+            instants,
+            v_star: case.groups.v_star,
+            r_star: case.groups.r_star,
+            omega_star: case.groups.omega_star,
+            sigma_static_star: case.groups.sigma_static_star,
+            sigma_kinetic_star: case.groups.sigma_kinetic_star,
+            epsilon: case.groups.epsilon,
+            n_blocks: case.model.lattice.n_blocks(),
+            texture_percent: case.texture.meshed_percent,
+            texture_percent_asked: case.texture.asked_percent,
+            dt_star: case.schedule.dt_star,
+            steps: found.steps,
+            seed: case.file.friction.seed,
+            negative_draws: case.negative_draws,
+            energy_error: energies.error(),
+            work_j: energies.work * energy,
+            friction_loss_j: energies.friction_loss * energy,
+            damping_loss_j: energies.damping_loss * energy,
+            warnings: [case.warnings(), after_run(found)].concat(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+        }
+    }
+}
+
+/// Share of the energy that the ledger may miss; a step of 0.1 stays a factor of ten below.
+const LARGE_ENERGY_ERROR: f64 = 0.01;
+
+/// What the run itself gives reason to warn of.
+fn after_run(run: &Observed) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if run.energies.error().abs() > LARGE_ENERGY_ERROR {
+        warnings.push(format!(
+            "the ledger of energies misses {:.0} % of what was put in: the time step is too coarse for this case",
+            100.0 * run.energies.error().abs()
+        ));
+    }
+    if !run.peak.ended {
+        warnings.push(
+            "mu* never fell half-way to its steady level: there was no transition, and static_friction_star is the \
+             largest mu* of the run"
+                .to_owned(),
+        );
+    }
+    if run.first_slip.is_none() {
+        warnings.push(
+            "no block in contact slipped before the run ended: kinetic_friction_star is empty; lengthen \
+             time.duration_star"
+                .to_owned(),
+        );
+        return warnings;
+    }
+    match run.kinetic.map(|kinetic| kinetic.uncertainty) {
+        None if run.reason == StopReason::Onset => {}
+        None => warnings.push(
+            "the run ended before the kinetic window began: kinetic_friction_star is empty; lengthen \
+             time.duration_star or set time.kinetic_from_star"
+                .to_owned(),
+        ),
+        Some(Err(Doubt::TooFewBlocks { found, needed_time_star })) => warnings.push(format!(
+            "mu_k* has no uncertainty: a half of the kinetic window holds {found} independent blocks of the 10 needed; \
+             a run of time.duration_star = {needed_time_star:.0} or more would do"
+        )),
+        Some(Err(Doubt::Drift { halves: [one, other], needed_time_star })) => warnings.push(format!(
+            "mu_k* has no uncertainty: mu* still drifts, from {one:.4} to {other:.4} between the halves of the kinetic \
+             window; run to time.duration_star = {needed_time_star:.0} or more, or begin later with \
+             time.kinetic_from_star"
+        )),
+        Some(Ok(_)) => {}
+    }
+    warnings
+}

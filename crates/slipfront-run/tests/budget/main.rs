@@ -1,0 +1,188 @@
+//! What a run takes is what was said before it began.
+
+#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use png::{BitDepth, ColorType, Encoder};
+use slipfront_case::case::Case;
+use slipfront_case::case_file::CaseFile;
+use slipfront_run::run_folder::RunFolder;
+use slipfront_run::{study, results, running};
+use slipfront_run::study::{Plan, Records, StudyFile};
+
+/// The system's allocator, counting bytes of all threads.
+struct Counting;
+
+static LIVE: AtomicUsize = AtomicUsize::new(0);
+static PEAK: AtomicUsize = AtomicUsize::new(0);
+
+fn grow(bytes: usize) {
+    let live = LIVE.fetch_add(bytes, Ordering::Relaxed) + bytes;
+    PEAK.fetch_max(live, Ordering::Relaxed);
+}
+
+#[allow(unsafe_code)] // A global allocator cannot be written otherwise; all work is the system's.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        grow(layout.size());
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        LIVE.fetch_sub(layout.size(), Ordering::Relaxed);
+        unsafe { System.dealloc(block, layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        grow(layout.size());
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        LIVE.fetch_sub(layout.size(), Ordering::Relaxed);
+        grow(size);
+        unsafe { System.realloc(block, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Most bytes in use at once during some work.
+fn peak<T>(work: impl FnOnce() -> T) -> (f64, T) {
+    PEAK.store(LIVE.load(Ordering::Relaxed), Ordering::Relaxed);
+    let done = work();
+    (PEAK.load(Ordering::Relaxed) as f64, done)
+}
+
+/// The program itself, which no allocator sees.
+const PROGRAM: f64 = 8.0 * 1024.0 * 1024.0;
+
+/// No less than is taken, and not so much more that a run is refused which there is room for.
+fn assert_honest(what: &str, said: f64, taken: f64) {
+    let [shown_said, shown_taken] = [said, taken].map(|bytes| bytes / 1e6);
+    assert!(
+        said >= taken,
+        "{what}: {shown_said} MB said, {shown_taken} MB taken"
+    );
+    assert!(
+        said <= 1.5 * (taken + PROGRAM),
+        "{what}: {shown_said} MB said, only {shown_taken} MB taken"
+    );
+}
+
+/// A `.npy` file of 400 x 400 values.
+fn npy(descr: &str, data: impl Iterator<Item = u8>) -> Vec<u8> {
+    let mut text = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': (400, 400), }}");
+    text += &" ".repeat(118 - 1 - text.len());
+    let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    bytes.extend(text.bytes().chain(*b"\n").chain(data));
+    bytes
+}
+
+/// Files that are read: coefficients and a mask of 400 x 400 blocks, and a mask of 4000 x 4000 pixels, half of each.
+fn write_inputs(folder: &Path) {
+    let blocks = 400 * 400;
+    let mu = npy("<f8", (0..blocks).flat_map(|_| 0.9f64.to_le_bytes()));
+    std::fs::write(folder.join("mu.npy"), mu).unwrap();
+    let mask = npy("|u1", (0..blocks).map(|block| u8::from(2 * block < blocks)));
+    std::fs::write(folder.join("mask.npy"), mask).unwrap();
+    let file = std::fs::File::create(folder.join("mask.png")).unwrap();
+    let mut encoder = Encoder::new(file, 4000, 4000);
+    encoder.set_color(ColorType::Grayscale);
+    encoder.set_depth(BitDepth::One);
+    let mut writer = encoder.write_header().unwrap();
+    // The top row comes first, of the largest y: bright above, dark below, where the array is textured too.
+    let rows = [vec![255; 500 * 2000], vec![0; 500 * 2000]].concat();
+    writer.write_image_data(&rows).unwrap();
+    writer.finish().unwrap();
+}
+
+/// The allocator counts for the whole process: one test, one thing after the other.
+#[test]
+fn what_is_said_is_what_is_taken() {
+    let folder = tempfile::tempdir().unwrap();
+    write_inputs(folder.path());
+    for sets in [
+        // Pictures, and the rows of a long series.
+        "slider.blocks=[1,1]",
+        "slider.blocks=[25,25];output.snapshots=[]",
+        "slider.blocks=[3,3];output.series=0.1;time.duration_star=8000",
+        // The lattice.
+        "slider.blocks=[600,600];time.duration_star=1;output.snapshots=[]",
+        "slider.blocks=[256,256];drive.v_star=0.3",
+        // Snapshots.
+        "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1}",
+        "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1};output.stride=3",
+        "slider.blocks=[2,2];time.duration_star=200;output.snapshots={every=0.1};output.fields=[]",
+        // What is read.
+        "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.mu_static_field='mu.npy';\
+         friction.mu_kinetic_field='mu.npy';texture=[{shape='mask',file='mask.png'},{shape='mask',file='mask.npy'}]",
+        // A thousand outlines of 4096 vertices.
+        "slider.blocks=[64,64];time.duration_star=1;output.snapshots=[];texture=[{shape='cavity',s=3,w=0.2,coverage=20,array=[40,25]}]",
+    ] {
+        let overrides: Vec<String> = sets.split(';').map(str::to_owned).collect();
+        let out = folder.path().join("out");
+        let (taken, (memory, disk)) = peak(|| {
+            let file = CaseFile::parse("", "case", &overrides).unwrap();
+            let case = Case::new(file, "case", folder.path()).unwrap();
+            let mut record = run::run(&case, 1).unwrap();
+            let out = RunFolder::prepare(&out, false, &case.inputs).unwrap();
+            results::write(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();
+            (case.budget.memory(), case.budget.disk())
+        });
+        assert_honest(sets, memory, taken);
+        assert_room(sets, disk, &out);
+        std::fs::remove_dir_all(out).unwrap();
+    }
+    study(folder.path());
+}
+
+/// Bytes of all files below a folder.
+fn bytes_in(folder: &Path) -> f64 {
+    let entries = std::fs::read_dir(folder).unwrap().map(Result::unwrap);
+    let bytes = |entry: std::fs::DirEntry| match entry.metadata().unwrap() {
+        file if file.is_file() => file.len() as f64,
+        _ => bytes_in(&entry.path()),
+    };
+    entries.map(bytes).sum()
+}
+
+fn assert_room(what: &str, said: f64, out: &Path) {
+    let taken = bytes_in(out);
+    assert!(said >= taken, "{what}: {said} bytes said, {taken} taken");
+    // A number of a row has 18 characters at the mean and 24 at the most; pictures of few colours are small.
+    assert!(
+        said <= 1.5 * taken + 2e6,
+        "{what}: {said} bytes said, only {taken} taken"
+    );
+}
+
+/// Runs at once, of two sizes.
+fn study(folder: &Path) {
+    let text = "base.time.duration_star = 2\n[study]\nreplicates = 2\n[[axes]]\nkey = 'slider.blocks'\n\
+                list = [[10, 10], [500, 500]]";
+    let file = StudyFile::parse(text, "study.toml", "study", folder).unwrap();
+    let plan = Plan::new(&file, None).unwrap();
+    let mut alone = 0.0;
+    for threads in [1, 2] {
+        let records = tempfile::tempdir().unwrap();
+        // The fonts of the pictures before, which a study has not yet when it runs.
+        let before = LIVE.load(Ordering::Relaxed) as f64;
+        let (taken, ()) = peak(|| {
+            let mut records = Records::open(records.path()).unwrap();
+            let never = AtomicBool::new(false);
+            study::execute(&plan, &mut records, folder, threads, &never, &mut |_| {}).unwrap();
+        });
+        let taken = taken - before;
+        if threads == 1 {
+            alone = taken;
+        }
+        // Whether the largest of two meet is up to the system: they may.
+        let most = taken.max(threads as f64 * alone);
+        assert_honest(&format!("{threads} runs at once"), plan.memory(threads), most);
+    }
+}

@@ -1,0 +1,140 @@
+//! Every case under `cases/` loads, runs, and gives the numbers pinned in `pinned.toml` beside this file.
+//!
+//! A new case fails until its pin is added: the failure prints the lines to add.
+
+// Helpers of tests are not tests by themselves to clippy.
+#![allow(clippy::unwrap_used)]
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+use serde::Deserialize;
+use slipfront_case::case::Case;
+use slipfront_run::running;
+use slipfront_run::summary::Summary;
+
+/// Relative deviation that is let pass.
+///
+/// A run gives the same bits every time and on every machine: the order of all sums is fixed, and no result depends on
+/// the system's mathematical library. So nothing has to be let pass today; 1e-9 leaves room for another order of
+/// summation, and is far below what any change of physics, scheme or random numbers does.
+///
+/// After the onset the motion is chaotic, and a change of rounding comes back as a change of kinetic friction by
+/// its statistical scatter, a few percent. It is pinned as tightly all the same, because rounding does not
+/// change by itself: whoever reorders a sum on purpose, and sees all pins hold but those of kinetic friction, may renew
+/// these.
+const TOLERANCE: f64 = 1e-9;
+
+/// Folders of other tests, and of files that are not single cases.
+const ELSEWHERE: [&str; 2] = ["paper", "studies"];
+
+/// The pinned results of one case.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Pin {
+    static_friction_star: f64,
+    onset_time_star: f64,
+    first_slip_time_star: f64,
+    kinetic_friction_star: f64,
+    texture_percent: f64,
+}
+
+impl Pin {
+    /// Results that do not exist are not a number, which equals no pin.
+    fn of(summary: &Summary) -> Self {
+        Self {
+            static_friction_star: summary.static_friction_star,
+            onset_time_star: summary.onset_time_star,
+            first_slip_time_star: summary.first_slip_time_star.unwrap_or(f64::NAN),
+            kinetic_friction_star: summary.kinetic_friction_star.unwrap_or(f64::NAN),
+            texture_percent: summary.texture_percent,
+        }
+    }
+
+    /// As it stands in `pinned.toml`.
+    fn lines(&self, name: &str) -> String {
+        format!(
+            "[{name:?}]\nstatic_friction_star = {:?}\nonset_time_star = {:?}\nfirst_slip_time_star = {:?}\n\
+             kinetic_friction_star = {:?}\ntexture_percent = {:?}\n",
+            self.static_friction_star,
+            self.onset_time_star,
+            self.first_slip_time_star,
+            self.kinetic_friction_star,
+            self.texture_percent
+        )
+    }
+
+    fn holds(&self, found: &Pin) -> bool {
+        let close = |pinned: f64, found: f64| (found - pinned).abs() <= TOLERANCE * pinned.abs();
+        close(self.static_friction_star, found.static_friction_star)
+            && close(self.onset_time_star, found.onset_time_star)
+            && close(self.first_slip_time_star, found.first_slip_time_star)
+            && close(self.kinetic_friction_star, found.kinetic_friction_star)
+            // A count of blocks.
+            && self.texture_percent == found.texture_percent
+    }
+}
+
+fn cases() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases")
+}
+
+/// Every case file below `folder`, by its path without the ending.
+fn case_files(folder: &Path, prefix: &str) -> Vec<(String, PathBuf)> {
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        if path.is_dir() && !ELSEWHERE.contains(&name.as_str()) {
+            files.extend(case_files(&path, &format!("{prefix}{name}/")));
+        } else if path.extension().is_some_and(|ending| ending == "toml") {
+            files.push((format!("{prefix}{name}"), path));
+        }
+    }
+    files.sort();
+    files
+}
+
+#[test]
+fn every_case_gives_its_pinned_results() {
+    let text = include_str!("pinned.toml");
+    let mut pinned: BTreeMap<String, Pin> = toml::from_str(text).unwrap();
+    let found: Vec<(String, Pin)> = case_files(&cases(), "")
+        .into_par_iter()
+        .map(|(name, path)| {
+            let case = Case::load(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
+            let record = run::run(&case, 1).unwrap();
+            (name, Pin::of(&record.summary))
+        })
+        .collect();
+    assert!(!found.is_empty(), "no case in {}", cases().display());
+    let mut complaints = String::new();
+    for (name, found) in &found {
+        match pinned.remove(name) {
+            Some(pin) if pin.holds(found) => {}
+            Some(pin) => {
+                complaints += &format!(
+                    "\n{name} has changed: it was\n\n{}\nand is now\n\n{}",
+                    pin.lines(name),
+                    found.lines(name)
+                );
+            }
+            None => {
+                complaints += &format!("\n{name} is new: add to pinned.toml\n\n{}", found.lines(name));
+            }
+        }
+    }
+    for name in pinned.keys() {
+        complaints += &format!("\n{name} is pinned but is no case any more\n");
+    }
+    assert!(complaints.is_empty(), "{complaints}");
+}
+
+#[test]
+fn every_case_says_first_what_it_shows() {
+    for (name, path) in case_files(&cases(), "") {
+        let text = std::fs::read_to_string(path).unwrap();
+        assert!(text.starts_with("# "), "{name} opens without a comment");
+    }
+}
