@@ -17,7 +17,6 @@ pub mod folder;
 mod legible;
 pub mod manifest;
 pub mod paper;
-pub mod pictures;
 pub mod quantity;
 pub mod results;
 pub mod run;
@@ -25,3 +24,5 @@ pub mod series;
 pub mod study;
 pub mod summary;
 pub mod verify;
+
+pub use slipfront_plot as pictures;
