@@ -15,6 +15,7 @@ use crate::case::{Case, Snapshots};
 use crate::case_file::CaseError;
 use crate::fields::FieldName;
 use crate::pictures::{FieldMap, FrictionCurve};
+use crate::results::marked_curve;
 use crate::run::{self, Record};
 use crate::study::{self, Findings, Keep, Plan, Quantity, Records, Role, RunKey, StudyError, StudyFile};
 
@@ -211,7 +212,7 @@ impl Run {
             time_star: rows.iter().map(|row| row.time_star).collect(),
             mu_star: rows.iter().map(|row| row.point.mu_star).collect(),
             sliding_percent: rows.iter().map(|row| row.point.sliding_percent).collect(),
-            ..FrictionCurve::marked(label.to_owned(), &self.record.summary)
+            ..marked_curve(label.to_owned(), &self.record.summary)
         }
     }
 
