@@ -14,6 +14,7 @@ use crate::measurements::Number;
 use slipfront_case::case::{Case, Snapshots};
 use slipfront_case::case_file::CaseError;
 use slipfront_case::field_name::FieldName;
+use slipfront_run::pictures::marked_curve;
 use slipfront_plot::{FieldMap, FrictionCurve};
 use slipfront_run::{running as run, study};
 use slipfront_run::running::Record;
@@ -212,7 +213,7 @@ impl Run {
             time_star: rows.iter().map(|row| row.time_star).collect(),
             mu_star: rows.iter().map(|row| row.point.mu_star).collect(),
             sliding_percent: rows.iter().map(|row| row.point.sliding_percent).collect(),
-            ..FrictionCurve::marked(label.to_owned(), &self.record.summary)
+            ..marked_curve(label.to_owned(), &self.record.summary)
         }
     }
 

@@ -15,7 +15,7 @@ use slipfront_case::case::Case;
 use slipfront_case::disk::{open_regular, remove_if_there, stage, sync_folder};
 use slipfront_case::text::shortened;
 use crate::manifest::Manifest;
-use crate::names::{CHECKPOINT, CHECKPOINT_BEGINNING, PREVIOUS};
+use crate::names::{CHECKPOINT, PREVIOUS};
 use crate::running::{RunState, Running};
 
 /// How the file is laid out. A program reads no other layout.

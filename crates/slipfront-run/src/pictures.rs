@@ -44,33 +44,31 @@ fn friction_curve(folder: &Path) -> Result<FrictionCurve, ResultsError> {
         time_star: rows.iter().map(|row| row.time_star).collect(),
         mu_star: rows.iter().map(|row| row.mu_star).collect(),
         sliding_percent: rows.iter().map(|row| row.sliding_percent).collect(),
-        ..FrictionCurve::marked(folder.display().to_string(), &summary)
+        ..marked_curve(folder.display().to_string(), &summary)
     })
 }
 
-impl FrictionCurve {
-    /// All that a summary knows of a curve, without its points.
-    pub(crate) fn marked(label: String, summary: &Summary) -> Self {
-        let kinetic = summary.kinetic_window_star.zip(summary.kinetic_friction_star);
-        let peak = (summary.onset_time_star, summary.static_friction_star);
-        let instants = summary.instants.iter().map(|instant| Instant {
-            letter: instant.instant,
-            time_star: instant.time_star,
-            mu_star: instant.mu_star,
-        });
-        Self {
-            label,
-            first_slip_time_star: summary.first_slip_time_star,
-            peak: summary.transition.then_some(peak),
-            kinetic: kinetic.map(|([from, to], mean)| Kinetic {
-                from,
-                to,
-                mean,
-                uncertainty: summary.kinetic_friction_star_uncertainty,
-            }),
-            instants: instants.collect(),
-            ..Self::default()
-        }
+/// All that a summary knows of a curve, without its points.
+pub fn marked_curve(label: String, summary: &Summary) -> FrictionCurve {
+    let kinetic = summary.kinetic_window_star.zip(summary.kinetic_friction_star);
+    let peak = (summary.onset_time_star, summary.static_friction_star);
+    let instants = summary.instants.iter().map(|instant| Instant {
+        letter: instant.instant,
+        time_star: instant.time_star,
+        mu_star: instant.mu_star,
+    });
+    FrictionCurve {
+        label,
+        first_slip_time_star: summary.first_slip_time_star,
+        peak: summary.transition.then_some(peak),
+        kinetic: kinetic.map(|([from, to], mean)| Kinetic {
+            from,
+            to,
+            mean,
+            uncertainty: summary.kinetic_friction_star_uncertainty,
+        }),
+        instants: instants.collect(),
+        ..FrictionCurve::default()
     }
 }
 

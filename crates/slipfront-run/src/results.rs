@@ -4,19 +4,20 @@
 
 use std::path::{Path, PathBuf};
 
+use slipfront_case::disk;
 use thiserror::Error;
 
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
-use crate::{fields, run_folder};
+use crate::fields;
 use crate::fields::{FieldFrame, FieldsError, FieldsFile, StaticFields};
 use slipfront_case::field_name::FieldName;
 use crate::run_folder::error::FolderError;
 use crate::run_folder::RunFolder;
 use slipfront_case::text;
 use crate::manifest::Manifest;
-use slipfront_plot;
-use slipfront_plot::{FrictionCurve, Instant, Kinetic, Picture, PictureError, StressMap, StressMaps};
+#[cfg(feature = "plot")]
+use slipfront_plot::PictureError;
 use crate::running::Record;
 use crate::series;
 use crate::series::{SeriesError, SeriesRow};
@@ -49,6 +50,7 @@ pub enum ResultsError {
         source: serde_json::Error,
     },
     /// A picture.
+    #[cfg(feature = "plot")]
     #[error("cannot draw {name}: {source}")]
     Picture {
         /// Which one.
@@ -75,7 +77,8 @@ pub fn write(
     folder.write("series.csv", &series::to_csv(rows)?)?;
     let fields = folder.claim("fields.nc")?;
     write_fields(case, record, &fields)?;
-    for (name, picture) in draw(folder.path())? {
+    #[cfg(feature = "plot")]
+    for (name, picture) in crate::pictures::draw(folder.path())? {
         folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
         folder.write(&format!("{name}.png"), &picture.png)?;
     }

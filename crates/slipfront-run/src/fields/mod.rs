@@ -12,11 +12,9 @@ mod write;
 use std::io;
 use std::path::PathBuf;
 
-use serde::{Deserialize, Serialize};
-use slipfront::observe::Field;
+use slipfront_case::field_name::FieldName;
 
 pub use read::{read_fields, read_maps};
-pub(crate) use write::smallest_stride;
 pub use write::write_fields;
 
 /// What never changes in a run, block by block: `nx * ny` values each, row-major, row j = 0 first, not thinned.

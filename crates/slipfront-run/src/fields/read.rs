@@ -7,7 +7,9 @@ use super::names::{
     BLOCK_SIZE, BLOCKS, FIRST_SLIP, LABEL, LABEL_LENGTH, MU_KINETIC, MU_STATIC, STEP, STRIDE, TEXTURED, TIME,
     TIME_STAR, TIME_UNIT, X, Y,
 };
-use super::{FieldFrame, FieldName, FieldsData, FieldsError};
+use slipfront_case::field_name::FieldName;
+
+use super::{FieldFrame, FieldsData, FieldsError};
 use slipfront_case::text;
 
 /// Reads a `fields.nc` that [`write_fields`](super::write_fields) has written.
@@ -38,7 +40,7 @@ pub fn read_fields(path: &Path) -> Result<FieldsData, FieldsError> {
 /// # Errors
 ///
 /// As for [`read_fields`].
-pub fn read_maps(path: &Path, field: FieldName, most: usize) -> Result<FieldsData, FieldsError> {
+pub fn read_maps(path: &Path, field: most: usize) -> Result<FieldsData, FieldsError> {
     let read = || {
         let mut file = Classic::open(path)?;
         let records = file.records();

@@ -13,7 +13,9 @@ use super::names::{
     BLOCK_SIZE, BLOCKS, FIRST_SLIP, LABEL, LABEL_LENGTH, MU_KINETIC, MU_STATIC, STEP, STRIDE, TEXTURED, TIME,
     TIME_STAR, TIME_UNIT, X, Y,
 };
-use super::{FieldName, FieldsError, FieldsFile, thin};
+use slipfront_case::case::smallest_stride;
+
+use super::{FieldsError, FieldsFile, thin};
 use slipfront_case::disk::fill_whole;
 
 /// Writes `fields.nc`.

@@ -10,7 +10,6 @@ use super::scheduler::Findings;
 use super::plan::Plan;
 use super::summary_values::REDUCTION;
 use super::tables::sample;
-use slipfront_plot;
 use slipfront_plot::{Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Response, Responses, symbol, title};
 
 /// What is drawn, where the study has it.
@@ -187,7 +186,7 @@ fn curves(
         .into_iter()
         .map(|at| curve(axes, x, &[fixed, &at].concat(), varied, values))
         .collect();
-    pictures::response(&Responses {
+    slipfront_plot::response(&Responses {
         x_title: title(axes[x].title()),
         log_x: axes[x].spacing == Spacing::Logarithmic,
         log_y: false,
@@ -269,7 +268,7 @@ fn map(axes: &[Axis], x: usize, y: usize, quantity: &str, values: &Values) -> Re
         values: levels.iter().map(|(at, _)| *at).collect(),
         log: axes[axis].spacing == Spacing::Logarithmic,
     };
-    pictures::heat_map(&HeatMap {
+    slipfront_plot::heat_map(&HeatMap {
         x: heat_axis(x, &columns),
         y: heat_axis(y, &rows),
         value_title: title(quantity),
@@ -306,7 +305,7 @@ fn bars(axes: &[Axis], quantity: &str, values: &Values) -> Result<Picture, Pictu
         levels(0).map(group).collect()
     };
     let legend_title = axes.get(1).map_or(String::new(), |axis| symbol(axis.title()));
-    pictures::bars(&BarChart {
+    slipfront_plot::bars(&BarChart {
         y_title: title(quantity),
         x_title: title(axes[0].title()),
         legend_title,

@@ -10,8 +10,8 @@ use super::error::StudyError;
 use super::study_file::{Base, Keep, Settings, StudyFile};
 use super::folder::StudyFolder;
 use super::shard::Shard;
-use slipfront_case::case::{budget, Case, check_fields};
-use slipfront_case::case::budget::{Budget, PROGRAM};
+use slipfront_case::case::{Budget, Case, PROGRAM, check_fields};
+use slipfront_case::machine;
 use slipfront_case::machine::{available_memory, free_disk};
 use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Output, Snapshots};
 use slipfront_case::text::shown;
@@ -312,7 +312,7 @@ impl Plan {
     pub fn check_memory(&self, threads: usize) -> Result<(), StudyError> {
         let available = available_memory().unwrap_or(f64::INFINITY);
         // A process may be given less than the machine has.
-        let given = budget::most_at_once(self.memory(threads).min(available));
+        let given = machine::most_at_once(self.memory(threads).min(available));
         self.compare_memory(threads, given)
     }
 
@@ -325,17 +325,17 @@ impl Plan {
             return Ok(());
         }
         let fit = ((available - PROGRAM - self.planning()) / largest).max(0.0) as usize;
-        let available = budget::shown(available);
+        let available = machine::shown(available);
         if fit == 0 {
             return Err(StudyError::PointMemory {
                 point: self.describe(&self.points[run.point]),
-                needed: budget::shown(largest),
+                needed: machine::shown(largest),
                 available,
             });
         }
         Err(StudyError::Memory {
             threads,
-            needed: budget::shown(needed),
+            needed: machine::shown(needed),
             available,
             fit,
         })
@@ -359,8 +359,8 @@ impl Plan {
         let needed = self.disk(self.runs(self.settings.min_replicates()).filter(lacking));
         match free_disk(folder.path()) {
             Some(free) if needed > free => Err(StudyError::Disk {
-                needed: budget::shown(needed),
-                free: budget::shown(free),
+                needed: machine::shown(needed),
+                free: machine::shown(free),
                 path: folder.path().to_owned(),
             }),
             _ => Ok(()),

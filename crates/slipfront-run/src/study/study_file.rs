@@ -202,7 +202,7 @@ impl StudyFile {
                 .filter(|(key, _)| *key != "base")
                 .map(|(key, value)| (key.clone(), value.clone())),
         );
-        let copies = inputs::copy(&mut table, &self.base.folder)?;
+        let copies = input_copies::copy(&mut table, &self.base.folder)?;
         Ok((portable_text(table)?, copies))
     }
 

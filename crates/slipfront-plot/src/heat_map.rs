@@ -1,14 +1,14 @@
 //! A quantity over two axes of a parametric study.
 
-use super::axis::{drawable, range, widened};
-use super::canvas::{Align, Area, Canvas, Image, level, level_colour};
-use super::scale::{Scale, Way, apart};
-use super::sides::{
+use crate::axis::{drawable, range, widened};
+use crate::canvas::{Align, Area, Canvas, Image, level, level_colour};
+use crate::frame::{
     BAR_WIDTH, LOWER_ROOM, Tick, colour_bar, left_room, left_side, lower_side, short_ticks, widest,
 };
-use super::style::{BLACK, BLANK, COLUMN_WIDTH, MARGIN, Rgb, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WHITE};
-use super::text::{MINUS, Text, number};
-use super::{Picture, PictureError};
+use crate::picture::{Picture, PictureError};
+use crate::scale::{Direction, Scale, apart};
+use crate::style::{BLACK, BLANK, COLUMN_WIDTH, MARGIN, Rgb, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WHITE};
+use crate::text::{MINUS, Text, number};
 
 const HEIGHT: f64 = 560.0;
 /// A number at the bar's upper end stands half beyond it.
@@ -36,7 +36,7 @@ pub struct HeatMap {
 /// An axis of a map.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HeatAxis {
-    /// What the axis is; see [`title`](super::title).
+    /// What the axis is; see [`title`](crate::title).
     pub title: String,
     /// Where its cells are, in any order, all different.
     pub values: Vec<f64>,
@@ -74,8 +74,8 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
 
     let (top, bottom) = (TOP, TOP + HEIGHT);
     y.place(bottom, top);
-    let (y_ticks, y_short) = y.ticks(Way::Y);
-    let bar_ticks = colours.scale.placed(bottom, top).ticks(Way::Y);
+    let (y_ticks, y_short) = y.ticks(Direction::Y);
+    let bar_ticks = colours.scale.placed(bottom, top).ticks(Direction::Y);
     let left = left_room(&y_ticks);
     let bar_room = BAR_WIDTH + TICK_LENGTH + 7.0 + widest(&bar_ticks) + 14.0 + f64::from(SIZE_LABEL) + MARGIN;
     let area = Area {
@@ -85,16 +85,16 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
         height: HEIGHT,
     };
     x.place(area.x, area.right());
-    let (x_ticks, x_short) = x.ticks(Way::X);
+    let (x_ticks, x_short) = x.ticks(Direction::X);
 
     let mut canvas = Canvas::new(COLUMN_WIDTH, bottom + LOWER_ROOM);
     canvas.image(image(area, &x, &y, &values, &colours));
     draw_numbers(&mut canvas, &x, &y, &values, &colours);
     canvas.frame(area);
-    short_ticks(&mut canvas, area, Way::Y, &y_short);
+    short_ticks(&mut canvas, area, Direction::Y, &y_short);
     let title = Text::fitted(&map.y.title, area.height);
     left_side(&mut canvas, area, 0.0, &y_ticks, &title);
-    short_ticks(&mut canvas, area, Way::X, &x_short);
+    short_ticks(&mut canvas, area, Direction::X, &x_short);
     let title = Text::fitted(&map.x.title, area.width);
     lower_side(&mut canvas, area, &x_ticks, &title);
     let bar = Area {
@@ -195,19 +195,19 @@ impl Cells {
     }
 
     /// Numbered and short ticks: the values themselves if they are few and have room, else round ones.
-    fn ticks(&self, way: Way) -> (Vec<Tick>, Vec<f64>) {
+    fn ticks(&self, direction: Direction) -> (Vec<Tick>, Vec<f64>) {
         let named = |digits: usize| {
             let written: Option<Vec<String>> = self.values.iter().map(|&v| short(v, digits)).collect();
             let written = written.filter(|texts| texts.windows(2).all(|pair| pair[0] != pair[1]))?;
             let numbers = written.iter().map(|text| Text::number(text, SIZE_TICK));
             let pixels = self.values.iter().map(|&value| self.scale.at(value));
             let ticks: Vec<Tick> = pixels.zip(numbers).collect();
-            apart(&ticks, way).then_some(ticks)
+            apart(&ticks, direction).then_some(ticks)
         };
         let few = self.values.len() <= MOST_NAMED;
         match [4, 3, 2].into_iter().filter(|_| few).find_map(named) {
             Some(ticks) => (ticks, Vec::new()),
-            None => (self.scale.ticks(way), self.scale.short_ticks()),
+            None => (self.scale.ticks(direction), self.scale.short_ticks()),
         }
     }
 }

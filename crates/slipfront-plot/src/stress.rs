@@ -1,12 +1,12 @@
 //! Maps of the contact stress.
 
-use super::axis::Axis;
-use super::canvas::{Align, Area, Canvas, Image, level};
-use super::outline::outline;
-use super::sides::{BAR_WIDTH, LOWER_ROOM, colour_bar, left_side, lower_side, placed, widest};
-use super::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH, TICK_LENGTH, WHITE, WIDTH_MARK};
-use super::text::{Text, number};
-use super::{Picture, PictureError};
+use crate::axis::Axis;
+use crate::canvas::{Align, Area, Canvas, Image, level};
+use crate::frame::{BAR_WIDTH, LOWER_ROOM, colour_bar, left_side, lower_side, placed, widest};
+use crate::mask_outline::outline;
+use crate::picture::{Picture, PictureError};
+use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH, TICK_LENGTH, WHITE, WIDTH_MARK};
+use crate::text::{Text, number};
 
 /// More blocks than this along a side are averaged in groups.
 const CELLS: usize = 256;
@@ -135,7 +135,7 @@ fn check(maps: &StressMaps) -> Result<(), PictureError> {
 }
 
 /// A dark line with a pale rim, seen on every colour of the ramp.
-pub(super) fn draw_outline(canvas: &mut Canvas, corners: &[(f64, f64)]) {
+pub(crate) fn draw_outline(canvas: &mut Canvas, corners: &[(f64, f64)]) {
     let mut points = corners.to_vec();
     // A closed line is drawn past its start: only so is that corner rounded like the others.
     if points.len() > 2 && points.first() == points.last() {

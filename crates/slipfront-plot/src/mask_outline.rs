@@ -4,7 +4,7 @@
 /// as long as possible. A closed chain ends where it starts; one that meets the lattice's edge is open.
 ///
 /// `textured` holds `nx` times `ny` blocks, row 0 at y = 0.
-pub(super) fn outline(textured: &[bool], nx: usize, ny: usize) -> Vec<Vec<(usize, usize)>> {
+pub(crate) fn outline(textured: &[bool], nx: usize, ny: usize) -> Vec<Vec<(usize, usize)>> {
     let mut edges = Edges::of(textured, nx, ny);
     let mut chains = Vec::new();
     // Open chains first: they must be entered at an end. A closed one is then entered at its first corner in

@@ -8,9 +8,9 @@ use kuva::backend::svg::SvgBackend;
 use kuva::render::color::Color;
 use kuva::render::render::{Primitive, Scene};
 
-use super::canvas::{Area, Image, LEVEL_BLANK, color, level_colour};
-use super::style::DPI;
-use super::{Picture, PictureError};
+use crate::canvas::{Area, Image, LEVEL_BLANK, color, level_colour};
+use crate::picture::{Picture, PictureError};
+use crate::style::DPI;
 
 /// The font `DejaVu` Sans, cut down; `font/README.md` says how and under which licence.
 const FONT: &[u8] = include_bytes!("font/DejaVuSans-subset.woff2");
@@ -27,7 +27,7 @@ fn oversampling(width: f64, height: f64) -> u32 {
 }
 
 /// Makes both files of a picture, `width` by `height` pixels; images lie below all elements.
-pub(super) fn write(
+pub(crate) fn write(
     width: f64,
     height: f64,
     elements: Vec<Primitive>,
@@ -213,8 +213,8 @@ fn encode(
 
 #[cfg(test)]
 mod tests {
-    use super::super::canvas::Canvas;
     use super::*;
+    use crate::canvas::Canvas;
 
     #[test]
     fn an_image_has_no_seams() {

@@ -1,44 +1,4 @@
-//! Pictures for the eye and for print. Of a run: friction against time, and maps of contact stress. Of a
-//! parametric study: response curves, heat maps, bars, all with their confidence intervals.
-//!
-//! Every picture is drawn once, on a canvas, and comes out as SVG and as PNG of the same physical size: a
-//! journal's column for curves, heat maps and bars, its text width for maps of stress. Bytes depend on the arguments only: no date, no
-//! random identifier.
-//!
-//! Read by the run folder writer and by `slipfront plot`.
-
-mod axis;
-mod bars;
-mod canvas;
-mod files;
-mod friction;
-mod heat_map;
-mod labels;
-mod legend;
-mod maps;
-mod markers;
-mod names;
-mod outline;
-mod panels;
-mod response;
-mod scale;
-mod series;
-mod shapes;
-mod sides;
-mod stress;
-mod style;
-mod text;
-mod titles;
-mod whisker;
-
-pub use bars::{Bar, BarChart, BarGroup, bars};
-pub use friction::{FrictionCurve, Instant, Kinetic, friction};
-pub use heat_map::{HeatAxis, HeatMap, heat_map};
-pub use maps::{FieldMap, FieldMaps, field_maps};
-pub use response::{Response, Responses, response};
-pub use shapes::{Shape, shapes};
-pub use stress::{StressMap, StressMaps, stress};
-pub use titles::{symbol, title};
+//! A finished picture, and why one could not be made.
 
 /// One picture in both formats, ready to be written to files.
 #[derive(Clone, Debug, PartialEq, Eq)]

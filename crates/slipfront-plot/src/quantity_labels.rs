@@ -66,7 +66,7 @@ const NAMES: [Name; 52] = [
 /// are numbered. A key without a title is shown as it is.
 ///
 /// ```
-/// use slipfront_case::pictures::title;
+/// use slipfront_plot::title;
 ///
 /// assert_eq!(title("drive.v_star"), "drive speed V*");
 /// assert_eq!(title("texture.0.coverage"), "texture coverage A* (%)");
@@ -92,7 +92,7 @@ pub fn title(key: &str) -> String {
 /// What a legend calls a key: its symbol if it has one, else what [`title`] says.
 ///
 /// ```
-/// use slipfront_case::pictures::symbol;
+/// use slipfront_plot::symbol;
 ///
 /// assert_eq!(symbol("slider.omega_star"), "\u{3a9}*");
 /// assert_eq!(symbol("texture.0.coverage"), "A* (%)");
@@ -122,8 +122,8 @@ fn name(key: &str) -> Option<(&'static Name, Option<usize>)> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::text::Text;
     use super::*;
+    use crate::text::Text;
 
     #[test]
     fn every_key_has_one_title_that_the_font_can_write() {
@@ -131,7 +131,7 @@ mod tests {
             assert!(NAMES[..index].iter().all(|other| other.0 != name.0), "{}", name.0);
             // A character of unknown width is taken to be as wide as the font is high.
             for run in Text::plain(&title(name.0), 100).runs {
-                let widths = run.text.chars().map(super::super::text::advance);
+                let widths = run.text.chars().map(crate::text::advance);
                 assert!(widths.fold(0.0, f64::max) < 0.99, "{}", title(name.0));
             }
         }

@@ -1,9 +1,9 @@
 //! A linear or logarithmic axis, whose numbers keep apart.
 
-use super::axis::{Axis, drawable, range, widened};
-use super::sides::Tick;
-use super::style::SIZE_TICK;
-use super::text::{MINUS, Text, number};
+use crate::axis::{Axis, drawable, range, widened};
+use crate::frame::Tick;
+use crate::style::SIZE_TICK;
+use crate::text::{MINUS, Text, number};
 
 /// A number keeps so far from the next one along its side.
 const APART_X: f64 = 20.0;
@@ -13,14 +13,14 @@ const SHORT_TICK_DECADES: f64 = 4.0;
 
 /// An axis of values, or of their logarithms.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Scale {
+pub(crate) struct Scale {
     axis: Axis,
     log: bool,
 }
 
 /// Which way an axis runs: numbers need their width along x, their height along y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(crate) enum Direction {
     X,
     Y,
 }
@@ -29,7 +29,7 @@ impl Scale {
     /// A scale around `values` with a margin of `pad` times its length at both ends, yet to be placed.
     ///
     /// It is logarithmic if `log` says so and every value that can be drawn is positive.
-    pub(super) fn around(values: &[f64], log: bool, pad: f64) -> Self {
+    pub(crate) fn around(values: &[f64], log: bool, pad: f64) -> Self {
         let log = log && values.iter().filter(|v| drawable(**v)).all(|&value| value > 0.0);
         let (lo, hi) = widened(range(values.iter().map(|&value| measured(value, log))));
         let pad = pad * (hi - lo);
@@ -37,7 +37,7 @@ impl Scale {
     }
 
     /// A scale from `lo` to `hi`, given as it measures them.
-    pub(super) fn between(lo: f64, hi: f64, log: bool) -> Self {
+    pub(crate) fn between(lo: f64, hi: f64, log: bool) -> Self {
         let (start, end) = (0.0, 1.0);
         Self {
             axis: Axis { lo, hi, start, end },
@@ -46,33 +46,33 @@ impl Scale {
     }
 
     /// The same scale from one pixel to another.
-    pub(super) fn placed(mut self, start: f64, end: f64) -> Self {
+    pub(crate) fn placed(mut self, start: f64, end: f64) -> Self {
         (self.axis.start, self.axis.end) = (start, end);
         self
     }
 
     /// The axis of what the scale measures.
-    pub(super) fn axis(&self) -> &Axis {
+    pub(crate) fn axis(&self) -> &Axis {
         &self.axis
     }
 
     /// Whether it measures logarithms.
-    pub(super) fn is_log(&self) -> bool {
+    pub(crate) fn is_log(&self) -> bool {
         self.log
     }
 
     /// A value, or its logarithm.
-    pub(super) fn measure(&self, value: f64) -> f64 {
+    pub(crate) fn measure(&self, value: f64) -> f64 {
         measured(value, self.log)
     }
 
     /// The pixel of a value.
-    pub(super) fn at(&self, value: f64) -> f64 {
+    pub(crate) fn at(&self, value: f64) -> f64 {
         self.axis.at(self.measure(value))
     }
 
     /// Numbered ticks, as many as have room: round numbers, or 1, 2, 5 times powers of ten.
-    pub(super) fn ticks(&self, way: Way) -> Vec<Tick> {
+    pub(crate) fn ticks(&self, direction: Direction) -> Vec<Tick> {
         let mut choices = Vec::new();
         if self.log {
             let decades = ((self.axis.hi - self.axis.lo) / 2.0).ceil().clamp(1.0, 100.0) as i32;
@@ -86,7 +86,7 @@ impl Scale {
         } else {
             choices.extend((2..=6).rev().map(|most| self.linear(most)));
         }
-        let fits = |ticks: &&Vec<Tick>| apart(ticks, way);
+        let fits = |ticks: &&Vec<Tick>| apart(ticks, direction);
         if let Some(chosen) = choices.iter().find(fits) {
             return chosen.clone();
         }
@@ -96,7 +96,7 @@ impl Scale {
     }
 
     /// The pixels of ticks without a number, which tell that a scale is logarithmic.
-    pub(super) fn short_ticks(&self) -> Vec<f64> {
+    pub(crate) fn short_ticks(&self) -> Vec<f64> {
         if !self.log || self.axis.hi - self.axis.lo > SHORT_TICK_DECADES {
             return Vec::new();
         }
@@ -154,12 +154,12 @@ fn measured(value: f64, log: bool) -> f64 {
 }
 
 /// True when no number touches the next one.
-pub(super) fn apart(ticks: &[Tick], way: Way) -> bool {
+pub(crate) fn apart(ticks: &[Tick], direction: Direction) -> bool {
     ticks.windows(2).all(|pair| {
         let (a, b) = (&pair[0], &pair[1]);
-        let (extent, gap) = match way {
-            Way::X => (0.5 * (a.1.width() + b.1.width()), APART_X),
-            Way::Y => (0.5 * (a.1.height() + b.1.height()), APART_Y),
+        let (extent, gap) = match direction {
+            Direction::X => (0.5 * (a.1.width() + b.1.width()), APART_X),
+            Direction::Y => (0.5 * (a.1.height() + b.1.height()), APART_Y),
         };
         (a.0 - b.0).abs() >= extent + gap
     })
@@ -171,8 +171,8 @@ mod tests {
 
     fn written(values: &[f64], log: bool, length: f64) -> Vec<String> {
         let scale = Scale::around(values, log, 0.0).placed(0.0, length);
-        let ticks = scale.ticks(Way::X);
-        assert!(apart(&ticks, Way::X), "{values:?}");
+        let ticks = scale.ticks(Direction::X);
+        assert!(apart(&ticks, Direction::X), "{values:?}");
         let text = |(_, text): Tick| text.runs.into_iter().map(|run| run.text).collect();
         ticks.into_iter().map(text).collect()
     }

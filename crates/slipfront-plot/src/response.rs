@@ -2,19 +2,19 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::axis::drawable;
-use super::canvas::{Area, Canvas};
-use super::legend::{Legend, Sample};
-use super::markers::marker;
-use super::scale::{Scale, Way};
-use super::series::pieces;
-use super::sides::{LOWER_ROOM, left_room, left_side, lower_side, right_end, short_ticks};
-use super::style::{
+use crate::axis::drawable;
+use crate::canvas::{Area, Canvas};
+use crate::error_bar::{Interval, error_bar};
+use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side, right_end, short_ticks};
+use crate::legend::{Legend, Sample};
+use crate::markers::marker;
+use crate::picture::{Picture, PictureError};
+use crate::polyline::segments;
+use crate::scale::{Direction, Scale};
+use crate::style::{
     COLUMN_WIDTH, GREY, MARGIN, RADIUS_MARKER, Rgb, WIDTH_CURVE, WIDTH_LEADER, WIDTH_MARK, curve_colour,
 };
-use super::text::Text;
-use super::whisker::{Interval, whisker};
-use super::{Picture, PictureError};
+use crate::text::Text;
 
 const HEIGHT: f64 = 560.0;
 /// Between the last number below the panel, half of which may stand beyond it, and the picture's edge.
@@ -23,7 +23,7 @@ const RIGHT: f64 = 34.0;
 /// Response curves over one axis.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Responses {
-    /// What x is; see [`title`](super::title).
+    /// What x is; see [`title`](crate::title).
     pub x_title: String,
     /// Whether x is logarithmic; without effect if an x is not positive.
     pub log_x: bool,
@@ -31,7 +31,7 @@ pub struct Responses {
     pub log_y: bool,
     /// What the curves show.
     pub y_title: String,
-    /// What the curves' labels are values of, for the legend; see [`symbol`](super::symbol).
+    /// What the curves' labels are values of, for the legend; see [`symbol`](crate::symbol).
     pub legend_title: String,
     /// The curves.
     pub curves: Vec<Response>,
@@ -73,9 +73,14 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
     let x = Scale::around(&xs, responses.log_x, 0.04);
     let ys: Vec<f64> = curves.iter().flat_map(Curve::values).collect();
     let y = Scale::around(&ys, responses.log_y, 0.06);
-    let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Way::Y));
+    let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Direction::Y));
     let right = COLUMN_WIDTH.round() - RIGHT;
-    let right = right_end(&x.placed(left, right).ticks(Way::X), left, right, COLUMN_WIDTH);
+    let right = right_end(
+        &x.placed(left, right).ticks(Direction::X),
+        left,
+        right,
+        COLUMN_WIDTH,
+    );
     let mut legend = Legend::default();
     if curves.len() > 1 {
         let labels: Vec<&str> = responses.curves.iter().map(|c| c.label.as_str()).collect();
@@ -93,11 +98,11 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
 
     let mut canvas = Canvas::new(COLUMN_WIDTH, area.bottom() + LOWER_ROOM);
     let title = Text::fitted(&responses.y_title, HEIGHT);
-    left_side(&mut canvas, area, 0.0, &y.ticks(Way::Y), &title);
-    short_ticks(&mut canvas, area, Way::Y, &y.short_ticks());
-    short_ticks(&mut canvas, area, Way::X, &x.short_ticks());
+    left_side(&mut canvas, area, 0.0, &y.ticks(Direction::Y), &title);
+    short_ticks(&mut canvas, area, Direction::Y, &y.short_ticks());
+    short_ticks(&mut canvas, area, Direction::X, &x.short_ticks());
     let title = Text::fitted(&responses.x_title, area.width);
-    lower_side(&mut canvas, area, &x.ticks(Way::X), &title);
+    lower_side(&mut canvas, area, &x.ticks(Direction::X), &title);
     legend.draw(&mut canvas);
     if !y.is_log() && y.axis().lo < 0.0 && y.axis().hi > 0.0 {
         canvas.line((area.x, y.at(0.0)), (area.right(), y.at(0.0)), WIDTH_LEADER, GREY);
@@ -113,7 +118,7 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
         curve.draw_band(&mut canvas, &x, &y, *colour, opacity);
     }
     for (curve, colour) in &coloured {
-        for piece in pieces(
+        for piece in segments(
             &measured(&curve.x, &x),
             &measured(&curve.mean, &y),
             x.axis(),
@@ -125,7 +130,7 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
         }
     }
     for (index, (curve, colour)) in coloured.iter().enumerate().filter(|(_, (curve, _))| !curve.line) {
-        for point in pieces(
+        for point in segments(
             &measured(&curve.x, &x),
             &measured(&curve.mean, &y),
             x.axis(),
@@ -201,11 +206,11 @@ impl Curve {
 
     fn draw_band(&self, canvas: &mut Canvas, x: &Scale, y: &Scale, colour: Rgb, opacity: f64) {
         let xs = measured(&self.x, x);
-        let lows = pieces(&xs, &measured(&self.low, y), x.axis(), y.axis());
-        let highs = pieces(&xs, &measured(&self.high, y), x.axis(), y.axis());
+        let lows = segments(&xs, &measured(&self.low, y), x.axis(), y.axis());
+        let highs = segments(&xs, &measured(&self.high, y), x.axis(), y.axis());
         for (low, high) in lows.into_iter().zip(highs) {
             if let ([low], [high]) = (&low[..], &high[..]) {
-                whisker(canvas, low.0, (low.1, high.1), WIDTH_MARK, colour);
+                error_bar(canvas, low.0, (low.1, high.1), WIDTH_MARK, colour);
                 continue;
             }
             let edge: Vec<(f64, f64)> = low.into_iter().chain(high.into_iter().rev()).collect();

@@ -1,28 +1,28 @@
 //! Places labels near what they name, clear of each other and, where there is room, of the curve.
 
-use super::canvas::Area;
+use crate::canvas::Area;
 
 /// Labels keep so far from each other.
 const CLEARANCE: f64 = 5.0;
 
 /// Where labels may go, and what is there already.
-pub(super) struct Placer {
+pub(crate) struct Placer {
     bounds: Area,
     taken: Vec<Area>,
     lines: Vec<[(f64, f64); 2]>,
 }
 
 /// A possible place of a label, and how unwelcome it is: pixels away from the best one.
-pub(super) struct Candidate {
-    pub(super) area: Area,
-    pub(super) penalty: f64,
+pub(crate) struct Candidate {
+    pub(crate) area: Area,
+    pub(crate) penalty: f64,
     /// The line that would join label and point.
-    pub(super) leader: Option<[(f64, f64); 2]>,
+    pub(crate) leader: Option<[(f64, f64); 2]>,
 }
 
 impl Placer {
     /// An empty space.
-    pub(super) fn new(bounds: Area) -> Self {
+    pub(crate) fn new(bounds: Area) -> Self {
         Self {
             bounds,
             taken: Vec::new(),
@@ -31,18 +31,18 @@ impl Placer {
     }
 
     /// Keeps labels out of an area.
-    pub(super) fn take(&mut self, area: Area) {
+    pub(crate) fn take(&mut self, area: Area) {
         self.taken.push(area);
     }
 
     /// Asks labels to keep off the line through these points.
-    pub(super) fn avoid(&mut self, points: &[(f64, f64)]) {
+    pub(crate) fn avoid(&mut self, points: &[(f64, f64)]) {
         self.lines
             .extend(points.windows(2).map(|pair| [pair[0], pair[1]]));
     }
 
     /// The best of the candidates, now taken; none if there is no candidate.
-    pub(super) fn place(&mut self, candidates: Vec<Candidate>) -> Option<Candidate> {
+    pub(crate) fn place(&mut self, candidates: Vec<Candidate>) -> Option<Candidate> {
         let mut best: Option<(f64, Candidate)> = None;
         for candidate in candidates {
             let bound = best.as_ref().map_or(f64::INFINITY, |(cost, _)| *cost);
@@ -92,7 +92,7 @@ impl Placer {
 
 /// Places around `point` for a label of this size, near ones first. Far ones get a leader, and so do those which one of the
 /// other `dots` is as near to: there it would be taken for theirs.
-pub(super) fn around(point: (f64, f64), (width, height): (f64, f64), dots: &[(f64, f64)]) -> Vec<Candidate> {
+pub(crate) fn around(point: (f64, f64), (width, height): (f64, f64), dots: &[(f64, f64)]) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for gap in [14.0, 22.0, 34.0, 50.0, 70.0, 95.0, 130.0, 180.0] {
         for step in 0..24 {
@@ -148,7 +148,7 @@ fn grown(area: Area, by: f64) -> Area {
 }
 
 /// True when two areas share more than an edge.
-pub(super) fn overlap(a: &Area, b: &Area) -> bool {
+pub(crate) fn overlap(a: &Area, b: &Area) -> bool {
     a.x < b.right() && b.x < a.right() && a.y < b.bottom() && b.y < a.bottom()
 }
 

@@ -1,15 +1,15 @@
 //! The legend above a panel with several curves or bars.
 
-use super::canvas::{Align, Area, Canvas};
-use super::markers::marker;
-use super::style::{BLACK, MARGIN, OPACITY_BAR, RADIUS_MARKER, Rgb, SIZE_TICK, WIDTH_CURVE, curve_colour};
-use super::text::Text;
+use crate::canvas::{Align, Area, Canvas};
+use crate::markers::marker;
+use crate::style::{BLACK, MARGIN, OPACITY_BAR, RADIUS_MARKER, Rgb, SIZE_TICK, WIDTH_CURVE, curve_colour};
+use crate::text::Text;
 
 /// The names of several curves or bars.
 #[derive(Default)]
-pub(super) struct Legend {
+pub(crate) struct Legend {
     /// How much room it takes above the panels.
-    pub(super) height: f64,
+    pub(crate) height: f64,
     sample: Sample,
     /// What the names are values of, and where it stands.
     title: Option<(Text, (f64, f64))>,
@@ -18,7 +18,7 @@ pub(super) struct Legend {
 
 /// What stands before a name.
 #[derive(Clone, Copy, Default)]
-pub(super) enum Sample {
+pub(crate) enum Sample {
     /// A line.
     #[default]
     Line,
@@ -42,12 +42,12 @@ impl Legend {
     const ROW: f64 = 44.0;
 
     /// Places the labels in rows between `left` and `right`, from the top of the picture down.
-    pub(super) fn of(labels: &[&str], left: f64, right: f64) -> Self {
+    pub(crate) fn of(labels: &[&str], left: f64, right: f64) -> Self {
         Self::titled("", labels, Sample::Line, left, right)
     }
 
     /// The same with a title before the labels, or above them if it is long.
-    pub(super) fn titled(title: &str, labels: &[&str], sample: Sample, left: f64, right: f64) -> Self {
+    pub(crate) fn titled(title: &str, labels: &[&str], sample: Sample, left: f64, right: f64) -> Self {
         let title = Text::shortened(title, SIZE_TICK, right - left);
         let width = title.width();
         let (left, first) = match width {
@@ -82,7 +82,7 @@ impl Legend {
     }
 
     /// The same with a line alone before some of the names.
-    pub(super) fn with_lines(mut self, lines: &[bool]) -> Self {
+    pub(crate) fn with_lines(mut self, lines: &[bool]) -> Self {
         for (entry, &line) in self.entries.iter_mut().zip(lines) {
             entry.line = line;
         }
@@ -90,7 +90,7 @@ impl Legend {
     }
 
     /// Draws it.
-    pub(super) fn draw(&self, canvas: &mut Canvas) {
+    pub(crate) fn draw(&self, canvas: &mut Canvas) {
         if let Some((title, (x, y))) = &self.title {
             canvas.text(title, (*x, y + 0.5 * title.height()), Align::Start, BLACK);
         }

@@ -1,7 +1,7 @@
 //! Points of a curve, each curve's in its own shape: colours alone do not survive a copier.
 
-use super::canvas::Canvas;
-use super::style::{Rgb, WHITE};
+use crate::canvas::Canvas;
+use crate::style::{Rgb, WHITE};
 
 /// The corners of the shapes after the disc, for a size of 1; all look equally large.
 const SHAPES: [&[(f64, f64)]; 4] = [
@@ -12,7 +12,7 @@ const SHAPES: [&[(f64, f64)]; 4] = [
 ];
 
 /// Draws the marker of curve `index`, with a thin white rim that parts it from the curves below.
-pub(super) fn marker(canvas: &mut Canvas, index: usize, centre: (f64, f64), radius: f64, colour: Rgb) {
+pub(crate) fn marker(canvas: &mut Canvas, index: usize, centre: (f64, f64), radius: f64, colour: Rgb) {
     let Some(corners) = (index % (SHAPES.len() + 1))
         .checked_sub(1)
         .map(|shape| SHAPES[shape])

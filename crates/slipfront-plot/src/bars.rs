@@ -2,16 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::axis::drawable;
-use super::canvas::{Area, Canvas};
-use super::legend::{Legend, Sample};
-use super::names::Names;
-use super::scale::{Scale, Way};
-use super::sides::{left_room, left_side};
-use super::style::{BLACK, COLUMN_WIDTH, MARGIN, OPACITY_BAR, Rgb, WIDTH_FRAME, WIDTH_MARK, curve_colour};
-use super::text::Text;
-use super::whisker::{Interval, whisker};
-use super::{Picture, PictureError};
+use crate::axis::drawable;
+use crate::canvas::{Area, Canvas};
+use crate::category_axis::CategoryAxis;
+use crate::error_bar::{Interval, error_bar};
+use crate::frame::{left_room, left_side};
+use crate::legend::{Legend, Sample};
+use crate::picture::{Picture, PictureError};
+use crate::scale::{Direction, Scale};
+use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, OPACITY_BAR, Rgb, WIDTH_FRAME, WIDTH_MARK, curve_colour};
+use crate::text::Text;
 
 const HEIGHT: f64 = 560.0;
 /// Bars narrower than this make the picture wider.
@@ -72,7 +72,7 @@ pub fn bars(chart: &BarChart) -> Result<Picture, PictureError> {
         return Err(PictureError::Nothing("bar"));
     }
     let y = scale(&places.bars);
-    let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Way::Y));
+    let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Direction::Y));
     let room = COLUMN_WIDTH.round() - MARGIN - left;
     let width = room.max(places.narrowest() * places.names.len() as f64).round();
     let mut legend = Legend::default();
@@ -92,11 +92,11 @@ pub fn bars(chart: &BarChart) -> Result<Picture, PictureError> {
         height: HEIGHT,
     };
     let y = y.placed(area.bottom(), area.y);
-    let names = Names::of(&places.names, &chart.x_title, area);
+    let names = CategoryAxis::of(&places.names, &chart.x_title, area);
 
     let mut canvas = Canvas::new(area.right() + MARGIN, area.bottom() + names.height);
     let title = Text::fitted(&chart.y_title, HEIGHT);
-    left_side(&mut canvas, area, 0.0, &y.ticks(Way::Y), &title);
+    left_side(&mut canvas, area, 0.0, &y.ticks(Direction::Y), &title);
     legend.draw(&mut canvas);
     names.draw(&mut canvas);
     let slot = area.width / places.names.len() as f64;
@@ -130,7 +130,7 @@ fn draw_bar(canvas: &mut Canvas, y: &Scale, bar: &Bar, (middle, width): (f64, f6
     };
     canvas.fill(area, colour, OPACITY_BAR);
     if let Some(Interval { low, high }) = Interval::of(bar.mean, bar.low, bar.high) {
-        whisker(canvas, middle, (y.at(low), y.at(high)), WIDTH_MARK, BLACK);
+        error_bar(canvas, middle, (y.at(low), y.at(high)), WIDTH_MARK, BLACK);
     }
 }
 
@@ -215,7 +215,7 @@ impl<'a> Places<'a> {
     /// How narrow the place of a name may be.
     fn narrowest(&self) -> f64 {
         let bars = NARROWEST * self.legend.len() as f64 / SHARE_GROUP;
-        bars.max(Names::NARROWEST)
+        bars.max(CategoryAxis::NARROWEST)
     }
 
     fn bar_width(&self, slot: f64) -> f64 {
@@ -330,6 +330,6 @@ mod tests {
             .split_once("viewBox=\"0 0 ")
             .and_then(|(_, rest)| rest.split_once(' '));
         let width: f64 = width.and_then(|(width, _)| width.parse().ok()).unwrap();
-        assert!(width > 60.0 * Names::NARROWEST);
+        assert!(width > 60.0 * CategoryAxis::NARROWEST);
     }
 }

@@ -1,6 +1,6 @@
 //! Short texts with subscripts, and how wide they are.
 
-use super::style::{SIZE_LABEL, SIZE_TICK};
+use crate::style::{SIZE_LABEL, SIZE_TICK};
 
 /// How far a character moves the pen, in 1/2048 of the font size, for `DejaVu` Sans from space to tilde.
 #[rustfmt::skip]
@@ -14,31 +14,31 @@ const ADVANCES: [u16; 95] = [
 ];
 const UNITS_PER_EM: f64 = 2048.0;
 /// Height of capitals and digits over the font size.
-pub(super) const CAP_HEIGHT: f64 = 0.729;
+pub(crate) const CAP_HEIGHT: f64 = 0.729;
 
 /// A true minus sign, as wide as a plus.
-pub(super) const MINUS: &str = "\u{2212}";
+pub(crate) const MINUS: &str = "\u{2212}";
 
 /// A line of text.
 #[derive(Clone, Debug)]
-pub(super) struct Text {
-    pub(super) runs: Vec<Run>,
-    pub(super) size: u32,
+pub(crate) struct Text {
+    pub(crate) runs: Vec<Run>,
+    pub(crate) size: u32,
 }
 
 /// Part of a line, all of one size and height.
 #[derive(Clone, Debug)]
-pub(super) struct Run {
-    pub(super) text: String,
-    pub(super) size: u32,
+pub(crate) struct Run {
+    pub(crate) text: String,
+    pub(crate) size: u32,
     /// How far below the line it stands.
-    pub(super) drop: f64,
+    pub(crate) drop: f64,
 }
 
 impl Text {
     /// A text taken as it is, for what a user wrote: control characters and doubled spaces, which SVG does
     /// not keep, are dropped. Unicode's subscript letters, which the font lacks, become small letters.
-    pub(super) fn plain(text: &str, size: u32) -> Self {
+    pub(crate) fn plain(text: &str, size: u32) -> Self {
         let words: Vec<&str> = text
             .split(|c: char| c.is_whitespace() || c.is_control())
             .collect();
@@ -60,7 +60,7 @@ impl Text {
     }
 
     /// A text in which the character after an underscore is a subscript: `mu_s*`.
-    pub(super) fn math(text: &str, size: u32) -> Self {
+    pub(crate) fn math(text: &str, size: u32) -> Self {
         let mut height = Height::Line;
         let letters = text.chars().filter_map(|c| {
             if c == '_' && height == Height::Line {
@@ -73,7 +73,7 @@ impl Text {
     }
 
     /// A number as it is written in source, its power of ten set as one: `1.2e-9`.
-    pub(super) fn number(written: &str, size: u32) -> Self {
+    pub(crate) fn number(written: &str, size: u32) -> Self {
         let Some((digits, power)) = written.split_once('e') else {
             return Self::plain(written, size);
         };
@@ -108,7 +108,7 @@ impl Text {
     }
 
     /// A text no wider than `room`: as a label, else in the size of numbers, else cut.
-    pub(super) fn fitted(text: &str, room: f64) -> Self {
+    pub(crate) fn fitted(text: &str, room: f64) -> Self {
         let label = Self::plain(text, SIZE_LABEL);
         if label.width() <= room {
             return label;
@@ -117,7 +117,7 @@ impl Text {
     }
 
     /// The words of a text in at most `most` lines no wider than `room`, if they fit.
-    pub(super) fn wrapped(text: &str, size: u32, room: f64, most: usize) -> Option<Vec<Self>> {
+    pub(crate) fn wrapped(text: &str, size: u32, room: f64, most: usize) -> Option<Vec<Self>> {
         let mut lines: Vec<String> = Vec::new();
         for word in text.split_whitespace() {
             let longer = lines.last().map(|line| format!("{line} {word}"));
@@ -134,17 +134,17 @@ impl Text {
     }
 
     /// How wide the text is.
-    pub(super) fn width(&self) -> f64 {
+    pub(crate) fn width(&self) -> f64 {
         self.runs.iter().map(Run::width).sum()
     }
 
     /// How high its capitals are.
-    pub(super) fn height(&self) -> f64 {
+    pub(crate) fn height(&self) -> f64 {
         CAP_HEIGHT * f64::from(self.size)
     }
 
     /// How far its lowest letter reaches below the line.
-    pub(super) fn depth(&self) -> f64 {
+    pub(crate) fn depth(&self) -> f64 {
         let reach = |run: &Run| {
             let descends = run
                 .text
@@ -155,7 +155,7 @@ impl Text {
     }
 
     /// A plain text cut so that it is at most `width` wide, with an ellipsis for what is left out.
-    pub(super) fn shortened(text: &str, size: u32, width: f64) -> Self {
+    pub(crate) fn shortened(text: &str, size: u32, width: f64) -> Self {
         let whole = Self::plain(text, size);
         if whole.width() <= width {
             return whole;
@@ -208,13 +208,13 @@ fn subscript(character: char) -> Option<char> {
 
 impl Run {
     /// How wide the run is.
-    pub(super) fn width(&self) -> f64 {
+    pub(crate) fn width(&self) -> f64 {
         self.text.chars().map(advance).sum::<f64>() * f64::from(self.size)
     }
 }
 
 /// How far `character` moves the pen, over the font size.
-pub(super) fn advance(character: char) -> f64 {
+pub(crate) fn advance(character: char) -> f64 {
     let units = match character {
         ' '..='~' => ADVANCES[character as usize - ' ' as usize],
         '\u{3bc}' | '\u{b5}' => 1303,
@@ -234,7 +234,7 @@ pub(super) fn advance(character: char) -> f64 {
 }
 
 /// `value` with `decimals` digits after the point and a true minus sign; never a negative zero.
-pub(super) fn number(value: f64, decimals: usize) -> String {
+pub(crate) fn number(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
         Some(digits) if digits.bytes().any(|b| b.is_ascii_digit() && b != b'0') => format!("{MINUS}{digits}"),

@@ -1,6 +1,6 @@
 //! An axis: data to pixels, and round numbers along it.
 
-use super::text::{MINUS, number};
+use crate::text::{MINUS, number};
 
 /// Larger values are taken as blank: their differences might not be finite.
 const LARGEST: f64 = 1e100;
@@ -9,37 +9,37 @@ const LARGEST: f64 = 1e100;
 const SMALLEST: f64 = 1e-290;
 
 /// True when a value can be placed on an axis.
-pub(super) fn drawable(value: f64) -> bool {
+pub(crate) fn drawable(value: f64) -> bool {
     value.abs() < LARGEST
 }
 
 /// A linear axis from `lo` (drawn at pixel `start`) to `hi` (drawn at `end`).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Axis {
-    pub(super) lo: f64,
-    pub(super) hi: f64,
-    pub(super) start: f64,
-    pub(super) end: f64,
+pub(crate) struct Axis {
+    pub(crate) lo: f64,
+    pub(crate) hi: f64,
+    pub(crate) start: f64,
+    pub(crate) end: f64,
 }
 
 impl Axis {
     /// The pixel of `value`.
-    pub(super) fn at(&self, value: f64) -> f64 {
+    pub(crate) fn at(&self, value: f64) -> f64 {
         self.start + (value - self.lo) / (self.hi - self.lo) * (self.end - self.start)
     }
 
     /// True when `value` lies on the axis.
-    pub(super) fn holds(&self, value: f64) -> bool {
+    pub(crate) fn holds(&self, value: f64) -> bool {
         (self.lo..=self.hi).contains(&value)
     }
 
     /// The pixel of `value`, or of the end it lies beyond.
-    pub(super) fn clamped(&self, value: f64) -> f64 {
+    pub(crate) fn clamped(&self, value: f64) -> f64 {
         self.at(value.clamp(self.lo, self.hi))
     }
 
     /// At most `most` (but at least two) round values and how they are written.
-    pub(super) fn ticks(&self, most: usize) -> Vec<(f64, String)> {
+    pub(crate) fn ticks(&self, most: usize) -> Vec<(f64, String)> {
         let (step, values) = self.round_values(most);
         let (largest, smallest) = (self.power(), step.log10().floor());
         let digits = (largest - smallest).clamp(0.0, 9.0) as usize;
@@ -55,7 +55,7 @@ impl Axis {
     }
 
     /// The same, very large and very small values as multiples of one power of ten: `0.5e-9`, `1.0e-9`.
-    pub(super) fn scaled_ticks(&self, most: usize) -> Vec<(f64, String)> {
+    pub(crate) fn scaled_ticks(&self, most: usize) -> Vec<(f64, String)> {
         let power = self.power();
         if (-4.0..6.0).contains(&power) {
             return self.ticks(most);
@@ -99,7 +99,7 @@ fn round_step(step: f64) -> f64 {
 }
 
 /// The smallest and largest drawable value; 0 and 1 when there is none.
-pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+pub(crate) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (lo, hi) = values
         .filter(|&value| drawable(value))
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), value| {
@@ -109,7 +109,7 @@ pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
 }
 
 /// The same range, or one around it when it is too narrow to be an axis.
-pub(super) fn widened((lo, hi): (f64, f64)) -> (f64, f64) {
+pub(crate) fn widened((lo, hi): (f64, f64)) -> (f64, f64) {
     let size = lo.abs().max(hi.abs());
     if hi - lo > 1e-9 * size && hi - lo > SMALLEST {
         return (lo, hi);

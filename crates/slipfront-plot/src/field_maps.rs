@@ -2,16 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::axis::Axis;
-use super::canvas::{Align, Area, Canvas, Image, level};
-use super::outline::outline;
-use super::sides::{BAR_WIDTH, colour_bar, placed, widest};
-use super::stress::draw_outline;
-use super::style::{
+use crate::axis::Axis;
+use crate::canvas::{Align, Area, Canvas, Image, level};
+use crate::frame::{BAR_WIDTH, colour_bar, placed, widest};
+use crate::mask_outline::outline;
+use crate::picture::{Picture, PictureError};
+use crate::stress::draw_outline;
+use crate::style::{
     BLACK, MARGIN, RADIUS_MARKER, Rgb, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH, TICK_LENGTH, WHITE, WIDTH_MARK,
 };
-use super::text::Text;
-use super::{Picture, PictureError};
+use crate::text::Text;
 
 const GAP: f64 = 26.0;
 /// A map is no wider than this: 44 mm.

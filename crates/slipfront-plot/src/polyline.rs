@@ -1,12 +1,12 @@
 //! A series of values as lines on a panel.
 
-use super::axis::{Axis, drawable};
+use crate::axis::{Axis, drawable};
 
 /// Longer curves are thinned.
 const POINTS_KEPT: usize = 4000;
 
 /// The curve in pixels: one piece for every stretch without a gap.
-pub(super) fn pieces(times: &[f64], values: &[f64], time: &Axis, axis: &Axis) -> Vec<Vec<(f64, f64)>> {
+pub(crate) fn segments(times: &[f64], values: &[f64], time: &Axis, axis: &Axis) -> Vec<Vec<(f64, f64)>> {
     let points: Vec<(f64, f64)> = times.iter().copied().zip(values.iter().copied()).collect();
     points
         .split(|&(t, value)| !drawable(t) || !drawable(value))
@@ -64,7 +64,7 @@ mod tests {
             end: 4.0,
         };
         let times = [0.0, 1.0, 2.0, 3.0, 4.0];
-        let parts = pieces(&times, &[0.0, 1.0, f64::NAN, 3.0, 4.0], &axis, &axis);
+        let parts = segments(&times, &[0.0, 1.0, f64::NAN, 3.0, 4.0], &axis, &axis);
         assert_eq!(parts, [[(0.0, 0.0), (1.0, 1.0)], [(3.0, 3.0), (4.0, 4.0)]]);
     }
 }

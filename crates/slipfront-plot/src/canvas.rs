@@ -7,13 +7,14 @@
 use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, TextAnchor};
 
-use super::style::{BLACK, BLANK, Rgb, TICK_LENGTH, WHITE, WIDTH_FRAME, ramp};
-use super::text::{Run, Text};
-use super::{Picture, PictureError, files};
+use crate::export;
+use crate::picture::{Picture, PictureError};
+use crate::style::{BLACK, BLANK, Rgb, TICK_LENGTH, WHITE, WIDTH_FRAME, ramp};
+use crate::text::{Run, Text};
 
 /// Where a text lies relative to its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Align {
+pub(crate) enum Align {
     Start,
     Middle,
     End,
@@ -32,36 +33,36 @@ impl Align {
 
 /// A rectangle, in pixels, y downwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Area {
-    pub(super) x: f64,
-    pub(super) y: f64,
-    pub(super) width: f64,
-    pub(super) height: f64,
+pub(crate) struct Area {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) width: f64,
+    pub(crate) height: f64,
 }
 
 impl Area {
-    pub(super) fn right(&self) -> f64 {
+    pub(crate) fn right(&self) -> f64 {
         self.x + self.width
     }
 
-    pub(super) fn bottom(&self) -> f64 {
+    pub(crate) fn bottom(&self) -> f64 {
         self.y + self.height
     }
 }
 
 /// An image whose pixels are levels of the colour ramp.
-pub(super) struct Image {
-    pub(super) area: Area,
-    pub(super) columns: usize,
+pub(crate) struct Image {
+    pub(crate) area: Area,
+    pub(crate) columns: usize,
     /// Row by row, the uppermost first; see [`level`].
-    pub(super) levels: Vec<u8>,
+    pub(crate) levels: Vec<u8>,
 }
 
 /// The level of a blank pixel.
-pub(super) const LEVEL_BLANK: u8 = 255;
+pub(crate) const LEVEL_BLANK: u8 = 255;
 
 /// The level of a value from 0 to 1; NaN is blank.
-pub(super) fn level(value: f32) -> u8 {
+pub(crate) fn level(value: f32) -> u8 {
     if value.is_nan() {
         LEVEL_BLANK
     } else {
@@ -69,7 +70,7 @@ pub(super) fn level(value: f32) -> u8 {
     }
 }
 
-pub(super) fn level_colour(level: u8) -> Rgb {
+pub(crate) fn level_colour(level: u8) -> Rgb {
     if level == LEVEL_BLANK {
         BLANK
     } else {
@@ -78,7 +79,7 @@ pub(super) fn level_colour(level: u8) -> Rgb {
 }
 
 /// A picture being drawn.
-pub(super) struct Canvas {
+pub(crate) struct Canvas {
     width: f64,
     height: f64,
     images: Vec<Image>,
@@ -87,7 +88,7 @@ pub(super) struct Canvas {
 
 impl Canvas {
     /// An empty canvas, `width` by `height` pixels.
-    pub(super) fn new(width: f64, height: f64) -> Self {
+    pub(crate) fn new(width: f64, height: f64) -> Self {
         Self {
             width: width.round(),
             height: height.round(),
@@ -97,12 +98,12 @@ impl Canvas {
     }
 
     /// Adds an image; images lie below everything else.
-    pub(super) fn image(&mut self, image: Image) {
+    pub(crate) fn image(&mut self, image: Image) {
         self.images.push(image);
     }
 
     /// Adds a straight line.
-    pub(super) fn line(&mut self, from: (f64, f64), to: (f64, f64), width: f64, colour: Rgb) {
+    pub(crate) fn line(&mut self, from: (f64, f64), to: (f64, f64), width: f64, colour: Rgb) {
         self.elements.push(Primitive::Line {
             x1: from.0,
             y1: from.1,
@@ -115,7 +116,7 @@ impl Canvas {
     }
 
     /// Adds a line through points.
-    pub(super) fn polyline(&mut self, points: Vec<(f64, f64)>, width: f64, colour: Rgb) {
+    pub(crate) fn polyline(&mut self, points: Vec<(f64, f64)>, width: f64, colour: Rgb) {
         self.elements.push(Primitive::PolyLine {
             points,
             stroke: color(colour),
@@ -125,7 +126,7 @@ impl Canvas {
     }
 
     /// Fills a rectangle.
-    pub(super) fn fill(&mut self, area: Area, colour: Rgb, opacity: f64) {
+    pub(crate) fn fill(&mut self, area: Area, colour: Rgb, opacity: f64) {
         self.elements.push(Primitive::Rect {
             x: area.x,
             y: area.y,
@@ -139,7 +140,7 @@ impl Canvas {
     }
 
     /// Fills a polygon.
-    pub(super) fn polygon(&mut self, points: &[(f64, f64)], colour: Rgb, opacity: f64) {
+    pub(crate) fn polygon(&mut self, points: &[(f64, f64)], colour: Rgb, opacity: f64) {
         let corners: Vec<String> = points.iter().map(|(x, y)| format!("{x:.2} {y:.2}")).collect();
         self.elements.push(Primitive::Path(Box::new(PathData {
             d: format!("M {} Z", corners.join(" L ")),
@@ -152,7 +153,7 @@ impl Canvas {
     }
 
     /// Draws the edge of a rectangle.
-    pub(super) fn frame(&mut self, area: Area) {
+    pub(crate) fn frame(&mut self, area: Area) {
         let (left, right, top, bottom) = (area.x, area.right(), area.y, area.bottom());
         self.elements.push(Primitive::Path(Box::new(PathData {
             d: format!("M {left} {top} L {right} {top} L {right} {bottom} L {left} {bottom} Z"),
@@ -165,7 +166,7 @@ impl Canvas {
     }
 
     /// Adds a disc with a thin white rim, which parts it from the curve below.
-    pub(super) fn dot(&mut self, centre: (f64, f64), radius: f64, fill: Rgb) {
+    pub(crate) fn dot(&mut self, centre: (f64, f64), radius: f64, fill: Rgb) {
         for (r, colour) in [(radius + 1.5, WHITE), (radius, fill)] {
             self.elements.push(Primitive::Circle {
                 cx: centre.0,
@@ -180,7 +181,7 @@ impl Canvas {
     }
 
     /// Adds a text on the baseline through `at`.
-    pub(super) fn text(&mut self, text: &Text, at: (f64, f64), align: Align, colour: Rgb) {
+    pub(crate) fn text(&mut self, text: &Text, at: (f64, f64), align: Align, colour: Rgb) {
         let mut x = at.0 - align.before(text.width());
         for run in &text.runs {
             self.run(run, x, |x| (x, at.1 + run.drop), None, colour);
@@ -189,7 +190,7 @@ impl Canvas {
     }
 
     /// Adds a text that reads upwards, its baseline the vertical through `at`.
-    pub(super) fn text_upwards(&mut self, text: &Text, at: (f64, f64), align: Align, colour: Rgb) {
+    pub(crate) fn text_upwards(&mut self, text: &Text, at: (f64, f64), align: Align, colour: Rgb) {
         let mut along = -align.before(text.width());
         for run in &text.runs {
             self.run(
@@ -232,33 +233,33 @@ impl Canvas {
     }
 
     /// Adds a tick below `at` and its number.
-    pub(super) fn tick_below(&mut self, at: (f64, f64), number: &Text) {
+    pub(crate) fn tick_below(&mut self, at: (f64, f64), number: &Text) {
         self.line(at, (at.0, at.1 + TICK_LENGTH), WIDTH_FRAME, BLACK);
         let baseline = at.1 + TICK_LENGTH + 7.0 + number.height();
         self.text(number, (at.0, baseline), Align::Middle, BLACK);
     }
 
     /// Adds a tick left of `at` and its number.
-    pub(super) fn tick_left(&mut self, at: (f64, f64), number: &Text) {
+    pub(crate) fn tick_left(&mut self, at: (f64, f64), number: &Text) {
         self.line((at.0 - TICK_LENGTH, at.1), at, WIDTH_FRAME, BLACK);
         let place = (at.0 - TICK_LENGTH - 7.0, at.1 + 0.5 * number.height());
         self.text(number, place, Align::End, BLACK);
     }
 
     /// Adds a tick right of `at` and its number.
-    pub(super) fn tick_right(&mut self, at: (f64, f64), number: &Text) {
+    pub(crate) fn tick_right(&mut self, at: (f64, f64), number: &Text) {
         self.line(at, (at.0 + TICK_LENGTH, at.1), WIDTH_FRAME, BLACK);
         let place = (at.0 + TICK_LENGTH + 7.0, at.1 + 0.5 * number.height());
         self.text(number, place, Align::Start, BLACK);
     }
 
     /// Makes both files.
-    pub(super) fn finish(self) -> Result<Picture, PictureError> {
-        files::write(self.width, self.height, self.elements, &self.images)
+    pub(crate) fn finish(self) -> Result<Picture, PictureError> {
+        export::write(self.width, self.height, self.elements, &self.images)
     }
 }
 
-pub(super) fn color(colour: Rgb) -> Color {
+pub(crate) fn color(colour: Rgb) -> Color {
     Color::Rgb(colour[0], colour[1], colour[2])
 }
 

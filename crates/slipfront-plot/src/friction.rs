@@ -2,18 +2,18 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::axis::drawable;
-use super::canvas::{Align, Area, Canvas};
-use super::labels::{Candidate, Placer, around};
-use super::legend::Legend;
-use super::panels::{Panels, between};
-use super::series::pieces;
-use super::style::{
+use crate::axis::drawable;
+use crate::canvas::{Align, Area, Canvas};
+use crate::friction_layout::{Panels, between};
+use crate::label_placement::{Candidate, Placer, around};
+use crate::legend::Legend;
+use crate::picture::{Picture, PictureError};
+use crate::polyline::segments;
+use crate::style::{
     BLACK, COLUMN_WIDTH, CURVES, GREY, MARGIN, Rgb, SIZE_LABEL, WIDTH_CURVE, WIDTH_LEADER, WIDTH_MARK,
     curve_colour,
 };
-use super::text::{Text, number};
-use super::{Picture, PictureError};
+use crate::text::{Text, number};
 
 const DOT: f64 = 7.0;
 /// The kinetic window's shade.
@@ -138,7 +138,7 @@ fn draw_one(canvas: &mut Canvas, panels: &Panels, curve: &FrictionCurve) {
         placer.avoid(&[(x, mu.start), (x, mu.end)]);
     }
     for (axis, values) in [(mu, &curve.mu_star), (sliding, &curve.sliding_percent)] {
-        for piece in pieces(&curve.time_star, values, time, axis) {
+        for piece in segments(&curve.time_star, values, time, axis) {
             if axis.start == mu.start {
                 placer.avoid(&piece);
             }
@@ -241,7 +241,7 @@ fn draw_many(canvas: &mut Canvas, panels: &Panels, curves: &[FrictionCurve]) {
     let mut placer = Placer::new(panels.friction());
     for (index, curve) in curves.iter().enumerate() {
         for (axis, values) in [(mu, &curve.mu_star), (sliding, &curve.sliding_percent)] {
-            for piece in pieces(&curve.time_star, values, time, axis) {
+            for piece in segments(&curve.time_star, values, time, axis) {
                 if axis.start == mu.start {
                     placer.avoid(&piece);
                 }

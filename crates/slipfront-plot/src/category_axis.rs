@@ -1,10 +1,10 @@
-//! Names side by side below a panel.
+//! CategoryAxis side by side below a panel.
 
-use super::canvas::{Align, Area, Canvas};
-use super::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK};
-use super::text::{CAP_HEIGHT, Text};
+use crate::canvas::{Align, Area, Canvas};
+use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK};
+use crate::text::{CAP_HEIGHT, Text};
 
-/// Names are broken into at most so many lines, and stand upright if that is not enough.
+/// CategoryAxis are broken into at most so many lines, and stand upright if that is not enough.
 const MOST_LINES: usize = 3;
 const LINE: f64 = 1.25 * SIZE_TICK as f64;
 /// Upright names are broken at the first of these lengths if they can, and cut at the last.
@@ -14,10 +14,10 @@ const GAP: f64 = 14.0;
 /// Between two names.
 const APART: f64 = 16.0;
 
-/// Names and the title below them.
-pub(super) struct Names {
+/// CategoryAxis and the title below them.
+pub(crate) struct CategoryAxis {
     /// How much room they take below the panel.
-    pub(super) height: f64,
+    pub(crate) height: f64,
     area: Area,
     lines: Lines,
     title: Text,
@@ -28,12 +28,12 @@ enum Lines {
     Upright(Vec<Vec<Text>>),
 }
 
-impl Names {
+impl CategoryAxis {
     /// An upright name's place is no narrower than this.
-    pub(super) const NARROWEST: f64 = 1.35 * SIZE_TICK as f64;
+    pub(crate) const NARROWEST: f64 = 1.35 * SIZE_TICK as f64;
 
-    /// Names in places of equal width below `area`.
-    pub(super) fn of(names: &[&str], title: &str, area: Area) -> Self {
+    /// CategoryAxis in places of equal width below `area`.
+    pub(crate) fn of(names: &[&str], title: &str, area: Area) -> Self {
         let room = area.width / names.len().max(1) as f64 - APART;
         let wrapped: Option<Vec<_>> = names
             .iter()
@@ -72,7 +72,7 @@ impl Names {
     }
 
     /// Draws them.
-    pub(super) fn draw(&self, canvas: &mut Canvas) {
+    pub(crate) fn draw(&self, canvas: &mut Canvas) {
         let top = self.area.bottom() + GAP;
         let cap = CAP_HEIGHT * f64::from(SIZE_TICK);
         match &self.lines {
@@ -116,7 +116,7 @@ mod tests {
             width,
             height: 100.0,
         };
-        let (upright, lines) = match Names::of(names, "", area).lines {
+        let (upright, lines) = match CategoryAxis::of(names, "", area).lines {
             Lines::Across(lines) => (false, lines),
             Lines::Upright(lines) => (true, lines),
         };

@@ -1,21 +1,21 @@
 //! Confidence intervals as whiskers.
 
-use super::axis::drawable;
-use super::canvas::Canvas;
-use super::style::Rgb;
+use crate::axis::drawable;
+use crate::canvas::Canvas;
+use crate::style::Rgb;
 
 /// How far the ends of a whisker reach to both sides.
 const CAP: f64 = 9.0;
 
 /// A confidence interval that can be drawn.
-pub(super) struct Interval {
-    pub(super) low: f64,
-    pub(super) high: f64,
+pub(crate) struct Interval {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
 }
 
 impl Interval {
     /// The interval around a mean, if all three are numbers.
-    pub(super) fn of(mean: f64, low: f64, high: f64) -> Option<Self> {
+    pub(crate) fn of(mean: f64, low: f64, high: f64) -> Option<Self> {
         [mean, low, high].into_iter().all(drawable).then(|| Self {
             low: low.min(high),
             high: low.max(high),
@@ -24,7 +24,7 @@ impl Interval {
 }
 
 /// Draws an interval from one pixel of y to another.
-pub(super) fn whisker(canvas: &mut Canvas, x: f64, (low, high): (f64, f64), width: f64, colour: Rgb) {
+pub(crate) fn error_bar(canvas: &mut Canvas, x: f64, (low, high): (f64, f64), width: f64, colour: Rgb) {
     canvas.line((x, low), (x, high), width, colour);
     for y in [low, high] {
         canvas.line((x - CAP, y), (x + CAP, y), width, colour);

@@ -1,19 +1,19 @@
 //! The numbered sides of a panel: ticks, their numbers, a title.
 
-use super::axis::Axis;
-use super::canvas::{Align, Area, Canvas, Image};
-use super::scale::Way;
-use super::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WIDTH_FRAME};
-use super::text::Text;
+use crate::axis::Axis;
+use crate::canvas::{Align, Area, Canvas, Image};
+use crate::scale::Direction;
+use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WIDTH_FRAME};
+use crate::text::Text;
 
 /// How wide a colour bar is.
-pub(super) const BAR_WIDTH: f64 = 30.0;
+pub(crate) const BAR_WIDTH: f64 = 30.0;
 
 /// A tick: its pixel along the side, and its number.
-pub(super) type Tick = (f64, Text);
+pub(crate) type Tick = (f64, Text);
 
 /// The ticks of an axis.
-pub(super) fn placed(axis: &Axis, most: usize) -> Vec<Tick> {
+pub(crate) fn placed(axis: &Axis, most: usize) -> Vec<Tick> {
     axis.ticks(most)
         .into_iter()
         .map(|(value, text)| (axis.at(value), Text::plain(&text, SIZE_TICK)))
@@ -21,17 +21,17 @@ pub(super) fn placed(axis: &Axis, most: usize) -> Vec<Tick> {
 }
 
 /// How wide the widest number is.
-pub(super) fn widest(ticks: &[Tick]) -> f64 {
+pub(crate) fn widest(ticks: &[Tick]) -> f64 {
     ticks.iter().map(|(_, text)| text.width()).fold(0.0, f64::max)
 }
 
 /// The room left of a panel for a title and these numbers.
-pub(super) fn left_room(ticks: &[Tick]) -> f64 {
+pub(crate) fn left_room(ticks: &[Tick]) -> f64 {
     (MARGIN + f64::from(SIZE_LABEL) + 14.0 + widest(ticks) + TICK_LENGTH + 7.0).round()
 }
 
 /// Where a panel from `left` to `right` must end in a picture of this width, so that no number below it is cut off.
-pub(super) fn right_end(ticks: &[Tick], left: f64, right: f64, width: f64) -> f64 {
+pub(crate) fn right_end(ticks: &[Tick], left: f64, right: f64, width: f64) -> f64 {
     const EDGE: f64 = 4.0;
     let end = |(x, text): &Tick| {
         let share = (x - left) / (right - left);
@@ -46,10 +46,10 @@ pub(super) fn right_end(ticks: &[Tick], left: f64, right: f64, width: f64) -> f6
 }
 
 /// The room below a panel for numbers and a title.
-pub(super) const LOWER_ROOM: f64 = TICK_LENGTH + 7.0 + SIZE_TICK as f64 + SIZE_LABEL as f64 + MARGIN;
+pub(crate) const LOWER_ROOM: f64 = TICK_LENGTH + 7.0 + SIZE_TICK as f64 + SIZE_LABEL as f64 + MARGIN;
 
 /// Draws the left side of `area`, its title along `edge`, where the room left of it begins.
-pub(super) fn left_side(canvas: &mut Canvas, area: Area, edge: f64, ticks: &[Tick], title: &Text) {
+pub(crate) fn left_side(canvas: &mut Canvas, area: Area, edge: f64, ticks: &[Tick], title: &Text) {
     for (y, text) in ticks {
         canvas.tick_left((area.x, *y), text);
     }
@@ -59,7 +59,7 @@ pub(super) fn left_side(canvas: &mut Canvas, area: Area, edge: f64, ticks: &[Tic
 }
 
 /// Draws the lower side of `area`.
-pub(super) fn lower_side(canvas: &mut Canvas, area: Area, ticks: &[Tick], title: &Text) {
+pub(crate) fn lower_side(canvas: &mut Canvas, area: Area, ticks: &[Tick], title: &Text) {
     for (x, text) in ticks {
         canvas.tick_below((*x, area.bottom()), text);
     }
@@ -67,13 +67,13 @@ pub(super) fn lower_side(canvas: &mut Canvas, area: Area, ticks: &[Tick], title:
 }
 
 /// Writes a title under the numbers below `area`.
-pub(super) fn lower_title(canvas: &mut Canvas, area: Area, title: &Text) {
+pub(crate) fn lower_title(canvas: &mut Canvas, area: Area, title: &Text) {
     let baseline = area.bottom() + LOWER_ROOM - MARGIN - 4.0;
     canvas.text(title, (area.x + 0.5 * area.width, baseline), Align::Middle, BLACK);
 }
 
 /// Draws a bar of all colours, dark at its foot.
-pub(super) fn colour_bar(canvas: &mut Canvas, area: Area, ticks: &[Tick]) {
+pub(crate) fn colour_bar(canvas: &mut Canvas, area: Area, ticks: &[Tick]) {
     let levels = (0..=254).rev().collect();
     canvas.image(Image {
         area,
@@ -87,12 +87,12 @@ pub(super) fn colour_bar(canvas: &mut Canvas, area: Area, ticks: &[Tick]) {
 }
 
 /// Draws ticks without numbers on the lower or the left side of `area`, half as long as the others.
-pub(super) fn short_ticks(canvas: &mut Canvas, area: Area, way: Way, ticks: &[f64]) {
+pub(crate) fn short_ticks(canvas: &mut Canvas, area: Area, direction: Direction, ticks: &[f64]) {
     let length = 0.5 * TICK_LENGTH;
     for &at in ticks {
-        let ends = match way {
-            Way::X => [(at, area.bottom()), (at, area.bottom() + length)],
-            Way::Y => [(area.x, at), (area.x - length, at)],
+        let ends = match direction {
+            Direction::X => [(at, area.bottom()), (at, area.bottom() + length)],
+            Direction::Y => [(area.x, at), (area.x - length, at)],
         };
         canvas.line(ends[0], ends[1], WIDTH_FRAME, BLACK);
     }

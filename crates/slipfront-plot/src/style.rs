@@ -3,47 +3,47 @@
 use kuva::plot::ColorMap;
 
 /// Pixels in an inch.
-pub(super) const DPI: f64 = 300.0;
+pub(crate) const DPI: f64 = 300.0;
 /// Pixels in a millimetre.
 const MM: f64 = DPI / 25.4;
 /// A journal's column, 85 mm.
-pub(super) const COLUMN_WIDTH: f64 = 85.0 * MM;
+pub(crate) const COLUMN_WIDTH: f64 = 85.0 * MM;
 /// A journal's text, 175 mm.
-pub(super) const TEXT_WIDTH: f64 = 175.0 * MM;
+pub(crate) const TEXT_WIDTH: f64 = 175.0 * MM;
 
 /// Titles and labels: 8 pt.
-pub(super) const SIZE_LABEL: u32 = 33;
+pub(crate) const SIZE_LABEL: u32 = 33;
 /// Numbers along an axis: 7 pt.
-pub(super) const SIZE_TICK: u32 = 29;
+pub(crate) const SIZE_TICK: u32 = 29;
 
 /// A curve: 0.9 pt.
-pub(super) const WIDTH_CURVE: f64 = 3.75;
+pub(crate) const WIDTH_CURVE: f64 = 3.75;
 /// A mean or an outline: 0.6 pt.
-pub(super) const WIDTH_MARK: f64 = 2.5;
+pub(crate) const WIDTH_MARK: f64 = 2.5;
 /// Frames and ticks: 0.5 pt.
-pub(super) const WIDTH_FRAME: f64 = 2.0;
+pub(crate) const WIDTH_FRAME: f64 = 2.0;
 /// Leaders: 0.35 pt.
-pub(super) const WIDTH_LEADER: f64 = 1.5;
+pub(crate) const WIDTH_LEADER: f64 = 1.5;
 /// How opaque bars are: the whisker before a bar must be seen.
-pub(super) const OPACITY_BAR: f64 = 0.65;
+pub(crate) const OPACITY_BAR: f64 = 0.65;
 /// The points of a curve.
-pub(super) const RADIUS_MARKER: f64 = 8.0;
+pub(crate) const RADIUS_MARKER: f64 = 8.0;
 /// Between the picture's edge and what is drawn.
-pub(super) const MARGIN: f64 = 14.0;
+pub(crate) const MARGIN: f64 = 14.0;
 /// How far a tick reaches out of its frame.
-pub(super) const TICK_LENGTH: f64 = 9.0;
+pub(crate) const TICK_LENGTH: f64 = 9.0;
 
 /// A colour: red, green, blue.
-pub(super) type Rgb = [u8; 3];
+pub(crate) type Rgb = [u8; 3];
 
-pub(super) const BLACK: Rgb = [0x1a, 0x1a, 0x1a];
-pub(super) const GREY: Rgb = [0x77, 0x77, 0x77];
-pub(super) const WHITE: Rgb = [0xff, 0xff, 0xff];
+pub(crate) const BLACK: Rgb = [0x1a, 0x1a, 0x1a];
+pub(crate) const GREY: Rgb = [0x77, 0x77, 0x77];
+pub(crate) const WHITE: Rgb = [0xff, 0xff, 0xff];
 /// Blocks without a value.
-pub(super) const BLANK: Rgb = [0xd9, 0xd9, 0xd9];
+pub(crate) const BLANK: Rgb = [0xd9, 0xd9, 0xd9];
 
 /// Okabe and Ito's palette, told apart with any colour vision; its yellow is left out, too pale for a line.
-pub(super) const CURVES: [Rgb; 7] = [
+pub(crate) const CURVES: [Rgb; 7] = [
     [0x00, 0x72, 0xb2],
     [0xd5, 0x5e, 0x00],
     [0x00, 0x9e, 0x73],
@@ -54,7 +54,7 @@ pub(super) const CURVES: [Rgb; 7] = [
 ];
 
 /// The colour of curve `index` out of `count`. More curves than the palette holds run through [`ramp`].
-pub(super) fn curve_colour(index: usize, count: usize) -> Rgb {
+pub(crate) fn curve_colour(index: usize, count: usize) -> Rgb {
     if count <= CURVES.len() {
         return CURVES[index % CURVES.len()];
     }
@@ -64,7 +64,7 @@ pub(super) fn curve_colour(index: usize, count: usize) -> Rgb {
 
 /// Viridis, perceptually uniform, from 0 (dark) to 1 (bright); the table is the crate `colorous`'
 /// (Apache-2.0), which `kuva` brings.
-pub(super) fn ramp(value: f64) -> Rgb {
+pub(crate) fn ramp(value: f64) -> Rgb {
     let (red, green, blue) = ColorMap::Viridis
         .map_rgb(value)
         .unwrap_or((BLANK[0], BLANK[1], BLANK[2]));

@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::canvas::{Align, Area, Canvas};
-use super::style::{BLACK, COLUMN_WIDTH, CURVES, MARGIN, SIZE_TICK, WIDTH_MARK};
-use super::text::Text;
-use super::{Picture, PictureError};
+use crate::canvas::{Align, Area, Canvas};
+use crate::picture::{Picture, PictureError};
+use crate::style::{BLACK, COLUMN_WIDTH, CURVES, MARGIN, SIZE_TICK, WIDTH_MARK};
+use crate::text::Text;
 
 const COLUMNS: usize = 3;
 const GAP: f64 = 20.0;

@@ -1,26 +1,26 @@
 //! The two panels of a friction picture: mu* above, N* below, on one time axis.
 
-use super::axis::{Axis, range, widened};
-use super::canvas::{Area, Canvas};
-use super::friction::FrictionCurve;
-use super::sides::{LOWER_ROOM, left_room, left_side, lower_title, placed, right_end};
-use super::style::{BLACK, COLUMN_WIDTH, MARGIN, SIZE_LABEL, TICK_LENGTH, WIDTH_LEADER};
-use super::text::Text;
+use crate::axis::{Axis, range, widened};
+use crate::canvas::{Area, Canvas};
+use crate::frame::{LOWER_ROOM, left_room, left_side, lower_title, placed, right_end};
+use crate::friction::FrictionCurve;
+use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, SIZE_LABEL, TICK_LENGTH, WIDTH_LEADER};
+use crate::text::Text;
 
 const HEIGHT_FRICTION: f64 = 500.0;
 const HEIGHT_SLIDING: f64 = 230.0;
 const GAP: f64 = 34.0;
 
 /// The two panels.
-pub(super) struct Panels {
-    pub(super) time: Axis,
-    pub(super) mu: Axis,
-    pub(super) sliding: Axis,
+pub(crate) struct Panels {
+    pub(crate) time: Axis,
+    pub(crate) mu: Axis,
+    pub(crate) sliding: Axis,
 }
 
 impl Panels {
     /// Panels that hold all curves and their marks, at the top of the picture.
-    pub(super) fn of(curves: &[FrictionCurve]) -> Self {
+    pub(crate) fn of(curves: &[FrictionCurve]) -> Self {
         let (from, to) = widened(range(
             curves.iter().flat_map(|curve| curve.time_star.iter().copied()),
         ));
@@ -67,7 +67,7 @@ impl Panels {
     }
 
     /// The same panels, further down.
-    pub(super) fn lowered(mut self, by: f64) -> Self {
+    pub(crate) fn lowered(mut self, by: f64) -> Self {
         for axis in [&mut self.mu, &mut self.sliding] {
             axis.start += by;
             axis.end += by;
@@ -76,7 +76,7 @@ impl Panels {
     }
 
     /// The panel of friction.
-    pub(super) fn friction(&self) -> Area {
+    pub(crate) fn friction(&self) -> Area {
         self.of_axis(&self.mu)
     }
 
@@ -85,12 +85,12 @@ impl Panels {
     }
 
     /// Where the picture ends.
-    pub(super) fn bottom(&self) -> f64 {
+    pub(crate) fn bottom(&self) -> f64 {
         self.sliding.start + LOWER_ROOM
     }
 
     /// Ticks, numbers and titles.
-    pub(super) fn draw_axes(&self, canvas: &mut Canvas) {
+    pub(crate) fn draw_axes(&self, canvas: &mut Canvas) {
         let titles = [
             (
                 &self.mu,
@@ -113,7 +113,7 @@ impl Panels {
     }
 
     /// The panels' edges, over everything that ends on them.
-    pub(super) fn draw_frames(&self, canvas: &mut Canvas) {
+    pub(crate) fn draw_frames(&self, canvas: &mut Canvas) {
         for axis in [&self.mu, &self.sliding] {
             canvas.frame(self.of_axis(axis));
         }
@@ -121,7 +121,7 @@ impl Panels {
 }
 
 /// The area between two values of x and two of y.
-pub(super) fn between(from: f64, to: f64, start: f64, end: f64) -> Area {
+pub(crate) fn between(from: f64, to: f64, start: f64, end: f64) -> Area {
     Area {
         x: from,
         y: start.min(end),

@@ -1,0 +1,43 @@
+//! Pictures for the eye and for print. Of a run: friction against time, and maps of contact stress. Of a
+//! parametric study: response curves, heat maps, bars, all with their confidence intervals.
+//!
+//! Every picture is drawn once, on a canvas, and comes out as SVG and as PNG of the same physical size: a
+//! journal's column for curves, heat maps and bars, its text width for maps of stress. Bytes depend on the arguments only: no date, no
+//! random identifier.
+//!
+//! Read by the run folder writer and by `slipfront plot`.
+
+mod axis;
+mod bars;
+mod canvas;
+mod category_axis;
+mod error_bar;
+mod export;
+mod field_maps;
+mod frame;
+mod friction;
+mod friction_layout;
+mod heat_map;
+mod label_placement;
+mod legend;
+mod markers;
+mod mask_outline;
+mod picture;
+mod polyline;
+mod quantity_labels;
+mod response;
+mod scale;
+mod shapes;
+mod stress;
+mod style;
+mod text;
+
+pub use bars::{Bar, BarChart, BarGroup, bars};
+pub use field_maps::{FieldMap, FieldMaps, field_maps};
+pub use friction::{FrictionCurve, Instant, Kinetic, friction};
+pub use heat_map::{HeatAxis, HeatMap, heat_map};
+pub use picture::{Picture, PictureError};
+pub use quantity_labels::{symbol, title};
+pub use response::{Response, Responses, response};
+pub use shapes::{Shape, shapes};
+pub use stress::{StressMap, StressMaps, stress};
