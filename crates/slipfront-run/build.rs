@@ -4,7 +4,13 @@ use std::path::Path;
 use std::process::Command;
 
 /// What decides the numbers of a run, relative to this crate: a change elsewhere is none of theirs.
-const SOURCES: [&str; 4] = ["../slipfront/src", "src", "../../Cargo.toml", "../../Cargo.lock"];
+const SOURCES: [&str; 5] = [
+    "../slipfront/src",
+    "../slipfront-case/src",
+    "src",
+    "../../Cargo.toml",
+    "../../Cargo.lock",
+];
 
 fn main() {
     // HEAD changes with the branch; its log grows with every commit.
@@ -24,7 +30,7 @@ fn main() {
 /// The commit, and whether the sources are its; none outside of git.
 fn revision() -> Option<String> {
     // Vendored in another repository, the revision would be that one's.
-    git(&["rev-parse", "--show-prefix"]).filter(|prefix| prefix == "crates/slipfront-case/")?;
+    git(&["rev-parse", "--show-prefix"]).filter(|prefix| prefix == "crates/slipfront-run/")?;
     let commit = git(&["rev-parse", "HEAD"])?;
     let changes = git(&[&["status", "--porcelain", "--"], &SOURCES[..]].concat())?;
     let dirty = if changes.is_empty() { "" } else { "-dirty" };

@@ -63,4 +63,3 @@ pub fn shown(bytes: f64) -> String {
     let digits = usize::from(power > 0);
     format!("{:.digits$} {}", bytes / 1024f64.powi(power as i32), UNITS[power])
 }
-

@@ -4,9 +4,9 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use slipfront::lattice::dt_star_limit;
-use slipfront_case::machine::{available_memory, shown};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Law;
+use slipfront_case::machine::{available_memory, shown};
 use slipfront_run::study;
 use slipfront_run::study::{Finding, Findings, Plan, RunKey};
 use slipfront_run::summary::Summary;

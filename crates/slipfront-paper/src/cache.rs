@@ -5,16 +5,14 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::runner::StepRule;
-use crate::error::PaperError;
 use crate::embedded_cases::FILES;
+use crate::error::PaperError;
 use crate::measurements::Found;
-use slipfront_run::run_folder::error::FolderError;
+use crate::runner::StepRule;
 use slipfront_case::disk::{read_whole, remove_unfinished, write_whole};
 use slipfront_run::manifest::Manifest;
-
-/// Where they stand.
-pub(crate) const FOUND: &str = "found";
+use slipfront_run::names::FOUND;
+use slipfront_run::run_folder::error::FolderError;
 
 /// A longer file holds something else: a figure's findings take some megabytes at the most.
 const MAX_BYTES: u64 = 1 << 28;
@@ -100,8 +98,8 @@ impl Saved {
 
 #[cfg(test)]
 mod tests {
-    use super::crate::measurements::Number;
     use super::*;
+    use crate::measurements::Number;
 
     #[test]
     fn findings_come_back_unless_damaged_or_made_otherwise() {

@@ -1,11 +1,11 @@
-//! The claims of the paper: data in `cases/paper/claims.toml`, judged against what the figures have measured.
+//! The claims of the paper: data in `crates/slipfront-paper/cases/claims.toml`, judged against what the figures have measured.
 
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
-use crate::error::PaperError;
 use crate::embedded_cases::CLAIMS;
+use crate::error::PaperError;
 use crate::measurements::Number;
 
 /// A claim of the paper and how it is judged.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::PaperError;
 use crate::measurements::Number;
-use slipfront_plot;
+
 use slipfront_plot::{BarChart, FieldMaps, FrictionCurve, Picture, PictureError, Response, Responses, Shape};
 
 /// What is drawn.
@@ -29,11 +29,11 @@ impl Drawing {
     /// When there is nothing to draw.
     pub fn draw(&self) -> Result<Picture, PictureError> {
         match self {
-            Self::Curves(curves) => pictures::friction(curves),
-            Self::Maps(maps) => pictures::field_maps(maps),
-            Self::Responses(responses) => pictures::response(responses),
-            Self::Bars(chart) => pictures::bars(chart),
-            Self::Shapes(shapes) => pictures::shapes(shapes),
+            Self::Curves(curves) => slipfront_plot::friction(curves),
+            Self::Maps(maps) => slipfront_plot::field_maps(maps),
+            Self::Responses(responses) => slipfront_plot::response(responses),
+            Self::Bars(chart) => slipfront_plot::bars(chart),
+            Self::Shapes(shapes) => slipfront_plot::shapes(shapes),
         }
     }
 
@@ -125,7 +125,7 @@ pub(super) fn formula(label: &str, x: &[f64], value: impl Fn(f64) -> f64) -> Res
 }
 
 /// Maps of tau_c*, from 0 to its maximum in the run.
-pub(super) fn stress_maps(maps: Vec<pictures::FieldMap>, columns: usize) -> Drawing {
+pub(super) fn stress_maps(maps: Vec<slipfront_plot::FieldMap>, columns: usize) -> Drawing {
     Drawing::Maps(FieldMaps {
         value_title: "\u{3c4}_c*".to_owned(),
         range: [0.0, 1.0],

@@ -1,9 +1,9 @@
-//! The files of `cases/paper/`, kept in the program so that `slipfront paper` works anywhere.
+//! The files of `cases/` in this crate, kept in the program so that `slipfront paper` works anywhere.
 
-/// A table of (name, text) from names relative to `cases/paper/`.
+/// A table of (name, text) from names relative to `cases/` in this crate.
 macro_rules! files {
     ($($name:literal),* $(,)?) => {
-        &[$(($name, include_str!(concat!("../../../../cases/paper/", $name, ".toml")))),*]
+        &[$(($name, include_str!(concat!("../cases/", $name, ".toml")))),*]
     };
 }
 
@@ -50,4 +50,4 @@ pub(super) const FILES: &[(&str, &str)] = files![
 ];
 
 /// The claims of the paper and what is expected of them.
-pub(super) const CLAIMS: &str = include_str!("../../../../cases/paper/claims.toml");
+pub(super) const CLAIMS: &str = include_str!("../cases/claims.toml");

@@ -4,8 +4,8 @@ use slipfront::RunError;
 use thiserror::Error;
 
 use slipfront_case::case_file::CaseError;
-use slipfront_run::run_folder::error::FolderError;
 use slipfront_plot::PictureError;
+use slipfront_run::run_folder::error::FolderError;
 use slipfront_run::study::StudyError;
 
 /// A paper that could not be gone through.

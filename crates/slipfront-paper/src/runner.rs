@@ -8,17 +8,17 @@ use rayon::prelude::*;
 use slipfront::Stop;
 use slipfront::observe::{CurvePoint, Frame};
 
-use crate::error::PaperError;
 use crate::embedded_cases::FILES;
+use crate::error::PaperError;
 use crate::measurements::Number;
 use slipfront_case::case::{Case, Snapshots};
 use slipfront_case::case_file::CaseError;
 use slipfront_case::field_name::FieldName;
-use slipfront_run::pictures::marked_curve;
 use slipfront_plot::{FieldMap, FrictionCurve};
-use slipfront_run::{running as run, study};
+use slipfront_run::pictures::marked_curve;
 use slipfront_run::running::Record;
 use slipfront_run::study::{Findings, Keep, Plan, Quantity, Records, Role, RunKey, StudyError, StudyFile};
+use slipfront_run::{running as run, study};
 
 /// How the time step is chosen where a case does not say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -11,12 +11,12 @@ use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use slipfront_case::case::Case;
-use slipfront_case::disk::{open_regular, remove_if_there, stage, sync_folder};
-use slipfront_case::text::shortened;
 use crate::manifest::Manifest;
 use crate::names::{CHECKPOINT, PREVIOUS};
 use crate::running::{RunState, Running};
+use slipfront_case::case::Case;
+use slipfront_case::disk::{open_regular, remove_if_there, stage, sync_folder};
+use slipfront_case::text::shortened;
 
 /// How the file is laid out. A program reads no other layout.
 const LAYOUT: u32 = 1;

@@ -15,8 +15,8 @@ use thiserror::Error;
 use crate::names::MANIFEST;
 
 use crate::run_folder::error::FolderError;
-use slipfront_case::disk::{TEXT_MAX_BYTES, json, open_regular, read_whole};
 use crate::run_folder::resume_command::resume_command;
+use slipfront_case::disk::{TEXT_MAX_BYTES, json, open_regular, read_whole};
 use slipfront_case::text;
 use slipfront_case::text::shortened;
 
@@ -213,7 +213,7 @@ impl Manifest {
 
     /// The program that reads this, told from any other that may not give the same bits: where its version and revision do
     /// not say it all, by the hash of its file.
-    pub(crate) fn this_build() -> &'static str {
+    pub fn this_build() -> &'static str {
         static BUILD: LazyLock<String> = LazyLock::new(|| {
             let program = Manifest::this_program();
             let revision = Manifest::this_revision();

@@ -119,4 +119,3 @@ fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
     })?;
     Ok(Some(picture))
 }
-

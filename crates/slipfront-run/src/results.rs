@@ -7,21 +7,21 @@ use std::path::{Path, PathBuf};
 use slipfront_case::disk;
 use thiserror::Error;
 
-use slipfront_case::case::Case;
-use slipfront_case::case_file::CaseError;
 use crate::fields;
 use crate::fields::{FieldFrame, FieldsError, FieldsFile, StaticFields};
-use slipfront_case::field_name::FieldName;
-use crate::run_folder::error::FolderError;
-use crate::run_folder::RunFolder;
-use slipfront_case::text;
 use crate::manifest::Manifest;
-#[cfg(feature = "plot")]
-use slipfront_plot::PictureError;
+use crate::run_folder::RunFolder;
+use crate::run_folder::error::FolderError;
 use crate::running::Record;
 use crate::series;
 use crate::series::{SeriesError, SeriesRow};
 use crate::summary::Summary;
+use slipfront_case::case::Case;
+use slipfront_case::case_file::CaseError;
+use slipfront_case::field_name::FieldName;
+use slipfront_case::text;
+#[cfg(feature = "plot")]
+use slipfront_plot::PictureError;
 
 /// What can go wrong with results.
 #[derive(Debug, Error)]

@@ -8,8 +8,8 @@ use slipfront::observe::{
 };
 use slipfront::{Checkpoint, Execution, RunError, Simulation, Snapshot, StopReason};
 
-use slipfront_case::case::{Case, Snapshots};
 use crate::summary::{Observed, Summary};
+use slipfront_case::case::{Case, Snapshots};
 
 /// Everything a run leaves behind, in memory.
 #[derive(Debug)]

@@ -9,15 +9,15 @@ use std::path::{Component, Path, PathBuf};
 
 use thiserror::Error;
 
-use slipfront_case::case_file::CaseFile;
-use crate::run_folder::error::FolderError;
-use slipfront_case::disk::{TEXT_MAX_BYTES, read_whole};
-use crate::run_folder::contents::is_of_interrupted_run;
-use slipfront_case::text::{sentence, shortened};
-use crate::names::{MANIFEST, RUNS};
 use crate::manifest::{Manifest, ManifestError, ManifestFile};
+use crate::names::{MANIFEST, RUNS};
+use crate::run_folder::contents::is_of_interrupted_run;
+use crate::run_folder::error::FolderError;
 use crate::study;
 use crate::study::{Finding, Findings, Keep, Plan, Records, StudyError, StudyFolder};
+use slipfront_case::case_file::CaseFile;
+use slipfront_case::disk::{TEXT_MAX_BYTES, read_whole};
+use slipfront_case::text::{sentence, shortened};
 
 /// What was found in a folder.
 #[derive(Clone, Debug, Default, PartialEq)]

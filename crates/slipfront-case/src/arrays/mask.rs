@@ -3,7 +3,10 @@
 use std::io::{self, Cursor};
 use std::path::Path;
 
-use png::{Transformations, BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, InterlaceInfo, Reader};
+use png::{
+    BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, InterlaceInfo, Reader,
+    Transformations,
+};
 
 use slipfront::surface::MaskImage;
 

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use slipfront::Lattice;
 
-use crate::arrays;
 use super::budget::{Budget, within_budget};
+use crate::arrays;
 use crate::case_file::{CaseError, CaseFile};
 
 /// A file that a case reads, kept so that the run folder can hold a copy.

@@ -16,18 +16,17 @@ use slipfront::scales::damping;
 use slipfront::surface::{Load, mesh};
 use slipfront::{Drive, Model, Scales, Surface};
 
+use self::budget::within_budget;
+pub use self::budget::{Budget, PROGRAM, SERIES_ROW};
 use self::coefficients::coefficients;
 pub use self::groups::Groups;
 pub use self::inputs::Input;
 use self::inputs::Inputs;
 pub use self::output::{MAX_MAPS, Output, Snapshots, VARIABLE_MAX_BYTES, smallest_stride};
-pub use self::schedule::Schedule;
-use self::textures::textures;
-pub use self::budget::Budget;
-use self::budget::within_budget;
-pub use self::budget::{PROGRAM, SERIES_ROW};
 pub use self::parameters::check_fields;
 use self::parameters::{Parameters, law};
+pub use self::schedule::Schedule;
+use self::textures::textures;
 use crate::case_file::{CaseError, CaseFile};
 
 /// A case, valid by construction.

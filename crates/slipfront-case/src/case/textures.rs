@@ -5,10 +5,10 @@ use std::path::Path;
 use slipfront::{Lattice, Scales, surface};
 
 use super::inputs::{Given, Inputs};
-use crate::{arrays, case_file};
 use crate::arrays::ArrayError;
 use crate::case_file::{CaseError, CaseFile};
 use crate::quantity::Length;
+use crate::{arrays, case_file};
 
 /// The shapes of all textures.
 pub(super) struct Textures {

@@ -65,13 +65,14 @@ pub struct Invalid {
 }
 
 impl CaseError {
-    pub(super) fn invalid(place: Option<Place>, sentence: impl Into<String>) -> Self {
+    /// An invalid value or key at a place, in a sentence.
+    pub fn invalid(place: Option<Place>, sentence: impl Into<String>) -> Self {
         let sentence = text::sentence(&sentence.into());
         Self::Invalid(Box::new(Invalid { place, sentence }))
     }
 
     /// An error of TOML's grammar.
-    pub(crate) fn syntax(source: &Source, offset: usize, error: &toml::de::Error) -> Self {
+    pub fn syntax(source: &Source, offset: usize, error: &toml::de::Error) -> Self {
         let span = error.span().unwrap_or(0..0);
         let span = span.start + offset..span.end + offset;
         let message = one_line(error.message());
@@ -87,13 +88,7 @@ impl CaseError {
     }
 
     /// An error of serde's, at `span`, while it reads the table under `header`, whose keys are `known`.
-    pub(super) fn value(
-        source: &Source,
-        span: Range<usize>,
-        message: &str,
-        header: &str,
-        known: &[&str],
-    ) -> Self {
+    pub fn value(source: &Source, span: Range<usize>, message: &str, header: &str, known: &[&str]) -> Self {
         let message = one_line(message);
         if let Some((key, expected)) = name_and_rest(&message, "unknown field `") {
             let expected: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();

@@ -37,8 +37,9 @@ pub use output::{Output, Snapshots};
 pub use slider::{Damping, Edge, Slider};
 pub use source::{Place, Source};
 pub use tables::Tables;
-pub use texture::DEFAULT_THRESHOLD;
-pub use texture::{Cavity, CavitySize, Center, Groove, GrooveSize, Mask, Orientation, Polygon, Texture};
+pub use texture::{
+    Cavity, CavitySize, Center, DEFAULT_THRESHOLD, Groove, GrooveSize, Mask, Orientation, Polygon, Texture,
+};
 pub use time::{RunTime, Step, Stop, Time};
 pub use values::AutoOr;
 

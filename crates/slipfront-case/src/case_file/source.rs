@@ -35,7 +35,8 @@ impl PartialEq for Source {
 }
 
 impl Source {
-    pub(crate) fn new(name: &str, file: &str, overrides: &[String]) -> Self {
+    /// The text of a case file of this name, with overrides behind it.
+    pub fn new(name: &str, file: &str, overrides: &[String]) -> Self {
         let mut text = file.to_owned();
         let mut spans = Vec::new();
         for entry in overrides {
@@ -57,36 +58,39 @@ impl Source {
     }
 
     /// File and overrides as one text, into which all spans point.
-    pub(super) fn text(&self) -> Arc<str> {
+    pub fn text(&self) -> Arc<str> {
         Arc::clone(&self.text)
     }
 
-    pub(super) fn file_len(&self) -> usize {
+    /// Length of the file without the overrides, in bytes.
+    pub fn file_len(&self) -> usize {
         self.overrides
             .first()
             .map_or(self.text.len(), |first| first.start - 1)
     }
 
-    pub(super) fn overrides(&self) -> &[Range<usize>] {
+    /// Where the overrides stand in the text.
+    pub fn overrides(&self) -> &[Range<usize>] {
         &self.overrides
     }
 
-    pub(super) fn slice(&self, span: Range<usize>) -> &str {
+    /// A piece of the text.
+    pub fn slice(&self, span: Range<usize>) -> &str {
         self.text.get(span).unwrap_or_default()
     }
 
     /// Notes the place of every value of a parsed file.
-    pub(crate) fn note_places(&mut self, root: &DeTable<'_>) {
+    pub fn note_places(&mut self, root: &DeTable<'_>) {
         note_table(&mut self.places, "", root);
     }
 
     /// The span of the value of `key`; `None` when the key has its default.
-    pub(super) fn span(&self, key: &str) -> Option<Range<usize>> {
+    pub fn span(&self, key: &str) -> Option<Range<usize>> {
         self.places.get(key).cloned()
     }
 
     /// The key whose value has exactly this span, or else the innermost one around it.
-    pub(super) fn key_at(&self, span: &Range<usize>) -> Option<&str> {
+    pub fn key_at(&self, span: &Range<usize>) -> Option<&str> {
         let around = self
             .places
             .iter()
@@ -110,12 +114,12 @@ impl Source {
     }
 
     /// An error at a place in the text.
-    pub(crate) fn error_at(&self, span: Range<usize>, sentence: impl Into<String>) -> CaseError {
+    pub fn error_at(&self, span: Range<usize>, sentence: impl Into<String>) -> CaseError {
         CaseError::invalid(Some(self.place(span)), sentence)
     }
 
     /// The place of a span: the line and column where it begins, or the `--set` that it lies in.
-    pub(super) fn place(&self, span: Range<usize>) -> Place {
+    pub fn place(&self, span: Range<usize>) -> Place {
         if span.start > self.file_len()
             && let Some(entry) = self.overrides.iter().find(|entry| span.start <= entry.end)
         {
@@ -189,7 +193,7 @@ pub enum Place {
 
 impl Place {
     /// The line with its caret; empty for a `--set`.
-    pub(super) fn excerpt(&self) -> &str {
+    pub fn excerpt(&self) -> &str {
         match self {
             Self::File { excerpt, .. } => excerpt,
             Self::Override(_) => "",

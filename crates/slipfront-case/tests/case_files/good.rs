@@ -1,7 +1,10 @@
 use std::fs;
 use std::path::Path;
 
-use slipfront_case::case_file::{CaseFile, Cavity, CavitySize, Center, Damping, DriveSpeed, Edge, KineticFriction, RunTime, Snapshots, Texture};
+use slipfront_case::case_file::{
+    CaseFile, Cavity, CavitySize, Center, Damping, DriveSpeed, Edge, KineticFriction, RunTime, Snapshots,
+    Texture,
+};
 
 use super::{files, notes};
 

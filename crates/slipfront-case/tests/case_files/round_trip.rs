@@ -1,7 +1,11 @@
 use proptest::prelude::*;
 use proptest::sample::{select, subsequence};
 
-use slipfront_case::case_file::{AutoOr, CaseFile, Cavity, CavitySize, Center, Damping, Drive, DriveSpeed, Edge, Friction, Groove, GrooveSize, KineticFriction, Law, Load, Mask, Orientation, Output, Polygon, RunTime, Slider, Snapshots, Source, Step, Stop, Texture, Time};
+use slipfront_case::case_file::{
+    AutoOr, CaseFile, Cavity, CavitySize, Center, Damping, Drive, DriveSpeed, Edge, Friction, Groove,
+    GrooveSize, KineticFriction, Law, Load, Mask, Orientation, Output, Polygon, RunTime, Slider, Snapshots,
+    Source, Step, Stop, Texture, Time,
+};
 use slipfront_case::field_name::FieldName;
 use slipfront_case::quantity::{Kind, Length, Quantity};
 

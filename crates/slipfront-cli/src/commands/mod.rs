@@ -51,7 +51,7 @@ impl CaseArgs {
 
 /// The baseline is a case file like any other, kept in the program.
 fn baseline(overrides: &[String]) -> Result<Case, CaseError> {
-    let text = include_str!("../../../../cases/baseline.toml");
+    let text = include_str!("../baseline.toml");
     Case::parse(text, "baseline", overrides)
 }
 

@@ -47,7 +47,7 @@ pub(crate) struct Paper {
 impl Paper {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let threads = set_threads(self.threads)?;
-        let figures = paper::figures(&self.figures).map_err(Failure::input)?;
+        let figures = slipfront_paper::figures(&self.figures).map_err(Failure::input)?;
         if let Some(docs) = &self.docs {
             refuse_foreign(docs)?;
         }
@@ -60,7 +60,7 @@ impl Paper {
             folder: &self.out,
         };
         let progress = Progress::new(self.quiet);
-        let done = paper::run(&figures, &mut records, &options, &mut |stage| {
+        let done = slipfront_paper::run(&figures, &mut records, &options, &mut |stage| {
             progress.show(stage);
         });
         progress.finish();
@@ -71,12 +71,12 @@ impl Paper {
                 Failure::running(error)
             }
         })?;
-        paper::write(&paper, &self.out).map_err(Failure::running)?;
+        slipfront_paper::write(&paper, &self.out).map_err(Failure::running)?;
         if let Some(docs) = &self.docs {
-            paper::write_docs(&paper, docs).map_err(Failure::running)?;
+            slipfront_paper::write_docs(&paper, docs).map_err(Failure::running)?;
         }
         if !self.quiet {
-            print(&paper::summary(&paper))?;
+            print(&slipfront_paper::summary(&paper))?;
             print(&format!("{}\n", self.out.join("report.html").display()))?;
         }
         match paper.surprises().count() {
@@ -91,7 +91,7 @@ impl Paper {
 
 /// Refuses to replace pages that others have written.
 fn refuse_foreign(docs: &Path) -> Result<(), Failure> {
-    let Some(path) = paper::foreign_docs(docs) else {
+    let Some(path) = slipfront_paper::foreign_docs(docs) else {
         return Ok(());
     };
     let remedy = "move it away, or choose another folder with --docs";

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use slipfront_case::disk::write_whole;
-use slipfront_run::names::MANIFEST;
 use slipfront_plot::Picture;
-use slipfront_run::results;
+use slipfront_run::names::MANIFEST;
 use slipfront_run::verify::expect_as_written;
+use slipfront_run::{pictures, results};
 
 use super::print;
 use crate::failure::Failure;
@@ -36,9 +36,9 @@ impl Plot {
             expect_as_written(folder, |name| results::DRAWN_FROM.contains(&name)).map_err(Failure::input)?;
         }
         let (out, drawn) = match self.folders.as_slice() {
-            [folder] => (folder.clone(), results::draw(folder).map_err(Failure::input)?),
+            [folder] => (folder.clone(), pictures::draw(folder).map_err(Failure::input)?),
             folders => {
-                let friction = results::draw_friction(folders).map_err(Failure::input)?;
+                let friction = pictures::draw_friction(folders).map_err(Failure::input)?;
                 (PathBuf::from("results/overlay"), vec![("friction", friction)])
             }
         };

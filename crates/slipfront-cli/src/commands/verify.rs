@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use jiff::Timestamp;
 use slipfront_case::case::Case;
-use slipfront_run::run_folder::RunFolder;
 use slipfront_run::manifest::Manifest;
 use slipfront_run::results;
+use slipfront_run::run_folder::RunFolder;
 use slipfront_run::running::Running;
 use slipfront_run::verify::{Verdict, VerifyError, compare, is_study, verify};
 

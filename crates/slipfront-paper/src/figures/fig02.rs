@@ -2,10 +2,10 @@
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use crate::runner::Bench;
 use crate::drawing::{Drawing, formula};
 use crate::error::PaperError;
 use crate::measurements::{Found, largest};
+use crate::runner::Bench;
 use slipfront_plot::{FieldMap, FieldMaps, Response, Responses};
 
 pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {

@@ -1,9 +1,9 @@
 //! Fig. 3 and Table 1: eight materials at one dimensionless speed, as printed and as corrected (D3).
 
-use crate::runner::{Bench, Run, mu_star, sliding_percent};
 use crate::drawing::Drawing;
 use crate::error::PaperError;
 use crate::measurements::{Found, Table, largest, smallest};
+use crate::runner::{Bench, Run, mu_star, sliding_percent};
 
 /// The cases whose printed speed does not make V* = 0.03.
 const CORRECTED: [u32; 3] = [3, 6, 7];

@@ -2,10 +2,10 @@
 
 use slipfront::observe::Frame;
 
-use crate::runner::{Bench, Run, seen_at};
 use crate::drawing::stress_maps;
 use crate::error::PaperError;
 use crate::measurements::{Found, largest, mean, smallest};
+use crate::runner::{Bench, Run, seen_at};
 use slipfront_case::field_name::FieldName;
 
 pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {

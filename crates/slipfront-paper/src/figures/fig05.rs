@@ -1,9 +1,9 @@
 //! Fig. 5: the same material in three sizes.
 
-use crate::runner::Bench;
 use crate::drawing::{Drawing, stress_maps};
 use crate::error::PaperError;
 use crate::measurements::{Found, mean};
+use crate::runner::Bench;
 
 pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let mut found = Found::default();

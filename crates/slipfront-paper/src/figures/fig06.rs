@@ -1,9 +1,9 @@
 //! Fig. 6: onset time and number of time steps against speed, and what of the material decides on the onset.
 
-use crate::runner::{Bench, Sweep};
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;
 use crate::measurements::{Found, Number, Table, largest, mean, smallest};
+use crate::runner::{Bench, Sweep};
 use slipfront_plot::Responses;
 
 pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {

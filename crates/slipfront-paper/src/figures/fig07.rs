@@ -1,9 +1,9 @@
 //! Fig. 7: a fast slider, which the paper calls unstable, in several time steps (D7, D11).
 
-use crate::runner::{Bench, mu_star};
 use crate::drawing::Drawing;
 use crate::error::PaperError;
 use crate::measurements::{Found, deviation, largest, smallest};
+use crate::runner::{Bench, mu_star};
 
 pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let mut found = Found::default();

@@ -1,9 +1,9 @@
 //! Fig. 8: static friction against speed.
 
-use crate::runner::Bench;
 use crate::drawing::{Drawing, measured, stress_maps};
 use crate::error::PaperError;
 use crate::measurements::{Found, Number, rises, smallest};
+use crate::runner::Bench;
 use slipfront_plot::Responses;
 
 pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {

@@ -1,9 +1,9 @@
 //! Fig. 9: damping.
 
-use crate::runner::{Bench, Run, mu_star};
 use crate::drawing::Drawing;
 use crate::error::PaperError;
 use crate::measurements::{Found, deviation, largest, mean, rises, smallest};
+use crate::runner::{Bench, Run, mu_star};
 
 pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let mut found = Found::default();

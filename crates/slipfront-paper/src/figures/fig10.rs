@@ -1,10 +1,10 @@
 //! Fig. 10: kinetic over static friction, R*.
 
-use crate::runner::Bench;
 use crate::claims::with_interval;
 use crate::drawing::Drawing;
 use crate::error::PaperError;
 use crate::measurements::{Found, Number, Table, largest, mean, rises};
+use crate::runner::Bench;
 
 pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let mut found = Found::default();

@@ -2,11 +2,11 @@
 
 use slipfront::Lattice;
 
-use crate::runner::{Bench, Run, seen_at};
 use crate::drawing::{Drawing, stress_maps};
 use crate::error::PaperError;
 use crate::figures::fig04::first_block;
 use crate::measurements::{Found, largest};
+use crate::runner::{Bench, Run, seen_at};
 use slipfront_plot::{FieldMap, FieldMaps};
 
 /// Minima of mu_si that are marked.

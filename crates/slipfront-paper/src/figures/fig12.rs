@@ -1,9 +1,9 @@
 //! Fig. 12: static friction against the spread of the local coefficients.
 
-use crate::runner::{Bench, Run};
 use crate::drawing::{Drawing, measured};
 use crate::error::PaperError;
 use crate::measurements::{Found, Number, deviation, largest, mean, rises, smallest};
+use crate::runner::{Bench, Run};
 use slipfront_plot::Responses;
 
 /// Surfaces from which the paper takes each mean.

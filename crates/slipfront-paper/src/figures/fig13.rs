@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use crate::runner::Bench;
 use crate::drawing::Drawing;
 use crate::error::PaperError;
 use crate::measurements::{Found, largest};
+use crate::runner::Bench;
 use slipfront_case::case_file;
 use slipfront_case::case_file::CavitySize;
 use slipfront_plot::Shape;

@@ -1,9 +1,9 @@
 //! Fig. 14: slip fronts around a circular cavity.
 
-use crate::runner::{Bench, Run, seen_at};
 use crate::drawing::stress_maps;
 use crate::error::PaperError;
 use crate::measurements::{Found, mean};
+use crate::runner::{Bench, Run, seen_at};
 
 /// Shares of the blocks in contact that have slipped, from the left to the right of a panel.
 const SHARES: [f64; 5] = [0.02, 0.1, 0.3, 0.5, 0.8];

@@ -1,9 +1,9 @@
 //! Fig. 15: reduction of static friction against the area of a circular cavity, for several roughnesses.
 
-use crate::runner::Bench;
 use crate::drawing::{Drawing, measured};
 use crate::error::PaperError;
 use crate::measurements::{Found, Number, largest, rises, smallest};
+use crate::runner::Bench;
 use slipfront_plot::Responses;
 use slipfront_run::study::REDUCTION;
 

@@ -1,9 +1,9 @@
 //! Fig. 16: elongated cavities, and grooves as their limit; and how general the 31 % is (D9).
 
-use crate::runner::Bench;
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;
 use crate::measurements::{Found, Number, Table, largest, mean, rises, smallest};
+use crate::runner::Bench;
 use slipfront_plot::Responses;
 use slipfront_run::study::REDUCTION;
 

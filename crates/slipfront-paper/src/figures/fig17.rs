@@ -1,9 +1,9 @@
 //! Fig. 17: contact stress around elongated cavities and grooves.
 
-use crate::runner::Bench;
 use crate::drawing::stress_maps;
 use crate::error::PaperError;
 use crate::measurements::Found;
+use crate::runner::Bench;
 
 pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let mut found = Found::default();

@@ -1,9 +1,9 @@
 //! Fig. 18: the shape of a cavity.
 
-use crate::runner::Bench;
 use crate::drawing::{Drawing, stress_maps};
 use crate::error::PaperError;
 use crate::measurements::{Found, Number, largest, smallest};
+use crate::runner::Bench;
 use slipfront_plot::{Bar, BarChart, BarGroup};
 use slipfront_run::study::REDUCTION;
 

@@ -1,9 +1,9 @@
 //! Appendix: how the main numbers move with what the paper leaves open.
 
-use crate::runner::Bench;
 use crate::claims::with_interval;
 use crate::error::PaperError;
 use crate::measurements::{Found, Number, Table, largest, mean};
+use crate::runner::Bench;
 use slipfront_run::study::REDUCTION;
 
 pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {

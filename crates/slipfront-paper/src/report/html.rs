@@ -5,7 +5,11 @@ use base64::prelude::BASE64_STANDARD as BASE64;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::{Drawn, claims_of, counts, greek, step_name};
-use crate::{Figure, Found, Judged, Paper, StepRule, Table, Verdict};
+use crate::claims::{Judged, Verdict};
+use crate::figures::Figure;
+use crate::measurements::{Found, Table};
+use crate::paper::Paper;
+use crate::runner::StepRule;
 
 const STYLE: &str = include_str!("style.css");
 

@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 
 use super::{counts, greek, step_name};
-use crate::{Judged, Paper, StepRule, Verdict};
+use crate::claims::{Judged, Verdict};
+use crate::paper::Paper;
+use crate::runner::StepRule;
 
 /// The pictures that the page shows.
 pub(super) const SHOWN: [&str; 8] = [
@@ -20,7 +22,7 @@ pub(super) fn page(paper: &Paper) -> String {
         "{TITLE}\n\
          What becomes of every claim of the paper's text when its figures are run again:\n\n\
          ```console\n$ slipfront paper --docs docs/validation\n```\n\n\
-         Criteria and expected verdicts stand in [cases/paper/claims.toml](../../cases/paper/claims.toml). Numbers D1 to D12 are\n\
+         Criteria and expected verdicts stand in [crates/slipfront-paper/cases/claims.toml](../../crates/slipfront-paper/cases/claims.toml). Numbers D1 to D12 are\n\
          the [deviations from the paper's print](../model.md#deviations-from-the-papers-print). Intervals are 95 % confidence\n\
          intervals of the mean over five random surfaces. Measured with {}; the last column holds what the paper's own step,\n\
          {}, gives in its place; {}.\n\n\

@@ -7,12 +7,15 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use crate::claims::Verdict;
+use crate::claims::{Judged, Verdict};
 use crate::error::PaperError;
-use super::{Figure, Found, Judged, Paper, StepRule};
-use slipfront_run::run_folder::error::FolderError;
+use crate::figures::Figure;
+use crate::measurements::Found;
+use crate::paper::Paper;
+use crate::runner::StepRule;
 use slipfront_case::disk::{begins_with, write_whole};
 use slipfront_plot::Picture;
+use slipfront_run::run_folder::error::FolderError;
 
 /// A drawn picture with its name and caption.
 struct Drawn {

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-
 use slipfront_paper::{FIGURES, Options, Paper};
 use slipfront_run::study::{Records, StudyError};
 
@@ -147,7 +146,9 @@ fn figures_are_known_by_their_short_names_too() {
     assert_eq!(names(&["fig15", "fig3"]), ["fig03", "fig15"]);
     assert_eq!(names(&["table1"]), ["table1"]);
     assert_eq!(names(&[]).len(), FIGURES.len());
-    let error = slipfront_paper::figures(&["fig19".to_owned()]).unwrap_err().to_string();
+    let error = slipfront_paper::figures(&["fig19".to_owned()])
+        .unwrap_err()
+        .to_string();
     assert!(
         error.starts_with("the paper has no `fig19`: take fig02, table1, fig03"),
         "{error}"

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use super::netcdf3_reader::{Classic, Fault};
 use super::names::{
     BLOCK_SIZE, BLOCKS, FIRST_SLIP, LABEL, LABEL_LENGTH, MU_KINETIC, MU_STATIC, STEP, STRIDE, TEXTURED, TIME,
     TIME_STAR, TIME_UNIT, X, Y,
 };
+use super::netcdf3_reader::{Classic, Fault};
 use slipfront_case::field_name::FieldName;
 
 use super::{FieldFrame, FieldsData, FieldsError};
@@ -40,7 +40,7 @@ pub fn read_fields(path: &Path) -> Result<FieldsData, FieldsError> {
 /// # Errors
 ///
 /// As for [`read_fields`].
-pub fn read_maps(path: &Path, field: most: usize) -> Result<FieldsData, FieldsError> {
+pub fn read_maps(path: &Path, field: FieldName, most: usize) -> Result<FieldsData, FieldsError> {
     let read = || {
         let mut file = Classic::open(path)?;
         let records = file.records();

@@ -14,6 +14,7 @@ use super::names::{
     TIME_STAR, TIME_UNIT, X, Y,
 };
 use slipfront_case::case::smallest_stride;
+use slipfront_case::field_name::FieldName;
 
 use super::{FieldsError, FieldsFile, thin};
 use slipfront_case::disk::fill_whole;

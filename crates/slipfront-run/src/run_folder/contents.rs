@@ -3,10 +3,12 @@
 use std::path::{Component, Path};
 
 use super::error::FolderError;
-use slipfront_case::disk::{TEXT_MAX_BYTES, begins_with, is_unfinished, is_folder, read_whole, remove_if_there, unfinished};
-use slipfront_case::case_file::CaseFile;
-use crate::names::{CASE, CHECKPOINT, CHECKPOINT_BEGINNING, MANIFEST, PREVIOUS};
 use crate::manifest::{Manifest, ManifestFile};
+use crate::names::{CASE, CHECKPOINT, CHECKPOINT_BEGINNING, MANIFEST, PREVIOUS};
+use slipfront_case::case_file::CaseFile;
+use slipfront_case::disk::{
+    TEXT_MAX_BYTES, begins_with, is_folder, is_unfinished, read_whole, remove_if_there, unfinished,
+};
 
 /// What a run leaves beside its case and the copies in `inputs/`, the manifest first.
 const RESULTS: [&str; 8] = [

@@ -105,4 +105,3 @@ pub enum FolderError {
         source: std::io::Error,
     },
 }
-

@@ -14,9 +14,9 @@ use slipfront_case::disk::{UNFINISHED, holds_only_unfinished, remove_unfinished,
 
 use self::contents::{refuse_foreign, remove_checkpoints, remove_own, remove_results, resolved_case};
 pub use self::error::FolderError;
-use slipfront_case::case::{Case, Input};
-use crate::names::{CASE, MANIFEST};
 use crate::manifest::Manifest;
+use crate::names::{CASE, MANIFEST};
+use slipfront_case::case::{Case, Input};
 
 /// A folder that a run is being written to.
 #[derive(Debug)]
@@ -227,4 +227,3 @@ fn lock(path: &Path) -> Result<Option<File>, FolderError> {
         Err(TryLockError::Error(_)) => Ok(None),
     }
 }
-

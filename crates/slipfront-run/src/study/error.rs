@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use slipfront_case::case_file::CaseError;
-use crate::run_folder::error::FolderError;
-use slipfront_case::text::shown;
 use crate::manifest::Manifest;
-use slipfront_plot::PictureError;
 use crate::results::ResultsError;
+use crate::run_folder::error::FolderError;
+use slipfront_case::case_file::CaseError;
+use slipfront_case::text::shown;
+use slipfront_plot::PictureError;
 
 /// A study that cannot be used, or had to stop.
 #[derive(Debug, Error)]

@@ -6,11 +6,13 @@ use rayon::prelude::*;
 
 use super::axis::{Axis, Spacing};
 use super::error::StudyError;
-use super::scheduler::Findings;
 use super::plan::Plan;
+use super::scheduler::Findings;
 use super::summary_values::REDUCTION;
 use super::tables::sample;
-use slipfront_plot::{Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Response, Responses, symbol, title};
+use slipfront_plot::{
+    Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Response, Responses, symbol, title,
+};
 
 /// What is drawn, where the study has it.
 pub(super) const QUANTITIES: [&str; 3] = ["static_friction_star", "kinetic_friction_star", REDUCTION];

@@ -4,21 +4,22 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use super::error::StudyError;
-use super::scheduler::Findings;
 use super::figures;
-use super::study_file::StudyFile;
 use super::input_copies::Copy;
-use super::plan::Plan;
 use super::journal::{Finding, Records};
+use super::plan::Plan;
+use super::scheduler::Findings;
+use super::study_file::StudyFile;
+use crate::manifest::Manifest;
 use crate::names::{CASE, FOUND, MANIFEST, RECORDS, RUNS, TABLES};
 use crate::run_folder::error::FolderError;
-use slipfront_case::disk::{TEXT_MAX_BYTES, fill_whole, is_empty, is_folder, open_bounded, open_regular, read_whole, remove_if_there, remove_unfinished, stage, sync_folder, write_whole};
-use crate::manifest::Manifest;
+use slipfront_case::disk::{
+    TEXT_MAX_BYTES, fill_whole, is_empty, is_folder, open_bounded, open_regular, read_whole, remove_if_there,
+    remove_unfinished, stage, sync_folder, write_whole,
+};
 
 /// The study as a table with its base inside: what `slipfront study DIR/study.toml` repeats.
 const STUDY: &str = "study.toml";
-
-
 
 /// A study folder with its records open.
 #[derive(Debug)]

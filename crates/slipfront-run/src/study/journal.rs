@@ -12,11 +12,10 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::error::StudyError;
-use crate::names::RECORDS;
 use super::summary_values::Numbers;
-use slipfront_case::disk::{open_bounded, remove_unfinished, sync_folder};
+use crate::names::RECORDS;
 use crate::summary::Summary;
-
+use slipfront_case::disk::{open_bounded, remove_unfinished, sync_folder};
 
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

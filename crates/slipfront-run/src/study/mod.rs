@@ -12,30 +12,30 @@ use crate::names::TABLES;
 
 mod axis;
 mod error;
-mod scheduler;
 mod figures;
-mod study_file;
 mod folder;
 mod input_copies;
-mod plan;
-mod summary_values;
 mod journal;
+mod plan;
+mod scheduler;
 mod shard;
 pub mod slurm;
 mod statistics;
+mod study_file;
+mod summary_values;
 mod tables;
 
 pub use axis::{Axis, Level, Spacing};
 pub use error::StudyError;
 pub(crate) use error::of_others;
-pub use scheduler::{Findings, PointFindings, Progress, collect, execute};
-pub use study_file::{Base, Keep, Settings, StudyFile, Until};
 pub use folder::{StudyFolder, is_study, refuse_foreign, study_of};
-pub use plan::{Plan, Point, Role, RunKey, Warning};
-pub use summary_values::{Numbers, Quantity, REDUCTION, known as quantities};
 pub use journal::{Finding, Outcome, Record, Records};
+pub use plan::{Plan, Point, Role, RunKey, Warning};
+pub use scheduler::{Findings, PointFindings, Progress, collect, execute};
 pub use shard::Shard;
 pub use statistics::Sample;
+pub use study_file::{Base, Keep, Settings, StudyFile, Until};
+pub use summary_values::{Numbers, Quantity, REDUCTION, known as quantities};
 pub use tables::sample;
 
 /// The quantity that a study is mostly about: the one that decides on its replicates, else the reduction if it has a reference,

@@ -7,15 +7,15 @@ use rayon::prelude::*;
 
 use super::axis::{self, Axis};
 use super::error::StudyError;
-use super::study_file::{Base, Keep, Settings, StudyFile};
 use super::folder::StudyFolder;
 use super::shard::Shard;
+use super::study_file::{Base, Keep, Settings, StudyFile};
+use crate::manifest::Manifest;
 use slipfront_case::case::{Budget, Case, PROGRAM, check_fields};
+use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Output, Snapshots};
 use slipfront_case::machine;
 use slipfront_case::machine::{available_memory, free_disk};
-use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Output, Snapshots};
 use slipfront_case::text::shown;
-use crate::manifest::Manifest;
 
 /// Every run that a study may need.
 #[derive(Clone, Debug)]

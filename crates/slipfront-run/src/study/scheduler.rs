@@ -12,16 +12,16 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use super::error::StudyError;
-use super::study_file::Keep;
-use crate::names::RUNS;
-use super::plan::{Plan, Role, RunKey};
-use super::summary_values::{Quantity, reduction_percent};
 use super::journal::{Finding, Outcome, Record, Records};
+use super::plan::{Plan, Role, RunKey};
 use super::statistics::Sample;
-use slipfront_case::case::Case;
+use super::study_file::Keep;
+use super::summary_values::{Quantity, reduction_percent};
+use crate::names::RUNS;
+use crate::results::ResultsError;
 use crate::run_folder::RunFolder;
 use crate::{results, running};
-use crate::results::ResultsError;
+use slipfront_case::case::Case;
 
 /// How far a study has come.
 #[derive(Clone, Debug, PartialEq)]

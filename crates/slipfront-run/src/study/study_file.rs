@@ -11,7 +11,9 @@ use super::axis::{self, Axis, AxisKeys};
 use super::error::StudyError;
 use super::input_copies::{self, Copy};
 use super::{summary_values, tables};
-use slipfront_case::case_file::{CASE_TABLES, CaseError, STUDY_TABLES, Source, Tables, header_below, keys_of, not_too_deep, unknown_key};
+use slipfront_case::case_file::{
+    CASE_TABLES, CaseError, STUDY_TABLES, Source, Tables, header_below, keys_of, not_too_deep, unknown_key,
+};
 
 /// A study file.
 #[derive(Clone, Debug)]

@@ -1,11 +1,11 @@
 //! `runs.csv`, one row a run, and `points.csv`, the statistics, one row for each point and quantity.
 
 use super::error::StudyError;
-use super::scheduler::Findings;
-use super::plan::{Plan, Role};
-use super::summary_values::{Quantity, REDUCTION, known};
 use super::journal::Finding;
+use super::plan::{Plan, Role};
+use super::scheduler::Findings;
 use super::statistics::Sample;
+use super::summary_values::{Quantity, REDUCTION, known};
 
 /// Columns of `runs.csv` before those of the axes, and after them, before the quantities.
 const BEFORE_AXES: [&str; 3] = ["point", "replicate", "role"];

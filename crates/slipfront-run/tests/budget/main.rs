@@ -10,8 +10,8 @@ use png::{BitDepth, ColorType, Encoder};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::run_folder::RunFolder;
-use slipfront_run::{study, results, running};
 use slipfront_run::study::{Plan, Records, StudyFile};
+use slipfront_run::{results, running, study};
 
 /// The system's allocator, counting bytes of all threads.
 struct Counting;
@@ -129,7 +129,7 @@ fn what_is_said_is_what_is_taken() {
         let (taken, (memory, disk)) = peak(|| {
             let file = CaseFile::parse("", "case", &overrides).unwrap();
             let case = Case::new(file, "case", folder.path()).unwrap();
-            let mut record = run::run(&case, 1).unwrap();
+            let mut record = running::run(&case, 1).unwrap();
             let out = RunFolder::prepare(&out, false, &case.inputs).unwrap();
             results::write(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();
             (case.budget.memory(), case.budget.disk())

@@ -104,7 +104,7 @@ fn every_case_gives_its_pinned_results() {
         .into_par_iter()
         .map(|(name, path)| {
             let case = Case::load(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
-            let record = run::run(&case, 1).unwrap();
+            let record = running::run(&case, 1).unwrap();
             (name, Pin::of(&record.summary))
         })
         .collect();

@@ -9,9 +9,8 @@ use fearless_simd::{Level, dispatch};
 use super::{Block, Held, Totals};
 use crate::checkpoint::Checkpoint;
 use crate::friction::{self, Integrator, Law};
-use crate::lanes;
 use crate::lattice::Bond;
-use crate::{Contact, Edges, FrictionLaw, Lattice, Model, State, VectorField};
+use crate::{Contact, Edges, FrictionLaw, Lattice, Model, State, VectorField, lanes};
 
 /// The state of all blocks, and the forces of the latest step.
 #[derive(Debug)]

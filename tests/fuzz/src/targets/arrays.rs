@@ -4,13 +4,10 @@ use std::path::Path;
 
 use png::{BitDepth, ColorType, Encoder};
 use slipfront_case::arrays;
-use slipfront_case::arrays::mask_npy;
-use slipfront_case::arrays::write_mask_png;
+use slipfront_case::arrays::{mask_npy, write_mask_png};
 
 use crate::checks::readable;
-use crate::Memory;
-use crate::Target;
-use crate::scratch;
+use crate::{Memory, Target, scratch};
 
 /// The lattice that arrays are read for: not square, so that rows and columns are told apart.
 const NX: usize = 3;

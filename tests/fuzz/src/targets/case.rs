@@ -5,12 +5,11 @@ use slipfront_case::case_file::CaseFile;
 
 use crate::checks::readable;
 use crate::scratch::repository;
-use crate::Memory;
-use crate::Target;
+use crate::{Memory, Target};
 
 const CASES: &[&str] = &[
     "cases/*.toml",
-    "cases/paper/table1/*.toml",
+    "crates/slipfront-paper/cases/table1/*.toml",
     "crates/slipfront-case/tests/good/*.toml",
     "crates/slipfront-case/tests/bad/*.toml",
 ];

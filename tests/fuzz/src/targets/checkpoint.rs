@@ -7,14 +7,12 @@ use jiff::Timestamp;
 use slipfront::StopReason;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseFile;
-use slipfront_run::names::CHECKPOINT;
 use slipfront_run::checkpoint::Checkpoints;
+use slipfront_run::names::CHECKPOINT;
 use slipfront_run::running::Running;
 
 use crate::checks::readable;
-use crate::Memory;
-use crate::Target;
-use crate::scratch;
+use crate::{Memory, Target, scratch};
 
 /// The first byte chooses one of [`CASES`]. The file is read as it is, with the seal that it should have, and with that and
 /// the header; a run that can go on from there does so.

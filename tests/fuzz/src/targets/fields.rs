@@ -1,19 +1,12 @@
 //! The fields of a run, `fields.nc`.
 
-use slipfront_run::fields::FieldFrame;
 use slipfront_case::field_name::FieldName;
-use slipfront_run::fields::FieldsData;
-use slipfront_run::fields::FieldsFile;
-use slipfront_run::fields::StaticFields;
-use slipfront_run::fields::read_fields;
-use slipfront_run::fields::read_maps;
-use slipfront_run::fields::thin;
-use slipfront_run::fields::write_fields;
+use slipfront_run::fields::{
+    FieldFrame, FieldsData, FieldsFile, StaticFields, read_fields, read_maps, thin, write_fields,
+};
 
 use crate::checks::readable;
-use crate::Memory;
-use crate::Target;
-use crate::scratch;
+use crate::{Memory, Target, scratch};
 
 /// All of the file, then the maps of one field.
 pub(crate) const FIELDS: Target = Target {

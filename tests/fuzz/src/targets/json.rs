@@ -1,21 +1,15 @@
 //! What stands in a run folder as JSON: the summary, and the manifest under its seal.
 
-use slipfront_run::run_folder::error::FolderError;
+use slipfront_run::manifest::{Manifest, ManifestFile, Random};
+use slipfront_run::results::{read_summary, summary_json};
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::contents::own_bytes;
-use slipfront_run::manifest::Manifest;
-use slipfront_run::manifest::ManifestFile;
-use slipfront_run::manifest::Random;
-use slipfront_run::results::read_summary;
-use slipfront_run::results::summary_json;
-use slipfront_run::summary::InstantSummary;
-use slipfront_run::summary::Summary;
+use slipfront_run::run_folder::error::FolderError;
+use slipfront_run::summary::{InstantSummary, Summary};
 use slipfront_run::verify::verify;
 
 use crate::checks::readable;
-use crate::Memory;
-use crate::Target;
-use crate::scratch;
+use crate::{Memory, Target, scratch};
 
 /// The numbers of a run.
 pub(crate) const SUMMARY: Target = Target {

@@ -1,15 +1,12 @@
 //! Pictures from the files of a run folder.
 
-use slipfront_run::results::draw;
-use slipfront_run::results::draw_friction;
+use slipfront_run::pictures::{draw, draw_friction};
 use slipfront_run::results::summary_json;
 
 use super::json::summary;
 use super::{fields, series};
 use crate::checks::readable;
-use crate::Memory;
-use crate::Target;
-use crate::scratch;
+use crate::{Memory, Target, scratch};
 
 /// Summary, series and fields one after the other, each but the last ended by [`END`].
 pub(crate) const PLOT: Target = Target {

@@ -1,19 +1,11 @@
 //! Numbers with units, and other words of the command line.
 
 use slipfront_case::field_name::FieldName;
-use slipfront_case::quantity::Density;
-use slipfront_case::quantity::Duration;
-use slipfront_case::quantity::Kind;
-use slipfront_case::quantity::Length;
-use slipfront_case::quantity::Pressure;
-use slipfront_case::quantity::Quantity;
-use slipfront_case::quantity::Rate;
-use slipfront_case::quantity::Speed;
+use slipfront_case::quantity::{Density, Duration, Kind, Length, Pressure, Quantity, Rate, Speed};
 use slipfront_run::study::Shard;
 
 use crate::checks::readable;
-use crate::Memory;
-use crate::Target;
+use crate::{Memory, Target};
 
 /// A quantity of every dimension, a shard, the name of a field.
 pub(crate) const QUANTITY: Target = Target {

@@ -1,14 +1,10 @@
 //! Records of finished runs, one line each under a checksum.
 
-use slipfront_run::study::Outcome;
-use slipfront_run::study::Record;
-use slipfront_run::study::Records;
+use slipfront_run::study::{Outcome, Record, Records};
 
 use super::json::summary;
 use crate::checks::readable;
-use crate::Memory;
-use crate::Target;
-use crate::scratch;
+use crate::{Memory, Target, scratch};
 
 /// The file as it is, then with the checksums that its lines should have.
 pub(crate) const RECORDS: Target = Target {

@@ -2,21 +2,10 @@
 
 use std::cell::OnceCell;
 
-use slipfront_paper::Drawing;
-use slipfront_paper::Found;
-use slipfront_paper::Number;
-use slipfront_paper::Panel;
-use slipfront_paper::Saved;
-use slipfront_paper::StepRule;
-use slipfront_paper::Table;
-use slipfront_plot::FieldMap;
-use slipfront_plot::FieldMaps;
-use slipfront_plot::FrictionCurve;
-use slipfront_plot::Shape;
+use slipfront_paper::{Drawing, Found, Number, Panel, Saved, StepRule, Table};
+use slipfront_plot::{FieldMap, FieldMaps, FrictionCurve, Shape};
 
-use crate::Memory;
-use crate::Target;
-use crate::scratch;
+use crate::{Memory, Target, scratch};
 
 /// The file as it is, then what is behind its checksum.
 pub(crate) const SAVED: Target = Target {

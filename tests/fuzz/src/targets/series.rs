@@ -1,13 +1,9 @@
 //! The curve of a run as CSV.
 
-use slipfront_run::series::SeriesRow;
-use slipfront_run::series::read_csv;
-use slipfront_run::series::to_csv;
+use slipfront_run::series::{SeriesRow, read_csv, to_csv};
 
 use crate::checks::readable;
-use crate::Memory;
-use crate::Target;
-use crate::scratch;
+use crate::{Memory, Target, scratch};
 
 /// `series.csv`.
 pub(crate) const SERIES: Target = Target {

@@ -1,13 +1,10 @@
 //! Study files; the cases that they name are those of the repository.
 
 use slipfront_case::case_file::CaseFile;
-use slipfront_run::study::StudyFile;
-use slipfront_run::study::StudyFolder;
+use slipfront_run::study::{StudyFile, StudyFolder};
 
 use crate::checks::readable;
-use crate::Memory;
-use crate::Target;
-use crate::scratch;
+use crate::{Memory, Target, scratch};
 
 /// The text of a study, the copy in its results folder, and the cases of a few of its points.
 pub(crate) const STUDY_FILE: Target = Target {

@@ -8,9 +8,9 @@ use clap::Args;
 use jiff::Timestamp;
 use slipfront_case::case::Case;
 use slipfront_run::checkpoint::Checkpoints;
+use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::contents::own_bytes;
-use slipfront_run::results;
 use slipfront_run::running::Running;
 
 use super::{CaseArgs, print, set_threads};

@@ -5,10 +5,10 @@ use std::path::Path;
 use jiff::Timestamp;
 use slipfront_case::case::Case;
 use slipfront_run::checkpoint::{CheckpointError, Checkpoints, Saved};
-use slipfront_run::run_folder::RunFolder;
-use slipfront_run::run_folder::contents::own_bytes;
 use slipfront_run::manifest::{Manifest, ManifestError};
 use slipfront_run::results;
+use slipfront_run::run_folder::RunFolder;
+use slipfront_run::run_folder::contents::own_bytes;
 use slipfront_run::running::Running;
 use slipfront_run::verify::{VerifyError, expect_as_written};
 
