@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use slipfront_case::disk::is_empty;
-use slipfront_paper;
 use slipfront_paper::{Options, Stage, StepRule};
 use slipfront_run::study::{Records, is_study};
 
