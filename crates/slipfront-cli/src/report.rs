@@ -3,9 +3,9 @@
 use std::collections::HashSet;
 use std::path::Path;
 
+use slipfront::FrictionLaw;
 use slipfront::lattice::dt_star_limit;
 use slipfront_case::case::Case;
-use slipfront_case::case_file::Law;
 use slipfront_case::machine::available_memory;
 use slipfront_case::number_format::byte_size;
 use slipfront_run::study;
@@ -22,11 +22,10 @@ pub(crate) fn physics(case: &Case) -> String {
     } else {
         format!("{edges_x} in x, {edges_y} in y")
     };
-    let law = match file.friction.law {
-        Law::Projection => "projection",
-        Law::Reversal => "reversal (for comparison)",
-        Law::Literal => "literal (for comparison)",
-    };
+    let mut law = format!("{:?}", file.friction.law).to_lowercase();
+    if file.friction.law != FrictionLaw::Projection {
+        law += " (for comparison)";
+    }
     let (time_plan, time) = (&case.time_plan, scales.time());
     let mut tree = vec![
         (
@@ -60,7 +59,7 @@ pub(crate) fn physics(case: &Case) -> String {
                 file.drive.direction
             ),
         ),
-        ("friction", friction(case, law)),
+        ("friction", friction(case, &law)),
         ("texture", texture(case)),
         (
             "time",

@@ -2,13 +2,14 @@
 //!
 //! Bounds on quantities are generous: they keep out slips of the pen (a block of 1 km), not unusual materials.
 
-use std::collections::BTreeSet;
 use std::ops::Bound::{self, Excluded, Included};
 use std::ops::RangeBounds;
 use std::path::Path;
 
+use slipfront::Edges;
+
 use super::{
-    AutoOr, CaseError, CaseFile, Cavity, CavitySize, Center, Damping, DriveSpeed, Edge, GrooveSize,
+    AutoOr, CaseError, CaseFile, Cavity, CavitySize, Center, Damping, DriveSpeed, GrooveSize,
     KineticFriction, Mask, RunTime, Snapshots, Step, Texture,
 };
 use crate::number_format::exact;
@@ -82,7 +83,7 @@ impl CaseFile {
             ));
         }
         for (axis, n, edge) in [("x", nx, slider.edges[0]), ("y", ny, slider.edges[1])] {
-            if edge == Edge::Periodic && n < 3 {
+            if edge == Edges::Periodic && n < 3 {
                 let key = if self.source.has("slider.blocks") {
                     "slider.blocks"
                 } else {
@@ -356,8 +357,8 @@ impl CaseFile {
                 }
             }
         }
-        let mut seen = BTreeSet::new();
-        if !output.fields.iter().all(|field| seen.insert(field)) {
+        let fields = &output.fields;
+        if (1..fields.len()).any(|n| fields[..n].contains(&fields[n])) {
             let sentence = "`output.fields` names a field twice: name each once";
             return Err(self.source.error("output.fields", sentence));
         }

@@ -32,15 +32,15 @@ pub use keys::{
     STUDY_TABLES, TABLES as CASE_TABLES, exclude_each_other, header_below, keys_of, partners_of,
     unknown as unknown_key,
 };
-pub use motion::{Drive, DriveSpeed, Friction, KineticFriction, Law, Load};
+pub use motion::{Drive, DriveSpeed, Friction, KineticFriction, Load};
 pub use output::{Output, Snapshots};
-pub use slider::{Damping, Edge, Slider};
+pub use slider::{Damping, Slider};
 pub use source::{Place, Source};
 pub use tables::Tables;
 pub use texture::{
-    Cavity, CavitySize, Center, DEFAULT_THRESHOLD, Groove, GrooveSize, Mask, Orientation, Polygon, Texture,
+    Cavity, CavitySize, Center, DEFAULT_THRESHOLD, Groove, GrooveSize, Mask, Polygon, Texture,
 };
-pub use time::{RunTime, Step, Stop, Time};
+pub use time::{RunTime, Step, Time};
 pub use values::AutoOr;
 
 /// The largest file that is read as a case, in MiB.

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use slipfront::FrictionLaw;
+
 use super::values::word;
 use crate::quantity::{Pressure, Speed};
 
@@ -103,7 +105,7 @@ impl From<Drive> for DriveKeys {
 #[serde(from = "FrictionKeys", into = "FrictionKeys")]
 pub struct Friction {
     /// Which reading of Eq. 4 is integrated.
-    pub law: Law,
+    pub law: FrictionLaw,
     /// Mean of the local static coefficients, and the scale of all forces; more than 0, at most 100.
     pub mu_static: f64,
     /// Mean of the local kinetic coefficients: `r_star` or `mu_kinetic`.
@@ -120,18 +122,6 @@ pub struct Friction {
     pub mu_kinetic_field: Option<String>,
 }
 
-/// The readings of the friction law, Eq. 4.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Law {
-    /// Friction integrated implicitly, with memory of sticking and sliding.
-    Projection,
-    /// Explicit friction along the velocity; a block sticks when its velocity turns.
-    Reversal,
-    /// Eq. 4 exactly as printed.
-    Literal,
-}
-
 /// The mean kinetic coefficient.
 #[derive(Clone, Debug, PartialEq)]
 pub enum KineticFriction {
@@ -144,7 +134,7 @@ pub enum KineticFriction {
 impl Default for Friction {
     fn default() -> Self {
         Self {
-            law: Law::Projection,
+            law: FrictionLaw::Projection,
             mu_static: 1.0,
             kinetic: KineticFriction::RStar(0.5),
             sigma_static_star: 0.05,
@@ -161,7 +151,7 @@ impl Default for Friction {
 #[serde(default, deny_unknown_fields)]
 pub(super) struct FrictionKeys {
     #[serde(deserialize_with = "word")]
-    law: Law,
+    law: FrictionLaw,
     mu_static: f64,
     r_star: Option<f64>,
     mu_kinetic: Option<f64>,

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::values::{AutoOr, words};
-use crate::field_name::FieldName;
+use slipfront::observe::Field;
 
 /// `[output]`: snapshots, fields and the series.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -13,7 +13,7 @@ pub struct Output {
     pub snapshots: Snapshots,
     /// The fields that are written at these instants.
     #[serde(deserialize_with = "words")]
-    pub fields: Vec<FieldName>,
+    pub fields: Vec<Field>,
     /// Every n-th block, along x and along y, is written to the fields file; 1 or more.
     pub stride: u32,
     /// Spacing of the rows of the series in t*; `auto` is every step, or as many as give at most 20 000 rows.
@@ -37,11 +37,11 @@ impl Default for Output {
         Self {
             snapshots: Snapshots::Auto,
             fields: vec![
-                FieldName::ContactStressStar,
-                FieldName::Traction,
-                FieldName::DisplacementX,
-                FieldName::DisplacementY,
-                FieldName::Sliding,
+                Field::ContactStress,
+                Field::Traction,
+                Field::DisplacementX,
+                Field::DisplacementY,
+                Field::Sliding,
             ],
             stride: 1,
             series: AutoOr::Auto,

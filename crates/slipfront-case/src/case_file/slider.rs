@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use slipfront::Edges;
+
 use super::values::{Pair, pair};
 use crate::quantity::{Density, Length, Pressure, Rate};
 
@@ -20,7 +22,7 @@ pub struct Slider {
     /// Damping of the blocks' motion: `omega_star` or `damping_rate`.
     pub damping: Damping,
     /// The lattice's edges that bound x and those that bound y.
-    pub edges: [Edge; 2],
+    pub edges: [Edges; 2],
 }
 
 /// How strongly the motion is damped.
@@ -32,16 +34,6 @@ pub enum Damping {
     Rate(Rate),
 }
 
-/// What happens at the two edges that bound an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Edge {
-    /// The neighbours beyond the edge are absent.
-    Free,
-    /// The blocks of one edge are the neighbours of those of the other.
-    Periodic,
-}
-
 impl Default for Slider {
     fn default() -> Self {
         Self {
@@ -50,7 +42,7 @@ impl Default for Slider {
             young_modulus: Pressure::from_text("100 GPa", 1e11),
             density: Density::from_text("10 g/cm^3", 1e4),
             damping: Damping::OmegaStar(0.1),
-            edges: [Edge::Free; 2],
+            edges: [Edges::Free; 2],
         }
     }
 }
@@ -67,7 +59,7 @@ pub(super) struct SliderKeys {
     omega_star: Option<f64>,
     damping_rate: Option<Rate>,
     #[serde(serialize_with = "write_edges", deserialize_with = "read_edges")]
-    edges: [Edge; 2],
+    edges: [Edges; 2],
 }
 
 impl Default for SliderKeys {
@@ -121,18 +113,18 @@ impl From<Slider> for SliderKeys {
     expecting = "expected \"free\", \"periodic\", or a pair for x and y such as [\"periodic\", \"free\"]"
 )]
 enum EdgesKey {
-    Both(Edge),
-    Each(Pair<Edge>),
+    Both(Edges),
+    Each(Pair<Edges>),
 }
 
-fn read_edges<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[Edge; 2], D::Error> {
+fn read_edges<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[Edges; 2], D::Error> {
     Ok(match EdgesKey::deserialize(deserializer)? {
         EdgesKey::Both(edge) => [edge; 2],
         EdgesKey::Each(Pair(edges)) => edges,
     })
 }
 
-fn write_edges<S: Serializer>(edges: &[Edge; 2], serializer: S) -> Result<S::Ok, S::Error> {
+fn write_edges<S: Serializer>(edges: &[Edges; 2], serializer: S) -> Result<S::Ok, S::Error> {
     if edges[0] == edges[1] {
         edges[0].serialize(serializer)
     } else {

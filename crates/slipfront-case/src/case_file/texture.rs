@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use slipfront::surface::Orientation;
+
 use super::values::{Pair, pair, word};
 use crate::quantity::{Length, QuantityError};
 
@@ -62,22 +64,12 @@ pub enum Center {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "GrooveKeys", into = "GrooveKeys")]
 pub struct Groove {
-    /// Along which axis the groove runs.
+    /// Whether the groove runs across or along the x axis of the lattice, whatever the direction of the drive.
     pub orientation: Orientation,
     /// The size: `coverage` or `width`.
     pub size: GrooveSize,
     /// Distance of the groove's middle line from the slider's, m.
     pub offset: Length,
-}
-
-/// The direction of a groove, speaking of the lattice's x axis whatever the direction of the drive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Orientation {
-    /// The groove runs along y.
-    Across,
-    /// The groove runs along x.
-    Along,
 }
 
 /// The size of a groove.

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use slipfront::StopReason;
+
 use super::values::{AutoOr, WordOrNumber, word};
 use crate::quantity::Duration;
 
@@ -13,8 +15,8 @@ pub struct Time {
     pub duration: RunTime,
     /// The time step.
     pub step: Step,
-    /// When the run ends.
-    pub stop: Stop,
+    /// What ends the run: its duration, or the fall after the first peak of mu* if that comes first.
+    pub stop: StopReason,
     /// Start of the window that the kinetic friction is averaged over, in t*; `auto` is 2.5/V* after the onset.
     pub kinetic_from_star: AutoOr,
 }
@@ -42,22 +44,12 @@ pub enum Step {
     Number(f64),
 }
 
-/// When a run ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Stop {
-    /// At the end of its duration.
-    End,
-    /// As soon as the fall that ends the first peak of mu* is seen.
-    AfterOnset,
-}
-
 impl Default for Time {
     fn default() -> Self {
         Self {
             duration: RunTime::Auto,
             step: Step::Auto,
-            stop: Stop::End,
+            stop: StopReason::End,
             kinetic_from_star: AutoOr::Auto,
         }
     }
@@ -71,7 +63,7 @@ pub(super) struct TimeKeys {
     duration: Option<Duration>,
     step: Step,
     #[serde(deserialize_with = "word")]
-    stop: Stop,
+    stop: StopReason,
     kinetic_from_star: AutoOr,
 }
 
