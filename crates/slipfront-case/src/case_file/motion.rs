@@ -4,6 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use slipfront::FrictionLaw;
 
+use std::ops::Bound::Included;
+
+use super::check::Check;
+use super::error::CaseError;
+use super::key_table::MAX_R_STAR;
 use super::values::word;
 use crate::quantity::{Pressure, Speed};
 
@@ -23,6 +28,12 @@ impl Default for Load {
             pressure: Pressure::from_text("100 kPa", 1e5),
             redistribute: true,
         }
+    }
+}
+
+impl Load {
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        check.quantity("pressure", &self.pressure)
     }
 }
 
@@ -51,6 +62,16 @@ impl Default for Drive {
             speed: DriveSpeed::VStar(0.03),
             direction: 0.0,
         }
+    }
+}
+
+impl Drive {
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        match &self.speed {
+            DriveSpeed::VStar(v_star) => check.number("v_star", *v_star)?,
+            DriveSpeed::Speed(speed) => check.quantity("speed", speed)?,
+        }
+        check.number("direction", self.direction)
     }
 }
 
@@ -143,6 +164,32 @@ impl Default for Friction {
             mu_static_field: None,
             mu_kinetic_field: None,
         }
+    }
+}
+
+impl Friction {
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        check.number("mu_static", self.mu_static)?;
+        match self.kinetic {
+            KineticFriction::RStar(r_star) => check.number("r_star", r_star)?,
+            KineticFriction::MuKinetic(mu_kinetic) => {
+                let bounds = (Included(0.0), Included(MAX_R_STAR * self.mu_static));
+                let remark = format!("at most {MAX_R_STAR} times `mu_static`");
+                check.number_within("mu_kinetic", mu_kinetic, bounds, &remark)?;
+            }
+        }
+        check.number("sigma_static_star", self.sigma_static_star)?;
+        check.number("sigma_kinetic_star", self.sigma_kinetic_star)?;
+        check.whole("seed", self.seed)?;
+        for (key, file) in [
+            ("mu_static_field", &self.mu_static_field),
+            ("mu_kinetic_field", &self.mu_kinetic_field),
+        ] {
+            if let Some(file) = file {
+                check.file(key, file)?;
+            }
+        }
+        Ok(())
     }
 }
 

@@ -2,7 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::check::Check;
+use super::error::CaseError;
+use super::key_table::{SNAPSHOT_TIMES, SPACING, SPACINGS};
 use super::values::{AutoOr, words};
+use crate::number_format::exact;
 use slipfront::observe::Field;
 
 /// `[output]`: snapshots, fields and the series.
@@ -45,6 +49,40 @@ impl Default for Output {
             ],
             stride: 1,
             series: AutoOr::Auto,
+        }
+    }
+}
+
+impl Output {
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        match &self.snapshots {
+            Snapshots::Auto => {}
+            // A table of its own in the file, or the value of `snapshots`: either has a place.
+            Snapshots::Every(every) => check.number_within("snapshots.every", *every, SPACINGS, SPACING)?,
+            Snapshots::At(times) => {
+                for time in times {
+                    check.number_within("snapshots", *time, SNAPSHOT_TIMES, "snapshots are times t*")?;
+                }
+                if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {
+                    let (later, earlier) = (exact(pair[1]), exact(pair[0]));
+                    return check.refuse("snapshots", |key| {
+                        format!(
+                            "`{key}` has {later} after {earlier}: list the times in increasing order, each once"
+                        )
+                    });
+                }
+            }
+        }
+        let fields = &self.fields;
+        if (1..fields.len()).any(|n| fields[..n].contains(&fields[n])) {
+            return check.refuse("fields", |key| {
+                format!("`{key}` names a field twice: name each once")
+            });
+        }
+        check.whole("stride", self.stride.into())?;
+        match self.series {
+            AutoOr::Auto => Ok(()),
+            AutoOr::Number(spacing) => check.number("series", spacing),
         }
     }
 }

@@ -4,6 +4,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use slipfront::Edges;
 
+use super::check::Check;
+use super::error::CaseError;
 use super::values::{Pair, pair};
 use crate::quantity::{Density, Length, Pressure, Rate};
 
@@ -43,6 +45,45 @@ impl Default for Slider {
             density: Density::from_text("10 g/cm^3", 1e4),
             damping: Damping::OmegaStar(0.1),
             edges: [Edges::Free; 2],
+        }
+    }
+}
+
+/// Most blocks altogether.
+const MAX_BLOCKS_TOTAL: u64 = 4_000_000_000;
+/// Fewest blocks along a periodic axis: a block has two neighbours there.
+const MIN_BLOCKS_PERIODIC: u32 = 3;
+
+impl Slider {
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        let [nx, ny] = self.blocks;
+        check.pair("blocks", self.blocks)?;
+        let total = u64::from(nx) * u64::from(ny);
+        if total > MAX_BLOCKS_TOTAL {
+            return check.refuse("blocks", |key| {
+                format!(
+                    "`{key}` is [{nx}, {ny}], {total} blocks together: more than {MAX_BLOCKS_TOTAL}; take fewer along one \
+                     axis"
+                )
+            });
+        }
+        for (axis, n, edge) in [("x", nx, self.edges[0]), ("y", ny, self.edges[1])] {
+            if edge == Edges::Periodic && n < MIN_BLOCKS_PERIODIC {
+                let key = if check.has("blocks") { "blocks" } else { "edges" };
+                return check.refuse(key, |_| {
+                    format!(
+                        "{n} block(s) along {axis} are too few for periodic edges: take at least {MIN_BLOCKS_PERIODIC}, or \
+                         free edges along {axis}"
+                    )
+                });
+            }
+        }
+        check.quantity("block_size", &self.block_size)?;
+        check.quantity("young_modulus", &self.young_modulus)?;
+        check.quantity("density", &self.density)?;
+        match &self.damping {
+            Damping::OmegaStar(omega_star) => check.number("omega_star", *omega_star),
+            Damping::Rate(rate) => check.quantity("damping_rate", rate),
         }
     }
 }

@@ -1,9 +1,15 @@
 //! `[time]`: how long the run is, in which steps, and when it may stop.
 
+use std::ops::Bound::{Excluded, Included};
+
 use serde::{Deserialize, Serialize};
 
 use slipfront::StopReason;
 
+use super::check::Check;
+use super::error::CaseError;
+use super::key_table::{MAX_TIME_STAR, UNSTABLE_STEP};
+use super::motion::DriveSpeed;
 use super::values::{AutoOr, WordOrNumber, word};
 use crate::quantity::Duration;
 
@@ -52,6 +58,40 @@ impl Default for Time {
             stop: StopReason::End,
             kinetic_from_star: AutoOr::Auto,
         }
+    }
+}
+
+impl Time {
+    /// Checks the times; some bounds depend on the speed of the drive.
+    pub(super) fn check(&self, check: &Check, speed: &DriveSpeed) -> Result<(), CaseError> {
+        match &self.duration {
+            RunTime::Auto => {}
+            RunTime::Star(star) => check.number("duration_star", *star)?,
+            RunTime::Duration(duration) => check.quantity("duration", duration)?,
+        }
+        match (self.step, speed) {
+            (Step::Number(dt_star), _) => check.number("step", dt_star)?,
+            (Step::Paper, DriveSpeed::VStar(v_star)) if v_star * 2.0 / 3.0 >= UNSTABLE_STEP => {
+                let step = v_star * 2.0 / 3.0;
+                return check.refuse("step", |key| {
+                    format!(
+                        "`{key}` = \"paper\" is (2/3) V* = {step:.4}: it must be less than {UNSTABLE_STEP}; take \"auto\", \
+                         or a smaller `drive.v_star`"
+                    )
+                });
+            }
+            _ => {}
+        }
+        if let AutoOr::Number(from) = self.kinetic_from_star {
+            let end = match (&self.duration, speed) {
+                (RunTime::Star(star), _) => Excluded(*star),
+                (RunTime::Auto, DriveSpeed::VStar(v_star)) => Excluded(8.0 / v_star),
+                _ => Included(MAX_TIME_STAR),
+            };
+            let remark = "the average is taken from there to the end of the run";
+            check.number_within("kinetic_from_star", from, (Included(0.0), end), remark)?;
+        }
+        Ok(())
     }
 }
 
