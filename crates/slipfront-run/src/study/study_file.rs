@@ -12,7 +12,8 @@ use super::error::StudyError;
 use super::input_copies::{self, Copy};
 use super::{summary_values, tables};
 use slipfront_case::case_file::{
-    CASE_TABLES, CaseError, STUDY_TABLES, Source, Tables, header_below, keys_of, limit_nesting, syntax_error, unknown_key,
+    CASE_TABLES, CaseError, STUDY_TABLES, Source, Tables, header_below, keys_of, limit_nesting, syntax_error,
+    unknown_key,
 };
 
 /// A study file.
@@ -281,9 +282,7 @@ impl StudyFile {
         }
         refuse_conflicts(&axes, &source)?;
         // The text has been read as TOML once, so that it is a table.
-        let table = text
-            .parse()
-            .map_err(|error| syntax_error(&source, 0, &error))?;
+        let table = text.parse().map_err(|error| syntax_error(&source, 0, &error))?;
         Ok(Self {
             name: name.to_owned(),
             base,
