@@ -6,12 +6,13 @@ use rayon::prelude::*;
 
 use super::axis::{Axis, Spacing};
 use super::error::StudyError;
+use super::labels::{symbol, title};
 use super::plan::Plan;
 use super::scheduler::Findings;
 use super::summary_values::REDUCTION;
 use super::tables::sample;
 use slipfront_plot::{
-    Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Response, Responses, symbol, title,
+    Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Response, Responses,
 };
 
 /// What is drawn, where the study has it.

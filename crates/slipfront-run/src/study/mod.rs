@@ -16,6 +16,7 @@ mod figures;
 mod folder;
 mod input_copies;
 mod journal;
+mod labels;
 mod plan;
 mod scheduler;
 mod shard;
