@@ -114,7 +114,7 @@ impl fmt::Display for Dimension {
     }
 }
 
-/// Why a text is not the quantity that is wanted.
+/// Why a text is not a quantity of the wanted dimension.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum QuantityError {
@@ -123,7 +123,7 @@ pub enum QuantityError {
     NoUnit {
         /// The number as written.
         value: String,
-        /// What is wanted, with its article.
+        /// The quantity that is wanted, with its article.
         wanted: &'static str,
         /// A correct quantity.
         example: &'static str,
@@ -133,7 +133,7 @@ pub enum QuantityError {
     NoNumber {
         /// The text as written.
         text: String,
-        /// What is wanted, with its article.
+        /// The quantity that is wanted, with its article.
         wanted: &'static str,
         /// A correct quantity.
         example: &'static str,
@@ -165,7 +165,7 @@ pub enum QuantityError {
         given: &'static str,
         /// Its dimension.
         dimension: Dimension,
-        /// What is wanted, with its article.
+        /// The quantity that is wanted, with its article.
         wanted: &'static str,
         /// A correct quantity.
         example: &'static str,
@@ -247,9 +247,9 @@ pub type Duration = Quantity<kind::Duration>;
 /// A rate, read into 1/s.
 pub type Rate = Quantity<kind::Rate>;
 
-/// A quantity that remembers how it was written.
+/// A quantity, with the text it was written as.
 ///
-/// Two quantities are equal when text and value are. The sign and the size are not judged here.
+/// Two quantities are equal when text and value are. Its bounds are those of the key it belongs to, and checked there.
 ///
 /// ```
 /// use slipfront_case::quantity::{Density, Length};

@@ -1,8 +1,8 @@
-//! Arrays and images that a user hands over: friction coefficients block by block, and texture masks.
+//! Arrays and images that a case reads: friction coefficients block by block, and texture masks.
 //!
-//! The files come from strangers, so every parser compares what the header announces with the length of the
-//! file before it reserves memory, no file is read that is longer than its lattice can need, and the answer is an
-//! [`ArrayError`] whatever the bytes are. Arrays are (ny, nx) and row-major, row j = 0 (the smallest y) first.
+//! The files may hold anything, so every parser compares the sizes in a header with the length of the file before it
+//! allocates memory, files longer than their lattice can need are refused, and any invalid contents give an
+//! [`ArrayError`]. Arrays are (ny, nx) and row-major, row j = 0 (the smallest y) first.
 
 mod mask;
 mod npy;
@@ -26,28 +26,28 @@ pub enum ArrayError {
         path.display()
     )]
     Read {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// What the operating system said.
         source: io::Error,
     },
-    /// The extension tells nothing about the format.
+    /// The extension is not that of a known format.
     #[error(
         "cannot tell the format of `{}` from {found}; name a file that ends in {known}",
         path.display()
     )]
     Extension {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The extension found, as a phrase.
         found: String,
         /// The extensions that are known here.
         known: &'static str,
     },
-    /// The bytes are not what the format wants: wrong magic, truncated, corrupt.
+    /// The file is not a valid one of its format: a wrong magic number, truncated or corrupt.
     #[error("`{}` is not a readable {format} file: {}; write the file again", path.display(), single_line(detail))]
     Broken {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The format it should have.
         format: &'static str,
@@ -61,33 +61,33 @@ pub enum ArrayError {
         path.display()
     )]
     Dtype {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The type found, as numpy writes it.
         found: String,
     },
-    /// The file is longer than it can be if it is what it should be.
+    /// The file is longer than its lattice can need.
     #[error("`{}` has {found} bytes where {wanted}; {remedy}", path.display())]
     TooLong {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// Its length.
         found: u64,
-        /// The most that can be meant, as a phrase.
+        /// The longest that is read, as a phrase.
         wanted: String,
-        /// What to do about it.
+        /// The remedy.
         remedy: &'static str,
     },
     /// The array has another shape than the lattice.
     #[error("`{}` has {found} where {wanted} is wanted; {remedy}", path.display())]
     Shape {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The shape found, as a phrase.
         found: String,
         /// The shape wanted, as a phrase.
         wanted: String,
-        /// What to do about it.
+        /// The remedy.
         remedy: &'static str,
     },
     /// One value is out of bounds or no number at all.
@@ -97,7 +97,7 @@ pub enum ArrayError {
         path.display()
     )]
     Value {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// Row j, counted from 0 (the smallest y).
         row: usize,
@@ -114,7 +114,7 @@ pub enum ArrayError {
         path.display()
     )]
     TooManyPixels {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// Pixels per row.
         width: u32,
@@ -126,19 +126,19 @@ pub enum ArrayError {
     /// The image cannot be written.
     #[error("cannot write `{}`: {source}; check that the folder exists, is writable and has room", path.display())]
     Write {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// What the operating system said.
         source: io::Error,
     },
 }
 
-/// Reads the bytes of a file that is meant for a lattice of `nx` x `ny` blocks: what is made of them and what is kept of
-/// them are then the same, whatever becomes of the file.
+/// Reads the bytes of a file for a lattice of `nx` x `ny` blocks. They are read once, so that the copy in the run folder
+/// holds what the case was made of even if the file changes.
 ///
 /// # Errors
 ///
-/// [`ArrayError`] if the file is missing, not a regular file, or longer than it can be meant to be.
+/// [`ArrayError`] if the file is missing, not a regular file, or longer than that lattice can need.
 pub fn read_file(path: &Path, nx: usize, ny: usize) -> Result<Vec<u8>, ArrayError> {
     let read_error = |source| ArrayError::Read {
         path: path.to_owned(),
@@ -197,10 +197,10 @@ pub fn field(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<f64>
     }
 }
 
-/// The longest file that can be meant for a lattice of `nx` x `ny` blocks, in bytes.
+/// The longest file that a lattice of `nx` x `ny` blocks can need, in bytes.
 ///
-/// A `.npy` holds a header and 64 bits per block, a line of a `.csv` numbers and what is written beside them, an image
-/// no more than it may have pixels.
+/// A `.npy` holds a header and 64 bits per block, a `.csv` numbers, separators and comments, an image at most one byte for
+/// each pixel that it may have.
 fn longest(path: &Path, nx: usize, ny: usize) -> u64 {
     let blocks = (nx as u64).saturating_mul(ny as u64);
     match extension(path).as_str() {

@@ -11,11 +11,11 @@ use crate::case_file::{CaseError, CaseFile};
 /// A file that a case reads, kept so that the run folder can hold a copy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
-    /// Path in the run folder.
+    /// Path of its copy in the run folder.
     pub name: String,
-    /// Where it was read.
+    /// Path that it was read from.
     pub original: PathBuf,
-    /// Its bytes.
+    /// Its contents.
     pub bytes: Vec<u8>,
 }
 
@@ -48,13 +48,13 @@ pub fn name_of_copy<'c, C>(
     CopyName::New(name)
 }
 
-/// A file that was read.
+/// A file that was read, and its contents.
 pub(super) struct InputBytes {
     pub(super) path: PathBuf,
     pub(super) bytes: Vec<u8>,
 }
 
-/// Files kept so far, and what the case needs with them.
+/// Files read so far, and the budget of the case with them.
 pub(super) struct Inputs {
     folder: PathBuf,
     pub(super) kept: Vec<Input>,
@@ -70,7 +70,7 @@ impl Inputs {
         }
     }
 
-    /// Reads a file that the case names, once: what is made of it is what its copy holds.
+    /// Reads a file that the case names. It is read once, so that its copy holds what the case was made of.
     pub(super) fn read(
         &self,
         file: &CaseFile,
@@ -84,7 +84,7 @@ impl Inputs {
         Ok(InputBytes { path, bytes })
     }
 
-    /// Notes a file that something was made of; gives the path of its copy in the run folder.
+    /// Keeps the contents of a file that the case uses; gives the path of its copy in the run folder.
     pub(super) fn keep(&mut self, file: &CaseFile, given: InputBytes) -> Result<String, CaseError> {
         let InputBytes { path, bytes } = given;
         let plain = path

@@ -17,37 +17,37 @@ use super::textures::textures;
 use super::time_plan::TimePlan;
 use crate::case_file::{CaseError, CaseFile};
 
-/// A case, valid by construction.
+/// A case that can be run. It is valid by construction.
 #[derive(Debug)]
 pub struct Case {
-    /// Name of the case: what its results are called.
+    /// Name of the case and of its results.
     pub name: String,
-    /// As written, every default filled in, its files standing in `inputs/`: what a run folder holds.
+    /// The case file with every default filled in and its input files in `inputs/`, as the run folder holds it.
     pub file: CaseFile,
     /// Files that the case reads.
     pub inputs: Vec<Input>,
-    /// Units.
+    /// Units of the dimensionless quantities.
     pub scales: Scales,
     /// Dimensionless groups.
     pub groups: Groups,
-    /// The slider, ready to run.
+    /// The slider and its surface.
     pub model: Arc<Model>,
-    /// What the texture has come to.
+    /// Texture as asked and as meshed.
     pub texture: TextureReport,
     /// Negative draws of the coefficients that were set to 0.
     pub negative_draws: usize,
-    /// Time and its steps.
+    /// Duration and steps.
     pub time_plan: TimePlan,
-    /// What is written.
+    /// Which results are written.
     pub output: Output,
-    /// What the run needs.
+    /// Memory and disk space that the run needs.
     pub budget: Budget,
 }
 
 /// The texture as asked and as meshed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextureReport {
-    /// A* asked for, %; none where a mask or a polygon says so block by block only.
+    /// A* as asked for, %; none if there is a mask or polygon, whose area is known only after meshing.
     pub asked_percent: Option<f64>,
     /// A* as meshed, % (Eq. 15).
     pub meshed_percent: f64,
@@ -56,8 +56,8 @@ pub struct TextureReport {
 }
 
 impl Case {
-    /// Loads a case file and the files it names, which stand relative to it. A run that this machine has no memory for
-    /// is refused before anything of it is made.
+    /// Loads a case file and the files it names, which stand relative to it. A run that needs more
+    /// memory than there is gets refused before any array is allocated.
     ///
     /// # Errors
     /// A sentence that names place, value, bound and remedy.
@@ -101,8 +101,8 @@ impl Case {
         Ok(case)
     }
 
-    /// Makes a case of a case file; the files it names stand relative to `folder`. It may be one that this machine has
-    /// no memory to run.
+    /// Makes a case of a case file; the files it names stand relative to `folder`. The memory for a run of it is not
+    /// checked.
     ///
     /// # Errors
     /// A sentence that names place, value, bound and remedy.
@@ -157,8 +157,8 @@ impl Case {
         })
     }
 
-    /// Refuses a run whose files, and checkpoints if it saves any, have no room in `folder`, even when `replaced` bytes
-    /// there have gone before.
+    /// Refuses a run whose files, and checkpoints if it saves any, need more disk space than `folder` has after `replaced`
+    /// bytes there were removed.
     ///
     /// # Errors
     /// With the figures, and which key to change.
@@ -166,7 +166,7 @@ impl Case {
         within_budget(&self.file, self.budget.check_disk(folder, replaced, checkpoints))
     }
 
-    /// Refuses to go on from a checkpoint where there is no memory for that.
+    /// Refuses to resume from a checkpoint if that needs more memory than there is.
     ///
     /// # Errors
     /// With the figures.
@@ -174,12 +174,12 @@ impl Case {
         within_budget(&self.file, self.budget.check_memory_resumed())
     }
 
-    /// Steps times blocks: what the run costs.
+    /// Steps times blocks, the measure of what the run costs.
     pub fn block_steps(&self) -> f64 {
         self.time_plan.last_step as f64 * self.model.lattice.n_blocks() as f64
     }
 
-    /// Steps between two looks at a running case, for its progress or for a reason to stop: some milliseconds' worth.
+    /// Steps to advance before progress and signals are checked again: some milliseconds of work.
     pub fn steps_per_look(&self) -> u64 {
         const BLOCK_STEPS: u64 = 200_000;
         (BLOCK_STEPS / self.model.lattice.n_blocks() as u64).max(1)
