@@ -14,3 +14,6 @@ pub mod field_name;
 pub mod machine;
 pub mod quantity;
 pub mod text;
+
+/// BLAKE3 hash of the sources of this crate.
+pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");

@@ -10,8 +10,8 @@ use crate::error::PaperError;
 use crate::measurements::Found;
 use crate::runner::StepRule;
 use slipfront_case::disk::{read_whole, remove_unfinished, write_whole};
-use slipfront_run::manifest::Manifest;
 use slipfront_run::names::FOUND;
+use slipfront_run::program;
 use slipfront_run::run_folder::error::FolderError;
 
 /// A longer file holds something else: a figure's findings take some megabytes at the most.
@@ -39,7 +39,7 @@ impl Saved {
         // The records of the folder above are open, so that nobody else writes here.
         remove_unfinished(&folder);
         let mut hasher = blake3::Hasher::new();
-        hasher.update(Manifest::this_build().as_bytes());
+        hasher.update(program::this_build().as_bytes());
         for (name, text) in FILES {
             hasher.update(name.as_bytes()).update(text.as_bytes());
         }

@@ -11,8 +11,8 @@ use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::manifest::Manifest;
 use crate::names::{CHECKPOINT, PREVIOUS};
+use crate::program;
 use crate::running::{RunState, Running};
 use slipfront_case::case::Case;
 use slipfront_case::disk::{open_regular, remove_if_there, stage, sync_folder};
@@ -122,7 +122,7 @@ impl Checkpoints {
     pub fn new(folder: &Path, case: &Case, started: Timestamp) -> Self {
         Self {
             folder: folder.to_owned(),
-            program: Manifest::this_build(),
+            program: program::this_build(),
             case_blake3: hash_of(case),
             started,
             latest_is_whole: false,
@@ -283,7 +283,7 @@ fn read(path: &Path, case: &Case) -> Result<Saved, CheckpointError> {
     reader.rewind().map_err(unreadable)?;
     let sealed = check_seal(&mut reader).map_err(unreadable)?;
     let sealed = sealed.ok_or_else(|| damaged("its checksum does not fit"))?;
-    let here = Manifest::this_build();
+    let here = program::this_build();
     if header.program != here {
         return Err(CheckpointError::Program {
             path: path.to_owned(),

@@ -49,3 +49,6 @@ pub use simulation::{Simulation, Snapshot, Stop, StopReason};
 pub use state::{Contact, State};
 pub use surface::Surface;
 pub use vector_field::VectorField;
+
+/// BLAKE3 hash of the sources of this crate, by which programs that give the same bits are told.
+pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");

@@ -6,6 +6,7 @@ use clap::Args;
 use jiff::Timestamp;
 use slipfront_case::case::Case;
 use slipfront_run::manifest::Manifest;
+use slipfront_run::program;
 use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::running::Running;
@@ -127,8 +128,8 @@ impl Verify {
             verdict
                 .differences
                 .extend(no_longer_written(&before, &now, folder));
-            if before.program() != Manifest::this_program() {
-                let programs = (before.program(), Manifest::this_program());
+            if before.program() != program::this_program() {
+                let programs = (before.program(), program::this_program());
                 verdict.notes.push(format!(
                     "{} was written by {}, and repeated by {}",
                     folder.display(),

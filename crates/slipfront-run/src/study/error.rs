@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::manifest::Manifest;
+use crate::program;
 use crate::results::ResultsError;
 use crate::run_folder::error::FolderError;
 use slipfront_case::case_file::CaseError;
@@ -183,7 +183,7 @@ pub(crate) fn of_others(runs: usize) -> String {
         0 => String::new(),
         _ => format!(
             ", and {runs} recorded runs are of another program than {}, or of a study that was changed since",
-            Manifest::this_program()
+            program::this_program()
         ),
     }
 }

@@ -10,7 +10,7 @@ use super::error::StudyError;
 use super::folder::StudyFolder;
 use super::shard::Shard;
 use super::study_file::{Base, Keep, Settings, StudyFile};
-use crate::manifest::Manifest;
+use crate::program;
 use slipfront_case::case::{Budget, Case, PROGRAM, check_fields};
 use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Output, Snapshots};
 use slipfront_case::machine;
@@ -422,7 +422,7 @@ fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
         *name = format!("{}.{ending}", hash.unwrap_or_default());
     }
     let mut hasher = blake3::Hasher::new();
-    hasher.update(Manifest::this_build().as_bytes());
+    hasher.update(program::this_build().as_bytes());
     hasher.update(file.to_toml()?.as_bytes());
     Ok(hasher.finalize())
 }
