@@ -36,13 +36,13 @@ impl Progress {
     /// Of a run that begins, or goes on, where it is now.
     pub(crate) fn new(running: &Running, quiet: bool) -> Self {
         let case = running.case();
-        let (first_step, last_step) = (running.snapshot().step, case.schedule.last_step);
+        let (first_step, last_step) = (running.snapshot().step, case.time_plan.last_step);
         if quiet {
             return Self::Silent;
         }
         if !std::io::stderr().is_terminal() {
             let (n_blocks, now) = (case.model.lattice.n_blocks() as u64, Instant::now());
-            let end_star = case.schedule.end_star();
+            let end_star = case.time_plan.end_star();
             return Self::Lines(Lines {
                 last_step,
                 n_blocks,
