@@ -8,7 +8,7 @@ use slipfront::Snapshot;
 use slipfront_run::running::Running;
 use slipfront_run::study::Progress as StudyState;
 
-use crate::say::say;
+use crate::print_stderr::print_stderr;
 
 /// Time from one plain line to the next after so long a time: 5 seconds at first, a minute in the log of hours.
 fn pause(passed: Duration) -> Duration {
@@ -73,7 +73,7 @@ impl Progress {
     pub(crate) fn note(&self, text: &str) {
         match self {
             Self::Bar(bar) => bar.println(text),
-            Self::Silent | Self::Lines(_) => say(text),
+            Self::Silent | Self::Lines(_) => print_stderr(text),
         }
     }
 
@@ -101,7 +101,7 @@ impl Lines {
         self.next = Instant::now() + pause(passed);
         let rate = (now.step - self.first_step) as f64 / passed.as_secs_f64();
         let left = (self.last_step - now.step) as f64 / rate;
-        say(&format!(
+        print_stderr(&format!(
             "{:3.0} %  t* = {:.1} of {:.1}  mu* = {:.3}  {:.1} million block-steps/s  {} left",
             100.0 * now.step as f64 / self.last_step as f64,
             now.time_star,
@@ -177,7 +177,7 @@ impl StudyProgress {
                     String::new()
                 };
                 let (done, total) = (now.done, now.total);
-                say(&format!("{done} of {total} runs{rate}{failed}{worst}"));
+                print_stderr(&format!("{done} of {total} runs{rate}{failed}{worst}"));
             }
         }
     }

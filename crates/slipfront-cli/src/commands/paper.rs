@@ -9,10 +9,11 @@ use slipfront_case::disk::is_empty;
 use slipfront_paper::{Options, Stage, StepRule};
 use slipfront_run::study::{Records, is_study};
 
-use super::{print, set_threads};
 use crate::failure::Failure;
-use crate::say::say;
+use crate::print::print;
+use crate::print_stderr::print_stderr;
 use crate::signals::Signals;
+use crate::threads::set_threads;
 
 /// Run the figures and tables of the paper again, and judge its claims one by one
 #[derive(Args)]
@@ -159,7 +160,7 @@ impl Progress {
             }
             Self::Lines => {
                 if stage.study.is_none() {
-                    say(&format!(
+                    print_stderr(&format!(
                         "{:>2} of {}: {}{step}",
                         stage.done + 1,
                         stage.total,

@@ -11,11 +11,12 @@ use slipfront_run::run_folder::RunFolder;
 use slipfront_run::running::Running;
 use slipfront_run::verify::{Verdict, VerifyError, compare, is_study, verify};
 
-use super::{print, set_threads};
 use crate::failure::Failure;
+use crate::print::print;
+use crate::print_stderr::print_stderr;
 use crate::progress::Progress;
-use crate::say::say;
 use crate::signals::Signals;
+use crate::threads::set_threads;
 
 /// Check that results are what was written: every file of a run against its manifest, a study against its records
 #[derive(Args)]
@@ -61,7 +62,7 @@ impl Verify {
                 // The others are looked at all the same.
                 Err(Failure::Input(error)) => {
                     unusable += 1;
-                    say(&format!("error: {error}"));
+                    print_stderr(&format!("error: {error}"));
                 }
                 Err(failure) => return Err(failure),
             }

@@ -13,12 +13,14 @@ use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::contents::own_bytes;
 use slipfront_run::running::Running;
 
-use super::{CaseArgs, print, set_threads};
+use crate::case_args::CaseArgs;
 use crate::failure::Failure;
+use crate::print::print;
 use crate::progress::Progress;
 use crate::report;
 use crate::saving::{Interval, Saving};
 use crate::signals::Signals;
+use crate::threads::set_threads;
 
 /// Run a case: print its physics, show progress, write results and pictures
 #[derive(Args)]
