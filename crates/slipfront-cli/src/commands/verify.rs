@@ -14,7 +14,7 @@ use slipfront_run::verify::{Verdict, VerifyError, compare, is_study, verify};
 use crate::failure::Failure;
 use crate::print::print;
 use crate::print_stderr::print_stderr;
-use crate::progress::Progress;
+use crate::progress::run::RunProgress;
 use crate::signals::Signals;
 use crate::threads::set_threads;
 
@@ -106,7 +106,7 @@ impl Verify {
         let again = tempfile::tempdir().map_err(|error| Failure::running(VerifyError::Temporary(error)))?;
         case.check_disk(again.path(), 0, false).map_err(Failure::input)?;
         let mut running = Running::start(&case, rayon::current_num_threads());
-        let mut progress = Progress::new(&running, self.quiet);
+        let mut progress = RunProgress::new(&running, self.quiet);
         let reason = loop {
             if let Some(reason) = running.advance(case.steps_per_look()).map_err(Failure::running)? {
                 break reason;

@@ -12,7 +12,7 @@ use crate::failure::Failure;
 use crate::print::print;
 use crate::print_stderr::print_stderr;
 use crate::probe::seconds_per_step;
-use crate::progress::StudyProgress;
+use crate::progress::study::StudyProgress;
 use crate::report;
 use crate::signals::Signals;
 use crate::threads::set_threads;
