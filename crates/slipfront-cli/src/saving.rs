@@ -9,7 +9,7 @@ use slipfront_run::run_folder::resume_command::resume_command;
 use slipfront_run::running::Running;
 
 use crate::failure::Failure;
-use crate::progress::Progress;
+use crate::progress::run::RunProgress;
 use crate::signals::Signals;
 
 /// Wall time from one checkpoint to the next; none for no checkpoints at all.
@@ -72,7 +72,7 @@ impl Saving {
     ///
     /// # Errors
     /// [`Failure::Stopped`] if the run is to end here. A checkpoint that could not be saved does not end it.
-    pub(crate) fn look(&mut self, running: &Running, progress: &Progress) -> Result<(), Failure> {
+    pub(crate) fn look(&mut self, running: &Running, progress: &RunProgress) -> Result<(), Failure> {
         if self.signals.stopped().is_some() {
             return Err(self.stop(running));
         }

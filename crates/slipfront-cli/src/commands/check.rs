@@ -2,8 +2,9 @@
 
 use clap::Args;
 
-use super::{CaseArgs, print};
+use crate::case_args::CaseArgs;
 use crate::failure::Failure;
+use crate::print::print;
 use crate::probe::seconds_per_step;
 use crate::report;
 

@@ -13,8 +13,8 @@ use slipfront_run::running::Running;
 use slipfront_run::verify::{VerifyError, expect_as_written};
 
 use super::{Manner, complete};
-use crate::commands::print;
 use crate::failure::Failure;
+use crate::print::print;
 use crate::report;
 
 pub(super) fn resume(path: &Path, previous: bool, manner: Manner) -> Result<(), Failure> {
