@@ -123,7 +123,7 @@ fn complete(
     let mut saving = Saving::new(&out, checkpoints, manner.interval, manner.signals);
     let mut progress = Progress::new(&running, manner.quiet);
     let reason = loop {
-        match running.advance(case.steps_per_look()) {
+        match running.advance(case.steps_per_poll()) {
             Ok(Some(reason)) => break reason,
             Ok(None) => {}
             Err(error) => {
