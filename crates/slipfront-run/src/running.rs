@@ -96,11 +96,13 @@ impl Observers {
     fn belong_to(&self, case: &Case, step: u64) -> bool {
         let (new, lattice) = (Self::new(case), &case.model.lattice);
         let fields = match (&self.fields, &new.fields) {
-            (Fields::Instants(old), Fields::Instants(new)) => old.continues(new, lattice, step),
-            (Fields::Frames(old), Fields::Frames(new)) => old.continues(new, lattice, step),
+            (Fields::Instants(old), Fields::Instants(new)) => old.is_consistent_with(new, lattice, step),
+            (Fields::Frames(old), Fields::Frames(new)) => old.is_consistent_with(new, lattice, step),
             _ => false,
         };
-        fields && self.curve.continues(&new.curve, step) && self.history.continues(&new.history, step)
+        fields
+            && self.curve.is_consistent_with(&new.curve, step)
+            && self.history.is_consistent_with(&new.history, step)
     }
 
     fn scheduled(&mut self, snapshots: &Snapshots) -> [Scheduled<'_>; 3] {
@@ -134,7 +136,7 @@ impl<'c> Running<'c> {
         let execution = Self::execution(case, threads);
         Self {
             case,
-            simulation: Simulation::executed(&case.model, case.time_plan.dt_star, None, execution),
+            simulation: Simulation::with_execution(&case.model, case.time_plan.dt_star, None, execution),
             observers: Observers::new(case),
         }
     }
@@ -248,7 +250,7 @@ impl<'c> Running<'c> {
 pub fn run_unless(case: &Case, ends: &dyn Fn() -> bool) -> Option<Result<Record, RunError>> {
     let mut running = Running::start(case, 1);
     while !ends() {
-        match running.advance(case.steps_per_look()) {
+        match running.advance(case.steps_per_poll()) {
             Ok(None) => {}
             Ok(Some(reason)) => return Some(Ok(running.record(reason))),
             Err(error) => return Some(Err(error)),

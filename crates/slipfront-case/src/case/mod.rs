@@ -185,7 +185,7 @@ impl Case {
     }
 
     /// Steps between two looks at a running case, for its progress or for a reason to stop: some milliseconds' worth.
-    pub fn steps_per_look(&self) -> u64 {
+    pub fn steps_per_poll(&self) -> u64 {
         const BLOCK_STEPS: u64 = 200_000;
         (BLOCK_STEPS / self.model.lattice.n_blocks() as u64).max(1)
     }

@@ -109,7 +109,7 @@ impl Verify {
         let mut running = Running::start(&case, rayon::current_num_threads());
         let mut progress = RunProgress::new(&running, self.quiet);
         let reason = loop {
-            if let Some(reason) = running.advance(case.steps_per_look()).map_err(Failure::running)? {
+            if let Some(reason) = running.advance(case.steps_per_poll()).map_err(Failure::running)? {
                 break reason;
             }
             progress.show(&running.snapshot());

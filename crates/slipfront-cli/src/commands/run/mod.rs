@@ -126,7 +126,7 @@ fn complete(
     let mut saving = Saving::new(&out, checkpoints, manner.interval, manner.signals);
     let mut progress = RunProgress::new(&running, manner.quiet);
     let reason = loop {
-        match running.advance(case.steps_per_look()) {
+        match running.advance(case.steps_per_poll()) {
             Ok(Some(reason)) => break reason,
             Ok(None) => {}
             Err(error) => {
