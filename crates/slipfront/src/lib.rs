@@ -23,8 +23,8 @@
 //! ```
 
 pub mod checkpoint;
+pub mod exact_solutions;
 pub mod kernel;
-pub mod known_answers;
 pub mod lattice;
 pub mod observe;
 pub mod scales;
@@ -32,8 +32,8 @@ pub mod surface;
 
 mod error;
 mod friction;
-mod lanes;
 mod model;
+mod reductions;
 mod simulation;
 mod state;
 mod vector_field;

@@ -12,11 +12,12 @@ use slipfront_run::run_folder::RunFolder;
 use slipfront_run::running::Running;
 use slipfront_run::verify::{Verdict, VerifyError, compare, is_study, verify};
 
-use super::{print, set_threads};
 use crate::failure::Failure;
-use crate::progress::Progress;
-use crate::say::say;
+use crate::print::print;
+use crate::print_stderr::print_stderr;
+use crate::progress::run::RunProgress;
 use crate::signals::Signals;
+use crate::threads::set_threads;
 
 /// Check that results are what was written: every file of a run against its manifest, a study against its records
 #[derive(Args)]
@@ -62,7 +63,7 @@ impl Verify {
                 // The others are looked at all the same.
                 Err(Failure::Input(error)) => {
                     unusable += 1;
-                    say(&format!("error: {error}"));
+                    print_stderr(&format!("error: {error}"));
                 }
                 Err(failure) => return Err(failure),
             }
@@ -106,9 +107,9 @@ impl Verify {
         let again = tempfile::tempdir().map_err(|error| Failure::running(VerifyError::Temporary(error)))?;
         case.check_disk(again.path(), 0, false).map_err(Failure::input)?;
         let mut running = Running::start(&case, rayon::current_num_threads());
-        let mut progress = Progress::new(&running, self.quiet);
+        let mut progress = RunProgress::new(&running, self.quiet);
         let reason = loop {
-            if let Some(reason) = running.advance(case.steps_per_look()).map_err(Failure::running)? {
+            if let Some(reason) = running.advance(case.steps_per_poll()).map_err(Failure::running)? {
                 break reason;
             }
             progress.show(&running.snapshot());
