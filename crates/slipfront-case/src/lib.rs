@@ -12,5 +12,6 @@ pub mod case_file;
 pub mod disk;
 pub mod field_name;
 pub mod machine;
+pub mod number_format;
 pub mod quantity;
 pub mod text;

@@ -107,7 +107,7 @@ impl Saving {
 
     /// Saves a last checkpoint.
     fn stop(&mut self, running: &Running) -> Failure {
-        let (step, last_step) = (running.snapshot().step, running.case().schedule.last_step);
+        let (step, last_step) = (running.snapshot().step, running.case().time_plan.last_step);
         let stopped = format!("stopped by a signal at step {step} of {last_step}");
         if !self.interval.saves() {
             let sentence = format!("{stopped}; nothing is saved, since --checkpoint is off");

@@ -9,7 +9,7 @@ use crate::embedded_cases::FILES;
 use crate::error::PaperError;
 use crate::measurements::Found;
 use crate::runner::StepRule;
-use slipfront_case::disk::{read_whole, remove_unfinished, write_whole};
+use slipfront_case::disk::{read_limited, remove_unfinished, write_atomic};
 use slipfront_run::manifest::Manifest;
 use slipfront_run::names::FOUND;
 use slipfront_run::run_folder::error::FolderError;
@@ -73,7 +73,7 @@ impl Saved {
 
     /// What a figure found in an earlier call.
     pub fn load(&self, figure: &str, step: StepRule) -> Option<Found> {
-        let bytes = read_whole(&self.path(figure, step), MAX_BYTES).ok()?;
+        let bytes = read_limited(&self.path(figure, step), MAX_BYTES).ok()?;
         let (checksum, findings) = bytes.split_at_checked(blake3::OUT_LEN)?;
         if self.checksum(findings).as_bytes() != checksum {
             return None;
@@ -91,7 +91,7 @@ impl Saved {
         let Ok(findings) = postcard::to_stdvec(found) else {
             return Ok(());
         };
-        Ok(write_whole(&path, &self.sealed(&findings))
+        Ok(write_atomic(&path, &self.sealed(&findings))
             .map_err(|source| FolderError::Write { path, source })?)
     }
 }

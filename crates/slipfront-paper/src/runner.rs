@@ -17,7 +17,9 @@ use slipfront_case::field_name::FieldName;
 use slipfront_plot::{FieldMap, FrictionCurve};
 use slipfront_run::pictures::marked_curve;
 use slipfront_run::running::Record;
-use slipfront_run::study::{Findings, Keep, Plan, Quantity, Records, Role, RunKey, StudyError, StudyFile};
+use slipfront_run::study::{
+    Findings, Plan, Quantity, Records, RetainRuns, Role, RunKey, StudyError, StudyFile,
+};
 use slipfront_run::{running as run, study};
 
 /// How the time step is chosen where a case does not say.
@@ -143,7 +145,7 @@ fn with_step(text: &str, step: StepRule) -> Result<String, PaperError> {
 
 /// The same case with its fields kept at these times.
 pub(super) fn seen_at(mut case: Case, times_star: &[f64]) -> Case {
-    let step = |time: &f64| (time / case.schedule.dt_star).round() as u64;
+    let step = |time: &f64| (time / case.time_plan.dt_star).round() as u64;
     let mut steps: Vec<u64> = times_star.iter().map(step).collect();
     steps.dedup();
     case.output.snapshots = Snapshots::At(steps);
@@ -357,11 +359,11 @@ impl Sweep {
         };
         // A plan that keeps its runs gives their cases with curves and fields.
         let mut plan = self.plan.clone();
-        plan.settings.keep = Keep::All;
+        plan.settings.keep = RetainRuns::All;
         let mut case = plan.case(run)?;
         case.name = format!("{}, {}", plan.name, plan.describe(&plan.points[run.point]));
         // The largest contact stress of all, which maps are scaled by, may come late.
-        case.schedule.stop = Stop::at_step(case.schedule.last_step);
+        case.time_plan.stop = Stop::at_step(case.time_plan.last_step);
         Ok(case)
     }
 

@@ -15,8 +15,8 @@ use crate::manifest::Manifest;
 use crate::names::{CHECKPOINT, PREVIOUS};
 use crate::running::{RunState, Running};
 use slipfront_case::case::Case;
-use slipfront_case::disk::{open_regular, remove_if_there, stage, sync_folder};
-use slipfront_case::text::shortened;
+use slipfront_case::disk::{open_regular, remove_if_there, sync_folder, write_temp};
+use slipfront_case::text::truncated;
 
 /// How the file is laid out. A program reads no other layout.
 const LAYOUT: u32 = 1;
@@ -162,7 +162,7 @@ impl Checkpoints {
             step: running.snapshot().step,
             started: self.started,
         };
-        let whole = stage(&self.folder, |file| write(file, &header, running))?;
+        let whole = write_temp(&self.folder, |file| write(file, &header, running))?;
         let [latest, previous] = [CHECKPOINT, PREVIOUS].map(|name| self.folder.join(name));
         if std::mem::take(&mut self.latest_is_whole) {
             match std::fs::rename(&latest, &previous) {
@@ -287,7 +287,7 @@ fn read(path: &Path, case: &Case) -> Result<Saved, CheckpointError> {
     if header.program != here {
         return Err(CheckpointError::Program {
             path: path.to_owned(),
-            found: shortened(&header.program),
+            found: truncated(&header.program),
             here,
         });
     }

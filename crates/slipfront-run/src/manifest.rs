@@ -16,9 +16,9 @@ use crate::names::MANIFEST;
 
 use crate::run_folder::error::FolderError;
 use crate::run_folder::resume_command::resume_command;
-use slipfront_case::disk::{TEXT_MAX_BYTES, json, open_regular, read_whole};
+use slipfront_case::disk::{TEXT_MAX_BYTES, json, open_regular, read_limited};
 use slipfront_case::text;
-use slipfront_case::text::shortened;
+use slipfront_case::text::truncated;
 
 /// How the last key of a manifest begins in its file: all before it is under the seal.
 const SEAL: &[u8] = b"\"seal\"";
@@ -171,7 +171,7 @@ impl Manifest {
     /// When there is none, or it is not as it was written.
     pub fn read(folder: &Path) -> Result<Self, ManifestError> {
         let path = folder.join(MANIFEST);
-        let bytes = match read_whole(&path, TEXT_MAX_BYTES) {
+        let bytes = match read_limited(&path, TEXT_MAX_BYTES) {
             Ok(bytes) => bytes,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 let path = folder.to_owned();
@@ -188,7 +188,7 @@ impl Manifest {
                 "it has no seal, by which changes of it are seen".to_owned()
             }
             Ok(_) => "its seal does not fit, so that it was changed after the run".to_owned(),
-            Err(error) => text::sentence(&error.to_string()),
+            Err(error) => text::single_line(&error.to_string()),
         };
         Err(ManifestError::Damaged { path, why })
     }
@@ -196,8 +196,8 @@ impl Manifest {
     /// The program that wrote it, in words.
     pub fn program(&self) -> String {
         match &self.revision {
-            Some(revision) => shortened(&format!("slipfront {} ({revision})", self.version)),
-            None => shortened(&format!("slipfront {}", self.version)),
+            Some(revision) => truncated(&format!("slipfront {} ({revision})", self.version)),
+            None => truncated(&format!("slipfront {}", self.version)),
         }
     }
 

@@ -152,7 +152,7 @@ impl Summary {
             n_blocks: case.model.lattice.n_blocks(),
             texture_percent: case.texture.meshed_percent,
             texture_percent_asked: case.texture.asked_percent,
-            dt_star: case.schedule.dt_star,
+            dt_star: case.time_plan.dt_star,
             steps: found.steps,
             seed: case.file.friction.seed,
             negative_draws: case.negative_draws,

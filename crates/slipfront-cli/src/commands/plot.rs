@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use slipfront_case::disk::{is_same, write_whole};
+use slipfront_case::disk::{is_same, write_atomic};
 use slipfront_plot::Picture;
 use slipfront_run::names::MANIFEST;
 use slipfront_run::verify::expect_as_written;
@@ -63,7 +63,7 @@ impl Plot {
         std::fs::create_dir_all(&out).map_err(failed)?;
         let mut written = String::new();
         for (path, bytes) in files {
-            write_whole(&path, bytes).map_err(failed)?;
+            write_atomic(&path, bytes).map_err(failed)?;
             written += &format!("{}\n", path.display());
         }
         print(&written)

@@ -19,7 +19,7 @@ impl RunProgress {
     /// For a run that begins, or is resumed, at its present step.
     pub(crate) fn new(running: &Running, quiet: bool) -> Self {
         let case = running.case();
-        let (first_step, last_step) = (running.snapshot().step, case.schedule.last_step);
+        let (first_step, last_step) = (running.snapshot().step, case.time_plan.last_step);
         let display = ProgressDisplay::new("{bar:32} {percent:>3} %  {msg}  {per_sec}, {eta} left", quiet);
         display.start_from(first_step, last_step);
         Self {
@@ -27,7 +27,7 @@ impl RunProgress {
             first_step,
             last_step,
             n_blocks: case.model.lattice.n_blocks() as u64,
-            end_star: case.schedule.end_star(),
+            end_star: case.time_plan.end_star(),
         }
     }
 

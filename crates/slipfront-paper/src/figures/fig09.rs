@@ -28,7 +28,7 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
             .collect::<Result<Vec<f64>, _>>()?,
     );
     // One step short of it: friction may differ from where the first block moves.
-    let before = [0.0, first_slip - runs[0].case.schedule.dt_star];
+    let before = [0.0, first_slip - runs[0].case.time_plan.dt_star];
     let differences = runs
         .iter()
         .map(|run| runs[0].largest_difference(run, before, mu_star));

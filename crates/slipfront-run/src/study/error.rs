@@ -8,7 +8,7 @@ use crate::manifest::Manifest;
 use crate::results::ResultsError;
 use crate::run_folder::error::FolderError;
 use slipfront_case::case_file::CaseError;
-use slipfront_case::text::shown;
+use slipfront_case::text::display_path;
 use slipfront_plot::PictureError;
 
 /// A study that cannot be used, or had to stop.
@@ -110,7 +110,7 @@ pub enum StudyError {
     /// Another file of it could not be written.
     #[error(
         "cannot write {}: {source}; finished runs are safe, and the study goes on from there when started again",
-        shown(path)
+        display_path(path)
     )]
     Write {
         /// The file.
