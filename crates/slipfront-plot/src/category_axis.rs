@@ -1,6 +1,7 @@
 //! CategoryAxis side by side below a panel.
 
-use crate::canvas::{Align, Area, Canvas};
+use crate::canvas::Canvas;
+use crate::geometry::{Align, Area};
 use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK};
 use crate::text::{CAP_HEIGHT, Text};
 

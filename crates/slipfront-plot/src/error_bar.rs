@@ -1,7 +1,7 @@
 //! Confidence intervals as whiskers.
 
-use crate::axis::drawable;
 use crate::canvas::Canvas;
+use crate::range::drawable;
 use crate::style::Rgb;
 
 /// How far the ends of a whisker reach to both sides.

@@ -1,14 +1,14 @@
 //! Friction and the share of sliding blocks against time.
 
-use serde::{Deserialize, Serialize};
-
-use crate::axis::drawable;
-use crate::canvas::{Align, Area, Canvas};
+use crate::canvas::Canvas;
+use crate::friction_curve::{FrictionCurve, Instant, Kinetic};
 use crate::friction_layout::{Panels, between};
+use crate::geometry::{Align, Area, Point};
 use crate::label_placement::{Candidate, Placer, around};
 use crate::legend::Legend;
 use crate::picture::{Picture, PictureError};
 use crate::polyline::segments;
+use crate::range::drawable;
 use crate::style::{
     BLACK, COLUMN_WIDTH, CURVES, GREY, MARGIN, Rgb, SIZE_LABEL, WIDTH_CURVE, WIDTH_LEADER, WIDTH_MARK,
     curve_colour,
@@ -18,51 +18,6 @@ use crate::text::{Text, number};
 const DOT: f64 = 7.0;
 /// The kinetic window's shade.
 const SHADE: Rgb = [0x9a, 0xa5, 0xb1];
-
-/// One run's curve; everything is dimensionless.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct FrictionCurve {
-    /// What the legend calls it; shown only beside other curves.
-    pub label: String,
-    /// t*, never falling.
-    pub time_star: Vec<f64>,
-    /// mu* at these times; NaN leaves a gap.
-    pub mu_star: Vec<f64>,
-    /// N* at these times, in percent.
-    pub sliding_percent: Vec<f64>,
-    /// When the first block in contact slips.
-    pub first_slip_time_star: Option<f64>,
-    /// The peak: (`t_s*`, `mu_s*`).
-    pub peak: Option<(f64, f64)>,
-    /// The window of kinetic friction.
-    pub kinetic: Option<Kinetic>,
-    /// Instants to letter.
-    pub instants: Vec<Instant>,
-}
-
-/// Kinetic friction: the mean of mu* over a window of t*.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Kinetic {
-    /// Where the window begins.
-    pub from: f64,
-    /// Where the window ends.
-    pub to: f64,
-    /// `mu_k*`.
-    pub mean: f64,
-    /// Its standard uncertainty, if known.
-    pub uncertainty: Option<f64>,
-}
-
-/// A lettered instant of a curve.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Instant {
-    /// Its letter.
-    pub letter: char,
-    /// When it is.
-    pub time_star: f64,
-    /// mu* at that time.
-    pub mu_star: f64,
-}
 
 /// Draws mu* and, below it, N* against t*, as wide as a journal's column (85 mm).
 ///
@@ -130,7 +85,7 @@ fn draw_one(canvas: &mut Canvas, panels: &Panels, curve: &FrictionCurve) {
             canvas.fill(between(from, to, lo, hi), CURVES[1], 0.25);
         }
     }
-    if let Some(slip) = curve.first_slip_time_star.filter(|&slip| time.holds(slip)) {
+    if let Some(slip) = curve.first_slip_time_star.filter(|&slip| time.contains(slip)) {
         let x = time.at(slip);
         for axis in [mu, sliding] {
             canvas.line((x, axis.start), (x, axis.end), WIDTH_LEADER, GREY);
@@ -138,11 +93,11 @@ fn draw_one(canvas: &mut Canvas, panels: &Panels, curve: &FrictionCurve) {
         placer.avoid(&[(x, mu.start), (x, mu.end)]);
     }
     for (axis, values) in [(mu, &curve.mu_star), (sliding, &curve.sliding_percent)] {
-        for piece in segments(&curve.time_star, values, time, axis) {
+        for segment in segments(&curve.time_star, values, time, axis) {
             if axis.start == mu.start {
-                placer.avoid(&piece);
+                placer.avoid(&segment);
             }
-            stroke(canvas, piece, colour);
+            stroke(canvas, segment, colour);
         }
     }
     if let Some(window) = window {
@@ -165,7 +120,7 @@ fn label_one(
     window: Option<Kinetic>,
 ) {
     let Panels { time, mu, .. } = panels;
-    let held = |t: f64, value: f64| time.holds(t) && mu.holds(value);
+    let held = |t: f64, value: f64| time.contains(t) && mu.contains(value);
     let point = |t: f64, value: f64| (time.at(t), mu.at(value));
     let instants: Vec<&Instant> = curve
         .instants
@@ -192,7 +147,7 @@ fn label_one(
     // Instants at the peak share its label: several labels of one point would take its neighbours' places.
     let at_peak = |instant: &Instant| {
         let (x, y) = point(instant.time_star, instant.mu_star);
-        let near = |(t, value)| (x - time.at(t)).hypot(y - mu.at(value)) < 2.0;
+        let near = |(t, value)| libm::hypot(x - time.at(t), y - mu.at(value)) < 2.0;
         peak.is_some_and(near) && instant.letter.is_alphanumeric()
     };
     if let Some((t, value)) = peak {
@@ -215,7 +170,7 @@ fn label_one(
             BLACK,
         );
     }
-    if let Some(slip) = curve.first_slip_time_star.filter(|&slip| time.holds(slip)) {
+    if let Some(slip) = curve.first_slip_time_star.filter(|&slip| time.contains(slip)) {
         let text = Text::plain("first slip", SIZE_LABEL);
         write(
             canvas,
@@ -241,17 +196,20 @@ fn draw_many(canvas: &mut Canvas, panels: &Panels, curves: &[FrictionCurve]) {
     let mut placer = Placer::new(panels.friction());
     for (index, curve) in curves.iter().enumerate() {
         for (axis, values) in [(mu, &curve.mu_star), (sliding, &curve.sliding_percent)] {
-            for piece in segments(&curve.time_star, values, time, axis) {
+            for segment in segments(&curve.time_star, values, time, axis) {
                 if axis.start == mu.start {
-                    placer.avoid(&piece);
+                    placer.avoid(&segment);
                 }
-                stroke(canvas, piece, curve_colour(index, curves.len()));
+                stroke(canvas, segment, curve_colour(index, curves.len()));
             }
         }
     }
     // Peaks last: no curve may hide one.
     for (index, curve) in curves.iter().enumerate() {
-        if let Some((t, value)) = curve.peak.filter(|&(t, value)| time.holds(t) && mu.holds(value)) {
+        if let Some((t, value)) = curve
+            .peak
+            .filter(|&(t, value)| time.contains(t) && mu.contains(value))
+        {
             canvas.dot((time.at(t), mu.at(value)), DOT, curve_colour(index, curves.len()));
         }
     }
@@ -266,7 +224,7 @@ fn draw_many(canvas: &mut Canvas, panels: &Panels, curves: &[FrictionCurve]) {
 /// Dots and letters of the instants.
 fn letter(canvas: &mut Canvas, panels: &Panels, placer: &mut Placer, curve: &FrictionCurve) {
     let Panels { time, mu, .. } = panels;
-    let held = |instant: &&Instant| time.holds(instant.time_star) && mu.holds(instant.mu_star);
+    let held = |instant: &&Instant| time.contains(instant.time_star) && mu.contains(instant.mu_star);
     let instants = curve.instants.iter().filter(held);
     let places: Vec<(&Instant, (f64, f64))> = instants
         .map(|instant| (instant, (time.at(instant.time_star), mu.at(instant.mu_star))))
@@ -298,11 +256,11 @@ fn write(canvas: &mut Canvas, placer: &mut Placer, text: &Text, candidates: Vec<
     canvas.text(text, (area.x, area.bottom() - text.depth()), Align::Start, colour);
 }
 
-/// Draws a piece of a curve; a piece of one point is a dot.
-fn stroke(canvas: &mut Canvas, piece: Vec<(f64, f64)>, colour: Rgb) {
-    match piece[..] {
+/// Draws a segment of a curve; one of a single point is a dot.
+fn stroke(canvas: &mut Canvas, segment: Vec<Point>, colour: Rgb) {
+    match segment[..] {
         [point] => canvas.dot(point, 0.6 * DOT, colour),
-        _ => canvas.polyline(piece, WIDTH_CURVE, colour),
+        _ => canvas.polyline(segment, WIDTH_CURVE, colour),
     }
 }
 
@@ -359,7 +317,7 @@ fn beside_line(panels: &Panels, text: &Text, x: f64) -> Vec<Candidate> {
 fn with_uncertainty(window: &Kinetic) -> String {
     match window.uncertainty.filter(|&u| u > 0.0 && drawable(u)) {
         Some(uncertainty) => {
-            let decimals = (-uncertainty.log10().floor()).clamp(1.0, 5.0) as usize;
+            let decimals = (-libm::log10(uncertainty).floor()).clamp(1.0, 5.0) as usize;
             format!(
                 "{} \u{b1} {}",
                 number(window.mean, decimals),

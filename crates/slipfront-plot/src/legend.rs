@@ -1,6 +1,7 @@
 //! The legend above a panel with several curves or bars.
 
-use crate::canvas::{Align, Area, Canvas};
+use crate::canvas::Canvas;
+use crate::geometry::{Align, Area};
 use crate::markers::marker;
 use crate::style::{BLACK, MARGIN, OPACITY_BAR, RADIUS_MARKER, Rgb, SIZE_TICK, WIDTH_CURVE, curve_colour};
 use crate::text::Text;

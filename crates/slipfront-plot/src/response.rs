@@ -2,19 +2,21 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::axis::drawable;
-use crate::canvas::{Area, Canvas};
+use crate::axis::Axis;
+use crate::canvas::Canvas;
 use crate::error_bar::{Interval, error_bar};
 use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side, right_end, short_ticks};
+use crate::geometry::Area;
 use crate::legend::{Legend, Sample};
 use crate::markers::marker;
 use crate::picture::{Picture, PictureError};
 use crate::polyline::segments;
-use crate::scale::{Direction, Scale};
+use crate::range::drawable;
 use crate::style::{
     COLUMN_WIDTH, GREY, MARGIN, RADIUS_MARKER, Rgb, WIDTH_CURVE, WIDTH_LEADER, WIDTH_MARK, curve_colour,
 };
 use crate::text::Text;
+use crate::ticks::{Direction, MAX_STEPS};
 
 const HEIGHT: f64 = 560.0;
 /// Between the last number below the panel, half of which may stand beyond it, and the picture's edge.
@@ -70,13 +72,13 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
     curves.iter().try_for_each(check)?;
     let curves: Vec<Curve> = curves.iter().map(Curve::of).collect();
     let xs: Vec<f64> = curves.iter().flat_map(|curve| curve.x.clone()).collect();
-    let x = Scale::around(&xs, responses.log_x, 0.04);
+    let x = Axis::around(&xs, responses.log_x, 0.04);
     let ys: Vec<f64> = curves.iter().flat_map(Curve::values).collect();
-    let y = Scale::around(&ys, responses.log_y, 0.06);
-    let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Direction::Y));
+    let y = Axis::around(&ys, responses.log_y, 0.06);
+    let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Direction::Y, MAX_STEPS));
     let right = COLUMN_WIDTH.round() - RIGHT;
     let right = right_end(
-        &x.placed(left, right).ticks(Direction::X),
+        &x.placed(left, right).ticks(Direction::X, MAX_STEPS),
         left,
         right,
         COLUMN_WIDTH,
@@ -98,13 +100,13 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
 
     let mut canvas = Canvas::new(COLUMN_WIDTH, area.bottom() + LOWER_ROOM);
     let title = Text::fitted(&responses.y_title, HEIGHT);
-    left_side(&mut canvas, area, 0.0, &y.ticks(Direction::Y), &title);
+    left_side(&mut canvas, area, 0.0, &y.ticks(Direction::Y, MAX_STEPS), &title);
     short_ticks(&mut canvas, area, Direction::Y, &y.short_ticks());
     short_ticks(&mut canvas, area, Direction::X, &x.short_ticks());
     let title = Text::fitted(&responses.x_title, area.width);
-    lower_side(&mut canvas, area, &x.ticks(Direction::X), &title);
+    lower_side(&mut canvas, area, &x.ticks(Direction::X, MAX_STEPS), &title);
     legend.draw(&mut canvas);
-    if !y.is_log() && y.axis().lo < 0.0 && y.axis().hi > 0.0 {
+    if !y.is_log && y.lo < 0.0 && y.hi > 0.0 {
         canvas.line((area.x, y.at(0.0)), (area.right(), y.at(0.0)), WIDTH_LEADER, GREY);
     }
     // All bands, then all curves, then all points: nothing hides a point.
@@ -118,26 +120,14 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
         curve.draw_band(&mut canvas, &x, &y, *colour, opacity);
     }
     for (curve, colour) in &coloured {
-        for piece in segments(
-            &measured(&curve.x, &x),
-            &measured(&curve.mean, &y),
-            x.axis(),
-            y.axis(),
-        ) {
-            if piece.len() > 1 {
-                canvas.polyline(piece, WIDTH_CURVE, *colour);
+        for segment in segments(&curve.x, &curve.mean, &x, &y) {
+            if segment.len() > 1 {
+                canvas.polyline(segment, WIDTH_CURVE, *colour);
             }
         }
     }
     for (index, (curve, colour)) in coloured.iter().enumerate().filter(|(_, (curve, _))| !curve.line) {
-        for point in segments(
-            &measured(&curve.x, &x),
-            &measured(&curve.mean, &y),
-            x.axis(),
-            y.axis(),
-        )
-        .concat()
-        {
+        for point in segments(&curve.x, &curve.mean, &x, &y).concat() {
             marker(&mut canvas, index, point, RADIUS_MARKER, *colour);
         }
     }
@@ -172,10 +162,6 @@ struct Curve {
     line: bool,
 }
 
-fn measured(values: &[f64], scale: &Scale) -> Vec<f64> {
-    values.iter().map(|&value| scale.measure(value)).collect()
-}
-
 impl Curve {
     fn of(response: &Response) -> Self {
         let mut order: Vec<usize> = (0..response.x.len())
@@ -204,17 +190,16 @@ impl Curve {
         [&self.mean, &self.low, &self.high].into_iter().flatten().copied()
     }
 
-    fn draw_band(&self, canvas: &mut Canvas, x: &Scale, y: &Scale, colour: Rgb, opacity: f64) {
-        let xs = measured(&self.x, x);
-        let lows = segments(&xs, &measured(&self.low, y), x.axis(), y.axis());
-        let highs = segments(&xs, &measured(&self.high, y), x.axis(), y.axis());
+    fn draw_band(&self, canvas: &mut Canvas, x: &Axis, y: &Axis, colour: Rgb, opacity: f64) {
+        let lows = segments(&self.x, &self.low, x, y);
+        let highs = segments(&self.x, &self.high, x, y);
         for (low, high) in lows.into_iter().zip(highs) {
             if let ([low], [high]) = (&low[..], &high[..]) {
                 error_bar(canvas, low.0, (low.1, high.1), WIDTH_MARK, colour);
                 continue;
             }
-            let edge: Vec<(f64, f64)> = low.into_iter().chain(high.into_iter().rev()).collect();
-            canvas.polygon(&edge, colour, opacity);
+            let edge = low.into_iter().chain(high.into_iter().rev()).collect();
+            canvas.polygon(edge, colour, opacity);
         }
     }
 }
