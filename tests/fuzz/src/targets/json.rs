@@ -1,11 +1,10 @@
 //! What stands in a run folder as JSON: the summary, and the manifest under its seal.
 
 use slipfront_run::manifest::{Manifest, ManifestFile, Random};
-use slipfront_run::results::{read_summary, summary_json};
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::contents::own_bytes;
 use slipfront_run::run_folder::error::FolderError;
-use slipfront_run::summary::{InstantSummary, Summary};
+use slipfront_run::summary::{InstantSummary, Summary, read_summary, summary_json};
 use slipfront_run::verify::verify;
 
 use crate::checks::readable;
