@@ -4,7 +4,7 @@ use std::path::Path;
 
 use jiff::Timestamp;
 use slipfront_case::case::Case;
-use slipfront_run::checkpoint::{CheckpointError, Checkpoints, Saved};
+use slipfront_run::checkpoint::{CheckpointError, Checkpoints, LoadedCheckpoint};
 use slipfront_run::manifest::{Manifest, ManifestError};
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::contents::own_bytes;
@@ -103,7 +103,7 @@ fn say_complete(path: &Path, manner: &Manner) -> Result<(), Failure> {
 }
 
 /// The checkpoint to go on from, if the run has saved one.
-fn load(path: &Path, case: &Case, previous: bool) -> Result<Option<Saved>, Failure> {
+fn load(path: &Path, case: &Case, previous: bool) -> Result<Option<LoadedCheckpoint>, Failure> {
     match Checkpoints::load(path, case, previous) {
         Ok(None) if previous => {
             let sentence = "holds no checkpoint before the latest one";
