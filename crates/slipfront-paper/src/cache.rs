@@ -1,6 +1,6 @@
 //! What figures found, kept on disk as soon as it is found: a call that was stopped does not begin again.
 //!
-//! A file holds a checksum and the figure's findings. One that is damaged, or that another program, other cases or
+//! A file holds the figure's findings and a checksum. One that is damaged, or that another program, other cases or
 //! other options made, counts as not there.
 
 use std::path::{Path, PathBuf};
@@ -10,6 +10,7 @@ use crate::error::PaperError;
 use crate::measurements::Found;
 use crate::runner::StepRule;
 use slipfront_case::disk::{read_limited, remove_unfinished, write_atomic};
+use slipfront_run::checksum;
 use slipfront_run::names::FOUND;
 use slipfront_run::program;
 use slipfront_run::run_folder::error::FolderError;
@@ -59,25 +60,15 @@ impl Saved {
         self.folder.join(format!("{figure}-{step}.bin"))
     }
 
-    /// Hash of a file's contents and of what made them.
-    fn checksum(&self, findings: &[u8]) -> blake3::Hash {
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(self.origin.as_bytes()).update(findings);
-        hasher.finalize()
-    }
-
-    /// The bytes of a file: findings under their checksum.
-    pub fn sealed(&self, findings: &[u8]) -> Vec<u8> {
-        [self.checksum(findings).as_bytes(), findings].concat()
+    /// The bytes of a file: findings with their checksum.
+    pub fn with_checksum(&self, findings: &[u8]) -> Vec<u8> {
+        checksum::with_checksum(self.origin.as_bytes(), findings)
     }
 
     /// What a figure found in an earlier call.
     pub fn load(&self, figure: &str, step: StepRule) -> Option<Found> {
         let bytes = read_limited(&self.path(figure, step), MAX_BYTES).ok()?;
-        let (checksum, findings) = bytes.split_at_checked(blake3::OUT_LEN)?;
-        if self.checksum(findings).as_bytes() != checksum {
-            return None;
-        }
+        let findings = checksum::verified(self.origin.as_bytes(), &bytes)?;
         postcard::from_bytes(findings).ok()
     }
 
@@ -91,7 +82,7 @@ impl Saved {
         let Ok(findings) = postcard::to_stdvec(found) else {
             return Ok(());
         };
-        Ok(write_atomic(&path, &self.sealed(&findings))
+        Ok(write_atomic(&path, &self.with_checksum(&findings))
             .map_err(|source| FolderError::Write { path, source })?)
     }
 }
