@@ -8,7 +8,7 @@ use slipfront_case::case::Case;
 use slipfront_case::case_file::Law;
 use slipfront_case::machine::{available_memory, shown};
 use slipfront_run::study;
-use slipfront_run::study::{Finding, Findings, Plan, RunKey};
+use slipfront_run::study::{Plan, RunKey, RunResult, StudyResults};
 use slipfront_run::summary::Summary;
 
 /// The resolved physics of a case.
@@ -299,32 +299,32 @@ fn warnings_of_plan(plan: &Plan) -> String {
 }
 
 /// What a study has found, and where it is.
-pub(crate) fn study(plan: &Plan, findings: &Findings, folder: &Path) -> String {
+pub(crate) fn study(plan: &Plan, results: &StudyResults, folder: &Path) -> String {
     let mut text = String::new();
     let name = study::main_quantity(plan);
     text += &format!("{name}\n");
-    let without: Vec<RunKey> = findings.without_transition().collect();
+    let without: Vec<RunKey> = results.without_transition().collect();
     let rows: Vec<(String, String)> = (0..plan.points.len())
         .take(MOST_ROWS)
         .map(|position| {
-            let mut of_point = findings.runs.iter().filter(|(run, _)| run.point == position);
-            let mut value = match study::sample(plan, findings, position, name) {
+            let mut of_point = results.runs.iter().filter(|(run, _)| run.point == position);
+            let mut value = match study::sample(plan, results, position, name) {
                 Some(sample) => format!(
                     "{}   n = {}",
                     with_uncertainty(sample.mean, sample.half_width),
                     sample.n
                 ),
-                None if of_point.any(|(_, finding)| matches!(**finding, Finding::Failed(_))) => {
+                None if of_point.any(|(_, result)| matches!(**result, RunResult::Failed(_))) => {
                     "failed".to_owned()
                 }
                 None => "none".to_owned(),
             };
-            if findings.points[position].narrow == Some(false) {
+            if results.points[position].narrow == Some(false) {
                 value += "   (interval still too wide)";
             }
             let without = without.iter().filter(|run| run.point == position).count();
             if without > 0 {
-                let runs = findings.runs.keys().filter(|run| run.point == position).count();
+                let runs = results.runs.keys().filter(|run| run.point == position).count();
                 value += &format!("   (no transition in {without} of {runs} runs)");
             }
             (plan.describe(&plan.points[position]), value)
@@ -354,10 +354,10 @@ pub(crate) fn study(plan: &Plan, findings: &Findings, folder: &Path) -> String {
         );
     }
     text += &warnings_of_plan(plan);
-    if findings.strangers > 0 {
+    if results.orphaned_runs > 0 {
         text += &format!(
             "note: {} recorded runs are not part of the study as it is now; they stay in records.jsonl\n",
-            findings.strangers
+            results.orphaned_runs
         );
     }
     text + &format!("runs.csv, points.csv and pictures in {}\n", folder.display())

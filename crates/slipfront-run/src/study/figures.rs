@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::axis::{Axis, Spacing};
 use super::error::StudyError;
 use super::plan::Plan;
-use super::scheduler::Findings;
+use super::scheduler::StudyResults;
 use super::summary_values::REDUCTION;
 use super::tables::sample;
 use slipfront_plot::{
@@ -38,10 +38,10 @@ pub(super) fn names(axes: &[Axis]) -> impl Iterator<Item = String> {
 ///
 /// # Errors
 /// When one cannot be drawn.
-pub(super) fn draw(plan: &Plan, findings: &Findings) -> Result<Vec<(String, Picture)>, StudyError> {
+pub(super) fn draw(plan: &Plan, results: &StudyResults) -> Result<Vec<(String, Picture)>, StudyError> {
     let axes = &plan.axes;
     let of_quantity = |quantity: &&str| -> Result<Vec<(String, Picture)>, StudyError> {
-        let values = Values::of(plan, findings, quantity);
+        let values = Values::of(plan, results, quantity);
         // A study that stops at the onset knows no kinetic friction, one without reference no reduction.
         if values.0.values().all(|[mean, ..]| mean.is_nan()) {
             return Ok(Vec::new());
@@ -68,8 +68,8 @@ pub(super) fn draw(plan: &Plan, findings: &Findings) -> Result<Vec<(String, Pict
 struct Values<'a>(HashMap<&'a [usize], [f64; 3]>);
 
 impl<'a> Values<'a> {
-    fn of(plan: &'a Plan, findings: &Findings, quantity: &str) -> Self {
-        let value = |position| match sample(plan, findings, position, quantity) {
+    fn of(plan: &'a Plan, results: &StudyResults, quantity: &str) -> Self {
+        let value = |position| match sample(plan, results, position, quantity) {
             Some(sample) => {
                 let [low, high] = sample.interval().unwrap_or([f64::NAN; 2]);
                 [sample.mean, low, high]

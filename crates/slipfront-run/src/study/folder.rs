@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use super::error::StudyError;
 use super::figures;
 use super::input_copies::Copy;
-use super::journal::{Finding, Records};
+use super::journal::{Records, RunResult};
 use super::plan::Plan;
-use super::scheduler::Findings;
+use super::scheduler::StudyResults;
 use super::study_file::StudyFile;
 use crate::manifest::Manifest;
-use crate::names::{CASE, FOUND, MANIFEST, RECORDS, RUNS, TABLES};
+use crate::names::{CASE, FIGURE_CACHE, MANIFEST, RECORDS, RUNS, TABLES};
 use crate::run_folder::error::FolderError;
 use slipfront_case::disk::{
     TEXT_MAX_BYTES, fill_whole, is_empty, is_folder, open_bounded, open_regular, read_whole, remove_if_there,
@@ -46,8 +46,8 @@ impl StudyFolder {
         std::fs::create_dir_all(path).map_err(unwritable)?;
         let used = path.join(RECORDS).exists();
         let empty = is_empty(path).map_err(unwritable)?;
-        // The findings of `slipfront paper` stand beside records as well.
-        let of_paper = path.join(FOUND).is_dir() && !is_study(path);
+        // The results of `slipfront paper` stand beside records as well.
+        let of_paper = path.join(FIGURE_CACHE).is_dir() && !is_study(path);
         if (!used && !empty) || of_paper {
             return Err(StudyError::NotAStudy {
                 path: path.to_owned(),
@@ -134,13 +134,13 @@ impl StudyFolder {
     ///
     /// # Errors
     /// When one cannot be copied.
-    pub fn take_kept(&self, plan: &Plan, findings: &Findings, shard: &Path) -> Result<(), StudyError> {
-        for (run, finding) in &findings.runs {
+    pub fn take_kept(&self, plan: &Plan, results: &StudyResults, shard: &Path) -> Result<(), StudyError> {
+        for (run, result) in &results.runs {
             let name = plan.folder_name(*run);
-            let is_whole = |folder: &Path| match finding.as_ref() {
+            let is_whole = |folder: &Path| match result.as_ref() {
                 // A kill may have come while it was written.
-                Finding::Done(_) => Manifest::read(folder).is_ok(),
-                Finding::Failed(_) => folder.join(CASE).is_file(),
+                RunResult::Done(_) => Manifest::read(folder).is_ok(),
+                RunResult::Failed(_) => folder.join(CASE).is_file(),
             };
             let (from, to) = (shard.join(RUNS).join(&name), self.path.join(RUNS).join(&name));
             if !is_whole(&from) || is_whole(&to) {

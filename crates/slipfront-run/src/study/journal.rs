@@ -12,7 +12,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::error::StudyError;
-use super::summary_values::Numbers;
+use super::summary_values::SummaryValues;
 use crate::names::RECORDS;
 use crate::summary::Summary;
 use slipfront_case::disk::{open_bounded, remove_unfinished, sync_folder};
@@ -29,10 +29,10 @@ pub enum Outcome {
 
 impl Outcome {
     /// What tables and statistics need of it.
-    fn finding(&self) -> Finding {
+    fn result(&self) -> RunResult {
         match self {
-            Self::Done(summary) => Finding::Done(Numbers::of(summary)),
-            Self::Failed(reason) => Finding::Failed(reason.clone()),
+            Self::Done(summary) => RunResult::Done(SummaryValues::of(summary)),
+            Self::Failed(reason) => RunResult::Failed(reason.clone()),
         }
     }
 
@@ -52,9 +52,9 @@ impl Outcome {
 
 /// What was found of a run.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Finding {
+pub enum RunResult {
     /// Its numbers.
-    Done(Numbers),
+    Done(SummaryValues),
     /// Why it failed.
     Failed(String),
 }
@@ -75,7 +75,7 @@ pub struct Record {
 pub struct Records {
     path: PathBuf,
     file: File,
-    findings: HashMap<String, Arc<Finding>>,
+    results: HashMap<String, Arc<RunResult>>,
     /// Lines that failed their checksum.
     pub damaged: usize,
 }
@@ -138,32 +138,32 @@ impl Records {
         if lines.bytes == 0 {
             sync_folder(folder).map_err(|source| cannot_write(&path, source))?;
         }
-        let findings = lines
+        let results = lines
             .records
             .into_iter()
-            .map(|record| (record.id, Arc::new(record.outcome.finding())))
+            .map(|record| (record.id, Arc::new(record.outcome.result())))
             .collect();
         Ok(Self {
             path,
             file,
-            findings,
+            results,
             damaged: lines.damaged,
         })
     }
 
     /// What was found of the run with this identity, if it was done.
-    pub fn get(&self, id: &str) -> Option<&Arc<Finding>> {
-        self.findings.get(id)
+    pub fn get(&self, id: &str) -> Option<&Arc<RunResult>> {
+        self.results.get(id)
     }
 
     /// Number of runs recorded.
     pub fn len(&self) -> usize {
-        self.findings.len()
+        self.results.len()
     }
 
     /// Whether nothing is recorded.
     pub fn is_empty(&self) -> bool {
-        self.findings.is_empty()
+        self.results.is_empty()
     }
 
     /// Appends finished runs and waits until the disk has them.
@@ -197,8 +197,8 @@ impl Records {
             failed(source)
         })?;
         for record in records {
-            self.findings
-                .insert(record.id.clone(), Arc::new(record.outcome.finding()));
+            self.results
+                .insert(record.id.clone(), Arc::new(record.outcome.result()));
         }
         Ok(())
     }
@@ -220,7 +220,7 @@ impl Records {
         }
         self.damaged += lines.damaged;
         let mut records = lines.records;
-        records.retain(|record| !self.findings.contains_key(&record.id));
+        records.retain(|record| !self.results.contains_key(&record.id));
         self.append(&records)?;
         Ok(records.len())
     }

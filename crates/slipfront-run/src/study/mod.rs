@@ -1,7 +1,7 @@
 //! Studies: a case turned into a designed experiment whose answer is a table and a picture with error bars.
 //!
 //! ```text
-//! text -> StudyFile -> Plan (every point a valid case) -> Findings -> tables -> pictures
+//! text -> StudyFile -> Plan (every point a valid case) -> StudyResults -> tables -> pictures
 //! ```
 //!
 //! Every finished run is one line of a record file; a study that was stopped goes on from there.
@@ -29,13 +29,13 @@ pub use axis::{Axis, Level, Spacing};
 pub use error::StudyError;
 pub(crate) use error::of_others;
 pub use folder::{StudyFolder, is_study, refuse_foreign, study_of};
-pub use journal::{Finding, Outcome, Record, Records};
+pub use journal::{Outcome, Record, Records, RunResult};
 pub use plan::{Plan, Point, Role, RunKey, Warning};
-pub use scheduler::{Findings, PointFindings, Progress, collect, execute};
+pub use scheduler::{PointResult, Progress, StudyResults, collect, execute};
 pub use shard::Shard;
 pub use statistics::Sample;
 pub use study_file::{Base, Keep, Settings, StudyFile, Until};
-pub use summary_values::{Numbers, Quantity, REDUCTION, known as quantities};
+pub use summary_values::{Quantity, REDUCTION, SummaryValues, known as quantities};
 pub use tables::sample;
 
 /// The quantity that a study is mostly about: the one that decides on its replicates, else the reduction if it has a reference,
@@ -54,12 +54,12 @@ pub fn main_quantity(plan: &Plan) -> &str {
 ///
 /// # Errors
 /// When a file cannot be written.
-pub fn write(plan: &Plan, findings: &Findings, folder: &StudyFolder) -> Result<(), StudyError> {
+pub fn write(plan: &Plan, results: &StudyResults, folder: &StudyFolder) -> Result<(), StudyError> {
     let [runs, points] = TABLES;
-    folder.write(runs, &tables::runs(plan, findings)?)?;
-    folder.write(points, &tables::points(plan, findings)?)?;
+    folder.write(runs, &tables::runs(plan, results)?)?;
+    folder.write(points, &tables::points(plan, results)?)?;
     let mut drawn = HashSet::new();
-    for (name, picture) in figures::draw(plan, findings)? {
+    for (name, picture) in figures::draw(plan, results)? {
         folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
         folder.write(&format!("{name}.png"), &picture.png)?;
         drawn.insert(name);

@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use super::error::StudyError;
-use super::journal::{Finding, Outcome, Record, Records};
+use super::journal::{Outcome, Record, Records, RunResult};
 use super::plan::{Plan, Role, RunKey};
 use super::statistics::Sample;
 use super::study_file::Keep;
@@ -39,26 +39,26 @@ pub struct Progress {
 }
 
 /// Everything that a study has found.
-#[derive(Clone, Debug)]
-pub struct Findings {
+#[derive(Clone, Debug, Default)]
+pub struct StudyResults {
     /// What was found of every run that counts.
-    pub runs: BTreeMap<RunKey, Arc<Finding>>,
+    pub runs: BTreeMap<RunKey, Arc<RunResult>>,
     /// Per point of the plan: its number of replicates, and whether its interval became narrow enough.
-    pub points: Vec<PointFindings>,
+    pub points: Vec<PointResult>,
     /// Recorded runs that are not part of the study as it is now.
-    pub strangers: usize,
+    pub orphaned_runs: usize,
 }
 
 /// What was decided of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PointFindings {
+pub struct PointResult {
     /// Replicates that count.
     pub replicates: usize,
     /// Whether the interval is as narrow as asked; none where nothing was asked.
     pub narrow: Option<bool>,
 }
 
-impl Findings {
+impl StudyResults {
     /// A number of a run of a point, or its reduction against the reference of the same seed.
     pub fn value(&self, point: usize, replicate: usize, quantity: Quantity) -> Option<f64> {
         value(&self.runs, point, replicate, quantity)
@@ -67,9 +67,9 @@ impl Findings {
     /// Runs that had no transition, so that their static friction is only the largest mu* of them.
     pub fn without_transition(&self) -> impl Iterator<Item = RunKey> {
         let runs = self.runs.iter();
-        runs.filter_map(|(run, finding)| match finding.as_ref() {
-            Finding::Done(numbers) => (!numbers.transition).then_some(*run),
-            Finding::Failed(_) => None,
+        runs.filter_map(|(run, result)| match result.as_ref() {
+            RunResult::Done(numbers) => (!numbers.transition).then_some(*run),
+            RunResult::Failed(_) => None,
         })
     }
 
@@ -77,15 +77,15 @@ impl Findings {
     pub fn failures(&self) -> impl Iterator<Item = (RunKey, &str)> {
         self.runs
             .iter()
-            .filter_map(|(run, finding)| match finding.as_ref() {
-                Finding::Failed(reason) => Some((*run, reason.as_str())),
-                Finding::Done(_) => None,
+            .filter_map(|(run, result)| match result.as_ref() {
+                RunResult::Failed(reason) => Some((*run, reason.as_str())),
+                RunResult::Done(_) => None,
             })
     }
 }
 
 fn value(
-    runs: &BTreeMap<RunKey, Arc<Finding>>,
+    runs: &BTreeMap<RunKey, Arc<RunResult>>,
     point: usize,
     replicate: usize,
     quantity: Quantity,
@@ -98,8 +98,8 @@ fn value(
         })?
         .as_ref()
     {
-        Finding::Done(numbers) => Some(numbers),
-        Finding::Failed(_) => None,
+        RunResult::Done(numbers) => Some(numbers),
+        RunResult::Failed(_) => None,
     };
     match quantity {
         Quantity::Number(position) => numbers(Role::Point)?.get(position),
@@ -125,7 +125,7 @@ pub fn execute(
     threads: usize,
     stop: &AtomicBool,
     watch: &mut dyn FnMut(&Progress),
-) -> Result<Findings, StudyError> {
+) -> Result<StudyResults, StudyError> {
     let runs = folder.join(RUNS);
     let runner = |run: RunKey, ends: &Ends| run_one(plan, &runs, run, ends);
     execute_with(plan, records, &runner, threads, stop, watch)
@@ -135,16 +135,16 @@ pub fn execute(
 ///
 /// # Errors
 /// [`StudyError::Missing`] when they do not hold all of it.
-pub fn collect(plan: &Plan, records: &mut Records) -> Result<Findings, StudyError> {
+pub fn collect(plan: &Plan, records: &mut Records) -> Result<StudyResults, StudyError> {
     let (to_workers, _nobody) = mpsc::channel();
-    let mut manager = Manager::new(plan, records, to_workers, 1);
-    manager.begin()?;
-    if manager.waiting.is_empty() {
-        Ok(manager.findings())
+    let mut scheduler = Scheduler::new(plan, records, to_workers, 1);
+    scheduler.begin()?;
+    if scheduler.waiting.is_empty() {
+        Ok(scheduler.results())
     } else {
         Err(StudyError::Missing {
-            runs: manager.waiting.len(),
-            others: manager.strangers(),
+            runs: scheduler.waiting.len(),
+            others: scheduler.orphaned_runs(),
         })
     }
 }
@@ -162,7 +162,7 @@ fn execute_with(
     threads: usize,
     stop: &AtomicBool,
     watch: &mut dyn FnMut(&Progress),
-) -> Result<Findings, StudyError> {
+) -> Result<StudyResults, StudyError> {
     let (to_workers, tasks) = mpsc::channel::<Task>();
     let (to_manager, finished) = mpsc::channel::<Finished>();
     let tasks = Mutex::new(tasks);
@@ -177,9 +177,9 @@ fn execute_with(
             spawned.map_err(StudyError::Threads)?;
         }
         drop(to_manager);
-        let mut manager = Manager::new(plan, records, to_workers, threads);
-        manager.manage(&finished, stop, watch)?;
-        Ok(manager.findings())
+        let mut scheduler = Scheduler::new(plan, records, to_workers, threads);
+        scheduler.run(&finished, stop, watch)?;
+        Ok(scheduler.results())
     })
 }
 
@@ -274,12 +274,12 @@ fn keep(
 }
 
 /// Decides what is run and notes what came of it.
-struct Manager<'a> {
+struct Scheduler<'a> {
     plan: &'a Plan,
     records: &'a mut Records,
     tasks: Sender<Task>,
     threads: usize,
-    runs: BTreeMap<RunKey, Arc<Finding>>,
+    runs: BTreeMap<RunKey, Arc<RunResult>>,
     /// Runs that wait for a task, by its identity: points may share one.
     waiting: HashMap<String, Vec<RunKey>>,
     /// Identities of recorded runs that the study has asked for.
@@ -298,11 +298,11 @@ struct PointState {
     missing: usize,
     /// Replicates that were not enough.
     judged: usize,
-    found: Option<PointFindings>,
+    found: Option<PointResult>,
     half_width: Option<f64>,
 }
 
-impl<'a> Manager<'a> {
+impl<'a> Scheduler<'a> {
     fn new(plan: &'a Plan, records: &'a mut Records, tasks: Sender<Task>, threads: usize) -> Self {
         let until = plan.settings.until.as_ref();
         Self {
@@ -325,14 +325,14 @@ impl<'a> Manager<'a> {
         }
     }
 
-    fn manage(
+    fn run(
         &mut self,
         finished: &Receiver<Finished>,
         stop: &AtomicBool,
         watch: &mut dyn FnMut(&Progress),
     ) -> Result<(), StudyError> {
         self.begin()?;
-        self.tell(watch);
+        self.report(watch);
         while !self.waiting.is_empty() {
             let stopped = stop.load(Ordering::Relaxed);
             let first = match finished.recv_timeout(Duration::from_millis(100)) {
@@ -341,11 +341,11 @@ impl<'a> Manager<'a> {
                 Err(RecvTimeoutError::Disconnected) => return Err(StudyError::Interrupted),
             };
             // What has finished meanwhile goes to the disk with it: waiting for the disk is what takes long.
-            self.take(first.into_iter().chain(finished.try_iter()))?;
+            self.record(first.into_iter().chain(finished.try_iter()))?;
             if stopped {
                 return Err(StudyError::Interrupted);
             }
-            self.tell(watch);
+            self.report(watch);
         }
         Ok(())
     }
@@ -353,14 +353,14 @@ impl<'a> Manager<'a> {
     /// Asks for the replicates that every point has at the least, and for more where these are known already.
     fn begin(&mut self) -> Result<(), StudyError> {
         for point in 0..self.points.len() {
-            self.want(point, self.plan.settings.min_replicates());
+            self.request(point, self.plan.settings.min_replicates());
             self.decide(point);
         }
         Ok(())
     }
 
     /// Records finished runs, then notes them.
-    fn take(&mut self, finished: impl Iterator<Item = Finished>) -> Result<(), StudyError> {
+    fn record(&mut self, finished: impl Iterator<Item = Finished>) -> Result<(), StudyError> {
         let mut records = Vec::new();
         let mut broken = None;
         for Finished {
@@ -382,13 +382,13 @@ impl<'a> Manager<'a> {
         self.records.append(&records)?;
         self.progress.here += records.len();
         for record in records {
-            self.note(record.id);
+            self.ingest(record.id);
         }
         broken.map_or(Ok(()), Err)
     }
 
     /// Asks for replicates of a point up to `wanted`.
-    fn want(&mut self, point: usize, wanted: usize) {
+    fn request(&mut self, point: usize, wanted: usize) {
         for replicate in self.points[point].wanted..wanted {
             for role in self.plan.roles() {
                 let run = RunKey {
@@ -397,11 +397,11 @@ impl<'a> Manager<'a> {
                     role,
                 };
                 let id = self.plan.identity(run);
-                if let Some(finding) = self.records.get(&id).cloned() {
-                    self.runs.insert(run, Arc::clone(&finding));
+                if let Some(result) = self.records.get(&id).cloned() {
+                    self.runs.insert(run, Arc::clone(&result));
                     if !self.belonging.contains(&id) {
                         self.progress.total += 1;
-                        self.count(id, &finding);
+                        self.count(id, &result);
                     }
                     continue;
                 }
@@ -418,21 +418,21 @@ impl<'a> Manager<'a> {
         self.points[point].wanted = wanted;
     }
 
-    fn count(&mut self, id: String, finding: &Finding) {
+    fn count(&mut self, id: String, result: &RunResult) {
         self.progress.done += 1;
-        self.progress.failed += usize::from(matches!(finding, Finding::Failed(_)));
+        self.progress.failed += usize::from(matches!(result, RunResult::Failed(_)));
         self.belonging.insert(id);
     }
 
     /// Notes a run that has been recorded, for every point that waited for it.
-    fn note(&mut self, id: String) {
-        let Some(finding) = self.records.get(&id).cloned() else {
+    fn ingest(&mut self, id: String) {
+        let Some(result) = self.records.get(&id).cloned() else {
             return;
         };
         let runs = self.waiting.remove(&id).unwrap_or_default();
-        self.count(id, &finding);
+        self.count(id, &result);
         for run in &runs {
-            self.runs.insert(*run, Arc::clone(&finding));
+            self.runs.insert(*run, Arc::clone(&result));
             self.points[run.point].missing -= 1;
         }
         for run in runs {
@@ -443,22 +443,22 @@ impl<'a> Manager<'a> {
     /// Decides how many replicates a point has, once all that were asked for are there.
     fn decide(&mut self, point: usize) {
         while self.points[point].missing == 0 && self.points[point].found.is_none() {
-            self.judge(point);
+            self.evaluate_stopping(point);
             let PointState { wanted, found, .. } = self.points[point];
             if found.is_none() {
                 // Further ones are run ahead only where threads would have nothing to do.
                 let idle = self.threads.saturating_sub(self.waiting.len());
                 let more = (wanted + idle.max(1)).min(self.plan.settings.max_replicates());
-                self.want(point, more);
+                self.request(point, more);
             }
         }
     }
 
     /// Looks at the replicates of a point in their order: the first number that is enough is the one.
-    fn judge(&mut self, point: usize) {
+    fn evaluate_stopping(&mut self, point: usize) {
         let settings = &self.plan.settings;
         let PointState { wanted, judged, .. } = self.points[point];
-        let found = |replicates, narrow| Some(PointFindings { replicates, narrow });
+        let found = |replicates, narrow| Some(PointResult { replicates, narrow });
         let (Some(until), Some(decisive)) = (&settings.until, self.decisive) else {
             self.points[point].found = found(wanted, None);
             return;
@@ -488,15 +488,15 @@ impl<'a> Manager<'a> {
     }
 
     /// Tells how far the study has come.
-    fn tell(&mut self, watch: &mut dyn FnMut(&Progress)) {
+    fn report(&mut self, watch: &mut dyn FnMut(&Progress)) {
         let widths = self.points.iter().filter_map(|point| point.half_width);
         self.progress.worst = widths.reduce(f64::max);
         watch(&self.progress);
     }
 
-    fn findings(self) -> Findings {
-        let strangers = self.strangers();
-        let points: Vec<PointFindings> = self.points.into_iter().filter_map(|point| point.found).collect();
+    fn results(self) -> StudyResults {
+        let orphaned_runs = self.orphaned_runs();
+        let points: Vec<PointResult> = self.points.into_iter().filter_map(|point| point.found).collect();
         // What was run ahead and not needed stays in the records, out of the tables.
         let mut runs = self.runs;
         runs.retain(|run, _| {
@@ -504,15 +504,15 @@ impl<'a> Manager<'a> {
                 .get(run.point)
                 .is_some_and(|found| run.replicate < found.replicates)
         });
-        Findings {
+        StudyResults {
             runs,
             points,
-            strangers,
+            orphaned_runs,
         }
     }
 
     /// Recorded runs that no point could ask for, however many replicates it had.
-    fn strangers(&self) -> usize {
+    fn orphaned_runs(&self) -> usize {
         if self.records.len() == self.belonging.len() {
             return 0;
         }
@@ -547,7 +547,7 @@ mod tests {
         }))
     }
 
-    fn find(plan: &Plan, runner: &Runner, threads: usize) -> (Result<Findings, StudyError>, usize) {
+    fn find(plan: &Plan, runner: &Runner, threads: usize) -> (Result<StudyResults, StudyError>, usize) {
         let folder = tempfile::tempdir().unwrap();
         let mut records = Records::open(folder.path()).unwrap();
         let found = execute_with(
@@ -591,7 +591,7 @@ mod tests {
     fn where_the_interval_stays_wide_it_is_said() {
         let wide = ADAPTIVE.replace("0.02, min", "1e-9, min");
         let (found, recorded) = find(&plan(&wide), &|run, _| Ok(Some(pretend(run))), 2);
-        let narrow = PointFindings {
+        let narrow = PointResult {
             replicates: 20,
             narrow: Some(false),
         };
@@ -600,7 +600,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_run_ahead_is_no_stranger() {
+    fn runs_ahead_of_need_are_not_orphaned() {
         let plan = plan(ADAPTIVE);
         let folder = tempfile::tempdir().unwrap();
         let mut records = Records::open(folder.path()).unwrap();
@@ -608,7 +608,7 @@ mod tests {
         for threads in [16, 1] {
             let runner = |run, _: &Ends| Ok(Some(pretend(run)));
             let found = execute_with(&plan, &mut records, &runner, threads, &never, &mut |_| {}).unwrap();
-            assert_eq!(found.strangers, 0, "{threads} threads");
+            assert_eq!(found.orphaned_runs, 0, "{threads} threads");
         }
         assert!(records.len() > 12);
     }
@@ -654,7 +654,7 @@ mod tests {
             Ok(None)
         };
         let never = AtomicBool::new(false);
-        let watch = &mut |now: &Progress| assert_eq!(now.here, 0, "a fault of the manager");
+        let watch = &mut |now: &Progress| assert_eq!(now.here, 0, "a fault of the scheduler");
         let ended = catch_unwind(AssertUnwindSafe(|| {
             execute_with(&plan, &mut records, &runner, 2, &never, watch).map(|_| ())
         }));

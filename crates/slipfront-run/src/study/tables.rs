@@ -1,9 +1,9 @@
 //! `runs.csv`, one row a run, and `points.csv`, the statistics, one row for each point and quantity.
 
 use super::error::StudyError;
-use super::journal::Finding;
+use super::journal::RunResult;
 use super::plan::{Plan, Role};
-use super::scheduler::Findings;
+use super::scheduler::StudyResults;
 use super::statistics::Sample;
 use super::summary_values::{Quantity, REDUCTION, known};
 
@@ -44,7 +44,7 @@ fn axis_columns(plan: &Plan) -> impl Iterator<Item = &str> {
 ///
 /// # Errors
 /// When it cannot be put into words.
-pub(super) fn runs(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyError> {
+pub(super) fn runs(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, StudyError> {
     let mut table = csv::Writer::from_writer(Vec::new());
     let quantities = quantities(plan);
     table.write_record(
@@ -55,7 +55,7 @@ pub(super) fn runs(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyErr
             .chain(quantities.iter().map(|(name, _)| *name)),
     )?;
     // Sorted by point, replicate and role.
-    for (&run, finding) in &findings.runs {
+    for (&run, result) in &results.runs {
         let point = &plan.points[run.point];
         let mut row = vec![
             point.index.to_string(),
@@ -64,12 +64,12 @@ pub(super) fn runs(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyErr
         ];
         row.extend(plan.columns(point).into_iter().map(|(_, value)| value.to_owned()));
         row.extend([plan.seed(run).to_string(), plan.folder_name(run)]);
-        let numbers = match finding.as_ref() {
-            Finding::Done(numbers) => {
+        let numbers = match result.as_ref() {
+            RunResult::Done(numbers) => {
                 row.extend(["done".to_owned(), String::new()]);
                 Some(numbers)
             }
-            Finding::Failed(reason) => {
+            RunResult::Failed(reason) => {
                 row.extend(["failed".to_owned(), reason.clone()]);
                 None
             }
@@ -77,7 +77,7 @@ pub(super) fn runs(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyErr
         for &(_, quantity) in &quantities {
             let value = match (quantity, run.role) {
                 (Quantity::Number(position), _) => numbers.and_then(|numbers| numbers.get(position)),
-                (Quantity::Reduction, Role::Point) => findings.value(run.point, run.replicate, quantity),
+                (Quantity::Reduction, Role::Point) => results.value(run.point, run.replicate, quantity),
                 (Quantity::Reduction, Role::Reference) => None,
             };
             row.push(cell(value));
@@ -101,13 +101,13 @@ fn quantities(plan: &Plan) -> Vec<(&'static str, Quantity)> {
 ///
 /// # Errors
 /// When it cannot be put into words.
-pub(super) fn points(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyError> {
+pub(super) fn points(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, StudyError> {
     let mut table = csv::Writer::from_writer(Vec::new());
     table.write_record(["point"].into_iter().chain(axis_columns(plan)).chain(STATISTICS))?;
     let quantities = quantities(plan);
     for (position, point) in plan.points.iter().enumerate() {
         for &(name, _) in &quantities {
-            let sample = sample(plan, findings, position, name);
+            let sample = sample(plan, results, position, name);
             let until = plan.settings.until.as_ref();
             let decides = until.is_some_and(|until| until.key == name);
             // That no run has the number which decides is told as well.
@@ -124,7 +124,7 @@ pub(super) fn points(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyE
             row.push(number(|sample| sample.interval().map(|[_, high]| high)));
             row.push(number(|sample| Some(sample.min)));
             row.push(number(|sample| Some(sample.max)));
-            let narrow = findings.points[position].narrow.filter(|_| decides);
+            let narrow = results.points[position].narrow.filter(|_| decides);
             row.push(narrow.map_or(String::new(), |narrow| narrow.to_string()));
             table.write_record(row)?;
         }
@@ -133,11 +133,11 @@ pub(super) fn points(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyE
 }
 
 /// Statistics of a quantity at the point at `position` of the plan; none without values.
-pub fn sample(plan: &Plan, findings: &Findings, position: usize, name: &str) -> Option<Sample> {
+pub fn sample(plan: &Plan, results: &StudyResults, position: usize, name: &str) -> Option<Sample> {
     let quantity = Quantity::named(name)?;
-    let replicates = findings.points.get(position)?.replicates;
+    let replicates = results.points.get(position)?.replicates;
     let values: Vec<f64> = (0..replicates)
-        .filter_map(|replicate| findings.value(position, replicate, quantity))
+        .filter_map(|replicate| results.value(position, replicate, quantity))
         .collect();
     Sample::of(&values, plan.settings.confidence())
 }
