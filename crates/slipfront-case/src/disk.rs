@@ -1,4 +1,4 @@
-//! Files and folders: written whole or not at all, read within bounds.
+//! Files that are written atomically and read up to a limit, and folders.
 
 use std::fs::{DirEntry, File};
 use std::io::{ErrorKind, Read, Take, Write};
@@ -7,29 +7,38 @@ use std::path::Path;
 use serde::Serialize;
 use tempfile::TempPath;
 
-/// How the names of files begin while they are being written.
+/// The beginning of the names of files that are being written.
 pub const UNFINISHED: &str = ".slipfront";
 
-/// Writes a file whole or not at all: into a neighbour first, which then takes its name.
+/// Writes a file atomically: as a temporary file in its folder, which is then renamed.
 ///
 /// # Errors
-/// What the system says; nothing is left behind then.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    fill_whole(path, |file| file.write_all(bytes))
+/// Any error of the system; the temporary file is removed then.
+pub fn write_atomic(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    write_atomic_with(path, |file| file.write_all(bytes))
 }
 
-/// The same of a file that somebody else fills.
-pub fn fill_whole(path: &Path, fill: impl FnOnce(&mut File) -> std::io::Result<()>) -> std::io::Result<()> {
+/// Writes a file atomically, with the contents that `fill` writes.
+///
+/// # Errors
+/// As for [`write_atomic`].
+pub fn write_atomic_with(
+    path: &Path,
+    fill: impl FnOnce(&mut File) -> std::io::Result<()>,
+) -> std::io::Result<()> {
     let folder = path
         .parent()
         .filter(|parent| !parent.as_os_str().is_empty())
         .unwrap_or(Path::new("."));
-    stage(folder, fill)?.persist(path)?;
+    write_temp(folder, fill)?.persist(path)?;
     Ok(())
 }
 
-/// Makes a file in a folder, forced to the disk, that still has to take its name and goes away if it does not.
-pub fn stage(
+/// Writes a temporary file in a folder and syncs it. It is removed when dropped, unless it is renamed (`persist`).
+///
+/// # Errors
+/// Any error of the system.
+pub fn write_temp(
     folder: &Path,
     fill: impl FnOnce(&mut File) -> std::io::Result<()>,
 ) -> std::io::Result<TempPath> {
@@ -44,7 +53,10 @@ pub fn stage(
     Ok(file.into_temp_path())
 }
 
-/// Forces the names in a folder to the disk.
+/// Syncs a folder, so that files renamed in it keep their names after a power failure.
+///
+/// # Errors
+/// Any error of the system.
 pub fn sync_folder(folder: &Path) -> std::io::Result<()> {
     // Only Unix opens folders as files.
     if cfg!(unix) {
@@ -53,7 +65,7 @@ pub fn sync_folder(folder: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// What a kill left in a folder, or one inside it such as `inputs/`, of files that were being written.
+/// Temporary files that a killed program left in `folder`, or in its subfolder `inside` such as `inputs/`.
 pub fn unfinished(folder: &Path, inside: &str) -> Vec<String> {
     let entries = std::fs::read_dir(folder.join(inside))
         .into_iter()
@@ -70,13 +82,13 @@ fn is_unfinished_file(entry: &DirEntry) -> bool {
     is_file && entry.file_name().to_str().is_some_and(is_unfinished)
 }
 
-/// Whether a file has the name of one that is being written: ours, and six letters or digits.
+/// Whether a file is named like a temporary file: [`UNFINISHED`] and six letters or digits.
 pub fn is_unfinished(name: &str) -> bool {
     let random = name.strip_prefix(UNFINISHED).unwrap_or_default();
     random.len() == 6 && random.bytes().all(|byte| byte.is_ascii_alphanumeric())
 }
 
-/// Whether there is nothing in a folder but what a kill left of files that were being written.
+/// Whether a folder holds nothing but temporary files that a killed program left.
 ///
 /// # Errors
 /// When it cannot be read.
@@ -89,18 +101,18 @@ pub fn holds_only_unfinished(folder: &Path) -> std::io::Result<bool> {
     Ok(true)
 }
 
-/// Removes what a kill left of files that were being written, where nobody else writes now. A file that cannot be
-/// removed does no harm.
+/// Removes the temporary files that a killed program left, in a folder that no other process writes to. Errors are
+/// ignored: such a file does no harm.
 pub fn remove_unfinished(folder: &Path) {
     for name in unfinished(folder, "") {
         let _ = std::fs::remove_file(folder.join(name));
     }
 }
 
-/// Removes a file, if it is there.
+/// Removes a file if it exists.
 ///
 /// # Errors
-/// What the system says.
+/// Any error of the system.
 pub fn remove_if_there(path: &Path) -> std::io::Result<()> {
     match std::fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
@@ -108,7 +120,7 @@ pub fn remove_if_there(path: &Path) -> std::io::Result<()> {
     }
 }
 
-/// Whether there is nothing in a folder.
+/// Whether a folder is empty.
 ///
 /// # Errors
 /// When it cannot be read.
@@ -116,7 +128,10 @@ pub fn is_empty(folder: &Path) -> std::io::Result<bool> {
     Ok(std::fs::read_dir(folder)?.next().transpose()?.is_none())
 }
 
-/// Opens a file that is one: a pipe would be waited for, a device such as `/dev/zero` never ends.
+/// Opens a regular file, and nothing else: a pipe may block, and a device such as `/dev/zero` has no end.
+///
+/// # Errors
+/// Any error of the system, and for anything but a regular file.
 pub fn open_regular(path: &Path) -> std::io::Result<File> {
     if !std::fs::metadata(path)?.is_file() {
         return Err(std::io::Error::other("it is not a regular file"));
@@ -124,20 +139,19 @@ pub fn open_regular(path: &Path) -> std::io::Result<File> {
     File::open(path)
 }
 
-/// Whether a regular file begins so.
+/// Whether `path` is a regular file that starts with these bytes.
 pub fn begins_with(path: &Path, beginning: &[u8]) -> bool {
     let mut found = Vec::new();
     let file = open_regular(path).map(|file| file.take(beginning.len() as u64));
     file.and_then(|mut file| file.read_to_end(&mut found)).is_ok() && found == beginning
 }
 
-/// Opens a regular file that can have no more than `most` bytes if it is what it should be.
-///
-/// A file of many gigabytes in the place of a small one would take all memory before anyone looked at it.
+/// Opens a regular file of at most `most` bytes, so that a huge file in the place of a small one is refused before it
+/// fills the memory.
 ///
 /// # Errors
-/// What the system says, and for a longer file or none.
-pub fn open_bounded(path: &Path, most: u64) -> std::io::Result<Take<File>> {
+/// Any error of the system, and for a longer file.
+pub fn open_limited(path: &Path, most: u64) -> std::io::Result<Take<File>> {
     let file = open_regular(path)?;
     let length = file.metadata()?.len();
     if length > most {
@@ -147,17 +161,17 @@ pub fn open_bounded(path: &Path, most: u64) -> std::io::Result<Take<File>> {
     Ok(file.take(most))
 }
 
-/// Reads a regular file that can have no more than `most` bytes.
+/// Reads a regular file of at most `most` bytes.
 ///
 /// # Errors
-/// As for [`open_bounded`].
-pub fn read_whole(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
+/// As for [`open_limited`].
+pub fn read_limited(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    open_bounded(path, most)?.read_to_end(&mut bytes)?;
+    open_limited(path, most)?.read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
-/// The largest file of our own that is read whole: a case, a summary, a manifest.
+/// Limit on the size of the text files that slipfront writes and reads at once: cases, summaries, manifests.
 pub const TEXT_MAX_BYTES: u64 = 16 << 20;
 
 /// Pretty JSON with a final newline.
@@ -168,7 +182,12 @@ pub fn json(value: &impl Serialize) -> Vec<u8> {
     bytes
 }
 
-/// Whether this is a folder itself, and not a link to one: what a link leads to belongs to somebody else.
+/// Whether the path is a folder itself, and not a symbolic link to one.
 pub fn is_folder(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|found| found.is_dir())
+}
+
+/// Whether two paths lead to the same file or folder, which exists.
+pub fn is_same(one: &Path, other: &Path) -> bool {
+    matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
 }

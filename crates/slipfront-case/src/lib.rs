@@ -12,5 +12,9 @@ pub mod case_file;
 pub mod disk;
 pub mod field_name;
 pub mod machine;
+pub mod number_format;
 pub mod quantity;
 pub mod text;
+
+/// BLAKE3 hash of the sources of this crate.
+pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");

@@ -55,11 +55,3 @@ pub fn free_disk(folder: &Path) -> Option<f64> {
     let there = whole.ancestors().find(|path| path.is_dir())?;
     Some(fs4::available_space(there).ok()? as f64)
 }
-
-/// Bytes as a person reads them: 22.9 GiB.
-pub fn shown(bytes: f64) -> String {
-    const UNITS: [&str; 7] = ["B", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
-    let power = ((bytes.max(1.0).log2() / 10.0) as usize).min(UNITS.len() - 1);
-    let digits = usize::from(power > 0);
-    format!("{:.digits$} {}", bytes / 1024f64.powi(power as i32), UNITS[power])
-}

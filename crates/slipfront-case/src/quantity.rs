@@ -12,7 +12,7 @@ use serde::de::{Deserialize, Deserializer, Visitor};
 use serde::ser::{Serialize, Serializer};
 use thiserror::Error;
 
-use crate::text::shortened;
+use crate::text::truncated;
 
 /// The longest text that is read as a quantity, in bytes.
 const MAX_TEXT: usize = 200;
@@ -568,7 +568,7 @@ fn unknown_unit(text: &str, symbol: &str) -> QuantityError {
     };
     QuantityError::UnknownUnit {
         text: text.to_owned(),
-        unit: shortened(symbol),
+        unit: truncated(symbol),
         advice,
     }
 }

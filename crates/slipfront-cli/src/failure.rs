@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use crate::say::say;
+use crate::print_stderr::print_stderr;
 use crate::signals::Signals;
 
 /// Why a command ends, which decides its exit status.
@@ -36,7 +36,7 @@ impl Failure {
             Self::Running(error) => (error, 1),
             Self::Stopped(signal, error) => (error, 128 + signal as u8),
         };
-        say(&format!("error: {error}"));
+        print_stderr(&format!("error: {error}"));
         ExitCode::from(status)
     }
 }

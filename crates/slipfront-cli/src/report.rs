@@ -6,7 +6,8 @@ use std::path::Path;
 use slipfront::lattice::dt_star_limit;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::Law;
-use slipfront_case::machine::{available_memory, shown};
+use slipfront_case::machine::available_memory;
+use slipfront_case::number_format::byte_size;
 use slipfront_run::study;
 use slipfront_run::study::{Plan, RunKey, RunResult, StudyResults};
 use slipfront_run::summary::Summary;
@@ -26,7 +27,7 @@ pub(crate) fn physics(case: &Case) -> String {
         Law::Reversal => "reversal (for comparison)",
         Law::Literal => "literal (for comparison)",
     };
-    let (schedule, time) = (&case.schedule, scales.time());
+    let (time_plan, time) = (&case.time_plan, scales.time());
     let mut tree = vec![
         (
             "slider",
@@ -65,10 +66,10 @@ pub(crate) fn physics(case: &Case) -> String {
             "time",
             format!(
                 "to t* = {} ({}) in {} steps of dt* = {}",
-                plain(schedule.end_star()),
-                si(schedule.end_star() * time, "s"),
-                schedule.last_step,
-                plain(schedule.dt_star)
+                plain(time_plan.end_star()),
+                si(time_plan.end_star() * time, "s"),
+                time_plan.last_step,
+                plain(time_plan.dt_star)
             ),
         ),
     ];
@@ -113,11 +114,11 @@ pub(crate) fn texture(case: &Case) -> String {
 
 /// What `check` adds to the physics: the expected onset, the cost, the warnings.
 pub(crate) fn cost(case: &Case, seconds: f64) -> String {
-    let (schedule, budget) = (&case.schedule, &case.budget);
+    let (time_plan, budget) = (&case.time_plan, &case.budget);
     let v_star = case.groups.v_star;
     let at = |star: f64| format!("t* = {} ({})", plain(star), si(star * case.scales.time(), "s"));
     let late = |star: f64| {
-        if star > schedule.end_star() {
+        if star > time_plan.end_star() {
             ", after the end of the run: lengthen `time.duration_star`"
         } else {
             ""
@@ -139,7 +140,7 @@ pub(crate) fn cost(case: &Case, seconds: f64) -> String {
     );
     text += &format!(
         "stability         dt* = {} of at most {:.4}\n",
-        plain(schedule.dt_star),
+        plain(time_plan.dt_star),
         dt_star_limit()
     );
     text += &format!(
@@ -150,20 +151,23 @@ pub(crate) fn cost(case: &Case, seconds: f64) -> String {
     let resumed = budget.resumed().memory();
     text += &format!(
         "memory            {}{}{}\n",
-        shown(budget.memory()),
-        available_memory().map_or(String::new(), |there| format!(" of {} available", shown(there))),
+        byte_size(budget.memory()),
+        available_memory().map_or(String::new(), |there| format!(
+            " of {} available",
+            byte_size(there)
+        )),
         // Of a small run, pictures take the most in any case.
         if resumed > budget.memory() {
-            format!("; {} to go on from a checkpoint", shown(resumed))
+            format!("; {} to go on from a checkpoint", byte_size(resumed))
         } else {
             String::new()
         }
     );
     text += &format!(
         "disk              {}, the snapshots {} of it; {} more for checkpoints while it runs\n",
-        shown(budget.disk()),
-        shown(budget.disk_of_snapshots()),
-        shown(budget.disk_of_checkpoints())
+        byte_size(budget.disk()),
+        byte_size(budget.disk_of_snapshots()),
+        byte_size(budget.disk_of_checkpoints())
     );
     text + &warnings(&case.warnings())
 }
@@ -272,8 +276,8 @@ pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) 
     );
     text += &format!(
         "  {} of memory for {threads} runs at once, {} on the disk\n",
-        shown(plan.memory(threads)),
-        shown(plan.disk(plan.runs(settings.min_replicates())))
+        byte_size(plan.memory(threads)),
+        byte_size(plan.disk(plan.runs(settings.min_replicates())))
     );
     text + &warnings_of_plan(plan)
 }

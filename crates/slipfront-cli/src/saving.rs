@@ -9,7 +9,7 @@ use slipfront_run::run_folder::resume_command::resume_command;
 use slipfront_run::running::Running;
 
 use crate::failure::Failure;
-use crate::progress::Progress;
+use crate::progress::run::RunProgress;
 use crate::signals::Signals;
 
 /// Wall time from one checkpoint to the next; none for no checkpoints at all.
@@ -72,7 +72,7 @@ impl Saving {
     ///
     /// # Errors
     /// [`Failure::Stopped`] if the run is to end here. A checkpoint that could not be saved does not end it.
-    pub(crate) fn look(&mut self, running: &Running, progress: &Progress) -> Result<(), Failure> {
+    pub(crate) fn look(&mut self, running: &Running, progress: &RunProgress) -> Result<(), Failure> {
         if self.signals.stopped().is_some() {
             return Err(self.stop(running));
         }
@@ -107,7 +107,7 @@ impl Saving {
 
     /// Saves a last checkpoint.
     fn stop(&mut self, running: &Running) -> Failure {
-        let (step, last_step) = (running.snapshot().step, running.case().schedule.last_step);
+        let (step, last_step) = (running.snapshot().step, running.case().time_plan.last_step);
         let stopped = format!("stopped by a signal at step {step} of {last_step}");
         if !self.interval.saves() {
             let sentence = format!("{stopped}; nothing is saved, since --checkpoint is off");

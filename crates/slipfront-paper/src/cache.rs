@@ -9,9 +9,9 @@ use crate::embedded_cases::FILES;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::step_rule::StepRule;
-use slipfront_case::disk::{read_whole, remove_unfinished, write_whole};
-use slipfront_run::manifest::Manifest;
+use slipfront_case::disk::{read_limited, remove_unfinished, write_atomic};
 use slipfront_run::names::FIGURE_CACHE;
+use slipfront_run::program;
 use slipfront_run::run_folder::error::FolderError;
 
 /// A longer file holds something else: a figure's findings take some megabytes at the most.
@@ -39,7 +39,7 @@ impl FigureCache {
         // The records of the folder above are open, so that nobody else writes here.
         remove_unfinished(&folder);
         let mut hasher = blake3::Hasher::new();
-        hasher.update(Manifest::this_build().as_bytes());
+        hasher.update(program::this_build().as_bytes());
         for (name, text) in FILES {
             hasher.update(name.as_bytes()).update(text.as_bytes());
         }
@@ -73,7 +73,7 @@ impl FigureCache {
 
     /// What a figure found in an earlier call.
     pub fn load(&self, figure: &str, step: StepRule) -> Option<FigureData> {
-        let bytes = read_whole(&self.path(figure, step), MAX_BYTES).ok()?;
+        let bytes = read_limited(&self.path(figure, step), MAX_BYTES).ok()?;
         let (checksum, findings) = bytes.split_at_checked(blake3::OUT_LEN)?;
         if self.checksum(findings).as_bytes() != checksum {
             return None;
@@ -91,7 +91,7 @@ impl FigureCache {
         let Ok(findings) = postcard::to_stdvec(found) else {
             return Ok(());
         };
-        Ok(write_whole(&path, &self.sealed(&findings))
+        Ok(write_atomic(&path, &self.sealed(&findings))
             .map_err(|source| FolderError::Write { path, source })?)
     }
 }

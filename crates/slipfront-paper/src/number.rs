@@ -1,6 +1,7 @@
 //! A measured number and its confidence interval.
 
 use serde::{Deserialize, Serialize};
+use slipfront_case::number_format::with_interval;
 use slipfront_run::study::Sample;
 
 /// Confidence of all intervals.
@@ -41,24 +42,9 @@ impl Number {
         [self.value, low, high]
     }
 
-    /// The number with the half width of its interval, to `digits` digits after the point. A value of less than half of the
-    /// last digit is written as a power of ten.
+    /// The number to `digits` digits after the point, with the half width of its interval.
     pub(super) fn shown(&self, digits: usize) -> String {
-        let small = self.value != 0.0 && self.value.abs() < 0.5 * 0.1_f64.powi(digits as i32);
-        let value = if self.value == 0.0 {
-            "0".to_owned()
-        } else if small {
-            format!("{:.1e}", self.value)
-        } else {
-            format!("{:.digits$}", self.value)
-        };
-        match self.interval {
-            Some([low, high]) if high > low => {
-                let half = 0.5 * (high - low);
-                format!("{value} \u{b1} {half:.digits$}")
-            }
-            _ => value,
-        }
+        with_interval(self.value, self.interval, digits)
     }
 }
 

@@ -12,7 +12,7 @@ use slipfront_run::running::Record;
 
 /// A case whose fields are kept at these times alone.
 pub(super) fn seen_at(mut case: Case, times_star: &[f64]) -> Case {
-    let step = |time: &f64| (time / case.schedule.dt_star).round() as u64;
+    let step = |time: &f64| (time / case.time_plan.dt_star).round() as u64;
     let mut steps: Vec<u64> = times_star.iter().map(step).collect();
     steps.dedup();
     case.output.snapshots = Snapshots::At(steps);

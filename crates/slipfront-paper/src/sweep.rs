@@ -5,7 +5,7 @@ use slipfront::Stop;
 use crate::error::PaperError;
 use crate::number::Number;
 use slipfront_case::case::Case;
-use slipfront_run::study::{Keep, Plan, Quantity, Role, RunKey, StudyResults};
+use slipfront_run::study::{Plan, Quantity, RetainRuns, Role, RunKey, StudyResults};
 
 /// A study and its results.
 pub(super) struct Sweep {
@@ -70,11 +70,11 @@ impl Sweep {
         };
         // A plan that keeps its runs gives their cases with curves and fields.
         let mut plan = self.plan.clone();
-        plan.settings.keep = Keep::All;
+        plan.settings.keep = RetainRuns::All;
         let mut case = plan.case(run)?;
         case.name = format!("{}, {}", plan.name, plan.describe(&plan.points[run.point]));
         // The largest contact stress of all, which maps are scaled by, may come late.
-        case.schedule.stop = Stop::at_step(case.schedule.last_step);
+        case.time_plan.stop = Stop::at_step(case.time_plan.last_step);
         Ok(case)
     }
 

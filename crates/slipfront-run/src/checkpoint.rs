@@ -11,12 +11,12 @@ use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::manifest::Manifest;
 use crate::names::{CHECKPOINT, PREVIOUS};
+use crate::program;
 use crate::running::{RunState, Running};
 use slipfront_case::case::Case;
-use slipfront_case::disk::{open_regular, remove_if_there, stage, sync_folder};
-use slipfront_case::text::shortened;
+use slipfront_case::disk::{open_regular, remove_if_there, sync_folder, write_temp};
+use slipfront_case::text::truncated;
 
 /// How the file is laid out. A program reads no other layout.
 const LAYOUT: u32 = 1;
@@ -122,7 +122,7 @@ impl Checkpoints {
     pub fn new(folder: &Path, case: &Case, started: Timestamp) -> Self {
         Self {
             folder: folder.to_owned(),
-            program: Manifest::this_build(),
+            program: program::this_build(),
             case_blake3: hash_of(case),
             started,
             latest_is_whole: false,
@@ -162,7 +162,7 @@ impl Checkpoints {
             step: running.snapshot().step,
             started: self.started,
         };
-        let whole = stage(&self.folder, |file| write(file, &header, running))?;
+        let whole = write_temp(&self.folder, |file| write(file, &header, running))?;
         let [latest, previous] = [CHECKPOINT, PREVIOUS].map(|name| self.folder.join(name));
         if std::mem::take(&mut self.latest_is_whole) {
             match std::fs::rename(&latest, &previous) {
@@ -283,11 +283,11 @@ fn read(path: &Path, case: &Case) -> Result<Saved, CheckpointError> {
     reader.rewind().map_err(unreadable)?;
     let sealed = check_seal(&mut reader).map_err(unreadable)?;
     let sealed = sealed.ok_or_else(|| damaged("its checksum does not fit"))?;
-    let here = Manifest::this_build();
+    let here = program::this_build();
     if header.program != here {
         return Err(CheckpointError::Program {
             path: path.to_owned(),
-            found: shortened(&header.program),
+            found: truncated(&header.program),
             here,
         });
     }

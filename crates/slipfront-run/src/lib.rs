@@ -12,6 +12,7 @@ pub mod manifest;
 pub mod names;
 #[cfg(feature = "plot")]
 pub mod pictures;
+pub mod program;
 pub mod results;
 pub mod run_folder;
 pub mod running;

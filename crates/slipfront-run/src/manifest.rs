@@ -3,9 +3,7 @@
 //! It is the only file of a run that another run of the same case does not repeat, and the last to be written.
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 use slipfront::surface::STREAMS;
@@ -13,12 +11,13 @@ use slipfront::{Kernel, Model, simd_width};
 use thiserror::Error;
 
 use crate::names::MANIFEST;
+use crate::program;
 
 use crate::run_folder::error::FolderError;
 use crate::run_folder::resume_command::resume_command;
-use slipfront_case::disk::{TEXT_MAX_BYTES, json, open_regular, read_whole};
+use slipfront_case::disk::{TEXT_MAX_BYTES, json, open_regular, read_limited};
 use slipfront_case::text;
-use slipfront_case::text::shortened;
+use slipfront_case::text::truncated;
 
 /// How the last key of a manifest begins in its file: all before it is under the seal.
 const SEAL: &[u8] = b"\"seal\"";
@@ -31,6 +30,9 @@ pub struct Manifest {
     /// The git commit that it was built from, with `-dirty` if its sources were changed; null outside of git.
     #[serde(default)]
     pub revision: Option<String>,
+    /// The identity of the build, by which programs that give the same bits are told: see [`program::this_build`].
+    #[serde(default)]
+    pub build: String,
     /// The kernel that made the steps.
     #[serde(default)]
     pub kernel: String,
@@ -140,8 +142,9 @@ impl Manifest {
         let case = files.iter().find(|file| file.name == "case.toml");
         let finished = jiff::Timestamp::now();
         Ok(Self {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            revision: Self::this_revision().map(str::to_owned),
+            version: program::VERSION.to_owned(),
+            revision: program::REVISION.map(str::to_owned),
+            build: program::this_build().to_owned(),
             kernel: Kernel::Fused.for_law(model.law).name().to_owned(),
             simd_width: simd_width().to_owned(),
             threads,
@@ -171,7 +174,7 @@ impl Manifest {
     /// When there is none, or it is not as it was written.
     pub fn read(folder: &Path) -> Result<Self, ManifestError> {
         let path = folder.join(MANIFEST);
-        let bytes = match read_whole(&path, TEXT_MAX_BYTES) {
+        let bytes = match read_limited(&path, TEXT_MAX_BYTES) {
             Ok(bytes) => bytes,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 let path = folder.to_owned();
@@ -188,58 +191,14 @@ impl Manifest {
                 "it has no seal, by which changes of it are seen".to_owned()
             }
             Ok(_) => "its seal does not fit, so that it was changed after the run".to_owned(),
-            Err(error) => text::sentence(&error.to_string()),
+            Err(error) => text::single_line(&error.to_string()),
         };
         Err(ManifestError::Damaged { path, why })
     }
 
     /// The program that wrote it, in words.
     pub fn program(&self) -> String {
-        match &self.revision {
-            Some(revision) => shortened(&format!("slipfront {} ({revision})", self.version)),
-            None => shortened(&format!("slipfront {}", self.version)),
-        }
-    }
-
-    /// The program that reads this, in words.
-    pub fn this_program() -> String {
-        Self {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            revision: Self::this_revision().map(str::to_owned),
-            ..Self::default()
-        }
-        .program()
-    }
-
-    /// The program that reads this, told from any other that may not give the same bits: where its version and revision do
-    /// not say it all, by the hash of its file.
-    pub fn this_build() -> &'static str {
-        static BUILD: LazyLock<String> = LazyLock::new(|| {
-            let program = Manifest::this_program();
-            let revision = Manifest::this_revision();
-            if revision.is_some_and(|revision| !revision.ends_with("-dirty")) {
-                return program;
-            }
-            // Where there is this link, it leads to the file even when another has taken its name.
-            let link = Path::new("/proc/self/exe");
-            let file = File::open(link).or_else(|_| std::env::current_exe().and_then(File::open));
-            let mut hasher = blake3::Hasher::new();
-            match file.and_then(|file| hasher.update_reader(file).map(|hasher| hasher.finalize())) {
-                Ok(hash) => format!("{program}, build {}", &hash.to_hex()[..16]),
-                // Nothing is taken for its own that may not be.
-                Err(_) => format!(
-                    "{program}, build unknown, of {} (process {})",
-                    jiff::Timestamp::now(),
-                    std::process::id()
-                ),
-            }
-        });
-        &BUILD
-    }
-
-    /// The git commit that this program was built from, as in [`Manifest::revision`].
-    pub(crate) fn this_revision() -> Option<&'static str> {
-        option_env!("SLIPFRONT_REVISION")
+        truncated(&program::in_words(&self.version, self.revision.as_deref()))
     }
 }
 

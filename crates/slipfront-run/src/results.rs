@@ -42,7 +42,7 @@ pub enum ResultsError {
     #[error("cannot write series.csv: {0}")]
     Csv(#[from] csv::Error),
     /// `summary.json`.
-    #[error("{} is not the summary of a slipfront run: {}", path.display(), text::sentence(&source.to_string()))]
+    #[error("{} is not the summary of a slipfront run: {}", path.display(), text::single_line(&source.to_string()))]
     Summary {
         /// The file.
         path: PathBuf,
@@ -156,7 +156,7 @@ pub const DRAWN_FROM: [&str; 3] = ["summary.json", "series.csv", "fields.nc"];
 /// When it is missing or no summary.
 pub fn read_summary(run: &Path) -> Result<Summary, ResultsError> {
     let path = run.join("summary.json");
-    let bytes = disk::read_whole(&path, disk::TEXT_MAX_BYTES).map_err(|source| FolderError::Read {
+    let bytes = disk::read_limited(&path, disk::TEXT_MAX_BYTES).map_err(|source| FolderError::Read {
         path: path.clone(),
         source,
     })?;

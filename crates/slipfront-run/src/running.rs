@@ -73,19 +73,19 @@ pub struct RunState<N = BlockNumbers, O = Observers> {
 
 impl Observers {
     fn new(case: &Case) -> Self {
-        let (schedule, output) = (&case.schedule, &case.output);
+        let (time_plan, output) = (&case.time_plan, &case.output);
         let selection = Selection {
             fields: output.fields.iter().map(|field| field.observed()).collect(),
             stride: output.stride,
         };
         Self {
             curve: Curve::every(output.series_stride),
-            history: KineticHistory::new(schedule.last_step),
+            history: KineticHistory::new(time_plan.last_step),
             fields: match output.snapshots {
                 Snapshots::Instants => Fields::Instants(Box::new(Instants::new(
                     selection,
-                    schedule.kinetic,
-                    schedule.end_star(),
+                    time_plan.kinetic,
+                    time_plan.end_star(),
                 ))),
                 Snapshots::At(_) | Snapshots::Every(_) => Fields::Frames(Frames::new(selection)),
             },
@@ -96,11 +96,13 @@ impl Observers {
     fn belong_to(&self, case: &Case, step: u64) -> bool {
         let (new, lattice) = (Self::new(case), &case.model.lattice);
         let fields = match (&self.fields, &new.fields) {
-            (Fields::Instants(old), Fields::Instants(new)) => old.continues(new, lattice, step),
-            (Fields::Frames(old), Fields::Frames(new)) => old.continues(new, lattice, step),
+            (Fields::Instants(old), Fields::Instants(new)) => old.is_consistent_with(new, lattice, step),
+            (Fields::Frames(old), Fields::Frames(new)) => old.is_consistent_with(new, lattice, step),
             _ => false,
         };
-        fields && self.curve.continues(&new.curve, step) && self.history.continues(&new.history, step)
+        fields
+            && self.curve.is_consistent_with(&new.curve, step)
+            && self.history.is_consistent_with(&new.history, step)
     }
 
     fn scheduled(&mut self, snapshots: &Snapshots) -> [Scheduled<'_>; 3] {
@@ -134,7 +136,7 @@ impl<'c> Running<'c> {
         let execution = Self::execution(case, threads);
         Self {
             case,
-            simulation: Simulation::executed(&case.model, case.schedule.dt_star, None, execution),
+            simulation: Simulation::with_execution(&case.model, case.time_plan.dt_star, None, execution),
             observers: Observers::new(case),
         }
     }
@@ -146,13 +148,13 @@ impl<'c> Running<'c> {
             observers,
         } = state;
         let step = simulation.step;
-        if step > case.schedule.last_step || !observers.belong_to(case, step) {
+        if step > case.time_plan.last_step || !observers.belong_to(case, step) {
             return None;
         }
         let execution = Self::execution(case, threads);
         Some(Self {
             case,
-            simulation: Simulation::resume(&case.model, case.schedule.dt_star, simulation, execution)?,
+            simulation: Simulation::resume(&case.model, case.time_plan.dt_star, simulation, execution)?,
             observers,
         })
     }
@@ -164,7 +166,7 @@ impl<'c> Running<'c> {
     pub fn advance(&mut self, steps: u64) -> Result<Option<StopReason>, RunError> {
         let mut observers = self.observers.scheduled(&self.case.output.snapshots);
         self.simulation
-            .advance(self.case.schedule.stop, steps, &mut observers)
+            .advance(self.case.time_plan.stop, steps, &mut observers)
     }
 
     /// The present instant.
@@ -197,19 +199,19 @@ impl<'c> Running<'c> {
             history,
             fields,
         } = observers;
-        let schedule = &case.schedule;
+        let time_plan = &case.time_plan;
         let first_slip = FirstSlip::of(&simulation);
         let (instants, frames) = match fields {
             Fields::Instants(instants) => (instants.found(), Vec::new()),
             Fields::Frames(frames) => (Vec::new(), frames.frames),
         };
         let peak = simulation.peak();
-        let kinetic_from = schedule.kinetic.time_star(&peak, case.groups.v_star);
+        let kinetic_from = time_plan.kinetic.time_star(&peak, case.groups.v_star);
         // A run that stops at its onset has no kinetic phase, wherever the window was meant to begin, and neither has one
         // in which nothing slipped.
         let kinetic = match reason {
             StopReason::End if first_slip.earliest.is_none() => None,
-            StopReason::End => history.kinetic(kinetic_from, schedule.dt_star),
+            StopReason::End => history.kinetic(kinetic_from, time_plan.dt_star),
             StopReason::Onset => None,
         };
         let (steps, energies) = curve
@@ -248,7 +250,7 @@ impl<'c> Running<'c> {
 pub fn run_unless(case: &Case, ends: &dyn Fn() -> bool) -> Option<Result<Record, RunError>> {
     let mut running = Running::start(case, 1);
     while !ends() {
-        match running.advance(case.steps_per_look()) {
+        match running.advance(case.steps_per_poll()) {
             Ok(None) => {}
             Ok(Some(reason)) => return Some(Ok(running.record(reason))),
             Err(error) => return Some(Err(error)),

@@ -8,7 +8,7 @@ use slipfront::Scales;
 use slipfront::observe::CurveRow;
 use thiserror::Error;
 
-use slipfront_case::disk::open_bounded;
+use slipfront_case::disk::open_limited;
 use slipfront_case::text;
 
 /// One row of `series.csv`.
@@ -44,7 +44,7 @@ pub struct SeriesRow {
 
 /// A series that cannot be read.
 #[derive(Debug, Error)]
-#[error("cannot read {}: {}; it should be the series.csv of a slipfront run", path.display(), text::sentence(&source.to_string()))]
+#[error("cannot read {}: {}; it should be the series.csv of a slipfront run", path.display(), text::single_line(&source.to_string()))]
 pub struct SeriesError {
     path: PathBuf,
     source: csv::Error,
@@ -86,7 +86,7 @@ pub fn to_csv(rows: impl Iterator<Item = SeriesRow>) -> Result<Vec<u8>, csv::Err
 /// # Errors
 /// When the file is missing or is no series.
 pub fn read_csv(path: &Path) -> Result<Vec<SeriesRow>, SeriesError> {
-    let read = || rows_of(open_bounded(path, u64::MAX)?);
+    let read = || rows_of(open_limited(path, u64::MAX)?);
     read().map_err(|source| SeriesError {
         path: path.to_owned(),
         source,

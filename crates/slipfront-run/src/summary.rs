@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use slipfront::StopReason;
-use slipfront::observe::{Doubt, Energies, Frame, Kinetic, Peak};
+use slipfront::observe::{Energies, Frame, Kinetic, NoUncertainty, Peak};
 
 use slipfront_case::case::Case;
 
@@ -152,7 +152,7 @@ impl Summary {
             n_blocks: case.model.lattice.n_blocks(),
             texture_percent: case.texture.meshed_percent,
             texture_percent_asked: case.texture.asked_percent,
-            dt_star: case.schedule.dt_star,
+            dt_star: case.time_plan.dt_star,
             steps: found.steps,
             seed: case.file.friction.seed,
             negative_draws: case.negative_draws,
@@ -200,11 +200,11 @@ fn after_run(run: &Observed) -> Vec<String> {
              time.duration_star or set time.kinetic_from_star"
                 .to_owned(),
         ),
-        Some(Err(Doubt::TooFewBlocks { found, needed_time_star })) => warnings.push(format!(
+        Some(Err(NoUncertainty::TooFewBlocks { found, needed_time_star })) => warnings.push(format!(
             "mu_k* has no uncertainty: a half of the kinetic window holds {found} independent blocks of the 10 needed; \
              a run of time.duration_star = {needed_time_star:.0} or more would do"
         )),
-        Some(Err(Doubt::Drift { halves: [one, other], needed_time_star })) => warnings.push(format!(
+        Some(Err(NoUncertainty::Drift { halves: [one, other], needed_time_star })) => warnings.push(format!(
             "mu_k* has no uncertainty: mu* still drifts, from {one:.4} to {other:.4} between the halves of the kinetic \
              window; run to time.duration_star = {needed_time_star:.0} or more, or begin later with \
              time.kinetic_from_star"

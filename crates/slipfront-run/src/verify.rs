@@ -14,10 +14,10 @@ use crate::names::{MANIFEST, RUNS};
 use crate::run_folder::contents::is_of_interrupted_run;
 use crate::run_folder::error::FolderError;
 use crate::study;
-use crate::study::{Keep, Plan, Records, RunResult, StudyError, StudyFolder, StudyResults};
+use crate::study::{Plan, Records, RetainRuns, RunResult, StudyError, StudyFolder, StudyResults};
 use slipfront_case::case_file::CaseFile;
-use slipfront_case::disk::{TEXT_MAX_BYTES, read_whole};
-use slipfront_case::text::{sentence, shortened};
+use slipfront_case::disk::{TEXT_MAX_BYTES, read_limited};
+use slipfront_case::text::{single_line, truncated};
 
 /// What was found in a folder.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -138,7 +138,7 @@ fn verify_run(folder: &Path) -> Result<Verdict, VerifyError> {
             "{} files as {} wrote them, finished {}",
             manifest.files.len(),
             manifest.program(),
-            shortened(&manifest.finished)
+            truncated(&manifest.finished)
         ),
         differences,
         notes: strangers(folder, &listed.chain([MANIFEST]).collect(), &["inputs"]),
@@ -151,7 +151,7 @@ pub fn compare(files: &[ManifestFile], folder: &Path, how: &str) -> Vec<String> 
         let path = folder.join(&file.name);
         let inside = |part| matches!(part, Component::Normal(_));
         if !Path::new(&file.name).components().all(inside) {
-            return Some(sentence(&format!(
+            return Some(single_line(&format!(
                 "{} lies outside of its folder",
                 path.display()
             )));
@@ -169,7 +169,7 @@ pub fn compare(files: &[ManifestFile], folder: &Path, how: &str) -> Vec<String> 
             Err(error) if error.kind() == ErrorKind::NotFound => "is missing".to_owned(),
             Err(error) => format!("cannot be read: {error}"),
         };
-        Some(sentence(&format!("{} {found}", path.display())))
+        Some(single_line(&format!("{} {found}", path.display())))
     };
     files.iter().filter_map(difference).collect()
 }
@@ -177,7 +177,7 @@ pub fn compare(files: &[ManifestFile], folder: &Path, how: &str) -> Vec<String> 
 /// Why a resolved case is none, or resolves to another one.
 fn unresolved(path: &Path) -> Option<String> {
     // One that is missing is named already.
-    let text = read_whole(path, TEXT_MAX_BYTES).ok()?;
+    let text = read_limited(path, TEXT_MAX_BYTES).ok()?;
     let resolved = CaseFile::load(path, &[]).and_then(|case| case.to_toml());
     match resolved {
         Ok(resolved) if resolved.as_bytes() == text => None,
@@ -209,7 +209,7 @@ fn strangers(folder: &Path, known: &BTreeSet<&str>, folders: &[&str]) -> Vec<Str
     found.sort();
     let in_words = |name: String| {
         let path = folder.join(&name);
-        sentence(&if is_of_interrupted_run(&name) {
+        single_line(&if is_of_interrupted_run(&name) {
             format!("{} was left by a run that was interrupted", path.display())
         } else {
             format!("{} is not slipfront's", path.display())
@@ -317,7 +317,7 @@ fn verify_kept(
         }
     }
     // They may have been removed on purpose, or have run before the study was told to keep them.
-    if plan.settings.keep == Keep::All && !missing.is_empty() {
+    if plan.settings.keep == RetainRuns::All && !missing.is_empty() {
         verdict.notes.push(format!(
             "{} of {} runs have no folder in {}, where the study keeps all",
             missing.len(),

@@ -23,7 +23,7 @@ pub struct Checkpoint<N = BlockNumbers> {
     /// Largest square of a contact stress so far.
     pub(crate) stress_square_max: f64,
     /// What chooses between series and square root; none of the reference kernel.
-    pub(crate) strains: Option<Strains>,
+    pub(crate) strains: Option<StrainBound>,
     /// At t_n.
     pub(crate) displacement: [N; 2],
     /// Half a step later; half a step earlier of the reference kernel, which evaluates t_n again.
@@ -34,7 +34,7 @@ pub struct Checkpoint<N = BlockNumbers> {
 
 /// What bounds the strains of all springs from one look at the displacements to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Strains {
+pub(crate) struct StrainBound {
     /// Largest u_x, -u_x, u_y, -u_y at the latest look.
     pub(crate) extent: [f64; 4],
     /// How much they may have grown since.

@@ -25,9 +25,9 @@ pub(crate) struct Block {
     /// `F_s + F_c`, and any constant force.
     pub force: [f64; 2],
     /// Static threshold `mu_s F_n`.
-    pub hold: f64,
+    pub static_limit: f64,
     /// Magnitude of kinetic friction `mu_k F_n`.
-    pub slide: f64,
+    pub kinetic_force: f64,
 }
 
 /// What the update that starts at t_n does with the block.
@@ -44,27 +44,27 @@ pub(crate) struct Update {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Integrator {
     /// `c-/c+`, with `c-+ = 1 -+ Omega dt/2`: what a free block keeps of its velocity.
-    pub(crate) keeps: f64,
+    pub(crate) velocity_decay: f64,
     /// `dt/(m c+)`: what a force adds to it.
-    pub(crate) impulse: f64,
+    pub(crate) force_to_velocity: f64,
     /// `m c+/dt`.
-    pub(crate) inverse_impulse: f64,
+    pub(crate) velocity_to_force: f64,
 }
 
 impl Integrator {
     pub(crate) fn new(damping: f64, dt: f64) -> Self {
         let after = 1.0 + 0.5 * damping * dt;
         Self {
-            keeps: (1.0 - 0.5 * damping * dt) / after,
-            impulse: dt / after,
-            inverse_impulse: after / dt,
+            velocity_decay: (1.0 - 0.5 * damping * dt) / after,
+            force_to_velocity: dt / after,
+            velocity_to_force: after / dt,
         }
     }
 
     /// Velocity at `t + dt/2` under a force alone (Eqs. 5-8): `(c- v + dt F/m)/c+`.
     #[inline(always)]
     fn push(&self, velocity: [f64; 2], force: [f64; 2]) -> [f64; 2] {
-        let one = |v: f64, f: f64| self.keeps * v + self.impulse * f;
+        let one = |v: f64, f: f64| self.velocity_decay * v + self.force_to_velocity * f;
         [one(velocity[0], force[0]), one(velocity[1], force[1])]
     }
 }
@@ -86,10 +86,13 @@ fn at_rest(force: [f64; 2]) -> Update {
 
 /// Friction of magnitude `slide` against the direction of `motion`.
 #[inline(always)]
-fn against(motion: [f64; 2], slide: f64) -> [f64; 2] {
+fn against(motion: [f64; 2], kinetic_force: f64) -> [f64; 2] {
     let speed = length(motion);
     if speed > 0.0 {
-        [-slide * motion[0] / speed, -slide * motion[1] / speed]
+        [
+            -kinetic_force * motion[0] / speed,
+            -kinetic_force * motion[1] / speed,
+        ]
     } else {
         [0.0, 0.0]
     }
@@ -104,14 +107,14 @@ impl Law for Projection {
     #[inline(always)]
     fn update(&self, block: &Block, integrator: &Integrator) -> Update {
         let force = block.force;
-        let stays = is_zero(block.velocity) & (dot(force, force) <= block.hold * block.hold);
+        let stays = is_zero(block.velocity) & (dot(force, force) <= block.static_limit * block.static_limit);
         let free = integrator.push(block.velocity, force);
         let speed = length(free);
         // Where nothing moves, both may be 0 and their ratio no number: nothing is left then either.
-        let taken = integrator.impulse * block.slide / speed;
-        let left = 1.0 - taken;
+        let removed_fraction = integrator.force_to_velocity * block.kinetic_force / speed;
+        let left = 1.0 - removed_fraction;
         let slides = !stays & (left > 0.0);
-        let pull = taken * integrator.inverse_impulse;
+        let pull = removed_fraction * integrator.velocity_to_force;
         Update {
             velocity: select(slides, [left * free[0], left * free[1]], [0.0, 0.0]),
             friction: select(slides, [-pull * free[0], -pull * free[1]], [-force[0], -force[1]]),
@@ -141,12 +144,15 @@ impl Law for Reversal {
     fn update(&self, block: &Block, integrator: &Integrator) -> Update {
         let total = length(block.force);
         let starts = contact_of(block.velocity) == Contact::Stuck;
-        if starts && total <= block.hold.max(block.slide) {
+        if starts && total <= block.static_limit.max(block.kinetic_force) {
             return at_rest(block.force);
         }
-        let friction = against(if starts { block.force } else { block.velocity }, block.slide);
+        let friction = against(
+            if starts { block.force } else { block.velocity },
+            block.kinetic_force,
+        );
         let velocity = integrator.push(block.velocity, add(block.force, friction));
-        if !starts && dot(velocity, block.velocity) <= 0.0 && total <= block.hold {
+        if !starts && dot(velocity, block.velocity) <= 0.0 && total <= block.static_limit {
             return at_rest(block.force);
         }
         Update {
@@ -164,10 +170,13 @@ impl Law for Literal {
     #[inline(always)]
     fn update(&self, block: &Block, integrator: &Integrator) -> Update {
         let starts = contact_of(block.velocity) == Contact::Stuck;
-        let friction = if length(block.force) <= block.hold {
+        let friction = if length(block.force) <= block.static_limit {
             [-block.force[0], -block.force[1]]
         } else {
-            against(if starts { block.force } else { block.velocity }, block.slide)
+            against(
+                if starts { block.force } else { block.velocity },
+                block.kinetic_force,
+            )
         };
         let velocity = integrator.push(block.velocity, add(block.force, friction));
         Update {

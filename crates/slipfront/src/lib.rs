@@ -23,8 +23,8 @@
 //! ```
 
 pub mod checkpoint;
+pub mod exact_solutions;
 pub mod kernel;
-pub mod known_answers;
 pub mod lattice;
 pub mod observe;
 pub mod scales;
@@ -32,8 +32,8 @@ pub mod surface;
 
 mod error;
 mod friction;
-mod lanes;
 mod model;
+mod reductions;
 mod simulation;
 mod state;
 mod vector_field;
@@ -49,3 +49,6 @@ pub use simulation::{Simulation, Snapshot, Stop, StopReason};
 pub use state::{Contact, State};
 pub use surface::Surface;
 pub use vector_field::VectorField;
+
+/// BLAKE3 hash of the sources of this crate, by which programs that give the same bits are told.
+pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");

@@ -38,17 +38,17 @@ impl Drive {
 
     /// Displacement of the driven spring ends at `time_star`.
     #[inline]
-    pub fn reach(&self, time_star: f64) -> [f64; 2] {
+    pub fn position(&self, time_star: f64) -> [f64; 2] {
         let along = self.v_star * time_star;
         [along * self.direction[0], along * self.direction[1]]
     }
 
     /// Pull on a block at displacement `u` (Eq. 2), with the constant force: `F_s = k_s (V t - u)`.
     pub fn force(&self, u: [f64; 2], time_star: f64) -> [f64; 2] {
-        let reach = self.reach(time_star);
+        let position = self.position(time_star);
         [
-            self.k_drive * (reach[0] - u[0]) + self.constant_force[0],
-            self.k_drive * (reach[1] - u[1]) + self.constant_force[1],
+            self.k_drive * (position[0] - u[0]) + self.constant_force[0],
+            self.k_drive * (position[1] - u[1]) + self.constant_force[1],
         ]
     }
 }
@@ -124,14 +124,14 @@ impl Model {
     /// ```
     pub fn steady_level(&self) -> f64 {
         let n = self.surface.n_blocks();
-        let friction = (0..n).map(|b| self.surface.slide(b)).sum::<f64>() / n as f64;
+        let friction = (0..n).map(|b| self.surface.kinetic_force(b)).sum::<f64>() / n as f64;
         friction + self.damping * self.drive.v_star
     }
 
     /// Time of the first slip of a block in contact on a surface without texture, exact:
     /// `t* = min_i max(mu_si, mu_ki) F_n,i/(k_s V*)`.
     pub fn first_slip_estimate(&self) -> f64 {
-        self.surface.weakest() / (self.drive.k_drive * self.drive.v_star)
+        self.surface.min_slip_threshold() / (self.drive.k_drive * self.drive.v_star)
     }
 }
 

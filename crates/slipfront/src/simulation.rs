@@ -1,7 +1,7 @@
 //! The loop: evaluate, observe, stop, step.
 
 use crate::checkpoint::{Checkpoint, Numbers};
-use crate::kernel::{Block, Engine, Execution, Held, Totals};
+use crate::kernel::{Block, Engine, Execution, StoredEnergy, Totals};
 use crate::observe::{CurvePoint, Peak, Scheduled};
 use crate::{Model, RunError, State, VectorField};
 
@@ -41,14 +41,14 @@ pub struct Snapshot<'a> {
 }
 
 /// Differences of mu* that rounding cannot make: a prediction closer than this is none.
-const CLEARLY: f64 = 1e-9;
+const MU_STAR_ROUNDING: f64 = 1e-9;
 
 impl Snapshot<'_> {
     /// Displacement, velocity and forces of block `b`. Forces are found anew: to be asked for now and then, not at every
     /// step.
     pub fn block(&self, b: usize) -> Block {
         let mut block = [Block::default()];
-        self.look(b, &mut block);
+        self.read_blocks(b, &mut block);
         block[0]
     }
 
@@ -57,18 +57,18 @@ impl Snapshot<'_> {
     ///
     /// # Panics
     /// If the lattice has fewer.
-    pub fn look(&self, first: usize, blocks: &mut [Block]) {
+    pub fn read_blocks(&self, first: usize, blocks: &mut [Block]) {
         self.engine
-            .look(self.model, self.step, self.dt_star, first, blocks);
+            .read_blocks(self.model, self.step, self.dt_star, first, blocks);
     }
 
     /// Energies held now.
     ///
     /// # Panics
-    /// If nobody wanted them: see [`Observer::wants_energies`](crate::observe::Observer::wants_energies).
-    pub fn held(&self) -> Held {
+    /// If nobody wanted them: see [`Observer::needs_energies`](crate::observe::Observer::needs_energies).
+    pub fn stored_energy(&self) -> StoredEnergy {
         self.totals
-            .held
+            .stored_energy
             .expect("energies are measured where an observer wants them")
     }
 
@@ -84,12 +84,12 @@ impl Snapshot<'_> {
 
     /// Whether mu* will be higher one step on.
     pub(crate) fn rises(&self) -> bool {
-        self.mu_star_next() > self.point.mu_star + CLEARLY
+        self.mu_star_next() > self.point.mu_star + MU_STAR_ROUNDING
     }
 
     /// Whether mu* will be lower one step on.
     pub(crate) fn falls(&self) -> bool {
-        self.mu_star_next() < self.point.mu_star - CLEARLY
+        self.mu_star_next() < self.point.mu_star - MU_STAR_ROUNDING
     }
 }
 
@@ -128,7 +128,8 @@ impl Stop {
 
     /// Whether the next step may be the last. That mu* will have fallen can be told before.
     fn may_end(&self, now: &Snapshot) -> bool {
-        now.step + 1 >= self.last_step || (self.after_onset && now.peak.ends_at(now.mu_star_next() - CLEARLY))
+        now.step + 1 >= self.last_step
+            || (self.after_onset && now.peak.ends_at(now.mu_star_next() - MU_STAR_ROUNDING))
     }
 
     fn reached(&self, now: &Snapshot) -> Option<StopReason> {
@@ -145,16 +146,21 @@ impl Stop {
 impl<'m> Simulation<'m> {
     /// A slider at rest at t = 0. `dt_star` must stay below [`crate::lattice::dt_star_limit`].
     pub fn at_rest(model: &'m Model, dt_star: f64) -> Self {
-        Self::executed(model, dt_star, None, Execution::default())
+        Self::with_execution(model, dt_star, None, Execution::default())
     }
 
     /// A slider in a given state at t = 0.
     pub fn from_state(model: &'m Model, dt_star: f64, state: State) -> Self {
-        Self::executed(model, dt_star, Some(state), Execution::default())
+        Self::with_execution(model, dt_star, Some(state), Execution::default())
     }
 
     /// A slider in a given state, or at rest, computed as `execution` says.
-    pub fn executed(model: &'m Model, dt_star: f64, state: Option<State>, execution: Execution) -> Self {
+    pub fn with_execution(
+        model: &'m Model,
+        dt_star: f64,
+        state: Option<State>,
+        execution: Execution,
+    ) -> Self {
         let mut engine = Engine::new(model, dt_star, state, execution);
         let totals = engine.step(model, 0, true);
         let mut simulation = Self {
@@ -238,7 +244,7 @@ impl<'m> Simulation<'m> {
                 return Ok(reason);
             }
             let next = now.step + 1;
-            let energies = stop.may_end(&now) || observers.iter().any(|o| o.wants_energies(next));
+            let energies = stop.may_end(&now) || observers.iter().any(|o| o.needs_energies(next));
             self.step_with(energies);
             self.check_finite()?;
         }

@@ -95,7 +95,7 @@ fn a_step_allocates_nothing() {
                 kernel,
                 ..Execution::default()
             };
-            let mut simulation = Simulation::executed(&model, 0.1, None, execution);
+            let mut simulation = Simulation::with_execution(&model, 0.1, None, execution);
             let calls = allocations(|| (0..1000).for_each(|_| simulation.step()));
             assert_eq!(calls, 0, "{law:?} {kernel:?}");
             // 1000 steps go through onset, which comes at t* = 82 here.

@@ -11,7 +11,7 @@ use png::{
 use slipfront::surface::MaskImage;
 
 use super::{ArrayError, extension, unknown_extension};
-use crate::disk::write_whole;
+use crate::disk::write_atomic;
 
 /// More pixels than any lattice has blocks.
 const PIXELS_MAX: u64 = 1 << 28;
@@ -181,7 +181,7 @@ pub fn write_mask_png(path: &Path, nx: usize, ny: usize, textured: &[bool]) -> R
     }
     let encoded = encode(nx, ny, textured).map_err(io::Error::other);
     encoded
-        .and_then(|bytes| write_whole(path, &bytes))
+        .and_then(|bytes| write_atomic(path, &bytes))
         .map_err(|source| ArrayError::Write {
             path: path.to_owned(),
             source,

@@ -15,7 +15,7 @@ pub use mask::{mask_png, write_mask_png};
 pub use npy::mask_npy;
 
 use crate::disk::open_regular;
-use crate::text::sentence;
+use crate::text::single_line;
 
 /// What is wrong with an array or image file: one sentence that ends with the remedy.
 #[derive(Debug, thiserror::Error)]
@@ -45,7 +45,7 @@ pub enum ArrayError {
         known: &'static str,
     },
     /// The bytes are not what the format wants: wrong magic, truncated, corrupt.
-    #[error("`{}` is not a readable {format} file: {}; write the file again", path.display(), sentence(detail))]
+    #[error("`{}` is not a readable {format} file: {}; write the file again", path.display(), single_line(detail))]
     Broken {
         /// The file.
         path: PathBuf,

@@ -5,7 +5,7 @@ use std::path::Path;
 use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 
 use super::ArrayError;
-use crate::text::shortened;
+use crate::text::truncated;
 
 /// Numpy itself refuses longer headers.
 pub(super) const HEADER_MAX_BYTES: usize = 10_000;
@@ -43,7 +43,7 @@ pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<
 
     let number = Number::of(&header.dtype()).ok_or_else(|| ArrayError::Dtype {
         path: path.to_owned(),
-        found: shortened(&header.dtype().descr()),
+        found: truncated(&header.dtype().descr()),
     })?;
     if header.shape() != [ny as u64, nx as u64] {
         return Err(wrong_shape(path, header.shape(), nx, ny));

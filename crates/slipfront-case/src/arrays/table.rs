@@ -61,7 +61,7 @@ pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<
                 path: path.to_owned(),
                 row,
                 column,
-                value: format!("`{}`", shortened(field)),
+                value: format!("`{}`", excerpt(field)),
                 wanted: "a number with a decimal point",
             })?;
             values.push(value);
@@ -98,7 +98,7 @@ fn wrong_shape(path: &Path, found: String, nx: usize, ny: usize) -> ArrayError {
 }
 
 /// A field as it is shown in a message.
-fn shortened(field: &str) -> String {
+fn excerpt(field: &str) -> String {
     const SHOWN: usize = 40;
     if field.chars().count() <= SHOWN {
         return field.escape_debug().to_string();

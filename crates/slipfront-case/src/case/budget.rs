@@ -19,10 +19,11 @@ use slipfront::observe::{CurveRow, Frame};
 use slipfront::{Contact, FrictionLaw, Kernel, Lattice};
 
 use super::output::{MAX_MAPS, Output, Snapshots};
-use super::schedule::Schedule;
+use super::time_plan::TimePlan;
 use crate::case_file::{CaseError, CaseFile};
 use crate::field_name::FieldName;
-use crate::machine::{available_memory, can_be_had, free_disk, shown};
+use crate::machine::{available_memory, can_be_had, free_disk};
+use crate::number_format::byte_size;
 
 /// A number of a block.
 const NUMBER: f64 = size_of::<f64>() as f64;
@@ -122,7 +123,7 @@ enum Needs {
 
 /// A need that exceeds what there is.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Excess {
+pub struct BudgetExceeded {
     /// The key of the case that most of it is due to.
     pub key: &'static str,
     /// Both figures, what it is due to, and what to do.
@@ -131,9 +132,9 @@ pub struct Excess {
 
 impl Budget {
     /// Counts a run from the numbers of its case, before anything of it is made.
-    pub fn new(lattice: &Lattice, law: FrictionLaw, schedule: &Schedule, output: &Output) -> Self {
+    pub fn new(lattice: &Lattice, law: FrictionLaw, time_plan: &TimePlan, output: &Output) -> Self {
         let kept = |blocks: usize| blocks.div_ceil(output.stride) as f64;
-        let last_step = schedule.last_step;
+        let last_step = time_plan.last_step;
         Self {
             blocks: lattice.nx as f64 * lattice.ny as f64,
             kernel: match Kernel::Fused.for_law(law) {
@@ -282,7 +283,7 @@ impl Budget {
     }
 
     /// Refuses a case that cannot even be made.
-    pub fn check_making(&self) -> Result<(), Excess> {
+    pub fn check_making(&self) -> Result<(), BudgetExceeded> {
         if self.making().total() < SMALL {
             return Ok(());
         }
@@ -290,13 +291,13 @@ impl Budget {
     }
 
     /// Refuses a run that needs more memory than there is; what a case takes is there already if it is `made`.
-    pub fn check_memory(&self, made: bool) -> Result<(), Excess> {
+    pub fn check_memory(&self, made: bool) -> Result<(), BudgetExceeded> {
         let made = if made { self.making().total() } else { 0.0 };
         self.compare_memory(Needs::Run, &self.largest(), made, available_memory())
     }
 
     /// Refuses to go on from a checkpoint with a case that is made, where there is less memory than that needs.
-    pub fn check_memory_resumed(&self) -> Result<(), Excess> {
+    pub fn check_memory_resumed(&self) -> Result<(), BudgetExceeded> {
         let (resumed, made) = (self.resumed(), self.making().total());
         resumed.compare_memory(Needs::Resumed, &resumed.largest(), made, available_memory())
     }
@@ -308,11 +309,11 @@ impl Budget {
         bytes: &Bytes,
         had: f64,
         available: Option<f64>,
-    ) -> Result<(), Excess> {
+    ) -> Result<(), BudgetExceeded> {
         let needed = PROGRAM + HEAP * bytes.total();
         let bound = match available {
             Some(available) if needed > available + had => {
-                format!("{} are available", shown(available + had))
+                format!("{} are available", byte_size(available + had))
             }
             _ if !can_be_had(needed - had) => "the system gives less at once (see `ulimit -v`)".to_owned(),
             _ => return Ok(()),
@@ -329,14 +330,14 @@ impl Budget {
         };
         let sentence = format!(
             "{whose} takes about {} of memory ({most}) where {bound}: {remedy}",
-            shown(needed)
+            byte_size(needed)
         );
-        Err(Excess { key, sentence })
+        Err(BudgetExceeded { key, sentence })
     }
 
     /// Refuses a run whose files, and checkpoints if it saves any, have no room in `folder`, which need not be there yet.
     /// `replaced` is what goes from there before.
-    pub fn check_disk(&self, folder: &Path, replaced: u64, checkpoints: bool) -> Result<(), Excess> {
+    pub fn check_disk(&self, folder: &Path, replaced: u64, checkpoints: bool) -> Result<(), BudgetExceeded> {
         let Some(free) = free_disk(folder).map(|free| free + replaced as f64) else {
             return Ok(());
         };
@@ -350,7 +351,7 @@ impl Budget {
         }
         let (key, most, remedy) = self.most(&self.files());
         let (beside, without) = if checkpoints {
-            let beside = format!(" and its checkpoints {}", shown(beside));
+            let beside = format!(" and its checkpoints {}", byte_size(beside));
             (beside, ", run without checkpoints (--checkpoint off)")
         } else {
             (String::new(), "")
@@ -358,11 +359,11 @@ impl Budget {
         let sentence = format!(
             "the files of this run take about {} ({most}){beside} where {} are free in {}: free some, {remedy}{without}, \
              or choose another folder",
-            shown(self.disk()),
-            shown(free),
+            byte_size(self.disk()),
+            byte_size(free),
             folder.display()
         );
-        Err(Excess { key, sentence })
+        Err(BudgetExceeded { key, sentence })
     }
 
     /// The key that most bytes are due to, how many these are and for what, and the remedy.
@@ -401,12 +402,12 @@ impl Budget {
         ];
         let most = parts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
         let (key, part, what, remedy) = most.unwrap_or_default();
-        (key, format!("{} of it for {what}", shown(part)), remedy)
+        (key, format!("{} of it for {what}", byte_size(part)), remedy)
     }
 }
 
 /// A need that exceeds what there is, as an error at the key that it is due to.
-pub(super) fn within_budget(file: &CaseFile, checked: Result<(), Excess>) -> Result<(), CaseError> {
+pub(super) fn within_budget(file: &CaseFile, checked: Result<(), BudgetExceeded>) -> Result<(), CaseError> {
     checked.map_err(|excess| file.source.error(excess.key, excess.sentence))
 }
 
@@ -499,18 +500,5 @@ mod tests {
         assert!(free_disk(&folder.path().join("not/yet/there")).is_some());
         // This test runs in some memory.
         assert!(available_memory().is_none_or(|bytes| bytes > PROGRAM));
-    }
-
-    #[test]
-    fn bytes_have_the_unit_that_suits_them() {
-        for (bytes, text) in [
-            (0.0, "0 B"),
-            (1023.0, "1023 B"),
-            (1024.0, "1.0 KiB"),
-            (24.6e9, "22.9 GiB"),
-            (1e30, "867361737988.4 EiB"),
-        ] {
-            assert_eq!(shown(bytes), text);
-        }
     }
 }

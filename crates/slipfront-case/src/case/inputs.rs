@@ -20,7 +20,7 @@ pub struct Input {
 }
 
 /// A file that was read.
-pub(super) struct Given {
+pub(super) struct InputBytes {
     pub(super) path: PathBuf,
     pub(super) bytes: Vec<u8>,
 }
@@ -48,16 +48,16 @@ impl Inputs {
         key: &str,
         written: &str,
         lattice: &Lattice,
-    ) -> Result<Given, CaseError> {
+    ) -> Result<InputBytes, CaseError> {
         let path = self.folder.join(written);
         let bytes = arrays::read_file(&path, lattice.nx, lattice.ny)
             .map_err(|error| file.source.error(key, error.to_string()))?;
-        Ok(Given { path, bytes })
+        Ok(InputBytes { path, bytes })
     }
 
     /// Notes a file that something was made of; gives the path of its copy in the run folder.
-    pub(super) fn keep(&mut self, file: &CaseFile, given: Given) -> Result<String, CaseError> {
-        let Given { path, bytes } = given;
+    pub(super) fn keep(&mut self, file: &CaseFile, given: InputBytes) -> Result<String, CaseError> {
+        let InputBytes { path, bytes } = given;
         let plain = path
             .file_name()
             .map_or_else(|| "input".into(), |name| name.to_string_lossy().into_owned());

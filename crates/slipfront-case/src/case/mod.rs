@@ -6,8 +6,8 @@ mod groups;
 mod inputs;
 mod output;
 mod parameters;
-mod schedule;
 mod textures;
+mod time_plan;
 mod warnings;
 
 use std::path::Path;
@@ -25,8 +25,8 @@ use self::inputs::Inputs;
 pub use self::output::{MAX_MAPS, Output, Snapshots, VARIABLE_MAX_BYTES, smallest_stride};
 pub use self::parameters::check_fields;
 use self::parameters::{Parameters, law};
-pub use self::schedule::Schedule;
 use self::textures::textures;
+pub use self::time_plan::TimePlan;
 use crate::case_file::{CaseError, CaseFile};
 
 /// A case, valid by construction.
@@ -49,7 +49,7 @@ pub struct Case {
     /// Negative draws of the coefficients that were set to 0.
     pub negative_draws: usize,
     /// Time and its steps.
-    pub schedule: Schedule,
+    pub time_plan: TimePlan,
     /// What is written.
     pub output: Output,
     /// What the run needs.
@@ -116,7 +116,7 @@ impl Case {
             scales,
             groups,
             lattice,
-            schedule,
+            time_plan,
             output,
             budget,
         } = Parameters::of(&file)?;
@@ -157,7 +157,7 @@ impl Case {
             model,
             texture,
             negative_draws,
-            schedule,
+            time_plan,
             output,
         })
     }
@@ -181,11 +181,11 @@ impl Case {
 
     /// Steps times blocks: what the run costs.
     pub fn block_steps(&self) -> f64 {
-        self.schedule.last_step as f64 * self.model.lattice.n_blocks() as f64
+        self.time_plan.last_step as f64 * self.model.lattice.n_blocks() as f64
     }
 
     /// Steps between two looks at a running case, for its progress or for a reason to stop: some milliseconds' worth.
-    pub fn steps_per_look(&self) -> u64 {
+    pub fn steps_per_poll(&self) -> u64 {
         const BLOCK_STEPS: u64 = 200_000;
         (BLOCK_STEPS / self.model.lattice.n_blocks() as u64).max(1)
     }

@@ -1,6 +1,6 @@
 //! What a case writes, and when.
 
-use super::schedule::Schedule;
+use super::time_plan::TimePlan;
 use crate::case_file;
 use crate::case_file::{AutoOr, CaseError, CaseFile};
 use crate::field_name::FieldName;
@@ -43,10 +43,10 @@ impl Output {
     ///
     /// # Errors
     /// When the run has no such steps.
-    pub(super) fn of(file: &CaseFile, schedule: &Schedule) -> Result<Self, CaseError> {
-        let Schedule {
+    pub(super) fn of(file: &CaseFile, time_plan: &TimePlan) -> Result<Self, CaseError> {
+        let TimePlan {
             dt_star, last_step, ..
-        } = *schedule;
+        } = *time_plan;
         let spacing = |key: &str, time: f64| -> Result<u64, CaseError> {
             let steps = (time / dt_star).round();
             if steps >= 1.0 {
@@ -65,7 +65,7 @@ impl Output {
                 if let Some((_, time)) = steps.iter().zip(times).find(|&(&step, _)| step > last_step) {
                     let sentence = format!(
                         "no snapshot can be taken at t* = {time}: the run ends at {:.4}",
-                        schedule.end_star()
+                        time_plan.end_star()
                     );
                     return Err(file.source.error("output.snapshots", sentence));
                 }

@@ -5,7 +5,7 @@ use slipfront::{Edges, FrictionLaw, Lattice, Scales};
 use super::budget::Budget;
 use super::groups::Groups;
 use super::output::{Output, smallest_stride};
-use super::schedule::Schedule;
+use super::time_plan::TimePlan;
 use crate::case_file::{self, CaseError, CaseFile};
 
 /// All that a case file says without its files, before any array of the lattice is made.
@@ -13,7 +13,7 @@ pub(super) struct Parameters {
     pub(super) scales: Scales,
     pub(super) groups: Groups,
     pub(super) lattice: Lattice,
-    pub(super) schedule: Schedule,
+    pub(super) time_plan: TimePlan,
     pub(super) output: Output,
     pub(super) budget: Budget,
 }
@@ -31,14 +31,14 @@ impl Parameters {
         let scales = scales(file);
         let groups = Groups::of(file, &scales)?;
         let lattice = lattice(file);
-        let schedule = Schedule::of(file, &scales, &groups)?;
-        let output = Output::of(file, &schedule)?;
-        let budget = Budget::new(&lattice, law(file), &schedule, &output);
+        let time_plan = TimePlan::of(file, &scales, &groups)?;
+        let output = Output::of(file, &time_plan)?;
+        let budget = Budget::new(&lattice, law(file), &time_plan, &output);
         Ok(Self {
             scales,
             groups,
             lattice,
-            schedule,
+            time_plan,
             output,
             budget,
         })

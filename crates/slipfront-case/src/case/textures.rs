@@ -4,7 +4,7 @@ use std::path::Path;
 
 use slipfront::{Lattice, Scales, surface};
 
-use super::inputs::{Given, Inputs};
+use super::inputs::{InputBytes, Inputs};
 use crate::arrays::ArrayError;
 use crate::case_file::{CaseError, CaseFile};
 use crate::quantity::Length;
@@ -166,8 +166,8 @@ fn groove_in_blocks(
     )
 }
 
-fn mask_of(given: &Given, threshold: f64, lattice: &Lattice) -> Result<surface::Texture, ArrayError> {
-    let Given { path, bytes } = given;
+fn mask_of(given: &InputBytes, threshold: f64, lattice: &Lattice) -> Result<surface::Texture, ArrayError> {
+    let InputBytes { path, bytes } = given;
     Ok(if is_array(path) {
         surface::Texture::Blocks(arrays::mask_npy(path, bytes, lattice.nx, lattice.ny)?)
     } else {

@@ -98,10 +98,10 @@ impl Case {
             "law = \"literal\" is for comparison only: its results depend on the time step".to_owned(),
         );
         warn(
-            self.schedule.dt_star > 0.5,
+            self.time_plan.dt_star > 0.5,
             format!(
                 "dt* = {} is stable but coarse: with 0.1, mu_s* is good to 1e-3",
-                self.schedule.dt_star
+                self.time_plan.dt_star
             ),
         );
         warn(

@@ -11,6 +11,7 @@ use super::{
     AutoOr, CaseError, CaseFile, Cavity, CavitySize, Center, Damping, DriveSpeed, Edge, GrooveSize,
     KineticFriction, Mask, RunTime, Snapshots, Step, Texture,
 };
+use crate::number_format::exact;
 use crate::quantity::{Kind, Quantity};
 
 /// Most blocks along an axis.
@@ -38,8 +39,8 @@ const SIGMA: Bounds = (Included(0.0), Included(1.0));
 /// A range in words, such as "more than 0 and at most 10".
 fn in_words((low, high): Bounds) -> String {
     let side = |bound, included: &str, excluded: &str| match bound {
-        Included(limit) => Some(format!("{included} {}", shown(limit))),
-        Excluded(limit) => Some(format!("{excluded} {}", shown(limit))),
+        Included(limit) => Some(format!("{included} {}", exact(limit))),
+        Excluded(limit) => Some(format!("{excluded} {}", exact(limit))),
         Bound::Unbounded => None,
     };
     let sides = [
@@ -47,16 +48,6 @@ fn in_words((low, high): Bounds) -> String {
         side(high, "at most", "less than"),
     ];
     sides.into_iter().flatten().collect::<Vec<_>>().join(" and ")
-}
-
-/// A number as a person writes it: 10, 0.9058, 1e-12.
-fn shown(number: f64) -> String {
-    let size = number.abs();
-    if size != 0.0 && !(1e-4..1e6).contains(&size) {
-        format!("{number:e}")
-    } else {
-        format!("{number}")
-    }
 }
 
 impl CaseFile {
@@ -358,8 +349,8 @@ impl CaseFile {
                 if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {
                     let sentence = format!(
                         "`output.snapshots` has {} after {}: list the times in increasing order, each once",
-                        shown(pair[1]),
-                        shown(pair[0])
+                        exact(pair[1]),
+                        exact(pair[0])
                     );
                     return Err(self.source.error("output.snapshots", sentence));
                 }
@@ -401,7 +392,7 @@ impl CaseFile {
         }
         let sentence = format!(
             "`{key}` is {}: it must be {}; {remark}",
-            shown(value),
+            exact(value),
             in_words(bounds)
         );
         Err(self.source.error(key, sentence))

@@ -10,7 +10,7 @@ use toml_parser::lexer::TokenKind;
 const MOST: usize = 200;
 
 /// The text up to the place where it is nested too deep: its brackets are open there, so that it is not valid TOML either.
-pub fn not_too_deep(text: &str) -> &str {
+pub fn limit_nesting(text: &str) -> &str {
     let mut open = Vec::new();
     for token in Source::new(text).lex() {
         match token.kind() {
@@ -46,11 +46,11 @@ mod tests {
             format!("[[a]]\nb = [{}]", "{ c = [] }, ".repeat(1000)),
             "a = '''[[[\n[[['''\n".repeat(100),
         ] {
-            assert_eq!(not_too_deep(&text), text);
+            assert_eq!(limit_nesting(&text), text);
         }
         for piece in ["[", "{", "{ [], a = ", "{ b = 1 [x], a = ", "[ } ", "{ ] "] {
             let text = format!("a = {}", piece.repeat(1000));
-            let shorter = not_too_deep(&text);
+            let shorter = limit_nesting(&text);
             assert!(shorter.len() <= 4 + MOST * piece.len(), "{piece}");
             assert!(shorter.parse::<toml::Table>().is_err(), "{piece}");
         }

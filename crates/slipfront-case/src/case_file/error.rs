@@ -9,7 +9,7 @@ use thiserror::Error;
 use super::keys;
 use super::source::{Place, Source};
 use crate::text;
-use crate::text::shortened;
+use crate::text::truncated;
 
 /// A case file that cannot be used.
 #[derive(Debug, Error)]
@@ -67,7 +67,7 @@ pub struct Invalid {
 impl CaseError {
     /// An invalid value or key at a place, in a sentence.
     pub fn invalid(place: Option<Place>, sentence: impl Into<String>) -> Self {
-        let sentence = text::sentence(&sentence.into());
+        let sentence = text::single_line(&sentence.into());
         Self::Invalid(Box::new(Invalid { place, sentence }))
     }
 
@@ -95,15 +95,15 @@ impl CaseError {
             // A table within the one under `header` has keys of its own.
             let inner = source.key_at(&span).filter(|_| expected != known);
             let sentence = match inner {
-                Some(inner) => keys::unknown(&shortened(key), &format!("`{inner}`"), &expected),
-                None => keys::unknown(&shortened(key), header, known),
+                Some(inner) => keys::unknown(&truncated(key), &format!("`{inner}`"), &expected),
+                None => keys::unknown(&truncated(key), header, known),
             };
             return source.error_at(span, sentence);
         }
         let complaint = match name_and_rest(&message, "unknown variant `") {
             Some((word, expected)) => {
                 let words: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
-                unknown_word(&shortened(word), &words)
+                unknown_word(&truncated(word), &words)
             }
             None => in_plain_words(&message),
         };

@@ -26,7 +26,7 @@ use serde::de::DeserializeOwned;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-pub use depth::not_too_deep;
+pub use depth::limit_nesting;
 pub use error::{CaseError, Invalid};
 pub use keys::{
     STUDY_TABLES, TABLES as CASE_TABLES, exclude_each_other, header_below, keys_of, partners_of,
@@ -93,7 +93,7 @@ impl CaseFile {
     pub fn parse(text: &str, name: &str, overrides: &[String]) -> Result<Self, CaseError> {
         let mut source = Source::new(name, text, overrides);
         let text = source.text();
-        let root = DeTable::parse(not_too_deep(&text[..source.file_len()]));
+        let root = DeTable::parse(limit_nesting(&text[..source.file_len()]));
         let mut root = root
             .map_err(|error| CaseError::syntax(&source, 0, &error))?
             .into_inner();

@@ -6,7 +6,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use super::depth::not_too_deep;
+use super::depth::limit_nesting;
 use super::error::CaseError;
 use super::keys;
 use super::source::Source;
@@ -64,7 +64,7 @@ fn read_value<'i>(source: &Source, text: &'i str, offset: usize) -> Result<Spann
             "the override has no value: write KEY=VALUE, such as drive.v_star=0.05",
         ));
     }
-    match DeValue::parse(not_too_deep(text)) {
+    match DeValue::parse(limit_nesting(text)) {
         Ok(value) => Ok(moved(value, offset)),
         // What opens a string, a list or a table was meant to be one.
         Err(error) if text.starts_with(['"', '\'', '[', '{']) => {

@@ -9,7 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::CaseError;
-use crate::text::{MAX_PIECE, shortened};
+use crate::text::{MAX_EXCERPT, truncated};
 
 /// The longest key whose place is noted, in bytes: all known ones are shorter. The keys below one of many megabytes
 /// would take that length each.
@@ -123,7 +123,7 @@ impl Source {
         if span.start > self.file_len()
             && let Some(entry) = self.overrides.iter().find(|entry| span.start <= entry.end)
         {
-            return Place::Override(shortened(self.slice(entry.clone())));
+            return Place::Override(truncated(self.slice(entry.clone())));
         }
         let file = self.slice(0..self.file_len());
         let start = (0..=span.start.min(file.len()))
@@ -215,7 +215,7 @@ impl fmt::Display for Place {
 /// The line, and below it carets under `width` characters from byte `start`; empty when there is nothing to show.
 fn excerpt(line: &str, start: usize, width: usize) -> String {
     let before = &line[..start.min(line.len())];
-    if line.trim().is_empty() || before.chars().count() > MAX_PIECE {
+    if line.trim().is_empty() || before.chars().count() > MAX_EXCERPT {
         return String::new();
     }
     // Tabs stay tabs, so that the caret stands below its character however wide they are.
@@ -223,7 +223,7 @@ fn excerpt(line: &str, start: usize, width: usize) -> String {
         .chars()
         .map(|c| if c == '\t' { '\t' } else { ' ' })
         .collect();
-    let shown = shortened(line);
+    let shown = truncated(line);
     let width = width
         .min(shown.chars().count().saturating_sub(before.chars().count()))
         .max(1);

@@ -2,8 +2,9 @@
 
 use clap::Args;
 
-use super::{CaseArgs, print};
+use crate::case_args::CaseArgs;
 use crate::failure::Failure;
+use crate::print::print;
 use crate::probe::seconds_per_step;
 use crate::report;
 
@@ -21,7 +22,7 @@ impl Check {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let case = self.case.load()?;
         print(&report::physics(&case))?;
-        let seconds = seconds_per_step(&case) * case.schedule.last_step as f64;
+        let seconds = seconds_per_step(&case) * case.time_plan.last_step as f64;
         print(&report::cost(&case, seconds))
     }
 }

@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use slipfront_case::disk::write_whole;
+use slipfront_case::disk::{is_same, write_atomic};
 use slipfront_plot::Picture;
 use slipfront_run::names::MANIFEST;
 use slipfront_run::verify::expect_as_written;
 use slipfront_run::{pictures, results};
 
-use super::print;
 use crate::failure::Failure;
+use crate::print::print;
 
 /// Draw the pictures of a run again, or the friction curves of several runs over each other
 #[derive(Args)]
@@ -63,7 +63,7 @@ impl Plot {
         std::fs::create_dir_all(&out).map_err(failed)?;
         let mut written = String::new();
         for (path, bytes) in files {
-            write_whole(&path, bytes).map_err(failed)?;
+            write_atomic(&path, bytes).map_err(failed)?;
             written += &format!("{}\n", path.display());
         }
         print(&written)
@@ -81,11 +81,6 @@ fn expect_results(folder: &Path) -> Result<(), Failure> {
         Err(error) => format!("cannot read {}: {error}", path.display()),
     };
     Err(Failure::input(anyhow::anyhow!(sentence)))
-}
-
-fn is_same(folder: &Path, other: &Path) -> bool {
-    let [folder, other] = [folder, other].map(|folder| folder.canonicalize().ok());
-    folder.is_some() && folder == other
 }
 
 /// Refuses the folder of a run that these are not the pictures of, and pictures that are there already.

@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use slipfront_case::arrays;
 use slipfront_case::arrays::ArrayError;
+use slipfront_case::disk::is_same;
 
-use super::{CaseArgs, is_same, print};
+use crate::case_args::CaseArgs;
 use crate::failure::Failure;
+use crate::print::print;
 use crate::report;
 
 /// Write the texture of a case as a mask: one pixel per block, textured ones black

@@ -6,16 +6,18 @@ use clap::Args;
 use jiff::Timestamp;
 use slipfront_case::case::Case;
 use slipfront_run::manifest::Manifest;
+use slipfront_run::program;
 use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::running::Running;
 use slipfront_run::verify::{Verdict, VerifyError, compare, is_study, verify};
 
-use super::{print, set_threads};
 use crate::failure::Failure;
-use crate::progress::Progress;
-use crate::say::say;
+use crate::print::print;
+use crate::print_stderr::print_stderr;
+use crate::progress::run::RunProgress;
 use crate::signals::Signals;
+use crate::threads::set_threads;
 
 /// Check that results are what was written: every file of a run against its manifest, a study against its records
 #[derive(Args)]
@@ -61,7 +63,7 @@ impl Verify {
                 // The others are looked at all the same.
                 Err(Failure::Input(error)) => {
                     unusable += 1;
-                    say(&format!("error: {error}"));
+                    print_stderr(&format!("error: {error}"));
                 }
                 Err(failure) => return Err(failure),
             }
@@ -105,9 +107,9 @@ impl Verify {
         let again = tempfile::tempdir().map_err(|error| Failure::running(VerifyError::Temporary(error)))?;
         case.check_disk(again.path(), 0, false).map_err(Failure::input)?;
         let mut running = Running::start(&case, rayon::current_num_threads());
-        let mut progress = Progress::new(&running, self.quiet);
+        let mut progress = RunProgress::new(&running, self.quiet);
         let reason = loop {
-            if let Some(reason) = running.advance(case.steps_per_look()).map_err(Failure::running)? {
+            if let Some(reason) = running.advance(case.steps_per_poll()).map_err(Failure::running)? {
                 break reason;
             }
             progress.show(&running.snapshot());
@@ -127,8 +129,8 @@ impl Verify {
             verdict
                 .differences
                 .extend(no_longer_written(&before, &now, folder));
-            if before.program() != Manifest::this_program() {
-                let programs = (before.program(), Manifest::this_program());
+            if before.program() != program::this_program() {
+                let programs = (before.program(), program::this_program());
                 verdict.notes.push(format!(
                     "{} was written by {}, and repeated by {}",
                     folder.display(),

@@ -102,7 +102,7 @@ pub(super) fn first_block(run: &Run) -> Result<usize, PaperError> {
 /// How much of the contact stress of the first block to slip is left soon after, %.
 fn stress_left(runner: &FigureRunner, run: &Run) -> Result<f64, PaperError> {
     let (first, block) = (run.first_slip()?, first_block(run)?);
-    let dt_star = run.case.schedule.dt_star;
+    let dt_star = run.case.time_plan.dt_star;
     // Just before the slip, and in steps of 0.5 after it for ten times the travel of a wave over a block.
     let mut times = vec![first - dt_star];
     times.extend((1..=20).map(|k| first + 0.5 * f64::from(k)));

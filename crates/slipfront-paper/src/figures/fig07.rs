@@ -18,8 +18,8 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
         "fig07",
         "V* = 0.2 in the paper's time step and in one 27 times finer: the fluctuation is the same, and so is no instability.",
         Drawing::Curves(vec![
-            paper.curve(&format!("\u{394}t* = {:.3}", paper.case.schedule.dt_star)),
-            finest.curve(&format!("\u{394}t* = {}", finest.case.schedule.dt_star)),
+            paper.curve(&format!("\u{394}t* = {:.3}", paper.case.time_plan.dt_star)),
+            finest.curve(&format!("\u{394}t* = {}", finest.case.time_plan.dt_star)),
         ]),
     );
     let amplitudes = runs

@@ -27,7 +27,7 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
             .collect::<Result<Vec<f64>, _>>()?,
     );
     // One step short of it: friction may differ from where the first block moves.
-    let before = [0.0, first_slip - runs[0].case.schedule.dt_star];
+    let before = [0.0, first_slip - runs[0].case.time_plan.dt_star];
     let differences = runs
         .iter()
         .map(|run| runs[0].largest_difference(run, before, mu_star));

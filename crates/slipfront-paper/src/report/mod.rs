@@ -13,7 +13,7 @@ use crate::figure_data::FigureData;
 use crate::figures::Figure;
 use crate::paper::Paper;
 use crate::step_rule::StepRule;
-use slipfront_case::disk::{begins_with, write_whole};
+use slipfront_case::disk::{begins_with, write_atomic};
 use slipfront_plot::Picture;
 use slipfront_run::run_folder::error::FolderError;
 
@@ -109,7 +109,7 @@ fn draw(data: &FigureData) -> Result<Vec<Drawn>, PaperError> {
 fn write_file(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), PaperError> {
     let path = folder.join(name);
     let parent = path.parent().unwrap_or(folder).to_owned();
-    let written = std::fs::create_dir_all(parent).and_then(|()| write_whole(&path, bytes));
+    let written = std::fs::create_dir_all(parent).and_then(|()| write_atomic(&path, bytes));
     written.map_err(|source| FolderError::Write { path, source }.into())
 }
 

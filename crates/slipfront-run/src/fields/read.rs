@@ -59,7 +59,7 @@ fn in_words(fault: Fault, path: &Path) -> FieldsError {
         Fault::Io(source) => FieldsError::Read { path, source },
         Fault::Broken(detail) => FieldsError::Broken {
             path,
-            detail: text::sentence(&detail),
+            detail: text::single_line(&detail),
         },
     }
 }

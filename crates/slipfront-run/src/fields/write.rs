@@ -17,7 +17,7 @@ use slipfront_case::case::smallest_stride;
 use slipfront_case::field_name::FieldName;
 
 use super::{FieldsError, FieldsFile, thin};
-use slipfront_case::disk::fill_whole;
+use slipfront_case::disk::write_atomic_with;
 
 /// Writes `fields.nc`.
 ///
@@ -32,7 +32,7 @@ use slipfront_case::disk::fill_whole;
 pub fn write_fields(path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
     check(path, file)?;
     let fill = |output: &mut File| write_to(output.try_clone()?, file).map(drop);
-    fill_whole(path, fill).map_err(|source| FieldsError::Write {
+    write_atomic_with(path, fill).map_err(|source| FieldsError::Write {
         path: path.to_owned(),
         source,
     })

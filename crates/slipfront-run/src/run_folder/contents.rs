@@ -7,7 +7,7 @@ use crate::manifest::{Manifest, ManifestFile};
 use crate::names::{CASE, CHECKPOINT, CHECKPOINT_BEGINNING, MANIFEST, PREVIOUS};
 use slipfront_case::case_file::CaseFile;
 use slipfront_case::disk::{
-    TEXT_MAX_BYTES, begins_with, is_folder, is_unfinished, read_whole, remove_if_there, unfinished,
+    TEXT_MAX_BYTES, begins_with, is_folder, is_unfinished, read_limited, remove_if_there, unfinished,
 };
 
 /// What a run leaves beside its case and the copies in `inputs/`, the manifest first.
@@ -25,7 +25,7 @@ const RESULTS: [&str; 8] = [
 /// The case in a folder if it is a resolved one, byte for byte. Another was not written by a run, and what it names may be
 /// the only copy that there is.
 pub(super) fn resolved_case(folder: &Path) -> Option<CaseFile> {
-    let bytes = read_whole(&folder.join(CASE), TEXT_MAX_BYTES).ok()?;
+    let bytes = read_limited(&folder.join(CASE), TEXT_MAX_BYTES).ok()?;
     let text = String::from_utf8(bytes).ok()?;
     let case = CaseFile::parse(&text, CASE, &[]).ok()?;
     (case.to_toml().ok()? == text).then_some(case)
@@ -34,7 +34,7 @@ pub(super) fn resolved_case(folder: &Path) -> Option<CaseFile> {
 /// Files of an earlier run in this folder, finished or not: its manifest first, its case last, which until then tells
 /// the copies of a run that was stopped. Where there is neither, nothing is a run's, whatever it is called.
 fn own_files(path: &Path) -> Vec<String> {
-    let manifest = read_whole(&path.join(MANIFEST), TEXT_MAX_BYTES).ok();
+    let manifest = read_limited(&path.join(MANIFEST), TEXT_MAX_BYTES).ok();
     let manifest = manifest.and_then(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok());
     let mut case = resolved_case(path);
     let listed = manifest.map(|manifest| manifest.files);

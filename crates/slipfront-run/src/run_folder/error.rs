@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use slipfront_case::text::shown;
+use slipfront_case::text::display_path;
 use thiserror::Error;
 
 use super::resume_command::resume_command;
@@ -47,7 +47,7 @@ pub enum FolderError {
     /// A file that is not slipfront's stands where one would be written.
     #[error(
         "{} is not a file of an earlier run: move it away or choose another folder with --out",
-        shown(path)
+        display_path(path)
     )]
     Foreign {
         /// The file.
@@ -64,7 +64,7 @@ pub enum FolderError {
     /// A file could not be written.
     #[error(
         "cannot write {}: {source}; the folder is left without manifest.json, as incomplete",
-        shown(path)
+        display_path(path)
     )]
     Write {
         /// The file.
@@ -75,8 +75,8 @@ pub enum FolderError {
     /// The folder of a run could not be copied.
     #[error(
         "cannot copy {} to {}: {source}; what is there is whole, and the command may be repeated",
-        shown(from),
-        shown(to)
+        display_path(from),
+        display_path(to)
     )]
     Copy {
         /// The folder.
@@ -90,14 +90,14 @@ pub enum FolderError {
     #[error(
         "{} was changed while the run went on, so that it does not tell what was run; the folder is left without \
          manifest.json, as incomplete: put the file back as it was",
-        shown(path)
+        display_path(path)
     )]
     Changed {
         /// The file.
         path: PathBuf,
     },
     /// A file could not be read back.
-    #[error("cannot read {}: {source}", shown(path))]
+    #[error("cannot read {}: {source}", display_path(path))]
     Read {
         /// The file.
         path: PathBuf,

@@ -10,7 +10,7 @@ use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 
 use slipfront::Model;
-use slipfront_case::disk::{UNFINISHED, holds_only_unfinished, remove_unfinished, sync_folder, write_whole};
+use slipfront_case::disk::{UNFINISHED, holds_only_unfinished, remove_unfinished, sync_folder, write_atomic};
 
 use self::contents::{refuse_foreign, remove_checkpoints, remove_own, remove_results, resolved_case};
 pub use self::error::FolderError;
@@ -153,7 +153,7 @@ impl RunFolder {
     /// When it cannot be written, or a foreign file stands in its place.
     pub fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
         let path = self.claim(name)?;
-        write_whole(&path, bytes).map_err(|source| FolderError::Write { path, source })?;
+        write_atomic(&path, bytes).map_err(|source| FolderError::Write { path, source })?;
         if let Some((_, hash)) = self.written.last_mut() {
             *hash = Some(blake3::hash(bytes));
         }
@@ -200,7 +200,7 @@ impl RunFolder {
         }
         let (manifest, bytes) = manifest.sealed();
         let path = self.path.join(MANIFEST);
-        write_whole(&path, &bytes)
+        write_atomic(&path, &bytes)
             .and_then(|()| sync_folder(&self.path))
             .map_err(|source| {
                 // What may not be on the disk is not complete.

@@ -2,16 +2,16 @@
 
 use std::path::Path;
 
-use slipfront_case::text::{quoted, shown};
+use slipfront_case::text::{display_path, shell_quoted};
 
 /// The command that goes on with the run in a folder, as a shell reads it.
 pub fn resume_command(folder: &Path) -> String {
-    let mut folder = shown(folder);
+    let mut folder = display_path(folder);
     // Else it would be taken for an option.
     if folder.starts_with('-') {
         folder.insert_str(0, "./");
     }
-    format!("slipfront run --resume {}", quoted(&folder))
+    format!("slipfront run --resume {}", shell_quoted(&folder))
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use toml::Value;
 
 use super::input_copies::{names_a_file, plain_name};
-use slipfront_case::text::shortened;
+use slipfront_case::text::truncated;
 
 /// An axis and its levels.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,7 +77,7 @@ impl Axis {
         if let Some(long) = all.into_iter().find(|key| key.len() > MAX_KEY) {
             return Err(format!(
                 "the key `{}` of an axis has {} bytes, more than {MAX_KEY}: name one of a case, such as drive.v_star",
-                shortened(long),
+                truncated(long),
                 long.len()
             ));
         }
@@ -162,10 +162,10 @@ impl Axis {
         for level in &axis.levels {
             let mut earlier = BTreeSet::new();
             for key in level.overrides.iter().map(|set| key_of(set)) {
-                if let Some(other) = clash(key, &earlier) {
+                if let Some(other) = conflict(key, &earlier) {
                     return Err(format!(
                         "the level {} sets `{key}` and `{other}`, of which one leaves nothing of the other: keep one of them",
-                        shortened(&level.labels.join(", "))
+                        truncated(&level.labels.join(", "))
                     ));
                 }
                 earlier.insert(key);
@@ -342,7 +342,7 @@ pub(super) fn key_of(set: &str) -> &str {
 }
 
 /// Whether setting `key` leaves nothing of what `earlier` has set: it is the same key, or a table or list around it.
-pub(super) fn displaces(key: &str, earlier: &str) -> bool {
+pub(super) fn replaces_key(key: &str, earlier: &str) -> bool {
     earlier
         .strip_prefix(key)
         .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
@@ -350,13 +350,13 @@ pub(super) fn displaces(key: &str, earlier: &str) -> bool {
 }
 
 /// The first of the `other` keys of which setting `key` leaves nothing, or which leaves nothing of it.
-fn clash<'k>(key: &str, other: &BTreeSet<&'k str>) -> Option<&'k str> {
-    let around = || other.iter().copied().find(|other| displaces(other, key));
-    displaced(key, other).or_else(around)
+fn conflict<'k>(key: &str, other: &BTreeSet<&'k str>) -> Option<&'k str> {
+    let around = || other.iter().copied().find(|other| replaces_key(other, key));
+    replaced_key(key, other).or_else(around)
 }
 
 /// The first of `earlier` keys of which setting `key` leaves nothing.
-pub(super) fn displaced<'k>(key: &str, earlier: &BTreeSet<&'k str>) -> Option<&'k str> {
+pub(super) fn replaced_key<'k>(key: &str, earlier: &BTreeSet<&'k str>) -> Option<&'k str> {
     let below = format!("{key}.");
     let partners = slipfront_case::case_file::partners_of(key);
     let same = earlier
@@ -494,22 +494,22 @@ mod tests {
     }
 
     #[test]
-    fn what_displaces_what() {
-        assert!(displaces("texture", "texture.0.coverage"));
-        assert!(displaces("drive.v_star", "drive.v_star"));
-        assert!(displaces("drive.speed", "drive.v_star"));
-        assert!(!displaces("texture.0.coverage", "texture"));
-        assert!(!displaces("drive.v", "drive.v_star"));
+    fn keys_replace_their_tables_and_partners() {
+        assert!(replaces_key("texture", "texture.0.coverage"));
+        assert!(replaces_key("drive.v_star", "drive.v_star"));
+        assert!(replaces_key("drive.speed", "drive.v_star"));
+        assert!(!replaces_key("texture.0.coverage", "texture"));
+        assert!(!replaces_key("drive.v", "drive.v_star"));
         let earlier = ["drive.v_star", "slider.blocks", "texture.0.coverage", "texture0"].into();
-        assert_eq!(displaced("texture", &earlier), Some("texture.0.coverage"));
-        assert_eq!(displaced("drive.v_star", &earlier), Some("drive.v_star"));
-        assert_eq!(displaced("drive.speed", &earlier), Some("drive.v_star"));
+        assert_eq!(replaced_key("texture", &earlier), Some("texture.0.coverage"));
+        assert_eq!(replaced_key("drive.v_star", &earlier), Some("drive.v_star"));
+        assert_eq!(replaced_key("drive.speed", &earlier), Some("drive.v_star"));
         assert_eq!(
-            displaced("texture.0.lambda", &earlier),
+            replaced_key("texture.0.lambda", &earlier),
             Some("texture.0.coverage")
         );
         for other in ["drive.v", "texture.0.coverage.x", "slider.omega_star", "tex"] {
-            assert_eq!(displaced(other, &earlier), None);
+            assert_eq!(replaced_key(other, &earlier), None);
         }
     }
 

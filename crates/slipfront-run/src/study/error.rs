@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::manifest::Manifest;
+use crate::program;
 use crate::results::ResultsError;
 use crate::run_folder::error::FolderError;
 use slipfront_case::case_file::CaseError;
-use slipfront_case::text::shown;
+use slipfront_case::text::display_path;
 use slipfront_plot::PictureError;
 
 /// A study that cannot be used, or had to stop.
@@ -110,7 +110,7 @@ pub enum StudyError {
     /// Another file of it could not be written.
     #[error(
         "cannot write {}: {source}; finished runs are safe, and the study goes on from there when started again",
-        shown(path)
+        display_path(path)
     )]
     Write {
         /// The file.
@@ -183,7 +183,7 @@ pub(crate) fn of_others(runs: usize) -> String {
         0 => String::new(),
         _ => format!(
             ", and {runs} recorded runs are of another program than {}, or of a study that was changed since",
-            Manifest::this_program()
+            program::this_program()
         ),
     }
 }

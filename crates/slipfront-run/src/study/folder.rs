@@ -14,8 +14,8 @@ use crate::manifest::Manifest;
 use crate::names::{CASE, FIGURE_CACHE, MANIFEST, RECORDS, RUNS, TABLES};
 use crate::run_folder::error::FolderError;
 use slipfront_case::disk::{
-    TEXT_MAX_BYTES, fill_whole, is_empty, is_folder, open_bounded, open_regular, read_whole, remove_if_there,
-    remove_unfinished, stage, sync_folder, write_whole,
+    TEXT_MAX_BYTES, is_empty, is_folder, open_limited, open_regular, read_limited, remove_if_there,
+    remove_unfinished, sync_folder, write_atomic, write_atomic_with, write_temp,
 };
 
 /// The study as a table with its base inside: what `slipfront study DIR/study.toml` repeats.
@@ -62,7 +62,7 @@ impl StudyFolder {
             let name = path.join(STUDY).display().to_string();
             StudyFile::parse(text, &name, &study.name, path)
         };
-        let before = read_whole(&path.join(STUDY), TEXT_MAX_BYTES).ok();
+        let before = read_limited(&path.join(STUDY), TEXT_MAX_BYTES).ok();
         let before = before.filter(|before| before != text.as_bytes());
         let folder = Self {
             path: path.to_owned(),
@@ -97,7 +97,7 @@ impl StudyFolder {
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), StudyError> {
         let path = self.path.join(name);
         let folder = path.parent().unwrap_or(&self.path);
-        let written = std::fs::create_dir_all(folder).and_then(|()| write_whole(&path, bytes));
+        let written = std::fs::create_dir_all(folder).and_then(|()| write_atomic(&path, bytes));
         written.map_err(|source| StudyError::Write { path, source })
     }
 
@@ -116,7 +116,7 @@ impl StudyFolder {
                 let path = link.to_owned();
                 return Err(FolderError::Foreign { path }.into());
             }
-            let copied = stage(&self.path, |to| {
+            let copied = write_temp(&self.path, |to| {
                 std::io::copy(&mut File::open(original)?, to).map(|_| ())
             });
             staged.push((copied.map_err(failed(&path))?, path));
@@ -184,7 +184,7 @@ fn copy_run(from: &Path, to: &Path) -> std::io::Result<()> {
 
 fn copy_file(from: &Path, to: &Path) -> std::io::Result<()> {
     let mut from = open_regular(from)?;
-    fill_whole(to, |to| std::io::copy(&mut from, to).map(|_| ()))
+    write_atomic_with(to, |to| std::io::copy(&mut from, to).map(|_| ()))
 }
 
 /// Whether a study has used the folder.
@@ -199,7 +199,7 @@ pub fn is_study(folder: &Path) -> bool {
 pub fn study_of(folder: &Path) -> Result<StudyFile, StudyError> {
     let path = folder.join(STUDY);
     // A user may hand over a study through a pipe; in a folder of results it would be waited for.
-    open_bounded(&path, TEXT_MAX_BYTES).map_err(|source| FolderError::Read {
+    open_limited(&path, TEXT_MAX_BYTES).map_err(|source| FolderError::Read {
         path: path.clone(),
         source,
     })?;
@@ -217,7 +217,7 @@ pub fn study_of(folder: &Path) -> Result<StudyFile, StudyError> {
 pub fn refuse_foreign(folders: &[PathBuf]) -> Result<(), StudyError> {
     let read = |folder: &Path| {
         let path = folder.join(STUDY);
-        read_whole(&path, TEXT_MAX_BYTES).map_err(|source| FolderError::Read { path, source })
+        read_limited(&path, TEXT_MAX_BYTES).map_err(|source| FolderError::Read { path, source })
     };
     let Some((first, others)) = folders.split_first() else {
         return Ok(());

@@ -15,7 +15,7 @@ use super::error::StudyError;
 use super::summary_values::SummaryValues;
 use crate::names::RECORDS;
 use crate::summary::Summary;
-use slipfront_case::disk::{open_bounded, remove_unfinished, sync_folder};
+use slipfront_case::disk::{open_limited, remove_unfinished, sync_folder};
 
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -209,7 +209,7 @@ impl Records {
     /// When they cannot be read or written.
     pub fn merge(&mut self, folder: &Path) -> Result<usize, StudyError> {
         let path = folder.join(RECORDS);
-        let read = open_bounded(&path, u64::MAX).and_then(|mut file| Lines::read(&mut file));
+        let read = open_limited(&path, u64::MAX).and_then(|mut file| Lines::read(&mut file));
         let lines = read.map_err(|source| StudyError::Records {
             action: "read",
             path: path.clone(),

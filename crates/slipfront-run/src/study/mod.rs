@@ -34,7 +34,7 @@ pub use plan::{Plan, Point, Role, RunKey, Warning};
 pub use scheduler::{PointResult, Progress, StudyResults, collect, execute};
 pub use shard::Shard;
 pub use statistics::Sample;
-pub use study_file::{Base, Keep, Settings, StudyFile, Until};
+pub use study_file::{Base, RetainRuns, Settings, StoppingRule, StudyFile};
 pub use summary_values::{Quantity, REDUCTION, SummaryValues, known as quantities};
 pub use tables::sample;
 

@@ -9,13 +9,14 @@ use super::axis::{self, Axis};
 use super::error::StudyError;
 use super::folder::StudyFolder;
 use super::shard::Shard;
-use super::study_file::{Base, Keep, Settings, StudyFile};
-use crate::manifest::Manifest;
+use super::study_file::{Base, RetainRuns, Settings, StudyFile};
+use crate::program;
 use slipfront_case::case::{Budget, Case, PROGRAM, check_fields};
 use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Output, Snapshots};
 use slipfront_case::machine;
 use slipfront_case::machine::{available_memory, free_disk};
-use slipfront_case::text::shown;
+use slipfront_case::number_format::byte_size;
+use slipfront_case::text::display_path;
 
 /// Every run that a study may need.
 #[derive(Clone, Debug)]
@@ -40,12 +41,12 @@ pub struct Point {
     /// Level of each axis.
     pub levels: Vec<usize>,
     /// What its runs are, for each role.
-    outlines: Vec<Outline>,
+    specs: Vec<RunSpec>,
 }
 
 /// What is known of the runs of a point before any is made.
 #[derive(Clone, Debug, PartialEq)]
-struct Outline {
+struct RunSpec {
     /// Seed of replicate 0.
     seed: u64,
     /// Hash of all that decides the numbers of a run, but for the seed.
@@ -106,7 +107,7 @@ impl Plan {
             .map(|index| Point {
                 index,
                 levels: levels(&file.axes, index),
-                outlines: Vec::new(),
+                specs: Vec::new(),
             })
             .collect();
         let mut plan = Self {
@@ -118,17 +119,13 @@ impl Plan {
             reference: file.settings.reference.as_ref().map(axis::overrides),
         };
         let alone = Mutex::new(());
-        let outlines: Vec<Result<Vec<Outline>, CaseError>> = plan
+        let specs: Vec<Result<Vec<RunSpec>, CaseError>> = plan
             .points
             .par_iter()
-            .map(|point| {
-                plan.roles()
-                    .map(|role| plan.outline(point, role, &alone))
-                    .collect()
-            })
+            .map(|point| plan.roles().map(|role| plan.spec(point, role, &alone)).collect())
             .collect();
-        for (position, outlines) in outlines.into_iter().enumerate() {
-            plan.points[position].outlines = outlines.map_err(|source| StudyError::Point {
+        for (position, specs) in specs.into_iter().enumerate() {
+            plan.points[position].specs = specs.map_err(|source| StudyError::Point {
                 point: plan.describe(&plan.points[position]),
                 source,
             })?;
@@ -159,7 +156,7 @@ impl Plan {
             overrides.retain(|set| {
                 reference
                     .clone()
-                    .all(|other| !axis::displaces(axis::key_of(other), axis::key_of(set)))
+                    .all(|other| !axis::replaces_key(axis::key_of(other), axis::key_of(set)))
             });
             overrides.extend(reference.cloned());
         }
@@ -167,12 +164,12 @@ impl Plan {
     }
 
     /// Tries a point and notes what its runs are.
-    fn outline(&self, point: &Point, role: Role, alone: &Mutex<()>) -> Result<Outline, CaseError> {
+    fn spec(&self, point: &Point, role: Role, alone: &Mutex<()>) -> Result<RunSpec, CaseError> {
         let file = self.case_file(point, role)?;
         let blocks: u64 = file.slider.blocks.into_iter().map(u64::from).product();
         let _alone = (blocks > LARGE).then(|| alone.lock());
         let case = self.trimmed(file, "point")?;
-        Ok(Outline {
+        Ok(RunSpec {
             seed: case.file.friction.seed,
             physics: physics(&case)?,
             block_steps: case.block_steps(),
@@ -189,7 +186,7 @@ impl Plan {
         let kind = |sentence: &str| sentence.replace(|c: char| c.is_ascii_digit() || c == '.', "");
         let mut known: HashMap<String, usize> = HashMap::new();
         for (position, point) in self.points.iter().enumerate() {
-            let of_runs = point.outlines.iter().flat_map(|run| &run.warnings);
+            let of_runs = point.specs.iter().flat_map(|run| &run.warnings);
             let of_point: BTreeMap<String, &String> = of_runs.map(|one| (kind(one), one)).rev().collect();
             for (kind, sentence) in of_point {
                 let at = *known.entry(kind).or_insert(warnings.len());
@@ -215,8 +212,12 @@ impl Plan {
         file.friction.seed = self.seed(run);
         let case = self.trimmed(file, &self.folder_name(run))?;
         // Only files can have become others.
-        if !case.inputs.is_empty() && physics(&case)? != self.outline_of(run).physics {
-            let names: Vec<String> = case.inputs.iter().map(|input| shown(&input.original)).collect();
+        if !case.inputs.is_empty() && physics(&case)? != self.spec_of(run).physics {
+            let names: Vec<String> = case
+                .inputs
+                .iter()
+                .map(|input| display_path(&input.original))
+                .collect();
             let sentence = format!(
                 "a file that a run reads is no longer what it was when the study began: run the study again, and leave {} as it \
                  is meanwhile",
@@ -242,7 +243,7 @@ impl Plan {
 
     /// A case that writes no more than the study keeps.
     fn trimmed(&self, mut file: CaseFile, name: &str) -> Result<Case, CaseError> {
-        if self.settings.keep == Keep::All {
+        if self.settings.keep == RetainRuns::All {
             let case = Case::new(file, name, &self.base.folder)?;
             check_fields(&case.file, &case.model.lattice, &case.output)?;
             return Ok(case);
@@ -251,23 +252,23 @@ impl Plan {
         file.output.snapshots = Snapshots::At(Vec::new());
         file.output.series = AutoOr::Auto;
         let mut case = Case::new(file, name, &self.base.folder)?;
-        case.output.series_stride = case.schedule.last_step;
+        case.output.series_stride = case.time_plan.last_step;
         Ok(case)
     }
 
-    fn outline_of(&self, run: RunKey) -> &Outline {
-        &self.points[run.point].outlines[usize::from(run.role == Role::Reference)]
+    fn spec_of(&self, run: RunKey) -> &RunSpec {
+        &self.points[run.point].specs[usize::from(run.role == Role::Reference)]
     }
 
     /// Seed of a run. It alone tells replicates apart, so that all points meet the same surfaces.
     pub fn seed(&self, run: RunKey) -> u64 {
-        self.outline_of(run).seed.wrapping_add(run.replicate as u64) & i64::MAX as u64
+        self.spec_of(run).seed.wrapping_add(run.replicate as u64) & i64::MAX as u64
     }
 
     /// What tells a run from all others. Points share a run that is the same, such as their reference.
     pub fn identity(&self, run: RunKey) -> String {
         let mut hasher = blake3::Hasher::new();
-        hasher.update(self.outline_of(run).physics.as_bytes());
+        hasher.update(self.spec_of(run).physics.as_bytes());
         hasher.update(&self.seed(run).to_le_bytes());
         hasher.finalize().to_hex()[..32].to_owned()
     }
@@ -280,8 +281,8 @@ impl Plan {
 
     /// Steps times blocks of a run, at most, and its blocks: what it will cost.
     pub fn cost(&self, run: RunKey) -> (f64, usize) {
-        let outline = self.outline_of(run);
-        (outline.block_steps, outline.n_blocks)
+        let spec = self.spec_of(run);
+        (spec.block_steps, spec.n_blocks)
     }
 
     /// Memory of `threads` runs at once, if they are the largest, in bytes.
@@ -293,15 +294,15 @@ impl Plan {
 
     /// Memory in which cases were tried, and which the allocator keeps for others of their size, in bytes.
     fn planning(&self) -> f64 {
-        let made = |run| self.outline_of(run).budget.memory_of_case();
+        let made = |run| self.spec_of(run).budget.memory_of_case();
         self.runs(1).map(made).fold(0.0, f64::max)
     }
 
     /// The run that takes the most memory, and how much, in bytes.
     fn largest_run(&self) -> Option<(RunKey, f64)> {
-        let writes = self.settings.keep == Keep::All;
+        let writes = self.settings.keep == RetainRuns::All;
         self.runs(1)
-            .map(|run| (run, self.outline_of(run).budget.memory_beside_others(writes)))
+            .map(|run| (run, self.spec_of(run).budget.memory_beside_others(writes)))
             .max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
@@ -325,17 +326,17 @@ impl Plan {
             return Ok(());
         }
         let fit = ((available - PROGRAM - self.planning()) / largest).max(0.0) as usize;
-        let available = machine::shown(available);
+        let available = byte_size(available);
         if fit == 0 {
             return Err(StudyError::PointMemory {
                 point: self.describe(&self.points[run.point]),
-                needed: machine::shown(largest),
+                needed: byte_size(largest),
                 available,
             });
         }
         Err(StudyError::Memory {
             threads,
-            needed: machine::shown(needed),
+            needed: byte_size(needed),
             available,
             fit,
         })
@@ -344,8 +345,8 @@ impl Plan {
     /// Room that these runs will take on the disk, in bytes.
     pub fn disk(&self, runs: impl Iterator<Item = RunKey>) -> f64 {
         let kept = |run| match self.settings.keep {
-            Keep::All => self.outline_of(run).budget.disk(),
-            Keep::None | Keep::Failed => 0.0,
+            RetainRuns::All => self.spec_of(run).budget.disk(),
+            RetainRuns::None | RetainRuns::Failed => 0.0,
         };
         runs.map(|run| RECORD_BYTES + kept(run)).sum()
     }
@@ -359,8 +360,8 @@ impl Plan {
         let needed = self.disk(self.runs(self.settings.min_replicates()).filter(lacking));
         match free_disk(folder.path()) {
             Some(free) if needed > free => Err(StudyError::Disk {
-                needed: machine::shown(needed),
-                free: machine::shown(free),
+                needed: byte_size(needed),
+                free: byte_size(free),
                 path: folder.path().to_owned(),
             }),
             _ => Ok(()),
@@ -422,7 +423,7 @@ fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
         *name = format!("{}.{ending}", hash.unwrap_or_default());
     }
     let mut hasher = blake3::Hasher::new();
-    hasher.update(Manifest::this_build().as_bytes());
+    hasher.update(program::this_build().as_bytes());
     hasher.update(file.to_toml()?.as_bytes());
     Ok(hasher.finalize())
 }

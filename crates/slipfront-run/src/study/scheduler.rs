@@ -15,7 +15,7 @@ use super::error::StudyError;
 use super::journal::{Outcome, Record, Records, RunResult};
 use super::plan::{Plan, Role, RunKey};
 use super::statistics::Sample;
-use super::study_file::Keep;
+use super::study_file::RetainRuns;
 use super::summary_values::{Quantity, reduction_percent};
 use crate::names::RUNS;
 use crate::results::ResultsError;
@@ -248,7 +248,8 @@ fn run_one(plan: &Plan, runs: &Path, run: RunKey, ends: &Ends) -> Result<Option<
     let Some(mut record) = running::run_unless(&case, ends) else {
         return Ok(None);
     };
-    if plan.settings.keep == Keep::All || (plan.settings.keep == Keep::Failed && record.is_err()) {
+    if plan.settings.keep == RetainRuns::All || (plan.settings.keep == RetainRuns::Failed && record.is_err())
+    {
         let path = runs.join(plan.folder_name(run));
         keep(&case, record.as_mut().ok(), &path, started)?;
     }

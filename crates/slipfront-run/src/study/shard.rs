@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::error::StudyError;
-use slipfront_case::text::shortened;
+use slipfront_case::text::truncated;
 
 /// Part `number` of `count`, `number` from 1. It holds every `count`-th point, so that shards are equally large.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ impl Shard {
     fn of_slurm(given: &str) -> Result<Self, StudyError> {
         let read = |name: &str| -> Result<usize, StudyError> {
             let refuse = |why: String| StudyError::Shard {
-                given: shortened(given),
+                given: truncated(given),
                 why,
             };
             let value = std::env::var(name)
@@ -46,7 +46,7 @@ impl Shard {
         }
         let why = format!("there is no part {number} of {count}");
         Err(StudyError::Shard {
-            given: shortened(given),
+            given: truncated(given),
             why,
         })
     }
@@ -60,7 +60,7 @@ impl FromStr for Shard {
             return Self::of_slurm(given);
         }
         let refuse = || StudyError::Shard {
-            given: shortened(given),
+            given: truncated(given),
             why: "it is not two numbers".to_owned(),
         };
         let (number, count) = given.split_once('/').ok_or_else(refuse)?;

@@ -1,6 +1,6 @@
 //! A batch script for Slurm: few tasks, each a shard that uses all cores of its node.
 
-use slipfront_case::text::quoted;
+use slipfront_case::text::shell_quoted;
 
 /// What a batch script is made for.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,7 +26,7 @@ pub fn script(batch: &Batch) -> String {
         out,
         tasks,
     } = batch;
-    let [command, study, out] = [command, study, out].map(|word| quoted(word));
+    let [command, study, out] = [command, study, out].map(|word| shell_quoted(word));
     let name: String = name
         .chars()
         .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })

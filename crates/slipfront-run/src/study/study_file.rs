@@ -12,7 +12,7 @@ use super::error::StudyError;
 use super::input_copies::{self, Copy};
 use super::{summary_values, tables};
 use slipfront_case::case_file::{
-    CASE_TABLES, CaseError, STUDY_TABLES, Source, Tables, header_below, keys_of, not_too_deep, unknown_key,
+    CASE_TABLES, CaseError, STUDY_TABLES, Source, Tables, header_below, keys_of, limit_nesting, unknown_key,
 };
 
 /// A study file.
@@ -50,9 +50,9 @@ pub struct Settings {
     /// Keys of the case that reductions are measured against, at the same seed (Eq. 16).
     pub reference: Option<toml::Table>,
     /// Which run folders are kept.
-    pub keep: Keep,
+    pub keep: RetainRuns,
     /// Adaptive replication, in place of `replicates`.
-    pub until: Option<Until>,
+    pub until: Option<StoppingRule>,
 }
 
 impl Default for Settings {
@@ -60,7 +60,7 @@ impl Default for Settings {
         Self {
             replicates: 1,
             reference: None,
-            keep: Keep::None,
+            keep: RetainRuns::None,
             until: None,
         }
     }
@@ -69,7 +69,7 @@ impl Default for Settings {
 /// Which run folders are kept beside the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Keep {
+pub enum RetainRuns {
     /// Of every run, with fields and pictures.
     All,
     /// Of none.
@@ -81,7 +81,7 @@ pub enum Keep {
 /// Replication until a confidence interval is narrow enough.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Until {
+pub struct StoppingRule {
     /// Quantity of the summary, or `static_reduction_percent`.
     pub key: String,
     /// Half width that the interval must not exceed.
@@ -192,11 +192,12 @@ impl StudyFile {
     /// When it is too odd for TOML, and when a file cannot be read.
     pub(super) fn portable(&self) -> Result<(String, Vec<Copy>), StudyError> {
         let mut table = toml::Table::new();
-        let base: toml::Table = not_too_deep(&self.base.text)
-            .parse()
-            .map_err(|error: toml::de::Error| {
-                CaseError::syntax(&Source::new(&self.base.name, &self.base.text, &[]), 0, &error)
-            })?;
+        let base: toml::Table =
+            limit_nesting(&self.base.text)
+                .parse()
+                .map_err(|error: toml::de::Error| {
+                    CaseError::syntax(&Source::new(&self.base.name, &self.base.text, &[]), 0, &error)
+                })?;
         table.insert("base".to_owned(), base.into());
         table.extend(
             self.table
@@ -249,7 +250,7 @@ impl StudyFile {
     /// A sentence that names place, value, bound and remedy.
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
         let mut source = Source::new(file, text, &[]);
-        let root = DeTable::parse(not_too_deep(text))
+        let root = DeTable::parse(limit_nesting(text))
             .map_err(|error| CaseError::syntax(&source, 0, &error))?
             .into_inner();
         source.note_places(&root);
@@ -278,7 +279,7 @@ impl StudyFile {
             };
             Err(source.error_at(key.span(), sentence))?;
         }
-        refuse_clashes(&axes, &source)?;
+        refuse_conflicts(&axes, &source)?;
         // The text has been read as TOML once, so that it is a table.
         let table = text
             .parse()
@@ -383,7 +384,7 @@ fn count_points(axes: &[Axis]) -> Result<usize, StudyError> {
 }
 
 /// Axes that overwrite each other, or whose columns could not be told from others in the tables.
-fn refuse_clashes(axes: &[Axis], source: &Source) -> Result<(), CaseError> {
+fn refuse_conflicts(axes: &[Axis], source: &Source) -> Result<(), CaseError> {
     let (mut columns, mut keys) = (HashSet::new(), BTreeSet::new());
     for (k, axis) in axes.iter().enumerate() {
         let refuse = |sentence: String| Err(source.error(&format!("axes.{k}"), sentence));
@@ -398,7 +399,7 @@ fn refuse_clashes(axes: &[Axis], source: &Source) -> Result<(), CaseError> {
             }
         }
         for key in axis.keys() {
-            if let Some(earlier) = axis::displaced(key, &keys) {
+            if let Some(earlier) = axis::replaced_key(key, &keys) {
                 return refuse(format!(
                     "this axis sets `{key}`, which leaves nothing of `{earlier}` of an axis before it: put it before \
                      that one, or keep one of them"

@@ -4,15 +4,15 @@
 //! [`Simulation`](crate::Simulation) steps either and shows observers what it found.
 
 mod fused;
-mod look;
+mod recompute;
 mod reference;
 
 use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
 
 use self::fused::Fused;
-pub(crate) use self::look::TOGETHER;
-use self::look::look;
+pub(crate) use self::recompute::CHUNK_BLOCKS;
+use self::recompute::read_blocks;
 use self::reference::Reference;
 use crate::checkpoint::{Checkpoint, Numbers};
 use crate::observe::Peak;
@@ -96,12 +96,12 @@ pub struct Totals {
     /// Blocks in contact that do.
     pub n_slipping: usize,
     /// Energies held, if they were asked for.
-    pub held: Option<Held>,
+    pub stored_energy: Option<StoredEnergy>,
 }
 
 /// Energies held at t_n.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Held {
+pub struct StoredEnergy {
     /// Kinetic energy, the mean of the half steps before and after.
     pub kinetic: f64,
     /// Of the springs between blocks.
@@ -234,7 +234,14 @@ impl Engine {
     }
 
     /// Blocks `first`, `first + 1`, ... at step `number`, the present one.
-    pub(crate) fn look(&self, model: &Model, number: u64, dt_star: f64, first: usize, blocks: &mut [Block]) {
+    pub(crate) fn read_blocks(
+        &self,
+        model: &Model,
+        number: u64,
+        dt_star: f64,
+        first: usize,
+        blocks: &mut [Block],
+    ) {
         match self {
             Self::Reference(kernel) => {
                 for (b, block) in (first..).zip(blocks) {
@@ -243,8 +250,11 @@ impl Engine {
             }
             Self::Fused(kernel) => {
                 let time_star = number as f64 * dt_star;
-                for (first, blocks) in (first..).step_by(TOGETHER).zip(blocks.chunks_mut(TOGETHER)) {
-                    look(model, time_star, first, blocks, |b| kernel.motion(b));
+                for (first, blocks) in (first..)
+                    .step_by(CHUNK_BLOCKS)
+                    .zip(blocks.chunks_mut(CHUNK_BLOCKS))
+                {
+                    read_blocks(model, time_star, first, blocks, |b| kernel.motion(b));
                 }
             }
         }

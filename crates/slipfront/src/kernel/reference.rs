@@ -6,11 +6,12 @@
 
 use fearless_simd::{Level, dispatch};
 
-use super::{Block, Held, Totals};
+use super::{Block, StoredEnergy, Totals};
 use crate::checkpoint::Checkpoint;
 use crate::friction::{self, Integrator, Law};
 use crate::lattice::Bond;
-use crate::{Contact, Edges, FrictionLaw, Lattice, Model, State, VectorField, lanes};
+use crate::reductions;
+use crate::{Contact, Edges, FrictionLaw, Lattice, Model, State, VectorField};
 
 /// The state of all blocks, and the forces of the latest step.
 #[derive(Debug)]
@@ -21,8 +22,8 @@ pub(crate) struct Reference {
     state: State,
     forces: Forces,
     /// Thresholds `mu_s F_n` and `mu_k F_n`.
-    hold: Vec<f64>,
-    slide: Vec<f64>,
+    static_limit: Vec<f64>,
+    kinetic_force: Vec<f64>,
     first_slip: Vec<f64>,
     stress_square_max: f64,
 }
@@ -56,8 +57,8 @@ impl Reference {
                 contact: vec![Contact::Stuck; n],
                 springs: [zeros(), zeros(), zeros(), zeros()],
             },
-            hold: (0..n).map(|b| model.surface.hold(b)).collect(),
-            slide: (0..n).map(|b| model.surface.slide(b)).collect(),
+            static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
+            kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
             first_slip: vec![f64::NAN; n],
             stress_square_max: 0.0,
         }
@@ -120,10 +121,10 @@ impl Reference {
             ..
         } = &mut self.forces;
         let before = &self.state.velocity;
-        rub(
+        apply_friction(
             law,
             integrator,
-            [&self.hold, &self.slide],
+            [&self.static_limit, &self.kinetic_force],
             [&before.x, &before.y],
             [&drive.x, &drive.y, &lattice.x, &lattice.y],
             [&mut friction.x, &mut friction.y],
@@ -144,35 +145,36 @@ impl Reference {
     /// Sums over all blocks of what the step has found.
     #[inline(always)]
     fn measure(&mut self, model: &Model, time_star: f64, energies: bool) -> Totals {
-        let n = self.hold.len();
+        let n = self.static_limit.len();
         let [ux, uy] = cut(&self.state.displacement, n);
         let ([bx, by], [ax, ay]) = (cut(&self.forces.velocity, n), cut(&self.state.velocity, n));
         let ([lx, ly], [fx, fy]) = (cut(&self.forces.lattice, n), cut(&self.forces.friction, n));
         let (textured, contact) = (&model.surface.textured[..n], &self.forces.contact[..n]);
-        let sum = |[x, y]: [&[f64]; 2]| [lanes::sum(n, |b| x[b]), lanes::sum(n, |b| y[b])];
-        let squares = |[x, y]: [&[f64]; 2]| lanes::sum(n, |b| x[b] * x[b] + y[b] * y[b]);
+        let sum = |[x, y]: [&[f64]; 2]| [reductions::sum(n, |b| x[b]), reductions::sum(n, |b| y[b])];
+        let squares = |[x, y]: [&[f64]; 2]| reductions::sum(n, |b| x[b] * x[b] + y[b] * y[b]);
         let (vx, vy) = (|b: usize| 0.5 * (bx[b] + ax[b]), |b: usize| 0.5 * (by[b] + ay[b]));
         let sliding = || contact.iter().map(|&c| c == Contact::Sliding);
-        let stress_square = lanes::largest(n, |b| {
+        let stress_square = reductions::largest(n, |b| {
             let (x, y) = (fx[b] + lx[b], fy[b] + ly[b]);
             if textured[b] { 0.0 } else { x * x + y * y }
         });
         self.stress_square_max = self.stress_square_max.max(stress_square);
         Totals {
             displacement: sum([ux, uy]),
-            velocity: [lanes::sum(n, vx), lanes::sum(n, vy)],
+            velocity: [reductions::sum(n, vx), reductions::sum(n, vy)],
             velocity_after: sum([ax, ay]),
-            velocity_square: lanes::sum(n, |b| vx(b) * vx(b) + vy(b) * vy(b)),
-            friction_power: lanes::sum(n, |b| fx[b] * vx(b) + fy[b] * vy(b)),
+            velocity_square: reductions::sum(n, |b| vx(b) * vx(b) + vy(b) * vy(b)),
+            friction_power: reductions::sum(n, |b| fx[b] * vx(b) + fy[b] * vy(b)),
             n_sliding: sliding().filter(|&slides| slides).count(),
             n_slipping: sliding()
                 .zip(textured)
                 .filter(|&(slides, textured)| slides && !textured)
                 .count(),
-            held: energies.then(|| {
-                let [x, y] = model.drive.reach(time_star);
-                let stretch_square = lanes::sum(n, |b| (x - ux[b]) * (x - ux[b]) + (y - uy[b]) * (y - uy[b]));
-                Held {
+            stored_energy: energies.then(|| {
+                let [x, y] = model.drive.position(time_star);
+                let stretch_square =
+                    reductions::sum(n, |b| (x - ux[b]) * (x - ux[b]) + (y - uy[b]) * (y - uy[b]));
+                StoredEnergy {
                     kinetic: 0.25 * (squares([bx, by]) + squares([ax, ay])),
                     lattice: lattice_energy(&model.lattice, &self.state.displacement, model.epsilon),
                     drive_springs: 0.5 * model.drive.k_drive * stretch_square,
@@ -237,10 +239,10 @@ fn move_blocks(state: &mut State, dt_star: f64) {
 #[inline(always)]
 fn drive_forces(model: &Model, state: &State, time_star: f64, force: &mut VectorField) {
     let drive = &model.drive;
-    let reach = drive.reach(time_star);
+    let position = drive.position(time_star);
     let pull = |force: &mut [f64], u: &[f64], axis: usize| {
         for (f, u) in force.iter_mut().zip(u) {
-            *f = drive.k_drive * (reach[axis] - u) + drive.constant_force[axis];
+            *f = drive.k_drive * (position[axis] - u) + drive.constant_force[axis];
         }
     };
     pull(&mut force.x, &state.displacement.x, 0);
@@ -353,7 +355,7 @@ fn add_pairs(own: [&[f64]; 4], behind: [&[f64]; 4], total: &mut [f64]) {
 /// The friction law on every block: thresholds, velocities and forces in; friction, velocities and contact out.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)] // One slice per array, known not to overlap: the loop is free of checks.
-fn rub<L: Law>(
+fn apply_friction<L: Law>(
     law: &L,
     integrator: &Integrator,
     thresholds: [&[f64]; 2],
@@ -364,7 +366,7 @@ fn rub<L: Law>(
     contact: &mut [Contact],
 ) {
     let n = contact.len();
-    let [hold, slide] = thresholds.map(|array| &array[..n]);
+    let [static_limit, kinetic_force] = thresholds.map(|array| &array[..n]);
     let [vx, vy] = velocity.map(|array| &array[..n]);
     let [drive_x, drive_y, lattice_x, lattice_y] = forces.map(|array| &array[..n]);
     let [friction_x, friction_y] = friction.map(|array| &mut array[..n]);
@@ -374,8 +376,8 @@ fn rub<L: Law>(
             &friction::Block {
                 velocity: [vx[b], vy[b]],
                 force: [drive_x[b] + lattice_x[b], drive_y[b] + lattice_y[b]],
-                hold: hold[b],
-                slide: slide[b],
+                static_limit: static_limit[b],
+                kinetic_force: kinetic_force[b],
             },
             integrator,
         );
@@ -411,7 +413,7 @@ fn lattice_energy(lattice: &Lattice, u: &VectorField, epsilon: f64) -> f64 {
         };
         let along = beside.map_or(0.0, |beside| {
             let block = lattice.block(first, j);
-            lanes::sum(inside, |k| energy(bond, block + k, beside + k))
+            reductions::sum(inside, |k| energy(bond, block + k, beside + k))
         });
         along + beyond.unwrap_or(0.0)
     };

@@ -30,10 +30,10 @@ impl CurvePoint {
     pub(crate) fn measure(model: &Model, totals: &Totals, time_star: f64) -> Self {
         let (drive, n) = (&model.drive, model.lattice.n_blocks() as f64);
         let mean = totals.displacement.map(|sum| sum / n);
-        let reach = drive.reach(time_star);
+        let position = drive.position(time_star);
         let pull = [
-            drive.k_drive * (reach[0] - mean[0]),
-            drive.k_drive * (reach[1] - mean[1]),
+            drive.k_drive * (position[0] - mean[0]),
+            drive.k_drive * (position[1] - mean[1]),
         ];
         let [dx, dy] = drive.direction;
         Self {
@@ -127,7 +127,7 @@ impl Curve {
     }
 
     /// Whether it can have come of this new one, shown every step up to `step`.
-    pub fn continues(&self, new: &Self, step: u64) -> bool {
+    pub fn is_consistent_with(&self, new: &Self, step: u64) -> bool {
         let steps = (0..=step).step_by(new.stride.max(1) as usize);
         self.stride == new.stride && self.rows.iter().map(|row| row.step).eq(steps)
     }
@@ -137,7 +137,7 @@ impl Observer for Curve {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
         self.ledger.add(now);
         if now.last || now.step.is_multiple_of(self.stride) {
-            let energies = self.ledger.energies(now.held());
+            let energies = self.ledger.energies(now.stored_energy());
             self.rows.push(CurveRow {
                 step: now.step,
                 time_star: now.time_star,
@@ -148,7 +148,7 @@ impl Observer for Curve {
         Ok(())
     }
 
-    fn wants_energies(&self, step: u64) -> bool {
+    fn needs_energies(&self, step: u64) -> bool {
         step.is_multiple_of(self.stride)
     }
 }

@@ -5,7 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::Snapshot;
-use crate::kernel::Held;
+use crate::kernel::StoredEnergy;
 use crate::vector_field::dot;
 
 /// Energies held at an instant, and given and lost since the start.
@@ -13,9 +13,9 @@ use crate::vector_field::dot;
 pub struct Energies {
     /// Kinetic energy, the mean of the half steps before and after.
     pub kinetic: f64,
-    /// Held by the springs between blocks.
+    /// StoredEnergy by the springs between blocks.
     pub lattice: f64,
-    /// Held by the drive springs.
+    /// StoredEnergy by the drive springs.
     pub drive_springs: f64,
     /// Work done by the drive (and by a constant force) since the start.
     pub work: f64,
@@ -24,12 +24,12 @@ pub struct Energies {
     /// Lost to damping since the start.
     pub damping_loss: f64,
     /// What was held at the start.
-    pub held_at_start: f64,
+    pub stored_at_start: f64,
 }
 
 impl Energies {
     /// Energy held now.
-    pub fn held(&self) -> f64 {
+    pub fn stored_energy(&self) -> f64 {
         self.kinetic + self.lattice + self.drive_springs
     }
 
@@ -42,8 +42,11 @@ impl Energies {
     /// It falls with the square of the time step: what it misses is the motion that the last step of a slip takes
     /// from a block, at most `(mu_k F_n dt)^2/2`. A slider that only slides closes to rounding.
     pub fn error(&self) -> f64 {
-        let put_in = self.work.abs() + self.held_at_start;
-        let missing = self.work - (self.held() - self.held_at_start) - self.friction_loss - self.damping_loss;
+        let put_in = self.work.abs() + self.stored_at_start;
+        let missing = self.work
+            - (self.stored_energy() - self.stored_at_start)
+            - self.friction_loss
+            - self.damping_loss;
         if put_in > 0.0 { missing / put_in } else { 0.0 }
     }
 }
@@ -87,17 +90,17 @@ impl Ledger {
                 self.totals.friction_loss += half * (before.friction + powers.friction);
                 self.totals.damping_loss += half * (before.damping + powers.damping);
             }
-            None => self.totals.held_at_start = self.energies(now.held()).held(),
+            None => self.totals.stored_at_start = self.energies(now.stored_energy()).stored_energy(),
         }
         self.before = Some(powers);
     }
 
     /// The ledger at an instant that holds these energies.
-    pub(crate) fn energies(&self, held: Held) -> Energies {
+    pub(crate) fn energies(&self, stored: StoredEnergy) -> Energies {
         Energies {
-            kinetic: held.kinetic,
-            lattice: held.lattice,
-            drive_springs: held.drive_springs,
+            kinetic: stored.kinetic,
+            lattice: stored.lattice,
+            drive_springs: stored.drive_springs,
             ..self.totals
         }
     }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{CurvePoint, Observer, stress};
-use crate::kernel::{Block, TOGETHER};
+use crate::kernel::{Block, CHUNK_BLOCKS};
 use crate::{Lattice, RunError, Snapshot};
 
 /// A quantity with one value per block. Values are dimensionless, as everywhere in this crate.
@@ -92,12 +92,12 @@ impl Selection {
         (frame.step, frame.time_star, frame.point) = (now.step, now.time_star, now.point);
         let (lattice, textured) = (&now.model.lattice, &now.model.surface.textured);
         frame.values.iter_mut().for_each(Vec::clear);
-        let mut blocks = [Block::default(); TOGETHER];
+        let mut blocks = [Block::default(); CHUNK_BLOCKS];
         for j in (0..lattice.ny).step_by(self.stride) {
-            for begin in (0..lattice.nx).step_by(TOGETHER) {
-                let n = TOGETHER.min(lattice.nx - begin);
+            for begin in (0..lattice.nx).step_by(CHUNK_BLOCKS) {
+                let n = CHUNK_BLOCKS.min(lattice.nx - begin);
                 let first = lattice.block(begin, j);
-                now.look(first, &mut blocks[..n]);
+                now.read_blocks(first, &mut blocks[..n]);
                 for k in (0..n).filter(|k| (begin + k).is_multiple_of(self.stride)) {
                     for (field, values) in self.fields.iter().zip(&mut frame.values) {
                         values.push(field.value(&blocks[k], textured[first + k]) as f32);
@@ -127,7 +127,7 @@ impl Frames {
     }
 
     /// Whether it can have come of this new one, on this lattice, up to `step`.
-    pub fn continues(&self, new: &Self, lattice: &Lattice, step: u64) -> bool {
+    pub fn is_consistent_with(&self, new: &Self, lattice: &Lattice, step: u64) -> bool {
         let steps = self.frames.iter().map(|frame| frame.step);
         let mut frames = self.frames.iter();
         self.selection == new.selection

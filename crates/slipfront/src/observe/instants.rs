@@ -48,7 +48,7 @@ impl Instants {
     }
 
     /// Whether it can have come of this new one, on this lattice, up to `step`.
-    pub fn continues(&self, new: &Self, lattice: &Lattice, step: u64) -> bool {
+    pub fn is_consistent_with(&self, new: &Self, lattice: &Lattice, step: u64) -> bool {
         let alike = self.selection == new.selection
             && self.kinetic == new.kinetic
             && self.end_time_star == new.end_time_star;

@@ -17,7 +17,7 @@ pub use energy::{Energies, Ledger};
 pub use frames::{Field, Frame, Frames};
 pub use fronts::FirstSlip;
 pub use instants::Instants;
-pub use summary::{Doubt, Kinetic, KineticHistory, KineticStart};
+pub use summary::{Kinetic, KineticHistory, KineticStart, NoUncertainty};
 
 use crate::{RunError, Snapshot};
 
@@ -30,7 +30,7 @@ pub trait Observer {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError>;
 
     /// Whether it needs the energies held at `step`, which are not measured unasked.
-    fn wants_energies(&self, step: u64) -> bool {
+    fn needs_energies(&self, step: u64) -> bool {
         let _ = step;
         false
     }
@@ -72,8 +72,8 @@ impl<'a> Scheduled<'a> {
         }
     }
 
-    pub(crate) fn wants_energies(&self, step: u64) -> bool {
-        self.due(step) && self.observer.wants_energies(step)
+    pub(crate) fn needs_energies(&self, step: u64) -> bool {
+        self.due(step) && self.observer.needs_energies(step)
     }
 
     pub(crate) fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {

@@ -33,14 +33,14 @@ pub struct Kinetic {
     /// mu_k*, the mean of mu*.
     pub mu_star: f64,
     /// Standard error of mu_k* from blocking, or why there is none to be trusted.
-    pub uncertainty: Result<f64, Doubt>,
+    pub uncertainty: Result<f64, NoUncertainty>,
     /// Mean of N*.
     pub sliding_percent: f64,
 }
 
 /// Why the scatter inside a window says nothing about the mean's uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Doubt {
+pub enum NoUncertainty {
     /// One half of the window holds fewer than ten independent blocks.
     TooFewBlocks {
         /// How many it holds.
@@ -89,7 +89,7 @@ impl KineticHistory {
     }
 
     /// Whether it can have come of this new one, shown every step up to `step`.
-    pub fn continues(&self, new: &Self, step: u64) -> bool {
+    pub fn is_consistent_with(&self, new: &Self, step: u64) -> bool {
         let shown = step + 1;
         self.steps_per_bin == new.steps_per_bin
             && self.in_bin == shown % self.steps_per_bin
@@ -131,10 +131,10 @@ impl Observer for KineticHistory {
             self.bins.push(Bin::default());
         }
         self.sliding_percent_max = self.sliding_percent_max.max(now.point.sliding_percent);
-        let share = 1.0 / self.steps_per_bin as f64;
+        let weight = 1.0 / self.steps_per_bin as f64;
         if let Some(bin) = self.bins.last_mut() {
-            bin.mu_star += share * now.point.mu_star;
-            bin.sliding_percent += share * now.point.sliding_percent;
+            bin.mu_star += weight * now.point.mu_star;
+            bin.sliding_percent += weight * now.point.sliding_percent;
         }
         self.in_bin = (self.in_bin + 1) % self.steps_per_bin;
         Ok(())
@@ -152,7 +152,7 @@ const NEGLIGIBLE_DRIFT: f64 = 1e-6;
 const MIN_BLOCKS: usize = 10;
 
 /// Standard error of the mean of a correlated series, if its two halves support one.
-fn uncertainty(x: &[f64], window_star: [f64; 2]) -> Result<f64, Doubt> {
+fn uncertainty(x: &[f64], window_star: [f64; 2]) -> Result<f64, NoUncertainty> {
     let halves = x.split_at(x.len() / 2);
     let (one, other) = (blocking(halves.0), blocking(halves.1));
     let found = one.blocks.min(other.blocks);
@@ -160,7 +160,7 @@ fn uncertainty(x: &[f64], window_star: [f64; 2]) -> Result<f64, Doubt> {
     let longer = |factor: f64| window_star[0] + factor * length;
     if found < MIN_BLOCKS {
         let factor = (MIN_BLOCKS as f64 / found.max(1) as f64).max(2.0);
-        return Err(Doubt::TooFewBlocks {
+        return Err(NoUncertainty::TooFewBlocks {
             found,
             needed_time_star: longer(factor),
         });
@@ -168,7 +168,7 @@ fn uncertainty(x: &[f64], window_star: [f64; 2]) -> Result<f64, Doubt> {
     let means = [mean(halves.0), mean(halves.1)];
     let difference = (means[0] - means[1]).abs();
     if difference > NEGLIGIBLE_DRIFT && difference > 3.0 * one.standard_error.hypot(other.standard_error) {
-        return Err(Doubt::Drift {
+        return Err(NoUncertainty::Drift {
             halves: means,
             needed_time_star: longer(2.0),
         });
@@ -266,10 +266,10 @@ mod tests {
             .collect();
         assert!(matches!(
             uncertainty(&drifting, [0.0, 1.0]),
-            Err(Doubt::Drift { .. } | Doubt::TooFewBlocks { .. })
+            Err(NoUncertainty::Drift { .. } | NoUncertainty::TooFewBlocks { .. })
         ));
         assert!(
-            matches!(uncertainty(&noise(30), [10.0, 20.0]), Err(Doubt::TooFewBlocks { needed_time_star, .. }) if needed_time_star >= 30.0)
+            matches!(uncertainty(&noise(30), [10.0, 20.0]), Err(NoUncertainty::TooFewBlocks { needed_time_star, .. }) if needed_time_star >= 30.0)
         );
         assert_eq!(uncertainty(&[0.5; 1000], [0.0, 1.0]), Ok(0.0));
     }

@@ -13,7 +13,7 @@ pub enum Load {
 
 impl Load {
     /// Normal force on a block in contact in units of `P l^2`.
-    pub(crate) fn share(self, textured: &[bool]) -> Result<f64, SurfaceError> {
+    pub(crate) fn normal_force_per_block(self, textured: &[bool]) -> Result<f64, SurfaceError> {
         let n_blocks = textured.len();
         let n_contact = textured.iter().filter(|&&t| !t).count();
         if n_contact == 0 {

@@ -25,7 +25,7 @@ pub struct Surface {
     /// Local kinetic coefficients `mu_ki`; 0 over a texture.
     pub mu_kinetic: Vec<f64>,
     /// Normal force on a block in contact, in units of `P l^2`.
-    share: f64,
+    normal_force_per_block: f64,
     /// The scale of all forces, `mu_s`.
     mu_static_mean: f64,
 }
@@ -50,7 +50,7 @@ impl Surface {
             textured.len(),
             "coefficients and texture belong to different lattices"
         );
-        let share = load.share(&textured)?;
+        let normal_force_per_block = load.normal_force_per_block(&textured)?;
         for b in (0..textured.len()).filter(|&b| textured[b]) {
             mu_static[b] = 0.0;
             mu_kinetic[b] = 0.0;
@@ -59,7 +59,7 @@ impl Surface {
             textured,
             mu_static,
             mu_kinetic,
-            share,
+            normal_force_per_block,
             mu_static_mean,
         })
     }
@@ -72,23 +72,27 @@ impl Surface {
             textured: vec![false; n],
             mu_static: vec![mu_static; n],
             mu_kinetic: vec![mu_kinetic; n],
-            share: 1.0,
+            normal_force_per_block: 1.0,
             mu_static_mean: 1.0,
         }
     }
 
     /// Normal force `F_n,i` on block `b` in units of `P l^2`; 0 over a texture.
     pub fn normal_force(&self, b: usize) -> f64 {
-        if self.textured[b] { 0.0 } else { self.share }
+        if self.textured[b] {
+            0.0
+        } else {
+            self.normal_force_per_block
+        }
     }
 
     /// Static threshold `mu_si F_n,i` of block `b` in units of `P mu_s l^2`.
-    pub fn hold(&self, b: usize) -> f64 {
+    pub fn static_limit(&self, b: usize) -> f64 {
         self.mu_static[b] / self.mu_static_mean * self.normal_force(b)
     }
 
     /// Kinetic friction `mu_ki F_n,i` of block `b` in units of `P mu_s l^2`.
-    pub fn slide(&self, b: usize) -> f64 {
+    pub fn kinetic_force(&self, b: usize) -> f64 {
         self.mu_kinetic[b] / self.mu_static_mean * self.normal_force(b)
     }
 
@@ -108,10 +112,10 @@ impl Surface {
     }
 
     /// The smallest force that breaks a block in contact loose: `min_i max(mu_si, mu_ki) F_n,i` (D12).
-    pub fn weakest(&self) -> f64 {
+    pub fn min_slip_threshold(&self) -> f64 {
         (0..self.n_blocks())
             .filter(|&b| !self.textured[b])
-            .map(|b| self.hold(b).max(self.slide(b)))
+            .map(|b| self.static_limit(b).max(self.kinetic_force(b)))
             .fold(f64::INFINITY, f64::min)
     }
 }
@@ -128,9 +132,13 @@ mod tests {
         textured[5] = true;
         let given = Coefficients::given(vec![2.0; 8], vec![1.0; 8]);
         let surface = Surface::new(given, textured, Load::Redistributed, 2.0).unwrap();
-        assert_eq!(surface.hold(0), 8.0 / 6.0);
+        assert_eq!(surface.static_limit(0), 8.0 / 6.0);
         assert_eq!(
-            (surface.hold(3), surface.slide(5), surface.mu_static[3]),
+            (
+                surface.static_limit(3),
+                surface.kinetic_force(5),
+                surface.mu_static[3]
+            ),
             (0.0, 0.0, 0.0)
         );
         let load: f64 = (0..8).map(|b| surface.normal_force(b)).sum();

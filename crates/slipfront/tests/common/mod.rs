@@ -25,7 +25,7 @@ fn executed(model: &Model, dt_star: f64, state: Option<State>) -> Simulation<'_>
         kernel: crate::KERNEL,
         ..Execution::default()
     };
-    Simulation::executed(model, dt_star, state, execution)
+    Simulation::with_execution(model, dt_star, state, execution)
 }
 
 /// A run described by the groups of Eq. 11. The default is the baseline of Fig. 3.

@@ -2,7 +2,7 @@
 //! stop.
 
 use rstest::rstest;
-use slipfront::known_answers::SlipCycle;
+use slipfront::exact_solutions::SlipCycle;
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, State, Surface, VectorField, scales};
 
 use crate::common::{Slider, at_rest, from_state};

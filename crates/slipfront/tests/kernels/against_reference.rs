@@ -25,13 +25,13 @@ fn distance(a: &VectorField, b: &VectorField) -> f64 {
 
 /// All sums, those over all blocks divided by their number.
 fn means(totals: &Totals, n_blocks: usize) -> Vec<f64> {
-    let held = totals.held.unwrap_or_default();
+    let stored = totals.stored_energy.unwrap_or_default();
     let mut sums = vec![
         totals.velocity_square,
         totals.friction_power,
-        held.kinetic,
-        held.lattice,
-        held.drive_springs,
+        stored.kinetic,
+        stored.lattice,
+        stored.drive_springs,
     ];
     for pair in [totals.displacement, totals.velocity, totals.velocity_after] {
         sums.extend(pair);
@@ -48,7 +48,7 @@ fn assert_alike(fused: &Simulation, reference: &Simulation) {
         (there.n_sliding, there.n_slipping),
         "step {step}"
     );
-    assert_eq!(here.held.is_some(), there.held.is_some());
+    assert_eq!(here.stored_energy.is_some(), there.stored_energy.is_some());
     let n = one.model.lattice.n_blocks();
     for (a, b) in means(&here, n).iter().zip(means(&there, n)) {
         // Energies of stretched springs may be more than 1.
@@ -76,7 +76,7 @@ fn assert_alike(fused: &Simulation, reference: &Simulation) {
 
 /// Both kernels through up to `steps` steps, or until the first peak has ended; energies are asked for now and then.
 fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
-    let run = |execution| Simulation::executed(model, dt_star, state.cloned(), execution);
+    let run = |execution| Simulation::with_execution(model, dt_star, state.cloned(), execution);
     let (mut fused, mut reference) = (run(FUSED), run(REFERENCE));
     assert_alike(&fused, &reference);
     for step in 1..=steps {
@@ -94,7 +94,7 @@ fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
     // What is shown of a block is found anew from its motion.
     let bound = ROUNDING * largest(&reference.state().displacement);
     let mut together = vec![Block::default(); model.lattice.n_blocks()];
-    fused.snapshot().look(0, &mut together);
+    fused.snapshot().read_blocks(0, &mut together);
     for (b, together) in together.into_iter().enumerate() {
         let (here, there) = (fused.snapshot().block(b), reference.snapshot().block(b));
         assert_eq!(here, together, "block {b} looks otherwise alone");
@@ -143,7 +143,7 @@ fn lattices_of_every_shape(
     assert_same(&slider.model(), slider.dt_star, None, slider.steps(5.0));
 }
 
-/// Strains for which springs come from either series or the square root, and all the rest that enters a step.
+/// StrainBound for which springs come from either series or the square root, and all the rest that enters a step.
 #[rstest]
 fn forces_of_every_kind(
     #[values(0.0, 1e-6, 1e-4, 1e-3, 1e-2)] epsilon: f64,
@@ -236,7 +236,7 @@ fn whole_runs(
         ..Slider::default()
     };
     let model = slider.model();
-    let run = |execution| Simulation::executed(&model, slider.dt_star, None, execution);
+    let run = |execution| Simulation::with_execution(&model, slider.dt_star, None, execution);
     let (mut fused, mut reference) = (run(FUSED), run(REFERENCE));
     for step in 1..=slider.steps(16.0) {
         go(&mut fused, false);

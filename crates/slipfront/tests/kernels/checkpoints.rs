@@ -29,7 +29,7 @@ fn everything(simulation: &Simulation) -> Vec<u64> {
     let mut numbers = simulation.first_slip_time_star();
     numbers.extend([now.point.mu_star, simulation.contact_stress_max()]);
     let mut blocks = vec![Block::default(); now.model.lattice.n_blocks()];
-    now.look(0, &mut blocks);
+    now.read_blocks(0, &mut blocks);
     for block in blocks {
         for pair in [
             block.displacement,
@@ -51,7 +51,7 @@ fn the_reference_kernel_under_every_law(
 ) {
     let slider = slider(law);
     let (model, dt_star) = (slider.model(), slider.dt_star);
-    let start = || Simulation::executed(&model, dt_star, None, REFERENCE);
+    let start = || Simulation::with_execution(&model, dt_star, None, REFERENCE);
     let (mut plain, mut stopped) = (start(), start());
     for step in 0..slider.steps(4.0) {
         if step.is_multiple_of(every) {
@@ -91,7 +91,7 @@ fn observers_see_every_instant_once(
             Instants::new(selection, KineticStart::Auto, end_star),
         )
     };
-    let start = || Simulation::executed(&model, dt_star, None, execution);
+    let start = || Simulation::with_execution(&model, dt_star, None, execution);
     let (mut curve, mut history, mut instants) = fresh();
     let mut whole = start();
     whole
@@ -137,7 +137,7 @@ fn a_checkpoint_of_another_lattice_or_kernel_does_not_fit() {
         .model()
     });
     let checkpoint = || -> Checkpoint {
-        let simulation = Simulation::executed(&model, 0.1, None, FUSED);
+        let simulation = Simulation::with_execution(&model, 0.1, None, FUSED);
         postcard::from_bytes(&postcard::to_stdvec(&simulation.checkpoint()).unwrap()).unwrap()
     };
     assert!(Simulation::resume(&model, 0.1, checkpoint(), FUSED).is_some());

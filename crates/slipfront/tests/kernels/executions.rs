@@ -11,7 +11,7 @@ use crate::{FUSED, bits, go, has_room, stopped_and_resumed};
 fn shown(simulation: &Simulation) -> Vec<u64> {
     let now = simulation.snapshot();
     let totals = now.totals;
-    let held = totals.held.unwrap_or_default();
+    let stored = totals.stored_energy.unwrap_or_default();
     let mut numbers = vec![
         now.point.mu_star,
         now.point.mu_lateral_star,
@@ -19,9 +19,9 @@ fn shown(simulation: &Simulation) -> Vec<u64> {
         totals.friction_power,
         totals.n_sliding as f64,
         totals.n_slipping as f64,
-        held.kinetic,
-        held.lattice,
-        held.drive_springs,
+        stored.kinetic,
+        stored.lattice,
+        stored.drive_springs,
         simulation.contact_stress_max(),
     ];
     for pair in [totals.displacement, totals.velocity, totals.velocity_after] {
@@ -60,7 +60,7 @@ fn assert_same_bits(model: &Model, dt_star: f64, from: Option<&State>, steps: u6
     let stopped = of(1).into_iter().chain(of(3)).zip([1, 5, 16, 61]);
     let skipping = of(1).into_iter().skip(1).map(|execution| (execution, 16));
     let executions: Vec<_> = unstopped.chain(stopped).chain(skipping).collect();
-    let run = |execution| Simulation::executed(model, dt_star, from.cloned(), execution);
+    let run = |execution| Simulation::with_execution(model, dt_star, from.cloned(), execution);
     let mut plain = run(FUSED);
     let mut others: Vec<_> = executions.iter().map(|&(execution, _)| run(execution)).collect();
     for step in 1..=steps {
@@ -137,7 +137,7 @@ fn textures_and_strains(
     assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(4.0));
 }
 
-/// Between slips the whole slider rests, and while some blocks slip the others do. Strains take every kind of springs, and
+/// Between slips the whole slider rests, and while some blocks slip the others do. StrainBound take every kind of springs, and
 /// change it while blocks rest.
 #[rstest]
 fn slow_drives(
@@ -183,10 +183,10 @@ fn a_state_in_motion(
 #[test]
 fn the_largest_stress_may_be_that_of_the_last_step_at_rest() {
     let lattice = Lattice::free(16, 32);
-    let (pushing, held) = (lattice.block(8, 15), lattice.block(9, 16));
+    let (pushing, stored) = (lattice.block(8, 15), lattice.block(9, 16));
     let mut from = State::at_rest(512);
     from.displacement.x[pushing] = -1.0;
-    from.displacement.x[held] = -4.0;
+    from.displacement.x[stored] = -4.0;
     let model = |surface| {
         Model::new(
             lattice,
@@ -201,8 +201,8 @@ fn the_largest_stress_may_be_that_of_the_last_step_at_rest() {
     let mut surface = Surface::uniform(&lattice, 20.0, 20.0);
     let firm = model(surface.clone());
     // Thresholds that the pushing block passes after 50 steps and the held one after 80, if nothing pushes.
-    for (b, steps) in [(pushing, 50.0), (held, 80.0)] {
-        let block = Simulation::executed(&firm, dt_star, Some(from.clone()), FUSED)
+    for (b, steps) in [(pushing, 50.0), (stored, 80.0)] {
+        let block = Simulation::with_execution(&firm, dt_star, Some(from.clone()), FUSED)
             .snapshot()
             .block(b);
         let [x, y] = [0, 1].map(|axis| block.force_drive[axis] + block.force_lattice[axis]);

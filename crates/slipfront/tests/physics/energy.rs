@@ -2,7 +2,7 @@
 //! itself an exact figure for one block.
 
 use rstest::rstest;
-use slipfront::known_answers::SlipCycle;
+use slipfront::exact_solutions::SlipCycle;
 use slipfront::observe::energy::Energies;
 use slipfront::observe::{Curve, Scheduled};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, State, Stop, Surface, VectorField};
@@ -136,7 +136,7 @@ fn a_thrown_block_loses_all_its_energy_to_the_one_loss(#[case] kinetic: f64, #[c
     assert!((x.hypot(y) - way).abs() < dt, "{} {way}", x.hypot(y));
     assert!((y / x + 4.0 / 3.0).abs() < 1e-12, "it keeps its direction");
     assert!((loss - 0.5).abs() < dt && other == 0.0, "{loss}");
-    assert!(last.kinetic < 1e-12 && (last.held_at_start - 0.5).abs() < dt);
+    assert!(last.kinetic < 1e-12 && (last.stored_at_start - 0.5).abs() < dt);
     assert!(last.error().abs() < 1e-6, "{}", last.error());
 }
 

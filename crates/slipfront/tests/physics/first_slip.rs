@@ -1,7 +1,7 @@
 //! First slip: t* = (8/3) min_i max(mu_si, mu_ki)/(mu_s V*), in any direction.
 
 use rstest::rstest;
-use slipfront::known_answers::first_slip_time_star;
+use slipfront::exact_solutions::first_slip_time_star;
 use slipfront::observe::FirstSlip;
 use slipfront::surface::{Coefficients, Load};
 use slipfront::{Drive, FrictionLaw, Lattice, Model, Stop, Surface};

@@ -1,7 +1,7 @@
 //! Slip fronts under a uniform prestress run at c/sqrt(1 - tau^2).
 
 use rstest::rstest;
-use slipfront::known_answers::{Facing, front_speed};
+use slipfront::exact_solutions::{Facing, front_speed};
 use slipfront::lattice::K_STRAIGHT;
 use slipfront::observe::FirstSlip;
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Stop, Surface};

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use rstest::rstest;
-use slipfront::known_answers::{LatticeWave, lattice_waves, leapfrog_frequency};
+use slipfront::exact_solutions::{LatticeWave, lattice_waves, leapfrog_frequency};
 use slipfront::lattice::{K_DRIVE, POISSON_RATIO, dt_star_limit};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, State, Surface, VectorField, scales};
 

@@ -144,7 +144,7 @@ fn time_is_a_product() {
     }
     let exact = 1000.0 * 0.03;
     assert_eq!(
-        simulation.snapshot().model.drive.reach(simulation.time_star()),
+        simulation.snapshot().model.drive.position(simulation.time_star()),
         [exact, 0.0]
     );
 }

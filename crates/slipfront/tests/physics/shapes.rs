@@ -1,7 +1,7 @@
 //! Every shape of lattice: single blocks, chains, the smallest squares, rectangles.
 
 use rstest::rstest;
-use slipfront::known_answers::lattice_waves;
+use slipfront::exact_solutions::lattice_waves;
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, State, Surface, VectorField};
 
 use crate::common::{Slider, at_rest, from_state};
@@ -177,8 +177,8 @@ fn a_chain_pulled_across_is_a_row_of_single_blocks() {
     for b in 0..10 {
         let lattice = Lattice::free(1, 1);
         let surface = Surface::uniform(&lattice, drawn.mu_static[b], drawn.mu_kinetic[b]);
-        assert_eq!(surface.hold(0), model.surface.hold(b));
-        assert_eq!(surface.slide(0), model.surface.slide(b));
+        assert_eq!(surface.static_limit(0), model.surface.static_limit(b));
+        assert_eq!(surface.kinetic_force(0), model.surface.kinetic_force(b));
         let alone = Model::new(lattice, surface, model.drive, model.damping, 0.0, model.law);
         let mut alone = at_rest(&alone, 0.1);
         for _ in 0..3000 {
@@ -219,7 +219,7 @@ fn small_and_odd_lattices_go_through_their_transition(
         ..Slider::default()
     };
     let peak = slider.onset();
-    let (weakest, drawn) = (slider.model().surface.weakest(), slider.coefficients());
+    let (weakest, drawn) = (slider.model().surface.min_slip_threshold(), slider.coefficients());
     let strongest = drawn.mu_static.iter().fold(0.0_f64, |m, mu| m.max(*mu));
     // Between the weakest and the strongest block, but for the k_s V^2 of the slip itself.
     assert!(

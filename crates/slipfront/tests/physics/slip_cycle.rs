@@ -1,7 +1,7 @@
 //! One block, and a uniform lattice, which moves as one: slip, stop, stick, and slip again.
 
 use rstest::rstest;
-use slipfront::known_answers::SlipCycle;
+use slipfront::exact_solutions::SlipCycle;
 
 use crate::common::{Slider, at_rest};
 

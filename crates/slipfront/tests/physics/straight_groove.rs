@@ -1,7 +1,7 @@
 //! A straight groove before anything slips: how the pull on the missing rows loads the rows at its edge.
 
 use rstest::rstest;
-use slipfront::known_answers::{Facing, groove_edge_factor};
+use slipfront::exact_solutions::{Facing, groove_edge_factor};
 use slipfront::observe::FirstSlip;
 use slipfront::surface::Orientation;
 use slipfront::{Edges, Stop};

@@ -39,7 +39,10 @@ fn blocks_in_contact_carry_the_whole_load() {
             let kept = |mu: f64| if over { 0.0 } else { mu };
             assert_eq!(surface.mu_static[b], kept(drawn.mu_static[b]));
             assert_eq!(surface.mu_kinetic[b], kept(drawn.mu_kinetic[b]));
-            assert!((surface.hold(b) - hold).abs() < 1e-15 && (surface.slide(b) - slide).abs() < 1e-15);
+            assert!(
+                (surface.static_limit(b) - hold).abs() < 1e-15
+                    && (surface.kinetic_force(b) - slide).abs() < 1e-15
+            );
         }
         let kept = Slider {
             load: Load::Kept,
@@ -122,7 +125,7 @@ fn the_largest_contact_stress_is_over_blocks_in_contact_and_all_steps() {
     let mut blocks = [Block::default(); 625];
     let mut by_hand = 0.0_f64;
     for _ in 0..1200 {
-        simulation.snapshot().look(0, &mut blocks);
+        simulation.snapshot().read_blocks(0, &mut blocks);
         for b in (0..625).filter(|&b| !model.surface.textured[b]) {
             by_hand = by_hand.max(stress::contact_stress(&blocks[b]));
         }

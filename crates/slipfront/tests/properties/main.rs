@@ -143,7 +143,7 @@ proptest! {
         let carried = if slider.load == Load::Kept { n - n_textured } else { n };
         prop_assert!((load / carried as f64 - 1.0).abs() < 1e-12);
         for (b, &over) in textured.iter().enumerate() {
-            let felt = [surface.hold(b), surface.slide(b), surface.normal_force(b)];
+            let felt = [surface.static_limit(b), surface.kinetic_force(b), surface.normal_force(b)];
             let nothing = felt == [0.0; 3];
             prop_assert!(felt.iter().all(|&f| f >= 0.0) && (!over || nothing));
         }
@@ -267,10 +267,10 @@ proptest! {
                 let ([fx, fy], [vx, vy]) = (block.force_friction, block.velocity);
                 let friction = (fx * fx + fy * fy).sqrt();
                 if block.slides() {
-                    prop_assert!((friction - model.surface.slide(b)).abs() < 1e-12);
+                    prop_assert!((friction - model.surface.kinetic_force(b)).abs() < 1e-12);
                     prop_assert!(fx * vx + fy * vy <= 0.0);
                 } else if before.at(b) == [0.0, 0.0] {
-                    let threshold = model.surface.hold(b).max(model.surface.slide(b));
+                    let threshold = model.surface.static_limit(b).max(model.surface.kinetic_force(b));
                     prop_assert!(friction <= threshold * (1.0 + 1e-14));
                     let (drive, lattice) = (block.force_drive, block.force_lattice);
                     prop_assert_eq!([fx, fy], [-(drive[0] + lattice[0]), -(drive[1] + lattice[1])]);
@@ -293,7 +293,7 @@ proptest! {
         let (model, n) = (slider.model(), lattice.n_blocks());
         let run = |kernel, threads, skips| {
             let state = moves.then(|| thrown(n, 0.2, 5));
-            Simulation::executed(&model, dt_star, state, Execution { kernel, threads, skips })
+            Simulation::with_execution(&model, dt_star, state, Execution { kernel, threads, skips })
         };
         let mut plain = run(Kernel::Fused, 1, false);
         let mut other = run(Kernel::Fused, threads, skips);

@@ -95,7 +95,7 @@ fn case(input: &[u8]) {
     match Case::new(file, "case", &repository("cases")) {
         Err(error) => readable(&error),
         Ok(case) => {
-            assert!(case.schedule.last_step >= 1 && case.schedule.dt_star > 0.0);
+            assert!(case.time_plan.last_step >= 1 && case.time_plan.dt_star > 0.0);
             assert!(case.groups.v_star.is_finite() && case.groups.omega_star.is_finite());
             assert!(case.texture.meshed_percent >= 0.0 && case.texture.meshed_percent <= 100.0);
             for warning in case.warnings() {

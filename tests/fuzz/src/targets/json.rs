@@ -108,6 +108,7 @@ fn manifests() -> Vec<Vec<u8>> {
     let whole = Manifest {
         version: "0.1.0".to_owned(),
         revision: Some("0123abc".to_owned()),
+        build: "slipfront 0.1.0, sources 0123456789abcdef".to_owned(),
         kernel: "fused".to_owned(),
         simd_width: "avx2".to_owned(),
         threads: 2,

@@ -13,12 +13,14 @@ use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::contents::own_bytes;
 use slipfront_run::running::Running;
 
-use super::{CaseArgs, print, set_threads};
+use crate::case_args::CaseArgs;
 use crate::failure::Failure;
-use crate::progress::Progress;
+use crate::print::print;
+use crate::progress::run::RunProgress;
 use crate::report;
 use crate::saving::{Interval, Saving};
 use crate::signals::Signals;
+use crate::threads::set_threads;
 
 /// Run a case: print its physics, show progress, write results and pictures
 #[derive(Args)]
@@ -122,9 +124,9 @@ fn complete(
     let (threads, talks) = (manner.threads, manner.talks());
     let started = checkpoints.started();
     let mut saving = Saving::new(&out, checkpoints, manner.interval, manner.signals);
-    let mut progress = Progress::new(&running, manner.quiet);
+    let mut progress = RunProgress::new(&running, manner.quiet);
     let reason = loop {
-        match running.advance(case.steps_per_look()) {
+        match running.advance(case.steps_per_poll()) {
             Ok(Some(reason)) => break reason,
             Ok(None) => {}
             Err(error) => {

@@ -13,8 +13,8 @@ use slipfront_run::running::Running;
 use slipfront_run::verify::{VerifyError, expect_as_written};
 
 use super::{Manner, complete};
-use crate::commands::print;
 use crate::failure::Failure;
+use crate::print::print;
 use crate::report;
 
 pub(super) fn resume(path: &Path, previous: bool, manner: Manner) -> Result<(), Failure> {
@@ -37,7 +37,7 @@ pub(super) fn resume(path: &Path, previous: bool, manner: Manner) -> Result<(), 
         }
         Some(saved) => {
             let checkpoints = Checkpoints::after(path, &case, &saved);
-            let from = format!("step {} of {}", saved.step, case.schedule.last_step);
+            let from = format!("step {} of {}", saved.step, case.time_plan.last_step);
             let running = Running::resume(&case, manner.threads, saved.state).ok_or_else(|| {
                 let sentence = "is not one of a run of its case";
                 Failure::input(anyhow::anyhow!(

@@ -7,7 +7,7 @@ use slipfront_run::study::{Plan, StudyFolder, collect, is_study, refuse_foreign,
 
 use super::run::finish;
 use crate::failure::Failure;
-use crate::say::say;
+use crate::print_stderr::print_stderr;
 
 /// Unite the shards of a study: their records, tables and pictures; may be repeated
 #[derive(Args)]
@@ -37,7 +37,7 @@ impl Merge {
             taken += folder.records.merge(shard).map_err(Failure::running)?;
         }
         if !self.quiet {
-            say(&format!(
+            print_stderr(&format!(
                 "{taken} runs taken over from {} shards",
                 self.shards.len()
             ));

@@ -4,16 +4,18 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use slipfront_case::disk::is_same;
 use slipfront_run::study;
 use slipfront_run::study::{Plan, RunKey, Shard, StudyError, StudyFile, StudyFolder, StudyResults};
 
-use crate::commands::{is_same, print, set_threads};
 use crate::failure::Failure;
+use crate::print::print;
+use crate::print_stderr::print_stderr;
 use crate::probe::seconds_per_step;
-use crate::progress::StudyProgress;
+use crate::progress::study::StudyProgress;
 use crate::report;
-use crate::say::say;
 use crate::signals::Signals;
+use crate::threads::set_threads;
 
 #[derive(Args)]
 pub(crate) struct StudyRun {
@@ -124,13 +126,13 @@ fn complete(plan: &Plan, folder: &mut StudyFolder, threads: usize, quiet: bool) 
 /// What is to be known of a folder that has been used before.
 fn notes(folder: &StudyFolder) {
     if folder.records.damaged > 0 {
-        say(&format!(
+        print_stderr(&format!(
             "note: {} damaged lines of the record file are passed over; their runs count as not run",
             folder.records.damaged
         ));
     }
     if folder.changed {
-        say(
+        print_stderr(
             "note: the study has changed since this folder was last used; runs that still belong to it are kept",
         );
     }

@@ -7,8 +7,8 @@ use slipfront_run::study::slurm::{Batch, script};
 use slipfront_run::study::{Plan, StudyFile};
 
 use super::run::refuse_large;
-use crate::commands::print;
 use crate::failure::Failure;
+use crate::print::print;
 
 /// Print a batch script for Slurm: few tasks, each using all cores of its node, that can be requeued
 #[derive(Args)]

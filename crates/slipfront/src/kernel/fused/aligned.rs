@@ -24,17 +24,17 @@ impl Aligned {
 impl Aligned {
     /// The cache lines from element `k` on, which may lie beyond the end.
     #[inline(always)]
-    pub(super) fn lines(&self, k: usize) -> Lines {
-        Lines(self.as_ptr().wrapping_add(k).cast())
+    pub(super) fn lines(&self, k: usize) -> CacheLines {
+        CacheLines(self.as_ptr().wrapping_add(k).cast())
     }
 }
 
 /// Cache lines that will be needed. A lattice larger than the cache would otherwise be waited for: the arrays are many, and
 /// what moves first in a tile is far from what was touched last.
 #[derive(Clone, Copy)]
-pub(super) struct Lines(*const i8);
+pub(super) struct CacheLines(*const i8);
 
-impl Lines {
+impl CacheLines {
     /// Asks the processor to fetch the line of the given number.
     #[inline(always)]
     pub(super) fn prefetch(self, line: usize) {

@@ -4,13 +4,13 @@ use fearless_simd::{Simd, SimdBase};
 
 use super::aligned::{Aligned, Vectors};
 use super::blocks::{
-    ChunksMut, FrictionLoop, Halfway, LatticeLoop, Step, Sums, TileSums, UpwardLoop, friction,
+    ChunksMut, FreeMotion, FrictionLoop, LatticeLoop, Step, Sums, TileSums, UpwardLoop, friction,
     lattice_forces, spring, stretch_square, upward_springs,
 };
 use super::layout::{Layout, TILE};
-use super::rest::{Resting, patience};
+use super::rest::{RestingTile, steps_until_slip};
 use super::springs::Geometry;
-use super::vector::{LANES, Plane, load, load_plane, splat};
+use super::vector::{LANES, Vec2x8, load, load_vec2, splat};
 use crate::lattice::Bond;
 use crate::{Model, State};
 
@@ -21,7 +21,7 @@ pub(super) struct Tile {
     /// Whether an element of it moves, ghosts included.
     pub(super) moving: bool,
     /// The first step at which a block of it may break, if nothing around it moves; 0 if nobody has looked.
-    pub(super) wake: u64,
+    pub(super) active_from_step: u64,
     /// Largest u_x, -u_x, u_y, -u_y of its blocks, when last looked.
     pub(super) extent: [f64; 4],
     /// Whether it has moved since.
@@ -30,15 +30,15 @@ pub(super) struct Tile {
 
 /// What is to be done with a tile in a sweep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Order {
+pub(super) struct TileTask {
     /// A block of it or beside it moves, or a block of it may break.
     pub(super) active: bool,
     /// It was left alone until now.
-    pub(super) wakes: bool,
+    pub(super) was_skipped: bool,
     /// Its upward springs are needed, by itself or by a tile to the north.
-    pub(super) near: bool,
+    pub(super) needs_springs: bool,
     /// No block of it or beside it moves: it may be left alone until one breaks.
-    pub(super) quiet: bool,
+    pub(super) newly_resting: bool,
 }
 
 /// A run of tiles with all that one thread needs to take them through a step.
@@ -53,20 +53,20 @@ pub(super) struct Band {
     /// Number of elements, whole vectors.
     pub(super) len: usize,
     pub(super) tiles: Vec<Tile>,
-    pub(super) orders: Vec<Order>,
+    pub(super) tasks: Vec<TileTask>,
     /// Elements before and after the band whose displacements it knows.
     pub(super) halo: usize,
     /// With halos: displacements at t_n.
     pub(super) displacement: Vectors,
     /// Velocities at t_n + dt/2.
     pub(super) velocity: Vectors,
-    hold_squares: Aligned,
-    slide_impulses: Aligned,
+    static_limit_squares: Aligned,
+    kinetic_impulses: Aligned,
     pub(super) first_slip: Aligned,
     /// With the front halo: springs to the east, to the north-west, to the next row at all.
     masks: [Vec<u8>; 3],
     blocks: Vec<u8>,
-    touching: Vec<u8>,
+    in_contact: Vec<u8>,
     /// Which elements move, ghosts included.
     moving: Vec<u8>,
     slipped: Vec<u8>,
@@ -77,7 +77,7 @@ pub(super) struct Band {
     /// What the friction law leaves half-way.
     drive: Vectors,
     free: Vectors,
-    taken: Aligned,
+    removed_fraction: Aligned,
     /// Elements from a row to the next.
     stride: usize,
 }
@@ -118,38 +118,39 @@ impl Band {
             first,
             len,
             tiles: vec![Tile::default(); tiles.len()],
-            orders: vec![Order::default(); tiles.len()],
+            tasks: vec![TileTask::default(); tiles.len()],
             halo,
             displacement: Vectors::zeros(halo + len + halo),
             velocity: Vectors::zeros(len),
-            hold_squares: Aligned::filled(len, f64::INFINITY),
+            static_limit_squares: Aligned::filled(len, f64::INFINITY),
             // A ghost has the velocity of the block that it copies: only endless friction keeps it from sliding by itself.
-            slide_impulses: Aligned::filled(len, f64::INFINITY),
+            kinetic_impulses: Aligned::filled(len, f64::INFINITY),
             first_slip: Aligned::filled(len, f64::NAN),
             masks,
             blocks: bytes(),
-            touching: bytes(),
+            in_contact: bytes(),
             moving: bytes(),
             slipped: bytes(),
             upward: [Vectors::zeros(ring), Vectors::zeros(ring), Vectors::zeros(ring)],
             lattice: Vectors::zeros(TILE),
             drive: Vectors::zeros(TILE),
             free: Vectors::zeros(TILE),
-            taken: Aligned::filled(TILE, 0.0),
+            removed_fraction: Aligned::filled(TILE, 0.0),
             stride: layout.stride,
         };
-        let impulse = Step::new(model, 0, dt_star).impulse;
+        let force_to_velocity = Step::new(model, 0, dt_star).force_to_velocity;
         for k in 0..len {
             let Some(b) = layout.block(first + k) else {
                 continue;
             };
-            let (hold, slide) = (model.surface.hold(b), model.surface.slide(b));
-            band.hold_squares[k] = hold * hold;
-            band.slide_impulses[k] = impulse * slide;
+            let (static_limit, kinetic_force) =
+                (model.surface.static_limit(b), model.surface.kinetic_force(b));
+            band.static_limit_squares[k] = static_limit * static_limit;
+            band.kinetic_impulses[k] = force_to_velocity * kinetic_force;
             let bit = 1 << (k % LANES);
             band.blocks[k / LANES] |= bit;
             if !model.surface.textured[b] {
-                band.touching[k / LANES] |= bit;
+                band.in_contact[k / LANES] |= bit;
             }
             band.tiles[k / TILE].extent_is_old = true;
             if let Some(state) = state {
@@ -167,8 +168,8 @@ impl Band {
     /// Takes over when blocks first slid, as if every tile had just been swept: what a checkpoint tells of contact stresses
     /// includes those of tiles at rest.
     pub(super) fn resume(&mut self, layout: &Layout, first_slip: &[f64]) {
-        for order in &mut self.orders {
-            order.active = true;
+        for task in &mut self.tasks {
+            task.active = true;
         }
         for k in 0..self.len {
             let Some(b) = layout.block(self.first + k) else {
@@ -198,14 +199,14 @@ impl Band {
     }
 
     /// Marks all tiles that hold a moving element or an element that a spring joins to one.
-    pub(super) fn mark_touched(&self, layout: &Layout, touched: &mut [bool]) {
+    pub(super) fn mark_moving_neighbours(&self, layout: &Layout, has_moving_neighbour: &mut [bool]) {
         for t in (0..self.tiles.len()).filter(|&t| self.tiles[t].moving) {
             let elements = self.elements(t);
             let mut mark = |from: usize, to: usize| {
                 let (first, last) = (self.first + from, self.first + to - 1);
                 layout
                     .tiles_around(first, last)
-                    .for_each(|tile| touched[tile] = true);
+                    .for_each(|tile| has_moving_neighbour[tile] = true);
             };
             if self.tiles[t].sums.sliding > FEW {
                 mark(elements.start, elements.end);
@@ -246,8 +247,8 @@ impl Band {
             if t + ahead < n_tiles {
                 self.advance(simd, t + ahead, step.moves);
             }
-            let (order, elements) = (self.orders[t], self.elements(t));
-            if order.near {
+            let (task, elements) = (self.tasks[t], self.elements(t));
+            if task.needs_springs {
                 self.upward(
                     simd,
                     geometry,
@@ -255,17 +256,17 @@ impl Band {
                     self.halo + elements.end,
                 );
             }
-            if order.active {
-                if energies || order.quiet {
+            if task.active {
+                if energies || task.newly_resting {
                     self.tile::<S, G, true>(simd, geometry, step, t);
                 } else {
                     self.tile::<S, G, false>(simd, geometry, step, t);
                 }
             }
-            if order.quiet && self.tiles[t].sums.sliding == 0 {
-                self.tiles[t].wake = step
+            if task.newly_resting && self.tiles[t].sums.sliding == 0 {
+                self.tiles[t].active_from_step = step
                     .number
-                    .saturating_add(self.patience(simd, model, step, t).max(1));
+                    .saturating_add(self.steps_until_slip(simd, model, step, t).max(1));
             }
         }
     }
@@ -382,8 +383,8 @@ impl Band {
         let next = elements.start + TILE;
         let moving_next = next + self.tiles_ahead() * TILE;
         let ahead = [
-            self.hold_squares.lines(next),
-            self.slide_impulses.lines(next),
+            self.static_limit_squares.lines(next),
+            self.kinetic_impulses.lines(next),
             self.displacement.x.lines(self.halo + moving_next),
             self.displacement.y.lines(self.halo + moving_next),
             self.velocity.x.lines(moving_next),
@@ -393,33 +394,33 @@ impl Band {
         let stretch = FrictionLoop {
             displacement: chunks(&self.displacement, start, n),
             lattice: chunks(&self.lattice, 0, n),
-            hold_squares: self.hold_squares[elements.clone()].as_chunks().0,
-            slide_impulses: self.slide_impulses[elements.clone()].as_chunks().0,
+            static_limit_squares: self.static_limit_squares[elements.clone()].as_chunks().0,
+            kinetic_impulses: self.kinetic_impulses[elements.clone()].as_chunks().0,
             blocks: &self.blocks[vectors.clone()],
-            touching: &self.touching[vectors.clone()],
+            in_contact: &self.in_contact[vectors.clone()],
             velocity: chunks_mut(&mut self.velocity, elements.start, n),
             moving: &mut self.moving[vectors.clone()],
             slipped: &mut self.slipped[vectors],
             first_slip: self.first_slip[elements.clone()].as_chunks_mut().0,
             ahead,
         };
-        let halfway = Halfway {
+        let halfway = FreeMotion {
             drive: chunks_mut(&mut self.drive, 0, n),
             free: chunks_mut(&mut self.free, 0, n),
-            taken: self.taken[..n].as_chunks_mut().0,
+            removed_fraction: self.removed_fraction[..n].as_chunks_mut().0,
         };
         friction::<S, ENERGY>(simd, step, stretch, halfway, &mut sums);
         let tile = &mut self.tiles[t];
         tile.sums = sums.totals();
         tile.moving = tile.sums.sliding > 0;
-        tile.wake = 0;
+        tile.active_from_step = 0;
     }
 
     /// Springs to the east of the eight elements from `first` on.
     #[inline(always)]
-    fn east_springs<S: Simd, G: Geometry>(&self, simd: S, geometry: G, first: usize) -> Plane<S> {
-        let here = load_plane(simd, chunks(&self.displacement, first, LANES), 0);
-        let there = load_plane(simd, chunks(&self.displacement, first + 1, LANES), 0);
+    fn east_springs<S: Simd, G: Geometry>(&self, simd: S, geometry: G, first: usize) -> Vec2x8<S> {
+        let here = load_vec2(simd, chunks(&self.displacement, first, LANES), 0);
+        let there = load_vec2(simd, chunks(&self.displacement, first + 1, LANES), 0);
         spring(
             simd,
             geometry,
@@ -432,16 +433,16 @@ impl Band {
 
     /// How long a tile at rest can be left alone; its lattice forces are those of the sweep at hand.
     #[inline(always)]
-    fn patience<S: Simd>(&self, simd: S, model: &Model, step: Step, t: usize) -> u64 {
+    fn steps_until_slip<S: Simd>(&self, simd: S, model: &Model, step: Step, t: usize) -> u64 {
         let elements = self.elements(t);
         let n = elements.len();
-        let blocks = Resting {
+        let blocks = RestingTile {
             displacement: chunks(&self.displacement, self.halo + elements.start, n),
             lattice: chunks(&self.lattice, 0, n),
-            hold_squares: self.hold_squares[elements.clone()].as_chunks().0,
-            slide_impulses: self.slide_impulses[elements].as_chunks().0,
+            static_limit_squares: self.static_limit_squares[elements.clone()].as_chunks().0,
+            kinetic_impulses: self.kinetic_impulses[elements].as_chunks().0,
         };
-        patience(simd, &step, &model.drive, &blocks)
+        steps_until_slip(simd, &step, &model.drive, &blocks)
     }
 
     /// Looks at the displacements of the tiles that have moved since they were last looked at.
@@ -469,7 +470,7 @@ impl Band {
     #[inline(always)]
     pub(super) fn stretch_at_rest<S: Simd>(&mut self, simd: S, step: Step, swept: bool) {
         for t in 0..self.tiles.len() {
-            if !(swept && self.orders[t].active) {
+            if !(swept && self.tasks[t].active) {
                 let elements = self.elements(t);
                 let displacement = chunks(&self.displacement, self.halo + elements.start, elements.len());
                 let blocks = &self.blocks[elements.start / LANES..elements.end / LANES];
@@ -482,10 +483,10 @@ impl Band {
     pub(super) fn resting_stress_square(&self, t: usize, step: &Step) -> f64 {
         let mut most = 0.0_f64;
         for k in self.elements(t) {
-            if self.touching[k / LANES] >> (k % LANES) & 1 == 1 {
+            if self.in_contact[k / LANES] >> (k % LANES) & 1 == 1 {
                 let [ux, uy] = self.displacement.at(self.halo + k);
-                let x = step.k_drive * (step.reach[0] - ux) + step.constant_force[0];
-                let y = step.k_drive * (step.reach[1] - uy) + step.constant_force[1];
+                let x = step.k_drive * (step.drive_position[0] - ux) + step.constant_force[0];
+                let y = step.k_drive * (step.drive_position[1] - uy) + step.constant_force[1];
                 most = most.max(x * x + y * y);
             }
         }

@@ -3,18 +3,18 @@
 //! Two loops rather than one: the chain from a displacement to a new velocity is long, and processors overlap more
 //! vectors of the two halves than of the whole.
 
-use fearless_simd::{Simd, SimdBase, SimdFloat};
+use fearless_simd::{Simd, SimdBase, SimdFloat, f64x8};
 
-use super::aligned::Lines;
+use super::aligned::CacheLines;
 use super::springs::Geometry;
 use super::vector::{
-    Eight, LANES, Plane, add, behind, bits, dot, is_zero, keep, largest, load, load_plane, mask, scale,
-    select, splat, square, subtract, total,
+    LANES, Vec2x8, add, behind, bits, dot, is_zero, keep, largest, load, load_vec2, mask, scale, select,
+    splat, square, subtract, total,
 };
 use crate::Model;
 use crate::lattice::Bond;
 
-/// Eight elements by eight.
+/// f64x8 elements by eight.
 pub(super) type Chunks<'a> = &'a [[f64; LANES]];
 pub(super) type ChunksMut<'a> = &'a mut [[f64; LANES]];
 
@@ -29,17 +29,17 @@ pub(super) struct Step {
     pub(super) dt_star: f64,
     pub(super) moves: f64,
     /// Displacement of the driven spring ends.
-    pub(super) reach: [f64; 2],
+    pub(super) drive_position: [f64; 2],
     /// `k_s`.
     pub(super) k_drive: f64,
     /// Force on every block beside the drive spring's.
     pub(super) constant_force: [f64; 2],
     /// `c-/c+` of damping: what a free block keeps of its velocity.
-    pub(super) keeps: f64,
+    pub(super) velocity_decay: f64,
     /// `dt/(m c+)`: what a force adds to it.
-    pub(super) impulse: f64,
+    pub(super) force_to_velocity: f64,
     /// `m c+/dt`.
-    pub(super) inverse_impulse: f64,
+    pub(super) velocity_to_force: f64,
 }
 
 impl Step {
@@ -51,12 +51,12 @@ impl Step {
             time_star,
             dt_star,
             moves: dt_star,
-            reach: model.drive.reach(time_star),
+            drive_position: model.drive.position(time_star),
             k_drive: model.drive.k_drive,
             constant_force: model.drive.constant_force,
-            keeps: integrator.keeps,
-            impulse: integrator.impulse,
-            inverse_impulse: integrator.inverse_impulse,
+            velocity_decay: integrator.velocity_decay,
+            force_to_velocity: integrator.force_to_velocity,
+            velocity_to_force: integrator.velocity_to_force,
         }
     }
 }
@@ -96,15 +96,15 @@ pub(super) fn spring<S: Simd, G: Geometry>(
     geometry: G,
     bond: &Bond,
     present: u8,
-    here: Plane<S>,
-    there: Plane<S>,
-) -> Plane<S> {
-    where_present(simd, present, geometry.force(simd, bond, subtract(there, here)))
+    here: Vec2x8<S>,
+    there: Vec2x8<S>,
+) -> Vec2x8<S> {
+    zero_missing(simd, present, geometry.force(simd, bond, subtract(there, here)))
 }
 
 /// Zero where a bit is missing. Away from edges and textures none is: without AVX-512 the test is cheaper than the mask.
 #[inline(always)]
-fn where_present<S: Simd>(simd: S, present: u8, a: Plane<S>) -> Plane<S> {
+fn zero_missing<S: Simd>(simd: S, present: u8, a: Vec2x8<S>) -> Vec2x8<S> {
     if present == u8::MAX {
         a
     } else {
@@ -125,17 +125,17 @@ pub(super) fn upward_springs<S: Simd, G: Geometry>(simd: S, geometry: G, stretch
     let [has_east, has_west, has_north] = stretch.masks;
     let (has_east, has_west, has_north) = (&has_east[..n], &has_west[..n], &has_north[..n]);
     for c in 0..n {
-        let u = load_plane(simd, here, c);
+        let u = load_vec2(simd, here, c);
         let (up, right, left) = (has_north[c], has_east[c], has_west[c]);
-        let there = load_plane(simd, north, c);
+        let there = load_vec2(simd, north, c);
         let [x, y] = spring(simd, geometry, &Bond::NORTH, up, u, there);
         x.store_array(&mut nx[c]);
         y.store_array(&mut ny[c]);
-        let there = load_plane(simd, north_east, c);
+        let there = load_vec2(simd, north_east, c);
         let [x, y] = spring(simd, geometry, &Bond::NORTH_EAST, up & right, u, there);
         x.store_array(&mut nex[c]);
         y.store_array(&mut ney[c]);
-        let there = load_plane(simd, north_west, c);
+        let there = load_vec2(simd, north_west, c);
         let [x, y] = spring(simd, geometry, &Bond::NORTH_WEST, up & left, u, there);
         x.store_array(&mut nwx[c]);
         y.store_array(&mut nwy[c]);
@@ -152,8 +152,8 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
     simd: S,
     geometry: G,
     stretch: LatticeLoop,
-    west: &mut Plane<S>,
-    energy: &mut Eight<S>,
+    west: &mut Vec2x8<S>,
+    energy: &mut f64x8<S>,
 ) {
     let [fx, fy] = stretch.force;
     let n = fx.len();
@@ -166,25 +166,25 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
     let (has_east, blocks) = (&stretch.has_east[..n], &stretch.blocks[..n]);
     let mut before = *west;
     for c in 0..n {
-        let u = load_plane(simd, here, c);
+        let u = load_vec2(simd, here, c);
         let east = spring(
             simd,
             geometry,
             &Bond::EAST,
             has_east[c],
             u,
-            load_plane(simd, there, c),
+            load_vec2(simd, there, c),
         );
         let west = behind(before, east);
         before = east;
-        let north = load_plane(simd, north, c);
-        let north_east = load_plane(simd, north_east, c);
-        let north_west = load_plane(simd, north_west, c);
+        let north = load_vec2(simd, north, c);
+        let north_east = load_vec2(simd, north_east, c);
+        let north_west = load_vec2(simd, north_west, c);
         let [x, y] = add(
-            add(subtract(east, west), subtract(north, load_plane(simd, south, c))),
+            add(subtract(east, west), subtract(north, load_vec2(simd, south, c))),
             add(
-                subtract(north_east, load_plane(simd, south_west, c)),
-                subtract(north_west, load_plane(simd, south_east, c)),
+                subtract(north_east, load_vec2(simd, south_west, c)),
+                subtract(north_west, load_vec2(simd, south_east, c)),
             ),
         );
         x.store_array(&mut fx[c]);
@@ -193,8 +193,8 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
             // (k/2) extension^2 = F^2/(2k), and k_1 = 2 k_2.
             let straight = square(east) + square(north);
             let diagonal = square(north_east) + square(north_west);
-            let held = straight + splat(simd, 2.0) * diagonal;
-            *energy += where_present(simd, blocks[c], [held, held])[0];
+            let stored = straight + splat(simd, 2.0) * diagonal;
+            *energy += zero_missing(simd, blocks[c], [stored, stored])[0];
         }
     }
     *west = before;
@@ -210,12 +210,12 @@ pub(super) struct FrictionLoop<'a> {
     pub(super) displacement: [Chunks<'a>; 2],
     pub(super) lattice: [Chunks<'a>; 2],
     /// Squares of the static thresholds `mu_s F_n`.
-    pub(super) hold_squares: Chunks<'a>,
+    pub(super) static_limit_squares: Chunks<'a>,
     /// Kinetic friction's impulse in a step, `q = dt mu_k F_n/(m c+)`.
-    pub(super) slide_impulses: Chunks<'a>,
+    pub(super) kinetic_impulses: Chunks<'a>,
     /// Which elements are blocks, and blocks in contact.
     pub(super) blocks: &'a [u8],
-    pub(super) touching: &'a [u8],
+    pub(super) in_contact: &'a [u8],
     /// At `t - dt/2`, then at `t + dt/2`.
     pub(super) velocity: [ChunksMut<'a>; 2],
     /// Which blocks move after the step.
@@ -224,20 +224,20 @@ pub(super) struct FrictionLoop<'a> {
     pub(super) slipped: &'a mut [u8],
     pub(super) first_slip: ChunksMut<'a>,
     /// What later tiles will need first.
-    pub(super) ahead: [Lines; 6],
+    pub(super) ahead: [CacheLines; 6],
 }
 
 /// Sums over the eight lanes.
 pub(super) struct Sums<S: Simd> {
-    displacement: Plane<S>,
-    velocity: Plane<S>,
-    motion_square: Eight<S>,
-    friction_work: Eight<S>,
-    stress_square: Eight<S>,
-    speed_square: Eight<S>,
-    pub(super) lattice_energy: Eight<S>,
-    velocity_squares: Eight<S>,
-    stretch_square: Eight<S>,
+    displacement: Vec2x8<S>,
+    velocity: Vec2x8<S>,
+    motion_square: f64x8<S>,
+    friction_work: f64x8<S>,
+    stress_square: f64x8<S>,
+    speed_square: f64x8<S>,
+    pub(super) lattice_energy: f64x8<S>,
+    velocity_squares: f64x8<S>,
+    stretch_square: f64x8<S>,
     sliding: u32,
     slipping: u32,
 }
@@ -307,13 +307,19 @@ impl<S: Simd> Sums<S> {
 
 /// Stretch of the drive springs, `V t - u`.
 #[inline(always)]
-fn drive_stretch<S: Simd>(simd: S, step: Step, u: Plane<S>) -> Plane<S> {
-    subtract([splat(simd, step.reach[0]), splat(simd, step.reach[1])], u)
+fn drive_stretch<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
+    subtract(
+        [
+            splat(simd, step.drive_position[0]),
+            splat(simd, step.drive_position[1]),
+        ],
+        u,
+    )
 }
 
 /// Eq. 2: `F_s = k_s (V t - u)`, with any constant force.
 #[inline(always)]
-pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Plane<S>) -> Plane<S> {
+pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
     let constant = [
         splat(simd, step.constant_force[0]),
         splat(simd, step.constant_force[1]),
@@ -329,46 +335,46 @@ pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Plane<S>) -> Plane<S> {
 pub(super) fn stretch_square<S: Simd>(simd: S, step: Step, displacement: [Chunks; 2], blocks: &[u8]) -> f64 {
     let mut sum = splat(simd, 0.0);
     for (c, &present) in blocks.iter().enumerate() {
-        let square = square(drive_stretch(simd, step, load_plane(simd, displacement, c)));
-        sum += where_present(simd, present, [square, square])[0];
+        let square = square(drive_stretch(simd, step, load_vec2(simd, displacement, c)));
+        sum += zero_missing(simd, present, [square, square])[0];
     }
     total(sum)
 }
 
 /// Room for what the first half of the law leaves to the second, over a tile.
-pub(super) struct Halfway<'a> {
+pub(super) struct FreeMotion<'a> {
     /// `F_s`.
     pub(super) drive: [ChunksMut<'a>; 2],
     /// Velocity that the block would have without friction.
     pub(super) free: [ChunksMut<'a>; 2],
     /// Share of it that friction would take.
-    pub(super) taken: ChunksMut<'a>,
+    pub(super) removed_fraction: ChunksMut<'a>,
 }
 
 /// The first half of the friction law: drive (Eq. 2), damping (Eq. 5), and the velocity without friction.
 #[inline(always)]
-fn free_motion<S: Simd>(simd: S, step: Step, stretch: &FrictionLoop, halfway: &mut Halfway) {
-    let n = halfway.taken.len();
+fn free_motion<S: Simd>(simd: S, step: Step, stretch: &FrictionLoop, halfway: &mut FreeMotion) {
+    let n = halfway.removed_fraction.len();
     let (u, lattice) = (cut(stretch.displacement, n), cut(stretch.lattice, n));
     let velocity = [&stretch.velocity[0][..n], &stretch.velocity[1][..n]];
-    let slide_impulses = &stretch.slide_impulses[..n];
+    let kinetic_impulses = &stretch.kinetic_impulses[..n];
     let [dx, dy] = &mut halfway.drive;
     let [fx, fy] = &mut halfway.free;
     let (dx, dy, fx, fy) = (&mut dx[..n], &mut dy[..n], &mut fx[..n], &mut fy[..n]);
-    let taken = &mut halfway.taken[..n];
+    let removed_fraction = &mut halfway.removed_fraction[..n];
     for c in 0..n {
-        let drive = pull(simd, step, load_plane(simd, u, c));
-        let force = add(drive, load_plane(simd, lattice, c));
+        let drive = pull(simd, step, load_vec2(simd, u, c));
+        let force = add(drive, load_vec2(simd, lattice, c));
         let free = add(
-            scale(splat(simd, step.keeps), load_plane(simd, velocity, c)),
-            scale(splat(simd, step.impulse), force),
+            scale(splat(simd, step.velocity_decay), load_vec2(simd, velocity, c)),
+            scale(splat(simd, step.force_to_velocity), force),
         );
-        let share = load(simd, &slide_impulses[c]) / square(free).sqrt();
+        let removed = load(simd, &kinetic_impulses[c]) / square(free).sqrt();
         drive[0].store_array(&mut dx[c]);
         drive[1].store_array(&mut dy[c]);
         free[0].store_array(&mut fx[c]);
         free[1].store_array(&mut fy[c]);
-        share.store_array(&mut taken[c]);
+        removed.store_array(&mut removed_fraction[c]);
     }
 }
 
@@ -379,7 +385,7 @@ pub(super) fn friction<S: Simd, const ENERGY: bool>(
     simd: S,
     step: Step,
     stretch: FrictionLoop,
-    mut halfway: Halfway,
+    mut halfway: FreeMotion,
     sums: &mut Sums<S>,
 ) {
     free_motion(simd, step, &stretch, &mut halfway);
@@ -390,9 +396,9 @@ pub(super) fn friction<S: Simd, const ENERGY: bool>(
     let [dx, dy] = halfway.drive;
     let [fx, fy] = halfway.free;
     let (drive_force, free_velocity) = ([&dx[..n], &dy[..n]], [&fx[..n], &fy[..n]]);
-    let taken = &halfway.taken[..n];
-    let hold_squares = &stretch.hold_squares[..n];
-    let (blocks, touching) = (&stretch.blocks[..n], &stretch.touching[..n]);
+    let removed_fraction = &halfway.removed_fraction[..n];
+    let static_limit_squares = &stretch.static_limit_squares[..n];
+    let (blocks, in_contact) = (&stretch.blocks[..n], &stretch.in_contact[..n]);
     let (moving, slipped) = (&mut stretch.moving[..n], &mut stretch.slipped[..n]);
     let first_slip = &mut stretch.first_slip[..n];
     let zero = splat(simd, 0.0);
@@ -400,44 +406,44 @@ pub(super) fn friction<S: Simd, const ENERGY: bool>(
         for lines in stretch.ahead {
             lines.prefetch(c);
         }
-        let lattice = load_plane(simd, lattice_force, c);
-        let drive = load_plane(simd, drive_force, c);
-        let free = load_plane(simd, free_velocity, c);
-        let taken = load(simd, &taken[c]);
+        let lattice = load_vec2(simd, lattice_force, c);
+        let drive = load_vec2(simd, drive_force, c);
+        let free = load_vec2(simd, free_velocity, c);
+        let removed_fraction = load(simd, &removed_fraction[c]);
         let before = [load(simd, &vx[c]), load(simd, &vy[c])];
 
         let force = add(drive, lattice);
-        let stays = is_zero(simd, before) & square(force).simd_le(load(simd, &hold_squares[c]));
-        let left = splat(simd, 1.0) - taken;
+        let stays = is_zero(simd, before) & square(force).simd_le(load(simd, &static_limit_squares[c]));
+        let left = splat(simd, 1.0) - removed_fraction;
         let slides = !stays & left.simd_gt(zero);
         let after = keep(simd, slides, scale(left, free));
         after[0].store_array(&mut vx[c]);
         after[1].store_array(&mut vy[c]);
 
         // Friction with its sign turned: of a sliding block, else what balances the other forces.
-        let rubbing = scale(taken * splat(simd, step.inverse_impulse), free);
+        let rubbing = scale(removed_fraction * splat(simd, step.velocity_to_force), free);
         let against = select(slides, rubbing, force);
-        let displacement = load_plane(simd, u, c);
-        let motion = where_present(simd, blocks[c], add(before, after));
-        sums.displacement = add(sums.displacement, where_present(simd, blocks[c], displacement));
+        let displacement = load_vec2(simd, u, c);
+        let motion = zero_missing(simd, blocks[c], add(before, after));
+        sums.displacement = add(sums.displacement, zero_missing(simd, blocks[c], displacement));
         sums.velocity = add(sums.velocity, after);
         sums.motion_square += square(motion);
         sums.friction_work -= dot(against, motion);
         sums.speed_square = sums.speed_square.max(square(after));
         // Eq. 10; for a stuck block F_f + F_c = -F_s to the last bit.
         let stress = select(slides, subtract(lattice, rubbing), drive);
-        let stress = where_present(simd, touching[c], stress);
+        let stress = zero_missing(simd, in_contact[c], stress);
         sums.stress_square = sums.stress_square.max(square(stress));
         if ENERGY {
             let stretch_square = square(drive_stretch(simd, step, displacement));
-            let squares = where_present(simd, blocks[c], [square(before) + square(after), stretch_square]);
+            let squares = zero_missing(simd, blocks[c], [square(before) + square(after), stretch_square]);
             sums.velocity_squares += squares[0];
             sums.stretch_square += squares[1];
         }
 
         let slides = bits(slides);
         moving[c] = slides;
-        let slips = slides & touching[c];
+        let slips = slides & in_contact[c];
         sums.sliding += slides.count_ones();
         sums.slipping += slips.count_ones();
         // At most once per block in a whole run.

@@ -167,7 +167,7 @@ mod tests {
             .collect()
     }
 
-    /// Held against the neighbours that the lattice itself knows.
+    /// StoredEnergy against the neighbours that the lattice itself knows.
     #[test]
     fn neighbouring_tiles_hold_all_neighbouring_blocks() {
         use Edges::{Free, Periodic};

@@ -29,13 +29,13 @@ use self::band::Band;
 use self::blocks::Step;
 use self::layout::Layout;
 use self::springs::{Series, SquareRoot};
-use super::{Held, Totals};
-use crate::checkpoint::{Checkpoint, Strains};
+use super::{StoredEnergy, Totals};
+use crate::checkpoint::{Checkpoint, StrainBound};
 use crate::lattice::K_STRAIGHT;
 use crate::{Model, State};
 
 /// Steps from one exact look at the largest differences of displacement to the next; between, they are bounded.
-const LOOK_EVERY: u64 = 16;
+const EXTENT_INTERVAL: u64 = 16;
 
 /// How springs are computed in a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,10 +58,10 @@ pub(crate) struct Fused {
     /// Whether tiles at rest are left alone.
     skips: bool,
     /// For every tile: whether a block of it, or beside one of it, moves; whether a tile in the sweep needs its springs.
-    touched: Vec<bool>,
-    near: Vec<bool>,
+    has_moving_neighbour: Vec<bool>,
+    needs_springs: Vec<bool>,
     /// If nothing moves: the first step at which a block may break.
-    wake: u64,
+    active_from_step: u64,
     /// Step of the latest sweep, how it computed springs, and what it found.
     swept: Option<u64>,
     springs: Option<Springs>,
@@ -70,7 +70,7 @@ pub(crate) struct Fused {
     extent: [f64; 4],
     growth: f64,
     /// Largest strains of the short and of the long series.
-    reaches: [f64; 2],
+    strain_limits: [f64; 2],
     /// Highest speed after the latest sweep.
     speed: f64,
     stress_square_max: f64,
@@ -94,7 +94,7 @@ impl Fused {
         model: &Model,
         dt_star: f64,
         checkpoint: Checkpoint,
-        strains: Strains,
+        strains: StrainBound,
         threads: usize,
         skips: bool,
     ) -> Self {
@@ -119,8 +119,8 @@ impl Fused {
     }
 
     /// What the choice of springs goes by.
-    pub(crate) fn strains(&self) -> Strains {
-        Strains {
+    pub(crate) fn strains(&self) -> StrainBound {
+        StrainBound {
             extent: self.extent,
             growth: self.growth,
             speed: self.speed,
@@ -158,15 +158,15 @@ impl Fused {
             bands,
             level,
             skips,
-            touched: vec![false; n_tiles],
-            near: vec![false; n_tiles],
-            wake: 0,
+            has_moving_neighbour: vec![false; n_tiles],
+            needs_springs: vec![false; n_tiles],
+            active_from_step: 0,
             swept: None,
             springs: None,
             latest,
             extent: [f64::NEG_INFINITY; 4],
             growth: 0.0,
-            reaches: [Series::<3>::reach(), Series::<7>::reach()],
+            strain_limits: [Series::<3>::strain_limit(), Series::<7>::strain_limit()],
             speed: speed_square.sqrt(),
             stress_square_max: 0.0,
         };
@@ -184,9 +184,9 @@ impl Fused {
         let springs = self.choose_springs(model, &step);
         // A tile at rest keeps the energy of its springs, which is to be that of the springs of today, to the last bit.
         let anew = self.springs != Some(springs);
-        if !self.skips || anew || number >= self.wake {
-            self.give_orders(number, anew);
-            self.note_ends_of_rest(model, number);
+        if !self.skips || anew || number >= self.active_from_step {
+            self.schedule_tiles(number, anew);
+            self.record_skipped_stress_maxima(model, number);
             self.fill_halos(step.moves);
             let level = self.level;
             for_each(&mut self.bands, &|band| {
@@ -197,7 +197,7 @@ impl Fused {
             self.add_up();
         }
         Totals {
-            held: energies.then(|| self.held(step)),
+            stored_energy: energies.then(|| self.stored_energy(step)),
             ..self.latest
         }
     }
@@ -205,7 +205,7 @@ impl Fused {
     /// Springs of a step: by a bound on all differences of displacement, from their extent at the latest look and the
     /// highest speeds since. To be asked at every step, swept or not, so that skipping does not change the answer.
     fn choose_springs(&mut self, model: &Model, step: &Step) -> Springs {
-        if step.number.is_multiple_of(LOOK_EVERY) {
+        if step.number.is_multiple_of(EXTENT_INTERVAL) {
             let mut extent = [f64::NEG_INFINITY; 4];
             for_each(&mut self.bands, &Band::measure_extents);
             for tile in self.bands.iter().flat_map(|band| &band.tiles) {
@@ -220,9 +220,9 @@ impl Fused {
         let (ex, ey) = (right + left + self.growth, top + bottom + self.growth);
         // |eps s|/d^2 of any spring.
         let strain = model.epsilon * (2.0 * (ex + ey) + model.epsilon * (ex * ex + ey * ey));
-        if strain <= self.reaches[0] {
+        if strain <= self.strain_limits[0] {
             Springs::ShortSeries
-        } else if strain <= self.reaches[1] {
+        } else if strain <= self.strain_limits[1] {
             Springs::LongSeries
         } else {
             Springs::SquareRoot
@@ -231,49 +231,51 @@ impl Fused {
 
     /// Tells every tile what to do in the sweep to step `number`: all are swept `anew` where springs are no longer computed
     /// as before.
-    fn give_orders(&mut self, number: u64, anew: bool) {
+    fn schedule_tiles(&mut self, number: u64, anew: bool) {
         let begins = self.swept.is_none();
         let follows = self.swept.is_some_and(|swept| swept + 1 == number);
         let Self {
             layout,
             bands,
-            touched,
-            near,
+            has_moving_neighbour,
+            needs_springs,
             ..
         } = self;
-        touched.fill(false);
-        near.fill(false);
+        has_moving_neighbour.fill(false);
+        needs_springs.fill(false);
         for band in bands.iter() {
-            band.mark_touched(layout, touched);
+            band.mark_moving_neighbours(layout, has_moving_neighbour);
         }
         for band in bands.iter_mut() {
             for t in 0..band.tiles.len() {
-                let moved = touched[band.first_tile + t];
-                let (tile, order) = (&band.tiles[t], &mut band.orders[t]);
-                let rested = !(begins || follows && order.active);
-                order.active = !self.skips || anew || moved || tile.wake <= number;
-                order.wakes = order.active && rested;
-                order.quiet = self.skips && order.active && !moved;
-                if order.active {
+                let moved = has_moving_neighbour[band.first_tile + t];
+                let (tile, task) = (&band.tiles[t], &mut band.tasks[t]);
+                let rested = !(begins || follows && task.active);
+                task.active = !self.skips || anew || moved || tile.active_from_step <= number;
+                task.was_skipped = task.active && rested;
+                task.newly_resting = self.skips && task.active && !moved;
+                if task.active {
                     let elements = band.elements(t);
                     let (first, last) = (band.first + elements.start, band.first + elements.end - 1);
-                    near[band.first_tile + t] = true;
-                    layout.tiles_below(first, last).for_each(|tile| near[tile] = true);
+                    needs_springs[band.first_tile + t] = true;
+                    layout
+                        .tiles_below(first, last)
+                        .for_each(|tile| needs_springs[tile] = true);
                 }
             }
         }
         for band in bands.iter_mut() {
-            for (order, &near) in band.orders.iter_mut().zip(&near[band.first_tile..]) {
-                order.near = near;
+            for (task, &needs_springs) in band.tasks.iter_mut().zip(&needs_springs[band.first_tile..]) {
+                task.needs_springs = needs_springs;
             }
         }
     }
 
     /// Contact stresses of the tiles that were left alone up to the step before `number`. They are largest at the beginning,
     /// which a sweep has seen, or at the end: at the next step the block that bears most may slide already.
-    fn note_ends_of_rest(&mut self, model: &Model, number: u64) {
+    fn record_skipped_stress_maxima(&mut self, model: &Model, number: u64) {
         for band in &self.bands {
-            for t in (0..band.tiles.len()).filter(|&t| band.orders[t].wakes) {
+            for t in (0..band.tiles.len()).filter(|&t| band.tasks[t].was_skipped) {
                 let step = Step::new(model, number - 1, self.dt_star);
                 self.stress_square_max = self.stress_square_max.max(band.resting_stress_square(t, &step));
             }
@@ -330,7 +332,7 @@ impl Fused {
     /// Sums over the lattice of what the tiles know after a sweep.
     fn add_up(&mut self) {
         let before = self.latest.velocity_after;
-        let (mut totals, mut speed_square, mut wake) = (Totals::default(), 0.0_f64, u64::MAX);
+        let (mut totals, mut speed_square, mut active_from_step) = (Totals::default(), 0.0_f64, u64::MAX);
         for tile in self.bands.iter().flat_map(|band| &band.tiles) {
             let sums = &tile.sums;
             for axis in 0..2 {
@@ -343,15 +345,15 @@ impl Fused {
             totals.n_slipping += sums.slipping as usize;
             speed_square = speed_square.max(sums.speed_square);
             self.stress_square_max = self.stress_square_max.max(sums.stress_square);
-            wake = wake.min(if tile.moving { 0 } else { tile.wake });
+            active_from_step = active_from_step.min(if tile.moving { 0 } else { tile.active_from_step });
         }
         let after = totals.velocity_after;
         totals.velocity = [0.5 * (before[0] + after[0]), 0.5 * (before[1] + after[1])];
-        (self.latest, self.speed, self.wake) = (totals, speed_square.sqrt(), wake);
+        (self.latest, self.speed, self.active_from_step) = (totals, speed_square.sqrt(), active_from_step);
     }
 
     /// Energies held at the present step.
-    fn held(&mut self, step: Step) -> Held {
+    fn stored_energy(&mut self, step: Step) -> StoredEnergy {
         // The springs of the drive stretch on while a tile is left alone.
         let (level, swept) = (self.level, self.swept == Some(step.number));
         for_each(&mut self.bands, &|band| {
@@ -363,7 +365,7 @@ impl Fused {
             lattice += tile.sums.lattice_energy;
             stretch_square += tile.sums.stretch_square;
         }
-        Held {
+        StoredEnergy {
             kinetic: 0.25 * velocity_squares,
             lattice: lattice / (2.0 * K_STRAIGHT),
             drive_springs: 0.5 * step.k_drive * stretch_square,
@@ -375,7 +377,7 @@ impl Fused {
         let step = Step::new(model, number, self.dt_star);
         let mut square = self.stress_square_max;
         for band in &self.bands {
-            let rests = |&t: &usize| self.swept != Some(number) || !band.orders[t].active;
+            let rests = |&t: &usize| self.swept != Some(number) || !band.tasks[t].active;
             for t in (0..band.tiles.len()).filter(rests) {
                 square = square.max(band.resting_stress_square(t, &step));
             }

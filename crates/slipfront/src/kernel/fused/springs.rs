@@ -1,15 +1,15 @@
 //! The force of a stretched spring (Eq. 3), eight at a time: by the square root, or by a series that is as exact.
 
-use fearless_simd::{Simd, SimdFloat};
+use fearless_simd::{Simd, SimdFloat, f64x8};
 
-use super::vector::{Eight, Plane, scale, splat, square};
+use super::vector::{Vec2x8, scale, splat, square};
 use crate::lattice::Bond;
 
 /// How the force of a spring is found.
 pub(super) trait Geometry: Copy {
     /// Force of the spring along `bond` on a block, as [`Bond::force`]; `e`: displacement of the neighbour less that of
     /// the block.
-    fn force<S: Simd>(self, simd: S, bond: &Bond, e: Plane<S>) -> Plane<S>;
+    fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S>;
 }
 
 /// By the length itself, exact at any strain.
@@ -20,7 +20,7 @@ pub(super) struct SquareRoot {
 
 impl Geometry for SquareRoot {
     #[inline(always)]
-    fn force<S: Simd>(self, simd: S, bond: &Bond, e: Plane<S>) -> Plane<S> {
+    fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S> {
         let epsilon = splat(simd, self.epsilon);
         let r = [
             splat(simd, bond.rest[0]) + epsilon * e[0],
@@ -45,7 +45,7 @@ impl Geometry for SquareRoot {
 /// ```
 ///
 /// The coefficients of g fall in size, so that what is left out after the term in `z^DEGREE` is less than
-/// `2 |z|^(DEGREE + 1)` of the whole for `|z| <= 1/4`: see [`Series::reach`].
+/// `2 |z|^(DEGREE + 1)` of the whole for `|z| <= 1/4`: see [`Series::strain_limit`].
 #[derive(Clone, Copy)]
 pub(super) struct Series<const DEGREE: usize> {
     pub(super) epsilon: f64,
@@ -66,7 +66,7 @@ const G: [f64; 8] = [
 impl<const DEGREE: usize> Series<DEGREE> {
     /// Largest `|z|` at which the series is exact to rounding: `2 |z|^(DEGREE + 1) <= 2^-54`, a quarter of a unit in the
     /// last place.
-    pub(super) fn reach() -> f64 {
+    pub(super) fn strain_limit() -> f64 {
         libm::exp2(-55.0 / (DEGREE + 1) as f64)
     }
 
@@ -86,7 +86,7 @@ impl<const DEGREE: usize> Series<DEGREE> {
 
 impl<const DEGREE: usize> Geometry for Series<DEGREE> {
     #[inline(always)]
-    fn force<S: Simd>(self, simd: S, bond: &Bond, e: Plane<S>) -> Plane<S> {
+    fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S> {
         // d.e of a rest vector of ones and zeros.
         let along = match bond.offset {
             [1, 0] => e[0],
@@ -112,7 +112,7 @@ impl<const DEGREE: usize> Geometry for Series<DEGREE> {
 
 /// `tension d + bend` without a multiplication by the one or zero of d.
 #[inline(always)]
-fn along_axis<S: Simd>(rest: isize, tension: Eight<S>, bend: Eight<S>) -> Eight<S> {
+fn along_axis<S: Simd>(rest: isize, tension: f64x8<S>, bend: f64x8<S>) -> f64x8<S> {
     match rest {
         0 => bend,
         1 => tension + bend,
@@ -155,18 +155,18 @@ mod tests {
 
     /// Up to its reach, in all directions.
     fn series_is_exact<const DEGREE: usize>() {
-        let reach = Series::<DEGREE>::reach();
-        assert!((2.0 * reach.powi(DEGREE as i32 + 1) * 2_f64.powi(54) - 1.0).abs() < 1e-12);
+        let limit = Series::<DEGREE>::strain_limit();
+        assert!((2.0 * limit.powi(DEGREE as i32 + 1) * 2_f64.powi(54) - 1.0).abs() < 1e-12);
         for epsilon in [1e-12, 1e-6, 1e-3, 0.2] {
             for bond in &Bond::ALL {
                 for sign in [-1.0, 1.0] {
                     // Along the spring, (1 + eps t)^2 = 1 + z.
-                    let t = ((1.0 + sign * reach).sqrt() - 1.0) / epsilon;
+                    let t = ((1.0 + sign * limit).sqrt() - 1.0) / epsilon;
                     assert_same::<DEGREE>(bond, bond.rest.map(|d| t * d), epsilon);
                 }
                 for k in 1..2000 {
                     // |z| <= 2 eps |e| + (eps e)^2.
-                    let size = 0.499 * reach / epsilon * f64::from(k) / 2000.0;
+                    let size = 0.499 * limit / epsilon * f64::from(k) / 2000.0;
                     let (y, x) = f64::from(k).sin_cos();
                     assert_same::<DEGREE>(bond, [size * x, size * y], epsilon);
                 }

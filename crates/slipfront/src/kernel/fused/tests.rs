@@ -50,13 +50,13 @@ fn history(model: &Model, level: Level, steps: u64) -> Vec<u64> {
         if !energies {
             continue;
         }
-        let held = totals.held.expect("energies were asked for");
+        let stored = totals.stored_energy.expect("energies were asked for");
         let mut numbers = vec![
             totals.velocity_square,
             totals.friction_power,
-            held.kinetic,
-            held.lattice,
-            held.drive_springs,
+            stored.kinetic,
+            stored.lattice,
+            stored.drive_springs,
             kernel.stress_square_max(model, number),
         ];
         numbers.extend(
@@ -115,7 +115,7 @@ fn differences_of_displacement_are_bounded() {
                 // Displacements round by 1e-16 of themselves.
                 let over = bound - exact * (1.0 - 1e-14);
                 assert!(
-                    (0.0..2.0 * 1.5 * 0.2 * LOOK_EVERY as f64).contains(&over),
+                    (0.0..2.0 * 1.5 * 0.2 * EXTENT_INTERVAL as f64).contains(&over),
                     "{exact}, bound {bound}"
                 );
             }
@@ -134,16 +134,16 @@ fn slow_drives_are_mostly_rest() {
     for number in 0..3000 {
         let totals = kernel.step(&model, number, false);
         let swept = kernel.swept == Some(number);
-        let orders = kernel.bands.iter().flat_map(|band| &band.orders);
-        let taken = orders.filter(|order| swept && order.active).count();
+        let tasks = kernel.bands.iter().flat_map(|band| &band.tasks);
+        let removed_fraction = tasks.filter(|task| swept && task.active).count();
         if totals.n_sliding > 0 || steps > 0 {
             steps += 1;
-            after += taken;
+            after += removed_fraction;
         } else {
-            before += taken;
+            before += removed_fraction;
         }
     }
-    let tiles = kernel.touched.len();
+    let tiles = kernel.has_moving_neighbour.len();
     assert!(steps > 1000 && steps < 2000, "{steps} steps after the first slip");
     // Once at the start, and just before the first slip.
     assert!(before <= 3 * tiles, "{before} of {tiles} tiles");
@@ -169,8 +169,8 @@ proptest! {
     ) {
         let mut model = model(Lattice::free(3, 3), v_star, degrees, 1e-3);
         model.drive.constant_force = constant;
-        for (b, (hold, slide)) in holds.into_iter().enumerate() {
-            (model.surface.mu_static[b], model.surface.mu_kinetic[b]) = (hold, slide);
+        for (b, (static_limit, kinetic_force)) in holds.into_iter().enumerate() {
+            (model.surface.mu_static[b], model.surface.mu_kinetic[b]) = (static_limit, kinetic_force);
         }
         let state = State {
             displacement: VectorField { x: u.iter().map(|u| u[0]).collect(), y: u.iter().map(|u| u[1]).collect() },
@@ -181,10 +181,10 @@ proptest! {
         resting.step(&model, 0, false);
         let mut slips = |number| plain.step(&model, number, false).n_sliding > 0;
         let first = (0..100_000).find(|&number| slips(number)).expect("a block breaks");
-        prop_assert!(resting.wake <= first, "woken at {}, to break at {first}", resting.wake);
+        prop_assert!(resting.active_from_step <= first, "woken at {}, to break at {first}", resting.active_from_step);
         let along_an_axis = model.drive.direction.contains(&0.0);
         if along_an_axis && first > 0 {
-            prop_assert!(first - resting.wake <= 5, "woken at {}, to break at {first}", resting.wake);
+            prop_assert!(first - resting.active_from_step <= 5, "woken at {}, to break at {first}", resting.active_from_step);
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::case_file::{AutoOr, CaseError, CaseFile};
 
 /// Time and its steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Schedule {
+pub struct TimePlan {
     /// dt*.
     pub dt_star: f64,
     /// Number of steps.
@@ -24,8 +24,8 @@ pub struct Schedule {
 /// Longest run, in steps.
 const MAX_STEPS: f64 = 1e11;
 
-impl Schedule {
-    /// The schedule of a case file.
+impl TimePlan {
+    /// The time plan of a case file.
     ///
     /// # Errors
     /// When it is not stable, too long, or leaves no kinetic window.
@@ -76,7 +76,7 @@ impl Schedule {
             case_file::Stop::End => Stop::at_step(last_step),
             case_file::Stop::AfterOnset => Stop::after_onset(last_step),
         };
-        Ok(Schedule {
+        Ok(TimePlan {
             dt_star,
             last_step,
             stop,

@@ -9,14 +9,14 @@ use crate::lattice::Bond;
 use crate::vector_field::length;
 
 /// Blocks that are looked at together, one after the other in the order of the lattice.
-pub(crate) const TOGETHER: usize = 64;
+pub(crate) const CHUNK_BLOCKS: usize = 64;
 
 /// Components x and y of so many displacements, and of one more at either end.
-type Row = [[f64; TOGETHER + 2]; 2];
+type Row = [[f64; CHUNK_BLOCKS + 2]; 2];
 
-/// Blocks `first`, `first + 1`, ..., at most [`TOGETHER`], at `time_star`. `motion` gives displacement and velocity of a
+/// Blocks `first`, `first + 1`, ..., at most [`CHUNK_BLOCKS`], at `time_star`. `motion` gives displacement and velocity of a
 /// block.
-pub(super) fn look(
+pub(super) fn read_blocks(
     model: &Model,
     time_star: f64,
     first: usize,
@@ -26,7 +26,7 @@ pub(super) fn look(
     let lattice = &model.lattice;
     // Seen as one long row, the rows below and above stand equally far away. Where a row of the lattice ends meanwhile, and
     // beyond the first and the last one, what they give is not used.
-    let mut rows = [[[0.0; TOGETHER + 2]; 2]; 3];
+    let mut rows = [[[0.0; CHUNK_BLOCKS + 2]; 2]; 3];
     for (row, far) in rows.iter_mut().zip([-1, 0, 1]) {
         let begin = first as isize + far * lattice.nx as isize - 1;
         for (k, b) in (begin..begin + blocks.len() as isize + 2).enumerate() {
@@ -60,11 +60,11 @@ pub(super) fn look(
 
 /// Eq. 3 for blocks with eight neighbours each, summed as the kernels do. Rows are those below, of the blocks, and above.
 #[inline(always)]
-fn forces_inside(epsilon: f64, rows: &[Row; 3]) -> [[f64; TOGETHER]; 2] {
+fn forces_inside(epsilon: f64, rows: &[Row; 3]) -> [[f64; CHUNK_BLOCKS]; 2] {
     let [e, n, ne, nw] = Bond::ALL.each_ref().map(|bond| pairs_inside(bond, epsilon, rows));
-    let mut forces = [[0.0; TOGETHER]; 2];
+    let mut forces = [[0.0; CHUNK_BLOCKS]; 2];
     for (axis, force) in forces.iter_mut().enumerate() {
-        for k in 0..TOGETHER {
+        for k in 0..CHUNK_BLOCKS {
             force[k] = (e[axis][k] + n[axis][k]) + (ne[axis][k] + nw[axis][k]);
         }
     }
@@ -73,16 +73,16 @@ fn forces_inside(epsilon: f64, rows: &[Row; 3]) -> [[f64; TOGETHER]; 2] {
 
 /// Along one bond: the spring to the neighbour ahead, less that of the neighbour behind.
 #[inline(always)]
-fn pairs_inside(bond: &Bond, epsilon: f64, rows: &[Row; 3]) -> [[f64; TOGETHER]; 2] {
+fn pairs_inside(bond: &Bond, epsilon: f64, rows: &[Row; 3]) -> [[f64; CHUNK_BLOCKS]; 2] {
     let [di, dj] = bond.offset;
     let from = |side: isize| {
         let [x, y] = &rows[(1 + side * dj) as usize];
         let first = (1 + side * di) as usize;
-        [&x[first..first + TOGETHER], &y[first..first + TOGETHER]]
+        [&x[first..first + CHUNK_BLOCKS], &y[first..first + CHUNK_BLOCKS]]
     };
     let ([ux, uy], [ax, ay], [bx, by]) = (from(0), from(1), from(-1));
-    let mut pairs = [[0.0; TOGETHER]; 2];
-    for k in 0..TOGETHER {
+    let mut pairs = [[0.0; CHUNK_BLOCKS]; 2];
+    for k in 0..CHUNK_BLOCKS {
         let ahead = bond.force([ax[k] - ux[k], ay[k] - uy[k]], epsilon);
         let behind = bond.force([ux[k] - bx[k], uy[k] - by[k]], epsilon);
         (pairs[0][k], pairs[1][k]) = (ahead[0] - behind[0], ahead[1] - behind[1]);
@@ -121,6 +121,6 @@ fn friction(model: &Model, b: usize, velocity: [f64; 2], drive: [f64; 2], lattic
     if velocity == [0.0, 0.0] {
         return [-(drive[0] + lattice[0]), -(drive[1] + lattice[1])];
     }
-    let pull = model.surface.slide(b) / length(velocity);
+    let pull = model.surface.kinetic_force(b) / length(velocity);
     [-pull * velocity[0], -pull * velocity[1]]
 }

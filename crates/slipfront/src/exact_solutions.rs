@@ -18,17 +18,17 @@ use crate::scales::damping;
 /// `mu_static`, `mu_kinetic`: local coefficients, one per block; `mu_static_mean`: the scale of forces.
 ///
 /// ```
-/// use slipfront::known_answers::first_slip_time_star;
+/// use slipfront::exact_solutions::first_slip_time_star;
 /// // The block with mu_s = 0.3 but mu_k = 0.6 holds up to 0.6; its neighbour breaks first, at 0.375.
 /// assert_eq!(first_slip_time_star(&[0.3, 0.375], &[0.6, 0.2], 1.0, 0.01), 100.0);
 /// ```
 pub fn first_slip_time_star(mu_static: &[f64], mu_kinetic: &[f64], mu_static_mean: f64, v_star: f64) -> f64 {
-    let weakest = mu_static
+    let min_threshold = mu_static
         .iter()
         .zip(mu_kinetic)
         .map(|(s, k)| s.max(*k))
         .fold(f64::INFINITY, f64::min);
-    weakest / (mu_static_mean * K_DRIVE * v_star)
+    min_threshold / (mu_static_mean * K_DRIVE * v_star)
 }
 
 /// Level of mu* when every block slides steadily at `V*` (Eqs. 4, 5, 11a), reached for `Omega*` >= 1:
@@ -38,7 +38,7 @@ pub fn first_slip_time_star(mu_static: &[f64], mu_kinetic: &[f64], mu_static_mea
 /// ```
 ///
 /// ```
-/// use slipfront::known_answers::steady_level;
+/// use slipfront::exact_solutions::steady_level;
 /// assert_eq!(steady_level(0.5, 2.0, 0.1), 0.5 + 0.75_f64.sqrt() * 0.2);
 /// ```
 pub fn steady_level(mean_kinetic_star: f64, omega_star: f64, v_star: f64) -> f64 {
@@ -58,7 +58,7 @@ pub fn steady_level(mean_kinetic_star: f64, omega_star: f64, v_star: f64) -> f64
 /// `y = exp(-Omega t/2) (a cos w t + b sin w t)`, `w^2 = k_s - Omega^2/4`.
 ///
 /// ```
-/// use slipfront::known_answers::SlipCycle;
+/// use slipfront::exact_solutions::SlipCycle;
 /// // No damping, R* = 1/2: the force falls from 1 to 2 R* - 1 = 0, and its mean is R*.
 /// let cycle = SlipCycle::new(0.0, 0.5, 0.03);
 /// assert!((cycle.slip_duration() - 5.25015).abs() < 5e-6);
@@ -235,7 +235,7 @@ pub struct LatticeWave {
 ///
 /// ```
 /// // The stiffest wave, columns against each other: omega^2 = 4 k_1 + 4 k_2 + k_s = 6.5 k_1.
-/// let [_, fast] = slipfront::known_answers::lattice_waves(std::f64::consts::PI, 0.0, 0.375);
+/// let [_, fast] = slipfront::exact_solutions::lattice_waves(std::f64::consts::PI, 0.0, 0.375);
 /// assert!((fast.omega_squared - 4.875).abs() < 1e-14);
 /// ```
 pub fn lattice_waves(a: f64, b: f64, k_drive: f64) -> [LatticeWave; 2] {
@@ -267,7 +267,7 @@ pub fn lattice_waves(a: f64, b: f64, k_drive: f64) -> [LatticeWave; 2] {
 ///
 /// ```
 /// // At the limit of stability a swing takes two steps.
-/// let number = slipfront::known_answers::leapfrog_frequency(2.0, 1.0);
+/// let number = slipfront::exact_solutions::leapfrog_frequency(2.0, 1.0);
 /// assert!((number - std::f64::consts::PI).abs() < 1e-12);
 /// ```
 pub fn leapfrog_frequency(omega: f64, dt: f64) -> f64 {
@@ -302,7 +302,7 @@ impl Facing {
 /// ```
 ///
 /// ```
-/// use slipfront::known_answers::{Facing, groove_edge_factor};
+/// use slipfront::exact_solutions::{Facing, groove_edge_factor};
 /// // One row along: k_s (V t - u) = 2 k_2 u and k_s = k_2 give u = V t/3, which each edge bears on top of its own.
 /// assert!((groove_edge_factor(Facing::Along, 1) - (1.0 + 1.0 / 3.0)).abs() < 1e-12);
 /// ```
@@ -324,7 +324,7 @@ pub fn groove_edge_factor(facing: Facing, n: usize) -> f64 {
 /// `c`: speed of long waves in blocks per unit of time, the root of the stiffness between neighbouring rows.
 ///
 /// ```
-/// assert_eq!(slipfront::known_answers::front_speed(1.0, 0.6), 1.25);
+/// assert_eq!(slipfront::exact_solutions::front_speed(1.0, 0.6), 1.25);
 /// ```
 pub fn front_speed(c: f64, tau: f64) -> f64 {
     c / (1.0 - tau * tau).sqrt()

@@ -1,0 +1,124 @@
+//! Numbers as text for people: messages, reports and tables that are read, never read back.
+
+/// A number with all its digits, as a power of ten where it is very small or large: 10, 0.9058, 1e-12.
+pub fn exact(number: f64) -> String {
+    let size = number.abs();
+    if size != 0.0 && !(1e-4..1e6).contains(&size) {
+        format!("{number:e}")
+    } else {
+        format!("{number}")
+    }
+}
+
+/// A number to four digits, without trailing zeros.
+pub fn four_digits(value: f64) -> String {
+    if value != 0.0 && !(1e-3..1e6).contains(&value.abs()) {
+        return format!("{value:.3e}");
+    }
+    let digits = (3 - value.abs().max(1e-9).log10().floor() as i32).clamp(0, 6) as usize;
+    let text = format!("{value:.digits$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// A number to four decimal places, or to four digits where it is too small for that.
+pub fn four_places(value: f64) -> String {
+    if value != 0.0 && value.abs() < 1e-3 {
+        four_digits(value)
+    } else {
+        format!("{value:.4}")
+    }
+}
+
+/// A value and its uncertainty, both to the second digit of the uncertainty; to four places if there is none.
+pub fn with_uncertainty(value: f64, uncertainty: Option<f64>) -> String {
+    match uncertainty {
+        Some(error) if error > 0.0 => {
+            let places = (1 - error.log10().floor() as i32).clamp(0, 12) as usize;
+            format!("{value:.places$} \u{b1} {error:.places$}")
+        }
+        Some(_) => format!("{} \u{b1} 0", four_places(value)),
+        None => four_places(value),
+    }
+}
+
+/// A value to `digits` places with the half width of its interval; a value below half the last place as a power of ten.
+pub fn with_interval(value: f64, interval: Option<[f64; 2]>, digits: usize) -> String {
+    let small = value != 0.0 && value.abs() < 0.5 * 0.1_f64.powi(digits as i32);
+    let value = if value == 0.0 {
+        "0".to_owned()
+    } else if small {
+        format!("{value:.1e}")
+    } else {
+        format!("{value:.digits$}")
+    };
+    match interval {
+        Some([low, high]) if high > low => {
+            let half = 0.5 * (high - low);
+            format!("{value} \u{b1} {half:.digits$}")
+        }
+        _ => value,
+    }
+}
+
+/// A quantity to four digits, with an SI prefix: 0.025 s is `25 ms`.
+pub fn with_si_prefix(value: f64, unit: &str) -> String {
+    const PREFIXES: [&str; 13] = ["a", "f", "p", "n", "u", "m", "", "k", "M", "G", "T", "P", "E"];
+    let magnitude = value.abs();
+    if !magnitude.is_normal() {
+        return format!("{value} {unit}");
+    }
+    let step = (magnitude.log10() / 3.0 + 1e-9).floor().clamp(-6.0, 6.0);
+    format!(
+        "{} {}{unit}",
+        four_digits(value / 1000f64.powf(step)),
+        PREFIXES[(step + 6.0) as usize]
+    )
+}
+
+/// A number of bytes: 22.9 GiB.
+pub fn byte_size(bytes: f64) -> String {
+    const UNITS: [&str; 7] = ["B", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
+    let power = ((bytes.max(1.0).log2() / 10.0) as usize).min(UNITS.len() - 1);
+    let digits = usize::from(power > 0);
+    format!("{:.digits$} {}", bytes / 1024f64.powi(power as i32), UNITS[power])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_and_keep_what_counts() {
+        assert_eq!(
+            [10.0, 0.9058, 1e-12, -2e6].map(exact),
+            ["10", "0.9058", "1e-12", "-2e6"]
+        );
+        assert_eq!(
+            [0.0, 0.5, 12.3456, 1e7].map(four_digits),
+            ["0", "0.5", "12.35", "1.000e7"]
+        );
+        assert_eq!([0.70631, 0.0001].map(four_places), ["0.7063", "1.000e-4"]);
+        assert_eq!(with_uncertainty(0.70631, Some(0.0123)), "0.706 \u{b1} 0.012");
+        assert_eq!(with_uncertainty(0.70631, Some(0.0)), "0.7063 \u{b1} 0");
+        assert_eq!(with_interval(0.5, Some([0.4, 0.6]), 2), "0.50 \u{b1} 0.10");
+        assert_eq!(with_interval(0.001, None, 2), "1.0e-3");
+        assert_eq!(with_si_prefix(0.025, "s"), "25 ms");
+    }
+
+    #[test]
+    fn bytes_have_the_unit_that_suits_them() {
+        for (bytes, text) in [
+            (0.0, "0 B"),
+            (1023.0, "1023 B"),
+            (1024.0, "1.0 KiB"),
+            (24.6e9, "22.9 GiB"),
+            (1e30, "867361737988.4 EiB"),
+        ] {
+            assert_eq!(byte_size(bytes), text);
+        }
+    }
+}
