@@ -1,35 +1,13 @@
-//! `runs.csv`, one row a run, and `points.csv`, the statistics, one row for each point and quantity.
+//! `runs.csv`, with a row for each run, and `points.csv`, with the statistics of each quantity at each point.
 
+use super::columns::{AFTER_AXES, BEFORE_AXES, STATISTICS};
 use super::error::StudyError;
-use super::journal::RunResult;
 use super::plan::{Plan, Role};
-use super::scheduler::StudyResults;
+use super::point_statistics::sample;
+use super::record::RunResult;
 use super::statistics::Sample;
+use super::study_results::StudyResults;
 use super::summary_values::{Quantity, REDUCTION, known};
-
-/// Columns of `runs.csv` before those of the axes, and after them, before the quantities.
-const BEFORE_AXES: [&str; 3] = ["point", "replicate", "role"];
-const AFTER_AXES: [&str; 4] = ["seed", "run", "status", "reason"];
-
-/// Columns of `points.csv` after those of the axes.
-const STATISTICS: [&str; 9] = [
-    "quantity",
-    "n",
-    "mean",
-    "deviation",
-    "low",
-    "high",
-    "min",
-    "max",
-    "narrow_enough",
-];
-
-/// Whether a column other than those of the quantities has this name, so that no axis can.
-pub(super) fn is_column(name: &str) -> bool {
-    [&BEFORE_AXES[..], &AFTER_AXES, &STATISTICS]
-        .concat()
-        .contains(&name)
-}
 
 /// Columns of all axes.
 fn axis_columns(plan: &Plan) -> impl Iterator<Item = &str> {
@@ -39,11 +17,11 @@ fn axis_columns(plan: &Plan) -> impl Iterator<Item = &str> {
         .map(String::as_str)
 }
 
-/// `runs.csv`: what varied, the seed, every number of the summary, and whether the run failed. A reference has rows
-/// of its own.
+/// `runs.csv`: for each run, references included, the levels of its point, the seed, whether it failed and why, and every
+/// number of its summary.
 ///
 /// # Errors
-/// When it cannot be put into words.
+/// When it cannot be written as CSV.
 pub(super) fn runs(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, StudyError> {
     let mut table = csv::Writer::from_writer(Vec::new());
     let quantities = quantities(plan);
@@ -64,10 +42,10 @@ pub(super) fn runs(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, Study
         ];
         row.extend(plan.columns(point).into_iter().map(|(_, value)| value.to_owned()));
         row.extend([plan.seed(run).to_string(), plan.folder_name(run)]);
-        let numbers = match result.as_ref() {
-            RunResult::Done(numbers) => {
+        let values = match result.as_ref() {
+            RunResult::Done(values) => {
                 row.extend(["done".to_owned(), String::new()]);
-                Some(numbers)
+                Some(values)
             }
             RunResult::Failed(reason) => {
                 row.extend(["failed".to_owned(), reason.clone()]);
@@ -76,7 +54,7 @@ pub(super) fn runs(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, Study
         };
         for &(_, quantity) in &quantities {
             let value = match (quantity, run.role) {
-                (Quantity::Number(position), _) => numbers.and_then(|numbers| numbers.get(position)),
+                (Quantity::Number(position), _) => values.and_then(|values| values.get(position)),
                 (Quantity::Reduction, Role::Point) => results.value(run.point, run.replicate, quantity),
                 (Quantity::Reduction, Role::Reference) => None,
             };
@@ -100,7 +78,7 @@ fn quantities(plan: &Plan) -> Vec<(&'static str, Quantity)> {
 /// interval of the mean, smallest and largest; reductions are paired by seed.
 ///
 /// # Errors
-/// When it cannot be put into words.
+/// When it cannot be written as CSV.
 pub(super) fn points(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, StudyError> {
     let mut table = csv::Writer::from_writer(Vec::new());
     table.write_record(["point"].into_iter().chain(axis_columns(plan)).chain(STATISTICS))?;
@@ -110,7 +88,7 @@ pub(super) fn points(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, Stu
             let sample = sample(plan, results, position, name);
             let until = plan.settings.until.as_ref();
             let decides = until.is_some_and(|until| until.key == name);
-            // That no run has the number which decides is told as well.
+            // A decisive quantity that no run has gets a row without numbers.
             if sample.is_none() && !decides {
                 continue;
             }
@@ -130,16 +108,6 @@ pub(super) fn points(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, Stu
         }
     }
     finish(table)
-}
-
-/// Statistics of a quantity at the point at `position` of the plan; none without values.
-pub fn sample(plan: &Plan, results: &StudyResults, position: usize, name: &str) -> Option<Sample> {
-    let quantity = Quantity::named(name)?;
-    let replicates = results.points.get(position)?.replicates;
-    let values: Vec<f64> = (0..replicates)
-        .filter_map(|replicate| results.value(position, replicate, quantity))
-        .collect();
-    Sample::of(&values, plan.settings.confidence())
 }
 
 fn role_name(role: Role) -> &'static str {

@@ -70,8 +70,8 @@ impl StudyRun {
         let out = self.out.unwrap_or_else(|| default_out(&file.name, self.shard));
         refuse_to_replace(&path, &file, &out)?;
         let mut folder = StudyFolder::open(&out, &file).map_err(Failure::input)?;
-        plan.check_disk(&folder).map_err(Failure::input)?;
-        let plan = plan.reading_copies(&folder);
+        folder.check_disk(&plan).map_err(Failure::input)?;
+        let plan = plan.reading_copies(&folder.study);
         complete(&plan, &mut folder, threads, self.quiet)
     }
 }
