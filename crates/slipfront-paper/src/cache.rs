@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 
 use crate::embedded_cases::FILES;
 use crate::error::PaperError;
-use crate::measurements::Found;
-use crate::runner::StepRule;
+use crate::figure_data::FigureData;
+use crate::step_rule::StepRule;
 use slipfront_case::disk::{read_limited, remove_unfinished, write_atomic};
 use slipfront_run::checksum;
-use slipfront_run::names::FOUND;
+use slipfront_run::names::FIGURE_CACHE;
 use slipfront_run::program;
 use slipfront_run::run_folder::error::FolderError;
 
@@ -20,19 +20,19 @@ const MAX_BYTES: u64 = 1 << 28;
 
 /// Findings of earlier calls in one folder.
 #[derive(Debug)]
-pub struct Saved {
+pub struct FigureCache {
     folder: PathBuf,
     /// Hash of the program, its cases and the options: what findings depend on besides figure and step.
     origin: blake3::Hash,
 }
 
-impl Saved {
+impl FigureCache {
     /// Those in `folder`, made by this build of the program.
     ///
     /// # Errors
     /// When the folder cannot be made.
     pub fn open(folder: &Path, reduced: bool) -> Result<Self, PaperError> {
-        let folder = folder.join(FOUND);
+        let folder = folder.join(FIGURE_CACHE);
         std::fs::create_dir_all(&folder).map_err(|source| FolderError::Unwritable {
             path: folder.clone(),
             source,
@@ -66,7 +66,7 @@ impl Saved {
     }
 
     /// What a figure found in an earlier call.
-    pub fn load(&self, figure: &str, step: StepRule) -> Option<Found> {
+    pub fn load(&self, figure: &str, step: StepRule) -> Option<FigureData> {
         let bytes = read_limited(&self.path(figure, step), MAX_BYTES).ok()?;
         let findings = checksum::verified(self.origin.as_bytes(), &bytes)?;
         postcard::from_bytes(findings).ok()
@@ -76,7 +76,7 @@ impl Saved {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn save(&self, figure: &str, step: StepRule, found: &Found) -> Result<(), PaperError> {
+    pub fn save(&self, figure: &str, step: StepRule, found: &FigureData) -> Result<(), PaperError> {
         let path = self.path(figure, step);
         // Plain data: it always has a binary form.
         let Ok(findings) = postcard::to_stdvec(found) else {
@@ -90,13 +90,13 @@ impl Saved {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measurements::Number;
+    use crate::number::Number;
 
     #[test]
     fn findings_come_back_unless_damaged_or_made_otherwise() {
         let folder = tempfile::tempdir().unwrap();
-        let saved = Saved::open(folder.path(), true).unwrap();
-        let mut found = Found::default();
+        let saved = FigureCache::open(folder.path(), true).unwrap();
+        let mut found = FigureData::default();
         found.number("fig99.one", Number::of(&[1.0, 2.0]));
         found.value("fig99.none", f64::INFINITY);
         saved.save("fig99", StepRule::Auto, &found).unwrap();
@@ -106,7 +106,7 @@ mod tests {
         );
         assert!(saved.load("fig99", StepRule::Paper).is_none());
         assert!(
-            Saved::open(folder.path(), false)
+            FigureCache::open(folder.path(), false)
                 .unwrap()
                 .load("fig99", StepRule::Auto)
                 .is_none()
@@ -121,7 +121,7 @@ mod tests {
         assert!(saved.load("fig99", StepRule::Auto).is_none());
         // What a kill left is removed.
         std::fs::write(folder.path().join("found/.slipfront123456"), "half of").unwrap();
-        Saved::open(folder.path(), true).unwrap();
+        FigureCache::open(folder.path(), true).unwrap();
         assert_eq!(std::fs::read_dir(folder.path().join("found")).unwrap().count(), 1);
         let mut flipped = whole;
         flipped[40] ^= 1;

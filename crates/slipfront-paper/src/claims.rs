@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use crate::embedded_cases::CLAIMS;
 use crate::error::PaperError;
-use crate::measurements::Number;
+use crate::number::Number;
 
 /// A claim of the paper and how it is judged.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -89,7 +89,7 @@ impl Verdict {
 
 /// A claim with what was measured.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Judged {
+pub struct ClaimResult {
     /// The claim.
     pub claim: Claim,
     /// The number that it is about.
@@ -130,7 +130,7 @@ impl Claim {
     ///
     /// # Errors
     /// [`PaperError::Unmeasured`] when its number is not among them.
-    pub fn judge(self, numbers: &BTreeMap<String, Number>) -> Result<Judged, PaperError> {
+    pub fn judge(self, numbers: &BTreeMap<String, Number>) -> Result<ClaimResult, PaperError> {
         let measured = |quantity: &String| {
             numbers
                 .get(quantity)
@@ -156,7 +156,7 @@ impl Claim {
             (true, true) => Verdict::Holds,
             (true, false) => Verdict::HoldsWithCondition,
         };
-        Ok(Judged {
+        Ok(ClaimResult {
             claim: self,
             number,
             condition,
@@ -165,7 +165,7 @@ impl Claim {
     }
 }
 
-impl Judged {
+impl ClaimResult {
     /// Whether the verdict is the expected one.
     pub fn as_expected(&self) -> bool {
         self.verdict == self.claim.expected
@@ -173,30 +173,11 @@ impl Judged {
 
     /// The measured number with its interval and unit.
     pub fn measured(&self) -> String {
-        let number = with_interval(&self.number, self.claim.digits);
+        let number = self.number.shown(self.claim.digits);
         match self.claim.unit.as_str() {
             "" => number,
             unit => format!("{number} {unit}"),
         }
-    }
-}
-
-/// A number with the half width of its interval. Less than half a last digit is written as a power of ten.
-pub(super) fn with_interval(number: &Number, digits: usize) -> String {
-    let small = number.value != 0.0 && number.value.abs() < 0.5 * 0.1_f64.powi(digits as i32);
-    let value = if number.value == 0.0 {
-        "0".to_owned()
-    } else if small {
-        format!("{:.1e}", number.value)
-    } else {
-        format!("{:.digits$}", number.value)
-    };
-    match number.interval {
-        Some([low, high]) if high > low => {
-            let half = 0.5 * (high - low);
-            format!("{value} \u{b1} {half:.digits$}")
-        }
-        _ => value,
     }
 }
 
@@ -269,11 +250,11 @@ mod tests {
 
     #[test]
     fn another_verdict_than_the_expected_one_is_noticed() {
-        let judged = |value| {
+        let result = |value| {
             let numbers = BTreeMap::from([("fig99.main".to_owned(), Number::exact(value))]);
             claim([0.0, 1.0], None).judge(&numbers).unwrap()
         };
-        assert!(judged(0.5).as_expected() && !judged(2.0).as_expected());
+        assert!(result(0.5).as_expected() && !result(2.0).as_expected());
     }
 
     #[test]
@@ -286,22 +267,13 @@ mod tests {
     }
 
     #[test]
-    fn numbers_show_what_is_known_of_them() {
-        let number = |value: f64, interval| with_interval(&Number { value, interval }, 2);
-        assert_eq!(number(0.126, Some([0.1, 0.152])), "0.13 \u{b1} 0.03");
-        assert_eq!(number(-0.126, None), "-0.13");
-        assert_eq!(number(0.0, None), "0");
-        assert_eq!(number(0.00021, None), "2.1e-4");
-    }
-
-    #[test]
     fn the_list_of_the_paper_is_whole() {
         let claims = claims().unwrap();
         assert!(claims.len() >= 30);
         for (index, claim) in claims.iter().enumerate() {
             assert_eq!(claim.number as usize, index + 1);
             assert!(
-                super::super::FIGURES
+                crate::figures::FIGURES
                     .iter()
                     .any(|figure| figure.name == claim.figure()),
                 "{}",

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::PaperError;
-use crate::measurements::Number;
+use crate::number::Number;
 
 use slipfront_plot::{BarChart, FieldMaps, FrictionCurve, Picture, PictureError, Response, Responses, Shape};
 

@@ -22,7 +22,7 @@ pub const CHECKPOINT: &str = "checkpoint.bin";
 pub const PREVIOUS: &str = "checkpoint-previous.bin";
 
 /// Results that the figures of the paper are made of, kept between calls of `slipfront paper`.
-pub const FOUND: &str = "found";
+pub const FIGURE_CACHE: &str = "found";
 
 /// How every checkpoint begins.
 pub const CHECKPOINT_BEGINNING: &[u8] = b"{\"slipfront_checkpoint\":";

@@ -14,7 +14,7 @@ use crate::names::{MANIFEST, RUNS};
 use crate::run_folder::contents::is_of_interrupted_run;
 use crate::run_folder::error::FolderError;
 use crate::study;
-use crate::study::{Finding, Findings, Plan, Records, RetainRuns, StudyError, StudyFolder};
+use crate::study::{Plan, Records, RetainRuns, RunResult, StudyError, StudyFolder, StudyResults};
 use slipfront_case::case_file::CaseFile;
 use slipfront_case::disk::{TEXT_MAX_BYTES, read_limited};
 use slipfront_case::text::{single_line, truncated};
@@ -240,8 +240,8 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
     again.records.merge(folder)?;
     let records = folder.join(Records::FILE);
     let (damaged, records) = (again.records.damaged, records.display());
-    let findings = match study::collect(&plan, &mut again.records) {
-        Ok(findings) => findings,
+    let results = match study::collect(&plan, &mut again.records) {
+        Ok(results) => results,
         Err(StudyError::Missing { runs, others }) if damaged == 0 => {
             let path = folder.to_owned();
             return Err(VerifyError::Unfinished { path, runs, others });
@@ -254,7 +254,7 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
         }
         Err(error) => return Err(error.into()),
     };
-    study::write(&plan, &findings, &again)?;
+    study::write(&plan, &results, &again)?;
     let mut files = files_below(temporary.path(), "").map_err(VerifyError::Temporary)?;
     files.retain(|file| file.name != Records::FILE);
     verdict
@@ -268,7 +268,7 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
             format!("{records} has {damaged} damaged lines, whose runs are recorded once more or not needed");
         verdict.notes.push(damage);
     }
-    let kept = verify_kept(folder, &plan, &findings, &mut verdict)?;
+    let kept = verify_kept(folder, &plan, &results, &mut verdict)?;
     verdict.what = format!(
         "tables and pictures as its {} recorded runs give them, {kept} run folders as they were written",
         again.records.len()
@@ -280,7 +280,7 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
 fn verify_kept(
     folder: &Path,
     plan: &Plan,
-    findings: &Findings,
+    results: &StudyResults,
     verdict: &mut Verdict,
 ) -> Result<usize, VerifyError> {
     let runs = folder.join(RUNS);
@@ -293,14 +293,11 @@ fn verify_kept(
         Err(error) if error.kind() == ErrorKind::NotFound => None,
         Err(error) => return Err(unreadable(error)),
     };
-    let done = findings
-        .runs
-        .iter()
-        .filter(|(_, finding)| match finding.as_ref() {
-            Finding::Done(_) => true,
-            // Of a run that failed the case alone is kept.
-            Finding::Failed(_) => false,
-        });
+    let done = results.runs.iter().filter(|(_, result)| match result.as_ref() {
+        RunResult::Done(_) => true,
+        // Of a run that failed the case alone is kept.
+        RunResult::Failed(_) => false,
+    });
     let done: HashSet<String> = done.map(|(run, _)| plan.folder_name(*run)).collect();
     let (mut kept, mut missing) = (0, done.clone());
     for entry in entries.into_iter().flatten() {

@@ -77,7 +77,7 @@ impl Paper {
             print(&slipfront_paper::summary(&paper))?;
             print(&format!("{}\n", self.out.join("report.html").display()))?;
         }
-        match paper.surprises().count() {
+        match paper.unexpected_verdicts().count() {
             0 => Ok(()),
             count => Err(Failure::running(anyhow::anyhow!(
                 "{count} verdicts are not the expected ones: see {}",

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use slipfront_case::number_format::{byte_size, with_uncertainty};
-use slipfront_run::study::{self, Finding, Findings, Plan, RunKey};
+use slipfront_run::study::{self, Plan, RunKey, RunResult, StudyResults};
 
 use super::times::duration;
 
@@ -88,18 +88,18 @@ fn case_warnings(plan: &Plan) -> String {
 }
 
 /// The answer of a study: its main quantity at every point, notes, and the folder of tables and pictures.
-pub(crate) fn study(plan: &Plan, findings: &Findings, folder: &Path) -> String {
+pub(crate) fn study(plan: &Plan, results: &StudyResults, folder: &Path) -> String {
     format!(
         "{}\n{}{}runs.csv, points.csv and pictures in {}\n",
         study::main_quantity(plan),
-        points(plan, findings),
-        notes(plan, findings),
+        points(plan, results),
+        notes(plan, results),
         folder.display()
     )
 }
 
 /// The main quantity at every point, a line each.
-fn points(plan: &Plan, findings: &Findings) -> String {
+fn points(plan: &Plan, results: &StudyResults) -> String {
     let shown = plan.points.len().min(MAX_POINTS);
     let names: Vec<String> = plan.points[..shown]
         .iter()
@@ -109,7 +109,7 @@ fn points(plan: &Plan, findings: &Findings) -> String {
     let width = width.unwrap_or_default();
     let mut text = String::new();
     for (point, name) in names.iter().enumerate() {
-        text += &format!("  {name:<width$}   {}\n", point_value(plan, findings, point));
+        text += &format!("  {name:<width$}   {}\n", point_value(plan, results, point));
     }
     if plan.points.len() > shown {
         text += &format!("  and {} more points in points.csv\n", plan.points.len() - shown);
@@ -118,15 +118,15 @@ fn points(plan: &Plan, findings: &Findings) -> String {
 }
 
 /// The main quantity at a point with its interval, and what a reader must know of it.
-fn point_value(plan: &Plan, findings: &Findings, point: usize) -> String {
+fn point_value(plan: &Plan, results: &StudyResults, point: usize) -> String {
     let is_here = |run: &RunKey| run.point == point;
     let has_failed = || {
-        findings
+        results
             .runs
             .iter()
-            .any(|(run, finding)| is_here(run) && matches!(**finding, Finding::Failed(_)))
+            .any(|(run, result)| is_here(run) && matches!(**result, RunResult::Failed(_)))
     };
-    let mut text = match study::sample(plan, findings, point, study::main_quantity(plan)) {
+    let mut text = match study::sample(plan, results, point, study::main_quantity(plan)) {
         Some(sample) => {
             let mean = with_uncertainty(sample.mean, sample.half_width);
             format!("{mean}   n = {}", sample.n)
@@ -134,22 +134,22 @@ fn point_value(plan: &Plan, findings: &Findings, point: usize) -> String {
         None if has_failed() => "failed".to_owned(),
         None => "none".to_owned(),
     };
-    if findings.points[point].narrow == Some(false) {
+    if results.points[point].narrow == Some(false) {
         text += "   (interval still too wide)";
     }
-    let without = findings.without_transition().filter(is_here).count();
+    let without = results.without_transition().filter(is_here).count();
     if without > 0 {
-        let runs = findings.runs.keys().filter(|run| is_here(run)).count();
+        let runs = results.runs.keys().filter(|run| is_here(run)).count();
         text += &format!("   (no transition in {without} of {runs} runs)");
     }
     text
 }
 
 /// What a reader must know of the study as a whole.
-fn notes(plan: &Plan, findings: &Findings) -> String {
+fn notes(plan: &Plan, results: &StudyResults) -> String {
     let mut text = String::new();
     // Points share references: each counts once.
-    let without: HashSet<String> = findings
+    let without: HashSet<String> = results
         .without_transition()
         .map(|run| plan.identity(run))
         .collect();
@@ -161,10 +161,10 @@ fn notes(plan: &Plan, findings: &Findings) -> String {
         );
     }
     text += &case_warnings(plan);
-    if findings.strangers > 0 {
+    if results.orphaned_runs > 0 {
         text += &format!(
             "note: {} recorded runs are not part of the study as it is now; they stay in records.jsonl\n",
-            findings.strangers
+            results.orphaned_runs
         );
     }
     text

@@ -7,12 +7,12 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use crate::claims::{Judged, Verdict};
+use crate::claims::{ClaimResult, Verdict};
 use crate::error::PaperError;
+use crate::figure_data::FigureData;
 use crate::figures::Figure;
-use crate::measurements::Found;
 use crate::paper::Paper;
-use crate::runner::StepRule;
+use crate::step_rule::StepRule;
 use slipfront_case::disk::{begins_with, write_atomic};
 use slipfront_plot::Picture;
 use slipfront_run::run_folder::error::FolderError;
@@ -30,14 +30,14 @@ struct Drawn {
 /// When a picture cannot be drawn or a file not be written.
 pub fn write(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
     let mut drawn = Vec::new();
-    for (_, found) in &paper.figures {
-        let pictures = draw(found)?;
-        for (panel, Drawn { name, picture, .. }) in found.panels.iter().zip(&pictures) {
+    for (_, data) in &paper.figures {
+        let pictures = draw(data)?;
+        for (panel, Drawn { name, picture, .. }) in data.panels.iter().zip(&pictures) {
             write_file(folder, &format!("{name}.svg"), picture.svg.as_bytes())?;
             write_file(folder, &format!("{name}.png"), &picture.png)?;
             write_file(folder, &format!("{name}.csv"), &panel.drawing.csv()?)?;
         }
-        for table in &found.tables {
+        for table in &data.tables {
             let rows = [&table.header].into_iter().chain(&table.rows);
             write_file(folder, &format!("{}.csv", table.name), &csv(rows)?)?;
         }
@@ -76,8 +76,8 @@ fn docs_picture(name: &str) -> String {
 pub fn write_docs(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
     // First, since it tells that the pictures are of an earlier call.
     write_file(folder, PAGE, docs_page(paper).as_bytes())?;
-    for (_, found) in &paper.figures {
-        for Drawn { name, picture, .. } in draw(found)? {
+    for (_, data) in &paper.figures {
+        for Drawn { name, picture, .. } in draw(data)? {
             if markdown::SHOWN.contains(&name.as_str()) {
                 write_file(folder, &docs_picture(&name), &picture.png)?;
             }
@@ -91,8 +91,8 @@ pub fn docs_page(paper: &Paper) -> String {
     markdown::page(paper)
 }
 
-fn draw(found: &Found) -> Result<Vec<Drawn>, PaperError> {
-    let panels = found.panels.par_iter().map(|panel| {
+fn draw(data: &FigureData) -> Result<Vec<Drawn>, PaperError> {
+    let panels = data.panels.par_iter().map(|panel| {
         let picture = panel.drawing.draw().map_err(|source| PaperError::Picture {
             name: panel.name.clone(),
             source,
@@ -142,9 +142,9 @@ fn claims_csv(paper: &Paper) -> Result<Vec<u8>, PaperError> {
         "remark",
     ];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
-    for (index, judged) in paper.judged.iter().enumerate() {
-        let Judged { claim, number, .. } = judged;
-        let other = paper.judged_by_paper_step.get(index);
+    for (index, result) in paper.results.iter().enumerate() {
+        let ClaimResult { claim, number, .. } = result;
+        let other = paper.results_by_paper_step.get(index);
         let [low, high] = number
             .interval
             .map_or_else(Default::default, |ends| ends.map(|end| format!("{end:?}")));
@@ -158,7 +158,7 @@ fn claims_csv(paper: &Paper) -> Result<Vec<u8>, PaperError> {
             high,
             claim.unit.clone(),
             claim.criterion(),
-            judged.verdict.words().to_owned(),
+            result.verdict.words().to_owned(),
             claim.expected.words().to_owned(),
             other.map_or(String::new(), |other| format!("{:?}", other.number.value)),
             other.map_or(String::new(), |other| other.verdict.words().to_owned()),
@@ -172,7 +172,7 @@ fn claims_csv(paper: &Paper) -> Result<Vec<u8>, PaperError> {
 /// Every number that was measured, those of claims among them.
 fn numbers_csv(paper: &Paper) -> Result<Vec<u8>, PaperError> {
     let mut rows = vec![["quantity", "value", "low", "high"].map(str::to_owned).to_vec()];
-    for (name, number) in paper.figures.iter().flat_map(|(_, found)| &found.numbers) {
+    for (name, number) in paper.figures.iter().flat_map(|(_, data)| &data.numbers) {
         let [_, low, high] = number.ends();
         let interval = [low, high].map(|end| {
             if end.is_nan() {
@@ -193,21 +193,21 @@ fn numbers_csv(paper: &Paper) -> Result<Vec<u8>, PaperError> {
 }
 
 /// Number of claims with each verdict: holds, holds with a condition, does not hold.
-fn counts(judged: &[Judged]) -> [usize; 3] {
+fn counts(results: &[ClaimResult]) -> [usize; 3] {
     [Verdict::Holds, Verdict::HoldsWithCondition, Verdict::DoesNotHold]
-        .map(|verdict| judged.iter().filter(|judged| judged.verdict == verdict).count())
+        .map(|verdict| results.iter().filter(|result| result.verdict == verdict).count())
 }
 
 /// What is printed at the end: every claim in a line, and the count.
 pub fn summary(paper: &Paper) -> String {
     let mut text = String::new();
-    for judged in &paper.judged {
-        let Judged { claim, verdict, .. } = judged;
+    for result in &paper.results {
+        let ClaimResult { claim, verdict, .. } = result;
         let deviation = claim
             .deviation
             .as_ref()
             .map_or(String::new(), |deviation| format!(" ({deviation})"));
-        let odd = if judged.as_expected() {
+        let odd = if result.as_expected() {
             ""
         } else {
             "  <- not as expected"
@@ -216,22 +216,22 @@ pub fn summary(paper: &Paper) -> String {
             "{:>3}  {:<22}  {:<18}  {}{deviation}{odd}\n",
             claim.number,
             verdict.words(),
-            judged.measured(),
+            result.measured(),
             claim.claim
         );
     }
-    let [holds, conditioned, fails] = counts(&paper.judged);
+    let [holds, conditioned, fails] = counts(&paper.results);
     text += &format!(
         "{} claims: {holds} hold, {conditioned} hold with a condition, {fails} do not hold\n",
-        paper.judged.len()
+        paper.results.len()
     );
-    for (rule, judged) in paper.surprises() {
+    for (rule, result) in paper.unexpected_verdicts() {
         text += &format!(
             "claim {} with {}: {}, expected: {}\n",
-            judged.claim.number,
+            result.claim.number,
             step_name(rule),
-            judged.verdict.words(),
-            judged.claim.expected.words()
+            result.verdict.words(),
+            result.claim.expected.words()
         );
     }
     text
@@ -268,14 +268,14 @@ fn greek(text: &str) -> String {
 }
 
 /// The claims about a figure, with those of the other step rule beside.
-fn claims_of<'p>(paper: &'p Paper, figure: &Figure) -> Vec<(&'p Judged, Option<&'p Judged>)> {
+fn claims_of<'p>(paper: &'p Paper, figure: &Figure) -> Vec<(&'p ClaimResult, Option<&'p ClaimResult>)> {
     let pairs = paper
-        .judged
+        .results
         .iter()
         .enumerate()
-        .map(|(k, judged)| (judged, paper.judged_by_paper_step.get(k)));
+        .map(|(k, result)| (result, paper.results_by_paper_step.get(k)));
     pairs
-        .filter(|(judged, _)| judged.claim.figure() == figure.name)
+        .filter(|(result, _)| result.claim.figure() == figure.name)
         .collect()
 }
 

@@ -9,6 +9,7 @@ use crate::program;
 use crate::run_folder::error::FolderError;
 use slipfront_case::case_file::CaseError;
 use slipfront_case::text::display_path;
+#[cfg(feature = "plot")]
 use slipfront_plot::PictureError;
 
 /// A study that cannot be used, or had to stop.
@@ -162,6 +163,7 @@ pub enum StudyError {
     #[error("cannot write a table of the study: {0}")]
     Table(#[from] csv::Error),
     /// A picture.
+    #[cfg(feature = "plot")]
     #[error("cannot draw {name}: {source}")]
     Picture {
         /// Which one.

@@ -4,19 +4,22 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use super::error::StudyError;
-use super::figures;
 use super::input_copies::Copy;
-use super::journal::{Finding, Records};
-use super::plan::Plan;
-use super::scheduler::Findings;
+use super::journal::Records;
+use super::picture_plan;
+use super::plan::{Plan, RunKey};
+use super::record::RunResult;
 use super::study_file::StudyFile;
+use super::study_results::StudyResults;
 use crate::manifest::Manifest;
-use crate::names::{CASE, FOUND, MANIFEST, RECORDS, RUNS, TABLES};
+use crate::names::{CASE, FIGURE_CACHE, MANIFEST, RECORDS, RUNS, TABLES};
 use crate::run_folder::error::FolderError;
 use slipfront_case::disk::{
     TEXT_MAX_BYTES, is_empty, is_folder, open_limited, open_regular, read_limited, remove_if_there,
     remove_unfinished, sync_folder, write_atomic, write_atomic_with, write_temp,
 };
+use slipfront_case::machine::free_disk;
+use slipfront_case::number_format::byte_size;
 
 /// The study as a table with its base inside: what `slipfront study DIR/study.toml` repeats.
 const STUDY: &str = "study.toml";
@@ -29,8 +32,8 @@ pub struct StudyFolder {
     pub records: Records,
     /// Whether the study was another one when the folder was last used.
     pub changed: bool,
-    /// The study as it stands in the folder, where it reads copies of its files.
-    pub(super) study: StudyFile,
+    /// The study in the folder, which reads copies of its files.
+    pub study: StudyFile,
 }
 
 impl StudyFolder {
@@ -46,8 +49,8 @@ impl StudyFolder {
         std::fs::create_dir_all(path).map_err(unwritable)?;
         let used = path.join(RECORDS).exists();
         let empty = is_empty(path).map_err(unwritable)?;
-        // The findings of `slipfront paper` stand beside records as well.
-        let of_paper = path.join(FOUND).is_dir() && !is_study(path);
+        // The results of `slipfront paper` stand beside records as well.
+        let of_paper = path.join(FIGURE_CACHE).is_dir() && !is_study(path);
         if (!used && !empty) || of_paper {
             return Err(StudyError::NotAStudy {
                 path: path.to_owned(),
@@ -75,7 +78,7 @@ impl StudyFolder {
         // be read now has no pictures that are known.
         if let Some(before) = before {
             if let Ok(before) = parse(&String::from_utf8_lossy(&before)) {
-                folder.remove_pictures(figures::names(&before.axes));
+                folder.remove_pictures(picture_plan::names(&before.axes));
             }
             for table in TABLES {
                 let _ = remove_if_there(&path.join(table));
@@ -134,13 +137,13 @@ impl StudyFolder {
     ///
     /// # Errors
     /// When one cannot be copied.
-    pub fn take_kept(&self, plan: &Plan, findings: &Findings, shard: &Path) -> Result<(), StudyError> {
-        for (run, finding) in &findings.runs {
+    pub fn take_kept(&self, plan: &Plan, results: &StudyResults, shard: &Path) -> Result<(), StudyError> {
+        for (run, result) in &results.runs {
             let name = plan.folder_name(*run);
-            let is_whole = |folder: &Path| match finding.as_ref() {
+            let is_whole = |folder: &Path| match result.as_ref() {
                 // A kill may have come while it was written.
-                Finding::Done(_) => Manifest::read(folder).is_ok(),
-                Finding::Failed(_) => folder.join(CASE).is_file(),
+                RunResult::Done(_) => Manifest::read(folder).is_ok(),
+                RunResult::Failed(_) => folder.join(CASE).is_file(),
             };
             let (from, to) = (shard.join(RUNS).join(&name), self.path.join(RUNS).join(&name));
             if !is_whole(&from) || is_whole(&to) {
@@ -149,6 +152,23 @@ impl StudyFolder {
             copy_run(&from, &to).map_err(|source| FolderError::Copy { from, to, source })?;
         }
         Ok(())
+    }
+
+    /// Refuses a study if the disk has no room for the runs that it lacks, with the fewest replicates.
+    ///
+    /// # Errors
+    /// [`StudyError::Disk`].
+    pub fn check_disk(&self, plan: &Plan) -> Result<(), StudyError> {
+        let lacking = |run: &RunKey| self.records.get(&plan.identity(*run)).is_none();
+        let needed = plan.disk(plan.runs(plan.settings.min_replicates()).filter(lacking));
+        match free_disk(&self.path) {
+            Some(free) if needed > free => Err(StudyError::Disk {
+                needed: byte_size(needed),
+                free: byte_size(free),
+                path: self.path.clone(),
+            }),
+            _ => Ok(()),
+        }
     }
 
     /// Removes pictures of these names, and none of others; one that cannot be removed does no harm.
@@ -232,4 +252,34 @@ pub fn refuse_foreign(folders: &[PathBuf]) -> Result<(), StudyError> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Changes of the original files during a study have no effect; a changed copy is an error.
+    #[test]
+    fn runs_read_what_their_identity_was_made_of() {
+        let folder = tempfile::tempdir().unwrap();
+        let table = |value: f64| format!("{value},{value}\n").repeat(2);
+        let original = folder.path().join("mu.csv");
+        std::fs::write(&original, table(0.9)).unwrap();
+        let text = "[base]\nslider.blocks = [2, 2]\nfriction.mu_static_field = 'mu.csv'";
+        let file = StudyFile::parse(text, "study.toml", "study", folder.path()).unwrap();
+        let plan = Plan::new(&file, None).unwrap();
+        let run = plan.runs(1).next().unwrap();
+        let out = StudyFolder::open(&folder.path().join("out"), &file).unwrap();
+        std::fs::write(&original, table(0.8)).unwrap();
+        let said = plan.case(run).unwrap_err().to_string();
+        assert!(
+            said.contains("no longer what it was when the study began"),
+            "{said}"
+        );
+        let plan = plan.reading_copies(&out.study);
+        let case = plan.case(run).unwrap();
+        assert_eq!(case.inputs[0].bytes, table(0.9).as_bytes());
+        std::fs::write(folder.path().join("out/inputs/mu.csv"), table(0.7)).unwrap();
+        assert!(plan.case(run).is_err());
+    }
 }

@@ -47,14 +47,14 @@ impl Quantity {
 
 /// The numbers of a summary in the order of [`known`]: all that tables and statistics need of a run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Numbers {
+pub struct SummaryValues {
     values: Box<[Option<f64>]>,
     static_friction_star: f64,
     /// Whether its static friction is that of a transition.
     pub(super) transition: bool,
 }
 
-impl Numbers {
+impl SummaryValues {
     pub(super) fn of(summary: &Summary) -> Self {
         Self {
             values: named(summary).into_iter().map(|(_, value)| value).collect(),
@@ -89,6 +89,6 @@ fn named(summary: &Summary) -> Vec<(String, Option<f64>)> {
 /// ```text
 /// 100 (mu_s*(reference) - mu_s*)/mu_s*(reference)
 /// ```
-pub(super) fn reduction_percent(point: &Numbers, reference: &Numbers) -> f64 {
+pub(super) fn reduction_percent(point: &SummaryValues, reference: &SummaryValues) -> f64 {
     100.0 * (reference.static_friction_star - point.static_friction_star) / reference.static_friction_star
 }

@@ -2,7 +2,7 @@
 
 use std::cell::OnceCell;
 
-use slipfront_paper::{Drawing, Found, Number, Panel, Saved, StepRule, Table};
+use slipfront_paper::{Drawing, FigureCache, FigureData, Number, Panel, StepRule, Table};
 use slipfront_plot::{FieldMap, FieldMaps, FrictionCurve, Shape};
 
 use crate::{Memory, Target, scratch};
@@ -25,7 +25,7 @@ pub(crate) const SAVED: Target = Target {
 };
 
 fn made() -> Vec<Vec<u8>> {
-    let mut found = Found::default();
+    let mut found = FigureData::default();
     found
         .numbers
         .insert("fig99.one".to_owned(), Number::of(&[1.0, 2.0]));
@@ -81,12 +81,12 @@ fn made() -> Vec<Vec<u8>> {
 
 thread_local! {
     /// Opening hashes the program.
-    static OPEN: OnceCell<Saved> = const { OnceCell::new() };
+    static OPEN: OnceCell<FigureCache> = const { OnceCell::new() };
 }
 
 fn saved(input: &[u8]) {
     OPEN.with(|saved| {
-        let saved = saved.get_or_init(|| Saved::open(&scratch::folder("paper"), true).unwrap());
+        let saved = saved.get_or_init(|| FigureCache::open(&scratch::folder("paper"), true).unwrap());
         let path = saved.path("fig99", StepRule::Auto);
         let read = |bytes: &[u8]| {
             std::fs::write(&path, bytes).unwrap();

@@ -42,12 +42,12 @@ impl Merge {
                 self.shards.len()
             ));
         }
-        let findings = collect(&plan, &mut folder.records).map_err(Failure::running)?;
+        let results = collect(&plan, &mut folder.records).map_err(Failure::running)?;
         for shard in &self.shards {
             folder
-                .take_kept(&plan, &findings, shard)
+                .take_kept(&plan, &results, shard)
                 .map_err(Failure::running)?;
         }
-        finish(&plan, &findings, &folder, self.quiet)
+        finish(&plan, &results, &folder, self.quiet)
     }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use slipfront_case::disk::is_same;
 use slipfront_run::study;
-use slipfront_run::study::{Findings, Plan, RunKey, Shard, StudyError, StudyFile, StudyFolder};
+use slipfront_run::study::{Plan, RunKey, Shard, StudyError, StudyFile, StudyFolder, StudyResults};
 
 use crate::failure::Failure;
 use crate::print::print;
@@ -70,8 +70,8 @@ impl StudyRun {
         let out = self.out.unwrap_or_else(|| default_out(&file.name, self.shard));
         refuse_to_replace(&path, &file, &out)?;
         let mut folder = StudyFolder::open(&out, &file).map_err(Failure::input)?;
-        plan.check_disk(&folder).map_err(Failure::input)?;
-        let plan = plan.reading_copies(&folder);
+        folder.check_disk(&plan).map_err(Failure::input)?;
+        let plan = plan.reading_copies(&folder.study);
         complete(&plan, &mut folder, threads, self.quiet)
     }
 }
@@ -116,11 +116,11 @@ fn complete(plan: &Plan, folder: &mut StudyFolder, threads: usize, quiet: bool) 
         },
     );
     progress.finish();
-    let findings = done.map_err(|error| match error {
+    let results = done.map_err(|error| match error {
         StudyError::Interrupted => Failure::stopped(&signals, error),
         error => Failure::running(error),
     })?;
-    finish(plan, &findings, folder, quiet)
+    finish(plan, &results, folder, quiet)
 }
 
 /// What is to be known of a folder that has been used before.
@@ -141,20 +141,20 @@ fn notes(folder: &StudyFolder) {
 /// Writes tables and pictures, and says what was found.
 pub(super) fn finish(
     plan: &Plan,
-    findings: &Findings,
+    results: &StudyResults,
     folder: &StudyFolder,
     quiet: bool,
 ) -> Result<(), Failure> {
-    study::write(plan, findings, folder).map_err(Failure::running)?;
+    study::write(plan, results, folder).map_err(Failure::running)?;
     if !quiet {
-        print(&report::study(plan, findings, folder.path()))?;
+        print(&report::study(plan, results, folder.path()))?;
     }
-    failures(plan, findings)
+    failures(plan, results)
 }
 
 /// A study with failed runs is done, but not well.
-fn failures(plan: &Plan, findings: &Findings) -> Result<(), Failure> {
-    let failed: Vec<(RunKey, &str)> = findings.failures().collect();
+fn failures(plan: &Plan, results: &StudyResults) -> Result<(), Failure> {
+    let failed: Vec<(RunKey, &str)> = results.failures().collect();
     let Some((run, reason)) = failed.first() else {
         return Ok(());
     };
@@ -162,7 +162,7 @@ fn failures(plan: &Plan, findings: &Findings) -> Result<(), Failure> {
     let sentence = format!(
         "{} of {} runs failed, the others stand in the tables; the first, replicate {} of the point {place}: {reason}",
         failed.len(),
-        findings.runs.len(),
+        results.runs.len(),
         run.replicate
     );
     Err(Failure::running(anyhow::anyhow!(sentence)))
