@@ -1,6 +1,7 @@
 //! What is refused, with which sentence, before anything is run.
 
-use crate::bench::{Bench, errors};
+use crate::support::process::stderr;
+use crate::support::workspace::Workspace;
 
 #[test]
 fn bad_studies_are_refused_with_a_sentence() {
@@ -136,11 +137,11 @@ fn bad_studies_are_refused_with_a_sentence() {
         ("axes = 3".to_owned(), "`axes` must be a list of tables"),
         ("[study".to_owned(), "not valid TOML"),
     ] {
-        let bench = Bench::with(&text);
-        let output = bench.output(&["study.toml", "-o", "out"]);
-        assert_eq!(output.status.code(), Some(2), "{text}\n{}", errors(&output));
-        assert!(errors(&output).contains(sentence), "{text}\n{}", errors(&output));
-        assert!(!bench.path("out").exists(), "{text}");
+        let workspace = Workspace::with_study(&text);
+        let output = workspace.output("study study.toml -o out");
+        assert_eq!(output.status.code(), Some(2), "{text}\n{}", stderr(&output));
+        assert!(stderr(&output).contains(sentence), "{text}\n{}", stderr(&output));
+        assert!(!workspace.path("out").exists(), "{text}");
     }
 }
 
@@ -148,18 +149,22 @@ fn bad_studies_are_refused_with_a_sentence() {
 fn a_very_large_study_is_asked_for() {
     let text = "base.slider.blocks = [2, 2]\nstudy.replicates = 101\n\
                 [[axes]]\nkey = 'drive.v_star'\nlinspace = [0.1, 0.2, 100]";
-    let bench = Bench::with(text);
-    let output = bench.output(&["study.toml", "-o", "out"]);
+    let workspace = Workspace::with_study(text);
+    let output = workspace.output("study study.toml -o out");
     assert_eq!(output.status.code(), Some(2));
     assert!(
-        errors(&output).contains("10100 runs, more than 10000: give --yes"),
+        stderr(&output).contains("10100 runs, more than 10000: give --yes"),
         "{}",
-        errors(&output)
+        stderr(&output)
     );
-    assert!(!bench.path("out").exists());
-    assert!(bench.run(&["study.toml", "--dry-run"]).contains("10100 runs"));
-    assert_eq!(bench.output(&["slurm", "study.toml"]).status.code(), Some(2));
+    assert!(!workspace.path("out").exists());
+    assert!(
+        workspace
+            .succeed("study study.toml --dry-run")
+            .contains("10100 runs")
+    );
+    assert_eq!(workspace.output("study slurm study.toml").status.code(), Some(2));
     // With --yes it starts: its first part, which is small.
-    bench.run(&["study.toml", "--yes", "--quiet", "--shard", "1/100", "-o", "out"]);
-    bench.results("out").assert_each_run_once(101);
+    workspace.succeed("study study.toml --yes --quiet --shard 1/100 -o out");
+    workspace.results("out").assert_each_run_once(101);
 }

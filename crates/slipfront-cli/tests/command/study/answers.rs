@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::bench::{Bench, SMALL, SMALL_RUNS, deviation, errors, mean};
+use super::results::{SMALL, SMALL_RUNS, deviation, mean};
+use crate::support::process::stderr;
+use crate::support::workspace::Workspace;
 
 /// Until the interval of mu_s* is narrow: some points need more than the fewest replicates, none the most.
 fn adaptive(half_width: &str, max: &str) -> String {
@@ -14,20 +16,25 @@ fn adaptive(half_width: &str, max: &str) -> String {
 
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
-    let bench = Bench::with(SMALL);
-    bench.write("adaptive.toml", adaptive("0.012", "12"));
+    let workspace = Workspace::with_study(SMALL);
+    workspace.write("adaptive.toml", adaptive("0.012", "12"));
     for study in ["study", "adaptive"] {
         for threads in ["1", "2", "7"] {
             let (file, out) = (format!("{study}.toml"), format!("{study}-{threads}"));
-            bench.run(&[&file, "-o", &out, "--threads", threads]);
-            bench
+            workspace.succeed(&format!("study {file} -o {out} --threads {threads}"));
+            workspace
                 .results(&out)
-                .assert_same(&bench.results(&format!("{study}-1")));
+                .assert_same(&workspace.results(&format!("{study}-1")));
         }
     }
-    bench.results("study-7").assert_each_run_once(SMALL_RUNS);
+    workspace.results("study-7").assert_each_run_once(SMALL_RUNS);
     let counts: Vec<usize> = (0..6)
-        .map(|point| bench.results("adaptive-2").numbers(point, "point", "seed").len())
+        .map(|point| {
+            workspace
+                .results("adaptive-2")
+                .numbers(point, "point", "seed")
+                .len()
+        })
         .collect();
     assert!(
         counts.iter().any(|&count| (4..12).contains(&count)),
@@ -37,10 +44,10 @@ fn any_number_of_threads_gives_the_same_bytes() {
 
 #[test]
 fn where_the_interval_stays_wide_it_is_said() {
-    let bench = Bench::with(&adaptive("1e-6", "4"));
-    let said = bench.run(&["study.toml", "-o", "wide"]);
+    let workspace = Workspace::with_study(&adaptive("1e-6", "4"));
+    let said = workspace.succeed("study study.toml -o wide");
     assert_eq!(said.matches("interval still too wide").count(), 6, "{said}");
-    let decided: Vec<String> = bench
+    let decided: Vec<String> = workspace
         .results("wide")
         .table("points.csv")
         .iter()
@@ -53,10 +60,10 @@ fn where_the_interval_stays_wide_it_is_said() {
 #[test]
 fn the_same_replicate_has_the_same_surface_at_every_point() {
     // The first slip of a bare surface is at t* = (8/3) min(mu)/V*, up to a step: it tells the surface.
-    let bench = Bench::with(
+    let workspace = Workspace::with_study(
         "base.slider.blocks = [6, 6]\nbase.time.stop = 'after_onset'\n[study]\nreplicates = 8\n[[axes]]\nkey = 'drive.v_star'\nlist = [0.05, 0.1]",
     );
-    let results = bench.study("out");
+    let results = workspace.study("out");
     let scaled = |point, v_star: f64| -> Vec<f64> {
         let times = results.numbers(point, "point", "first_slip_time_star");
         times.into_iter().map(|time| time * v_star).collect()
@@ -79,11 +86,11 @@ fn the_same_replicate_has_the_same_surface_at_every_point() {
 #[test]
 fn reductions_are_paired_and_their_statistics_those_of_the_pairs() {
     // What a little more speed does is small beside what another surface does.
-    let bench = Bench::with(
+    let workspace = Workspace::with_study(
         "base.slider.blocks = [6, 6]\nbase.time.stop = 'after_onset'\n[study]\nreplicates = 12\n\
          reference = { drive.v_star = 0.12 }\n[[axes]]\nkey = 'drive.v_star'\nlist = [0.1, 0.08]",
     );
-    let results = bench.study("out");
+    let results = workspace.study("out");
     let column = |role, name| results.numbers(0, role, name);
     let (slow, fast) = (
         column("point", "static_friction_star"),
@@ -133,18 +140,18 @@ fn reductions_are_paired_and_their_statistics_those_of_the_pairs() {
 
 #[test]
 fn a_reference_that_points_share_is_run_once() {
-    let bench = Bench::with(&SMALL.replace(
+    let workspace = Workspace::with_study(&SMALL.replace(
         "0.12, 0.14, 0.16, 0.18]",
         "]\n[[axes]]\nkey = 'texture.0.coverage'\nlist = [17, 34]",
     ));
     // 2 speeds, 2 coverages, 3 surfaces; the bare slider knows no coverage.
-    bench.study("out").assert_each_run_once(12 + 6);
+    workspace.study("out").assert_each_run_once(12 + 6);
 }
 
 #[test]
 fn a_failed_run_is_told_and_neither_repeated_nor_in_the_way() {
-    let bench = Bench::with(SMALL);
-    let results = bench.study("out");
+    let workspace = Workspace::with_study(SMALL);
+    let results = workspace.study("out");
     // No valid case diverges, so that one is made to have failed: the sixth line is some run of a point.
     let text = std::fs::read_to_string(results.records()).unwrap();
     let failed: String = text
@@ -161,9 +168,9 @@ fn a_failed_run_is_told_and_neither_repeated_nor_in_the_way() {
         })
         .collect();
     std::fs::write(results.records(), failed).unwrap();
-    let output = bench.output(&["study.toml", "-o", "out"]);
+    let output = workspace.output("study study.toml -o out");
     assert_eq!(output.status.code(), Some(1));
-    let said = errors(&output);
+    let said = stderr(&output);
     assert!(
         said.contains(" runs failed") && said.contains("block (3, 2) diverged"),
         "{said}"
@@ -189,8 +196,8 @@ fn a_failed_run_is_told_and_neither_repeated_nor_in_the_way() {
 
 #[test]
 fn a_dry_run_tells_the_plan_and_runs_nothing() {
-    let bench = Bench::with(SMALL);
-    let said = bench.run(&["study.toml", "--dry-run", "-o", "out"]);
+    let workspace = Workspace::with_study(SMALL);
+    let said = workspace.succeed("study study.toml --dry-run -o out");
     for part in [
         "6 points",
         "3 replicates",
@@ -203,28 +210,28 @@ fn a_dry_run_tells_the_plan_and_runs_nothing() {
     ] {
         assert!(said.contains(part), "{part} is not in\n{said}");
     }
-    assert!(!bench.path("out").exists());
+    assert!(!workspace.path("out").exists());
 }
 
 #[test]
 fn pictures_are_those_that_the_axes_ask_for() {
-    let bench = Bench::with(&SMALL.replace(
+    let workspace = Workspace::with_study(&SMALL.replace(
         "0.12, 0.14, 0.16, 0.18]",
         "]\n[[axes]]\nkey = 'friction.r_star'\nlist = [0.4, 0.5]",
     ));
-    bench.write(
+    workspace.write(
         "names.toml",
         "base.slider.blocks = [4, 4]\nbase.time.stop = 'after_onset'\n[[axes]]\nname = 'damping'\n\
          variants = { weak = { slider.omega_star = 0.1 }, strong = { slider.omega_star = 1 } }",
     );
-    let two_numbers = bench.study("numbers");
+    let two_numbers = workspace.study("numbers");
     for name in ["static_friction_star", "static_reduction_percent"] {
         for file in [format!("{name}.svg"), format!("{name}_map.png")] {
             assert!(two_numbers.has(&file), "{file}");
         }
     }
     // A study that has changed keeps no picture of what it was.
-    bench.run(&["names.toml", "-o", "numbers"]);
+    workspace.succeed("study names.toml -o numbers");
     assert!(two_numbers.has("static_friction_star.svg"));
     assert!(
         !two_numbers.has("static_friction_star_map.svg") && !two_numbers.has("static_reduction_percent.png")
@@ -234,8 +241,8 @@ fn pictures_are_those_that_the_axes_ask_for() {
 /// Its mu_s* is that of a run which never slid: a mean of it must not pass for one.
 #[test]
 fn runs_without_a_transition_are_pointed_out() {
-    let bench = Bench::with(&SMALL.replace("stop = \"after_onset\"", "duration_star = 25"));
-    let said = bench.run(&["study.toml", "-o", "out"]);
+    let workspace = Workspace::with_study(&SMALL.replace("stop = \"after_onset\"", "duration_star = 25"));
+    let said = workspace.succeed("study study.toml -o out");
     let row = |speed: &str| {
         let mut rows = said
             .lines()
@@ -245,7 +252,7 @@ fn runs_without_a_transition_are_pointed_out() {
     assert!(row("0.08").contains("(no transition in 6 of 6 runs)"), "{said}");
     assert!(!row("0.18").contains("no transition"), "{said}");
     // References are shared by points.
-    let without: BTreeSet<String> = bench
+    let without: BTreeSet<String> = workspace
         .results("out")
         .table("runs.csv")
         .iter()
@@ -260,13 +267,13 @@ fn runs_without_a_transition_are_pointed_out() {
 /// The cases of a study have no other place to say it.
 #[test]
 fn what_deserves_a_word_is_said_once() {
-    let bench = Bench::with(
+    let workspace = Workspace::with_study(
         "base.slider.blocks = [30, 30]\nbase.time.stop = 'after_onset'\n\
          base.texture = [{ shape = 'cavity', coverage = 5, array = [10, 10] }]\n[study]\nreplicates = 1\n\
          [[axes]]\nkey = 'texture.0.coverage'\nlist = [0.2, 11]",
     );
-    for arguments in [&["study.toml", "--dry-run"][..], &["study.toml", "-o", "out"]] {
-        let said = bench.run(arguments);
+    for line in ["study study.toml --dry-run", "study study.toml -o out"] {
+        let said = workspace.succeed(line);
         let note = "of the blocks instead of 0.20 %: it is clipped, overlaps, or is too fine for the blocks \
                     (at the point texture.0.coverage = 0.2)";
         assert_eq!(said.matches(note).count(), 1, "{said}");
@@ -279,10 +286,10 @@ fn what_deserves_a_word_is_said_once() {
 fn runs_without_the_number_that_decides_do_not_count_for_it() {
     let until = "base.slider.blocks = [4, 4]\nbase.time.stop = 'after_onset'\n\
                  study.until = { key = 'kinetic_friction_star', half_width = 1, min = 3, max = 50 }\n";
-    let bench = Bench::with(until);
-    let said = bench.run(&["study.toml", "-o", "out"]);
+    let workspace = Workspace::with_study(until);
+    let said = workspace.succeed("study study.toml -o out");
     assert!(said.contains("none   (interval still too wide)"), "{said}");
-    let results = bench.results("out");
+    let results = workspace.results("out");
     assert_eq!(results.recorded().len(), 3);
     let rows = results.table("points.csv");
     let row = rows

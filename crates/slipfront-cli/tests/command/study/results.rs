@@ -1,11 +1,9 @@
-//! A folder to work in, and what is asked of results.
+//! A small study, and what is asked of the folders of results.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::process::Output;
 
-use assert_cmd::Command;
-use tempfile::TempDir;
+use crate::support::workspace::Workspace;
 
 /// Six points on a lattice of 36 blocks, three surfaces and their references: 36 runs of a millisecond or so.
 pub(crate) const SMALL: &str = r#"
@@ -27,75 +25,27 @@ list = [0.08, 0.1, 0.12, 0.14, 0.16, 0.18]
 /// Runs of [`SMALL`].
 pub(crate) const SMALL_RUNS: usize = 36;
 
-/// A temporary folder with study files in it.
-pub(crate) struct Bench {
-    folder: TempDir,
-}
-
-impl Bench {
-    pub(crate) fn new() -> Self {
-        Self {
-            folder: tempfile::tempdir().unwrap(),
-        }
-    }
-
-    /// With `study.toml`.
-    pub(crate) fn with(study: &str) -> Self {
-        let bench = Self::new();
-        bench.write("study.toml", study);
-        bench
-    }
-
-    pub(crate) fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    pub(crate) fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
-        let path = self.path(name);
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, bytes).unwrap();
-    }
-
-    /// `slipfront study` with these arguments, in the folder.
-    pub(crate) fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_slipfront"));
-        command
-            .current_dir(self.folder.path())
-            .arg("study")
-            .args(arguments);
-        for name in ["ID", "COUNT", "MIN"] {
-            command.env_remove(format!("SLURM_ARRAY_TASK_{name}"));
-        }
-        command
-    }
-
-    pub(crate) fn output(&self, arguments: &[&str]) -> Output {
-        self.command(arguments).output().unwrap()
-    }
-
-    /// Runs it and demands success.
-    pub(crate) fn run(&self, arguments: &[&str]) -> String {
-        let output = self.output(arguments);
-        assert!(output.status.success(), "{}", errors(&output));
-        String::from_utf8(output.stdout).unwrap()
+impl Workspace {
+    /// A workspace that holds `study.toml`.
+    pub(crate) fn with_study(study: &str) -> Self {
+        let workspace = Self::new();
+        workspace.write("study.toml", study);
+        workspace
     }
 
     /// Runs `study.toml` into a folder.
     pub(crate) fn study(&self, out: &str) -> Results {
-        self.run(&["study.toml", "-o", out]);
+        self.succeed(&format!("study study.toml -o {out}"));
         self.results(out)
     }
 
+    /// The results in a folder, which need not be there yet.
     pub(crate) fn results(&self, out: &str) -> Results {
         Results { path: self.path(out) }
     }
 }
 
-pub(crate) fn errors(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-/// A folder of results.
+/// A folder with the results of a study.
 pub(crate) struct Results {
     pub(crate) path: PathBuf,
 }

@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use assert_cmd::Command;
 
+use crate::support::process::program;
+
 fn pages() -> Vec<PathBuf> {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut pages = vec![repository.join("README.md")];
@@ -63,8 +65,7 @@ fn every_command_in_the_book_is_understood() {
     for page in pages() {
         for arguments in commands(&std::fs::read_to_string(&page).unwrap()) {
             // With --help at its end a line is parsed up to there and nothing is run: what is wrong is told first.
-            let parsed = Command::cargo_bin("slipfront")
-                .unwrap()
+            let parsed = Command::new(program())
                 .args(&arguments)
                 .arg("--help")
                 .output()
