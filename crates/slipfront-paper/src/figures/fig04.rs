@@ -8,7 +8,7 @@ use crate::figure_data::FigureData;
 use crate::run::{Run, seen_at};
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, mean, smallest};
-use slipfront_case::field_name::FieldName;
+use slipfront::observe::Field;
 
 pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
     let mut data = FigureData::default();
@@ -67,10 +67,10 @@ fn before_slip(runner: &FigureRunner, main: &Run, data: &mut FigureData) -> Resu
     for (_, frame) in &run.record.frames {
         // In units of P mu_s, not yet over its maximum.
         let expected = drive.k_drive * drive.v_star * frame.time_star;
-        for &stress in run.field(frame, FieldName::ContactStressStar)? {
+        for &stress in run.field(frame, Field::ContactStress)? {
             error = error.max((f64::from(stress) / expected - 1.0).abs());
         }
-        for field in [FieldName::DisplacementX, FieldName::DisplacementY] {
+        for field in [Field::DisplacementX, Field::DisplacementY] {
             for &displacement in run.field(frame, field)? {
                 motion = motion.max(f64::from(displacement).abs());
             }
@@ -109,9 +109,7 @@ fn stress_left(runner: &FigureRunner, run: &Run) -> Result<f64, PaperError> {
     let seed = format!("friction.seed={}", run.case.file.friction.seed);
     let again = runner.run_one(seen_at(runner.case("fig04", &[&seed])?, &times))?;
     let stress = |(_, frame): &(String, Frame)| -> Result<f64, PaperError> {
-        Ok(f64::from(
-            again.field(frame, FieldName::ContactStressStar)?[block],
-        ))
+        Ok(f64::from(again.field(frame, Field::ContactStress)?[block]))
     };
     let stresses = again
         .record
@@ -141,7 +139,7 @@ fn rest_slips_within(run: &Run) -> Result<f64, PaperError> {
 
 /// Blocks whose contact stress is lower at E than at D, %.
 fn falls_from_d_to_e(run: &Run) -> Result<f64, PaperError> {
-    let stress = |letter| run.field(run.instant(letter)?, FieldName::ContactStressStar);
+    let stress = |letter| run.field(run.instant(letter)?, Field::ContactStress);
     let (before, after) = (stress('D')?, stress('E')?);
     let lower: Vec<f64> = before
         .iter()
