@@ -36,7 +36,7 @@ fn step(criterion: &mut Criterion, group: &str, kernel: Kernel) {
             skips: false,
             ..Execution::default()
         };
-        let mut simulation = Simulation::with_execution(&model, 0.1, None, execution);
+        let mut simulation = Simulation::with_execution(model.clone(), 0.1, None, execution);
         // Past the transition, when blocks stick and slip: the steps that a run is made of.
         let surface = &model.surface;
         let first = first_slip_time_star(&surface.mu_static, &surface.mu_kinetic, 1.0, 0.03);

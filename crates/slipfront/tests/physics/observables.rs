@@ -1,7 +1,8 @@
 //! What a run shows: the instants A-F, the end of the first peak, divergence.
 
 use rstest::rstest;
-use slipfront::observe::frames::{Field, Selection};
+use slipfront::observe::Field;
+use slipfront::observe::frames::Selection;
 use slipfront::observe::{FirstSlip, Instants, KineticStart, Observer, Scheduled};
 use slipfront::{RunError, Stop, StopReason};
 
@@ -34,7 +35,7 @@ fn instants_are_those_of_their_definitions(#[case] slider: Slider, #[case] kinet
     simulation
         .run(Stop::at_step(steps), &mut [Scheduled::always(&mut instants)])
         .unwrap();
-    let first = FirstSlip::of(&simulation);
+    let first = FirstSlip::of(&simulation.snapshot());
     let peak = simulation.peak();
     let found = instants.found();
     let letters: String = found.iter().map(|(letter, _)| *letter).collect();
