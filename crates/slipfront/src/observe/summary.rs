@@ -107,6 +107,23 @@ impl KineticHistory {
             && self.bins.len() as u64 == observed.div_ceil(steps_per_bin)
     }
 
+    /// Adds the next step.
+    fn add(&mut self, mu_star: f64, sliding_percent: f64) {
+        if self.in_bin == 0 {
+            if self.bins.len() as u64 == Self::BINS {
+                self.merge_pairs();
+            }
+            self.bins.push(Bin::default());
+        }
+        self.sliding_percent_max = self.sliding_percent_max.max(sliding_percent);
+        let weight = 1.0 / self.steps_per_bin as f64;
+        if let Some(bin) = self.bins.last_mut() {
+            bin.mu_star += weight * mu_star;
+            bin.sliding_percent += weight * sliding_percent;
+        }
+        self.in_bin = (self.in_bin + 1) % self.steps_per_bin;
+    }
+
     /// Averages the means in pairs: half as many, over twice as many steps each.
     fn merge_pairs(&mut self) {
         for k in 0..self.bins.len() / 2 {
@@ -151,19 +168,7 @@ impl KineticHistory {
 
 impl Observer for KineticHistory {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
-        if self.in_bin == 0 {
-            if self.bins.len() as u64 == Self::BINS {
-                self.merge_pairs();
-            }
-            self.bins.push(Bin::default());
-        }
-        self.sliding_percent_max = self.sliding_percent_max.max(now.point.sliding_percent);
-        let weight = 1.0 / self.steps_per_bin as f64;
-        if let Some(bin) = self.bins.last_mut() {
-            bin.mu_star += weight * now.point.mu_star;
-            bin.sliding_percent += weight * now.point.sliding_percent;
-        }
-        self.in_bin = (self.in_bin + 1) % self.steps_per_bin;
+        self.add(now.point.mu_star, now.point.sliding_percent);
         Ok(())
     }
 }
@@ -282,6 +287,49 @@ mod tests {
         let expected = (1.0 / 12.0 / 40_000.0_f64).sqrt() / (1.0 - a);
         let found = uncertainty(&x[1000..], [0.0, 1.0]).unwrap();
         assert!((found / expected - 1.0).abs() < 0.3, "{found} {expected}");
+    }
+
+    /// The history of a run in which mu* is this noise.
+    fn history_of(mut history: KineticHistory, noise: &[f64]) -> KineticHistory {
+        for &mu_star in noise {
+            history.add(mu_star, 100.0 * mu_star);
+        }
+        history
+    }
+
+    #[test]
+    fn a_run_without_an_end_keeps_every_step_as_long_as_a_run_with_one_does() {
+        let short = noise(KineticHistory::BINS as usize);
+        let without_end = history_of(KineticHistory::new(u64::MAX), &short);
+        let with_end = history_of(KineticHistory::new(KineticHistory::BINS - 1), &short);
+        assert_eq!(without_end, with_end);
+        assert_eq!(without_end.kinetic(100.0, 0.1), with_end.kinetic(100.0, 0.1));
+    }
+
+    #[test]
+    fn a_run_without_an_end_averages_more_steps_as_it_goes_on() {
+        let new = KineticHistory::new(u64::MAX);
+        // Four steps per mean, as in a run of known length.
+        let long = noise(4 * KineticHistory::BINS as usize);
+        let without_end = history_of(new.clone(), &long);
+        let with_end = history_of(KineticHistory::new(long.len() as u64 - 1), &long);
+        assert_eq!(
+            (without_end.steps_per_bin, without_end.bins.len()),
+            (4, KineticHistory::BINS as usize)
+        );
+        assert!(without_end.is_consistent_with(&new, long.len() as u64 - 1));
+        assert!(!without_end.is_consistent_with(&new, long.len() as u64));
+        let [one, other] = [&without_end, &with_end].map(|history| history.kinetic(1000.0, 0.1).unwrap());
+        assert_eq!(one.window_star, other.window_star);
+        // Means of four are added in another order.
+        assert!((one.mu_star - other.mu_star).abs() < 1e-15);
+        assert!((one.uncertainty.unwrap() - other.uncertainty.unwrap()).abs() < 1e-15);
+        assert!((one.sliding_percent - other.sliding_percent).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_history_of_the_longest_run_is_made_at_once() {
+        assert_eq!(KineticHistory::new(u64::MAX - 1).steps_per_bin, 1 << 50);
     }
 
     #[test]

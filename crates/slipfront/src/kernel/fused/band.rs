@@ -153,29 +153,37 @@ impl Band {
         };
         let force_to_velocity = Step::new(model, 0, dt_star).force_to_velocity;
         for k in 0..len {
-            let Some(b) = layout.block(first + k) else {
-                continue;
-            };
-            let (static_limit, kinetic_force) =
-                (model.surface.static_limit(b), model.surface.kinetic_force(b));
-            band.static_limit_squares[k] = static_limit * static_limit;
-            band.kinetic_impulses[k] = force_to_velocity * kinetic_force;
-            let bit = 1 << (k % LANES);
-            band.blocks[k / LANES] |= bit;
-            if !model.surface.textured[b] {
-                band.in_contact[k / LANES] |= bit;
-            }
-            band.tiles[k / TILE].extent_is_old = true;
-            if let Some(state) = state {
-                let (u, v) = (state.displacement.at(b), state.velocity.at(b));
-                band.displacement.set(halo + k, u);
-                band.velocity.set(k, v);
-                band.set_moving(k, v != [0.0, 0.0]);
-                let tile = &mut band.tiles[k / TILE];
-                tile.sums.speed_square = tile.sums.speed_square.max(v[0] * v[0] + v[1] * v[1]);
+            if let Some(b) = layout.block(first + k) {
+                band.set_surface(k, model, b, force_to_velocity);
+                if let Some(state) = state {
+                    band.set_state(k, state, b);
+                }
             }
         }
         band
+    }
+
+    /// Sets the thresholds of block `b` at element `k`.
+    fn set_surface(&mut self, k: usize, model: &Model, b: usize, force_to_velocity: f64) {
+        let static_limit = model.surface.static_limit(b);
+        self.static_limit_squares[k] = static_limit * static_limit;
+        self.kinetic_impulses[k] = force_to_velocity * model.surface.kinetic_force(b);
+        let bit = 1 << (k % LANES);
+        self.blocks[k / LANES] |= bit;
+        if !model.surface.textured[b] {
+            self.in_contact[k / LANES] |= bit;
+        }
+        self.tiles[k / TILE].extent_is_old = true;
+    }
+
+    /// Sets displacement and velocity of block `b` at element `k`.
+    fn set_state(&mut self, k: usize, state: &State, b: usize) {
+        let (u, v) = (state.displacement.at(b), state.velocity.at(b));
+        self.displacement.set(self.halo + k, u);
+        self.velocity.set(k, v);
+        self.set_moving(k, v != [0.0, 0.0]);
+        let speed_square = &mut self.tiles[k / TILE].sums.speed_square;
+        *speed_square = speed_square.max(v[0] * v[0] + v[1] * v[1]);
     }
 
     /// Continues from a checkpoint with these first slips, as if every tile had just been swept: the largest contact stress of
@@ -366,9 +374,26 @@ impl Band {
     /// Forces and velocities of a tile. Its springs to the next row and those of the row below are in the ring buffer.
     #[inline(always)]
     fn tile<S: Simd, G: Geometry, const ENERGY: bool>(&mut self, simd: S, geometry: G, step: Step, t: usize) {
+        let mut sums = Sums::zero(simd);
+        self.lattice_forces::<S, G, ENERGY>(simd, geometry, t, &mut sums);
+        self.friction::<S, ENERGY>(simd, step, t, &mut sums);
+        let tile = &mut self.tiles[t];
+        tile.sums = sums.totals();
+        tile.moving = tile.sums.sliding > 0;
+        tile.active_from_step = 0;
+    }
+
+    /// Eq. 3 in a tile.
+    #[inline(always)]
+    fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
+        &mut self,
+        simd: S,
+        geometry: G,
+        t: usize,
+        sums: &mut Sums<S>,
+    ) {
         let elements = self.elements(t);
         let start = self.halo + elements.start;
-        let mut sums = Sums::zero(simd);
         let mut west = self.east_springs(simd, geometry, start - LANES);
         for (first, end, own, behind) in self.ring_segments(start, self.halo + elements.end) {
             let n = end - first;
@@ -396,7 +421,13 @@ impl Band {
             };
             lattice_forces::<S, G, ENERGY>(simd, geometry, arrays, &mut west, &mut sums.lattice_energy);
         }
-        let n = elements.len();
+    }
+
+    /// Eqs. 2 and 4-7 in a tile.
+    #[inline(always)]
+    fn friction<S: Simd, const ENERGY: bool>(&mut self, simd: S, step: Step, t: usize, sums: &mut Sums<S>) {
+        let elements = self.elements(t);
+        let (start, n) = (self.halo + elements.start, elements.len());
         let next = elements.start + TILE;
         let moving_next = next + self.tiles_ahead() * TILE;
         let prefetched = [
@@ -426,11 +457,7 @@ impl Band {
             free: chunks_mut(&mut self.free, 0, n),
             removed_fraction: self.removed_fraction[..n].as_chunks_mut().0,
         };
-        friction::<S, ENERGY>(simd, step, arrays, motion, &mut sums);
-        let tile = &mut self.tiles[t];
-        tile.sums = sums.totals();
-        tile.moving = tile.sums.sliding > 0;
-        tile.active_from_step = 0;
+        friction::<S, ENERGY>(simd, step, arrays, motion, sums);
     }
 
     /// Springs to the east of the eight elements from `first` on.

@@ -450,14 +450,20 @@ pub(super) fn friction<S: Simd, const ENERGY: bool>(
         let slips = slides & in_contact[c];
         sums.sliding += slides.count_ones();
         sums.slipping += slips.count_ones();
-        // Happens at most once per block in a run.
-        let new = slips & !slipped[c];
-        if new != 0 {
-            slipped[c] |= new;
-            for (lane, time) in first_slip[c].iter_mut().enumerate() {
-                if new >> lane & 1 == 1 {
-                    *time = step.time_star;
-                }
+        mark_first_slips(slips, &mut slipped[c], &mut first_slip[c], step.time_star);
+    }
+}
+
+/// Records the time for those of eight blocks that slip for the first time.
+#[inline(always)]
+fn mark_first_slips(slips: u8, slipped: &mut u8, first_slip: &mut [f64; LANES], time_star: f64) {
+    let new = slips & !*slipped;
+    // Seldom true: at most once per block in a run.
+    if new != 0 {
+        *slipped |= new;
+        for (lane, time) in first_slip.iter_mut().enumerate() {
+            if new >> lane & 1 == 1 {
+                *time = time_star;
             }
         }
     }

@@ -1,4 +1,4 @@
-//! What only the inside of the kernel shows: vector widths, rest, and how much of it is left alone.
+//! Tests of what is private to the kernel: vector widths, the bound on strains, and which tiles are skipped.
 
 use proptest::prelude::*;
 
