@@ -11,21 +11,21 @@ use slipfront::{
 };
 
 /// A slider at rest, stepped by the kernel that this binary tests.
-pub(crate) fn at_rest(model: &Model, dt_star: f64) -> Simulation<'_> {
+pub(crate) fn at_rest(model: &Model, dt_star: f64) -> Simulation {
     executed(model, dt_star, None)
 }
 
 /// A slider in a given state, stepped by the kernel that this binary tests.
-pub(crate) fn from_state(model: &Model, dt_star: f64, state: State) -> Simulation<'_> {
+pub(crate) fn from_state(model: &Model, dt_star: f64, state: State) -> Simulation {
     executed(model, dt_star, Some(state))
 }
 
-fn executed(model: &Model, dt_star: f64, state: Option<State>) -> Simulation<'_> {
+fn executed(model: &Model, dt_star: f64, state: Option<State>) -> Simulation {
     let execution = Execution {
         kernel: crate::KERNEL,
         ..Execution::default()
     };
-    Simulation::with_execution(model, dt_star, state, execution)
+    Simulation::with_execution(model.clone(), dt_star, state, execution)
 }
 
 /// A run described by the groups of Eq. 11. The default is the baseline of Fig. 3.

@@ -60,7 +60,7 @@ fn assert_same_bits(model: &Model, dt_star: f64, from: Option<&State>, steps: u6
     let stopped = of(1).into_iter().chain(of(3)).zip([1, 5, 16, 61]);
     let skipping = of(1).into_iter().skip(1).map(|execution| (execution, 16));
     let executions: Vec<_> = unstopped.chain(stopped).chain(skipping).collect();
-    let run = |execution| Simulation::with_execution(model, dt_star, from.cloned(), execution);
+    let run = |execution| Simulation::with_execution(model.clone(), dt_star, from.cloned(), execution);
     let mut plain = run(FUSED);
     let mut others: Vec<_> = executions.iter().map(|&(execution, _)| run(execution)).collect();
     for step in 1..=steps {
@@ -202,7 +202,7 @@ fn the_largest_stress_may_be_that_of_the_last_step_at_rest() {
     let firm = model(surface.clone());
     // Thresholds that the pushing block passes after 50 steps and the held one after 80, if nothing pushes.
     for (b, steps) in [(pushing, 50.0), (stored, 80.0)] {
-        let block = Simulation::with_execution(&firm, dt_star, Some(from.clone()), FUSED)
+        let block = Simulation::with_execution(firm.clone(), dt_star, Some(from.clone()), FUSED)
             .snapshot()
             .block(b);
         let [x, y] = [0, 1].map(|axis| block.force_drive[axis] + block.force_lattice[axis]);

@@ -12,7 +12,7 @@ fn first_slip(model: &Model, dt_star: f64) -> FirstSlip {
     let steps = (4.0 / model.drive.v_star / dt_star) as u64;
     let mut simulation = at_rest(model, dt_star);
     simulation.run(Stop::at_step(steps), &mut []).unwrap();
-    FirstSlip::of(&simulation)
+    FirstSlip::of(&simulation.snapshot())
 }
 
 /// The first instant at which the force exceeds the threshold: at most one step late, never early; rounding

@@ -35,7 +35,7 @@ fn measured_delay(model: &Model, dt: f64, expected: f64) -> f64 {
     let steps = (1.2 * COLUMNS as f64 * expected / dt) as u64;
     let mut simulation = at_rest(model, dt);
     simulation.run(Stop::at_step(steps), &mut []).unwrap();
-    let first = FirstSlip::of(&simulation);
+    let first = FirstSlip::of(&simulation.snapshot());
     let (from, to) = (COLUMNS / 2, COLUMNS - 10);
     (first.time_star[to] - first.time_star[from]) / (to - from) as f64
 }

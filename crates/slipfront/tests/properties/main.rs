@@ -7,7 +7,8 @@
 mod common;
 
 use proptest::prelude::*;
-use slipfront::observe::frames::{Field, Selection};
+use slipfront::observe::Field;
+use slipfront::observe::frames::Selection;
 use slipfront::observe::{Curve, Instants, KineticHistory, KineticStart, Observer, Scheduled};
 use slipfront::surface::{Cavity, Groove, Load, Orientation, Texture, mesh};
 use slipfront::{
@@ -293,7 +294,7 @@ proptest! {
         let (model, n) = (slider.model(), lattice.n_blocks());
         let run = |kernel, threads, skips| {
             let state = moves.then(|| thrown(n, 0.2, 5));
-            Simulation::with_execution(&model, dt_star, state, Execution { kernel, threads, skips })
+            Simulation::with_execution(model.clone(), dt_star, state, Execution { kernel, threads, skips })
         };
         let mut plain = run(Kernel::Fused, 1, false);
         let mut other = run(Kernel::Fused, threads, skips);

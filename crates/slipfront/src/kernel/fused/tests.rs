@@ -1,10 +1,14 @@
-//! What only the inside of the kernel shows: vector widths, rest, and how much of it is left alone.
+//! Tests of what is private to the kernel: vector widths, the bound on strains, and which tiles are skipped.
 
 use proptest::prelude::*;
 
 use super::*;
-use crate::surface::{Coefficients, Distribution, Load};
-use crate::{Drive, Edges, FrictionLaw, Lattice, Surface, VectorField, scales};
+use crate::friction::FrictionLaw;
+use crate::lattice::{Edges, Lattice};
+use crate::model::Drive;
+use crate::scales;
+use crate::surface::{Coefficients, Distribution, Load, Surface};
+use crate::vector_field::VectorField;
 
 fn model(lattice: Lattice, v_star: f64, degrees: f64, epsilon: f64) -> Model {
     let n = lattice.n_blocks();
@@ -111,7 +115,8 @@ fn differences_of_displacement_are_bounded() {
             }
             for axis in [0, 2] {
                 let exact = extent[axis] + extent[axis + 1];
-                let bound = kernel.extent[axis] + kernel.extent[axis + 1] + kernel.growth;
+                let StrainBound { extent, growth, .. } = kernel.strain_bound;
+                let bound = extent[axis] + extent[axis + 1] + growth;
                 // Displacements round by 1e-16 of themselves.
                 let over = bound - exact * (1.0 - 1e-14);
                 assert!(
@@ -120,7 +125,7 @@ fn differences_of_displacement_are_bounded() {
                 );
             }
         }
-        assert!(kernel.latest.n_sliding > 0);
+        assert!(kernel.totals.n_sliding > 0);
     }
 }
 
@@ -133,7 +138,7 @@ fn slow_drives_are_mostly_rest() {
     let (mut before, mut after, mut steps) = (0, 0, 0);
     for number in 0..3000 {
         let totals = kernel.step(&model, number, false);
-        let swept = kernel.swept == Some(number);
+        let swept = kernel.swept_step == Some(number);
         let tasks = kernel.bands.iter().flat_map(|band| &band.tasks);
         let removed_fraction = tasks.filter(|task| swept && task.active).count();
         if totals.n_sliding > 0 || steps > 0 {
