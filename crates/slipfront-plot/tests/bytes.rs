@@ -160,7 +160,7 @@ fn every_kind_of_picture_has_its_bytes() {
 const EXPECTED: &str = "
 friction: ef6d50c92d97b621 e569e4e2f40f8dd2
 frictions: a801ec10e573e7f0 ad58ad9da0a50dda
-stress: df4a2d354a38af3c c0082bc942936cff
+stress: 29fa383c29e2d9d5 ff8ce7ab956b00c0
 fields: 7e4b1ffba21a31b0 842c86a43f85bbe9
 response: ba4e4a0d0d72a45c fdb7df3e8496e780
 bars: ec38e49d1f4e2ea0 ae053ce9b5007d18
