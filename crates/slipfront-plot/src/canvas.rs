@@ -157,7 +157,9 @@ impl Canvas {
                 at: place(along + spaces.width(), run.drop),
                 upwards,
             };
-            self.add(letters, colour, 1.0);
+            if !trimmed.is_empty() {
+                self.add(letters, colour, 1.0);
+            }
             along += run.width();
         }
     }

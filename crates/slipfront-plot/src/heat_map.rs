@@ -99,38 +99,45 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
     short_ticks(&mut canvas, area, Direction::X, &x_short);
     let title = Text::fitted(&map.x.title, area.width);
     lower_side(&mut canvas, area, &x_ticks, &title);
-    let bar = Area {
-        x: area.right() + GAP,
-        width: BAR_WIDTH,
-        ..area
-    };
-    colour_bar(&mut canvas, bar, &bar_ticks);
+    draw_bar(&mut canvas, area, &bar_ticks, &map.value_title);
     if values.iter().any(|value| value.is_nan()) {
-        draw_blank(&mut canvas, bar);
+        draw_blank(&mut canvas, area);
     }
-    let baseline = COLUMN_WIDTH - MARGIN - 0.24 * f64::from(SIZE_LABEL);
-    let title = Text::fitted(&map.value_title, area.height);
-    let middle = area.y + 0.5 * area.height;
-    canvas.text_upwards(&title, (baseline, middle), Align::Middle, BLACK);
     canvas.finish()
+}
+
+/// Draws the colour bar of a map, and the title of its values.
+fn draw_bar(canvas: &mut Canvas, map: Area, ticks: &[Tick], title: &str) {
+    colour_bar(canvas, bar_area(map), ticks);
+    let baseline = COLUMN_WIDTH - MARGIN - 0.24 * f64::from(SIZE_LABEL);
+    let title = Text::fitted(title, map.height);
+    canvas.text_upwards(&title, (baseline, map.centre().1), Align::Middle, BLACK);
+}
+
+/// Where the colour bar of a map is.
+fn bar_area(map: Area) -> Area {
+    Area {
+        x: map.right() + GAP,
+        width: BAR_WIDTH,
+        ..map
+    }
 }
 
 /// From values to colours.
 struct Colours {
     axis: Axis,
-    lo: f64,
-    hi: f64,
 }
 
 impl Colours {
     fn of(values: &[f64]) -> Self {
         let (lo, hi) = widened(range(values.iter().copied()));
-        let axis = Axis::between(lo, hi, false);
-        Self { axis, lo, hi }
+        Self {
+            axis: Axis::linear(lo, hi),
+        }
     }
 
     fn level(&self, value: f64) -> u8 {
-        level(((value - self.lo) / (self.hi - self.lo)) as f32)
+        level(((value - self.axis.lo) / (self.axis.hi - self.axis.lo)) as f32)
     }
 }
 
@@ -234,7 +241,8 @@ fn short(value: f64, digits: usize) -> Option<String> {
 }
 
 /// Tells below the colour bar what grey is.
-fn draw_blank(canvas: &mut Canvas, bar: Area) {
+fn draw_blank(canvas: &mut Canvas, map: Area) {
+    let bar = bar_area(map);
     let text = Text::plain("none", SIZE_TICK);
     // Beside the axis' title: a number may reach as far as the bar.
     let baseline = bar.bottom() + LOWER_ROOM - MARGIN - 4.0;
@@ -278,7 +286,8 @@ fn draw_numbers(canvas: &mut Canvas, x: &Cells, y: &Cells, values: &[f64], colou
     if x.values.len().max(y.values.len()) > MOST_NUMBERED {
         return;
     }
-    let size = colours.lo.abs().max(colours.hi.abs());
+    let (lo, hi) = (colours.axis.lo, colours.axis.hi);
+    let size = lo.abs().max(hi.abs());
     if !(1e-4..1e6).contains(&size) {
         return;
     }
@@ -290,9 +299,7 @@ fn draw_numbers(canvas: &mut Canvas, x: &Cells, y: &Cells, values: &[f64], colou
     let (room_x, room_y) = (smallest(&edges_x) - 12.0, smallest(&edges_y) - 12.0);
     let height = Text::plain("0", SIZE_TICK).height();
     // Two digits or so of the range, or one less.
-    let decimals = libm::log10(50.0 / (colours.hi - colours.lo))
-        .ceil()
-        .clamp(0.0, 9.0) as usize;
+    let decimals = libm::log10(50.0 / (hi - lo)).ceil().clamp(0.0, 9.0) as usize;
     let texts = [decimals, decimals.saturating_sub(1)]
         .map(|decimals| written(values, decimals))
         .into_iter()

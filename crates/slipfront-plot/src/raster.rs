@@ -233,3 +233,107 @@ fn sum_row(sums: &mut [[u16; 3]], levels: &[u8], columns: &[usize], colours: &[R
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Align, Area};
+    use crate::style::{BLACK, CURVES, WHITE};
+    use crate::text::Text;
+
+    /// The colours at some points of a small picture.
+    fn pixels<const COUNT: usize>(draw: impl Fn(&mut Canvas), at: [(usize, usize); COUNT]) -> [Rgb; COUNT] {
+        let mut canvas = Canvas::new(40.0, 30.0);
+        draw(&mut canvas);
+        let rgb = rgb(&canvas).unwrap();
+        at.map(|(x, y)| {
+            let start = (y * 40 + x) * 3;
+            [rgb[start], rgb[start + 1], rgb[start + 2]]
+        })
+    }
+
+    const AREA: Area = Area {
+        x: 10.0,
+        y: 10.0,
+        width: 8.0,
+        height: 6.0,
+    };
+
+    #[test]
+    fn a_line_is_as_wide_as_asked_and_ends_where_it_ends() {
+        let line = |canvas: &mut Canvas| canvas.line((10.0, 10.0), (20.0, 10.0), 2.0, BLACK);
+        let found = pixels(line, [(10, 9), (19, 10), (9, 9), (20, 10), (15, 8), (15, 11)]);
+        assert_eq!(found, [BLACK, BLACK, WHITE, WHITE, WHITE, WHITE]);
+        // Half a pixel is half as dark.
+        let fine = |canvas: &mut Canvas| canvas.line((10.0, 10.0), (20.0, 10.0), 1.0, [0, 0, 0]);
+        let [[red, ..]] = pixels(fine, [(15, 10)]);
+        assert!((126..=129).contains(&red), "{red}");
+    }
+
+    #[test]
+    fn a_frame_has_whole_corners() {
+        let found = pixels(
+            |canvas| canvas.frame(AREA),
+            [(10, 10), (17, 15), (14, 13), (9, 13), (18, 13)],
+        );
+        assert_eq!(found, [BLACK, BLACK, WHITE, BLACK, BLACK]);
+    }
+
+    #[test]
+    fn areas_are_filled_to_their_edges() {
+        let at = [(10, 10), (17, 15), (18, 15), (9, 10)];
+        let fill = |canvas: &mut Canvas| canvas.fill(AREA, CURVES[0], 1.0);
+        assert_eq!(pixels(fill, at), [CURVES[0], CURVES[0], WHITE, WHITE]);
+        let faint = |canvas: &mut Canvas| canvas.fill(AREA, [0, 0, 0], 0.2);
+        assert_eq!(pixels(faint, at)[0], [204, 204, 204]);
+        let corners = vec![(10.0, 10.0), (18.0, 10.0), (18.0, 16.0), (10.0, 16.0)];
+        let polygon = |canvas: &mut Canvas| canvas.polygon(corners.clone(), CURVES[0], 1.0);
+        assert_eq!(pixels(polygon, at), [CURVES[0], CURVES[0], WHITE, WHITE]);
+    }
+
+    #[test]
+    fn a_dot_has_a_rim() {
+        let dot = |canvas: &mut Canvas| {
+            let ground = Area { width: 30.0, ..AREA };
+            canvas.fill(ground, BLACK, 1.0);
+            canvas.dot((20.0, 13.0), 3.8, CURVES[1]);
+        };
+        assert_eq!(
+            pixels(dot, [(20, 13), (24, 13), (11, 13)]),
+            [CURVES[1], WHITE, BLACK]
+        );
+    }
+
+    #[test]
+    fn letters_stand_on_their_baseline_and_may_read_upwards() {
+        // A minus sign is a bar: from 217 to 1499 of 2048 along, from 557 to 727 above the baseline.
+        let minus = Text::plain("\u{2212}", 24);
+        let text = |canvas: &mut Canvas| canvas.text(&minus, (10.0, 20.0), Align::Start, BLACK);
+        assert_eq!(
+            pixels(text, [(13, 12), (26, 12), (20, 10), (20, 15), (11, 12), (30, 12)]),
+            [BLACK, BLACK, WHITE, WHITE, WHITE, WHITE]
+        );
+        let upwards = |canvas: &mut Canvas| canvas.text_upwards(&minus, (20.0, 28.0), Align::Start, BLACK);
+        assert_eq!(
+            pixels(
+                upwards,
+                [(12, 24), (12, 11), (10, 18), (15, 18), (12, 27), (12, 8)]
+            ),
+            [BLACK, BLACK, WHITE, WHITE, WHITE, WHITE]
+        );
+    }
+
+    #[test]
+    fn cells_that_meet_within_a_pixel_are_mixed() {
+        let image = |canvas: &mut Canvas| {
+            canvas.image(Image {
+                area: Area { width: 3.0, ..AREA },
+                columns: 2,
+                levels: vec![0, 254],
+            });
+        };
+        let [dark, mixed, bright] = pixels(image, [(10, 12), (11, 12), (12, 12)]);
+        assert_eq!((dark, bright), ([0x44, 0x01, 0x54], [0xfd, 0xe7, 0x25]));
+        assert_eq!(mixed, [161, 116, 61]);
+    }
+}

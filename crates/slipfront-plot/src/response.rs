@@ -65,74 +65,94 @@ pub struct Response {
 ///
 /// No curve, or a curve whose columns differ in length.
 pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
-    let curves = &responses.curves;
-    if curves.is_empty() {
+    if responses.curves.is_empty() {
         return Err(PictureError::Nothing("curve"));
     }
-    curves.iter().try_for_each(check)?;
-    let curves: Vec<Curve> = curves.iter().map(Curve::of).collect();
-    let xs: Vec<f64> = curves.iter().flat_map(|curve| curve.x.clone()).collect();
-    let x = Axis::around(&xs, responses.log_x, 0.04);
-    let ys: Vec<f64> = curves.iter().flat_map(Curve::values).collect();
-    let y = Axis::around(&ys, responses.log_y, 0.06);
-    let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Direction::Y, MAX_STEPS));
-    let right = COLUMN_WIDTH.round() - RIGHT;
-    let right = right_end(
-        &x.placed(left, right).ticks(Direction::X, MAX_STEPS),
-        left,
-        right,
-        COLUMN_WIDTH,
-    );
-    let mut legend = Legend::default();
-    if curves.len() > 1 {
-        let labels: Vec<&str> = responses.curves.iter().map(|c| c.label.as_str()).collect();
-        let lines: Vec<bool> = curves.iter().map(|curve| curve.line).collect();
-        legend =
-            Legend::titled(&responses.legend_title, &labels, Sample::Marker, left, right).with_lines(&lines);
-    }
-    let area = Area {
-        x: left,
-        y: MARGIN + legend.height,
-        width: right - left,
-        height: HEIGHT,
-    };
-    let (x, y) = (x.placed(left, right), y.placed(area.bottom(), area.y));
-
-    let mut canvas = Canvas::new(COLUMN_WIDTH, area.bottom() + LOWER_ROOM);
-    let title = Text::fitted(&responses.y_title, HEIGHT);
-    left_side(&mut canvas, area, 0.0, &y.ticks(Direction::Y, MAX_STEPS), &title);
-    short_ticks(&mut canvas, area, Direction::Y, &y.short_ticks());
-    short_ticks(&mut canvas, area, Direction::X, &x.short_ticks());
-    let title = Text::fitted(&responses.x_title, area.width);
-    lower_side(&mut canvas, area, &x.ticks(Direction::X, MAX_STEPS), &title);
+    responses.curves.iter().try_for_each(check)?;
+    let curves: Vec<Curve> = responses.curves.iter().map(Curve::of).collect();
+    let (panel, legend) = Panel::of(responses, &curves);
+    let mut canvas = Canvas::new(COLUMN_WIDTH, panel.area.bottom() + LOWER_ROOM);
+    panel.draw_sides(&mut canvas, responses);
     legend.draw(&mut canvas);
-    if !y.is_log && y.lo < 0.0 && y.hi > 0.0 {
-        canvas.line((area.x, y.at(0.0)), (area.right(), y.at(0.0)), WIDTH_LEADER, GREY);
+    panel.draw_curves(&mut canvas, &curves);
+    canvas.frame(panel.area);
+    canvas.finish()
+}
+
+/// Where the curves are drawn.
+struct Panel {
+    area: Area,
+    x: Axis,
+    y: Axis,
+}
+
+impl Panel {
+    /// A panel that holds all curves, and the legend above it.
+    fn of(responses: &Responses, curves: &[Curve]) -> (Self, Legend) {
+        let xs: Vec<f64> = curves.iter().flat_map(|curve| curve.x.clone()).collect();
+        let x = Axis::around(&xs, responses.log_x, 0.04);
+        let ys: Vec<f64> = curves.iter().flat_map(Curve::values).collect();
+        let y = Axis::around(&ys, responses.log_y, 0.06);
+        let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Direction::Y, MAX_STEPS));
+        let right = COLUMN_WIDTH.round() - RIGHT;
+        let x_ticks = x.placed(left, right).ticks(Direction::X, MAX_STEPS);
+        let right = right_end(&x_ticks, left, right, COLUMN_WIDTH);
+        let mut legend = Legend::default();
+        if curves.len() > 1 {
+            let labels: Vec<&str> = responses.curves.iter().map(|c| c.label.as_str()).collect();
+            let lines: Vec<bool> = curves.iter().map(|curve| curve.line).collect();
+            let title = &responses.legend_title;
+            legend = Legend::titled(title, &labels, Sample::Marker, left, right).with_lines(&lines);
+        }
+        let area = Area {
+            x: left,
+            y: MARGIN + legend.height,
+            width: right - left,
+            height: HEIGHT,
+        };
+        let panel = Self {
+            area,
+            x: x.placed(left, right),
+            y: y.placed(area.bottom(), area.y),
+        };
+        (panel, legend)
     }
-    // All bands, then all curves, then all points: nothing hides a point.
-    let opacity = if curves.len() > 4 { 0.13 } else { 0.2 };
-    let coloured: Vec<(&Curve, Rgb)> = curves
-        .iter()
-        .enumerate()
-        .map(|(index, curve)| (curve, curve_colour(index, curves.len())))
-        .collect();
-    for (curve, colour) in &coloured {
-        curve.draw_band(&mut canvas, &x, &y, *colour, opacity);
+
+    /// Draws ticks, numbers and titles, and a line at zero.
+    fn draw_sides(&self, canvas: &mut Canvas, responses: &Responses) {
+        let Self { area, x, y } = self;
+        let title = Text::fitted(&responses.y_title, area.height);
+        left_side(canvas, *area, 0.0, &y.ticks(Direction::Y, MAX_STEPS), &title);
+        short_ticks(canvas, *area, Direction::Y, &y.short_ticks());
+        short_ticks(canvas, *area, Direction::X, &x.short_ticks());
+        let title = Text::fitted(&responses.x_title, area.width);
+        lower_side(canvas, *area, &x.ticks(Direction::X, MAX_STEPS), &title);
+        if !y.is_log && y.lo < 0.0 && y.hi > 0.0 {
+            canvas.line((area.x, y.at(0.0)), (area.right(), y.at(0.0)), WIDTH_LEADER, GREY);
+        }
     }
-    for (curve, colour) in &coloured {
-        for segment in segments(&curve.x, &curve.mean, &x, &y) {
-            if segment.len() > 1 {
-                canvas.polyline(segment, WIDTH_CURVE, *colour);
+
+    /// Draws all bands, then all curves, then all points: nothing hides a point.
+    fn draw_curves(&self, canvas: &mut Canvas, curves: &[Curve]) {
+        let Self { x, y, .. } = self;
+        let opacity = if curves.len() > 4 { 0.13 } else { 0.2 };
+        let colour = |index: usize| curve_colour(index, curves.len());
+        for (index, curve) in curves.iter().enumerate() {
+            curve.draw_band(canvas, x, y, colour(index), opacity);
+        }
+        for (index, curve) in curves.iter().enumerate() {
+            for segment in segments(&curve.x, &curve.mean, x, y) {
+                if segment.len() > 1 {
+                    canvas.polyline(segment, WIDTH_CURVE, colour(index));
+                }
+            }
+        }
+        for (index, curve) in curves.iter().enumerate().filter(|(_, curve)| !curve.line) {
+            for point in segments(&curve.x, &curve.mean, x, y).concat() {
+                marker(canvas, index, point, RADIUS_MARKER, colour(index));
             }
         }
     }
-    for (index, (curve, colour)) in coloured.iter().enumerate().filter(|(_, (curve, _))| !curve.line) {
-        for point in segments(&curve.x, &curve.mean, &x, &y).concat() {
-            marker(&mut canvas, index, point, RADIUS_MARKER, *colour);
-        }
-    }
-    canvas.frame(area);
-    canvas.finish()
 }
 
 fn check(curve: &Response) -> Result<(), PictureError> {

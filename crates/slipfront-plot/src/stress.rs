@@ -183,7 +183,11 @@ impl Layout {
                 let mut ticks = axis.ticks(Direction::X, most(area.width));
                 // No number may touch the first one of the next map.
                 let end = area.x + 0.5 * (area.width + self.pitch_x) - 4.0;
-                ticks.retain(|(at, text)| at + 0.5 * text.width() <= end);
+                for (at, text) in &mut ticks {
+                    if *at + 0.5 * text.width() > end {
+                        *text = Text::plain("", SIZE_TICK);
+                    }
+                }
                 let title = Text::plain(&format!("x ({})", self.unit), SIZE_LABEL);
                 lower_side(canvas, area, &ticks, &title);
             }

@@ -39,9 +39,13 @@ impl Axis {
         if let Some(chosen) = choices.iter().find(|ticks| apart(ticks, direction)) {
             return chosen.clone();
         }
-        // One number touches no other.
-        let sparsest = choices.pop().unwrap_or_default();
-        sparsest.into_iter().take(1).collect()
+        // The outermost two, or one, which touches no other.
+        let mut sparsest = choices.pop().unwrap_or_default();
+        sparsest.drain(1.min(sparsest.len())..sparsest.len().saturating_sub(1));
+        if !apart(&sparsest, direction) {
+            sparsest.truncate(1);
+        }
+        sparsest
     }
 
     /// The pixels of ticks without a number, which tell that an axis is logarithmic.
@@ -183,6 +187,17 @@ mod tests {
         assert_eq!(linear(-0.1, 1.0), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert_eq!(linear(-1.0, 1.0)[0], "\u{2212}1.0");
         assert_eq!(linear(0.0, 2e-7)[2], "1.0\u{d7}10\u{2212}7");
+    }
+
+    #[test]
+    fn a_short_axis_is_numbered_at_its_ends() {
+        let numbers = |length: f64| {
+            let axis = Axis::linear(0.0, 1.0).placed(length, 0.0);
+            texts(axis.ticks(Direction::Y, 2))
+        };
+        assert_eq!(numbers(80.0), ["0.0", "0.5", "1.0"]);
+        assert_eq!(numbers(43.0), ["0.0", "1.0"]);
+        assert_eq!(numbers(20.0), ["0.0"]);
     }
 
     #[test]
