@@ -32,46 +32,30 @@ pub struct Verdict {
 
 /// A folder that cannot be verified.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum VerifyError {
-    /// It is no folder at all.
     #[error("{} is no folder: name the folder of a run or a study", path.display())]
-    NotAFolder {
-        /// The path.
-        path: PathBuf,
-    },
-    /// It has no usable manifest.
+    NotAFolder { path: PathBuf },
     #[error(transparent)]
     Manifest(#[from] ManifestError),
-    /// Files that a picture would be drawn from.
     #[error(
         "{difference}: pictures of it would not show what was run; run its case again, or remove {} to draw the files \
         as they are",
         manifest.display()
     )]
-    Changed {
-        /// The first of them, and how it differs.
-        difference: String,
-        /// The manifest that says so.
-        manifest: PathBuf,
-    },
-    /// A study that has not all its runs.
+    Changed { difference: String, manifest: PathBuf },
     #[error(
         "the study in {} lacks {runs} runs{}: finish it, or merge it with its other shards, and verify it then",
         path.display(),
         study::of_others(*others)
     )]
     Unfinished {
-        /// The folder.
         path: PathBuf,
-        /// Runs that are not recorded.
         runs: usize,
-        /// Recorded runs that it does not ask for.
         others: usize,
     },
-    /// A study that cannot be read, or made again.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// There is no place to make it again.
     #[error("cannot make a folder to compare with: {0}; name one that is writable in TMPDIR")]
     Temporary(std::io::Error),
 }
