@@ -1,6 +1,7 @@
 //! Changes to a case file: `--set key=value`, and the keys that the axes of a study set.
 
 use std::borrow::Cow;
+use std::fmt;
 use std::ops::Range;
 
 use toml::Spanned;
@@ -25,6 +26,12 @@ pub struct Override {
     value: Range<usize>,
     /// Whether the value is TOML; otherwise it is a string without quotes, which a shell takes away.
     is_toml: bool,
+}
+
+impl fmt::Display for Override {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
 }
 
 impl Override {
@@ -70,9 +77,10 @@ impl Override {
             }
             Err(_) => false,
         };
+        let key_start = key.len() - key.trim_start().len();
         Ok(Self {
             text: text.to_owned(),
-            key: 0..key.len(),
+            key: key_start..key_start + key.trim().len(),
             value: value_start..value_start + value.len(),
             is_toml,
         })
@@ -80,7 +88,7 @@ impl Override {
 
     /// The key.
     pub fn key(&self) -> &str {
-        self.text[self.key.clone()].trim()
+        &self.text[self.key.clone()]
     }
 
     /// Applies the override to a parsed file; its text is added to the source.

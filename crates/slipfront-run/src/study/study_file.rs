@@ -13,8 +13,8 @@ use super::error::StudyError;
 use super::input_copies::{self, Copy};
 use super::summary_values::{self, REDUCTION};
 use slipfront_case::case_file::{
-    CASE_TABLES, CaseError, STUDY_TABLES, Source, Tables, header_below, keys_of, limit_nesting, syntax_error,
-    unknown_key,
+    CASE_TABLES, CaseError, ParsedCase, STUDY_TABLES, Source, Tables, header_below, keys_of, limit_nesting,
+    syntax_error, unknown_key,
 };
 
 /// A study file.
@@ -41,6 +41,13 @@ pub struct Base {
     pub name: String,
     /// The folder that the files it names are relative to.
     pub folder: PathBuf,
+}
+
+impl Base {
+    /// The case file, parsed.
+    pub(super) fn parse(&self) -> Result<ParsedCase<'_>, CaseError> {
+        ParsedCase::parse(&self.text, &self.name)
+    }
 }
 
 /// `[study]`: repetition, reference and what is kept.
@@ -141,7 +148,7 @@ impl Settings {
             return refuse("study.replicates", sentence);
         }
         let mut reference = self.reference.iter().flat_map(axis::overrides);
-        if reference.any(|set| axis::key_of(&set) == "friction.seed") {
+        if reference.any(|set| set.key() == "friction.seed") {
             let sentence =
                 "a reduction is that against the same surface: leave `friction.seed` out of the reference";
             return refuse("study.reference", sentence.to_owned());

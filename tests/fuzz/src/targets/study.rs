@@ -1,6 +1,6 @@
 //! Study files; the cases that they name are those of the repository.
 
-use slipfront_case::case_file::CaseFile;
+use slipfront_case::case_file::ParsedCase;
 use slipfront_run::study::{StudyFile, StudyFolder};
 
 use crate::checks::readable;
@@ -37,7 +37,8 @@ fn study_file(input: &[u8]) {
     };
     let axis = study.axes.iter().max_by_key(|axis| axis.levels.len());
     for level in axis.into_iter().flat_map(|axis| axis.levels.iter().take(LEVELS)) {
-        if let Err(error) = CaseFile::parse(&study.base.text, &study.base.name, &level.overrides) {
+        let base = ParsedCase::parse(&study.base.text, &study.base.name);
+        if let Err(error) = base.and_then(|base| base.with(&level.overrides)) {
             readable(&error);
         }
     }
