@@ -1,4 +1,4 @@
-//! What can go wrong with the paper.
+//! Errors of `slipfront paper`.
 
 use slipfront::RunError;
 use thiserror::Error;
@@ -8,7 +8,7 @@ use slipfront_plot::PictureError;
 use slipfront_run::run_folder::error::FolderError;
 use slipfront_run::study::StudyError;
 
-/// A paper that could not be gone through.
+/// Why the figures could not be run or the report not be written.
 #[derive(Debug, Error)]
 pub enum PaperError {
     /// A figure that the paper does not have.
@@ -41,7 +41,7 @@ pub enum PaperError {
         /// Why.
         reason: String,
     },
-    /// Something that a figure needs did not come about in a run.
+    /// A run lacks something that a figure needs.
     #[error("{file} gave no {what}")]
     Lacks {
         /// The case or study.
@@ -49,10 +49,10 @@ pub enum PaperError {
         /// What is missing.
         what: String,
     },
-    /// A file of `cases/paper/`.
-    #[error("a file of cases/paper cannot be read: {0}")]
+    /// A case file, study file or the list of claims in this crate.
+    #[error("a file of the paper's cases cannot be read: {0}")]
     Text(#[from] toml::de::Error),
-    /// A claim about something that no figure measures.
+    /// A claim about a number that no figure measures.
     #[error("claim {number} is about `{quantity}`, which is not measured")]
     Unmeasured {
         /// Number of the claim.
@@ -68,7 +68,7 @@ pub enum PaperError {
         /// What is wrong with it.
         source: PictureError,
     },
-    /// A table could not be put into words.
+    /// A table could not be written as CSV.
     #[error("cannot write a table: {0}")]
     Table(#[from] csv::Error),
     /// A file of the results folder.
@@ -77,7 +77,7 @@ pub enum PaperError {
 }
 
 impl PaperError {
-    /// Whether a signal asked to stop, and everything finished is safe.
+    /// Whether a signal asked to stop. Finished runs of studies and finished figures are stored then.
     pub fn is_interruption(&self) -> bool {
         matches!(self, Self::Study(StudyError::Interrupted))
     }

@@ -1,4 +1,4 @@
-//! What can go wrong with a study.
+//! Errors of studies.
 
 use std::path::PathBuf;
 
@@ -26,21 +26,21 @@ pub enum StudyError {
         /// What is wrong with it.
         source: CaseError,
     },
-    /// The product of the axes is very large.
+    /// The study has very many runs.
     #[error("the study has {runs} runs, more than {limit}: give --yes if that is meant")]
     Large {
         /// Runs.
         runs: u64,
-        /// What is done without asking.
+        /// Most runs without confirmation.
         limit: u64,
     },
     /// The study has more points than can be listed.
     #[error("the axes of the study multiply to more than {limit} points: take fewer levels")]
     TooLarge {
-        /// Most points.
+        /// Largest number of points.
         limit: usize,
     },
-    /// As many runs at once as there is no memory for.
+    /// More runs at once than there is memory for.
     #[error(
         "{threads} runs at once take about {needed} of memory where {available} are available to this process: give \
         --threads {fit}"
@@ -48,14 +48,14 @@ pub enum StudyError {
     Memory {
         /// Runs at once.
         threads: usize,
-        /// What they take.
+        /// Memory that they take.
         needed: String,
-        /// What there is.
+        /// Available memory.
         available: String,
-        /// How many runs there is memory for.
+        /// Number of runs that there is memory for.
         fit: usize,
     },
-    /// A run that there is no memory for.
+    /// A run that needs more memory than there is.
     #[error(
         "a run of the point {point} takes about {needed} of memory where {available} are available to this process: \
         lower `slider.blocks`, or keep no run folders (`study.keep`)"
@@ -63,21 +63,21 @@ pub enum StudyError {
     PointMemory {
         /// Its levels.
         point: String,
-        /// What it takes.
+        /// Memory that it takes.
         needed: String,
-        /// What there is.
+        /// Available memory.
         available: String,
     },
-    /// Results that there is no room for.
+    /// Results that need more disk space than there is.
     #[error(
         "the runs still to be done take about {needed} where {free} are free in {}: keep fewer run folders \
         (`study.keep`), or choose another folder with --out",
         path.display()
     )]
     Disk {
-        /// What they take.
+        /// Space that they take.
         needed: String,
-        /// What there is.
+        /// Free space.
         free: String,
         /// The folder.
         path: PathBuf,
@@ -85,7 +85,7 @@ pub enum StudyError {
     /// The results folder.
     #[error(transparent)]
     Folder(#[from] FolderError),
-    /// The folder holds something that is no study.
+    /// The folder holds other files than those of a study.
     #[error("the folder {} holds other things than a study: choose another with --out", path.display())]
     NotAStudy {
         /// The folder.
@@ -101,14 +101,14 @@ pub enum StudyError {
     #[error("cannot {action} {}: {source}; finished runs are safe, and the study goes on from there when started again",
         path.display())]
     Records {
-        /// What was tried.
+        /// What could not be done.
         action: &'static str,
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The reason.
         source: std::io::Error,
     },
-    /// Another file of it could not be written.
+    /// Another file of the folder could not be written.
     #[error(
         "cannot write {}: {source}; finished runs are safe, and the study goes on from there when started again",
         display_path(path)
@@ -116,42 +116,42 @@ pub enum StudyError {
     Write {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The reason.
         source: std::io::Error,
     },
-    /// A file that is no record file.
+    /// A file that is not a record file.
     #[error("{} is not the record file of a study", path.display())]
     NotRecords {
         /// The file.
         path: PathBuf,
     },
-    /// A folder could not be kept.
+    /// A run folder could not be written.
     #[error(
         "cannot keep the folder of a run: {0}; finished runs are safe, and the study goes on from there when \
         started again"
     )]
     Keep(#[from] ResultsError),
-    /// Shards that do not hold all runs.
+    /// Shards that lack runs of the study.
     #[error(
         "{runs} runs are in none of the shards{}: finish them, or run the rest with `slipfront study` on the \
         study.toml of the united folder, with --out the folder itself",
         of_others(*others)
     )]
     Missing {
-        /// Runs that are not there, as far as is known.
+        /// Number of missing runs, as far as is known.
         runs: usize,
-        /// Recorded runs that no point asks for.
+        /// Number of recorded runs that do not belong to the study.
         others: usize,
     },
     /// Shards of different studies.
     #[error("{} belongs to another study than {}: merge shards of one study only", other.display(), first.display())]
     Foreign {
-        /// The folder whose study is taken.
+        /// The first folder.
         first: PathBuf,
-        /// The one that differs.
+        /// The folder that differs.
         other: PathBuf,
     },
-    /// A shard that cannot be.
+    /// A shard that does not exist.
     #[error("the shard `{given}` cannot be: {why}; write i/n with i from 1 to n, such as 2/8, or `slurm`")]
     Shard {
         /// What was given.
@@ -159,7 +159,7 @@ pub enum StudyError {
         /// What is wrong with it.
         why: String,
     },
-    /// A table could not be put into words.
+    /// A table could not be written as CSV.
     #[error("cannot write a table of the study: {0}")]
     Table(#[from] csv::Error),
     /// A picture.
@@ -179,7 +179,7 @@ pub enum StudyError {
     Interrupted,
 }
 
-/// What recorded runs that no point asks for may be, for the middle of a sentence.
+/// The explanation of recorded runs that do not belong to a study, to be inserted into a sentence.
 pub(crate) fn of_others(runs: usize) -> String {
     match runs {
         0 => String::new(),
