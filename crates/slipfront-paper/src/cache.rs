@@ -1,6 +1,6 @@
 //! The data of figures, stored as soon as they are measured, so that a call that was stopped does not measure them again.
 //!
-//! A file holds a checksum and the data of a figure under a step rule. A damaged file, and one that was made by another
+//! A file holds the data of a figure under a step rule, and a checksum. A damaged file, and one that was made by another
 //! program, with other cases or with other options, is ignored.
 
 use std::path::{Path, PathBuf};
@@ -10,6 +10,7 @@ use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::step_rule::StepRule;
 use slipfront_case::disk::{read_limited, remove_unfinished, write_atomic};
+use slipfront_run::checksum;
 use slipfront_run::names::FIGURE_CACHE;
 use slipfront_run::program;
 use slipfront_run::run_folder::error::FolderError;
@@ -18,7 +19,8 @@ use slipfront_run::run_folder::error::FolderError;
 const MAX_BYTES: u64 = 1 << 28;
 
 /// The stored data of figures in a results folder.
-pub(super) struct FigureCache {
+#[derive(Debug)]
+pub struct FigureCache {
     folder: PathBuf,
     /// Hash of the program, its cases and the options: all that the data depend on besides figure and step rule.
     origin: blake3::Hash,
@@ -29,7 +31,7 @@ impl FigureCache {
     ///
     /// # Errors
     /// When the folder cannot be made.
-    pub(super) fn open(folder: &Path, reduced: bool) -> Result<Self, PaperError> {
+    pub fn open(folder: &Path, reduced: bool) -> Result<Self, PaperError> {
         let folder = folder.join(FIGURE_CACHE);
         std::fs::create_dir_all(&folder).map_err(|source| FolderError::Unwritable {
             path: folder.clone(),
@@ -51,7 +53,7 @@ impl FigureCache {
     }
 
     /// The file of a figure.
-    fn path(&self, figure: &str, step: StepRule) -> PathBuf {
+    pub fn path(&self, figure: &str, step: StepRule) -> PathBuf {
         let step = match step {
             StepRule::Auto => "auto",
             StepRule::Paper => "paper",
@@ -59,25 +61,15 @@ impl FigureCache {
         self.folder.join(format!("{figure}-{step}.bin"))
     }
 
-    /// Hash of the data and of their origin.
-    fn checksum(&self, data: &[u8]) -> blake3::Hash {
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(self.origin.as_bytes()).update(data);
-        hasher.finalize()
-    }
-
-    /// The contents of a file.
-    fn with_checksum(&self, data: &[u8]) -> Vec<u8> {
-        [self.checksum(data).as_bytes(), data].concat()
+    /// The contents of a file: the data and their checksum.
+    pub fn with_checksum(&self, data: &[u8]) -> Vec<u8> {
+        checksum::with_checksum(self.origin.as_bytes(), data)
     }
 
     /// The data of a figure; none if its file is missing, damaged or of another origin.
-    pub(super) fn load(&self, figure: &str, step: StepRule) -> Option<FigureData> {
+    pub fn load(&self, figure: &str, step: StepRule) -> Option<FigureData> {
         let bytes = read_limited(&self.path(figure, step), MAX_BYTES).ok()?;
-        let (checksum, data) = bytes.split_at_checked(blake3::OUT_LEN)?;
-        if self.checksum(data).as_bytes() != checksum {
-            return None;
-        }
+        let data = checksum::verified(self.origin.as_bytes(), &bytes)?;
         postcard::from_bytes(data).ok()
     }
 
@@ -85,7 +77,7 @@ impl FigureCache {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub(super) fn save(&self, figure: &str, step: StepRule, data: &FigureData) -> Result<(), PaperError> {
+    pub fn save(&self, figure: &str, step: StepRule, data: &FigureData) -> Result<(), PaperError> {
         let path = self.path(figure, step);
         // Serialisation of plain data into memory does not fail.
         let Ok(data) = postcard::to_stdvec(data) else {

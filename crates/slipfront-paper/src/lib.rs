@@ -23,6 +23,7 @@ mod statistics;
 mod step_rule;
 mod sweep;
 
+pub use cache::FigureCache;
 pub use claims::{Claim, ClaimResult, Condition, Verdict, claims};
 pub use drawing::Drawing;
 pub use error::PaperError;

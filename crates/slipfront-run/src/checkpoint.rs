@@ -11,6 +11,7 @@ use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::checksum::{HashingWriter, verify_reader};
 use crate::names::{CHECKPOINT, PREVIOUS};
 use crate::program;
 use crate::running::{RunState, Running};
@@ -42,7 +43,7 @@ struct Layout {
 
 /// A checkpoint as it was read.
 #[derive(Debug)]
-pub struct Saved {
+pub struct LoadedCheckpoint {
     /// The state of the run.
     pub state: RunState,
     /// Its step.
@@ -131,7 +132,7 @@ impl Checkpoints {
     }
 
     /// Those of a run that goes on from a checkpoint.
-    pub fn after(folder: &Path, case: &Case, saved: &Saved) -> Self {
+    pub fn after(folder: &Path, case: &Case, saved: &LoadedCheckpoint) -> Self {
         Self {
             latest_is_whole: saved.latest,
             saved_step: Some(saved.step),
@@ -192,7 +193,11 @@ impl Checkpoints {
     ///
     /// # Errors
     /// When it cannot be read, is damaged, or is that of another program or case.
-    pub fn load(folder: &Path, case: &Case, previous: bool) -> Result<Option<Saved>, CheckpointError> {
+    pub fn load(
+        folder: &Path,
+        case: &Case,
+        previous: bool,
+    ) -> Result<Option<LoadedCheckpoint>, CheckpointError> {
         let names: &[&str] = if previous {
             &[PREVIOUS]
         } else {
@@ -223,40 +228,19 @@ fn hash_of(case: &Case) -> String {
     hasher.finalize().to_hex().to_string()
 }
 
-/// Hands on what is written, and hashes it.
-struct Sealing<W> {
-    inner: W,
-    hasher: blake3::Hasher,
-}
-
-impl<W: Write> Write for Sealing<W> {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        let written = self.inner.write(bytes)?;
-        self.hasher.update(&bytes[..written]);
-        Ok(written)
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        self.inner.flush()
-    }
-}
-
 fn write(file: &mut File, header: &Header, running: &Running) -> std::io::Result<()> {
-    let hasher = blake3::Hasher::new();
-    let mut sealing = BufWriter::with_capacity(1 << 20, Sealing { inner: file, hasher });
-    serde_json::to_writer(&mut sealing, header)?;
-    sealing.write_all(b"\n")?;
-    // Postcard swallows what the system says of a failed write: it is asked again.
-    let written = postcard::to_io(&running.state(), &mut sealing).map(|_| ());
-    sealing.flush()?;
+    let mut writer = BufWriter::with_capacity(1 << 20, HashingWriter::new(file));
+    serde_json::to_writer(&mut writer, header)?;
+    writer.write_all(b"\n")?;
+    // Postcard drops the system's error of a failed write; `flush` gives it again.
+    let written = postcard::to_io(&running.state(), &mut writer).map(|_| ());
+    writer.flush()?;
     written.map_err(std::io::Error::other)?;
-    let Sealing { inner, hasher } = sealing
-        .into_inner()
-        .map_err(std::io::IntoInnerError::into_error)?;
-    inner.write_all(hasher.finalize().as_bytes())
+    let writer = writer.into_inner().map_err(std::io::IntoInnerError::into_error)?;
+    writer.finish()
 }
 
-fn read(path: &Path, case: &Case) -> Result<Saved, CheckpointError> {
+fn read(path: &Path, case: &Case) -> Result<LoadedCheckpoint, CheckpointError> {
     let unreadable = |source| CheckpointError::Unreadable {
         path: path.to_owned(),
         source,
@@ -281,8 +265,9 @@ fn read(path: &Path, case: &Case) -> Result<Saved, CheckpointError> {
     let header: Header = serde_json::from_slice(&line).map_err(|_| unknown())?;
     // Nothing is made of bytes before they are known to be those that were written.
     reader.rewind().map_err(unreadable)?;
-    let sealed = check_seal(&mut reader).map_err(unreadable)?;
-    let sealed = sealed.ok_or_else(|| damaged("its checksum does not fit"))?;
+    let length = reader.get_ref().metadata().map_err(unreadable)?.len();
+    let end = verify_reader(&mut reader, length).map_err(unreadable)?;
+    let end = end.ok_or_else(|| damaged("its checksum does not fit"))?;
     let here = program::this_build();
     if header.program != here {
         return Err(CheckpointError::Program {
@@ -298,12 +283,12 @@ fn read(path: &Path, case: &Case) -> Result<Saved, CheckpointError> {
     }
     let begin = line.len() as u64;
     reader.seek(SeekFrom::Start(begin)).map_err(unreadable)?;
-    let mut body = reader.take(sealed - begin);
+    let mut body = reader.take(end - begin);
     // Room for one number at a time.
     let mut number = [0; 16];
     let state = postcard::from_io((&mut body, &mut number)).map(|(state, _)| state);
     match state {
-        Ok(state) if body.limit() == 0 => Ok(Saved {
+        Ok(state) if body.limit() == 0 => Ok(LoadedCheckpoint {
             state,
             step: header.step,
             started: header.started,
@@ -311,17 +296,4 @@ fn read(path: &Path, case: &Case) -> Result<Saved, CheckpointError> {
         }),
         _ => Err(damaged("it holds no state of a run")),
     }
-}
-
-/// Number of bytes under the seal; none if it does not fit.
-fn check_seal(reader: &mut BufReader<File>) -> std::io::Result<Option<u64>> {
-    let length = reader.get_ref().metadata()?.len();
-    let Some(sealed) = length.checked_sub(blake3::OUT_LEN as u64) else {
-        return Ok(None);
-    };
-    let mut hasher = blake3::Hasher::new();
-    hasher.update_reader(reader.by_ref().take(sealed))?;
-    let mut seal = Vec::new();
-    reader.read_to_end(&mut seal)?;
-    Ok((hasher.finalize().as_bytes() == seal.as_slice()).then_some(sealed))
 }

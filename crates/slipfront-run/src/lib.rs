@@ -7,6 +7,8 @@
 //! Each arrow is one function: [`running::run`], [`results::write`], `pictures::draw` (with the feature `plot`).
 
 pub mod checkpoint;
+pub mod checksum;
+pub mod error;
 pub mod fields;
 pub mod manifest;
 pub mod names;

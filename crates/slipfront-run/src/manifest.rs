@@ -19,8 +19,8 @@ use slipfront_case::disk::{TEXT_MAX_BYTES, json, open_regular, read_limited};
 use slipfront_case::text;
 use slipfront_case::text::truncated;
 
-/// How the last key of a manifest begins in its file: all before it is under the seal.
-const SEAL: &[u8] = b"\"seal\"";
+/// The last key of a manifest in its file. The checksum, its value, is the hash of all bytes before it.
+const CHECKSUM_KEY: &[u8] = b"\"seal\"";
 
 /// What was written, and how it came about. Keys that an earlier version did not write are empty.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -59,9 +59,9 @@ pub struct Manifest {
     pub random: Random,
     /// Every other file of the run.
     pub files: Vec<ManifestFile>,
-    /// BLAKE3 hash of the manifest itself up to this key.
-    #[serde(default)]
-    pub seal: String,
+    /// BLAKE3 hash of the manifest itself up to this key, which is called `seal` in the file.
+    #[serde(default, rename = "seal")]
+    pub checksum: String,
 }
 
 /// Seed and streams of the random numbers.
@@ -156,14 +156,14 @@ impl Manifest {
             case_blake3: case.map_or(String::new(), |case| case.blake3.clone()),
             random: Random::of_seed(seed),
             files,
-            seal: String::new(),
+            checksum: String::new(),
         })
     }
 
-    /// The bytes of the file, sealed.
-    pub(crate) fn sealed(mut self) -> (Self, Vec<u8>) {
-        self.seal = String::new();
-        self.seal = seal_of(&json(&self)).unwrap_or_default();
+    /// The manifest with its checksum, and the bytes of its file.
+    pub(crate) fn with_checksum(mut self) -> (Self, Vec<u8>) {
+        self.checksum = String::new();
+        self.checksum = checksum_of(&json(&self)).unwrap_or_default();
         let bytes = json(&self);
         (self, bytes)
     }
@@ -186,8 +186,8 @@ impl Manifest {
             }
         };
         let why = match serde_json::from_slice::<Self>(&bytes) {
-            Ok(manifest) if seal_of(&bytes).as_ref() == Some(&manifest.seal) => return Ok(manifest),
-            Ok(manifest) if manifest.seal.is_empty() => {
+            Ok(manifest) if checksum_of(&bytes).as_ref() == Some(&manifest.checksum) => return Ok(manifest),
+            Ok(manifest) if manifest.checksum.is_empty() => {
                 "it has no seal, by which changes of it are seen".to_owned()
             }
             Ok(_) => "its seal does not fit, so that it was changed after the run".to_owned(),
@@ -202,9 +202,10 @@ impl Manifest {
     }
 }
 
-/// The hash of all before the seal; none if there is no seal.
-fn seal_of(manifest: &[u8]) -> Option<String> {
-    let before = manifest.windows(SEAL.len()).rposition(|bytes| bytes == SEAL)?;
+/// The checksum that the bytes of a manifest should have; none if they lack the key of it.
+fn checksum_of(manifest: &[u8]) -> Option<String> {
+    let mut windows = manifest.windows(CHECKSUM_KEY.len());
+    let before = windows.rposition(|bytes| bytes == CHECKSUM_KEY)?;
     Some(blake3::hash(&manifest[..before]).to_hex().to_string())
 }
 

@@ -6,6 +6,15 @@ pub const CASE: &str = "case.toml";
 /// What was written, by which program, when and where; the last file to be written.
 pub const MANIFEST: &str = "manifest.json";
 
+/// The numbers of a run.
+pub const SUMMARY: &str = "summary.json";
+
+/// The curve of a run, row by row.
+pub const SERIES: &str = "series.csv";
+
+/// The fields of a run, block by block.
+pub const FIELDS: &str = "fields.nc";
+
 /// The latest checkpoint.
 pub const CHECKPOINT: &str = "checkpoint.bin";
 

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 use super::write::write_to;
+use slipfront_case::field_name::FieldName;
+
 use super::*;
 
 const NX: usize = 5;

@@ -9,14 +9,15 @@ use std::rc::Rc;
 
 use netcdf3::{DataSet, FileWriter, InvalidDataSet, Version};
 
-use super::names::{
+use super::variables::{
     BLOCK_SIZE, BLOCKS, FIRST_SLIP, LABEL, LABEL_LENGTH, MU_KINETIC, MU_STATIC, STEP, STRIDE, TEXTURED, TIME,
     TIME_STAR, TIME_UNIT, X, Y,
 };
 use slipfront_case::case::smallest_stride;
 use slipfront_case::field_name::FieldName;
 
-use super::{FieldsError, FieldsFile, thin};
+use super::error::FieldsError;
+use super::frame::{FieldsFile, thin};
 use slipfront_case::disk::write_atomic_with;
 
 /// Writes `fields.nc`.

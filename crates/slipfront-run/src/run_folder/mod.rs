@@ -198,7 +198,7 @@ impl RunFolder {
                 return Err(FolderError::Changed { path });
             }
         }
-        let (manifest, bytes) = manifest.sealed();
+        let (manifest, bytes) = manifest.with_checksum();
         let path = self.path.join(MANIFEST);
         write_atomic(&path, &bytes)
             .and_then(|()| sync_folder(&self.path))

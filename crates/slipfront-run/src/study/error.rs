@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use crate::error::ResultsError;
 use crate::program;
-use crate::results::ResultsError;
 use crate::run_folder::error::FolderError;
 use slipfront_case::case_file::CaseError;
 use slipfront_case::text::display_path;

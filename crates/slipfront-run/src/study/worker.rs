@@ -10,7 +10,7 @@ use super::error::StudyError;
 use super::plan::{Plan, RunKey};
 use super::record::Outcome;
 use super::study_file::RetainRuns;
-use crate::results::ResultsError;
+use crate::error::ResultsError;
 use crate::run_folder::RunFolder;
 use crate::{results, running};
 use slipfront_case::case::Case;

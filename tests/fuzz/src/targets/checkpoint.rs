@@ -78,20 +78,20 @@ fn checkpoint(input: &[u8]) {
     };
     let case = &CASES[usize::from(*number) % CASES.len()];
     go_on(case, file);
-    let unsealed = &file[..file.len().saturating_sub(blake3::OUT_LEN)];
-    go_on(case, &sealed(unsealed));
+    let contents = &file[..file.len().saturating_sub(blake3::OUT_LEN)];
+    go_on(case, &with_checksum(contents));
     // The state alone, under a header that fits as well.
     let folder = scratch::folder("checkpoint");
     let whole = save(&folder, &Running::start(case, 1));
     let length = |bytes: &[u8]| bytes.iter().position(|&byte| byte == b'\n').map(|at| at + 1);
     let header = &whole[..length(&whole).unwrap()];
     let begin = length(file).unwrap_or(0);
-    let state = unsealed.get(begin..).unwrap_or_default();
-    go_on(case, &sealed(&[header, state].concat()));
+    let state = contents.get(begin..).unwrap_or_default();
+    go_on(case, &with_checksum(&[header, state].concat()));
 }
 
 /// With the seal that fits.
-fn sealed(bytes: &[u8]) -> Vec<u8> {
+fn with_checksum(bytes: &[u8]) -> Vec<u8> {
     [bytes, blake3::hash(bytes).as_bytes()].concat()
 }
 

@@ -1,11 +1,10 @@
 //! What stands in a run folder as JSON: the summary, and the manifest under its seal.
 
 use slipfront_run::manifest::{Manifest, ManifestFile, Random};
-use slipfront_run::results::{read_summary, summary_json};
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::contents::own_bytes;
 use slipfront_run::run_folder::error::FolderError;
-use slipfront_run::summary::{InstantSummary, Summary};
+use slipfront_run::summary::{InstantSummary, Summary, read_summary, summary_json};
 use slipfront_run::verify::verify;
 
 use crate::checks::readable;
@@ -128,7 +127,7 @@ fn manifests() -> Vec<Vec<u8>> {
             file("inputs/mask.png", b"mask"),
             file("../keep", b"kept"),
         ],
-        seal: String::new(),
+        checksum: String::new(),
     };
     let mut odd = whole.clone();
     let long = format!("inputs/{}", "a".repeat(300));
@@ -142,14 +141,14 @@ fn manifests() -> Vec<Vec<u8>> {
         &long,
     ];
     odd.files.extend(names.map(|name| file(name, b"")));
-    let sealed = |manifest: &Manifest| sealed(&serde_json::to_vec_pretty(manifest).unwrap());
-    vec![sealed(&whole), sealed(&Manifest::default()), sealed(&odd)]
+    let bytes = |manifest: &Manifest| with_checksum(&serde_json::to_vec_pretty(manifest).unwrap());
+    vec![bytes(&whole), bytes(&Manifest::default()), bytes(&odd)]
 }
 
 const CASE: &[u8] = b"[drive]\nv_star = 0.1\n";
 
 /// A manifest whose seal, if it has one, fits what stands before it.
-fn sealed(manifest: &[u8]) -> Vec<u8> {
+fn with_checksum(manifest: &[u8]) -> Vec<u8> {
     let name = b"\"seal\"";
     let Some(at) = manifest.windows(name.len()).rposition(|bytes| bytes == name) else {
         return manifest.to_vec();
@@ -161,7 +160,7 @@ fn sealed(manifest: &[u8]) -> Vec<u8> {
 
 fn check_manifest(input: &[u8]) {
     manifest(input);
-    manifest(&sealed(input));
+    manifest(&with_checksum(input));
 }
 
 /// A manifest whose seal fits is what was written; whatever it lists, nothing outside of its folder is touched.

@@ -1,7 +1,7 @@
 //! Pictures from the files of a run folder.
 
 use slipfront_run::pictures::{draw, draw_friction};
-use slipfront_run::results::summary_json;
+use slipfront_run::summary::summary_json;
 
 use super::json::summary;
 use super::{fields, series};

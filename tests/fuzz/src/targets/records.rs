@@ -34,7 +34,7 @@ fn made() -> Vec<Vec<u8>> {
     let done = record("0123456789abcdef", Outcome::Done(Box::new(summary())));
     let plain = record("a", Outcome::Done(Box::default()));
     let failed = record("b", Outcome::Failed("the run diverged at step 12".to_owned()));
-    let line = |record: &Record| sealed(serde_json::to_string(record).unwrap().as_bytes());
+    let line = |record: &Record| with_checksum(serde_json::to_string(record).unwrap().as_bytes());
     vec![
         line(&done),
         line(&failed),
@@ -45,13 +45,13 @@ fn made() -> Vec<Vec<u8>> {
 }
 
 /// A line with its checksum.
-fn sealed(json: &[u8]) -> Vec<u8> {
+fn with_checksum(json: &[u8]) -> Vec<u8> {
     let sum = blake3::hash(json).to_hex();
     [&sum.as_bytes()[..16], b" ", json, b"\n"].concat()
 }
 
 /// Without its checksum, if it has one.
-fn unsealed(line: &[u8]) -> &[u8] {
+fn without_checksum(line: &[u8]) -> &[u8] {
     match line.get(16) {
         Some(b' ') => &line[17..],
         _ => line,
@@ -60,8 +60,8 @@ fn unsealed(line: &[u8]) -> &[u8] {
 
 fn records(input: &[u8]) {
     drop(open(input));
-    let lines: Vec<&[u8]> = input.split(|&byte| byte == b'\n').map(unsealed).collect();
-    let file: Vec<u8> = lines.iter().flat_map(|json| sealed(json)).collect();
+    let lines: Vec<&[u8]> = input.split(|&byte| byte == b'\n').map(without_checksum).collect();
+    let file: Vec<u8> = lines.iter().flat_map(|json| with_checksum(json)).collect();
     let Some(records) = open(&file) else { return };
     let mut whole = 0;
     for json in &lines {

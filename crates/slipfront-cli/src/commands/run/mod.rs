@@ -12,6 +12,7 @@ use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::contents::own_bytes;
 use slipfront_run::running::Running;
+use slipfront_run::summary::summary_json;
 
 use crate::case_args::CaseArgs;
 use crate::failure::Failure;
@@ -143,7 +144,7 @@ fn complete(
     results::write(case, &mut record, folder, started, threads)
         .map_err(|error| Failure::running(anyhow::anyhow!("{error}; {}", saving.remedy())))?;
     if manner.json {
-        print(&results::summary_json(&record.summary))?;
+        print(&summary_json(&record.summary))?;
     } else if talks {
         print(&report::summary(case, &record.summary))?;
         print(&files(case, &out))?;

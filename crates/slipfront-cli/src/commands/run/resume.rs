@@ -4,12 +4,12 @@ use std::path::Path;
 
 use jiff::Timestamp;
 use slipfront_case::case::Case;
-use slipfront_run::checkpoint::{CheckpointError, Checkpoints, Saved};
+use slipfront_run::checkpoint::{CheckpointError, Checkpoints, LoadedCheckpoint};
 use slipfront_run::manifest::{Manifest, ManifestError};
-use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::contents::own_bytes;
 use slipfront_run::running::Running;
+use slipfront_run::summary::{read_summary, summary_json};
 use slipfront_run::verify::{VerifyError, expect_as_written};
 
 use super::{Manner, complete};
@@ -94,8 +94,8 @@ fn say_complete(path: &Path, manner: &Manner) -> Result<(), Failure> {
             &is_summary,
             "run its case.toml again, to another folder with --out",
         )?;
-        let summary = results::read_summary(path).map_err(Failure::input)?;
-        print(&results::summary_json(&summary))?;
+        let summary = read_summary(path).map_err(Failure::input)?;
+        print(&summary_json(&summary))?;
     } else if manner.talks() {
         print(&format!("the run in {} is complete\n", path.display()))?;
     }
@@ -103,7 +103,7 @@ fn say_complete(path: &Path, manner: &Manner) -> Result<(), Failure> {
 }
 
 /// The checkpoint to go on from, if the run has saved one.
-fn load(path: &Path, case: &Case, previous: bool) -> Result<Option<Saved>, Failure> {
+fn load(path: &Path, case: &Case, previous: bool) -> Result<Option<LoadedCheckpoint>, Failure> {
     match Checkpoints::load(path, case, previous) {
         Ok(None) if previous => {
             let sentence = "holds no checkpoint before the latest one";
