@@ -1,4 +1,4 @@
-//! The claims of the paper: data in `crates/slipfront-paper/cases/claims.toml`, judged against what the figures have measured.
+//! The claims of the paper, read from `cases/claims.toml` of this crate and judged by the numbers of the figures.
 
 use std::collections::BTreeMap;
 
@@ -16,43 +16,43 @@ pub struct Claim {
     pub number: u32,
     /// Where the paper makes it: section, then figure, table or equation.
     pub place: String,
-    /// What it says, in our words.
+    /// What it says, in other words than the paper's.
     pub claim: String,
-    /// What was measured, in words.
+    /// Description of the number that was measured.
     pub measured: String,
-    /// The number that was measured; its first part is the figure that measures it.
+    /// Name of the number that was measured: `figure.number`.
     pub quantity: String,
-    /// Unit of that number; may be empty.
+    /// Unit of the number; may be empty.
     #[serde(default)]
     pub unit: String,
-    /// Digits after the point with which it is shown.
+    /// Digits after the point with which the number is shown.
     #[serde(default = "three")]
     pub digits: usize,
-    /// Where the number must lie for the claim to hold, ends included.
+    /// Bounds of the number within which the claim holds, ends included.
     pub within: [f64; 2],
-    /// What must be so too for the claim to hold without a condition.
+    /// A second number: where it is out of its bounds, the claim holds only with a condition.
     pub condition: Option<Condition>,
-    /// What comes out; anything else is a failure of the program, or news.
+    /// The expected verdict. Another one points to a fault of the program or to a change of the model.
     pub expected: Verdict,
-    /// Number of the deviation that explains it.
+    /// Number of the deviation from the paper's print (D1 to D12) that explains the verdict.
     pub deviation: Option<String>,
-    /// What else a reader should know.
+    /// A remark for the reader; may be empty.
     #[serde(default)]
     pub remark: String,
-    /// Whether the reduced version measures it well enough to judge.
+    /// Whether two surfaces and one time step are enough to judge it.
     #[serde(default = "yes")]
     pub reduced: bool,
 }
 
-/// What must be so for a claim to hold without a condition.
+/// The condition of a claim.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Condition {
-    /// The number that decides.
+    /// Name of the number that decides.
     pub quantity: String,
-    /// Where it must lie, ends included.
+    /// Bounds of the number within which the claim holds without a condition, ends included.
     pub within: [f64; 2],
-    /// Under which condition alone the claim holds otherwise.
+    /// The condition in words.
     pub only: String,
 }
 
@@ -64,7 +64,7 @@ fn yes() -> bool {
     true
 }
 
-/// What came of a claim.
+/// Whether a claim holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -77,7 +77,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// In words.
+    /// The verdict in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Holds => "holds",
@@ -87,16 +87,16 @@ impl Verdict {
     }
 }
 
-/// A claim with what was measured.
+/// A claim, what was measured, and the verdict.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClaimResult {
     /// The claim.
     pub claim: Claim,
-    /// The number that it is about.
+    /// The measured number.
     pub number: Number,
-    /// The number of its condition.
+    /// The measured number of its condition.
     pub condition: Option<Number>,
-    /// What came out.
+    /// Whether it holds.
     pub verdict: Verdict,
 }
 
@@ -181,7 +181,13 @@ impl ClaimResult {
     }
 }
 
-/// A range in words.
+/// Number of claims with each verdict: holds, holds with a condition, does not hold.
+pub(super) fn count_verdicts(results: &[ClaimResult]) -> [usize; 3] {
+    [Verdict::Holds, Verdict::HoldsWithCondition, Verdict::DoesNotHold]
+        .map(|verdict| results.iter().filter(|result| result.verdict == verdict).count())
+}
+
+/// Bounds in words.
 fn bounds([low, high]: [f64; 2], unit: &str) -> String {
     let unit = if unit.is_empty() {
         String::new()
@@ -230,10 +236,10 @@ mod tests {
     }
 
     #[test]
-    fn a_claim_stands_and_falls_with_its_number() {
+    fn a_claim_holds_if_its_number_is_within_bounds() {
         assert_eq!(verdict(claim([0.0, 1.0], None), 1.0, 9.0), Verdict::Holds);
         assert_eq!(verdict(claim([0.0, 1.0], None), 1.001, 9.0), Verdict::DoesNotHold);
-        // What could not be measured does not hold.
+        // A claim whose number could not be measured does not hold.
         assert_eq!(
             verdict(claim([0.0, f64::INFINITY], None), f64::NAN, 9.0),
             Verdict::DoesNotHold
@@ -241,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn a_condition_tells_where_it_holds_and_saves_nothing() {
+    fn a_condition_restricts_a_claim_that_holds_and_saves_none_that_does_not() {
         let conditioned = || claim([0.0, 1.0], Some([0.0, 1.0]));
         assert_eq!(verdict(conditioned(), 0.5, 0.5), Verdict::Holds);
         assert_eq!(verdict(conditioned(), 0.5, 2.0), Verdict::HoldsWithCondition);
@@ -267,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn the_list_of_the_paper_is_whole() {
+    fn the_list_of_claims_is_complete() {
         let claims = claims().unwrap();
         assert!(claims.len() >= 30);
         for (index, claim) in claims.iter().enumerate() {
@@ -280,7 +286,7 @@ mod tests {
                 claim.quantity
             );
             assert!(claim.within[0] <= claim.within[1], "claim {}", claim.number);
-            // What fails, and what holds with a condition only, owes the reader a reason.
+            // A claim that fails, or holds with a condition only, needs a reason.
             let reasoned = claim.deviation.is_some() || claim.condition.is_some() || !claim.remark.is_empty();
             assert!(
                 claim.expected == Verdict::Holds || reasoned,

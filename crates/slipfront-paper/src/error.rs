@@ -1,4 +1,4 @@
-//! What can go wrong with the paper.
+//! Errors of `slipfront paper`.
 
 use slipfront::RunError;
 use thiserror::Error;
@@ -8,7 +8,7 @@ use slipfront_plot::PictureError;
 use slipfront_run::run_folder::error::FolderError;
 use slipfront_run::study::StudyError;
 
-/// A paper that could not be gone through.
+/// Why the figures could not be run or the report not be written.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum PaperError {
@@ -24,7 +24,7 @@ pub enum PaperError {
     StudyRun { study: String, reason: String },
     #[error("{file} gave no {what}")]
     Lacks { file: String, what: String },
-    #[error("a file of cases/paper cannot be read: {0}")]
+    #[error("a file of the paper's cases cannot be read: {0}")]
     Text(#[from] toml::de::Error),
     #[error("claim {number} is about `{quantity}`, which is not measured")]
     Unmeasured { number: u32, quantity: String },
@@ -37,7 +37,7 @@ pub enum PaperError {
 }
 
 impl PaperError {
-    /// Whether a signal asked to stop, and everything finished is safe.
+    /// Whether a signal asked to stop. Finished runs of studies and finished figures are stored then.
     pub fn is_interruption(&self) -> bool {
         matches!(self, Self::Study(StudyError::Interrupted))
     }

@@ -12,7 +12,7 @@ use crate::number::Number;
 pub struct Table {
     /// Name of its file.
     pub name: String,
-    /// What it shows.
+    /// Its caption.
     pub caption: String,
     /// Names of its columns.
     pub header: Vec<String>,
@@ -25,7 +25,7 @@ pub struct Table {
 pub struct Panel {
     /// Name of its files.
     pub name: String,
-    /// What it shows.
+    /// Its caption.
     pub caption: String,
     /// What is drawn.
     pub drawing: Drawing,
@@ -34,7 +34,7 @@ pub struct Panel {
 /// All data of a figure.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct FigureData {
-    /// Numbers that claims are about, by name.
+    /// Measured numbers by name; claims are judged by them.
     pub numbers: BTreeMap<String, Number>,
     /// Pictures.
     pub panels: Vec<Panel>,

@@ -1,11 +1,11 @@
-//! The whole paper: every figure and table run again, and every claim judged.
+//! The paper behind the model: every figure and table is run again, and every claim is judged.
 //!
 //! ```text
 //! cases/*.toml -> runs -> FigureData (numbers, pictures, tables) -> verdicts -> report
 //! ```
 //!
-//! A figure is a file of its own (`figures/fig12.rs`), its cases stand in `cases/fig12.toml`, and the claims about it in
-//! `cases/claims.toml`. Read by the command `slipfront paper`.
+//! A figure has a file of its own (`figures/fig12.rs`); its cases are in `cases/fig12.toml`, and the claims about it in
+//! `cases/claims.toml`. The command is `slipfront paper`.
 
 mod cache;
 mod claims;

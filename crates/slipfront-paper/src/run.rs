@@ -53,7 +53,7 @@ impl Run {
         values.map(Vec::as_slice).ok_or_else(|| self.lacks("such field"))
     }
 
-    /// A map of tau_c*, blank over a texture.
+    /// A map of tau_c*, NaN where the slider is textured.
     pub(super) fn stress_map(&self, frame: &Frame, label: &str) -> Result<FieldMap, PaperError> {
         let largest = self.record.contact_stress_max as f32;
         let values = self.field(frame, Field::ContactStress)?;

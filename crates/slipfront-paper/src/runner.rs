@@ -106,7 +106,7 @@ fn run_case(case: Case, stop: &AtomicBool) -> Result<Run, PaperError> {
 fn text_of(file: &str) -> Result<&'static str, PaperError> {
     let found = FILES.iter().find(|(name, _)| *name == file);
     found.map(|(_, text)| *text).ok_or_else(|| PaperError::Lacks {
-        file: "cases/paper".to_owned(),
+        file: "the list of the paper's cases".to_owned(),
         what: format!("{file}.toml"),
     })
 }

@@ -70,7 +70,7 @@ replay! {
     csv_table
     mask_png
     records
-    saved
+    figure_cache
     checkpoint
     fields
     summary

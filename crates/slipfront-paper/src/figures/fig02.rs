@@ -7,6 +7,7 @@ use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::runner::FigureRunner;
 use crate::statistics::largest;
+use slipfront_case::case::Case;
 use slipfront_plot::{FieldMap, FieldMaps, Response, Responses};
 
 pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
@@ -39,8 +40,15 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
             ],
         }),
     );
-    let bins = bins(1.0, groups.sigma_static_star);
-    let sigma = groups.sigma_static_star;
+    distribution(groups.sigma_static_star, &mu_static, &mu_kinetic, &mut data);
+    let scores = scores(&runner.case_on_surfaces("fig02")?);
+    data.value("fig02.distance_to_gaussian", distance_to_normal(scores));
+    Ok(data)
+}
+
+/// Histograms of both coefficients over their means, beside the Gaussian density.
+fn distribution(sigma: f64, mu_static: &[f64], mu_kinetic: &[f64], data: &mut FigureData) {
+    let bins = bins(1.0, sigma);
     let density =
         |x: f64| libm::exp(-0.5 * ((x - 1.0) / sigma).powi(2)) / (sigma * std::f64::consts::TAU.sqrt());
     let fine: Vec<f64> = (-60..=60).map(|k| 1.0 + 0.05 * sigma * f64::from(k)).collect();
@@ -51,15 +59,20 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
             x_title: "local coefficient over its mean".to_owned(),
             y_title: "density".to_owned(),
             curves: vec![
-                histogram("static", &bins, &mu_static),
-                histogram("kinetic", &bins, &mu_kinetic),
+                histogram("static", &bins, mu_static),
+                histogram("kinetic", &bins, mu_kinetic),
                 formula("Eq. 1", &fine, density),
             ],
             ..Responses::default()
         }),
     );
+}
+
+/// Deviations of all coefficients of these surfaces from their means, over the standard deviation of Eq. 1.
+fn scores(cases: &[Case]) -> Vec<f64> {
     let mut scores = Vec::new();
-    for case in runner.case_on_surfaces("fig02")? {
+    for case in cases {
+        let mean = case.scales.mu_static_mean;
         let (surface, groups) = (&case.model.surface, &case.groups);
         let score = |mu: f64, mean: f64, sigma: f64| (mu / mean - 1.0) / sigma;
         scores.extend(
@@ -76,8 +89,7 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
                 .map(|&mu| score(mu, mean, groups.sigma_kinetic_star)),
         );
     }
-    data.value("fig02.distance_to_gaussian", distance_to_normal(scores));
-    Ok(data)
+    scores
 }
 
 /// Bins of half a standard deviation, to three to both sides.

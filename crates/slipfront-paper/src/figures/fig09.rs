@@ -6,6 +6,7 @@ use crate::figure_data::FigureData;
 use crate::run::{Run, mu_star};
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, mean, range, rises, smallest};
+use crate::sweep::Sweep;
 
 pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
     let mut data = FigureData::default();
@@ -38,6 +39,13 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
         .iter()
         .map(|run| runs[0].largest_difference(run, after, mu_star));
     data.value("fig09.difference_after_onset", largest(differences));
+    friction(&sweep, &runs, &mut data)?;
+    Ok(data)
+}
+
+/// What damping does to static and kinetic friction, to the number of sliding blocks and to the fluctuation of friction.
+fn friction(sweep: &Sweep, runs: &[Run], data: &mut FigureData) -> Result<(), PaperError> {
+    let dampings = sweep.axis(0);
     let means = |quantity: &str| -> Vec<f64> {
         (0..dampings.len())
             .map(|k| mean(&sweep.values(&[k], quantity)))
@@ -67,5 +75,5 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
         "fig09.fluctuation_of_strong_percent",
         100.0 * largest(fluctuations) / runs[usual].kinetic_fluctuation()?,
     );
-    Ok(data)
+    Ok(())
 }

@@ -4,8 +4,10 @@ use crate::drawing::Drawing;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::number::Number;
+use crate::run::Run;
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, mean, rises};
+use crate::sweep::Sweep;
 
 pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
     let mut data = FigureData::default();
@@ -21,17 +23,11 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
         "Friction and sliding blocks for four ratios of kinetic to static friction.",
         Drawing::Curves(curves.collect()),
     );
-    // How far friction falls, surface by surface.
+    // By how much friction falls from its peak, for each surface.
     let fall = |k: usize| {
-        let (peaks, levels) = (
-            sweep.values(&[k], "static_friction_star"),
-            sweep.values(&[k], "kinetic_friction_star"),
-        );
-        let falls: Vec<f64> = peaks
-            .iter()
-            .zip(&levels)
-            .map(|(peak, level)| peak - level)
-            .collect();
+        let [peaks, levels] =
+            ["static_friction_star", "kinetic_friction_star"].map(|quantity| sweep.values(&[k], quantity));
+        let falls: Vec<f64> = peaks.iter().zip(&levels).map(|(a, b)| a - b).collect();
         Number::of(&falls)
     };
     let falls: Vec<f64> = (0..ratios.len()).map(|k| fall(k).value).collect();
@@ -43,24 +39,29 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
         "fig10.worst_excess_in_the_middle",
         largest(middle.map(|k| excess(k).abs())),
     );
-    let lowest: Vec<f64> = sweep.values(&[0], "kinetic_friction_star");
-    data.values(
-        "fig10.excess_of_lowest",
-        &lowest.iter().map(|mu| mu - ratios[0]).collect::<Vec<_>>(),
-    );
+    excess_of_lowest(runner, &sweep, &mut data)?;
+    Ok(data)
+}
+
+/// Kinetic friction above R* at the lowest R*, by the window over which it is averaged.
+fn excess_of_lowest(
+    runner: &mut FigureRunner,
+    sweep: &Sweep,
+    data: &mut FigureData,
+) -> Result<(), PaperError> {
+    let ratio = sweep.axis(0)[0];
+    let excess = |mu: Vec<f64>| -> Vec<f64> { mu.iter().map(|mu| mu - ratio).collect() };
+    let usual = sweep.values(&[0], "kinetic_friction_star");
+    data.values("fig10.excess_of_lowest", &excess(usual));
     // The first swing after the onset, which a reader of the figure sees first.
-    let mut early = Vec::new();
-    for run in runner.run(sweep.cases(&[0])?)? {
+    let first_swing = |run: &Run| {
         let onset = run.record.summary.onset_time_star;
-        let window = run.friction_between(onset, onset + 2.5 / run.case.groups.v_star);
-        early.push(mean(&window) - ratios[0]);
-    }
-    data.values("fig10.early_excess_of_lowest", &early);
+        mean(&run.friction_between(onset, onset + 2.5 / run.case.groups.v_star))
+    };
+    let early = runner.run(sweep.cases(&[0])?)?.iter().map(first_swing).collect();
+    data.values("fig10.early_excess_of_lowest", &excess(early));
     let long = runner.study("fig10_long")?.values(&[], "kinetic_friction_star");
-    data.values(
-        "fig10.long_excess_of_lowest",
-        &long.iter().map(|mu| mu - ratios[0]).collect::<Vec<_>>(),
-    );
+    data.values("fig10.long_excess_of_lowest", &excess(long));
     let windows = [
         (
             "from t_s* to t_s* + 2.5/V*: the first swing",
@@ -79,5 +80,5 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
         ["window", "mu_k* - R*"],
         rows,
     );
-    Ok(data)
+    Ok(())
 }

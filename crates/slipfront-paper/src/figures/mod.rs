@@ -1,4 +1,4 @@
-//! The figures and tables of the paper, a file each: which runs it takes, what is measured on them, what is drawn.
+//! The figures and tables of the paper. Each has a file: which cases it runs, what it measures on them, and what is drawn.
 
 mod fig02;
 mod fig03;
@@ -26,14 +26,15 @@ use crate::runner::FigureRunner;
 /// A figure or table of the paper.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure {
-    /// Its name: `fig12`.
+    /// Its name, such as `fig12`.
     pub name: &'static str,
     /// What it shows.
     pub title: &'static str,
+    /// Runs its cases and measures its data.
     pub(crate) measure: fn(&mut FigureRunner) -> Result<FigureData, PaperError>,
 }
 
-/// All figures and tables but the schematic of Fig. 1, and the appendix.
+/// All figures and tables except the schematic of Fig. 1, and an appendix on what the paper leaves open.
 #[rustfmt::skip]
 pub const FIGURES: [Figure; 19] = [
     Figure { name: "fig02", title: "Fig. 2: a sampled surface", measure: fig02::measure },
@@ -60,7 +61,7 @@ pub const FIGURES: [Figure; 19] = [
 /// The figures that a user names: `all`, `fig3` or `fig03`, `table1`, `sensitivity`.
 ///
 /// # Errors
-/// [`PaperError::Figure`] names the first that there is not.
+/// [`PaperError::Figure`] names the first unknown one.
 pub fn figures(names: &[String]) -> Result<Vec<Figure>, PaperError> {
     if names.is_empty() || names.iter().any(|name| name == "all") {
         return Ok(FIGURES.to_vec());

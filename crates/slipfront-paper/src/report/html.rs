@@ -4,8 +4,9 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD as BASE64;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::{Drawn, claims_of, counts, greek, step_name};
-use crate::claims::{ClaimResult, Verdict};
+use super::drawn::Drawn;
+use super::words::{greek, step_name};
+use crate::claims::{ClaimResult, Verdict, count_verdicts};
 use crate::figure_data::{FigureData, Table};
 use crate::figures::Figure;
 use crate::paper::Paper;
@@ -15,8 +16,6 @@ const STYLE: &str = include_str!("style.css");
 
 /// The whole page; `drawn` holds the pictures of each figure.
 pub(super) fn page(paper: &Paper, drawn: &[Vec<Drawn>]) -> String {
-    let [holds, conditioned, fails] = counts(&paper.results);
-    let unexpected_verdicts = paper.unexpected_verdicts().count();
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -27,22 +26,7 @@ pub(super) fn page(paper: &Paper, drawn: &[Vec<Drawn>]) -> String {
                 style { (PreEscaped(STYLE)) }
             }
             body {
-                header {
-                    h1 { "The paper, run again" }
-                    p {
-                        "Every figure and claim of " cite { "2D Spring-block model to study the transition from static \
-                        to kinetic friction of complex-micro-textured contact surfaces" } ", Tribology International 2023, "
-                        a href="https://doi.org/10.1016/j.triboint.2023.108866" { "doi 10.1016/j.triboint.2023.108866" }
-                        ", measured with slipfront " (env!("CARGO_PKG_VERSION")) "."
-                    }
-                    p.count {
-                        strong { (paper.results.len()) } " claims: " strong { (holds) } " hold, "
-                        strong { (conditioned) } " hold with a condition, " strong { (fails) } " do not hold. "
-                        @if unexpected_verdicts == 0 { "Every verdict is the expected one." }
-                        @else { strong { (unexpected_verdicts) " verdicts are not the expected ones." } }
-                    }
-                    @if paper.reduced { p { "Reduced version: two random surfaces, one time step." } }
-                }
+                (header(paper))
                 main {
                     section {
                         h2 { "Claims" }
@@ -67,6 +51,30 @@ pub(super) fn page(paper: &Paper, drawn: &[Vec<Drawn>]) -> String {
         }
     };
     page.into_string()
+}
+
+/// The title, the paper, and how many claims hold.
+fn header(paper: &Paper) -> Markup {
+    let [holds, conditioned, fails] = count_verdicts(&paper.results);
+    let unexpected = paper.unexpected_verdicts().count();
+    html! {
+        header {
+            h1 { "The paper, run again" }
+            p {
+                "Every figure and claim of " cite { "2D Spring-block model to study the transition from static \
+                to kinetic friction of complex-micro-textured contact surfaces" } ", Tribology International 2023, "
+                a href="https://doi.org/10.1016/j.triboint.2023.108866" { "doi 10.1016/j.triboint.2023.108866" }
+                ", measured with slipfront " (env!("CARGO_PKG_VERSION")) "."
+            }
+            p.count {
+                strong { (paper.results.len()) } " claims: " strong { (holds) } " hold, "
+                strong { (conditioned) } " hold with a condition, " strong { (fails) } " do not hold. "
+                @if unexpected == 0 { "Every verdict is the expected one." }
+                @else { strong { (unexpected) " verdicts are not the expected ones." } }
+            }
+            @if paper.reduced { p { "Reduced version: two random surfaces, one time step." } }
+        }
+    }
 }
 
 fn claims_table(paper: &Paper) -> Markup {
@@ -147,9 +155,9 @@ fn section(paper: &Paper, figure: &Figure, data: &FigureData, pictures: &[Drawn]
                 }
             }
             @for table in &data.tables { (plain_table(table)) }
-            @let claims = claims_of(paper, figure);
+            @let claims: Vec<_> = paper.results.iter().filter(|result| result.claim.figure() == figure.name).collect();
             @if !claims.is_empty() {
-                ul.verdicts { @for (result, _) in claims {
+                ul.verdicts { @for result in claims {
                     li { a href={ "#claim-" (result.claim.number) } { "Claim " (result.claim.number) } ": "
                         (text(&result.claim.claim)) " " span class=(class(result.verdict)) { (result.verdict.words()) } }
                 } }

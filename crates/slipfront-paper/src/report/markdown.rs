@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::{counts, greek, step_name};
-use crate::claims::{ClaimResult, Verdict};
+use super::words::{greek, step_name};
+use crate::claims::{ClaimResult, Verdict, count_verdicts};
 use crate::paper::Paper;
 use crate::step_rule::StepRule;
 
@@ -12,12 +12,12 @@ pub(super) const SHOWN: [&str; 8] = [
     "fig03", "fig04", "fig06", "fig12", "fig14", "fig15", "fig16", "fig18a",
 ];
 
-/// How the page begins.
+/// The first line of the page, by which a page of an earlier call is recognised.
 pub(super) const TITLE: &str = "# The paper, claim by claim\n";
 
-/// The page.
-pub(super) fn page(paper: &Paper) -> String {
-    let [holds, conditioned, fails] = counts(&paper.results);
+/// The text of `paper.md`.
+pub fn page(paper: &Paper) -> String {
+    let [holds, conditioned, fails] = count_verdicts(&paper.results);
     let mut text = format!(
         "{TITLE}\n\
          What becomes of every claim of the paper's text when its figures are run again:\n\n\

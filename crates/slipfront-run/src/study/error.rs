@@ -1,4 +1,4 @@
-//! What can go wrong with a study.
+//! Errors of studies.
 
 use std::path::PathBuf;
 
@@ -99,7 +99,7 @@ pub enum StudyError {
     Interrupted,
 }
 
-/// What recorded runs that no point asks for may be, for the middle of a sentence.
+/// The explanation of recorded runs that do not belong to a study, to be inserted into a sentence.
 pub(crate) fn of_others(runs: usize) -> String {
     match runs {
         0 => String::new(),

@@ -121,7 +121,7 @@ fn cell(value: Option<f64>) -> String {
     value.map_or(String::new(), number_cell)
 }
 
-/// The shortest number that reads back as the same bits.
+/// As few digits as are needed to read back the same bits.
 fn number_cell(value: f64) -> String {
     format!("{value:?}")
 }

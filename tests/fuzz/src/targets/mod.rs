@@ -4,11 +4,11 @@ mod arrays;
 mod case;
 mod checkpoint;
 mod fields;
+mod figure_cache;
 mod json;
 mod plot;
 mod quantity;
 mod records;
-mod saved;
 mod series;
 mod study;
 
@@ -24,7 +24,7 @@ pub const TARGETS: [Target; 15] = [
     arrays::CSV_TABLE,
     arrays::MASK_PNG,
     records::RECORDS,
-    saved::SAVED,
+    figure_cache::FIGURE_CACHE,
     checkpoint::CHECKPOINTS,
     fields::FIELDS,
     json::SUMMARY,

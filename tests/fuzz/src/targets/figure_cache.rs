@@ -1,4 +1,4 @@
-//! Findings that `slipfront paper` keeps between calls, under a checksum.
+//! Data of figures that `slipfront paper` stores between calls, with a checksum.
 
 use std::cell::OnceCell;
 
@@ -7,10 +7,10 @@ use slipfront_plot::{FieldMap, FieldMaps, FrictionCurve, Shape};
 
 use crate::{Memory, Target, scratch};
 
-/// The file as it is, then what is behind its checksum.
-pub(crate) const SAVED: Target = Target {
-    name: "saved",
-    check: saved,
+/// The file as it is, then its contents with a valid checksum.
+pub(crate) const FIGURE_CACHE: Target = Target {
+    name: "figure_cache",
+    check: figure_cache,
     made,
     files: &[],
     dictionary: None,
@@ -25,15 +25,13 @@ pub(crate) const SAVED: Target = Target {
 };
 
 fn made() -> Vec<Vec<u8>> {
-    let mut found = FigureData::default();
-    found
-        .numbers
+    let mut data = FigureData::default();
+    data.numbers
         .insert("fig99.one".to_owned(), Number::of(&[1.0, 2.0]));
-    found
-        .numbers
+    data.numbers
         .insert("fig99.two".to_owned(), Number::exact(f64::INFINITY));
-    let small = postcard::to_stdvec(&found).unwrap();
-    found.tables.push(Table {
+    let small = postcard::to_stdvec(&data).unwrap();
+    data.tables.push(Table {
         name: "table".to_owned(),
         caption: "a table".to_owned(),
         header: vec!["a".to_owned(), "b".to_owned()],
@@ -70,13 +68,13 @@ fn made() -> Vec<Vec<u8>> {
         Drawing::Maps(maps),
         Drawing::Shapes(vec![shape]),
     ] {
-        found.panels.push(Panel {
+        data.panels.push(Panel {
             name: "panel".to_owned(),
             caption: "a panel".to_owned(),
             drawing,
         });
     }
-    vec![small, postcard::to_stdvec(&found).unwrap()]
+    vec![small, postcard::to_stdvec(&data).unwrap()]
 }
 
 thread_local! {
@@ -84,20 +82,20 @@ thread_local! {
     static OPEN: OnceCell<FigureCache> = const { OnceCell::new() };
 }
 
-fn saved(input: &[u8]) {
-    OPEN.with(|saved| {
-        let saved = saved.get_or_init(|| FigureCache::open(&scratch::folder("paper"), true).unwrap());
-        let path = saved.path("fig99", StepRule::Auto);
+fn figure_cache(input: &[u8]) {
+    OPEN.with(|cache| {
+        let cache = cache.get_or_init(|| FigureCache::open(&scratch::folder("paper"), true).unwrap());
+        let path = cache.path("fig99", StepRule::Auto);
         let read = |bytes: &[u8]| {
             std::fs::write(&path, bytes).unwrap();
-            saved.load("fig99", StepRule::Auto)
+            cache.load("fig99", StepRule::Auto)
         };
-        assert!(read(input).is_none(), "findings without their checksum");
-        let Some(found) = read(&saved.with_checksum(input)) else {
+        assert!(read(input).is_none(), "data without a checksum");
+        let Some(data) = read(&cache.with_checksum(input)) else {
             return;
         };
-        let bytes = postcard::to_stdvec(&found).unwrap();
-        let again = read(&saved.with_checksum(&bytes)).unwrap();
+        let bytes = postcard::to_stdvec(&data).unwrap();
+        let again = read(&cache.with_checksum(&bytes)).unwrap();
         assert_eq!(postcard::to_stdvec(&again).unwrap(), bytes);
     });
 }
