@@ -11,7 +11,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!(
             "{} {} {}",
             target.name,
-            target.longest,
+            target.max_bytes,
             target.dictionary.unwrap_or("-")
         );
         let Some(out) = &out else { continue };

@@ -1,4 +1,4 @@
-//! Findings that `slipfront paper` keeps between calls, under a checksum.
+//! Figure data that `slipfront paper` keeps between calls, with a checksum.
 
 use std::cell::OnceCell;
 
@@ -7,15 +7,15 @@ use slipfront_plot::{FieldMap, FieldMaps, FrictionCurve, Shape};
 
 use crate::{Memory, Target, scratch};
 
-/// The file as it is, then what is behind its checksum.
+/// The file as it is, then with the right checksum.
 pub(crate) const SAVED: Target = Target {
     name: "saved",
     check: saved,
-    made,
+    generated,
     files: &[],
     dictionary: None,
-    longest: 4096,
-    // Postcard reserves at most 1 MiB at once for a list that says it is longer.
+    max_bytes: 4096,
+    // Postcard reserves at most 1 MiB at once, however long a list claims to be.
     memory: Memory {
         bytes: 16 << 20,
         per_byte: 512,
@@ -24,7 +24,7 @@ pub(crate) const SAVED: Target = Target {
     repetitions: 40,
 };
 
-fn made() -> Vec<Vec<u8>> {
+fn generated() -> Vec<Vec<u8>> {
     let mut found = Found::default();
     found
         .numbers
