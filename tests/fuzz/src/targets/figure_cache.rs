@@ -11,11 +11,11 @@ use crate::{Memory, Target, scratch};
 pub(crate) const FIGURE_CACHE: Target = Target {
     name: "figure_cache",
     check: figure_cache,
-    made,
+    generated,
     files: &[],
     dictionary: None,
-    longest: 4096,
-    // Postcard reserves at most 1 MiB at once for a list that says it is longer.
+    max_bytes: 4096,
+    // Postcard reserves at most 1 MiB at once, however long a list claims to be.
     memory: Memory {
         bytes: 16 << 20,
         per_byte: 512,
@@ -24,7 +24,7 @@ pub(crate) const FIGURE_CACHE: Target = Target {
     repetitions: 40,
 };
 
-fn made() -> Vec<Vec<u8>> {
+fn generated() -> Vec<Vec<u8>> {
     let mut data = FigureData::default();
     data.numbers
         .insert("fig99.one".to_owned(), Number::of(&[1.0, 2.0]));

@@ -14,7 +14,7 @@ mod study;
 
 use crate::Target;
 
-/// Every target, in the order of a run from case file to picture.
+/// All targets, in the order in which a run reads and writes their files.
 pub const TARGETS: [Target; 15] = [
     case::CASE_FILE,
     case::CASE,
