@@ -17,12 +17,12 @@ use crate::ticks::{Direction, MAX_STEPS};
 
 const HEIGHT: f64 = 560.0;
 /// Bars narrower than this make the picture wider.
-const NARROWEST: f64 = 14.0;
+const MIN_BAR_WIDTH: f64 = 14.0;
 /// A bar on its own takes this share of its place, bars of a group together this one.
 const SHARE_ALONE: f64 = 0.6;
 const SHARE_GROUP: f64 = 0.8;
 /// No bar is wider than this.
-const WIDEST: f64 = 130.0;
+const MAX_BAR_WIDTH: f64 = 130.0;
 
 /// Bars of named variants.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -59,7 +59,7 @@ pub struct Bar {
     pub high: f64,
 }
 
-/// Draws bars from zero with their confidence intervals as whiskers, as wide as a journal's column (85 mm)
+/// Draws bars from zero with error bars, as wide as a journal's column (85 mm)
 /// unless there are too many.
 ///
 /// One group is drawn as bars of one colour, each with its name below. Of several groups, each has its name
@@ -136,7 +136,7 @@ fn draw_bar(canvas: &mut Canvas, y: &Axis, bar: &Bar, (middle, width): (f64, f64
     }
 }
 
-/// y from zero, with all bars and whiskers.
+/// y from zero, with all bars and error bars.
 fn value_axis(bars: &[Placed]) -> Axis {
     let values: Vec<f64> = bars
         .iter()
@@ -216,8 +216,8 @@ impl<'a> Places<'a> {
 
     /// How narrow the place of a name may be.
     fn narrowest(&self) -> f64 {
-        let bars = NARROWEST * self.legend.len() as f64 / SHARE_GROUP;
-        bars.max(CategoryAxis::NARROWEST)
+        let bars = MIN_BAR_WIDTH * self.legend.len() as f64 / SHARE_GROUP;
+        bars.max(CategoryAxis::MIN_SLOT)
     }
 
     fn bar_width(&self, slot: f64) -> f64 {
@@ -225,7 +225,7 @@ impl<'a> Places<'a> {
             0 => SHARE_ALONE * slot,
             count => SHARE_GROUP * slot / count as f64,
         };
-        width.min(WIDEST)
+        width.min(MAX_BAR_WIDTH)
     }
 }
 
@@ -269,7 +269,7 @@ mod tests {
         assert!(lo < -21.0 && hi == 0.0);
         let (lo, hi) = limits(&[-20.0, 5.0]);
         assert!(lo < -21.0 && hi > 6.0);
-        // A whisker may reach below.
+        // An error bar may reach below.
         assert!(limits(&[0.5]).0 < -0.5);
     }
 
@@ -332,6 +332,6 @@ mod tests {
             .split_once("viewBox=\"0 0 ")
             .and_then(|(_, rest)| rest.split_once(' '));
         let width: f64 = width.and_then(|(width, _)| width.parse().ok()).unwrap();
-        assert!(width > 60.0 * CategoryAxis::NARROWEST);
+        assert!(width > 60.0 * CategoryAxis::MIN_SLOT);
     }
 }

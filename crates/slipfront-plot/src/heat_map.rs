@@ -18,9 +18,9 @@ const TOP: f64 = MARGIN + 8.0;
 /// Between the map and its colour bar.
 const GAP: f64 = 30.0;
 /// Numbers are written in the cells of a map of at most so many columns and rows.
-const MOST_NUMBERED: usize = 8;
+const MAX_NUMBERED: usize = 8;
 /// An axis of more cells is numbered at round values.
-const MOST_NAMED: usize = 12;
+const MAX_NAMED: usize = 12;
 
 /// A map of cells over two axes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -213,7 +213,7 @@ impl Cells {
             let ticks: Vec<Tick> = pixels.zip(numbers).collect();
             apart(&ticks, direction).then_some(ticks)
         };
-        let few = self.values.len() <= MOST_NAMED;
+        let few = self.values.len() <= MAX_NAMED;
         match [4, 3, 2].into_iter().filter(|_| few).find_map(named) {
             Some(ticks) => (ticks, Vec::new()),
             None => (self.axis.ticks(direction, MAX_STEPS), self.axis.short_ticks()),
@@ -283,7 +283,7 @@ fn image(area: Area, x: &Cells, y: &Cells, values: &[f64], colours: &Colours) ->
 
 /// Writes every value into its cell, if all have room.
 fn draw_numbers(canvas: &mut Canvas, x: &Cells, y: &Cells, values: &[f64], colours: &Colours) {
-    if x.values.len().max(y.values.len()) > MOST_NUMBERED {
+    if x.values.len().max(y.values.len()) > MAX_NUMBERED {
         return;
     }
     let (lo, hi) = (colours.axis.lo, colours.axis.hi);

@@ -47,7 +47,7 @@ impl Legend {
         Self::titled("", labels, Sample::Line, left, right)
     }
 
-    /// The same with a title before the labels, or above them if it is long.
+    /// Places the labels with a title before them, or above them if it is long.
     pub(crate) fn titled(title: &str, labels: &[&str], sample: Sample, left: f64, right: f64) -> Self {
         let title = Text::shortened(title, SIZE_TICK, right - left);
         let width = title.width();
@@ -82,7 +82,7 @@ impl Legend {
         }
     }
 
-    /// The same with a line alone before some of the names.
+    /// Lets some of the names have a line alone before them.
     pub(crate) fn with_lines(mut self, lines: &[bool]) -> Self {
         for (entry, &line) in self.entries.iter_mut().zip(lines) {
             entry.line = line;

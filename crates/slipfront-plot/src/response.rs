@@ -58,7 +58,7 @@ pub struct Response {
 
 /// Draws means with their confidence bands, as wide as a journal's column (85 mm).
 ///
-/// y starts where the values do, not at zero. A point without neighbours has a whisker in place of a band.
+/// y starts where the values do, not at zero. A point without neighbours has an error bar in place of a band.
 /// Several curves have a legend above, and markers of different shapes.
 ///
 /// # Errors
@@ -288,7 +288,7 @@ mod tests {
         assert_eq!(bands(&svg(std::slice::from_ref(&curve))), 1);
         curve.mean[3] = f64::NAN;
         assert_eq!(bands(&svg(std::slice::from_ref(&curve))), 2);
-        // The last point alone has a whisker.
+        // The last point alone has an error bar.
         curve.low[5] = f64::NAN;
         assert_eq!(bands(&svg(std::slice::from_ref(&curve))), 1);
         curve.high.fill(f64::NAN);

@@ -22,7 +22,7 @@ pub(crate) const WIDTH_MARK: f64 = 2.5;
 pub(crate) const WIDTH_FRAME: f64 = 2.0;
 /// Leaders: 0.35 pt.
 pub(crate) const WIDTH_LEADER: f64 = 1.5;
-/// How opaque bars are: the whisker before a bar must be seen.
+/// How opaque bars are: the error bar in front of a bar must be seen.
 pub(crate) const OPACITY_BAR: f64 = 0.65;
 /// The points of a curve.
 pub(crate) const RADIUS_MARKER: f64 = 8.0;
