@@ -19,6 +19,35 @@ pub struct Input {
     pub bytes: Vec<u8>,
 }
 
+/// The name of a copy of a file in the folder `inputs/`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum CopyName {
+    /// A copy of this name has the same contents already.
+    Known(String),
+    /// No copy has this name yet.
+    New(String),
+}
+
+/// Names the copy of a file after its plain name; files of one name and different contents are numbered.
+///
+/// `describe` gives the name of a copy made before, and whether its contents are those of the file.
+pub fn name_of_copy<'c, C>(
+    plain: &str,
+    copies: &'c [C],
+    describe: impl Fn(&'c C) -> (&'c str, bool),
+) -> CopyName {
+    let mut name = format!("inputs/{plain}");
+    let mut number = 1;
+    while let Some((_, is_same)) = copies.iter().map(&describe).find(|(other, _)| *other == name) {
+        if is_same {
+            return CopyName::Known(name);
+        }
+        number += 1;
+        name = format!("inputs/{number}-{plain}");
+    }
+    CopyName::New(name)
+}
+
 /// A file that was read.
 pub(super) struct InputBytes {
     pub(super) path: PathBuf,
@@ -61,16 +90,10 @@ impl Inputs {
         let plain = path
             .file_name()
             .map_or_else(|| "input".into(), |name| name.to_string_lossy().into_owned());
-        let mut name = format!("inputs/{plain}");
-        let mut copies = 1;
-        // Two files of one name from different folders stay two files.
-        while let Some(other) = self.kept.iter().find(|input| input.name == name) {
-            if other.bytes == bytes {
-                return Ok(name);
-            }
-            copies += 1;
-            name = format!("inputs/{copies}-{plain}");
-        }
+        let name = match name_of_copy(&plain, &self.kept, |kept| (&kept.name, kept.bytes == bytes)) {
+            CopyName::Known(name) => return Ok(name),
+            CopyName::New(name) => name,
+        };
         self.budget.add_input(bytes.len());
         self.kept.push(Input {
             name: name.clone(),

@@ -13,7 +13,7 @@ use crate::{arrays, case_file};
 /// The shapes of all textures.
 pub(super) struct Textures {
     pub(super) shapes: Vec<surface::Texture>,
-    /// See [`TextureReport`](super::TextureReport).
+    /// See [`TextureReport`](super::runnable::TextureReport).
     pub(super) asked_percent: Option<f64>,
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use slipfront::FrictionLaw;
 
-use super::Case;
+use super::runnable::Case;
 use super::textures::is_array;
 use crate::case_file::{DEFAULT_THRESHOLD, Texture};
 
