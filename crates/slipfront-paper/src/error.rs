@@ -14,9 +14,9 @@ pub enum PaperError {
     /// A figure that the paper does not have.
     #[error("the paper has no `{given}`: take {known}, or all")]
     Figure {
-        /// What was asked for.
+        /// The given name.
         given: String,
-        /// What there is.
+        /// The names of all figures.
         known: String,
     },
     /// A case file.
@@ -65,7 +65,7 @@ pub enum PaperError {
     Picture {
         /// Its name.
         name: String,
-        /// What is wrong with it.
+        /// The reason.
         source: PictureError,
     },
     /// A table could not be written as CSV.

@@ -23,7 +23,7 @@ pub enum StudyError {
     Point {
         /// Its levels.
         point: String,
-        /// What is wrong with it.
+        /// The reason.
         source: CaseError,
     },
     /// The study has very many runs.
@@ -154,9 +154,9 @@ pub enum StudyError {
     /// A shard that does not exist.
     #[error("the shard `{given}` cannot be: {why}; write i/n with i from 1 to n, such as 2/8, or `slurm`")]
     Shard {
-        /// What was given.
+        /// The given text.
         given: String,
-        /// What is wrong with it.
+        /// The reason.
         why: String,
     },
     /// A table could not be written as CSV.
@@ -168,7 +168,7 @@ pub enum StudyError {
     Picture {
         /// Which one.
         name: String,
-        /// What is wrong with it.
+        /// The reason.
         source: PictureError,
     },
     /// Threads could not be started.
