@@ -208,7 +208,7 @@ fn by_the_clock_it_saves_now_and_then() {
         "run slow.toml -o clocked --checkpoint 10ms --set time.duration_star=20000",
     );
     wait_for("two checkpoints", || {
-        bench.exists("clocked/checkpoint-previous.bin")
+        bench.exists("clocked/.slipfront/checkpoint-previous.bin")
     });
     child.kill().unwrap();
     child.wait().unwrap();
@@ -226,7 +226,7 @@ fn by_the_clock_it_saves_now_and_then() {
     send(&child, "-INT");
     assert!(lines.any(|line| line.contains("nothing is saved")));
     assert_eq!(child.wait().unwrap().code(), Some(130));
-    assert!(!bench.exists("off/checkpoint.bin"));
+    assert!(!bench.exists("off/.slipfront/checkpoint.bin"));
     for wrong in ["soon", "-5min", "5"] {
         let said = bench.refused(&format!("run small.toml --checkpoint={wrong}"), 2);
         assert!(said.contains("5min, 30s or 1h") && said.contains("off"), "{said}");
@@ -246,7 +246,7 @@ fn what_is_complete_or_has_not_begun() {
     let case = String::from_utf8(before["case.toml"].clone()).unwrap();
     bench.write("begun/case.toml", &case);
     bench.write("begun/series.csv", "half of");
-    bench.write("begun/.slipfront123abc", "half of");
+    bench.write("begun/.slipfront/tmp/123abc", "half of");
     let said = bench.done("run --resume begun");
     assert!(said.contains("goes on from the start"), "{said}");
     bench.assert_same("whole", "begun");
@@ -339,12 +339,12 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     let bench = bench();
     bench.done("run slow.toml -o whole");
     stopped(&bench, "run slow.toml -o halted", "halted", 2);
-    let latest = bench.read("halted/checkpoint.bin");
+    let latest = bench.read("halted/.slipfront/checkpoint.bin");
     let refused = |bytes: &[u8], why: &str| {
-        bench.write("halted/checkpoint.bin", bytes);
+        bench.write("halted/.slipfront/checkpoint.bin", bytes);
         let said = bench.refused("run --quiet --resume halted", 2);
         assert!(
-            said.contains("halted/checkpoint.bin") && said.contains(why),
+            said.contains("halted/.slipfront/checkpoint.bin") && said.contains(why),
             "{why}: {said}"
         );
         said
@@ -386,13 +386,13 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     bench.write("halted/case.toml", &case);
 
     // A damaged one does not take the place of the one before, however often the run is stopped.
-    bench.write("halted/checkpoint.bin", &latest[..n / 2]);
-    let before = bench.read("halted/checkpoint-previous.bin");
+    bench.write("halted/.slipfront/checkpoint.bin", &latest[..n / 2]);
+    let before = bench.read("halted/.slipfront/checkpoint-previous.bin");
     let child = start(&bench, "run --resume halted --previous");
     wait_for_signals(&child);
     send(&child, "-INT");
     assert_eq!(child.wait_with_output().unwrap().status.code(), Some(130));
-    assert!(bench.read("halted/checkpoint-previous.bin") == before);
+    assert!(bench.read("halted/.slipfront/checkpoint-previous.bin") == before);
     bench.done("run --resume halted");
     bench.assert_same("whole", "halted");
 }
@@ -423,7 +423,7 @@ fn where_only_the_one_before_is_left_it_is_taken() {
     let bench = bench();
     bench.done("run slow.toml -o whole");
     stopped(&bench, "run slow.toml -o halted", "halted", 2);
-    std::fs::remove_file(bench.path().join("halted/checkpoint.bin")).unwrap();
+    std::fs::remove_file(bench.path().join("halted/.slipfront/checkpoint.bin")).unwrap();
     assert!(bench.done("run --resume halted").contains("goes on from step "));
     bench.assert_same("whole", "halted");
     let said = bench.done("run --quiet --resume halted --previous");

@@ -173,8 +173,8 @@ fn force_takes_the_copies_of_a_killed_run_along() {
     bench.done("run masked.toml -o clean");
     bench.done("run masked.toml -o a");
     std::fs::remove_file(bench.path().join("a/manifest.json")).unwrap();
-    for name in ["a/.slipfront123456", "a/inputs/.slipfront123456"] {
-        bench.write(name, "half of");
+    for name in ["a/.slipfront/journal.jsonl", "a/.slipfront/tmp/123456"] {
+        bench.write(name, if name.ends_with("jsonl") { "" } else { "half of" });
     }
     bench.done("run masked.toml -o a --force");
     bench.assert_same("clean", "a");
@@ -215,8 +215,8 @@ fn copies_behind_a_link_are_originals() {
 fn what_only_looks_like_ours_stays() {
     let bench = Bench::new();
     let names = [
-        "checkpoint.bin",
-        "checkpoint-previous.bin",
+        ".slipfront/checkpoint.bin",
+        ".slipfront/checkpoint-previous.bin",
         ".slipfrontrc",
         ".slipfront-notes",
     ];
@@ -234,9 +234,25 @@ fn what_only_looks_like_ours_stays() {
         assert_eq!(bench.read(&format!("a/{name}")), b"mine", "{name}");
     }
     // What a kill has left is no more than nothing.
-    bench.write("b/.slipfront123abc", "half a file");
+    bench.write("b/.slipfront/journal.jsonl", "{\"slipfront_ru");
+    bench.write("b/.slipfront/tmp/123abc", "half a file");
     bench.done("run small.toml -o b");
-    assert!(!bench.exists("b/.slipfront123abc"));
+    assert!(!bench.exists("b/.slipfront"));
+    // What others put there stays.
+    bench.write("c/.slipfront/journal.jsonl", "");
+    bench.write("c/.slipfront/notes.txt", "mine");
+    bench.done("run small.toml -o c");
+    assert_eq!(bench.read("c/.slipfront/notes.txt"), b"mine");
+    // Without a journal it may be anybody's.
+    bench.write("d/.slipfront/notes.txt", "mine");
+    let said = bench.refused("run small.toml --quiet -o d", 2);
+    assert!(said.contains("d is not empty"), "{said}");
+    let said = bench.refused("run small.toml --quiet -o d --force", 2);
+    assert!(
+        said.contains("d/.slipfront is not a file of an earlier run"),
+        "{said}"
+    );
+    assert_eq!(bench.read("d/.slipfront/notes.txt"), b"mine");
 }
 
 /// Names alone make no run: these files are somebody's.

@@ -56,7 +56,7 @@ fn run_folders_that_shards_kept_are_taken_over() {
         let run = run.unwrap().file_name().into_string().unwrap();
         for out in ["merged", "part1"] {
             bench.write(&format!("{out}/runs/{run}/case.toml"), "half of");
-            bench.write(&format!("{out}/runs/{run}/.slipfrontAbCdEf"), "half of");
+            bench.write(&format!("{out}/runs/{run}/.slipfront/tmp/AbCdEf"), "half of");
         }
     }
     for _ in 0..2 {
@@ -72,13 +72,7 @@ fn run_folders_that_shards_kept_are_taken_over() {
                     |out: &str| std::fs::read(bench.path(out).join("runs").join(&run).join(file)).unwrap();
                 assert!(read("merged") == read("whole"), "{run:?}/{file}");
             }
-            assert!(
-                !bench
-                    .path("merged/runs")
-                    .join(&run)
-                    .join(".slipfrontAbCdEf")
-                    .exists()
-            );
+            assert!(!bench.path("merged/runs").join(&run).join(".slipfront").exists());
         }
     }
     let verify = assert_cmd::Command::new(env!("CARGO_BIN_EXE_slipfront"))

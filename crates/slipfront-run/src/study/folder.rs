@@ -11,11 +11,12 @@ use super::plan::Plan;
 use super::scheduler::Findings;
 use super::study_file::StudyFile;
 use crate::manifest::Manifest;
-use crate::names::{CASE, FOUND, MANIFEST, RECORDS, RUNS, TABLES};
+use crate::names::{CASE, FOUND, RECORDS, RUNS, TABLES};
+use crate::run_folder::copy::copy_run;
 use crate::run_folder::error::FolderError;
 use slipfront_case::disk::{
-    TEXT_MAX_BYTES, is_empty, is_folder, open_limited, open_regular, read_limited, remove_if_there,
-    remove_unfinished, sync_folder, write_atomic, write_atomic_with, write_temp,
+    TEXT_MAX_BYTES, is_empty, is_folder, open_limited, read_limited, remove_if_there, write_atomic,
+    write_temp,
 };
 
 /// The study as a table with its base inside: what `slipfront study DIR/study.toml` repeats.
@@ -146,7 +147,7 @@ impl StudyFolder {
             if !is_whole(&from) || is_whole(&to) {
                 continue;
             }
-            copy_run(&from, &to).map_err(|source| FolderError::Copy { from, to, source })?;
+            copy_run(&from, &to)?;
         }
         Ok(())
     }
@@ -159,32 +160,6 @@ impl StudyFolder {
             }
         }
     }
-}
-
-/// Copies the files of a run folder. Its case and its manifest come last: without them, it is not taken for whole.
-fn copy_run(from: &Path, to: &Path) -> std::io::Result<()> {
-    std::fs::create_dir_all(to)?;
-    remove_unfinished(to);
-    let last = [CASE, MANIFEST];
-    for entry in std::fs::read_dir(from)? {
-        let entry = entry?;
-        let (from, to, name) = (entry.path(), to.join(entry.file_name()), entry.file_name());
-        if entry.file_type()?.is_dir() {
-            copy_run(&from, &to)?;
-        } else if !last.iter().any(|last| name == *last) {
-            copy_file(&from, &to)?;
-        }
-    }
-    sync_folder(to)?;
-    for name in last.into_iter().filter(|name| from.join(name).exists()) {
-        copy_file(&from.join(name), &to.join(name))?;
-    }
-    Ok(())
-}
-
-fn copy_file(from: &Path, to: &Path) -> std::io::Result<()> {
-    let mut from = open_regular(from)?;
-    write_atomic_with(to, |to| std::io::copy(&mut from, to).map(|_| ()))
 }
 
 /// Whether a study has used the folder.

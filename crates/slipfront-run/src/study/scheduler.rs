@@ -268,8 +268,9 @@ fn keep(
 ) -> Result<(), ResultsError> {
     let mut folder = RunFolder::prepare(path, true, &case.inputs)?;
     results::write_case(case, &mut folder)?;
-    if let Some(record) = record {
-        results::write(case, record, folder, started, 1)?;
+    match record {
+        Some(record) => drop(results::write(case, record, folder, started, 1)?),
+        None => folder.leave(),
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! Checkpoints of runs: a header, the state and a seal over both.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use jiff::Timestamp;
@@ -9,6 +9,7 @@ use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::names::CHECKPOINT;
+use slipfront_run::run_folder::unfinished::Unfinished;
 use slipfront_run::running::Running;
 
 use crate::checks::readable;
@@ -64,12 +65,18 @@ fn made() -> Vec<Vec<u8>> {
     ]
 }
 
+/// The latest checkpoint of a run folder.
+fn latest(folder: &Path) -> PathBuf {
+    Unfinished::of(folder).path().join(CHECKPOINT)
+}
+
 /// The bytes of the checkpoint of a run.
 fn save(folder: &Path, running: &Running) -> Vec<u8> {
+    Unfinished::of(folder).create().unwrap();
     Checkpoints::new(folder, running.case(), Timestamp::UNIX_EPOCH)
         .save(running)
         .unwrap();
-    std::fs::read(folder.join(CHECKPOINT)).unwrap()
+    std::fs::read(latest(folder)).unwrap()
 }
 
 fn checkpoint(input: &[u8]) {
@@ -98,7 +105,8 @@ fn with_checksum(bytes: &[u8]) -> Vec<u8> {
 /// A run goes on from what can be read, or the reason is told; what it saves then can be read again.
 fn go_on(case: &Case, file: &[u8]) {
     let folder = scratch::folder("checkpoint");
-    std::fs::write(folder.join(CHECKPOINT), file).unwrap();
+    Unfinished::of(&folder).create().unwrap();
+    std::fs::write(latest(&folder), file).unwrap();
     let saved = match Checkpoints::load(&folder, case, false) {
         Ok(saved) => saved.unwrap(),
         Err(error) => return readable(&error),
