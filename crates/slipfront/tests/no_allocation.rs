@@ -1,4 +1,4 @@
-//! A step allocates nothing, and neither does watching a run, but for what observers say they keep.
+//! A step allocates nothing, and observers allocate only what they keep.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 

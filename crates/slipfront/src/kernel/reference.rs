@@ -4,6 +4,8 @@
 //! Forces of opposite neighbours are summed in pairs, straight ones before diagonal ones, so that the trajectory of a rotated
 //! or mirrored problem is the rotated or mirrored trajectory, with the same bits.
 
+use std::ops::Range;
+
 use fearless_simd::{Level, dispatch};
 
 use super::block::Block;
@@ -216,17 +218,39 @@ impl Reference {
         mut write: impl FnMut(usize, usize, &[f32]),
     ) {
         const WIDTH: usize = 128;
-        let (lattice, textured) = (&model.lattice, &model.surface.textured);
+        let lattice = &model.lattice;
+        let level = Level::new();
         let mut values = [0.0; WIDTH];
         for j in (0..lattice.ny).step_by(stride) {
             for i in (0..lattice.nx).step_by(WIDTH) {
-                let n = WIDTH.min(lattice.nx - i);
+                let values = &mut values[..WIDTH.min(lattice.nx - i)];
                 let first = lattice.block(i, j);
-                for (b, value) in (first..first + n).zip(&mut values) {
-                    *value = field.value(&self.block(b), textured[b]) as f32;
-                }
-                write(j, i, &values[..n]);
+                dispatch!(level, _ => self.read_blocks(model, field, first, values));
+                write(j, i, values);
             }
+        }
+    }
+
+    /// Values of `field` of the blocks from `first` on.
+    #[inline(always)]
+    fn read_blocks(&self, model: &Model, field: Field, first: usize, values: &mut [f32]) {
+        let n = values.len();
+        let blocks = first..first + n;
+        let u = part(&self.state.displacement, &blocks);
+        let v = part(&self.state.velocity, &blocks);
+        let lattice = part(&self.forces.lattice, &blocks);
+        let friction = part(&self.forces.friction, &blocks);
+        let textured = &model.surface.textured[blocks];
+        for (k, value) in values.iter_mut().enumerate() {
+            let at = |[x, y]: [&[f64]; 2]| [x[k], y[k]];
+            let block = Block {
+                displacement: at(u),
+                velocity: at(v),
+                force_drive: [0.0; 2],
+                force_lattice: at(lattice),
+                force_friction: at(friction),
+            };
+            *value = field.value(&block, textured[k]) as f32;
         }
     }
 
@@ -249,6 +273,11 @@ impl Reference {
     pub(crate) fn stress_square_max(&self) -> f64 {
         self.stress_square_max
     }
+}
+
+#[inline(always)]
+fn part<'a>(field: &'a VectorField, blocks: &Range<usize>) -> [&'a [f64]; 2] {
+    [&field.x[blocks.clone()], &field.y[blocks.clone()]]
 }
 
 #[inline(always)]

@@ -97,6 +97,21 @@ impl Surface {
         self.mu_kinetic[b] / self.mu_static_mean * self.normal_force(b)
     }
 
+    /// [`kinetic_force`](Self::kinetic_force) of the blocks from `first` on.
+    #[inline(always)]
+    pub(crate) fn read_kinetic_forces(&self, first: usize, forces: &mut [f64]) {
+        let blocks = first..first + forces.len();
+        let coefficients = self.mu_kinetic[blocks.clone()].iter().zip(&self.textured[blocks]);
+        for (force, (mu_kinetic, &textured)) in forces.iter_mut().zip(coefficients) {
+            let normal_force = if textured {
+                0.0
+            } else {
+                self.normal_force_per_block
+            };
+            *force = mu_kinetic / self.mu_static_mean * normal_force;
+        }
+    }
+
     /// Number of blocks.
     pub fn n_blocks(&self) -> usize {
         self.textured.len()

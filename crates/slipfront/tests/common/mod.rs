@@ -1,4 +1,4 @@
-//! What the test binaries share: a slider described by the paper's groups.
+//! Helpers of all test binaries: a slider described by the dimensionless groups of the paper.
 #![allow(dead_code)] // Each binary uses its own part of this.
 
 use slipfront::observe::{Curve, CurveRow, Kinetic, KineticHistory, KineticStart, Observer, Peak, Scheduled};
@@ -76,7 +76,7 @@ pub(crate) struct Outcome {
 }
 
 impl Slider {
-    /// The same coefficients everywhere.
+    /// With equal coefficients for all blocks.
     pub(crate) fn uniform(self) -> Self {
         Self {
             sigma_static_star: 0.0,
@@ -138,7 +138,7 @@ impl Slider {
         self.observed(turns, &mut [])
     }
 
-    /// The same with every step recorded.
+    /// Runs to t* = `turns`/V* and records every step.
     pub(crate) fn run(&self, turns: f64) -> Outcome {
         let mut curve = Curve::every(1);
         let (peak, kinetic) = self.observed(turns, &mut [&mut curve]);
@@ -173,7 +173,7 @@ impl Slider {
     }
 }
 
-/// Blocks displaced by up to `size`, every `apart`-th of them thrown as well.
+/// Blocks displaced by up to `size`, every `apart`-th of them with a velocity.
 pub(crate) fn thrown(n_blocks: usize, size: f64, apart: usize) -> State {
     let wave = |k: f64, apart: usize| {
         let one = |b: usize| {

@@ -9,8 +9,8 @@ use crate::common::{self, Slider, cavity, groove};
 use crate::fields::assert_fields_match_blocks;
 use crate::{FUSED, REFERENCE, bits, go, has_room};
 
-/// Roundings differ by 1e-16 a spring and step, and a slip hands them on somewhat larger: some 1e-14 until the first peak
-/// has ended, in displacements and velocities of the order of 1.
+/// Rounding errors differ by 1e-16 per spring and step, and a slip amplifies them somewhat: to about 1e-14 up to the end of the
+/// first peak, in displacements and velocities of the order of 1.
 const ROUNDING: f64 = 1e-13;
 
 fn largest(a: &VectorField) -> f64 {
@@ -70,12 +70,12 @@ fn assert_alike(fused: &Simulation, reference: &Simulation) {
         (&here.velocity, &there.velocity),
     ] {
         let far = distance(a, b);
-        // Only blocks that nothing holds back come to move by more than 1.
+        // Only blocks without friction come to move by more than 1.
         assert!(far < ROUNDING * largest(b), "step {step}: {far:e} apart");
     }
 }
 
-/// Both kernels through up to `steps` steps, or until the first peak has ended; energies are asked for now and then.
+/// Both kernels through up to `steps` steps, or until the first peak has ended; energies are measured at some of the steps.
 fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
     let run = |execution| Simulation::with_execution(model.clone(), dt_star, state.cloned(), execution);
     let (mut fused, mut reference) = (run(FUSED), run(REFERENCE));
@@ -112,8 +112,8 @@ fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
     }
 }
 
-/// Sizes at and beside the widths of a vector, of the shortest row, and of a tile; and rows of 24 in so many tiles that these
-/// begin at every place in the memory of upward springs, which is 37 vectors long then.
+/// Sizes equal and close to those of a vector, of the shortest row, and of a tile; and rows of 24 blocks in so many tiles that
+/// these begin at every position of the ring buffer of springs, which is 37 vectors long then.
 #[rstest]
 fn lattices_of_every_shape(
     #[values(
@@ -142,7 +142,7 @@ fn lattices_of_every_shape(
     assert_same(&slider.model(), slider.dt_star, None, slider.steps(5.0));
 }
 
-/// StrainBound for which springs come from either series or the square root, and all the rest that enters a step.
+/// Strains for which spring forces come from either series or the square root, and all other parameters of a step.
 #[rstest]
 fn forces_of_every_kind(
     #[values(0.0, 1e-6, 1e-4, 1e-3, 1e-2)] epsilon: f64,
@@ -186,7 +186,7 @@ fn a_constant_force_alone(
     assert_same(&model, 0.1, None, 400);
 }
 
-/// Blocks that are displaced and thrown at the start, some of them.
+/// Blocks that are displaced at the start, some of them with a velocity.
 #[rstest]
 fn a_state_in_motion(
     #[values([1, 1], [17, 5], [5, 60], [300, 4])] blocks: [usize; 2],
@@ -212,8 +212,8 @@ fn a_state_in_motion(
     assert_same(&slider.model(), slider.dt_star, Some(&state), 100);
 }
 
-/// Far beyond the first peak too: friction hands differences on without making them larger, so that two kernels part only
-/// where one lets a block slip and the other does not, for which it would have to come within rounding of its threshold.
+/// The kernels agree far beyond the first peak: friction does not amplify differences, so that the kernels would diverge only
+/// if the force on a block came so close to its threshold that rounding decides whether it slips.
 #[rstest]
 fn whole_runs(
     #[values([25, 25], [64, 30])] blocks: [usize; 2],

@@ -1,5 +1,5 @@
-//! Stops with a checkpoint under the reference kernel, with observers, and what does not fit. Those under the fused kernel
-//! stand beside its other executions.
+//! Checkpoints of the reference kernel, of observers, and of another lattice. Those of the fused kernel are tested in
+//! `executions.rs`.
 
 use rstest::rstest;
 use slipfront::observe::frames::Selection;
@@ -66,8 +66,8 @@ fn the_reference_kernel_under_every_law(
     );
 }
 
-/// A run in one piece and one in pieces of every length, each of which goes on from what was written down of the run and of
-/// its observers: these have seen every instant, and once.
+/// A run without stops and one in parts, each of which continues from a checkpoint of the run and of its observers: these have
+/// seen every instant exactly once.
 #[rstest]
 fn observers_see_every_instant_once(
     #[values(REFERENCE, FUSED)] execution: Execution,

@@ -88,7 +88,7 @@ fn all_blocks_have_the_same_bits_as_single_ones(
     }
 }
 
-/// The reference kernel keeps the friction of the laws that cannot be found again from velocities.
+/// Laws whose friction does not follow from the velocity: the reference kernel keeps it.
 #[rstest]
 fn every_friction_law(#[values(FrictionLaw::Reversal, FrictionLaw::Literal)] law: FrictionLaw) {
     let slider = Slider {

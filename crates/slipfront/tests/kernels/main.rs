@@ -1,5 +1,5 @@
-//! The same cases on every kernel and every way to execute it: the fused kernel against the reference to rounding, and
-//! against itself, on any number of threads and leaving blocks at rest alone or not, bit for bit.
+//! All kernels and ways to execute them compared: the fused kernel agrees with the reference to rounding, and has the same bits
+//! on any number of threads, with and without skipping.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -11,7 +11,7 @@ use slipfront::{Edges, Execution, Kernel, Lattice, Model, Simulation, Stop};
 /// The kernel of the simulations that the common helpers make.
 const KERNEL: Kernel = Kernel::Fused;
 
-/// The fused kernel at its plainest: one thread, every block at every step.
+/// The fused kernel on one thread without skipping.
 const FUSED: Execution = Execution {
     kernel: Kernel::Fused,
     threads: 1,

@@ -11,8 +11,8 @@ use crate::common::at_rest;
 const COLUMNS: usize = 80;
 const KINETIC: f64 = 0.25;
 
-/// A strip of `COLUMNS` columns under a constant force per block of prestress `tau`; its first column holds
-/// nothing.
+/// A strip of `COLUMNS` columns under a constant force per block of prestress `tau`; its first column has
+/// no static friction.
 fn strip(rows: usize, direction: [f64; 2], tau: f64) -> Model {
     let edges = if rows == 1 { Edges::Free } else { Edges::Periodic };
     let lattice = Lattice::with_edges(COLUMNS, rows, [Edges::Free, edges]);

@@ -1,4 +1,4 @@
-//! What a run shows: the instants A-F, the end of the first peak, divergence.
+//! What is measured on a run: the instants A-F, the end of the first peak, divergence, runs without an end.
 
 use rstest::rstest;
 use slipfront::observe::frames::Selection;
@@ -77,7 +77,7 @@ fn instants_are_those_of_their_definitions(#[case] slider: Slider, #[case] kinet
         assert_eq!(frame.point, rows[frame.step as usize].point, "{letter}");
         assert_eq!(frame.values.len(), 3);
         assert!(frame.values.iter().all(|field| field.len() == 9 * 9));
-        // The fields belong to the same step as the curve: the run repeated up to it shows the same.
+        // The fields belong to the step of the curve: a run up to that step has these fields.
         let mut again = at_rest(&model, slider.dt_star);
         again.run(Stop::at_step(frame.step), &mut []).unwrap();
         let exact = selection.capture(&again.snapshot());
@@ -190,8 +190,8 @@ fn mu_star_is_the_mean_pull_along_and_across_the_drive() {
     assert!(lateral > 1e-4, "there is something across to be seen: {lateral}");
 }
 
-/// D is sought up to t_s* + 2.5/V* and E up to the kinetic window, whatever comes later. On a run whose later
-/// curve is made up, since N* and mu* of a real one seldom reach that far again.
+/// D is searched for up to t_s* + 2.5/V* and E up to the kinetic window, whatever comes later. The later part of the curve is
+/// invented, because N* and mu* of a real run seldom reach such values again.
 #[test]
 fn what_comes_after_the_windows_is_neither_d_nor_e() {
     let slider = Slider {
@@ -220,7 +220,7 @@ fn what_comes_after_the_windows_is_neither_d_nor_e() {
         } else {
             e_until
         };
-        // Just inside each window something stands out, and more so ever after.
+        // Just inside each window N* or mu* is extreme, and later even more so.
         for step in simulation.snapshot().step + 1..=2670 {
             let mut now = simulation.snapshot();
             now.step = step;
@@ -268,6 +268,9 @@ fn a_run_without_an_end_is_a_run_of_known_length_that_has_not_ended() {
     assert_eq!(endless.snapshot().step, steps);
     assert_eq!(endless.state(), whole.state());
     assert_eq!(endless.peak(), whole.peak());
-    assert_eq!(history.kinetic(200.0, slider.dt_star), expected.kinetic(200.0, slider.dt_star));
+    assert_eq!(
+        history.kinetic(200.0, slider.dt_star),
+        expected.kinetic(200.0, slider.dt_star)
+    );
     assert!(history.kinetic(200.0, slider.dt_star).is_some());
 }

@@ -20,18 +20,18 @@ const READ: usize = 120;
 const WIDTH: usize = READ + LANES;
 
 /// x and y of the displacements in these columns and in one more at either end.
-pub(super) type Displacements = [[f64; WIDTH + 2]; 2];
+type Displacements = [[f64; WIDTH + 2]; 2];
 
 /// x and y of a vector of each block that is read.
-pub(super) type Vectors = [[f64; READ]; 2];
+type Vectors = [[f64; READ]; 2];
 
 /// Where displacements and velocities of consecutive columns of a row are read from.
 pub(super) trait Motion {
     /// Displacements of row `row`, from column `first` on. Rows and columns beyond the lattice are those at its other end where
     /// an axis is periodic; beyond free edges they may be anything.
-    fn displacements(&self, row: isize, first: isize, into: &mut Displacements);
+    fn displacements(&self, row: isize, first: isize, into: [&mut [f64]; 2]);
     /// Velocities of row `row`, from column `first` on.
-    fn velocities(&self, row: usize, first: usize, into: &mut Vectors);
+    fn velocities(&self, row: usize, first: usize, into: [&mut [f64]; 2]);
 }
 
 /// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the row, the column of the
@@ -97,7 +97,7 @@ impl<S: Simd, M: Motion> Strip<'_, S, M> {
         let mut values = [0.0; READ];
         for j in self.rows() {
             self.motion
-                .displacements(j as isize, self.first as isize, &mut read);
+                .displacements(j as isize, self.first as isize, first_n(&mut read, self.n));
             for (value, u) in values.iter_mut().zip(&read[axis]) {
                 *value = *u as f32;
             }
@@ -111,7 +111,7 @@ impl<S: Simd, M: Motion> Strip<'_, S, M> {
         let mut read = [[0.0; READ]; 2];
         let mut values = [0.0; READ];
         for j in self.rows() {
-            self.motion.velocities(j, self.first, &mut read);
+            self.motion.velocities(j, self.first, first_n(&mut read, self.n));
             let [x, y] = &read;
             for ((value, x), y) in values.iter_mut().zip(x).zip(y) {
                 *value = quantity([*x, *y]) as f32;
@@ -137,24 +137,26 @@ impl<S: Simd, M: Motion> Strip<'_, S, M> {
         for j in self.rows() {
             let row = j as isize;
             if before != Some(row - 1) {
-                self.motion
-                    .displacements(row - 1, self.first_displaced(), window.displacements[1]);
+                self.read_displacements(row - 1, window.displacements[1]);
                 self.advance_to(row - 1, &present, &mut window);
             }
             self.advance_to(row, &present, &mut window);
             before = Some(row);
             self.lattice_forces(&present, &window, &mut lattice);
-            self.motion.velocities(j, self.first, &mut velocities);
+            self.motion
+                .velocities(j, self.first, first_n(&mut velocities, self.n));
             let friction = self.friction(j, window.displacements[0], &lattice, &velocities);
             self.magnitudes(field, j, &friction, &lattice, &mut values);
             write(j, self.first, &values[..self.n]);
         }
     }
 
-    /// Column of the first displacement: springs are computed from one column before the first block that is read, and pull
-    /// on one more.
-    fn first_displaced(&self) -> isize {
-        self.first as isize - 2
+    /// Displacements of a row from two columns before the first block that is read to two after the last: springs are computed
+    /// from one column before and after, and lead to one more.
+    #[inline(always)]
+    fn read_displacements(&self, row: isize, into: &mut Displacements) {
+        self.motion
+            .displacements(row, self.first as isize - 2, first_n(into, self.n + 4));
     }
 
     fn present(&self) -> Present {
@@ -182,7 +184,7 @@ impl<S: Simd, M: Motion> Strip<'_, S, M> {
         window.displacements.swap(0, 1);
         window.springs.swap(0, 1);
         let [here, north] = &mut window.displacements;
-        self.motion.displacements(row + 1, self.first_displaced(), north);
+        self.read_displacements(row + 1, north);
         let lattice = &self.model.lattice;
         let joined = lattice.edges[1] == Edges::Periodic || (0..lattice.ny as isize - 1).contains(&row);
         for (k, bond) in [Bond::NORTH, Bond::NORTH_EAST, Bond::NORTH_WEST]
@@ -259,6 +261,13 @@ impl<S: Simd, M: Motion> Strip<'_, S, M> {
     ) -> Vectors {
         let simd = self.simd;
         let mut friction = [[0.0; READ]; 2];
+        let mut kinetic = [0.0; READ];
+        if velocities.as_flattened().iter().any(|&v| v != 0.0) {
+            let first = self.model.lattice.block(self.first, row);
+            self.model
+                .surface
+                .read_kinetic_forces(first, &mut kinetic[..self.n]);
+        }
         for k in (0..self.n).step_by(LANES) {
             let velocity = load_at(simd, velocities, k);
             let stuck = is_zero(simd, velocity);
@@ -266,24 +275,13 @@ impl<S: Simd, M: Motion> Strip<'_, S, M> {
             let [x, y] = add(drive, load_at(simd, lattice, k));
             let mut force = [-x, -y];
             if bits(stuck) != u8::MAX {
-                let kinetic = f64x8::load_array(simd, self.kinetic_forces(row, k));
+                let kinetic = f64x8::from_slice(simd, &kinetic[k..k + LANES]);
                 let per_velocity = kinetic / square(velocity).sqrt();
                 force = select(stuck, force, scale(-per_velocity, velocity));
             }
             store_at(force, &mut friction, k);
         }
         friction
-    }
-
-    /// Kinetic friction of the eight blocks from the `k`-th of a row on.
-    #[inline(always)]
-    fn kinetic_forces(&self, row: usize, k: usize) -> [f64; LANES] {
-        let first = self.model.lattice.block(self.first + k, row);
-        let end = first - k + self.n;
-        std::array::from_fn(|lane| {
-            let b = (first + lane).min(end - 1);
-            self.model.surface.kinetic_force(b)
-        })
     }
 
     /// Contact stress `|F_f + F_c|` (Eq. 10) or traction `|F_f|`, which a textured block has none of.
@@ -310,11 +308,16 @@ impl<S: Simd, M: Motion> Strip<'_, S, M> {
         if field == Field::Traction {
             let first = self.model.lattice.block(self.first, row);
             let textured = &self.model.surface.textured[first..first + self.n];
-            for (value, _) in values.iter_mut().zip(textured).filter(|(_, textured)| **textured) {
-                *value = f32::NAN;
+            for (value, &textured) in values.iter_mut().zip(textured) {
+                *value = if textured { f32::NAN } else { *value };
             }
         }
     }
+}
+
+/// The first `n` of both components.
+fn first_n<const N: usize>([x, y]: &mut [[f64; N]; 2], n: usize) -> [&mut [f64]; 2] {
+    [&mut x[..n], &mut y[..n]]
 }
 
 /// What is kept of a strip from one row to the next.

@@ -30,7 +30,7 @@ use fearless_simd::{Level, dispatch};
 use self::aligned::Vectors;
 use self::band::Band;
 use self::blocks::Step;
-use self::field_rows::{Displacements, Motion};
+use self::field_rows::Motion;
 use self::layout::Layout;
 use self::springs::{Series, SquareRoot};
 use crate::checkpoint::Checkpoint;
@@ -444,16 +444,16 @@ impl Fused {
 }
 
 impl Motion for Fused {
-    fn displacements(&self, row: isize, first: isize, [x, y]: &mut Displacements) {
+    fn displacements(&self, row: isize, first: isize, into: [&mut [f64]; 2]) {
         if let Some(row) = self.layout.wrapped_row(row) {
             let element = self.layout.element(0, row) as isize + first;
-            self.copy_elements(element, [x, y], |band| (&band.displacement, band.halo));
+            self.copy_elements(element, into, |band| (&band.displacement, band.halo));
         }
     }
 
-    fn velocities(&self, row: usize, first: usize, [x, y]: &mut field_rows::Vectors) {
+    fn velocities(&self, row: usize, first: usize, into: [&mut [f64]; 2]) {
         let element = self.layout.element(first, row) as isize;
-        self.copy_elements(element, [x, y], |band| (&band.velocity, 0));
+        self.copy_elements(element, into, |band| (&band.velocity, 0));
     }
 }
 
