@@ -45,7 +45,7 @@ pub fn run(case: &Case, threads: usize) -> Result<Record, RunError> {
 /// A run in progress, with all that its files need of it.
 pub struct Running<'c> {
     case: &'c Case,
-    simulation: Simulation<'c>,
+    simulation: Simulation,
     observers: Observers,
 }
 
@@ -136,7 +136,12 @@ impl<'c> Running<'c> {
         let execution = Self::execution(case, threads);
         Self {
             case,
-            simulation: Simulation::with_execution(&case.model, case.time_plan.dt_star, None, execution),
+            simulation: Simulation::with_execution(
+                case.model.clone(),
+                case.time_plan.dt_star,
+                None,
+                execution,
+            ),
             observers: Observers::new(case),
         }
     }
@@ -154,7 +159,7 @@ impl<'c> Running<'c> {
         let execution = Self::execution(case, threads);
         Some(Self {
             case,
-            simulation: Simulation::resume(&case.model, case.time_plan.dt_star, simulation, execution)?,
+            simulation: Simulation::resume(case.model.clone(), case.time_plan.dt_star, simulation, execution)?,
             observers,
         })
     }
@@ -200,7 +205,7 @@ impl<'c> Running<'c> {
             fields,
         } = observers;
         let time_plan = &case.time_plan;
-        let first_slip = FirstSlip::of(&simulation);
+        let first_slip = FirstSlip::of(&simulation.snapshot());
         let (instants, frames) = match fields {
             Fields::Instants(instants) => (instants.found(), Vec::new()),
             Fields::Frames(frames) => (Vec::new(), frames.frames),

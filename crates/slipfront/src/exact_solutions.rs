@@ -1,6 +1,6 @@
 //! Problems with exact solutions, shared by tests and benches.
 //!
-//! One law each, in the units of this crate (lengths in blocks, times in `l sqrt(rho/E)`, forces in
+//! In the units of this crate (lengths in blocks, times in `l sqrt(rho/E)`, forces in
 //! `P mu_s l^2`). The tests under `tests/physics` hold the kernels against them.
 
 use crate::lattice::{K_DIAGONAL, K_DRIVE, K_STRAIGHT};
@@ -19,7 +19,7 @@ use crate::scales::damping;
 ///
 /// ```
 /// use slipfront::exact_solutions::first_slip_time_star;
-/// // The block with mu_s = 0.3 but mu_k = 0.6 holds up to 0.6; its neighbour breaks first, at 0.375.
+/// // The block with mu_s = 0.3 but mu_k = 0.6 sticks up to 0.6; its neighbour slips first, at 0.375.
 /// assert_eq!(first_slip_time_star(&[0.3, 0.375], &[0.6, 0.2], 1.0, 0.01), 100.0);
 /// ```
 pub fn first_slip_time_star(mu_static: &[f64], mu_kinetic: &[f64], mu_static_mean: f64, v_star: f64) -> f64 {
@@ -74,14 +74,14 @@ pub struct SlipCycle {
 
 /// `exp(-Omega t/2) (cosine cos w t + sine sin w t)`.
 #[derive(Clone, Copy)]
-struct Swing {
+struct DampedOscillation {
     decay: f64,
     frequency: f64,
     cosine: f64,
     sine: f64,
 }
 
-impl Swing {
+impl DampedOscillation {
     fn at(&self, t: f64) -> f64 {
         let (s, c) = (self.frequency * t).sin_cos();
         (-self.decay * t).exp() * (self.cosine * c + self.sine * s)
@@ -106,7 +106,7 @@ impl SlipCycle {
     /// The cycle at `omega_star` (underdamped: below `2 sqrt(k_s/k_1) = 1.41`), `r_star` < 1 and `v_star`.
     ///
     /// # Panics
-    /// Where the block never sticks again: it is overdamped, or slides on before it turns round.
+    /// If the block never sticks again, because it is overdamped or never becomes as fast as the drive again.
     pub fn new(omega_star: f64, r_star: f64, v_star: f64) -> Self {
         let mut cycle = Self {
             damping: damping(omega_star),
@@ -118,7 +118,7 @@ impl SlipCycle {
             cycle.damping < 2.0 * K_DRIVE.sqrt(),
             "overdamped: the block never sticks again"
         );
-        let rate = cycle.swing().derivative();
+        let rate = cycle.oscillation().derivative();
         // e' falls from V, has its minimum and then its maximum where e'' vanishes; it passes V in between.
         let minimum = rate.derivative().first_zero();
         let maximum = minimum + std::f64::consts::PI / rate.frequency;
@@ -139,11 +139,11 @@ impl SlipCycle {
         cycle
     }
 
-    fn swing(&self) -> Swing {
+    fn oscillation(&self) -> DampedOscillation {
         let decay = 0.5 * self.damping;
         let frequency = (K_DRIVE - decay * decay).sqrt();
         let y = (1.0 - self.r_star - self.damping * self.v_star) / K_DRIVE;
-        Swing {
+        DampedOscillation {
             decay,
             frequency,
             cosine: y,
@@ -163,12 +163,12 @@ impl SlipCycle {
 
     /// Force of the drive spring a time `t` after the slip began, up to [`SlipCycle::slip_duration`].
     pub fn force(&self, t: f64) -> f64 {
-        self.r_star + self.damping * self.v_star + K_DRIVE * self.swing().at(t)
+        self.r_star + self.damping * self.v_star + K_DRIVE * self.oscillation().at(t)
     }
 
     /// Velocity of the block a time `t` after the slip began, `V - e'`.
     pub fn velocity(&self, t: f64) -> f64 {
-        self.v_star - self.swing().derivative().at(t)
+        self.v_star - self.oscillation().derivative().at(t)
     }
 
     /// Force at which the block sticks; `2 R - 1` without damping.
@@ -178,7 +178,7 @@ impl SlipCycle {
 
     /// Time of the largest force after the slip began, where `e' = 0`.
     pub fn peak_delay(&self) -> f64 {
-        self.swing().derivative().first_zero()
+        self.oscillation().derivative().first_zero()
     }
 
     /// Largest force; `R + sqrt((1 - R)^2 + k_s V^2)` without damping.
@@ -221,7 +221,7 @@ impl SlipCycle {
 pub struct LatticeWave {
     /// `omega^2`.
     pub omega_squared: f64,
-    /// Unit vector **p** along which the blocks swing.
+    /// Unit vector **p** along which the blocks oscillate.
     pub polarization: [f64; 2],
 }
 
@@ -259,14 +259,14 @@ pub fn lattice_waves(a: f64, b: f64, k_drive: f64) -> [LatticeWave; 2] {
     ]
 }
 
-/// Frequency at which leapfrog lets an undamped wave of frequency `omega` swing:
+/// Frequency at which leapfrog lets an undamped wave of frequency `omega` oscillate:
 ///
 /// ```text
 /// sin(omega_num dt/2) = omega dt/2
 /// ```
 ///
 /// ```
-/// // At the limit of stability a swing takes two steps.
+/// // At the limit of stability a period takes two steps.
 /// let number = slipfront::exact_solutions::leapfrog_frequency(2.0, 1.0);
 /// assert!((number - std::f64::consts::PI).abs() < 1e-12);
 /// ```
@@ -293,8 +293,8 @@ impl Facing {
     }
 }
 
-/// How much more than its own drive spring pulls on a row at the edge of a straight groove, before anything
-/// slips, on periodic edges: `n` rows of the groove, each held by its drive springs and by stiffness K to the
+/// Force on a row at the edge of a straight groove over that of its own drive springs, before anything slips, on periodic
+/// edges: `n` rows of the groove, each held by its drive springs and by stiffness K to the
 /// next,
 ///
 /// ```text

@@ -1,6 +1,7 @@
-//! Sums in a fixed order that every SIMD width can follow: eight running sums, added up at the end.
+//! Sums and maxima over blocks whose result does not depend on the SIMD width: eight running values, combined at the end in
+//! a fixed order.
 
-/// Running sums that are added up at the end. A number of its own, whatever the width of the processor's registers.
+/// Number of running values, whatever the width of the processor's registers.
 const LANES: usize = 8;
 
 /// Sum of `term(k)` over `0..n`: lane k mod 8 takes term k, then the lanes are added in pairs.

@@ -11,6 +11,7 @@ mod time_plan;
 mod warnings;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use slipfront::scales::damping;
 use slipfront::surface::{Load, mesh};
@@ -43,7 +44,7 @@ pub struct Case {
     /// Dimensionless groups.
     pub groups: Groups,
     /// The slider, ready to run.
-    pub model: Model,
+    pub model: Arc<Model>,
     /// What the texture has come to.
     pub texture: TextureReport,
     /// Negative draws of the coefficients that were set to 0.
@@ -158,7 +159,7 @@ impl Case {
             inputs: inputs.kept,
             scales,
             groups,
-            model,
+            model: Arc::new(model),
             texture,
             negative_draws,
             time_plan,

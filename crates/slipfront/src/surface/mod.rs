@@ -1,7 +1,7 @@
 //! The sliding surface: local friction coefficients, texture and load of every block.
 //!
-//! [`Coefficients`] are drawn or given, [`mesh`] finds the textured blocks, the [`Load`] is shared out, and
-//! [`Surface::new`] puts the three together into the thresholds that the friction law compares with.
+//! [`Coefficients`] are drawn or given, [`mesh`] finds the textured blocks, and the [`Load`] is distributed over the blocks in
+//! contact; [`Surface::new`] makes the friction thresholds of all blocks from the three.
 
 mod coefficients;
 mod load;
@@ -13,12 +13,13 @@ pub use texture::{
     Cavity, Groove, MaskImage, Meshed, Orientation, Texture, cavity_lambda, cavity_percent, mesh,
 };
 
-use crate::{Lattice, SurfaceError};
+use crate::error::SurfaceError;
+use crate::lattice::Lattice;
 
 /// Friction of every block; arrays have one value per block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
-    /// Blocks over a texture, which touch nothing.
+    /// Whether a block lies over a texture and so has no contact with the substrate.
     pub textured: Vec<bool>,
     /// Local static coefficients `mu_si`; 0 over a texture.
     pub mu_static: Vec<f64>,
@@ -31,7 +32,7 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Lays a texture over the coefficients and shares the load out.
+    /// Sets the coefficients of textured blocks to 0 and distributes the load.
     ///
     /// `mu_static_mean` is the scale of all forces. Fails when no block is left in contact.
     pub fn new(
@@ -64,8 +65,8 @@ impl Surface {
         })
     }
 
-    /// The same coefficients everywhere and no texture, in units of their static mean: `mu_static` is 1 for
-    /// the model of the paper.
+    /// Equal coefficients for all blocks and no texture. Coefficients are in units of their static mean, so that `mu_static`
+    /// is 1 in the model of the paper.
     pub fn uniform(lattice: &Lattice, mu_static: f64, mu_kinetic: f64) -> Self {
         let n = lattice.n_blocks();
         Self {
@@ -96,6 +97,21 @@ impl Surface {
         self.mu_kinetic[b] / self.mu_static_mean * self.normal_force(b)
     }
 
+    /// [`kinetic_force`](Self::kinetic_force) of the blocks from `first` on.
+    #[inline(always)]
+    pub(crate) fn read_kinetic_forces(&self, first: usize, forces: &mut [f64]) {
+        let blocks = first..first + forces.len();
+        let coefficients = self.mu_kinetic[blocks.clone()].iter().zip(&self.textured[blocks]);
+        for (force, (mu_kinetic, &textured)) in forces.iter_mut().zip(coefficients) {
+            let normal_force = if textured {
+                0.0
+            } else {
+                self.normal_force_per_block
+            };
+            *force = mu_kinetic / self.mu_static_mean * normal_force;
+        }
+    }
+
     /// Number of blocks.
     pub fn n_blocks(&self) -> usize {
         self.textured.len()
@@ -111,7 +127,7 @@ impl Surface {
         100.0 * (self.n_blocks() - self.n_contact()) as f64 / self.n_blocks() as f64
     }
 
-    /// The smallest force that breaks a block in contact loose: `min_i max(mu_si, mu_ki) F_n,i` (D12).
+    /// The smallest force that makes a block in contact slip: `min_i max(mu_si, mu_ki) F_n,i` (D12).
     pub fn min_slip_threshold(&self) -> f64 {
         (0..self.n_blocks())
             .filter(|&b| !self.textured[b])

@@ -6,8 +6,8 @@ use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, State, Surface, Vecto
 
 use crate::common::{Slider, at_rest, from_state};
 
-/// Forces of the lattice alone at a given displacement. Of blocks at rest that nothing else acts on, a step of 1 makes them
-/// velocities, to the last bit.
+/// Forces of the lattice alone at a given displacement. If nothing else acts on blocks at rest, their velocities after a step
+/// of 1 have the same bits as the forces.
 fn lattice_forces(lattice: Lattice, u: VectorField, epsilon: f64) -> VectorField {
     let n = lattice.n_blocks();
     let model = Model::new(
@@ -29,7 +29,7 @@ fn lattice_forces(lattice: Lattice, u: VectorField, epsilon: f64) -> VectorField
     let force = simulation.state().velocity;
     for b in 0..n {
         let shown = simulation.snapshot().block(b).force_lattice;
-        // What is shown may round otherwise than what moved the block: by 1e-16 of each of eight springs.
+        // Recomputed forces may differ from those of the sweep by rounding: by 1e-16 of each of eight springs.
         let differs = (0..2).any(|axis| (shown[axis] - force.at(b)[axis]).abs() > 1e-14);
         assert!(!differs, "block {b} shows {shown:?}, moved by {:?}", force.at(b));
     }
@@ -98,7 +98,7 @@ fn lattice_forces_are_eq_3_to_the_letter(
     let found = lattice_forces(lattice, u, epsilon);
     for b in 0..lattice.n_blocks() {
         let ([fx, fy], [ex, ey]) = (found.at(b), exact.at(b));
-        // The printed form cancels lengths of 1 to a strain of eps.
+        // The printed form subtracts lengths of 1 that differ by a strain of eps.
         let tolerance = 1e-15 + 2e-15 / epsilon;
         assert!(
             (fx - ex).abs() < tolerance && (fy - ey).abs() < tolerance,
@@ -158,8 +158,7 @@ fn chains_along_x_and_along_y_are_the_same() {
     );
 }
 
-/// Across a chain the straight springs give way to first order, so that blocks slip one by one, each as if
-/// alone.
+/// Straight springs resist motion across a chain only to second order, so that each block slips as if it were alone.
 #[test]
 fn a_chain_pulled_across_is_a_row_of_single_blocks() {
     let slider = Slider {
@@ -191,7 +190,7 @@ fn a_chain_pulled_across_is_a_row_of_single_blocks() {
     }
 }
 
-/// Two blocks, one spring: it is counted once on each, with opposite signs.
+/// Two blocks and one spring, whose force acts on both with opposite signs.
 #[test]
 fn two_blocks_pull_on_each_other() {
     for (lattice, axis) in [(Lattice::free(2, 1), 0), (Lattice::free(1, 2), 1)] {

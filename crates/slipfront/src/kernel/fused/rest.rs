@@ -1,7 +1,7 @@
-//! How long blocks at rest will stay so.
+//! How long blocks at rest will stay at rest.
 //!
 //! While a block and its neighbours are stuck, the force on it grows by that of its drive spring alone, linearly:
-//! `F(t) = F + k_s V t`. It breaks when `|F(t)|` passes its threshold `T = max(mu_s, mu_k) F_n` (D12):
+//! `F(t) = F + k_s V t`. It slips when `|F(t)|` passes its threshold `T = max(mu_s, mu_k) F_n` (D12):
 //!
 //! ```text
 //! c t^2 + 2 a t = T^2 - F^2,   a = F . k_s V,   c = (k_s V)^2
@@ -11,10 +11,10 @@
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat};
 
 use super::blocks::{Chunks, Step, pull};
-use super::vector::{add, dot, largest, load, load_vec2, splat, square};
-use crate::Drive;
+use super::vector::{add, dot, lane_max, load, load_vec2, splat, square};
+use crate::model::Drive;
 
-/// Blocks at rest.
+/// Blocks of a tile in which nothing moves.
 pub(super) struct RestingTile<'a> {
     pub(super) displacement: [Chunks<'a>; 2],
     /// `F_c`.
@@ -23,10 +23,10 @@ pub(super) struct RestingTile<'a> {
     pub(super) kinetic_impulses: Chunks<'a>,
 }
 
-/// Number of steps, never too large, before the first of the blocks can break; forces are those of `step`.
+/// Number of steps from `step` until the first of the blocks can slip, or somewhat less.
 ///
-/// With a drive at an angle, a block of which one force component shrinks while the other grows is not left alone, so that
-/// the largest contact stress of a time at rest always stands at its beginning or at its end.
+/// With a drive at an angle it is zero if one component of the drive force on a block shrinks while the other grows. So the
+/// contact stress of a skipped block is always largest at the first or at the last skipped step.
 #[inline(always)]
 pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, drive: &Drive, blocks: &RestingTile) -> u64 {
     let [bx, by] = drive.direction.map(|d| drive.k_drive * drive.v_star * d);
@@ -51,15 +51,15 @@ pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, drive: &Drive, blo
         } else {
             room.simd_ge(zero)
         };
-        // At the threshold, or where rounding makes the root no number, there is no time left.
+        // At the threshold, or if rounding makes the root NaN, the block may slip at once.
         let time = (grows & room.simd_ge(zero) & time.simd_ge(zero)).select(time, zero);
         soonest = soonest.max(-time);
     }
-    // Forces are known to some units of their last place: as many steps earlier as the load needs to grow by that, and
-    // two more for the roundings of the root and of the division.
+    // Forces have rounding errors of some units of their last place: the result is shortened by the time in which the load
+    // grows by that, and by two steps for the rounding of the root and of the division.
     let distance = step.drive_position[0].abs() + step.drive_position[1].abs();
     let noise = 1e-13 * (1.0 + step.k_drive * distance) / growth_square.sqrt();
-    let steps = (-largest(soonest) * (1.0 - 1e-9) - noise) / step.dt_star - 2.0;
-    // A conversion of floats saturates: at zero below, at the largest number above.
+    let steps = (-lane_max(soonest) * (1.0 - 1e-9) - noise) / step.dt_star - 2.0;
+    // The conversion saturates: at zero if negative, at the largest integer if too large.
     steps as u64
 }

@@ -1,7 +1,7 @@
-//! f64x8 numbers at a time: plane vectors of eight blocks, and sums that do not depend on the processor.
+//! Plane vectors of eight blocks at a time, and sums that do not depend on the processor.
 //!
-//! Every function is `#[inline(always)]`, so that it is compiled with the instructions of the width that the sweep was
-//! entered with. Nothing here fuses a multiplication with an addition: all widths round alike.
+//! Every function is `#[inline(always)]`, so that it is compiled for the vector width of its caller. Multiplications and
+//! additions are never fused, so that all widths give the same bits.
 
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
@@ -25,6 +25,22 @@ pub(super) fn load<S: Simd>(simd: S, from: &[f64; LANES]) -> f64x8<S> {
 #[inline(always)]
 pub(super) fn load_vec2<S: Simd>(simd: S, [x, y]: [&[[f64; LANES]]; 2], chunk: usize) -> Vec2x8<S> {
     [load(simd, &x[chunk]), load(simd, &y[chunk])]
+}
+
+/// Both components of eight blocks from the `k`-th on.
+#[inline(always)]
+pub(super) fn load_at<S: Simd, const N: usize>(simd: S, [x, y]: &[[f64; N]; 2], k: usize) -> Vec2x8<S> {
+    [
+        f64x8::from_slice(simd, &x[k..k + LANES]),
+        f64x8::from_slice(simd, &y[k..k + LANES]),
+    ]
+}
+
+/// Stores both components of eight blocks from the `k`-th on.
+#[inline(always)]
+pub(super) fn store_at<S: Simd, const N: usize>(a: Vec2x8<S>, [x, y]: &mut [[f64; N]; 2], k: usize) {
+    a[0].store_slice(&mut x[k..k + LANES]);
+    a[1].store_slice(&mut y[k..k + LANES]);
 }
 
 #[inline(always)]
@@ -73,33 +89,29 @@ pub(super) fn select<S: Simd>(first: mask64x8<S>, one: Vec2x8<S>, other: Vec2x8<
     [first.select(one[0], other[0]), first.select(one[1], other[1])]
 }
 
-/// Where `kept`, else zero.
+/// `a` where the mask is set, else zero.
 #[inline(always)]
-pub(super) fn keep<S: Simd>(simd: S, kept: mask64x8<S>, a: Vec2x8<S>) -> Vec2x8<S> {
+pub(super) fn or_zero<S: Simd>(simd: S, mask: mask64x8<S>, a: Vec2x8<S>) -> Vec2x8<S> {
     let zero = splat(simd, 0.0);
-    select(kept, a, [zero, zero])
+    select(mask, a, [zero, zero])
 }
 
-/// The last block of `before` and the first seven of `a`.
+/// Shifts `a` by one block: the last of `before` and the first seven of `a`.
 #[inline(always)]
-pub(super) fn behind<S: Simd>(before: Vec2x8<S>, a: Vec2x8<S>) -> Vec2x8<S> {
+pub(super) fn shift_in<S: Simd>(before: Vec2x8<S>, a: Vec2x8<S>) -> Vec2x8<S> {
     [before[0].slide::<7>(a[0]), before[1].slide::<7>(a[1])]
 }
 
-/// Sum of the eight, in pairs.
+/// Sum of the eight numbers, in pairs.
 #[inline(always)]
-pub(super) fn total<S: Simd>(v: f64x8<S>) -> f64 {
-    total_of(v.to_array())
-}
-
-#[inline(always)]
-pub(super) fn total_of([a, b, c, d, e, f, g, h]: [f64; LANES]) -> f64 {
+pub(super) fn lane_sum<S: Simd>(v: f64x8<S>) -> f64 {
+    let [a, b, c, d, e, f, g, h] = v.to_array();
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
-/// Largest of the eight.
+/// Largest of the eight numbers.
 #[inline(always)]
-pub(super) fn largest<S: Simd>(v: f64x8<S>) -> f64 {
+pub(super) fn lane_max<S: Simd>(v: f64x8<S>) -> f64 {
     let [a, b, c, d, e, f, g, h] = v.to_array();
     a.max(b).max(c.max(d)).max(e.max(f).max(g.max(h)))
 }
