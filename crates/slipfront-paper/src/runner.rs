@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
@@ -111,6 +112,7 @@ impl Bench<'_> {
 }
 
 fn run_case(case: Case, stop: &AtomicBool) -> Result<Run, PaperError> {
+    let case = Arc::new(case);
     let record = run::run_unless(&case, &|| stop.load(Ordering::Relaxed)).ok_or(StudyError::Interrupted)?;
     let record = record.map_err(|source| PaperError::Run {
         name: case.name.clone(),
@@ -154,7 +156,7 @@ pub(super) fn seen_at(mut case: Case, times_star: &[f64]) -> Case {
 
 /// A case and all that its run left.
 pub(super) struct Run {
-    pub(super) case: Case,
+    pub(super) case: Arc<Case>,
     pub(super) record: Record,
 }
 

@@ -1,6 +1,7 @@
 //! `slipfront verify`: what stands in results folders, against what was written there.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::Args;
 use jiff::Timestamp;
@@ -115,6 +116,7 @@ impl Verify {
             // It says why there is none.
             Err(CaseDefect::Unreadable(_) | CaseDefect::Invalid(_)) => Case::load(&case, &[]),
         }
+        .map(Arc::new)
         .map_err(Failure::input)?;
         let again = tempfile::tempdir().map_err(|error| Failure::running(VerifyError::Temporary(error)))?;
         case.check_disk(again.path(), 0, false).map_err(Failure::input)?;

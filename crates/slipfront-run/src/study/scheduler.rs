@@ -244,7 +244,7 @@ fn panicked(panic: &(dyn std::any::Any + Send)) -> String {
 fn run_one(plan: &Plan, runs: &Path, run: RunKey, ends: &Ends) -> Result<Option<Outcome>, StudyError> {
     let started = jiff::Timestamp::now();
     // The point was valid when the study began: a file that it reads has gone, which is no fault of the run.
-    let case = plan.case(run)?;
+    let case = Arc::new(plan.case(run)?);
     let Some(mut record) = running::run_unless(&case, ends) else {
         return Ok(None);
     };

@@ -1,7 +1,7 @@
 //! Checkpoints of runs: a header, the state and a seal over both.
 
 use std::path::{Path, PathBuf};
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use jiff::Timestamp;
 use slipfront::StopReason;
@@ -41,9 +41,9 @@ const TEXTS: [&str; 3] = [
      law = \"literal\"\n[output]\nsnapshots = { every = 2.0 }\nfields = [\"sliding\"]\n",
 ];
 
-static CASES: LazyLock<[Case; 3]> = LazyLock::new(|| {
+static CASES: LazyLock<[Arc<Case>; 3]> = LazyLock::new(|| {
     // Not by `parse`, which asks for the memory that a run takes, if only to see whether it is there.
-    let made = |file| Case::new(file, "case", Path::new("")).unwrap();
+    let made = |file| Arc::new(Case::new(file, "case", Path::new("")).unwrap());
     TEXTS.map(|text| made(CaseFile::parse(text, "case.toml", &[]).unwrap()))
 });
 
@@ -103,7 +103,7 @@ fn with_checksum(bytes: &[u8]) -> Vec<u8> {
 }
 
 /// A run goes on from what can be read, or the reason is told; what it saves then can be read again.
-fn go_on(case: &Case, file: &[u8]) {
+fn go_on(case: &Arc<Case>, file: &[u8]) {
     let folder = scratch::folder("checkpoint");
     Unfinished::of(&folder).create().unwrap();
     std::fs::write(latest(&folder), file).unwrap();

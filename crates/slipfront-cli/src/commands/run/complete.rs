@@ -1,6 +1,7 @@
 //! The part of `slipfront run` that a new run and a resumed one share: from the first step to the manifest.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use slipfront_case::case::Case;
 use slipfront_run::checkpoint::Checkpoints;
@@ -23,7 +24,7 @@ pub(super) fn complete(
     checkpoints: Checkpoints,
     options: RunOptions,
 ) -> Result<(), Failure> {
-    let (case, out) = (running.case(), folder.path().to_owned());
+    let (case, out) = (Arc::clone(running.case()), folder.path().to_owned());
     let (threads, is_verbose) = (options.threads, options.is_verbose());
     let started = checkpoints.started();
     let mut timer = CheckpointTimer::new(&out, checkpoints, options.interval, options.signals);
@@ -43,13 +44,13 @@ pub(super) fn complete(
     };
     progress.finish();
     let mut record = running.record(reason);
-    results::write(case, &mut record, folder, started, threads)
+    results::write(&case, &mut record, folder, started, threads)
         .map_err(|error| Failure::running(anyhow::anyhow!("{error}; {}", timer.remedy())))?;
     if options.json {
         print(&summary_json(&record.summary))?;
     } else if is_verbose {
-        print(&report::summary(case, &record.summary))?;
-        print(&files(case, &out))?;
+        print(&report::summary(&case, &record.summary))?;
+        print(&files(&case, &out))?;
     }
     Ok(())
 }

@@ -5,6 +5,7 @@ mod options;
 mod resume;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::Args;
 use jiff::Timestamp;
@@ -82,7 +83,7 @@ impl Run {
             return resume::resume(folder, self.previous, options);
         }
         let case_path = self.case.path().map(Path::to_owned);
-        let case = self.case.load()?;
+        let case = Arc::new(self.case.load()?);
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&case.name));
         refuse_to_replace(case_path.as_deref(), &case, &out)?;
         let folder = OpenedFolder::open(&out).map_err(Failure::input)?;

@@ -1,6 +1,7 @@
 //! `slipfront run --resume DIR`: goes on with a run that was interrupted.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use jiff::Timestamp;
 use slipfront_case::case::Case;
@@ -28,7 +29,7 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
         Contents::Complete(Err(error)) => return Err(Failure::input(error.clone())),
         Contents::Empty | Contents::Foreign | Contents::Interrupted => {}
     }
-    let case = make_case(path, file.clone())?;
+    let case = Arc::new(make_case(path, file.clone())?);
     case.check_memory_resumed().map_err(Failure::input)?;
     let loaded = load(path, &case, previous)?;
     case.check_disk(path, run.managed_bytes(), options.interval.saves())
