@@ -131,7 +131,7 @@ mod tests {
             assert!(NAMES[..index].iter().all(|other| other.0 != name.0), "{}", name.0);
             // A character of unknown width is taken to be as wide as the font is high.
             for run in Text::plain(&title(name.0), 100).runs {
-                let widths = run.text.chars().map(crate::text::advance);
+                let widths = run.text.chars().map(crate::font::advance);
                 assert!(widths.fold(0.0, f64::max) < 0.99, "{}", title(name.0));
             }
         }

@@ -57,53 +57,28 @@ pub struct LoadedCheckpoint {
 
 /// Why a run cannot go on from a checkpoint.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum CheckpointError {
-    /// It cannot be read.
     #[error("cannot read {}: {source}", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// It is not as it was written.
+    Unreadable { path: PathBuf, source: std::io::Error },
     #[error("{} is damaged: {why}", path.display())]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        why: &'static str,
-    },
-    /// It is laid out as another version does.
+    Damaged { path: PathBuf, why: &'static str },
     #[error(
         "{} has layout {found}, and this version reads layout {LAYOUT}: resume with the version that wrote it",
         path.display()
     )]
-    Layout {
-        /// The file.
-        path: PathBuf,
-        /// Its layout.
-        found: u32,
-    },
-    /// It is not from this program.
+    Layout { path: PathBuf, found: u32 },
     #[error(
         "{} was written by {found}, and this is {here}, which may not give the same bits: resume with that version",
         path.display()
     )]
     Program {
-        /// The file.
         path: PathBuf,
-        /// The program that wrote it.
         found: String,
-        /// The program that reads it.
         here: &'static str,
     },
-    /// It is not of this run.
     #[error("{} belongs to another case than the case.toml and inputs beside it", path.display())]
-    Case {
-        /// The file.
-        path: PathBuf,
-    },
+    Case { path: PathBuf },
 }
 
 /// Saves the checkpoints of one run.

@@ -98,25 +98,19 @@ pub struct ManifestFile {
 
 /// A manifest that cannot be used.
 #[derive(Clone, Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ManifestError {
-    /// There is none.
     #[error(
         "{} holds no manifest.json: it is no run folder, or its run did not end; if it did not, `{}` goes on with it",
         path.display(),
         resume_command(path)
     )]
-    Missing {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// It is not what was written.
+    Missing { path: PathBuf },
     #[error("{} is damaged: {why}", path.display())]
     Damaged {
-        /// The manifest.
         path: PathBuf,
-        /// What is wrong.
         why: String,
-        /// What it says, if it can be read at all.
+        /// What the manifest says, if it can be parsed at all.
         unverified: Option<Box<Manifest>>,
     },
 }

@@ -31,7 +31,7 @@ pub const CHECKPOINT: &str = "checkpoint.bin";
 pub const PREVIOUS: &str = "checkpoint-previous.bin";
 
 /// Results that the figures of the paper are made of, kept between calls of `slipfront paper`.
-pub const FOUND: &str = "found";
+pub const FIGURE_CACHE: &str = "found";
 
 /// The journal of a study: a line for every run that has ended.
 pub const RECORDS: &str = "records.jsonl";

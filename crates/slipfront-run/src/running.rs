@@ -79,7 +79,7 @@ pub struct RunState<N = BlockNumbers, O = Observers> {
 /// The fields of the output of a case, as the observers select them.
 fn selection(output: &Output) -> Selection {
     Selection {
-        fields: output.fields.iter().map(|field| field.observed()).collect(),
+        fields: output.fields.clone(),
         stride: output.stride,
     }
 }
@@ -318,7 +318,7 @@ fn merged(mut instants: Vec<(char, Frame)>) -> Vec<(String, Frame)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use slipfront_case::field_name::FieldName;
+    use slipfront::observe::Field;
 
     #[test]
     fn a_run_without_an_end_goes_on_and_shows_its_fields_in_si_units() {
@@ -337,9 +337,9 @@ mod tests {
                 .position(|field| *field == name)
                 .unwrap()
         };
-        let stress = &fields.values[place(FieldName::ContactStressStar)];
+        let stress = &fields.values[place(Field::ContactStress)];
         assert!(stress.iter().all(|star| (0.0..=1.0).contains(star)), "{stress:?}");
-        let displacement = &fields.values[place(FieldName::DisplacementX)];
+        let displacement = &fields.values[place(Field::DisplacementX)];
         for (b, metres) in displacement.iter().enumerate() {
             let star = running.snapshot().block(b).displacement[0];
             let expected = f64::from(star as f32) * case.scales.displacement();

@@ -15,7 +15,7 @@ use crate::run_folder::error::FolderError;
 use crate::run_folder::inspection::{CaseDefect, Inspection};
 use crate::run_folder::unfinished::Unfinished;
 use crate::study;
-use crate::study::{Finding, Findings, Plan, Records, RetainRuns, StudyError, StudyFolder};
+use crate::study::{Plan, Records, RetainRuns, RunResult, StudyError, StudyFolder, StudyResults};
 use slipfront_case::disk::is_unfinished;
 use slipfront_case::text::{single_line, truncated};
 
@@ -32,49 +32,32 @@ pub struct Verdict {
 
 /// A folder that cannot be verified.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum VerifyError {
-    /// It is no folder at all.
     #[error("{} is no folder: name the folder of a run or a study", path.display())]
-    NotAFolder {
-        /// The path.
-        path: PathBuf,
-    },
-    /// It has no usable manifest.
+    NotAFolder { path: PathBuf },
     #[error(transparent)]
     Manifest(#[from] ManifestError),
-    /// Files that a picture would be drawn from.
     #[error(
         "{difference}: pictures of it would not show what was run; run its case again, or remove {} to draw the files \
         as they are",
         manifest.display()
     )]
-    Changed {
-        /// The first of them, and how it differs.
-        difference: String,
-        /// The manifest that says so.
-        manifest: PathBuf,
-    },
-    /// A study that has not all its runs.
+    Changed { difference: String, manifest: PathBuf },
     #[error(
         "the study in {} lacks {runs} runs{}: finish it, or merge it with its other shards, and verify it then",
         path.display(),
         study::of_others(*others)
     )]
     Unfinished {
-        /// The folder.
         path: PathBuf,
-        /// Runs that are not recorded.
         runs: usize,
-        /// Recorded runs that it does not ask for.
         others: usize,
     },
-    /// A study that cannot be read, or made again.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// A folder that cannot be read.
     #[error(transparent)]
     Folder(#[from] FolderError),
-    /// There is no place to make it again.
     #[error("cannot make a folder to compare with: {0}; name one that is writable in TMPDIR")]
     Temporary(std::io::Error),
 }
@@ -277,8 +260,8 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
     again.records.merge(folder)?;
     let records = folder.join(Records::FILE);
     let (damaged, records) = (again.records.damaged, records.display());
-    let findings = match study::collect(&plan, &mut again.records) {
-        Ok(findings) => findings,
+    let results = match study::collect(&plan, &mut again.records) {
+        Ok(results) => results,
         Err(StudyError::Missing { runs, others }) if damaged == 0 => {
             let path = folder.to_owned();
             return Err(VerifyError::Unfinished { path, runs, others });
@@ -291,7 +274,7 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
         }
         Err(error) => return Err(error.into()),
     };
-    study::write(&plan, &findings, &again)?;
+    study::write(&plan, &results, &again)?;
     let mut files = files_below(temporary.path(), "").map_err(VerifyError::Temporary)?;
     files.retain(|file| file.name != Records::FILE);
     verdict
@@ -306,7 +289,7 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
             format!("{records} has {damaged} damaged lines, whose runs are recorded once more or not needed");
         verdict.notes.push(damage);
     }
-    let kept = verify_kept(folder, &plan, &findings, &mut verdict)?;
+    let kept = verify_kept(folder, &plan, &results, &mut verdict)?;
     verdict.what = format!(
         "tables and pictures as its {} recorded runs give them, {kept} run folders as they were written",
         again.records.len()
@@ -318,7 +301,7 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
 fn verify_kept(
     folder: &Path,
     plan: &Plan,
-    findings: &Findings,
+    results: &StudyResults,
     verdict: &mut Verdict,
 ) -> Result<usize, VerifyError> {
     let runs = folder.join(RUNS);
@@ -331,14 +314,11 @@ fn verify_kept(
         Err(error) if error.kind() == ErrorKind::NotFound => None,
         Err(error) => return Err(unreadable(error)),
     };
-    let done = findings
-        .runs
-        .iter()
-        .filter(|(_, finding)| match finding.as_ref() {
-            Finding::Done(_) => true,
-            // Of a run that failed the case alone is kept.
-            Finding::Failed(_) => false,
-        });
+    let done = results.runs.iter().filter(|(_, result)| match result.as_ref() {
+        RunResult::Done(_) => true,
+        // Of a run that failed the case alone is kept.
+        RunResult::Failed(_) => false,
+    });
     let done: HashSet<String> = done.map(|(run, _)| plan.folder_name(*run)).collect();
     let (mut kept, mut missing) = (0, done.clone());
     for entry in entries.into_iter().flatten() {

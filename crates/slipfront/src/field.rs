@@ -5,9 +5,11 @@ use serde::{Deserialize, Serialize};
 use crate::kernel::block::Block;
 
 /// A quantity with one value per block. Values are dimensionless, as everywhere in this crate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Field {
     /// Contact stress tau_c (Eq. 10), in units of `P mu_s`; not yet divided by its maximum.
+    #[serde(rename = "contact_stress_star")]
     ContactStress,
     /// Traction `|F_f|/l^2`, in units of `P mu_s`; NaN over a texture.
     Traction,
@@ -24,6 +26,17 @@ pub enum Field {
 }
 
 impl Field {
+    /// Every field.
+    pub const ALL: [Field; 7] = [
+        Field::ContactStress,
+        Field::Traction,
+        Field::DisplacementX,
+        Field::DisplacementY,
+        Field::VelocityX,
+        Field::VelocityY,
+        Field::Sliding,
+    ];
+
     /// The value at one block. [`Snapshot::read_field`](crate::Snapshot::read_field) reads all blocks, much faster.
     #[inline]
     pub fn value(self, block: &Block, textured: bool) -> f64 {

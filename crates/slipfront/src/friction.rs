@@ -3,11 +3,14 @@
 //! From the velocity of a block, the forces on it and its thresholds at t_n, a law finds the velocity half a step later, the
 //! friction force and whether the block slides. The reference kernel calls it once per block and step.
 
+use serde::{Deserialize, Serialize};
+
 use crate::state::{Contact, contact_of};
 use crate::vector_field::{add, dot, length};
 
 /// Which reading of Eq. 4 is used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum FrictionLaw {
     /// Implicit Coulomb friction with memory (Moreau's time-stepping). The default.
     Projection,

@@ -1,5 +1,7 @@
 //! When a run ends.
 
+use serde::{Deserialize, Serialize};
+
 use crate::snapshot::{MU_STAR_ROUNDING, Snapshot};
 
 /// When a run ends.
@@ -10,11 +12,13 @@ pub struct Stop {
 }
 
 /// Why a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum StopReason {
     /// The last step is done.
     End,
     /// The fall that ends the first peak of mu* was seen.
+    #[serde(rename = "after_onset")]
     Onset,
 }
 

@@ -19,118 +19,72 @@ use crate::text::single_line;
 
 /// What is wrong with an array or image file: one sentence that ends with the remedy.
 #[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ArrayError {
-    /// The file cannot be opened or read.
     #[error(
         "cannot read `{}`: {source}; check the path (relative to the case file) and its permissions",
         path.display()
     )]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the operating system said.
-        source: io::Error,
-    },
-    /// The extension tells nothing about the format.
+    Read { path: PathBuf, source: io::Error },
     #[error(
         "cannot tell the format of `{}` from {found}; name a file that ends in {known}",
         path.display()
     )]
     Extension {
-        /// The file.
         path: PathBuf,
-        /// The extension found, as a phrase.
         found: String,
-        /// The extensions that are known here.
         known: &'static str,
     },
-    /// The bytes are not what the format wants: wrong magic, truncated, corrupt.
     #[error("`{}` is not a readable {format} file: {}; write the file again", path.display(), single_line(detail))]
     Broken {
-        /// The file.
         path: PathBuf,
-        /// The format it should have.
         format: &'static str,
-        /// What is wrong.
         detail: String,
     },
-    /// The array holds something that is not a real number.
     #[error(
         "`{}` holds values of type {found} where real numbers, integers or booleans are wanted; \
          convert the array with `.astype(float)` before saving it",
         path.display()
     )]
-    Dtype {
-        /// The file.
-        path: PathBuf,
-        /// The type found, as numpy writes it.
-        found: String,
-    },
-    /// The file is longer than it can be if it is what it should be.
+    Dtype { path: PathBuf, found: String },
     #[error("`{}` has {found} bytes where {wanted}; {remedy}", path.display())]
     TooLong {
-        /// The file.
         path: PathBuf,
-        /// Its length.
         found: u64,
-        /// The most that can be meant, as a phrase.
         wanted: String,
-        /// What to do about it.
         remedy: &'static str,
     },
-    /// The array has another shape than the lattice.
     #[error("`{}` has {found} where {wanted} is wanted; {remedy}", path.display())]
     Shape {
-        /// The file.
         path: PathBuf,
-        /// The shape found, as a phrase.
         found: String,
-        /// The shape wanted, as a phrase.
         wanted: String,
-        /// What to do about it.
         remedy: &'static str,
     },
-    /// One value is out of bounds or no number at all.
     #[error(
         "`{}` has {value} in row {row}, column {column} (both counted from 0), where {wanted} is wanted; \
          correct this value",
         path.display()
     )]
     Value {
-        /// The file.
         path: PathBuf,
-        /// Row j, counted from 0 (the smallest y).
         row: usize,
-        /// Column i, counted from 0.
         column: usize,
-        /// The value as it stands in the file.
         value: String,
-        /// The bound.
         wanted: &'static str,
     },
-    /// The image has more pixels than a mask can need.
     #[error(
         "the image `{}` has {width} x {height} pixels where at most {limit} pixels are read; scale it down",
         path.display()
     )]
     TooManyPixels {
-        /// The file.
         path: PathBuf,
-        /// Pixels per row.
         width: u32,
-        /// Number of rows.
         height: u32,
-        /// The largest number of pixels that is read.
         limit: u64,
     },
-    /// The image cannot be written.
     #[error("cannot write `{}`: {source}; check that the folder exists, is writable and has room", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// What the operating system said.
-        source: io::Error,
-    },
+    Write { path: PathBuf, source: io::Error },
 }
 
 /// Reads the bytes of a file that is meant for a lattice of `nx` x `ny` blocks: what is made of them and what is kept of

@@ -1,4 +1,4 @@
-//! `slipfront check`: what a case means and costs, without running it.
+//! `slipfront check`: the physics and the cost of a case, without running it.
 
 use clap::Args;
 

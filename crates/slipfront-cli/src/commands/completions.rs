@@ -1,4 +1,4 @@
-//! `slipfront completions`: for the shell.
+//! `slipfront completions`: a script that completes command lines in a shell.
 
 use clap::{Args, Command};
 use clap_complete::Shell;

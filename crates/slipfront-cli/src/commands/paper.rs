@@ -1,4 +1,4 @@
-//! `slipfront paper`: every figure of the paper again, every claim judged.
+//! `slipfront paper`: computes the figures of the paper and judges its claims.
 
 use std::path::{Path, PathBuf};
 
@@ -77,7 +77,7 @@ impl Paper {
             print(&slipfront_paper::summary(&paper))?;
             print(&format!("{}\n", self.out.join("report.html").display()))?;
         }
-        match paper.surprises().count() {
+        match paper.unexpected_verdicts().count() {
             0 => Ok(()),
             count => Err(Failure::running(anyhow::anyhow!(
                 "{count} verdicts are not the expected ones: see {}",
@@ -87,7 +87,7 @@ impl Paper {
     }
 }
 
-/// Refuses to replace pages that others have written.
+/// Refuses to replace pages that an earlier call has not written.
 fn refuse_foreign(docs: &Path) -> Result<(), Failure> {
     let Some(path) = slipfront_paper::foreign_docs(docs) else {
         return Ok(());
@@ -99,7 +99,7 @@ fn refuse_foreign(docs: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// Opens the records of an earlier call, or begins them in an empty folder.
+/// Opens the records of an earlier call, or creates them in an empty folder.
 fn open(folder: &Path) -> Result<Records, Failure> {
     let unusable = |error: std::io::Error| {
         Failure::input(anyhow::anyhow!(

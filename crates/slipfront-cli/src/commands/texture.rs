@@ -41,7 +41,7 @@ impl Texture {
             );
             return Err(Failure::input(anyhow::anyhow!(sentence)));
         }
-        // A link counts even if it leads nowhere.
+        // A broken link is a file of the user as well, and `exists` does not see it.
         if self.out.symlink_metadata().is_ok() && !self.force {
             let sentence = format!(
                 "{} exists: choose another name, or replace it with --force",

@@ -3,6 +3,8 @@
 //! Positions and sizes are in blocks. A block is textured when its centre lies inside the outline of any texture. Outlines
 //! wrap around periodic axes and are clipped at free edges.
 
+use serde::{Deserialize, Serialize};
+
 use std::f64::consts::{PI, TAU};
 
 use crate::lattice::{Edges, Lattice};
@@ -67,7 +69,8 @@ pub fn cavity_percent(lambda: f64, n_blocks: usize, s: u32, w: f64, count: usize
 }
 
 /// Which way a groove runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Orientation {
     /// Across the x axis: the strip runs along y.
     Across,

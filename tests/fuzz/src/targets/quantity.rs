@@ -1,20 +1,20 @@
 //! Numbers with units, and other words of the command line.
 
-use slipfront_case::field_name::FieldName;
+use slipfront_case::field_info::{field_info, field_named};
 use slipfront_case::quantity::{Density, Duration, Kind, Length, Pressure, Quantity, Rate, Speed};
 use slipfront_run::study::Shard;
 
 use crate::checks::readable;
 use crate::{Memory, Target};
 
-/// A quantity of every dimension, a shard, the name of a field.
+/// The text as a quantity of every dimension, as a shard and as the name of a field.
 pub(crate) const QUANTITY: Target = Target {
     name: "quantity",
     check: quantity,
-    made,
+    generated,
     files: &[],
     dictionary: Some("quantity.dict"),
-    longest: 256,
+    max_bytes: 256,
     memory: Memory {
         bytes: 64 << 10,
         per_byte: 64,
@@ -23,7 +23,7 @@ pub(crate) const QUANTITY: Target = Target {
     repetitions: 20,
 };
 
-fn made() -> Vec<Vec<u8>> {
+fn generated() -> Vec<Vec<u8>> {
     let texts = [
         "1 um",
         "25 \u{b5}m",
@@ -60,10 +60,10 @@ fn quantity(input: &[u8]) {
     read::<_>(text.parse::<Speed>(), text);
     read::<_>(text.parse::<Duration>(), text);
     read::<_>(text.parse::<Rate>(), text);
-    if let Some(name) = FieldName::from_name(text) {
-        assert_eq!(name.as_str(), text);
+    if let Some(name) = field_named(text) {
+        assert_eq!(field_info(name).name, text);
     }
-    // That one asks the environment.
+    // This word reads the environment.
     if text == "slurm" {
         return;
     }

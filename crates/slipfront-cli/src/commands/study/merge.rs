@@ -1,4 +1,4 @@
-//! `slipfront study merge`: the shards of a study in one.
+//! `slipfront study merge`: unites the shards of a study in one folder.
 
 use std::path::PathBuf;
 
@@ -26,7 +26,7 @@ pub(crate) struct Merge {
 impl Merge {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let mut folders = self.shards.clone();
-        // What is there already must be of the same study, so that merging may be repeated.
+        // Merging may be repeated: the folder then holds a study, which must be the one that the shards belong to.
         folders.extend(is_study(&self.out).then(|| self.out.clone()));
         refuse_foreign(&folders).map_err(Failure::input)?;
         let study = study_of(&self.shards[0]).map_err(Failure::input)?;
@@ -42,12 +42,12 @@ impl Merge {
                 self.shards.len()
             ));
         }
-        let findings = collect(&plan, &mut folder.records).map_err(Failure::running)?;
+        let results = collect(&plan, &mut folder.records).map_err(Failure::running)?;
         for shard in &self.shards {
             folder
-                .take_kept(&plan, &findings, shard)
+                .take_kept(&plan, &results, shard)
                 .map_err(Failure::running)?;
         }
-        finish(&plan, &findings, &folder, self.quiet)
+        finish(&plan, &results, &folder, self.quiet)
     }
 }

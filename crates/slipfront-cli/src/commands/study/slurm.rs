@@ -1,4 +1,4 @@
-//! `slipfront study slurm`: a batch script.
+//! `slipfront study slurm`: prints a batch script for the queue of a cluster.
 
 use std::path::PathBuf;
 
@@ -31,7 +31,7 @@ impl Slurm {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let study = StudyFile::load(&self.study).map_err(Failure::input)?;
         refuse_large(&study, self.yes)?;
-        // A study that cannot run should not reach the queue.
+        // An invalid study is refused here, not by a task that has waited in the queue.
         let points = Plan::new(&study, None).map_err(Failure::input)?.points.len();
         let out = self
             .out
