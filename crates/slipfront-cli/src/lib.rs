@@ -8,14 +8,14 @@
 #![deny(clippy::print_stderr, clippy::print_stdout)]
 
 mod case_args;
+mod checkpoint_timer;
 mod commands;
+mod estimate_cost;
 mod failure;
 mod print;
 mod print_stderr;
-mod probe;
 mod progress;
 mod report;
-mod saving;
 mod signals;
 mod threads;
 
@@ -63,7 +63,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     // If the signal cannot be caught, only the error message for a file that grows too large is lost.
-    let _ = signals::let_writes_fail();
+    let _ = signals::ignore_sigxfsz();
     let done = match command {
         Command::Run(run) => run.execute(),
         Command::Check(check) => check.execute(),

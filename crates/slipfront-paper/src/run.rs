@@ -1,5 +1,7 @@
 //! A run of a figure, and what is measured on it.
 
+use std::sync::Arc;
+
 use slipfront::observe::{CurvePoint, Frame};
 
 use crate::error::PaperError;
@@ -29,7 +31,7 @@ pub(super) fn peak_maps(runs: &[Run], labels: &[String]) -> Result<Vec<FieldMap>
 
 /// A case and the record of its run.
 pub(super) struct Run {
-    pub(super) case: Case,
+    pub(super) case: Arc<Case>,
     pub(super) record: Record,
 }
 

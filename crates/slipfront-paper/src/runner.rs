@@ -1,6 +1,7 @@
 //! Runs the cases and studies of a figure with a step rule.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
@@ -94,6 +95,7 @@ impl FigureRunner<'_> {
 }
 
 fn run_case(case: Case, stop: &AtomicBool) -> Result<Run, PaperError> {
+    let case = Arc::new(case);
     let record =
         running::run_unless(&case, &|| stop.load(Ordering::Relaxed)).ok_or(StudyError::Interrupted)?;
     let record = record.map_err(|source| PaperError::Run {

@@ -14,9 +14,10 @@ use thiserror::Error;
 use crate::checksum::{HashingWriter, verify_reader};
 use crate::names::{CHECKPOINT, PREVIOUS};
 use crate::program;
+use crate::run_folder::unfinished::Unfinished;
 use crate::running::{RunState, Running};
 use slipfront_case::case::Case;
-use slipfront_case::disk::{open_regular, remove_if_there, sync_folder, write_temp};
+use slipfront_case::disk::{open_regular, sync_folder, write_temp};
 use slipfront_case::text::truncated;
 
 /// How the file is laid out. A program reads no other layout.
@@ -83,7 +84,7 @@ pub enum CheckpointError {
 /// Saves the checkpoints of one run.
 #[derive(Debug)]
 pub struct Checkpoints {
-    folder: PathBuf,
+    folder: Unfinished,
     program: &'static str,
     case_blake3: String,
     started: Timestamp,
@@ -97,7 +98,7 @@ impl Checkpoints {
     /// Those of a run of `case` in `folder` that begins at `started`.
     pub fn new(folder: &Path, case: &Case, started: Timestamp) -> Self {
         Self {
-            folder: folder.to_owned(),
+            folder: Unfinished::of(folder),
             program: program::this_build(),
             case_blake3: hash_of(case),
             started,
@@ -138,8 +139,8 @@ impl Checkpoints {
             step: running.snapshot().step,
             started: self.started,
         };
-        let whole = write_temp(&self.folder, |file| write(file, &header, running))?;
-        let [latest, previous] = [CHECKPOINT, PREVIOUS].map(|name| self.folder.join(name));
+        let whole = write_temp(&self.folder.temporary(), |file| write(file, &header, running))?;
+        let [latest, previous] = [CHECKPOINT, PREVIOUS].map(|name| self.folder.path().join(name));
         if std::mem::take(&mut self.latest_is_whole) {
             match std::fs::rename(&latest, &previous) {
                 Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
@@ -149,18 +150,7 @@ impl Checkpoints {
         whole.persist(&latest)?;
         self.latest_is_whole = true;
         self.saved_step = Some(header.step);
-        sync_folder(&self.folder)
-    }
-
-    /// Removes all checkpoints: the run is complete.
-    ///
-    /// # Errors
-    /// What the system says.
-    pub fn remove(folder: &Path) -> std::io::Result<()> {
-        for name in [CHECKPOINT, PREVIOUS] {
-            remove_if_there(&folder.join(name))?;
-        }
-        Ok(())
+        sync_folder(self.folder.path())
     }
 
     /// Reads the latest checkpoint of a run folder, or the one before it; none if there is none. Where a kill has left
@@ -179,8 +169,8 @@ impl Checkpoints {
             &[CHECKPOINT, PREVIOUS]
         };
         for name in names {
-            let path = folder.join(name);
-            // A link that leads nowhere is not no checkpoint.
+            let path = Unfinished::of(folder).path().join(name);
+            // A link with nothing at its end must be refused, and not taken for no checkpoint.
             if path.symlink_metadata().is_ok() {
                 let mut saved = read(&path, case)?;
                 saved.latest = *name == CHECKPOINT;

@@ -97,7 +97,7 @@ pub struct ManifestFile {
 }
 
 /// A manifest that cannot be used.
-#[derive(Debug, Error)]
+#[derive(Clone, Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ManifestError {
     #[error(
@@ -107,7 +107,12 @@ pub enum ManifestError {
     )]
     Missing { path: PathBuf },
     #[error("{} is damaged: {why}", path.display())]
-    Damaged { path: PathBuf, why: String },
+    Damaged {
+        path: PathBuf,
+        why: String,
+        /// What the manifest says, if it can be parsed at all.
+        unverified: Option<Box<Manifest>>,
+    },
 }
 
 impl Manifest {
@@ -172,19 +177,30 @@ impl Manifest {
                 return Err(ManifestError::Missing { path });
             }
             Err(error) => {
-                let why = error.to_string();
-                return Err(ManifestError::Damaged { path, why });
+                return Err(ManifestError::Damaged {
+                    path,
+                    why: error.to_string(),
+                    unverified: None,
+                });
             }
         };
-        let why = match serde_json::from_slice::<Self>(&bytes) {
-            Ok(manifest) if checksum_of(&bytes).as_ref() == Some(&manifest.checksum) => return Ok(manifest),
+        let manifest = serde_json::from_slice::<Self>(&bytes);
+        let why = match &manifest {
+            Ok(manifest) if checksum_of(&bytes).as_ref() == Some(&manifest.checksum) => None,
             Ok(manifest) if manifest.checksum.is_empty() => {
-                "it has no seal, by which changes of it are seen".to_owned()
+                Some("it has no seal, by which changes of it are seen".to_owned())
             }
-            Ok(_) => "its seal does not fit, so that it was changed after the run".to_owned(),
-            Err(error) => text::single_line(&error.to_string()),
+            Ok(_) => Some("its seal does not fit, so that it was changed after the run".to_owned()),
+            Err(error) => Some(text::single_line(&error.to_string())),
         };
-        Err(ManifestError::Damaged { path, why })
+        match (manifest, why) {
+            (Ok(manifest), None) => Ok(manifest),
+            (manifest, why) => Err(ManifestError::Damaged {
+                path,
+                why: why.unwrap_or_default(),
+                unverified: manifest.ok().map(Box::new),
+            }),
+        }
     }
 
     /// The program that wrote it, in words.

@@ -15,17 +15,23 @@ pub const SERIES: &str = "series.csv";
 /// The fields of a run, block by block.
 pub const FIELDS: &str = "fields.nc";
 
-/// The latest checkpoint.
+/// The hidden subfolder of everything that belongs to a run which is not complete.
+pub const UNFINISHED: &str = ".slipfront";
+
+/// In the hidden subfolder: what says that the subfolder is slipfront's.
+pub const JOURNAL: &str = "journal.jsonl";
+
+/// In the hidden subfolder: a folder of the temporary files that are being written.
+pub const TEMPORARY: &str = "tmp";
+
+/// In the hidden subfolder: the latest checkpoint.
 pub const CHECKPOINT: &str = "checkpoint.bin";
 
-/// The checkpoint before the latest.
+/// In the hidden subfolder: the checkpoint before the latest.
 pub const PREVIOUS: &str = "checkpoint-previous.bin";
 
 /// Results that the figures of the paper are made of, kept between calls of `slipfront paper`.
 pub const FIGURE_CACHE: &str = "found";
-
-/// How every checkpoint begins.
-pub const CHECKPOINT_BEGINNING: &[u8] = b"{\"slipfront_checkpoint\":";
 
 /// The journal of a study: a line for every run that has ended.
 pub const RECORDS: &str = "records.jsonl";

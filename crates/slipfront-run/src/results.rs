@@ -34,7 +34,7 @@ pub fn write(
     let rows = record.rows.iter().map(|row| SeriesRow::new(row, &case.scales));
     folder.write(SERIES, &series::to_csv(rows)?)?;
     let fields = folder.claim(FIELDS)?;
-    write_fields(case, record, &fields)?;
+    write_fields(case, record, &folder.temporary(), &fields)?;
     #[cfg(feature = "plot")]
     for (name, picture) in pictures::draw(folder.path())? {
         folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
@@ -55,7 +55,7 @@ pub fn write_case(case: &Case, folder: &mut RunFolder) -> Result<(), ResultsErro
     Ok(folder.sync()?)
 }
 
-fn write_fields(case: &Case, record: &mut Record, path: &Path) -> Result<(), FieldsError> {
+fn write_fields(case: &Case, record: &mut Record, temporary: &Path, path: &Path) -> Result<(), FieldsError> {
     let surface = &case.model.surface;
     let names = &case.output.fields;
     let scale = record.contact_stress_max;
@@ -63,7 +63,8 @@ fn write_fields(case: &Case, record: &mut Record, path: &Path) -> Result<(), Fie
         .into_iter()
         .map(|(label, frame)| in_si_units(frame, label, names, &case.scales, scale))
         .collect();
-    fields::write_fields(
+    fields::write_fields_via(
+        temporary,
         path,
         &FieldsFile {
             nx: case.model.lattice.nx,

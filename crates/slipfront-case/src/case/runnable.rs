@@ -86,7 +86,11 @@ impl Case {
         Self::to_run(CaseFile::parse(text, name, overrides)?, name, folder)
     }
 
-    fn to_run(file: CaseFile, name: &str, folder: &Path) -> Result<Self, CaseError> {
+    /// Makes a case of a case file that was read already, to be run; the files it names stand relative to `folder`.
+    ///
+    /// # Errors
+    /// As for [`load`](Self::load).
+    pub fn to_run(file: CaseFile, name: &str, folder: &Path) -> Result<Self, CaseError> {
         let Parameters {
             lattice,
             output,

@@ -3,9 +3,9 @@
 use clap::Args;
 
 use crate::case_args::CaseArgs;
+use crate::estimate_cost::seconds_per_step;
 use crate::failure::Failure;
 use crate::print::print;
-use crate::probe::seconds_per_step;
 use crate::report;
 
 /// Validate a case and print what it means and what it will cost

@@ -7,7 +7,7 @@ use slipfront_case::disk::{is_same, write_atomic};
 use slipfront_plot::Picture;
 use slipfront_run::names::MANIFEST;
 use slipfront_run::pictures;
-use slipfront_run::verify::expect_as_written;
+use slipfront_run::verify::{expect_as_written, inspect};
 
 use crate::failure::Failure;
 use crate::print::print;
@@ -33,7 +33,9 @@ impl Plot {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         for folder in &self.folders {
             expect_results(folder)?;
-            expect_as_written(folder, |name| pictures::DRAWN_FROM.contains(&name)).map_err(Failure::input)?;
+            inspect(folder)
+                .and_then(|run| expect_as_written(&run, |name| pictures::DRAWN_FROM.contains(&name)))
+                .map_err(Failure::input)?;
         }
         let (out, drawn) = match self.folders.as_slice() {
             [folder] => (folder.clone(), pictures::draw(folder).map_err(Failure::input)?),

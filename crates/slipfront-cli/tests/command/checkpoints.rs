@@ -158,7 +158,7 @@ fn by_the_clock_it_saves_now_and_then() {
     let mut child =
         workspace.start("run slow.toml -o clocked --checkpoint 10ms --set time.duration_star=20000");
     wait_for("two checkpoints", || {
-        workspace.exists("clocked/checkpoint-previous.bin")
+        workspace.exists("clocked/.slipfront/checkpoint-previous.bin")
     });
     child.kill().unwrap();
     child.wait().unwrap();
@@ -173,7 +173,7 @@ fn by_the_clock_it_saves_now_and_then() {
     send(&child, "-INT");
     assert!(lines.any(|line| line.contains("nothing is saved")));
     assert_eq!(child.wait().unwrap().code(), Some(130));
-    assert!(!workspace.exists("off/checkpoint.bin"));
+    assert!(!workspace.exists("off/.slipfront/checkpoint.bin"));
     for wrong in ["soon", "-5min", "5"] {
         let said = workspace.fail(&format!("run small.toml --checkpoint={wrong}"), 2);
         assert!(said.contains("5min, 30s or 1h") && said.contains("off"), "{said}");
@@ -193,7 +193,7 @@ fn what_is_complete_or_has_not_begun() {
     let case = String::from_utf8(before["case.toml"].clone()).unwrap();
     workspace.write("begun/case.toml", &case);
     workspace.write("begun/series.csv", "half of");
-    workspace.write("begun/.slipfront123abc", "half of");
+    workspace.write("begun/.slipfront/tmp/123abc", "half of");
     let said = workspace.succeed("run --resume begun");
     assert!(said.contains("goes on from the start"), "{said}");
     workspace.assert_same_run("whole", "begun");
@@ -286,12 +286,12 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     let workspace = slow_workspace();
     workspace.succeed("run slow.toml -o whole");
     stopped(&workspace, "run slow.toml -o halted", "halted", 2);
-    let latest = workspace.read("halted/checkpoint.bin");
+    let latest = workspace.read("halted/.slipfront/checkpoint.bin");
     let refused = |bytes: &[u8], why: &str| {
-        workspace.write("halted/checkpoint.bin", bytes);
+        workspace.write("halted/.slipfront/checkpoint.bin", bytes);
         let said = workspace.fail("run --quiet --resume halted", 2);
         assert!(
-            said.contains("halted/checkpoint.bin") && said.contains(why),
+            said.contains("halted/.slipfront/checkpoint.bin") && said.contains(why),
             "{why}: {said}"
         );
         said
@@ -333,13 +333,13 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     workspace.write("halted/case.toml", &case);
 
     // A damaged one does not take the place of the one before, however often the run is stopped.
-    workspace.write("halted/checkpoint.bin", &latest[..n / 2]);
-    let before = workspace.read("halted/checkpoint-previous.bin");
+    workspace.write("halted/.slipfront/checkpoint.bin", &latest[..n / 2]);
+    let before = workspace.read("halted/.slipfront/checkpoint-previous.bin");
     let child = workspace.start("run --resume halted --previous");
     wait_for_signal_handlers(&child);
     send(&child, "-INT");
     assert_eq!(child.wait_with_output().unwrap().status.code(), Some(130));
-    assert!(workspace.read("halted/checkpoint-previous.bin") == before);
+    assert!(workspace.read("halted/.slipfront/checkpoint-previous.bin") == before);
     workspace.succeed("run --resume halted");
     workspace.assert_same_run("whole", "halted");
 }
@@ -370,7 +370,7 @@ fn where_only_the_one_before_is_left_it_is_taken() {
     let workspace = slow_workspace();
     workspace.succeed("run slow.toml -o whole");
     stopped(&workspace, "run slow.toml -o halted", "halted", 2);
-    std::fs::remove_file(workspace.path("halted/checkpoint.bin")).unwrap();
+    std::fs::remove_file(workspace.path("halted/.slipfront/checkpoint.bin")).unwrap();
     assert!(
         workspace
             .succeed("run --resume halted")

@@ -174,8 +174,8 @@ fn force_takes_the_copies_of_a_killed_run_along() {
     workspace.succeed("run masked.toml -o clean");
     workspace.succeed("run masked.toml -o a");
     std::fs::remove_file(workspace.path("a/manifest.json")).unwrap();
-    for name in ["a/.slipfront123456", "a/inputs/.slipfront123456"] {
-        workspace.write(name, "half of");
+    for name in ["a/.slipfront/journal.jsonl", "a/.slipfront/tmp/123456"] {
+        workspace.write(name, if name.ends_with("jsonl") { "" } else { "half of" });
     }
     workspace.succeed("run masked.toml -o a --force");
     workspace.assert_same_run("clean", "a");
@@ -213,8 +213,8 @@ fn copies_behind_a_link_are_originals() {
 fn what_only_looks_like_ours_stays() {
     let workspace = Workspace::small();
     let names = [
-        "checkpoint.bin",
-        "checkpoint-previous.bin",
+        ".slipfront/checkpoint.bin",
+        ".slipfront/checkpoint-previous.bin",
         ".slipfrontrc",
         ".slipfront-notes",
     ];
@@ -232,9 +232,25 @@ fn what_only_looks_like_ours_stays() {
         assert_eq!(workspace.read(&format!("a/{name}")), b"mine", "{name}");
     }
     // What a kill has left is no more than nothing.
-    workspace.write("b/.slipfront123abc", "half a file");
+    workspace.write("b/.slipfront/journal.jsonl", "{\"slipfront_ru");
+    workspace.write("b/.slipfront/tmp/123abc", "half a file");
     workspace.succeed("run small.toml -o b");
-    assert!(!workspace.exists("b/.slipfront123abc"));
+    assert!(!workspace.exists("b/.slipfront"));
+    // What others put there stays.
+    workspace.write("c/.slipfront/journal.jsonl", "");
+    workspace.write("c/.slipfront/notes.txt", "mine");
+    workspace.succeed("run small.toml -o c");
+    assert_eq!(workspace.read("c/.slipfront/notes.txt"), b"mine");
+    // Without a journal it may be anybody's.
+    workspace.write("d/.slipfront/notes.txt", "mine");
+    let said = workspace.fail("run small.toml --quiet -o d", 2);
+    assert!(said.contains("d is not empty"), "{said}");
+    let said = workspace.fail("run small.toml --quiet -o d --force", 2);
+    assert!(
+        said.contains("d/.slipfront is not a file of an earlier run"),
+        "{said}"
+    );
+    assert_eq!(workspace.read("d/.slipfront/notes.txt"), b"mine");
 }
 
 /// Names alone make no run: these files are somebody's.

@@ -156,12 +156,14 @@ fn files_of_others_are_named() {
     ] {
         workspace.write(&format!("a/{name}"), "mine");
     }
+    workspace.write("a/.slipfront/journal.jsonl", "");
     let (status, said, errors) = verified(&workspace, "a");
     assert_eq!((status, errors.as_str()), (0, ""));
     let notes: Vec<&str> = said.lines().skip(1).collect();
     assert_eq!(
         notes,
         [
+            "note: a/.slipfront was left by a run that was interrupted",
             "note: a/.slipfrontAbC123 was left by a run that was interrupted",
             "note: a/inputs/other.png is not slipfront's",
             "note: a/more is not slipfront's",

@@ -500,7 +500,7 @@ fn of_a_paper() {
 
 /// A run that was stopped after it had saved two checkpoints.
 fn stopped(workspace: &Workspace) -> Files {
-    let both = || workspace.path("out/checkpoint-previous.bin").exists();
+    let both = || workspace.path("out/.slipfront/checkpoint-previous.bin").exists();
     let mut child = workspace.start_silent(JOBS[3].line);
     while !both() {
         assert!(child.try_wait().unwrap().is_none(), "no checkpoints were saved");
@@ -530,7 +530,7 @@ fn of_checkpoints() {
         }
     };
     for (name, most) in [
-        ("out/checkpoint.bin", cases(8, 3_000)),
+        ("out/.slipfront/checkpoint.bin", cases(8, 3_000)),
         ("out/case.toml", cases(4, 1_000)),
         ("out/inputs/mask.png", cases(2, 500)),
     ] {
@@ -542,8 +542,8 @@ fn of_checkpoints() {
         torture(&mut tally, &workspace, &target, &|_| resumed(JOBS[3].again));
     }
     for (name, most) in [
-        ("out/checkpoint.bin", cases(1, 50)),
-        ("out/checkpoint-previous.bin", cases(1, 200)),
+        ("out/.slipfront/checkpoint.bin", cases(1, 50)),
+        ("out/.slipfront/checkpoint-previous.bin", cases(1, 200)),
     ] {
         let target = Target {
             kind: "runs that are resumed from the checkpoint before",

@@ -169,6 +169,7 @@ fn cause(action: &str) -> &'static str {
 
 /// Whether a sentence names a file: its name, or for one without a name yet its folder.
 fn names(said: &str, path: &str) -> bool {
+    let path = path.split("/.slipfront/tmp/").next().unwrap_or_default();
     let mut parts = path.rsplit('/').filter(|part| !part.starts_with('.'));
     parts.next().is_none_or(|part| said.contains(part))
 }

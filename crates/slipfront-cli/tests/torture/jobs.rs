@@ -196,18 +196,15 @@ impl Job {
     }
 }
 
-/// Names of files that are being written.
+/// Names of files that are being written, and of all that belongs to a run which is not complete.
 fn unfinished(name: &str) -> bool {
-    name.rsplit('/').next().is_some_and(|name| name.starts_with('.'))
+    name.split('/').any(|part| part.starts_with('.'))
 }
 
 /// What the disk holds of a run that is not the same each time: when it was made.
 fn told_by_time(name: &str) -> bool {
-    name.ends_with("manifest.json") || name == "records.jsonl" || CHECKPOINTS.contains(&name)
+    name.ends_with("manifest.json") || name == "records.jsonl"
 }
-
-/// What a run goes on with; it is gone when the run is complete.
-const CHECKPOINTS: [&str; 2] = ["checkpoint.bin", "checkpoint-previous.bin"];
 
 /// Outcomes of recorded runs by their identities. A run that is recorded twice is a finding.
 fn records(bytes: &[u8]) -> Result<BTreeMap<String, Value>, String> {
@@ -255,8 +252,7 @@ pub(crate) fn expect_sound(now: &Files, whole: &Files) -> Result<(), String> {
 
 /// Demands that a folder holds exactly what it should.
 pub(crate) fn expect_complete(now: &Files, whole: &Files) -> Result<(), String> {
-    let left_over = |name: &str| unfinished(name) || CHECKPOINTS.contains(&name);
-    if let Some(left) = now.keys().find(|name| left_over(name)) {
+    if let Some(left) = now.keys().find(|name| unfinished(name)) {
         return Err(format!("{left} is left behind"));
     }
     expect_all(now, whole)

@@ -17,7 +17,7 @@ pub use error::FieldsError;
 pub use frame::{FieldFrame, FieldsData, FieldsFile, StaticFields, thin};
 pub use read::{read_fields, read_maps};
 pub use si_units::in_si_units;
-pub use write::write_fields;
+pub use write::{write_fields, write_fields_via};
 
 #[cfg(test)]
 mod tests;

@@ -12,11 +12,12 @@ use super::record::RunResult;
 use super::study_file::StudyFile;
 use super::study_results::StudyResults;
 use crate::manifest::Manifest;
-use crate::names::{CASE, FIGURE_CACHE, MANIFEST, RECORDS, RUNS, TABLES};
+use crate::names::{CASE, FIGURE_CACHE, RECORDS, RUNS, TABLES};
+use crate::run_folder::copy::copy_run;
 use crate::run_folder::error::FolderError;
 use slipfront_case::disk::{
-    TEXT_MAX_BYTES, is_empty, is_folder, open_limited, open_regular, read_limited, remove_if_there,
-    remove_unfinished, sync_folder, write_atomic, write_atomic_with, write_temp,
+    TEXT_MAX_BYTES, is_empty, is_folder, open_limited, read_limited, remove_if_there, write_atomic,
+    write_temp,
 };
 use slipfront_case::machine::free_disk;
 use slipfront_case::number_format::byte_size;
@@ -142,7 +143,7 @@ impl StudyFolder {
             if !is_whole(&from) || is_whole(&to) {
                 continue;
             }
-            copy_run(&from, &to).map_err(|source| FolderError::Copy { from, to, source })?;
+            copy_run(&from, &to)?;
         }
         Ok(())
     }
@@ -183,32 +184,6 @@ impl StudyFolder {
             }
         }
     }
-}
-
-/// Copies the files of a run folder; the case and the manifest come last, since a folder with them counts as complete.
-fn copy_run(from: &Path, to: &Path) -> std::io::Result<()> {
-    std::fs::create_dir_all(to)?;
-    remove_unfinished(to);
-    let last = [CASE, MANIFEST];
-    for entry in std::fs::read_dir(from)? {
-        let entry = entry?;
-        let (from, to, name) = (entry.path(), to.join(entry.file_name()), entry.file_name());
-        if entry.file_type()?.is_dir() {
-            copy_run(&from, &to)?;
-        } else if !last.iter().any(|last| name == *last) {
-            copy_file(&from, &to)?;
-        }
-    }
-    sync_folder(to)?;
-    for name in last.into_iter().filter(|name| from.join(name).exists()) {
-        copy_file(&from.join(name), &to.join(name))?;
-    }
-    Ok(())
-}
-
-fn copy_file(from: &Path, to: &Path) -> std::io::Result<()> {
-    let mut from = open_regular(from)?;
-    write_atomic_with(to, |to| std::io::copy(&mut from, to).map(|_| ()))
 }
 
 /// Whether the folder is the results folder of a study.

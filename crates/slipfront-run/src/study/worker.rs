@@ -2,6 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, Sender};
 use std::time::Instant;
@@ -87,7 +88,7 @@ pub(super) fn run_one(
     let started = jiff::Timestamp::now();
     // The point was valid when the study began. If it is not now, a file that it reads has changed: that ends the study and is
     // not recorded as a failure of the run.
-    let case = plan.case(run)?;
+    let case = Arc::new(plan.case(run)?);
     let Some(mut record) = running::run_unless(&case, is_stopped) else {
         return Ok(None);
     };
@@ -115,8 +116,9 @@ fn write_folder(
 ) -> Result<(), ResultsError> {
     let mut folder = RunFolder::prepare(path, true, &case.inputs)?;
     results::write_case(case, &mut folder)?;
-    if let Some(record) = record {
-        results::write(case, record, folder, started, 1)?;
+    match record {
+        Some(record) => drop(results::write(case, record, folder, started, 1)?),
+        None => folder.leave(),
     }
     Ok(())
 }

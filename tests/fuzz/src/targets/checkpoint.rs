@@ -1,7 +1,7 @@
 //! Checkpoints of runs: a header, the state and a checksum over both.
 
-use std::path::Path;
-use std::sync::LazyLock;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, LazyLock};
 
 use jiff::Timestamp;
 use slipfront::StopReason;
@@ -9,6 +9,7 @@ use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::names::CHECKPOINT;
+use slipfront_run::run_folder::unfinished::Unfinished;
 use slipfront_run::running::Running;
 
 use crate::checks::readable;
@@ -40,9 +41,9 @@ const TEXTS: [&str; 3] = [
      law = \"literal\"\n[output]\nsnapshots = { every = 2.0 }\nfields = [\"sliding\"]\n",
 ];
 
-static CASES: LazyLock<[Case; 3]> = LazyLock::new(|| {
+static CASES: LazyLock<[Arc<Case>; 3]> = LazyLock::new(|| {
     // `Case::parse` would reserve the memory of a run, to see whether it is available.
-    let made = |file| Case::new(file, "case", Path::new("")).unwrap();
+    let made = |file| Arc::new(Case::new(file, "case", Path::new("")).unwrap());
     TEXTS.map(|text| made(CaseFile::parse(text, "case.toml", &[]).unwrap()))
 });
 
@@ -64,12 +65,18 @@ fn generated() -> Vec<Vec<u8>> {
     ]
 }
 
+/// The latest checkpoint of a run folder.
+fn latest(folder: &Path) -> PathBuf {
+    Unfinished::of(folder).path().join(CHECKPOINT)
+}
+
 /// The bytes of the checkpoint of a run.
 fn save(folder: &Path, running: &Running) -> Vec<u8> {
+    Unfinished::of(folder).create().unwrap();
     Checkpoints::new(folder, running.case(), Timestamp::UNIX_EPOCH)
         .save(running)
         .unwrap();
-    std::fs::read(folder.join(CHECKPOINT)).unwrap()
+    std::fs::read(latest(folder)).unwrap()
 }
 
 fn checkpoint(input: &[u8]) {
@@ -96,9 +103,10 @@ fn with_checksum(bytes: &[u8]) -> Vec<u8> {
 }
 
 /// Resumes a run if the file can be read, and demands that what it then saves can be read again.
-fn resume(case: &Case, file: &[u8]) {
+fn resume(case: &Arc<Case>, file: &[u8]) {
     let folder = scratch::folder("checkpoint");
-    std::fs::write(folder.join(CHECKPOINT), file).unwrap();
+    Unfinished::of(&folder).create().unwrap();
+    std::fs::write(latest(&folder), file).unwrap();
     let saved = match Checkpoints::load(&folder, case, false) {
         Ok(saved) => saved.unwrap(),
         Err(error) => return readable(&error),

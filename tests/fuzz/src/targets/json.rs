@@ -2,8 +2,8 @@
 
 use slipfront_run::manifest::{Manifest, ManifestFile, Random};
 use slipfront_run::run_folder::RunFolder;
-use slipfront_run::run_folder::contents::own_bytes;
 use slipfront_run::run_folder::error::FolderError;
+use slipfront_run::run_folder::inspection::Inspection;
 use slipfront_run::summary::{InstantSummary, Summary, read_summary, summary_json};
 use slipfront_run::verify::verify;
 
@@ -194,7 +194,7 @@ fn manifest(bytes: &[u8]) {
             }
         }
     }
-    own_bytes(&folder);
+    Inspection::of(&folder).unwrap().managed_bytes();
     let case = folder.join("case.toml");
     match RunFolder::prepare(&folder, true, &[]) {
         Ok(_) => assert!(!folder.join("manifest.json").exists() && !case.exists()),

@@ -8,10 +8,10 @@ use slipfront_case::disk::is_same;
 use slipfront_run::study;
 use slipfront_run::study::{Plan, RunKey, Shard, StudyError, StudyFile, StudyFolder, StudyResults};
 
+use crate::estimate_cost::seconds_per_step;
 use crate::failure::Failure;
 use crate::print::print;
 use crate::print_stderr::print_stderr;
-use crate::probe::seconds_per_step;
 use crate::progress::study::StudyProgress;
 use crate::report;
 use crate::signals::Signals;

@@ -52,7 +52,7 @@ fn run_folders_that_shards_kept_are_taken_over() {
         let run = run.unwrap().file_name().into_string().unwrap();
         for out in ["merged", "part1"] {
             workspace.write(&format!("{out}/runs/{run}/case.toml"), "half of");
-            workspace.write(&format!("{out}/runs/{run}/.slipfrontAbCdEf"), "half of");
+            workspace.write(&format!("{out}/runs/{run}/.slipfront/tmp/AbCdEf"), "half of");
         }
     }
     for _ in 0..2 {
@@ -73,7 +73,7 @@ fn run_folders_that_shards_kept_are_taken_over() {
                 !workspace
                     .path("merged/runs")
                     .join(&run)
-                    .join(".slipfrontAbCdEf")
+                    .join(".slipfront")
                     .exists()
             );
         }

@@ -47,8 +47,8 @@ fn pause(every: Duration, cost: Duration) -> Duration {
     every.max(cost.saturating_mul(RUN_PER_SAVE))
 }
 
-/// Saves the checkpoints of a run.
-pub(crate) struct Saving {
+/// Saves the checkpoints of a run when they are due.
+pub(crate) struct CheckpointTimer {
     folder: PathBuf,
     checkpoints: Checkpoints,
     interval: Interval,
@@ -56,7 +56,7 @@ pub(crate) struct Saving {
     signals: Signals,
 }
 
-impl Saving {
+impl CheckpointTimer {
     /// The first checkpoint is due an interval from now.
     pub(crate) fn new(folder: &Path, checkpoints: Checkpoints, interval: Interval, signals: Signals) -> Self {
         Self {
@@ -72,7 +72,7 @@ impl Saving {
     ///
     /// # Errors
     /// [`Failure::Stopped`] if the run is to end here. A checkpoint that could not be saved does not end it.
-    pub(crate) fn look(&mut self, running: &Running, progress: &RunProgress) -> Result<(), Failure> {
+    pub(crate) fn save_if_due(&mut self, running: &Running, progress: &RunProgress) -> Result<(), Failure> {
         if self.signals.stopped().is_some() {
             return Err(self.stop(running));
         }
@@ -105,7 +105,7 @@ impl Saving {
         Ok(())
     }
 
-    /// Saves a last checkpoint.
+    /// Saves a last checkpoint, and says how the run ends.
     fn stop(&mut self, running: &Running) -> Failure {
         let (step, last_step) = (running.snapshot().step, running.case().time_plan.last_step);
         let stopped = format!("stopped by a signal at step {step} of {last_step}");
@@ -131,7 +131,7 @@ impl Saving {
         }
     }
 
-    /// What is left to do when the disk has refused something.
+    /// The remedy when the disk has refused something.
     pub(crate) fn remedy(&self) -> String {
         let command = resume_command(&self.folder);
         let from = self

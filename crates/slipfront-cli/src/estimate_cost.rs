@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 use slipfront::{Execution, Simulation};
 use slipfront_case::case::Case;
 
-/// How long a probe may take.
-const PROBE: Duration = Duration::from_millis(100);
+/// Time that an estimate takes.
+const ESTIMATE: Duration = Duration::from_millis(100);
 
 /// Seconds that a step of this case takes when every block is looked at: no run takes longer, and one with blocks at rest
 /// is faster.
@@ -18,7 +18,7 @@ pub(crate) fn seconds_per_step(case: &Case) -> f64 {
     let mut simulation =
         Simulation::with_execution(case.model.clone(), case.time_plan.dt_star, None, execution);
     let (began, mut steps) = (Instant::now(), 0);
-    while began.elapsed() < PROBE {
+    while began.elapsed() < ESTIMATE {
         simulation.step();
         steps += 1;
     }
