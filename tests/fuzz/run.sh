@@ -47,13 +47,13 @@ log="$out/log.csv"
 
 # One slice of a target: run_slice TARGET SECONDS.
 run_slice() {
-    local name="$1" seconds="$2" longest dictionary said status=0 cpu
-    read -r _ longest dictionary < <(grep "^$name " "$out/targets")
+    local name="$1" seconds="$2" longest said status=0 cpu
+    read -r _ longest < <(grep "^$name " "$out/targets")
     mkdir -p "$out/corpus/$name" "$out/artifacts/$name"
     said="$out/last-$name.txt"
     local options=(-max_total_time="$seconds" -max_len="$longest" -timeout=60 -rss_limit_mb=2048 -print_final_stats=1
         -artifact_prefix="$out/artifacts/$name/")
-    [ "$dictionary" = - ] || options+=(-dict="tests/fuzz/dictionaries/$dictionary")
+    [ ! -s "$out/seeds/$name.dict" ] || options+=(-dict="$out/seeds/$name.dict")
     TIMEFORMAT='%U %S'
     { time SLIPFRONT_FUZZ="$name" "$fuzz" "${options[@]}" "$out/corpus/$name" "$out/seeds/$name" > "$said" 2>&1; } \
         2> "$cpu_times/$name-time" || status=$?

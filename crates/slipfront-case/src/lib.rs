@@ -10,7 +10,7 @@ pub mod arrays;
 pub mod case;
 pub mod case_file;
 pub mod disk;
-pub mod field_name;
+pub mod field_info;
 pub mod machine;
 pub mod number_format;
 pub mod quantity;

@@ -11,9 +11,9 @@ use slipfront::observe::{CurvePoint, Frame};
 use crate::embedded_cases::FILES;
 use crate::error::PaperError;
 use crate::measurements::Number;
+use slipfront::observe::Field;
 use slipfront_case::case::{Case, Snapshots};
 use slipfront_case::case_file::CaseError;
-use slipfront_case::field_name::FieldName;
 use slipfront_plot::{FieldMap, FrictionCurve};
 use slipfront_run::pictures::marked_curve;
 use slipfront_run::running::Record;
@@ -172,7 +172,7 @@ impl Run {
     }
 
     /// The values of a field in a frame of this run.
-    pub(super) fn field<'f>(&self, frame: &'f Frame, field: FieldName) -> Result<&'f [f32], PaperError> {
+    pub(super) fn field<'f>(&self, frame: &'f Frame, field: Field) -> Result<&'f [f32], PaperError> {
         let index = self.case.output.fields.iter().position(|&name| name == field);
         let values = index.and_then(|index| frame.values.get(index));
         values.map(Vec::as_slice).ok_or_else(|| self.lacks("such field"))
@@ -181,7 +181,7 @@ impl Run {
     /// A map of tau_c*, blank over a texture.
     pub(super) fn stress_map(&self, frame: &Frame, label: &str) -> Result<FieldMap, PaperError> {
         let largest = self.record.contact_stress_max as f32;
-        let values = self.field(frame, FieldName::ContactStressStar)?;
+        let values = self.field(frame, Field::ContactStress)?;
         let textured = &self.case.model.surface.textured;
         let scaled = values.iter().zip(textured);
         Ok(FieldMap {

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use slipfront::observe::Field;
 use slipfront_case::case::MAX_MAPS;
-use slipfront_case::field_name::FieldName;
 use slipfront_plot::{self as plot, FrictionCurve, Instant, Kinetic, Picture, StressMap, StressMaps};
 
 use crate::fields::{self, FieldFrame};
@@ -74,7 +74,7 @@ pub fn marked_curve(label: String, summary: &Summary) -> FrictionCurve {
 
 /// Draws the stress maps of a run; none if it kept no contact stress.
 fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
-    let fields = fields::read_maps(&folder.join("fields.nc"), FieldName::ContactStressStar, MAX_MAPS)?;
+    let fields = fields::read_maps(&folder.join("fields.nc"), Field::ContactStress, MAX_MAPS)?;
     if fields.names.is_empty() || fields.frames.is_empty() {
         return Ok(None);
     }

@@ -16,9 +16,9 @@ use crate::running::Record;
 use crate::series;
 use crate::series::{SeriesError, SeriesRow};
 use crate::summary::Summary;
+use slipfront::observe::Field;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
-use slipfront_case::field_name::FieldName;
 use slipfront_case::text;
 #[cfg(feature = "plot")]
 use slipfront_plot::PictureError;
@@ -134,11 +134,11 @@ fn dimensional(case: &Case, contact_stress_max: f64, mut fields: Vec<Vec<f32>>) 
     for (field, values) in case.output.fields.iter().zip(&mut fields) {
         let unit = match field {
             // A run in which nothing was ever pulled has no largest stress to divide by.
-            FieldName::ContactStressStar if contact_stress_max > 0.0 => 1.0 / contact_stress_max,
-            FieldName::ContactStressStar | FieldName::Sliding => 1.0,
-            FieldName::Traction => case.scales.stress(),
-            FieldName::DisplacementX | FieldName::DisplacementY => case.scales.displacement(),
-            FieldName::VelocityX | FieldName::VelocityY => case.scales.speed(),
+            Field::ContactStress if contact_stress_max > 0.0 => 1.0 / contact_stress_max,
+            Field::ContactStress | Field::Sliding => 1.0,
+            Field::Traction => case.scales.stress(),
+            Field::DisplacementX | Field::DisplacementY => case.scales.displacement(),
+            Field::VelocityX | Field::VelocityY => case.scales.speed(),
         };
         for value in values {
             *value = (f64::from(*value) * unit) as f32;

@@ -75,7 +75,7 @@ impl Observers {
     fn new(case: &Case) -> Self {
         let (time_plan, output) = (&case.time_plan, &case.output);
         let selection = Selection {
-            fields: output.fields.iter().map(|field| field.observed()).collect(),
+            fields: output.fields.clone(),
             stride: output.stride,
         };
         Self {

@@ -3,12 +3,15 @@
 //! A law is given what a block feels at t_n and answers with the velocity half a step later, the friction
 //! force and whether the block slides. The [`kernel`](crate::kernel) calls it once per block and step.
 
+use serde::{Deserialize, Serialize};
+
 use crate::Contact;
 use crate::state::contact_of;
 use crate::vector_field::{add, dot, length};
 
 /// Which reading of Eq. 4 is used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum FrictionLaw {
     /// Implicit Coulomb friction with memory (Moreau's time-stepping). The one to use.
     Projection,

@@ -3,6 +3,8 @@
 //! Block (i, j) has index `j nx + i`: i runs along x, row 0 lies at y = 0, and its centre stands at
 //! ((i + 1/2), (j + 1/2)) in units of the block size. The [`kernel`](crate::kernel) reads the springs from here.
 
+use serde::{Deserialize, Serialize};
+
 /// Stiffness of a spring to a straight neighbour, `k_1 = (3/4) E l`, in units of `E l`.
 pub const K_STRAIGHT: f64 = 0.75;
 /// Stiffness of a spring to a diagonal neighbour, `k_2 = k_1/2`, in units of `E l`.
@@ -20,7 +22,8 @@ pub fn dt_star_limit() -> f64 {
 }
 
 /// How the lattice ends along one axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Edges {
     /// The neighbours beyond the edge are absent.
     Free,

@@ -1,5 +1,7 @@
 //! The loop: evaluate, observe, stop, step.
 
+use serde::{Deserialize, Serialize};
+
 use crate::checkpoint::{Checkpoint, Numbers};
 use crate::kernel::{Block, Engine, Execution, Held, Totals};
 use crate::observe::{CurvePoint, Peak, Scheduled};
@@ -101,11 +103,13 @@ pub struct Stop {
 }
 
 /// Why a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum StopReason {
     /// The last step is done.
     End,
     /// The fall that ends the first peak of mu* was seen.
+    #[serde(rename = "after_onset")]
     Onset,
 }
 

@@ -1,6 +1,9 @@
 //! Inputs of the targets: seeds, and findings of earlier fuzzing.
 
+use std::collections::BTreeSet;
 use std::path::Path;
+
+use slipfront_case::case_file::{Kind, SECTIONS};
 
 use crate::Target;
 use crate::scratch::repository;
@@ -31,11 +34,43 @@ impl Target {
         files_of(&own_folder("findings", self.name), "")
     }
 
-    /// The text of its dictionary; empty without one.
+    /// The text of its dictionary in the format of libFuzzer, for case and study files with the keys of a case; empty without
+    /// one.
     pub fn words(&self) -> String {
-        let text = |name| std::fs::read_to_string(own_folder("dictionaries", name)).unwrap();
-        self.dictionary.map(text).unwrap_or_default()
+        let Some(name) = self.dictionary else {
+            return String::new();
+        };
+        let mut text = std::fs::read_to_string(own_folder("dictionaries", name)).unwrap();
+        if ["case.dict", "study.dict"].contains(&name) {
+            for word in words_of_cases() {
+                text += &format!("\"{}\"\n", word.replace('"', "\\x22"));
+            }
+        }
+        text
     }
+}
+
+/// Keys, headers and words of a case file.
+fn words_of_cases() -> BTreeSet<String> {
+    let mut words = BTreeSet::new();
+    for section in &SECTIONS {
+        words.insert(format!("{} = ", section.table()));
+        if section.is_shape {
+            words.insert(format!("\"{}\"", section.name));
+        } else {
+            words.insert(format!("[{}]\\x0a", section.name));
+        }
+        for key in section.keys {
+            words.insert(format!("{} = ", key.name));
+            let values = match key.kind {
+                Kind::Words(words) => words(),
+                Kind::Number { words, .. } => words,
+                _ => &[],
+            };
+            words.extend(values.iter().map(|word| format!("\"{word}\"")));
+        }
+    }
+    words
 }
 
 fn own_folder(folder: &str, name: &str) -> std::path::PathBuf {

@@ -42,7 +42,7 @@ pub struct Mutator {
 
 impl Mutator {
     /// `dictionary` is the text of a dictionary; inputs become no longer than `max_bytes`.
-    pub fn new(seed: u64, dictionary: &str, longest: usize) -> Self {
+    pub fn new(seed: u64, dictionary: &str, max_bytes: usize) -> Self {
         let words = dictionary.lines().filter_map(word);
         Self {
             random: ChaCha8Rng::seed_from_u64(seed),

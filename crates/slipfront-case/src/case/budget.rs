@@ -21,9 +21,9 @@ use slipfront::{Contact, FrictionLaw, Kernel, Lattice};
 use super::output::{MAX_MAPS, Output, Snapshots};
 use super::time_plan::TimePlan;
 use crate::case_file::{CaseError, CaseFile};
-use crate::field_name::FieldName;
 use crate::machine::{available_memory, can_be_had, free_disk};
 use crate::number_format::byte_size;
+use slipfront::observe::Field;
 
 /// A number of a block.
 const NUMBER: f64 = size_of::<f64>() as f64;
@@ -149,7 +149,7 @@ impl Budget {
             },
             fields: output.fields.len() as f64,
             rows: (last_step / output.series_stride) as f64 + 2.0,
-            maps: output.fields.contains(&FieldName::ContactStressStar),
+            maps: output.fields.contains(&Field::ContactStress),
             inputs: 0.0,
             masks: 0.0,
         }

@@ -23,8 +23,8 @@ pub use self::groups::Groups;
 pub use self::inputs::Input;
 use self::inputs::Inputs;
 pub use self::output::{MAX_MAPS, Output, Snapshots, VARIABLE_MAX_BYTES, smallest_stride};
+use self::parameters::Parameters;
 pub use self::parameters::check_fields;
-use self::parameters::{Parameters, law};
 use self::textures::textures;
 pub use self::time_plan::TimePlan;
 use crate::case_file::{CaseError, CaseFile};
@@ -145,7 +145,7 @@ impl Case {
             drive,
             damping(groups.omega_star),
             groups.epsilon,
-            law(&file),
+            file.friction.law,
         );
         Ok(Self {
             name: name.to_owned(),

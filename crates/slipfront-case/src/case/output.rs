@@ -3,7 +3,7 @@
 use super::time_plan::TimePlan;
 use crate::case_file;
 use crate::case_file::{AutoOr, CaseError, CaseFile};
-use crate::field_name::FieldName;
+use slipfront::observe::Field;
 
 /// What is written.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,7 +11,7 @@ pub struct Output {
     /// When fields are kept.
     pub snapshots: Snapshots,
     /// Which fields.
-    pub fields: Vec<FieldName>,
+    pub fields: Vec<Field>,
     /// Every n-th block of each axis in the fields file.
     pub stride: usize,
     /// Steps between rows of the series.

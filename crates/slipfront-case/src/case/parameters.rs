@@ -1,12 +1,12 @@
 //! All that a case file says without the files it names.
 
-use slipfront::{Edges, FrictionLaw, Lattice, Scales};
+use slipfront::{Lattice, Scales};
 
 use super::budget::Budget;
 use super::groups::Groups;
 use super::output::{Output, smallest_stride};
 use super::time_plan::TimePlan;
-use crate::case_file::{self, CaseError, CaseFile};
+use crate::case_file::{CaseError, CaseFile};
 
 /// All that a case file says without its files, before any array of the lattice is made.
 pub(super) struct Parameters {
@@ -18,14 +18,6 @@ pub(super) struct Parameters {
     pub(super) budget: Budget,
 }
 
-pub(super) fn law(file: &CaseFile) -> FrictionLaw {
-    match file.friction.law {
-        case_file::Law::Projection => FrictionLaw::Projection,
-        case_file::Law::Reversal => FrictionLaw::Reversal,
-        case_file::Law::Literal => FrictionLaw::Literal,
-    }
-}
-
 impl Parameters {
     pub(super) fn of(file: &CaseFile) -> Result<Self, CaseError> {
         let scales = scales(file);
@@ -33,7 +25,7 @@ impl Parameters {
         let lattice = lattice(file);
         let time_plan = TimePlan::of(file, &scales, &groups)?;
         let output = Output::of(file, &time_plan)?;
-        let budget = Budget::new(&lattice, law(file), &time_plan, &output);
+        let budget = Budget::new(&lattice, file.friction.law, &time_plan, &output);
         Ok(Self {
             scales,
             groups,
@@ -70,12 +62,8 @@ fn scales(file: &CaseFile) -> Scales {
 }
 
 fn lattice(file: &CaseFile) -> Lattice {
-    let edges = file.slider.edges.map(|edge| match edge {
-        case_file::Edge::Free => Edges::Free,
-        case_file::Edge::Periodic => Edges::Periodic,
-    });
     let [nx, ny] = file.slider.blocks.map(|count| count as usize);
-    Lattice::with_edges(nx, ny, edges)
+    Lattice::with_edges(nx, ny, file.slider.edges)
 }
 
 #[cfg(test)]

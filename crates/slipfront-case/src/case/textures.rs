@@ -144,9 +144,9 @@ fn groove_in_blocks(
     scales: &Scales,
     lattice: &Lattice,
 ) -> (surface::Texture, Option<f64>) {
-    let (orientation, breadth) = match groove.orientation {
-        case_file::Orientation::Across => (surface::Orientation::Across, lattice.nx as f64),
-        case_file::Orientation::Along => (surface::Orientation::Along, lattice.ny as f64),
+    let breadth = match groove.orientation {
+        surface::Orientation::Across => lattice.nx as f64,
+        surface::Orientation::Along => lattice.ny as f64,
     };
     let (width, percent) = match &groove.size {
         case_file::GrooveSize::Coverage(percent) => (breadth * percent / 100.0, *percent),
@@ -158,7 +158,7 @@ fn groove_in_blocks(
     let offset = scales.in_blocks(groove.offset.si());
     (
         surface::Texture::Groove(surface::Groove {
-            orientation,
+            orientation: groove.orientation,
             width,
             offset,
         }),

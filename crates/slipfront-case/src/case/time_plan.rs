@@ -2,7 +2,7 @@
 
 use slipfront::lattice::dt_star_limit;
 use slipfront::observe::KineticStart;
-use slipfront::{Scales, Stop};
+use slipfront::{Scales, Stop, StopReason};
 
 use super::groups::Groups;
 use crate::case_file;
@@ -73,8 +73,8 @@ impl TimePlan {
         };
         let last_step = steps as u64;
         let stop = match time.stop {
-            case_file::Stop::End => Stop::at_step(last_step),
-            case_file::Stop::AfterOnset => Stop::after_onset(last_step),
+            StopReason::End => Stop::at_step(last_step),
+            StopReason::Onset => Stop::after_onset(last_step),
         };
         Ok(TimePlan {
             dt_star,

@@ -1,15 +1,13 @@
 //! What can be wrong with a case file, in sentences that name the place and the remedy.
 
+use std::fmt;
 use std::io;
 use std::ops::Range;
 use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::keys;
-use super::source::{Place, Source};
-use crate::text;
-use crate::text::truncated;
+use crate::text::{MAX_EXCERPT, single_line, truncated};
 
 /// A case file that cannot be used.
 #[derive(Debug, Error)]
@@ -67,89 +65,82 @@ pub struct Invalid {
 impl CaseError {
     /// An invalid value or key at a place, in a sentence.
     pub fn invalid(place: Option<Place>, sentence: impl Into<String>) -> Self {
-        let sentence = text::single_line(&sentence.into());
+        let sentence = single_line(&sentence.into());
         Self::Invalid(Box::new(Invalid { place, sentence }))
     }
+}
 
-    /// An error of TOML's grammar.
-    pub fn syntax(source: &Source, offset: usize, error: &toml::de::Error) -> Self {
-        let span = error.span().unwrap_or(0..0);
-        let span = span.start + offset..span.end + offset;
-        let message = one_line(error.message());
-        let sentence = if message == "duplicate key" {
-            format!(
-                "duplicate key `{}`: it is already set in this table",
-                source.slice(span.clone())
-            )
-        } else {
-            format!("this is not valid TOML: {message}")
-        };
-        source.error_at(span, sentence)
-    }
+/// Where a value was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// In the case file.
+    File {
+        /// The file's name.
+        name: String,
+        /// Line, from 1.
+        line: usize,
+        /// Column in characters, from 1.
+        column: usize,
+        /// The line, and below it a caret under the value.
+        excerpt: String,
+    },
+    /// In the value of a `--set`, which is given here.
+    Override(String),
+}
 
-    /// An error of serde's, at `span`, while it reads the table under `header`, whose keys are `known`.
-    pub fn value(source: &Source, span: Range<usize>, message: &str, header: &str, known: &[&str]) -> Self {
-        let message = one_line(message);
-        if let Some((key, expected)) = name_and_rest(&message, "unknown field `") {
-            let expected: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
-            // A table within the one under `header` has keys of its own.
-            let inner = source.key_at(&span).filter(|_| expected != known);
-            let sentence = match inner {
-                Some(inner) => keys::unknown(&truncated(key), &format!("`{inner}`"), &expected),
-                None => keys::unknown(&truncated(key), header, known),
-            };
-            return source.error_at(span, sentence);
+impl Place {
+    /// The place of a span of the file `name`, which holds `text`.
+    pub(super) fn in_file(name: &str, text: &str, span: Range<usize>) -> Self {
+        let start = (0..=span.start.min(text.len()))
+            .rev()
+            .find(|&i| text.is_char_boundary(i))
+            .unwrap_or(0);
+        let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+        let line = text[line_start..].lines().next().unwrap_or_default();
+        let marked = text.get(start..span.end).unwrap_or_default();
+        let marked = marked.lines().next().unwrap_or_default();
+        Self::File {
+            name: name.to_owned(),
+            line: text[..start].matches('\n').count() + 1,
+            column: text[line_start..start].chars().count() + 1,
+            excerpt: excerpt(line, start - line_start, marked.chars().count()),
         }
-        let complaint = match name_and_rest(&message, "unknown variant `") {
-            Some((word, expected)) => {
-                let words: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
-                unknown_word(&truncated(word), &words)
-            }
-            None => in_plain_words(&message),
-        };
-        let subject = source.key_at(&span).unwrap_or(header);
-        let sentence = format!("`{subject}`: {complaint}");
-        source.error_at(span, sentence)
+    }
+
+    /// The line with its caret; empty for a `--set`.
+    pub fn excerpt(&self) -> &str {
+        match self {
+            Self::File { excerpt, .. } => excerpt,
+            Self::Override(_) => "",
+        }
     }
 }
 
-/// Takes serde's "unknown field `name`, expected ..." apart.
-fn name_and_rest<'m>(message: &'m str, start: &str) -> Option<(&'m str, &'m str)> {
-    message.strip_prefix(start)?.rsplit_once("`, expected ")
-}
-
-fn unknown_word(word: &str, known: &[&str]) -> String {
-    let list = known
-        .iter()
-        .map(|word| format!("\"{word}\""))
-        .collect::<Vec<_>>()
-        .join(", ");
-    match keys::nearest(word, known) {
-        Some(near) => format!("unknown word {word:?}: did you mean \"{near}\"? It can be {list}"),
-        None => format!("unknown word {word:?}: it can be {list}"),
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File {
+                name, line, column, ..
+            } => write!(f, "{name}:{line}:{column}"),
+            Self::Override(text) => write!(f, "--set {text}"),
+        }
     }
 }
 
-fn one_line(message: &str) -> String {
-    message.trim().replace('\n', ", ")
-}
-
-/// Serde speaks of Rust's types; a user knows TOML's.
-fn in_plain_words(message: &str) -> String {
-    const WORDS: [(&str, &str); 8] = [
-        ("missing field", "it needs the key"),
-        ("integer number overflowed", "the whole number is too large"),
-        ("expected f64", "expected a number"),
-        ("expected u32", "expected a whole number from 0 to 4294967295"),
-        (
-            "expected u64",
-            "expected a whole number from 0 to 9223372036854775807",
-        ),
-        ("type: map", "type: table"),
-        ("sequence", "list"),
-        ("floating point", "number"),
-    ];
-    WORDS.iter().fold(message.to_owned(), |text, (rust, plain)| {
-        text.replace(rust, plain)
-    })
+/// The line, and below it carets under `width` characters from byte `start`; empty when there is nothing to show.
+fn excerpt(line: &str, start: usize, width: usize) -> String {
+    let before = &line[..start.min(line.len())];
+    if line.trim().is_empty() || before.chars().count() > MAX_EXCERPT {
+        return String::new();
+    }
+    // Tabs stay tabs, so that the caret stands below its character however wide they are.
+    let margin: String = before
+        .chars()
+        .map(|c| if c == '\t' { '\t' } else { ' ' })
+        .collect();
+    let line = truncated(line);
+    let width = width
+        .min(line.chars().count().saturating_sub(before.chars().count()))
+        .max(1);
+    format!("\n  {line}\n  {margin}{}", "^".repeat(width))
 }

@@ -2,6 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
+use slipfront::FrictionLaw;
+
+use std::ops::Bound::Included;
+
+use super::check::Check;
+use super::error::CaseError;
+use super::key_table::MAX_R_STAR;
 use super::values::word;
 use crate::quantity::{Pressure, Speed};
 
@@ -21,6 +28,12 @@ impl Default for Load {
             pressure: Pressure::from_text("100 kPa", 1e5),
             redistribute: true,
         }
+    }
+}
+
+impl Load {
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        check.quantity("pressure", &self.pressure)
     }
 }
 
@@ -49,6 +62,16 @@ impl Default for Drive {
             speed: DriveSpeed::VStar(0.03),
             direction: 0.0,
         }
+    }
+}
+
+impl Drive {
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        match &self.speed {
+            DriveSpeed::VStar(v_star) => check.number("v_star", *v_star)?,
+            DriveSpeed::Speed(speed) => check.quantity("speed", speed)?,
+        }
+        check.number("direction", self.direction)
     }
 }
 
@@ -103,7 +126,7 @@ impl From<Drive> for DriveKeys {
 #[serde(from = "FrictionKeys", into = "FrictionKeys")]
 pub struct Friction {
     /// Which reading of Eq. 4 is integrated.
-    pub law: Law,
+    pub law: FrictionLaw,
     /// Mean of the local static coefficients, and the scale of all forces; more than 0, at most 100.
     pub mu_static: f64,
     /// Mean of the local kinetic coefficients: `r_star` or `mu_kinetic`.
@@ -120,18 +143,6 @@ pub struct Friction {
     pub mu_kinetic_field: Option<String>,
 }
 
-/// The readings of the friction law, Eq. 4.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Law {
-    /// Friction integrated implicitly, with memory of sticking and sliding.
-    Projection,
-    /// Explicit friction along the velocity; a block sticks when its velocity turns.
-    Reversal,
-    /// Eq. 4 exactly as printed.
-    Literal,
-}
-
 /// The mean kinetic coefficient.
 #[derive(Clone, Debug, PartialEq)]
 pub enum KineticFriction {
@@ -144,7 +155,7 @@ pub enum KineticFriction {
 impl Default for Friction {
     fn default() -> Self {
         Self {
-            law: Law::Projection,
+            law: FrictionLaw::Projection,
             mu_static: 1.0,
             kinetic: KineticFriction::RStar(0.5),
             sigma_static_star: 0.05,
@@ -156,12 +167,38 @@ impl Default for Friction {
     }
 }
 
+impl Friction {
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        check.number("mu_static", self.mu_static)?;
+        match self.kinetic {
+            KineticFriction::RStar(r_star) => check.number("r_star", r_star)?,
+            KineticFriction::MuKinetic(mu_kinetic) => {
+                let bounds = (Included(0.0), Included(MAX_R_STAR * self.mu_static));
+                let remark = format!("at most {MAX_R_STAR} times `mu_static`");
+                check.number_within("mu_kinetic", mu_kinetic, bounds, &remark)?;
+            }
+        }
+        check.number("sigma_static_star", self.sigma_static_star)?;
+        check.number("sigma_kinetic_star", self.sigma_kinetic_star)?;
+        check.whole("seed", self.seed)?;
+        for (key, file) in [
+            ("mu_static_field", &self.mu_static_field),
+            ("mu_kinetic_field", &self.mu_kinetic_field),
+        ] {
+            if let Some(file) = file {
+                check.file(key, file)?;
+            }
+        }
+        Ok(())
+    }
+}
+
 /// The keys of `[friction]` as they stand in the file.
 #[derive(Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct FrictionKeys {
     #[serde(deserialize_with = "word")]
-    law: Law,
+    law: FrictionLaw,
     mu_static: f64,
     r_star: Option<f64>,
     mu_kinetic: Option<f64>,

@@ -2,8 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::check::Check;
+use super::error::CaseError;
+use super::key_table::{SNAPSHOT_TIMES, SPACING, SPACINGS};
 use super::values::{AutoOr, words};
-use crate::field_name::FieldName;
+use crate::number_format::exact;
+use slipfront::observe::Field;
 
 /// `[output]`: snapshots, fields and the series.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -13,7 +17,7 @@ pub struct Output {
     pub snapshots: Snapshots,
     /// The fields that are written at these instants.
     #[serde(deserialize_with = "words")]
-    pub fields: Vec<FieldName>,
+    pub fields: Vec<Field>,
     /// Every n-th block, along x and along y, is written to the fields file; 1 or more.
     pub stride: u32,
     /// Spacing of the rows of the series in t*; `auto` is every step, or as many as give at most 20 000 rows.
@@ -37,14 +41,48 @@ impl Default for Output {
         Self {
             snapshots: Snapshots::Auto,
             fields: vec![
-                FieldName::ContactStressStar,
-                FieldName::Traction,
-                FieldName::DisplacementX,
-                FieldName::DisplacementY,
-                FieldName::Sliding,
+                Field::ContactStress,
+                Field::Traction,
+                Field::DisplacementX,
+                Field::DisplacementY,
+                Field::Sliding,
             ],
             stride: 1,
             series: AutoOr::Auto,
+        }
+    }
+}
+
+impl Output {
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        match &self.snapshots {
+            Snapshots::Auto => {}
+            // A table of its own in the file, or the value of `snapshots`: either has a place.
+            Snapshots::Every(every) => check.number_within("snapshots.every", *every, SPACINGS, SPACING)?,
+            Snapshots::At(times) => {
+                for time in times {
+                    check.number_within("snapshots", *time, SNAPSHOT_TIMES, "snapshots are times t*")?;
+                }
+                if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {
+                    let (later, earlier) = (exact(pair[1]), exact(pair[0]));
+                    return check.refuse("snapshots", |key| {
+                        format!(
+                            "`{key}` has {later} after {earlier}: list the times in increasing order, each once"
+                        )
+                    });
+                }
+            }
+        }
+        let fields = &self.fields;
+        if (1..fields.len()).any(|n| fields[..n].contains(&fields[n])) {
+            return check.refuse("fields", |key| {
+                format!("`{key}` names a field twice: name each once")
+            });
+        }
+        check.whole("stride", self.stride.into())?;
+        match self.series {
+            AutoOr::Auto => Ok(()),
+            AutoOr::Number(spacing) => check.number("series", spacing),
         }
     }
 }

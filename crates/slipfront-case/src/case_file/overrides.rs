@@ -1,76 +1,137 @@
-//! `--set key=value`: a change to a parsed case file, before its values are read.
+//! Changes to a case file: `--set key=value`, and the keys that the axes of a study set.
 
 use std::borrow::Cow;
+use std::fmt;
 use std::ops::Range;
 
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
 use super::depth::limit_nesting;
+use super::diagnose::syntax_error;
 use super::error::CaseError;
-use super::keys;
+use super::key_table::partners;
 use super::source::Source;
 
 /// Most parts of a key: `texture.0.center.1` is one number of a pair.
 const MAX_PARTS: usize = 4;
 
-/// Applies the override that stands at `span` of `text` to the parsed file.
-///
-/// The value is read as TOML, and as a string when it is not TOML, because a shell strips quotes. A key displaces the
-/// one that excludes it (`drive.speed` the file's `drive.v_star`); of two overrides of one key the later holds.
-pub(super) fn apply<'i>(
-    root: &mut DeTable<'i>,
-    source: &Source,
-    text: &'i str,
-    span: &Range<usize>,
-) -> Result<(), CaseError> {
-    let refuse = |sentence: &str| source.error_at(span.clone(), sentence);
-    let entry = text.get(span.clone()).unwrap_or_default();
-    let Some((key, value)) = entry.split_once('=') else {
-        return Err(refuse(
-            "an override is written KEY=VALUE, such as drive.v_star=0.05",
-        ));
-    };
-    let path: Vec<&str> = key.split('.').map(str::trim).collect();
-    let is_bare = |part: &str| {
-        !part.is_empty()
-            && part
-                .chars()
-                .all(|c| c.is_ascii_alphanumeric() || "_-".contains(c))
-    };
-    if path.len() > MAX_PARTS || !path.iter().all(|part| is_bare(part)) {
-        return Err(refuse(
-            "the key of an override is made of names and dots, such as drive.v_star or texture.0.coverage",
-        ));
-    }
-    let value_start = span.end - value.trim_start().len();
-    let value = read_value(source, value.trim(), value_start)?;
-    let change = Change {
-        source,
-        table: path[0],
-        span,
-    };
-    change
-        .set(root, &path, value)
-        .map_err(|sentence| refuse(&sentence))
+/// A key of a case file and its new value. It replaces a key that excludes it, as `drive.speed` does `drive.v_star`; of
+/// two overrides of one key the later holds.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Override {
+    /// `KEY=VALUE`, as messages repeat it.
+    text: String,
+    key: Range<usize>,
+    value: Range<usize>,
+    /// Whether the value is TOML; otherwise it is a string without quotes, which a shell takes away.
+    is_toml: bool,
 }
 
-/// Reads a value, whose text begins at `offset`.
-fn read_value<'i>(source: &Source, text: &'i str, offset: usize) -> Result<Spanned<DeValue<'i>>, CaseError> {
-    let span = offset..offset + text.len();
-    if text.is_empty() {
-        return Err(source.error_at(
-            span,
-            "the override has no value: write KEY=VALUE, such as drive.v_star=0.05",
-        ));
+impl fmt::Display for Override {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
     }
-    match DeValue::parse(limit_nesting(text)) {
-        Ok(value) => Ok(moved(value, offset)),
-        // What opens a string, a list or a table was meant to be one.
-        Err(error) if text.starts_with(['"', '\'', '[', '{']) => {
-            Err(CaseError::syntax(source, offset, &error))
+}
+
+impl Override {
+    /// The override that sets a key to a value.
+    pub fn new(key: &str, value: &toml::Value) -> Self {
+        let text = format!("{key}={value}");
+        Self {
+            key: 0..key.len(),
+            value: key.len() + 1..text.len(),
+            is_toml: true,
+            text,
         }
-        Err(_) => Ok(Spanned::new(span, DeValue::String(Cow::Borrowed(text)))),
+    }
+
+    /// Reads an override of the form `KEY=VALUE`. The value is TOML, or a string as it stands if it is not TOML.
+    ///
+    /// # Errors
+    /// When there is no value, and when a value that begins like a string, list or table of TOML is none.
+    pub fn parse(text: &str) -> Result<Self, CaseError> {
+        let mut source = Source::default();
+        let start = source.add_override(text);
+        let refuse =
+            |from: usize, sentence: &str| source.error_at(start + from..start + text.len(), sentence);
+        let Some((key, value)) = text.split_once('=') else {
+            return Err(refuse(
+                0,
+                "an override is written KEY=VALUE, such as drive.v_star=0.05",
+            ));
+        };
+        let value_start = text.len() - value.trim_start().len();
+        let value = value.trim();
+        if value.is_empty() {
+            return Err(refuse(
+                value_start,
+                "the override has no value: write KEY=VALUE, such as drive.v_star=0.05",
+            ));
+        }
+        let is_toml = match DeValue::parse(limit_nesting(value)) {
+            Ok(_) => true,
+            // What opens a string, a list or a table was meant to be one.
+            Err(error) if value.starts_with(['"', '\'', '[', '{']) => {
+                return Err(syntax_error(&source, start + value_start, &error));
+            }
+            Err(_) => false,
+        };
+        let key_start = key.len() - key.trim_start().len();
+        Ok(Self {
+            text: text.to_owned(),
+            key: key_start..key_start + key.trim().len(),
+            value: value_start..value_start + value.len(),
+            is_toml,
+        })
+    }
+
+    /// The key.
+    pub fn key(&self) -> &str {
+        &self.text[self.key.clone()]
+    }
+
+    /// Applies the override to a parsed file; its text is added to the source.
+    pub(super) fn apply<'i>(&'i self, root: &mut DeTable<'i>, source: &mut Source) -> Result<(), CaseError> {
+        let start = source.add_override(&self.text);
+        let source = &*source;
+        let span = start..start + self.text.len();
+        let refuse = |sentence: &str| source.error_at(span.clone(), sentence);
+        let path: Vec<&str> = self.key().split('.').map(str::trim).collect();
+        let is_bare = |part: &str| {
+            !part.is_empty()
+                && part
+                    .chars()
+                    .all(|c| c.is_ascii_alphanumeric() || "_-".contains(c))
+        };
+        if path.len() > MAX_PARTS || !path.iter().all(|part| is_bare(part)) {
+            return Err(refuse(
+                "the key of an override is made of names and dots, such as drive.v_star or texture.0.coverage",
+            ));
+        }
+        let change = Change {
+            source,
+            table: path[0],
+            span: &span,
+        };
+        change
+            .set(root, &path, self.spanned_value(source, start)?)
+            .map_err(|sentence| refuse(&sentence))
+    }
+
+    /// The value, in an override that begins at `start` of the source.
+    fn spanned_value(&self, source: &Source, start: usize) -> Result<Spanned<DeValue<'_>>, CaseError> {
+        let text = &self.text[self.value.clone()];
+        let offset = start + self.value.start;
+        if self.is_toml {
+            let value = DeValue::parse(limit_nesting(text));
+            return Ok(moved(
+                value.map_err(|error| syntax_error(source, offset, &error))?,
+                offset,
+            ));
+        }
+        let span = offset..offset + text.len();
+        Ok(Spanned::new(span, DeValue::String(Cow::Borrowed(text))))
     }
 }
 
@@ -100,7 +161,7 @@ fn moved(value: Spanned<DeValue<'_>>, offset: usize) -> Spanned<DeValue<'_>> {
 
 struct Change<'a> {
     source: &'a Source,
-    /// The top-level table that the override is about.
+    /// The top-level table that the override changes.
     table: &'a str,
     span: &'a Range<usize>,
 }
@@ -115,7 +176,7 @@ impl Change<'_> {
         match path {
             [] => Ok(()),
             [key] => {
-                self.displace_partners(table, key)?;
+                self.remove_partners(table, key)?;
                 // Removed first: inserting alone would keep the old key with the old span.
                 table.remove(*key);
                 table.insert(self.spanned(Cow::Borrowed(*key)), value);
@@ -172,8 +233,8 @@ impl Change<'_> {
     }
 
     /// Removes the keys that exclude `key`; refuses when an override set one of them.
-    fn displace_partners(&self, table: &mut DeTable<'_>, key: &str) -> Result<(), String> {
-        for partner in keys::partners(self.table, key) {
+    fn remove_partners(&self, table: &mut DeTable<'_>, key: &str) -> Result<(), String> {
+        for partner in partners(self.table, key) {
             if let Some(old) = table.remove(partner)
                 && old.span().start > self.source.file_len()
             {

@@ -2,6 +2,10 @@
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use slipfront::Edges;
+
+use super::check::Check;
+use super::error::CaseError;
 use super::values::{Pair, pair};
 use crate::quantity::{Density, Length, Pressure, Rate};
 
@@ -20,7 +24,7 @@ pub struct Slider {
     /// Damping of the blocks' motion: `omega_star` or `damping_rate`.
     pub damping: Damping,
     /// The lattice's edges that bound x and those that bound y.
-    pub edges: [Edge; 2],
+    pub edges: [Edges; 2],
 }
 
 /// How strongly the motion is damped.
@@ -32,16 +36,6 @@ pub enum Damping {
     Rate(Rate),
 }
 
-/// What happens at the two edges that bound an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Edge {
-    /// The neighbours beyond the edge are absent.
-    Free,
-    /// The blocks of one edge are the neighbours of those of the other.
-    Periodic,
-}
-
 impl Default for Slider {
     fn default() -> Self {
         Self {
@@ -50,7 +44,46 @@ impl Default for Slider {
             young_modulus: Pressure::from_text("100 GPa", 1e11),
             density: Density::from_text("10 g/cm^3", 1e4),
             damping: Damping::OmegaStar(0.1),
-            edges: [Edge::Free; 2],
+            edges: [Edges::Free; 2],
+        }
+    }
+}
+
+/// Most blocks altogether.
+const MAX_BLOCKS_TOTAL: u64 = 4_000_000_000;
+/// Fewest blocks along a periodic axis: a block has two neighbours there.
+const MIN_BLOCKS_PERIODIC: u32 = 3;
+
+impl Slider {
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        let [nx, ny] = self.blocks;
+        check.pair("blocks", self.blocks)?;
+        let total = u64::from(nx) * u64::from(ny);
+        if total > MAX_BLOCKS_TOTAL {
+            return check.refuse("blocks", |key| {
+                format!(
+                    "`{key}` is [{nx}, {ny}], {total} blocks together: more than {MAX_BLOCKS_TOTAL}; take fewer along one \
+                     axis"
+                )
+            });
+        }
+        for (axis, n, edge) in [("x", nx, self.edges[0]), ("y", ny, self.edges[1])] {
+            if edge == Edges::Periodic && n < MIN_BLOCKS_PERIODIC {
+                let key = if check.has("blocks") { "blocks" } else { "edges" };
+                return check.refuse(key, |_| {
+                    format!(
+                        "{n} block(s) along {axis} are too few for periodic edges: take at least {MIN_BLOCKS_PERIODIC}, or \
+                         free edges along {axis}"
+                    )
+                });
+            }
+        }
+        check.quantity("block_size", &self.block_size)?;
+        check.quantity("young_modulus", &self.young_modulus)?;
+        check.quantity("density", &self.density)?;
+        match &self.damping {
+            Damping::OmegaStar(omega_star) => check.number("omega_star", *omega_star),
+            Damping::Rate(rate) => check.quantity("damping_rate", rate),
         }
     }
 }
@@ -67,7 +100,7 @@ pub(super) struct SliderKeys {
     omega_star: Option<f64>,
     damping_rate: Option<Rate>,
     #[serde(serialize_with = "write_edges", deserialize_with = "read_edges")]
-    edges: [Edge; 2],
+    edges: [Edges; 2],
 }
 
 impl Default for SliderKeys {
@@ -121,18 +154,18 @@ impl From<Slider> for SliderKeys {
     expecting = "expected \"free\", \"periodic\", or a pair for x and y such as [\"periodic\", \"free\"]"
 )]
 enum EdgesKey {
-    Both(Edge),
-    Each(Pair<Edge>),
+    Both(Edges),
+    Each(Pair<Edges>),
 }
 
-fn read_edges<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[Edge; 2], D::Error> {
+fn read_edges<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[Edges; 2], D::Error> {
     Ok(match EdgesKey::deserialize(deserializer)? {
         EdgesKey::Both(edge) => [edge; 2],
         EdgesKey::Each(Pair(edges)) => edges,
     })
 }
 
-fn write_edges<S: Serializer>(edges: &[Edge; 2], serializer: S) -> Result<S::Ok, S::Error> {
+fn write_edges<S: Serializer>(edges: &[Edges; 2], serializer: S) -> Result<S::Ok, S::Error> {
     if edges[0] == edges[1] {
         edges[0].serialize(serializer)
     } else {

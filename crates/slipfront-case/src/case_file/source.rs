@@ -1,29 +1,29 @@
-//! Where a value of a case file was written: a line and column of the file, or a `--set`.
+//! The text of a case file and its overrides, and where in it each value stands.
 
 use std::collections::BTreeMap;
-use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::error::CaseError;
-use crate::text::{MAX_EXCERPT, truncated};
+use super::error::{CaseError, Place};
+use crate::text::truncated;
 
 /// The longest key whose place is noted, in bytes: all known ones are shorter. The keys below one of many megabytes
 /// would take that length each.
 const MAX_KEY: usize = 64;
 
-/// What a case was read from, kept so that later errors can name their place.
+/// The text that a case was read from, kept so that errors found later name their place.
 ///
-/// Sources do not take part in comparison: all are equal.
+/// All sources compare equal, so that cases are equal whatever they were read from.
 #[derive(Clone, Debug, Default)]
 pub struct Source {
-    name: String,
-    /// The file's text, then each override on a line of its own, so that a span alone tells where it belongs.
-    text: Arc<str>,
-    overrides: Vec<Range<usize>>,
+    name: Arc<str>,
+    file: Arc<str>,
+    /// The overrides, each with the position of its first byte: positions go on behind the file, so that a span alone
+    /// tells where it belongs.
+    overrides: Vec<(usize, String)>,
     /// The span of every value by its key, such as `drive.v_star` or `texture.0.coverage`; none of absurdly long keys.
     places: BTreeMap<String, Range<usize>>,
 }
@@ -35,21 +35,23 @@ impl PartialEq for Source {
 }
 
 impl Source {
-    /// The text of a case file of this name, with overrides behind it.
-    pub fn new(name: &str, file: &str, overrides: &[String]) -> Self {
-        let mut text = file.to_owned();
-        let mut spans = Vec::new();
-        for entry in overrides {
-            text.push('\n');
-            spans.push(text.len()..text.len() + entry.len());
-            text.push_str(entry);
-        }
+    /// The text of a case file of this name.
+    pub fn new(name: &str, file: &str) -> Self {
         Self {
-            name: name.to_owned(),
-            text: text.into(),
-            overrides: spans,
-            places: BTreeMap::new(),
+            name: name.into(),
+            file: file.into(),
+            ..Self::default()
         }
+    }
+
+    /// Adds the text of an override; gives the position of its first byte.
+    pub(super) fn add_override(&mut self, text: &str) -> usize {
+        let end = match self.overrides.last() {
+            Some((start, last)) => start + last.len(),
+            None => self.file.len(),
+        };
+        self.overrides.push((end + 1, text.to_owned()));
+        end + 1
     }
 
     /// The name of the case in messages: its path, when it was loaded from a file.
@@ -57,26 +59,18 @@ impl Source {
         &self.name
     }
 
-    /// File and overrides as one text, into which all spans point.
-    pub fn text(&self) -> Arc<str> {
-        Arc::clone(&self.text)
-    }
-
     /// Length of the file without the overrides, in bytes.
-    pub fn file_len(&self) -> usize {
-        self.overrides
-            .first()
-            .map_or(self.text.len(), |first| first.start - 1)
+    pub(super) fn file_len(&self) -> usize {
+        self.file.len()
     }
 
-    /// Where the overrides stand in the text.
-    pub fn overrides(&self) -> &[Range<usize>] {
-        &self.overrides
-    }
-
-    /// A piece of the text.
-    pub fn slice(&self, span: Range<usize>) -> &str {
-        self.text.get(span).unwrap_or_default()
+    /// A piece of the file or of an override.
+    pub(super) fn slice(&self, span: Range<usize>) -> &str {
+        let piece = match self.override_at(span.start) {
+            Some((start, text)) => text.get(span.start - start..span.end.saturating_sub(*start)),
+            None => self.file.get(span),
+        };
+        piece.unwrap_or_default()
     }
 
     /// Notes the place of every value of a parsed file.
@@ -120,30 +114,16 @@ impl Source {
 
     /// The place of a span: the line and column where it begins, or the `--set` that it lies in.
     pub fn place(&self, span: Range<usize>) -> Place {
-        if span.start > self.file_len()
-            && let Some(entry) = self.overrides.iter().find(|entry| span.start <= entry.end)
-        {
-            return Place::Override(truncated(self.slice(entry.clone())));
+        match self.override_at(span.start) {
+            Some((_, text)) => Place::Override(truncated(text)),
+            None => Place::in_file(&self.name, &self.file, span),
         }
-        let file = self.slice(0..self.file_len());
-        let start = (0..=span.start.min(file.len()))
-            .rev()
-            .find(|&i| file.is_char_boundary(i))
-            .unwrap_or(0);
-        let line_start = file[..start].rfind('\n').map_or(0, |newline| newline + 1);
-        let line = file[line_start..].lines().next().unwrap_or_default();
-        let marked = file
-            .get(start..span.end)
-            .unwrap_or_default()
-            .lines()
-            .next()
-            .unwrap_or_default();
-        Place::File {
-            name: self.name.clone(),
-            line: file[..start].matches('\n').count() + 1,
-            column: file[line_start..start].chars().count() + 1,
-            excerpt: excerpt(line, start - line_start, marked.chars().count()),
-        }
+    }
+
+    /// The override that holds a position, and where it begins.
+    fn override_at(&self, position: usize) -> Option<&(usize, String)> {
+        let begun = self.overrides.iter().rev();
+        begun.into_iter().find(|(start, _)| *start <= position)
     }
 }
 
@@ -171,61 +151,4 @@ fn note_value(places: &mut BTreeMap<String, Range<usize>>, key: String, value: &
         _ => {}
     }
     places.insert(key, value.span());
-}
-
-/// Where a value was written.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// In the case file.
-    File {
-        /// The file's name.
-        name: String,
-        /// Line, from 1.
-        line: usize,
-        /// Column in characters, from 1.
-        column: usize,
-        /// The line, and below it a caret under the value.
-        excerpt: String,
-    },
-    /// In the value of a `--set`, which is given here.
-    Override(String),
-}
-
-impl Place {
-    /// The line with its caret; empty for a `--set`.
-    pub fn excerpt(&self) -> &str {
-        match self {
-            Self::File { excerpt, .. } => excerpt,
-            Self::Override(_) => "",
-        }
-    }
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::File {
-                name, line, column, ..
-            } => write!(f, "{name}:{line}:{column}"),
-            Self::Override(text) => write!(f, "--set {text}"),
-        }
-    }
-}
-
-/// The line, and below it carets under `width` characters from byte `start`; empty when there is nothing to show.
-fn excerpt(line: &str, start: usize, width: usize) -> String {
-    let before = &line[..start.min(line.len())];
-    if line.trim().is_empty() || before.chars().count() > MAX_EXCERPT {
-        return String::new();
-    }
-    // Tabs stay tabs, so that the caret stands below its character however wide they are.
-    let margin: String = before
-        .chars()
-        .map(|c| if c == '\t' { '\t' } else { ' ' })
-        .collect();
-    let shown = truncated(line);
-    let width = width
-        .min(shown.chars().count().saturating_sub(before.chars().count()))
-        .max(1);
-    format!("\n  {shown}\n  {margin}{}", "^".repeat(width))
 }

@@ -1,11 +1,13 @@
-//! Reading the tables of a parsed file one after the other, with the place of everything that is wrong.
+//! Reads the tables of a parsed file one after the other; errors name their place.
 
 use serde::de::DeserializeOwned;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
+use super::diagnose::value_error;
 use super::error::CaseError;
 use super::keys;
+use super::probe::keys_of;
 use super::source::Source;
 
 /// The tables of a parsed file that are still to be read.
@@ -22,7 +24,7 @@ impl<'i> Tables<'_, 'i> {
         match self.root.remove(name) {
             None => Ok(T::default()),
             Some(value) if value.get_ref().is_table() => {
-                self.read_table(value, &keys::header(name), keys::keys_of::<T>())
+                self.read_table(value, &keys::header(name), keys_of::<T>())
             }
             Some(value) => {
                 let sentence = format!("`{name}` must be a table: write its keys below a line [{name}]");
@@ -43,7 +45,7 @@ impl<'i> Tables<'_, 'i> {
         read.map_err(|error| {
             // An error about the table as a whole, such as a size that is missing, comes without a span.
             let span = error.span().unwrap_or(span);
-            CaseError::value(self.source, span, error.message(), header, known)
+            value_error(self.source, span, error.message(), header, known)
         })
     }
 }

@@ -1,7 +1,20 @@
 //! `[[texture]]`: the parts of the surface that do not touch the plane (Eqs. 15, 17 and 18).
 
+use std::ops::Bound::{Excluded, Included};
+
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
+use slipfront::surface::Orientation;
+use toml::Spanned;
+use toml::de::DeValue;
+
+use super::check::Check;
+use super::error::CaseError;
+use super::key_table::COORDINATES;
+use super::keys::{texture_header, unknown_shape};
+use super::probe::keys_of;
+use super::tables::Tables;
 use super::values::{Pair, pair, word};
 use crate::quantity::{Length, QuantityError};
 
@@ -62,22 +75,12 @@ pub enum Center {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "GrooveKeys", into = "GrooveKeys")]
 pub struct Groove {
-    /// Along which axis the groove runs.
+    /// Whether the groove runs across or along the x axis of the lattice, whatever the direction of the drive.
     pub orientation: Orientation,
     /// The size: `coverage` or `width`.
     pub size: GrooveSize,
     /// Distance of the groove's middle line from the slider's, m.
     pub offset: Length,
-}
-
-/// The direction of a groove, speaking of the lattice's x axis whatever the direction of the drive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Orientation {
-    /// The groove runs along y.
-    Across,
-    /// The groove runs along x.
-    Along,
 }
 
 /// The size of a groove.
@@ -114,6 +117,70 @@ pub const DEFAULT_THRESHOLD: f64 = 0.5;
 
 fn default_threshold() -> f64 {
     DEFAULT_THRESHOLD
+}
+
+impl Texture {
+    /// The name of its shape in the file.
+    pub(super) fn shape(&self) -> &'static str {
+        match self {
+            Self::Cavity(_) => "cavity",
+            Self::Groove(_) => "groove",
+            Self::Polygon(_) => "polygon",
+            Self::Mask(_) => "mask",
+        }
+    }
+
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        match self {
+            Self::Cavity(cavity) => cavity.check(check),
+            Self::Groove(groove) => {
+                match &groove.size {
+                    GrooveSize::Coverage(coverage) => check.number("coverage", *coverage)?,
+                    GrooveSize::Width(width) => check.quantity("width", width)?,
+                }
+                check.quantity("offset", &groove.offset)
+            }
+            Self::Polygon(polygon) => {
+                let count = polygon.points.len();
+                if count < 3 {
+                    return check.refuse("points", |key| {
+                        format!("`{key}` has {count} point(s): a polygon needs at least 3")
+                    });
+                }
+                let mut lengths = polygon.points.iter().flatten();
+                lengths.try_for_each(|length| check.quantity_within("points", length, COORDINATES))
+            }
+            Self::Mask(Mask { file, threshold }) => {
+                check.file("file", file)?;
+                check.number("threshold", *threshold)
+            }
+        }
+    }
+}
+
+impl Cavity {
+    fn check(&self, check: &Check) -> Result<(), CaseError> {
+        check.whole("s", self.s.into())?;
+        let (most, remark) = match self.s {
+            1 => (Excluded(1.0), "at 1 the cavity is a line".to_owned()),
+            s => (
+                Included(1.0 / f64::from(s)),
+                format!("beyond 1/s = 1/{s} the outline crosses itself"),
+            ),
+        };
+        let least = most.map(|most: f64| -most);
+        check.number_within("w", self.w, (least, most), &remark)?;
+        match &self.size {
+            CavitySize::Coverage(coverage) => check.number("coverage", *coverage)?,
+            CavitySize::Lambda(lambda) => check.quantity("lambda", lambda)?,
+        }
+        if let Center::At(center) = &self.center {
+            let mut lengths = center.iter();
+            lengths.try_for_each(|length| check.quantity_within("center", length, COORDINATES))?;
+        }
+        check.number("rotate", self.rotate)?;
+        check.pair("array", self.array)
+    }
 }
 
 /// The keys of a cavity as they stand in the file.
@@ -289,4 +356,46 @@ impl From<Center> for CenterKey {
 fn read_points<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Vec<[Length; 2]>, D::Error> {
     let points: Vec<Pair<Length>> = Vec::deserialize(deserializer)?;
     Ok(points.into_iter().map(|Pair(point)| point).collect())
+}
+
+impl<'i> Tables<'_, 'i> {
+    pub(super) fn read_textures(&mut self) -> Result<Vec<Texture>, CaseError> {
+        let Some(value) = self.root.remove("texture") else {
+            return Ok(Vec::new());
+        };
+        let span = value.span();
+        let DeValue::Array(values) = value.into_inner() else {
+            let sentence = "`texture` must be a list of tables: write [[texture]] above the keys of each";
+            return Err(self.source.error_at(span, sentence));
+        };
+        values.into_iter().map(|value| self.read_texture(value)).collect()
+    }
+
+    /// Reads a texture by its `shape`. Serde's internally tagged enums would lose the places of all keys.
+    fn read_texture(&self, value: Spanned<DeValue<'i>>) -> Result<Texture, CaseError> {
+        let span = value.span();
+        let DeValue::Table(mut table) = value.into_inner() else {
+            let sentence = "a texture must be a table: write [[texture]] above its keys";
+            return Err(self.source.error_at(span, sentence));
+        };
+        let shape = table.remove("shape");
+        let shape_span = shape.as_ref().map_or(span.clone(), Spanned::span);
+        let table = Spanned::new(span, DeValue::Table(table));
+        let name = shape.as_ref().and_then(|shape| shape.get_ref().as_str());
+        match name {
+            Some("cavity") => self.read_shape(table, "cavity").map(Texture::Cavity),
+            Some("groove") => self.read_shape(table, "groove").map(Texture::Groove),
+            Some("polygon") => self.read_shape(table, "polygon").map(Texture::Polygon),
+            Some("mask") => self.read_shape(table, "mask").map(Texture::Mask),
+            _ => Err(self.source.error_at(shape_span, unknown_shape(name))),
+        }
+    }
+
+    fn read_shape<T: DeserializeOwned>(
+        &self,
+        table: Spanned<DeValue<'i>>,
+        shape: &str,
+    ) -> Result<T, CaseError> {
+        self.read_table(table, &texture_header(shape), keys_of::<T>())
+    }
 }

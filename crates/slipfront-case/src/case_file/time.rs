@@ -1,7 +1,15 @@
 //! `[time]`: how long the run is, in which steps, and when it may stop.
 
+use std::ops::Bound::{Excluded, Included};
+
 use serde::{Deserialize, Serialize};
 
+use slipfront::StopReason;
+
+use super::check::Check;
+use super::error::CaseError;
+use super::key_table::{MAX_TIME_STAR, UNSTABLE_STEP};
+use super::motion::DriveSpeed;
 use super::values::{AutoOr, WordOrNumber, word};
 use crate::quantity::Duration;
 
@@ -13,8 +21,8 @@ pub struct Time {
     pub duration: RunTime,
     /// The time step.
     pub step: Step,
-    /// When the run ends.
-    pub stop: Stop,
+    /// What ends the run: its duration, or the fall after the first peak of mu* if that comes first.
+    pub stop: StopReason,
     /// Start of the window that the kinetic friction is averaged over, in t*; `auto` is 2.5/V* after the onset.
     pub kinetic_from_star: AutoOr,
 }
@@ -42,24 +50,48 @@ pub enum Step {
     Number(f64),
 }
 
-/// When a run ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Stop {
-    /// At the end of its duration.
-    End,
-    /// As soon as the fall that ends the first peak of mu* is seen.
-    AfterOnset,
-}
-
 impl Default for Time {
     fn default() -> Self {
         Self {
             duration: RunTime::Auto,
             step: Step::Auto,
-            stop: Stop::End,
+            stop: StopReason::End,
             kinetic_from_star: AutoOr::Auto,
         }
+    }
+}
+
+impl Time {
+    /// Checks the times; some bounds depend on the speed of the drive.
+    pub(super) fn check(&self, check: &Check, speed: &DriveSpeed) -> Result<(), CaseError> {
+        match &self.duration {
+            RunTime::Auto => {}
+            RunTime::Star(star) => check.number("duration_star", *star)?,
+            RunTime::Duration(duration) => check.quantity("duration", duration)?,
+        }
+        match (self.step, speed) {
+            (Step::Number(dt_star), _) => check.number("step", dt_star)?,
+            (Step::Paper, DriveSpeed::VStar(v_star)) if v_star * 2.0 / 3.0 >= UNSTABLE_STEP => {
+                let step = v_star * 2.0 / 3.0;
+                return check.refuse("step", |key| {
+                    format!(
+                        "`{key}` = \"paper\" is (2/3) V* = {step:.4}: it must be less than {UNSTABLE_STEP}; take \"auto\", \
+                         or a smaller `drive.v_star`"
+                    )
+                });
+            }
+            _ => {}
+        }
+        if let AutoOr::Number(from) = self.kinetic_from_star {
+            let end = match (&self.duration, speed) {
+                (RunTime::Star(star), _) => Excluded(*star),
+                (RunTime::Auto, DriveSpeed::VStar(v_star)) => Excluded(8.0 / v_star),
+                _ => Included(MAX_TIME_STAR),
+            };
+            let remark = "the average is taken from there to the end of the run";
+            check.number_within("kinetic_from_star", from, (Included(0.0), end), remark)?;
+        }
+        Ok(())
     }
 }
 
@@ -71,7 +103,7 @@ pub(super) struct TimeKeys {
     duration: Option<Duration>,
     step: Step,
     #[serde(deserialize_with = "word")]
-    stop: Stop,
+    stop: StopReason,
     kinetic_from_star: AutoOr,
 }
 

@@ -1,9 +1,10 @@
 use std::fs;
 use std::path::Path;
 
+use slipfront::Edges;
+
 use slipfront_case::case_file::{
-    CaseFile, Cavity, CavitySize, Center, Damping, DriveSpeed, Edge, KineticFriction, RunTime, Snapshots,
-    Texture,
+    CaseFile, Cavity, CavitySize, Center, Damping, DriveSpeed, KineticFriction, RunTime, Snapshots, Texture,
 };
 
 use super::{files, notes};
@@ -41,7 +42,7 @@ fn the_other_key_displaces_the_default() {
     assert!(matches!(&case.drive.speed, DriveSpeed::Speed(speed) if speed.si() == 0.0949e-3));
     assert_eq!(case.friction.kinetic, KineticFriction::MuKinetic(0.5));
     assert!(matches!(&case.time.duration, RunTime::Duration(duration) if duration.si() == 84e-9));
-    assert_eq!(case.slider.edges, [Edge::Periodic, Edge::Free]);
+    assert_eq!(case.slider.edges, [Edges::Periodic, Edges::Free]);
     let printed = case.to_toml().unwrap();
     for key in ["omega_star", "v_star", "r_star", "duration_star"] {
         assert!(!printed.contains(&format!("\n{key} ")), "{key} in\n{printed}");
@@ -53,7 +54,7 @@ fn overrides_change_what_they_name() {
     let case = good("set_strings_and_numbers");
     assert!(matches!(&case.drive.speed, DriveSpeed::Speed(speed) if speed.to_string() == "1 mm/s"));
     assert_eq!(case.load.pressure.si(), 2e5);
-    assert_eq!(case.slider.edges, [Edge::Periodic; 2]);
+    assert_eq!(case.slider.edges, [Edges::Periodic; 2]);
     assert_eq!(case.slider.blocks, [5, 5]);
     assert!(!case.load.redistribute);
     assert_eq!(case.drive.direction, 90.0);

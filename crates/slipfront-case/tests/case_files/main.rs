@@ -6,6 +6,7 @@
 mod bad;
 mod good;
 mod hostile;
+mod keys;
 mod reference;
 mod round_trip;
 

@@ -1,7 +1,9 @@
 use std::fs;
+use std::ops::Bound::{Excluded, Included, Unbounded};
 use std::path::Path;
 
-use slipfront_case::case_file::CaseFile;
+use slipfront_case::case_file::{Bounds, CaseFile, Kind, SECTIONS};
+use slipfront_case::number_format::exact;
 
 /// The TOML blocks of the reference are cases that can be read, and every key of the default is explained there.
 #[test]
@@ -40,5 +42,71 @@ fn the_reference_is_true() {
         "every",
     ] {
         assert!(text.contains(&format!("`{key}`")), "`{key}` is not explained");
+    }
+}
+
+/// Every key has a row in the table of its section, with its default, bounds and meaning.
+#[test]
+fn the_reference_tells_every_key_as_it_is() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference/case-file.md");
+    let text = fs::read_to_string(path).unwrap();
+    let parts: Vec<&str> = text.split("\n##").collect();
+    for section in &SECTIONS {
+        let title = match section.is_shape {
+            true => format!("# `shape = \"{}\"`", section.name),
+            false => format!(" `[{}]`", section.name),
+        };
+        let part = parts.iter().find(|part| part.starts_with(&title)).unwrap();
+        let rows: Vec<Vec<&str>> = part
+            .lines()
+            .filter(|line| line.starts_with('|'))
+            .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
+            .collect();
+        let column = |name: &str| rows[0].iter().position(|&cell| cell == name).unwrap();
+        assert_eq!(rows.len(), section.keys.len() + 2, "{}", section.name);
+        for key in section.keys {
+            let name = format!("`{}`", key.name);
+            let row = rows.iter().find(|row| row[0] == name).unwrap();
+            let default = row[column("default")];
+            assert_eq!(default.trim_matches('`'), key.default, "{}", key.name);
+            for part in bounds(&key.kind) {
+                assert!(row[column("bounds")].contains(&part), "{}: {part}", key.name);
+            }
+            assert!(row[column("meaning")].starts_with(key.doc), "{}", key.name);
+        }
+    }
+}
+
+/// What the cell of the bounds must hold.
+fn bounds(kind: &Kind) -> Vec<String> {
+    let quoted = |words: &[&str]| {
+        words
+            .iter()
+            .map(|word| format!("`\"{word}\"`"))
+            .collect::<Vec<_>>()
+    };
+    match kind {
+        Kind::Number { bounds, words, .. } => [quoted(words), vec![range(bounds)]].concat(),
+        Kind::Quantity { unit, bounds } => vec![range(bounds), (*unit).to_owned()],
+        Kind::Whole { most, .. } if *most == i64::MAX as u64 => vec!["0 to 2^63 - 1".to_owned()],
+        Kind::Whole {
+            least, most: 100_000, ..
+        } => vec![format!("{least} to 100 000")],
+        Kind::Whole { least, most, .. } => vec![format!("{least} to {most}")],
+        Kind::Words(words) => quoted(words()),
+        Kind::Switch => Vec::new(),
+        Kind::File(formats) => formats.iter().map(|format| format!("`.{format}`")).collect(),
+        Kind::Special(words) => vec![(*words).to_owned()],
+    }
+}
+
+fn range(bounds: &Bounds) -> String {
+    let [low, high] = [bounds.0, bounds.1].map(|bound| bound.map(exact));
+    match (low, high) {
+        (Included(low), Included(high)) => format!("{low} to {high}"),
+        (Excluded(low), Included(high)) => format!("more than {low}, at most {high}"),
+        (Excluded(low), Excluded(high)) => format!("more than {low}, less than {high}"),
+        (Included(low), Unbounded) => format!("{low} and more"),
+        other => panic!("no words for {other:?}"),
     }
 }

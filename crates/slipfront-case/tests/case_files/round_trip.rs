@@ -1,12 +1,13 @@
 use proptest::prelude::*;
 use proptest::sample::{select, subsequence};
 
+use slipfront::observe::Field;
+use slipfront::surface::Orientation;
+use slipfront::{Edges, FrictionLaw, StopReason};
 use slipfront_case::case_file::{
-    AutoOr, CaseFile, Cavity, CavitySize, Center, Damping, Drive, DriveSpeed, Edge, Friction, Groove,
-    GrooveSize, KineticFriction, Law, Load, Mask, Orientation, Output, Polygon, RunTime, Slider, Snapshots,
-    Source, Step, Stop, Texture, Time,
+    AutoOr, CaseFile, Cavity, CavitySize, Center, Damping, Drive, DriveSpeed, Friction, Groove, GrooveSize,
+    KineticFriction, Load, Mask, Output, Polygon, RunTime, Slider, Snapshots, Source, Step, Texture, Time,
 };
-use slipfront_case::field_name::FieldName;
 use slipfront_case::quantity::{Kind, Length, Quantity};
 
 /// Quantities of many sizes, some as a user writes them and some printed from their value.
@@ -41,7 +42,7 @@ fn slider() -> impl Strategy<Value = Slider> {
         (0.0..1e3).prop_map(Damping::OmegaStar),
         quantity(0, 23, &["1/s", "MHz"]).prop_map(Damping::Rate)
     ];
-    let edge = || select(vec![Edge::Free, Edge::Periodic]);
+    let edge = || select(vec![Edges::Free, Edges::Periodic]);
     (
         (3..60_000_u32, 3..60_000_u32),
         length(),
@@ -82,7 +83,11 @@ fn friction() -> impl Strategy<Value = Friction> {
         (0.0..10.0).prop_map(KineticFriction::RStar),
         (0.0..1.0).prop_map(KineticFriction::MuKinetic)
     ];
-    let law = select(vec![Law::Projection, Law::Reversal, Law::Literal]);
+    let law = select(vec![
+        FrictionLaw::Projection,
+        FrictionLaw::Reversal,
+        FrictionLaw::Literal,
+    ]);
     let field = || prop::option::of(file(&["npy", "csv"]));
     (
         law,
@@ -186,7 +191,7 @@ fn time() -> impl Strategy<Value = Time> {
     (
         duration,
         step,
-        select(vec![Stop::End, Stop::AfterOnset]),
+        select(vec![StopReason::End, StopReason::Onset]),
         auto_or(0.0..5.0),
     )
         .prop_map(|(duration, step, stop, kinetic_from_star)| Time {
@@ -206,7 +211,7 @@ fn output() -> impl Strategy<Value = Output> {
     ];
     let fields = subsequence(Output::default().fields, 0..=5).prop_shuffle();
     (snapshots, fields, 1..=100_000_u32, auto_or(1e-6..1e6)).prop_map(
-        |(snapshots, fields, stride, series): (_, Vec<FieldName>, _, _)| Output {
+        |(snapshots, fields, stride, series): (_, Vec<Field>, _, _)| Output {
             snapshots,
             fields,
             stride,

@@ -1,7 +1,7 @@
 //! The resolved physics of a case.
 
+use slipfront::FrictionLaw;
 use slipfront_case::case::Case;
-use slipfront_case::case_file::Law;
 use slipfront_case::number_format::{four_digits, with_si_prefix};
 
 /// The resolved physics of a case, as a tree.
@@ -66,9 +66,9 @@ fn drive(case: &Case) -> String {
 fn friction(case: &Case) -> String {
     let (groups, friction) = (&case.groups, &case.file.friction);
     let law = match friction.law {
-        Law::Projection => "projection",
-        Law::Reversal => "reversal (for comparison)",
-        Law::Literal => "literal (for comparison)",
+        FrictionLaw::Projection => "projection",
+        FrictionLaw::Reversal => "reversal (for comparison)",
+        FrictionLaw::Literal => "literal (for comparison)",
     };
     let spread = |field: &Option<String>, sigma: f64| match field {
         Some(file) => format!("from {file}"),

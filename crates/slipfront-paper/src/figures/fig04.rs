@@ -6,7 +6,7 @@ use crate::drawing::stress_maps;
 use crate::error::PaperError;
 use crate::measurements::{Found, largest, mean, smallest};
 use crate::runner::{Bench, Run, seen_at};
-use slipfront_case::field_name::FieldName;
+use slipfront::observe::Field;
 
 pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let mut found = Found::default();
@@ -66,10 +66,10 @@ fn before_slip(bench: &Bench, main: &Run, found: &mut Found) -> Result<(), Paper
     for (_, frame) in &run.record.frames {
         // In units of P mu_s, not yet over its maximum.
         let expected = drive.k_drive * drive.v_star * frame.time_star;
-        for &stress in run.field(frame, FieldName::ContactStressStar)? {
+        for &stress in run.field(frame, Field::ContactStress)? {
             error = error.max((f64::from(stress) / expected - 1.0).abs());
         }
-        for field in [FieldName::DisplacementX, FieldName::DisplacementY] {
+        for field in [Field::DisplacementX, Field::DisplacementY] {
             for &displacement in run.field(frame, field)? {
                 motion = motion.max(f64::from(displacement).abs());
             }
@@ -108,9 +108,7 @@ fn stress_left(bench: &Bench, run: &Run) -> Result<f64, PaperError> {
     let seed = format!("friction.seed={}", run.case.file.friction.seed);
     let again = bench.run_one(seen_at(bench.case("fig04", &[&seed])?, &times))?;
     let stress = |(_, frame): &(String, Frame)| -> Result<f64, PaperError> {
-        Ok(f64::from(
-            again.field(frame, FieldName::ContactStressStar)?[block],
-        ))
+        Ok(f64::from(again.field(frame, Field::ContactStress)?[block]))
     };
     let stresses = again
         .record
@@ -140,7 +138,7 @@ fn rest_slips_within(run: &Run) -> Result<f64, PaperError> {
 
 /// Blocks whose contact stress is lower at E than at D, %.
 fn falls_from_d_to_e(run: &Run) -> Result<f64, PaperError> {
-    let stress = |letter| run.field(run.instant(letter)?, FieldName::ContactStressStar);
+    let stress = |letter| run.field(run.instant(letter)?, Field::ContactStress);
     let (before, after) = (stress('D')?, stress('E')?);
     let lower: Vec<f64> = before
         .iter()

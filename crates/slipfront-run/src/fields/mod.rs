@@ -12,7 +12,7 @@ mod write;
 use std::io;
 use std::path::PathBuf;
 
-use slipfront_case::field_name::FieldName;
+use slipfront::observe::Field;
 
 pub use read::{read_fields, read_maps};
 pub use write::write_fields;
@@ -39,7 +39,7 @@ pub struct FieldFrame {
     pub label: String,
     /// Number of the time step.
     pub step: u64,
-    /// One array per name in [`FieldsFile::names`], in the unit of [`FieldName::unit`], thinned by [`thin`] and
+    /// One array per name in [`FieldsFile::names`], in the unit of [`FieldInfo::unit`], thinned by [`thin`] and
     /// row-major.
     pub values: Vec<Vec<f32>>,
 }
@@ -58,7 +58,7 @@ pub struct FieldsFile<'a> {
     /// Duration of one unit of t*, in s.
     pub time_unit_s: f64,
     /// The fields that every frame holds, each at most once.
-    pub names: &'a [FieldName],
+    pub names: &'a [Field],
     /// What never changes.
     pub statics: StaticFields<'a>,
     /// The instants, in order of time; NetCDF wants each time once. There may be none.
@@ -79,7 +79,7 @@ pub struct FieldsData {
     /// Duration of one unit of t*, in s.
     pub time_unit_s: f64,
     /// The fields of every frame, in the order of [`FieldFrame::values`]; none if there are no frames.
-    pub names: Vec<FieldName>,
+    pub names: Vec<Field>,
     /// Whether the block is texture.
     pub textured: Vec<bool>,
     /// Static friction coefficients.

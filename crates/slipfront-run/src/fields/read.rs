@@ -7,9 +7,10 @@ use super::names::{
     TIME_STAR, TIME_UNIT, X, Y,
 };
 use super::netcdf3_reader::{Classic, Fault};
-use slipfront_case::field_name::FieldName;
+use slipfront::observe::Field;
 
 use super::{FieldFrame, FieldsData, FieldsError};
+use slipfront_case::field_info::{field_info, field_named};
 use slipfront_case::text;
 
 /// Reads a `fields.nc` that [`write_fields`](super::write_fields) has written.
@@ -40,7 +41,7 @@ pub fn read_fields(path: &Path) -> Result<FieldsData, FieldsError> {
 /// # Errors
 ///
 /// As for [`read_fields`].
-pub fn read_maps(path: &Path, field: FieldName, most: usize) -> Result<FieldsData, FieldsError> {
+pub fn read_maps(path: &Path, field: Field, most: usize) -> Result<FieldsData, FieldsError> {
     let read = || {
         let mut file = Classic::open(path)?;
         let records = file.records();
@@ -67,7 +68,7 @@ fn in_words(fault: Fault, path: &Path) -> FieldsError {
 /// Some fields at some instants, and the texture; the other arrays are left empty.
 fn read_chosen(
     file: &mut Classic,
-    chosen: impl Fn(FieldName) -> bool,
+    chosen: impl Fn(Field) -> bool,
     records: &[usize],
 ) -> Result<FieldsData, Fault> {
     let [nx, ny] = counts(file, BLOCKS)?;
@@ -87,9 +88,9 @@ fn read_chosen(
         return Err(Fault::Broken(format!("`{TIME}` has a fixed length")));
     }
     // A file without instants has no fields, even if it defines some.
-    let names: Vec<FieldName> = file
+    let names: Vec<Field> = file
         .variables_over(&[TIME, Y, X])
-        .filter_map(FieldName::from_name)
+        .filter_map(field_named)
         .filter(|name| chosen(*name) && !records.is_empty())
         .collect();
     let frames = records
@@ -115,7 +116,7 @@ fn read_chosen(
     })
 }
 
-fn read_frame(file: &mut Classic, names: &[FieldName], record: usize) -> Result<FieldFrame, Fault> {
+fn read_frame(file: &mut Classic, names: &[Field], record: usize) -> Result<FieldFrame, Fault> {
     let time_star = only(TIME_STAR, &file.values(TIME_STAR, &[TIME], record)?)?;
     let step = only(STEP, &file.values(STEP, &[TIME], record)?)? as u64;
     let label = file.values(LABEL, &[TIME, LABEL_LENGTH], record)?;
@@ -126,7 +127,7 @@ fn read_frame(file: &mut Classic, names: &[FieldName], record: usize) -> Result<
         .collect();
     let mut values = Vec::with_capacity(names.len());
     for name in names {
-        let field = file.values(name.as_str(), &[TIME, Y, X], record)?;
+        let field = file.values(field_info(*name).name, &[TIME, Y, X], record)?;
         values.push(field.iter().map(|value| *value as f32).collect());
     }
     Ok(FieldFrame {

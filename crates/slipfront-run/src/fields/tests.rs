@@ -6,6 +6,7 @@ use tempfile::TempDir;
 
 use super::write::write_to;
 use super::*;
+use slipfront_case::field_info::{field_info, field_named};
 
 const NX: usize = 5;
 const NY: usize = 3;
@@ -47,7 +48,7 @@ fn lattice() -> Lattice {
 }
 
 impl Lattice {
-    fn file<'a>(&'a self, stride: usize, names: &'a [FieldName], frames: &'a [FieldFrame]) -> FieldsFile<'a> {
+    fn file<'a>(&'a self, stride: usize, names: &'a [Field], frames: &'a [FieldFrame]) -> FieldsFile<'a> {
         let statics = StaticFields {
             textured: &self.textured,
             mu_static: &self.mu_static,
@@ -68,7 +69,7 @@ impl Lattice {
     }
 }
 
-fn frames(names: &[FieldName], stride: usize) -> Vec<FieldFrame> {
+fn frames(names: &[Field], stride: usize) -> Vec<FieldFrame> {
     let labels = ["A", "", "CD"];
     let field = |seed: usize| {
         (0..NX * NY)
@@ -104,30 +105,30 @@ fn same(left: &[f64], right: &[f64]) -> bool {
 
 #[test]
 fn names_are_those_of_the_case_file() {
-    for name in FieldName::ALL {
+    for name in Field::ALL {
         assert_eq!(
             serde_json::to_string(&name).unwrap(),
-            format!("\"{}\"", name.as_str())
+            format!("\"{}\"", field_info(name).name)
         );
-        assert_eq!(FieldName::from_name(name.as_str()), Some(name));
-        assert!(!name.long_name().is_empty() && !name.unit().is_empty());
+        assert_eq!(field_named(field_info(name).name), Some(name));
+        assert!(!field_info(name).long_name.is_empty() && !field_info(name).unit.is_empty());
     }
-    assert_eq!(FieldName::from_name("contact_stress"), None);
+    assert_eq!(field_named("contact_stress"), None);
 }
 
 #[test]
 fn what_is_written_is_read() {
     let lattice = lattice();
     for stride in [1, 2, 3, 9] {
-        let frames = frames(&FieldName::ALL, stride);
-        let file = lattice.file(stride, &FieldName::ALL, &frames);
+        let frames = frames(&Field::ALL, stride);
+        let file = lattice.file(stride, &Field::ALL, &frames);
         let (_folder, path) = folder();
         write_fields(&path, &file).unwrap();
         let data = read_fields(&path).unwrap();
         assert_eq!((data.nx, data.ny, data.stride), (NX, NY, stride));
         assert_eq!((data.block_size, data.time_unit_s), (1e-6, 3.162e-10));
         assert_eq!(data.columns() * data.rows(), data.mu_static.len());
-        assert_eq!(data.names, FieldName::ALL);
+        assert_eq!(data.names, Field::ALL);
         assert_eq!(data.textured, thin(&lattice.textured, NX, stride));
         assert_eq!(data.mu_static, thin(&lattice.mu_static, NX, stride));
         assert_eq!(data.mu_kinetic, thin(&lattice.mu_kinetic, NX, stride));
@@ -143,7 +144,7 @@ fn what_is_written_is_read() {
 fn maps_are_one_field_at_a_few_instants() {
     let lattice = lattice();
     let (_folder, path) = folder();
-    let names = [FieldName::Sliding, FieldName::Traction];
+    let names = [Field::Sliding, Field::Traction];
     let frames = frames(&names, 1);
     write_fields(&path, &lattice.file(1, &names, &frames)).unwrap();
     for (most, instants) in [
@@ -152,8 +153,8 @@ fn maps_are_one_field_at_a_few_instants() {
         (3, vec![0, 1, 2]),
         (9, vec![0, 1, 2]),
     ] {
-        let maps = read_maps(&path, FieldName::Traction, most).unwrap();
-        assert_eq!(maps.names, [FieldName::Traction]);
+        let maps = read_maps(&path, Field::Traction, most).unwrap();
+        assert_eq!(maps.names, [Field::Traction]);
         assert_eq!(maps.textured, lattice.textured);
         let wanted = instants
             .iter()
@@ -161,12 +162,7 @@ fn maps_are_one_field_at_a_few_instants() {
         let found = maps.frames.iter().map(|frame| (frame.step, &frame.values[0]));
         assert!(found.eq(wanted), "{most}");
     }
-    assert!(
-        read_maps(&path, FieldName::VelocityX, 6)
-            .unwrap()
-            .names
-            .is_empty()
-    );
+    assert!(read_maps(&path, Field::VelocityX, 6).unwrap().names.is_empty());
 }
 
 #[test]
@@ -183,7 +179,7 @@ fn thinning_starts_at_block_0() {
 fn a_run_without_instants_or_fields_still_has_its_surface() {
     let lattice = lattice();
     let (_folder, path) = folder();
-    write_fields(&path, &lattice.file(1, &FieldName::ALL, &[])).unwrap();
+    write_fields(&path, &lattice.file(1, &Field::ALL, &[])).unwrap();
     let data = read_fields(&path).unwrap();
     assert!(data.frames.is_empty() && data.names.is_empty());
     assert_eq!(data.mu_static, lattice.mu_static);
@@ -196,11 +192,11 @@ fn a_run_without_instants_or_fields_still_has_its_surface() {
 #[test]
 fn equal_input_gives_equal_bytes() {
     let lattice = lattice();
-    let mut frames = frames(&[FieldName::Traction], 1);
+    let mut frames = frames(&[Field::Traction], 1);
     let (_folder, path) = folder();
     let mut bytes_with = |nan: f32| {
         frames[1].values[0][7] = nan;
-        write_fields(&path, &lattice.file(1, &[FieldName::Traction], &frames)).unwrap();
+        write_fields(&path, &lattice.file(1, &[Field::Traction], &frames)).unwrap();
         fs::read(&path).unwrap()
     };
     let first = bytes_with(f32::NAN);
@@ -218,11 +214,7 @@ fn equal_input_gives_equal_bytes() {
 fn the_header_is_netcdf_3() {
     let lattice = lattice();
     let (_folder, path) = folder();
-    write_fields(
-        &path,
-        &lattice.file(1, &FieldName::ALL, &frames(&FieldName::ALL, 1)),
-    )
-    .unwrap();
+    write_fields(&path, &lattice.file(1, &Field::ALL, &frames(&Field::ALL, 1))).unwrap();
     let bytes = fs::read(&path).unwrap();
     let dimensions =
         b"CDF\x02\0\0\0\x03\0\0\0\x0a\0\0\0\x04\0\0\0\x01y\0\0\0\0\0\0\x03\0\0\0\x01x\0\0\0\0\0\0\x05\0\0\0\x04time\0\0\0\0";
@@ -233,7 +225,7 @@ fn the_header_is_netcdf_3() {
 #[test]
 fn arrays_of_another_length_are_refused() {
     let lattice = lattice();
-    let names = [FieldName::Traction, FieldName::Sliding];
+    let names = [Field::Traction, Field::Sliding];
     let good = frames(&names, 1);
     let (_folder, path) = folder();
     let refused = |file: &FieldsFile, wanted: &str| {
@@ -267,7 +259,7 @@ fn arrays_of_another_length_are_refused() {
         &FieldsFile { statics, ..file },
         "mu_kinetic has 14 values where 15 are wanted",
     );
-    let twice = [FieldName::Sliding, FieldName::Sliding];
+    let twice = [Field::Sliding, Field::Sliding];
     refused(
         &FieldsFile {
             names: &twice,
@@ -322,8 +314,8 @@ impl Seek for Full {
 #[test]
 fn a_full_disk_is_reported_wherever_it_happens() {
     let lattice = lattice();
-    let frames = frames(&FieldName::ALL, 1);
-    let file = lattice.file(1, &FieldName::ALL, &frames);
+    let frames = frames(&Field::ALL, 1);
+    let file = lattice.file(1, &Field::ALL, &frames);
     let whole = write_to(Cursor::new(Vec::new()), &file).unwrap().into_inner();
     for room in 0..whole.len() as u64 {
         let full = Full {
@@ -426,11 +418,7 @@ fn files_of_another_kind_are_refused() {
         message(&path)
     );
 
-    write_fields(
-        &path,
-        &lattice.file(1, &FieldName::ALL, &frames(&FieldName::ALL, 1)),
-    )
-    .unwrap();
+    write_fields(&path, &lattice.file(1, &Field::ALL, &frames(&Field::ALL, 1))).unwrap();
     let whole = fs::read(&path).unwrap();
     for length in 0..whole.len() {
         replace(&path, &whole[..length]);
@@ -447,7 +435,7 @@ fn files_of_another_kind_are_refused() {
 fn instants_that_the_file_does_not_hold_are_refused() {
     let lattice = lattice();
     let (_folder, path) = folder();
-    let names = [FieldName::Traction];
+    let names = [Field::Traction];
     write_fields(&path, &lattice.file(1, &names, &frames(&names, 1))).unwrap();
     let whole = fs::read(&path).unwrap();
     let time = whole
@@ -479,7 +467,7 @@ fn with_one_more(bytes: &[u8], tag: &[u8; 8], more: &[u8], behind: usize) -> Vec
 fn instants_that_are_no_records_are_refused() {
     let lattice = lattice();
     let (_folder, path) = folder();
-    let names = [FieldName::Traction];
+    let names = [Field::Traction];
     write_fields(&path, &lattice.file(1, &names, &frames(&names, 1))).unwrap();
     let whole = fs::read(&path).unwrap();
     let end_of =
@@ -507,7 +495,7 @@ fn instants_that_are_no_records_are_refused() {
 fn an_array_that_stands_twice_is_refused() {
     let lattice = lattice();
     let (_folder, path) = folder();
-    let names = [FieldName::VelocityX, FieldName::VelocityY];
+    let names = [Field::VelocityX, Field::VelocityY];
     write_fields(&path, &lattice.file(1, &names, &frames(&names, 1))).unwrap();
     let mut bytes = fs::read(&path).unwrap();
     let second = bytes
@@ -525,7 +513,7 @@ fn an_array_that_stands_twice_is_refused() {
 fn damaged_files_are_refused_or_read() {
     let lattice = lattice();
     let (_folder, path) = folder();
-    let names = [FieldName::Traction, FieldName::Sliding];
+    let names = [Field::Traction, Field::Sliding];
     write_fields(&path, &lattice.file(2, &names, &frames(&names, 2))).unwrap();
     let whole = fs::read(&path).unwrap();
     // A linear congruential generator (Knuth's constants): the same damage on every run.

@@ -13,11 +13,12 @@ use super::names::{
     BLOCK_SIZE, BLOCKS, FIRST_SLIP, LABEL, LABEL_LENGTH, MU_KINETIC, MU_STATIC, STEP, STRIDE, TEXTURED, TIME,
     TIME_STAR, TIME_UNIT, X, Y,
 };
+use slipfront::observe::Field;
 use slipfront_case::case::smallest_stride;
-use slipfront_case::field_name::FieldName;
 
 use super::{FieldsError, FieldsFile, thin};
 use slipfront_case::disk::write_atomic_with;
+use slipfront_case::field_info::field_info;
 
 /// Writes `fields.nc`.
 ///
@@ -73,7 +74,7 @@ fn check(path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
         }
         for (name, values) in file.names.iter().zip(&frame.values) {
             if values.len() != columns * rows {
-                return wrong(name.as_str(), values.len(), columns * rows);
+                return wrong(field_info(*name).name, values.len(), columns * rows);
             }
         }
     }
@@ -152,7 +153,7 @@ fn write_variables(
                 .iter()
                 .map(|value| if value.is_nan() { f32::NAN } else { *value })
                 .collect();
-            writer.write_record_f32(name.as_str(), record, &values)?;
+            writer.write_record_f32(field_info(*name).name, record, &values)?;
         }
     }
     writer.close()
@@ -232,13 +233,14 @@ fn define_frames(set: &mut DataSet, file: &FieldsFile) -> Result<(), InvalidData
     set.add_var_u8(LABEL, &[TIME, LABEL_LENGTH])?;
     set.add_var_attr_string(LABEL, "long_name", "name of the instant")?;
     for name in file.names {
-        let text = name.as_str();
+        let info = field_info(*name);
+        let text = info.name;
         set.add_var_f32(text, &[TIME, Y, X])?;
-        describe(set, text, name.long_name(), name.unit())?;
+        describe(set, text, info.long_name, info.unit)?;
         set.add_var_attr_string(text, "coordinates", "time_star instant")?;
         match name {
-            FieldName::Traction => set.add_var_attr_string(text, "comment", "NaN in cavities")?,
-            FieldName::Sliding => {
+            Field::Traction => set.add_var_attr_string(text, "comment", "NaN in cavities")?,
+            Field::Sliding => {
                 set.add_var_attr_f32(text, "flag_values", vec![0.0, 1.0])?;
                 set.add_var_attr_string(text, "flag_meanings", "stuck sliding")?;
             }

@@ -6,7 +6,8 @@ use std::ops::Bound;
 use serde::Deserialize;
 use toml::Value;
 
-use super::input_copies::{names_a_file, plain_name};
+use super::input_copies::plain_name;
+use slipfront_case::case_file::{Override, exclude_each_other, names_a_file, partners_of};
 use slipfront_case::text::truncated;
 
 /// An axis and its levels.
@@ -27,8 +28,8 @@ pub struct Level {
     pub labels: Vec<String>,
     /// Its number, if it is one.
     pub number: Option<f64>,
-    /// Keys of the case and their values, as for `--set`.
-    pub overrides: Vec<String>,
+    /// Keys of the case and their values.
+    pub overrides: Vec<Override>,
 }
 
 impl Level {
@@ -81,73 +82,57 @@ impl Axis {
                 long.len()
             ));
         }
-        let axis = match keys {
-            AxisKeys {
-                key: Some(key),
-                zip: None,
-                name: None,
-                variants: None,
-                list,
-                linspace,
-                logspace,
-            } => {
-                let (values, spacing) = match (list, linspace, logspace) {
-                    (Some(list), None, None) => (list, Spacing::Linear),
-                    (None, Some((from, to, count)), None) => {
-                        (spaced(from, to, count, linear)?, Spacing::Linear)
-                    }
-                    (None, None, Some((from, to, count))) => {
-                        if !(from > 0.0 && to > 0.0) {
-                            return Err(format!("`logspace` from {from} to {to} must lie above 0"));
-                        }
-                        (spaced(from, to, count, logarithmic)?, Spacing::Logarithmic)
-                    }
-                    _ => {
-                        return Err(format!(
-                            "the axis of `{key}` needs one of `list`, `linspace` and `logspace`"
-                        ));
-                    }
-                };
+        let axis = Self::read(keys)?;
+        axis.check_keys()?;
+        axis.check_levels()?;
+        Ok(axis.with_numbers_or_names())
+    }
+
+    /// The axis of one of the three forms.
+    fn read(keys: AxisKeys) -> Result<Self, String> {
+        let AxisKeys {
+            key,
+            list,
+            linspace,
+            logspace,
+            zip,
+            name,
+            variants,
+        } = keys;
+        match (key, zip, name, variants) {
+            (Some(key), None, None, None) => {
+                let (values, spacing) = values_of(&key, list, linspace, logspace)?;
                 let levels = values.iter().map(|value| level(&[&key], &[value])).collect();
-                Self {
+                Ok(Self {
                     columns: vec![key],
                     levels,
                     spacing,
-                }
+                })
             }
-            AxisKeys {
-                zip: Some(zip),
-                key: None,
-                name: None,
-                variants: None,
-                list: None,
-                linspace: None,
-                logspace: None,
-            } => zipped(&zip)?,
-            AxisKeys {
-                name: Some(name),
-                variants: Some(variants),
-                key: None,
-                zip: None,
-                list: None,
-                linspace: None,
-                logspace: None,
-            } => named(name, &variants)?,
-            _ => {
-                return Err(
-                    "an axis has `key` with `list`, `linspace` or `logspace`; or `zip`; or `name` with \
-                            `variants`: nothing else together"
-                        .to_owned(),
-                );
+            (None, Some(zip), None, None) if list.is_none() && linspace.is_none() && logspace.is_none() => {
+                zipped(&zip)
             }
-        };
-        if axis.levels.is_empty() {
+            (None, None, Some(name), Some(variants))
+                if list.is_none() && linspace.is_none() && logspace.is_none() =>
+            {
+                named(name, &variants)
+            }
+            _ => Err(
+                "an axis has `key` with `list`, `linspace` or `logspace`; or `zip`; or `name` with \
+                 `variants`: nothing else together"
+                    .to_owned(),
+            ),
+        }
+    }
+
+    fn check_keys(&self) -> Result<(), String> {
+        if self.levels.is_empty() {
             return Err(format!(
                 "the axis of `{}` is empty: give it at least one level",
-                axis.columns.join("`, `")
+                self.columns.join("`, `")
             ));
         }
-        for key in axis.keys() {
+        for key in self.keys() {
             if key.contains(char::is_whitespace) {
                 return Err(format!(
                     "the key `{key}` of an axis has a blank in it: take it out"
@@ -159,9 +144,13 @@ impl Axis {
                 ));
             }
         }
-        for level in &axis.levels {
+        Ok(())
+    }
+
+    fn check_levels(&self) -> Result<(), String> {
+        for level in &self.levels {
             let mut earlier = BTreeSet::new();
-            for key in level.overrides.iter().map(|set| key_of(set)) {
+            for key in level.overrides.iter().map(Override::key) {
                 if let Some(other) = conflict(key, &earlier) {
                     return Err(format!(
                         "the level {} sets `{key}` and `{other}`, of which one leaves nothing of the other: keep one of them",
@@ -172,14 +161,14 @@ impl Axis {
             }
         }
         let mut seen = HashSet::new();
-        if let Some(twice) = axis.levels.iter().find(|level| !seen.insert(&level.overrides)) {
+        if let Some(twice) = self.levels.iter().find(|level| !seen.insert(&level.overrides)) {
             return Err(format!(
                 "the level {} stands twice on the axis of `{}`: keep one",
                 twice.labels.join(", "),
-                axis.columns.join("`, `")
+                self.columns.join("`, `")
             ));
         }
-        Ok(axis.with_numbers_or_names())
+        Ok(())
     }
 
     /// An axis is one of numbers only if all its levels are, each another one: zipped keys may repeat the first.
@@ -210,12 +199,34 @@ impl Axis {
     /// Keys of the case that its levels set.
     pub(super) fn keys(&self) -> BTreeSet<&str> {
         let overrides = self.levels.iter().flat_map(|level| &level.overrides);
-        overrides.map(|set| key_of(set)).collect()
+        overrides.map(Override::key).collect()
     }
 
     /// The name under which pictures show it.
     pub fn title(&self) -> &str {
         &self.columns[0]
+    }
+}
+
+/// The values of an axis of one key, and how they are spaced.
+fn values_of(
+    key: &str,
+    list: Option<Vec<Value>>,
+    linspace: Option<(f64, f64, usize)>,
+    logspace: Option<(f64, f64, usize)>,
+) -> Result<(Vec<Value>, Spacing), String> {
+    match (list, linspace, logspace) {
+        (Some(list), None, None) => Ok((list, Spacing::Linear)),
+        (None, Some((from, to, count)), None) => Ok((spaced(from, to, count, linear)?, Spacing::Linear)),
+        (None, None, Some((from, to, count))) => {
+            if !(from > 0.0 && to > 0.0) {
+                return Err(format!("`logspace` from {from} to {to} must lie above 0"));
+            }
+            Ok((spaced(from, to, count, logarithmic)?, Spacing::Logarithmic))
+        }
+        _ => Err(format!(
+            "the axis of `{key}` needs one of `list`, `linspace` and `logspace`"
+        )),
     }
 }
 
@@ -283,7 +294,7 @@ fn level(keys: &[&str], values: &[&Value]) -> Level {
         overrides: keys
             .iter()
             .zip(values)
-            .map(|(key, value)| format!("{key}={value}"))
+            .map(|(key, value)| Override::new(key, value))
             .collect(),
     }
 }
@@ -310,8 +321,8 @@ fn label(key: &str, value: &Value) -> String {
     }
 }
 
-/// Keys of a table, `{ drive.v_star = 0.05 }` or `{ "drive.v_star" = 0.05 }`, as for `--set`.
-pub(super) fn overrides(keys: &toml::Table) -> Vec<String> {
+/// The overrides that a table such as `{ drive.v_star = 0.05 }` or `{ "drive.v_star" = 0.05 }` stands for.
+pub(super) fn overrides(keys: &toml::Table) -> Vec<Override> {
     let mut list = Vec::new();
     for (key, value) in keys {
         flatten(key, value, &mut list);
@@ -319,9 +330,9 @@ pub(super) fn overrides(keys: &toml::Table) -> Vec<String> {
     list
 }
 
-fn flatten(key: &str, value: &Value, list: &mut Vec<String>) {
-    // Tables of the case, `drive`, and elements of its lists, `texture.0`, are ways to keys; all others are values,
-    // and so is a texture in full.
+fn flatten(key: &str, value: &Value, list: &mut Vec<Override>) {
+    // Tables of the case, `drive`, and elements of its lists, `texture.0`, lead to keys; anything else is a value, and so
+    // is a texture that names its shape.
     let is_number = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
     let leads_on = !key.contains('.') || key.rsplit('.').next().is_some_and(is_number);
     // A key that no case has is refused as it stands, not once for everything in it.
@@ -332,13 +343,8 @@ fn flatten(key: &str, value: &Value, list: &mut Vec<String>) {
                 flatten(&format!("{key}.{name}"), value, list);
             }
         }
-        _ => list.push(format!("{key}={value}")),
+        _ => list.push(Override::new(key, value)),
     }
-}
-
-/// The key of an override.
-pub(super) fn key_of(set: &str) -> &str {
-    set.split_once('=').map_or(set, |(key, _)| key)
 }
 
 /// Whether setting `key` leaves nothing of what `earlier` has set: it is the same key, or a table or list around it.
@@ -346,7 +352,7 @@ pub(super) fn replaces_key(key: &str, earlier: &str) -> bool {
     earlier
         .strip_prefix(key)
         .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-        || slipfront_case::case_file::exclude_each_other(key, earlier)
+        || exclude_each_other(key, earlier)
 }
 
 /// The first of the `other` keys of which setting `key` leaves nothing, or which leaves nothing of it.
@@ -358,7 +364,7 @@ fn conflict<'k>(key: &str, other: &BTreeSet<&'k str>) -> Option<&'k str> {
 /// The first of `earlier` keys of which setting `key` leaves nothing.
 pub(super) fn replaced_key<'k>(key: &str, earlier: &BTreeSet<&'k str>) -> Option<&'k str> {
     let below = format!("{key}.");
-    let partners = slipfront_case::case_file::partners_of(key);
+    let partners = partners_of(key);
     let same = earlier
         .get(key)
         .or_else(|| partners.iter().find_map(|partner| earlier.get(partner.as_str())));
@@ -417,6 +423,10 @@ fn logarithmic(from: f64, to: f64, share: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn texts(overrides: &[Override]) -> Vec<String> {
+        overrides.iter().map(Override::to_string).collect()
+    }
 
     fn axis(text: &str) -> Result<Axis, String> {
         Axis::new(toml::from_str(text).unwrap())
@@ -484,7 +494,7 @@ mod tests {
         )
         .unwrap();
         assert_eq!(
-            overrides(&keys),
+            texts(&overrides(&keys)),
             [
                 "texture.0.coverage=5",
                 "texture.1={ shape = \"groove\" }",
@@ -520,11 +530,11 @@ mod tests {
         let axis = axis(text).unwrap();
         assert_eq!(axis.levels[0].labels, ["zebra"]);
         assert_eq!(
-            axis.levels[0].overrides,
+            texts(&axis.levels[0].overrides),
             ["texture=[{ shape = \"groove\", coverage = 10 }]"]
         );
         assert_eq!(
-            axis.levels[1].overrides,
+            texts(&axis.levels[1].overrides),
             ["drive.v_star=0.1", "load.redistribute=false"]
         );
     }
@@ -535,7 +545,7 @@ mod tests {
             axis("zip = { 'slider.blocks' = [[25, 25], [50, 50]], 'friction.seed' = [1, 2] }").unwrap();
         assert_eq!(axis.columns, ["slider.blocks", "friction.seed"]);
         assert_eq!(
-            axis.levels[1].overrides,
+            texts(&axis.levels[1].overrides),
             ["slider.blocks=[50, 50]", "friction.seed=2"]
         );
         assert_eq!(axis.levels[1].number, Some(50.0));

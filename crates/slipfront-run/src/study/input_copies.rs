@@ -7,14 +7,7 @@ use std::path::{Component, Path, PathBuf};
 use toml::{Table, Value};
 
 use crate::run_folder::error::FolderError;
-
-/// Keys of a case that name files.
-const FILE_KEYS: [&str; 3] = ["file", "mu_static_field", "mu_kinetic_field"];
-
-/// Whether a key of a case, such as `texture.0.file`, names a file.
-pub(super) fn names_a_file(key: &str) -> bool {
-    FILE_KEYS.contains(&key.rsplit('.').next().unwrap_or(key))
-}
+use slipfront_case::case_file::names_a_file;
 
 /// Folder of the copies.
 const FOLDER: &str = "inputs";

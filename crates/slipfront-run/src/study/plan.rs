@@ -12,7 +12,7 @@ use super::shard::Shard;
 use super::study_file::{Base, RetainRuns, Settings, StudyFile};
 use crate::manifest::Manifest;
 use slipfront_case::case::{Budget, Case, PROGRAM, check_fields};
-use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Output, Snapshots};
+use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Output, Override, ParsedCase, Snapshots};
 use slipfront_case::machine;
 use slipfront_case::machine::{available_memory, free_disk};
 use slipfront_case::number_format::byte_size;
@@ -30,7 +30,7 @@ pub struct Plan {
     /// Every combination of levels, the last axis fastest.
     pub points: Vec<Point>,
     base: Base,
-    reference: Option<Vec<String>>,
+    reference: Option<Vec<Override>>,
 }
 
 /// A combination of levels.
@@ -118,19 +118,36 @@ impl Plan {
             base: file.base.clone(),
             reference: file.settings.reference.as_ref().map(axis::overrides),
         };
-        let alone = Mutex::new(());
-        let specs: Vec<Result<Vec<RunSpec>, CaseError>> = plan
-            .points
-            .par_iter()
-            .map(|point| plan.roles().map(|role| plan.spec(point, role, &alone)).collect())
-            .collect();
-        for (position, specs) in specs.into_iter().enumerate() {
-            plan.points[position].specs = specs.map_err(|source| StudyError::Point {
-                point: plan.describe(&plan.points[position]),
-                source,
-            })?;
+        let specs = plan.specs().map_err(|(point, source)| StudyError::Point {
+            point: plan
+                .points
+                .get(point)
+                .map_or_else(String::new, |point| plan.describe(point)),
+            source,
+        })?;
+        for (point, specs) in plan.points.iter_mut().zip(specs) {
+            point.specs = specs;
         }
         Ok(plan)
+    }
+
+    /// Tries every point, and tells what its runs are.
+    ///
+    /// # Errors
+    /// What is wrong with the first point that is no valid case, and its position.
+    fn specs(&self) -> Result<Vec<Vec<RunSpec>>, (usize, CaseError)> {
+        let base = self.base.parse().map_err(|error| (0, error))?;
+        let alone = Mutex::new(());
+        let specs = |point| {
+            self.roles()
+                .map(|role| self.spec(&base, point, role, &alone))
+                .collect()
+        };
+        let tried: Vec<Result<Vec<RunSpec>, CaseError>> = self.points.par_iter().map(specs).collect();
+        let numbered = tried.into_iter().enumerate();
+        numbered
+            .map(|(position, specs)| specs.map_err(|error| (position, error)))
+            .collect()
     }
 
     /// What runs a point has: itself, and its reference if the study has one.
@@ -145,27 +162,31 @@ impl Plan {
         self.reference.is_some()
     }
 
-    /// The case file of replicate 0.
-    fn case_file(&self, point: &Point, role: Role) -> Result<CaseFile, CaseError> {
-        let mut overrides: Vec<String> = Vec::new();
-        for (axis, &level) in self.axes.iter().zip(&point.levels) {
-            overrides.extend_from_slice(&axis.levels[level].overrides);
+    /// The case file of replicate 0: the base with the overrides of the point's levels, and of the reference.
+    fn case_file(&self, base: &ParsedCase, point: &Point, role: Role) -> Result<CaseFile, CaseError> {
+        let levels = self.axes.iter().zip(&point.levels);
+        let overrides = levels.flat_map(|(axis, &level)| &axis.levels[level].overrides);
+        match &self.reference {
+            Some(reference) if role == Role::Reference => {
+                let is_kept = |set: &&Override| {
+                    let mut others = reference.iter();
+                    others.all(|other| !axis::replaces_key(other.key(), set.key()))
+                };
+                base.with(overrides.filter(is_kept).chain(reference))
+            }
+            _ => base.with(overrides),
         }
-        if role == Role::Reference {
-            let reference = self.reference.iter().flatten();
-            overrides.retain(|set| {
-                reference
-                    .clone()
-                    .all(|other| !axis::replaces_key(axis::key_of(other), axis::key_of(set)))
-            });
-            overrides.extend(reference.cloned());
-        }
-        CaseFile::parse(&self.base.text, &self.base.name, &overrides)
     }
 
-    /// Tries a point and notes what its runs are.
-    fn spec(&self, point: &Point, role: Role, alone: &Mutex<()>) -> Result<RunSpec, CaseError> {
-        let file = self.case_file(point, role)?;
+    /// Makes the case of a point, and tells what its runs are.
+    fn spec(
+        &self,
+        base: &ParsedCase,
+        point: &Point,
+        role: Role,
+        alone: &Mutex<()>,
+    ) -> Result<RunSpec, CaseError> {
+        let file = self.case_file(base, point, role)?;
         let blocks: u64 = file.slider.blocks.into_iter().map(u64::from).product();
         let _alone = (blocks > LARGE).then(|| alone.lock());
         let case = self.trimmed(file, "point")?;
@@ -208,7 +229,7 @@ impl Plan {
     /// # Errors
     /// When a file that it reads is no longer what it was.
     pub fn case(&self, run: RunKey) -> Result<Case, CaseError> {
-        let mut file = self.case_file(&self.points[run.point], run.role)?;
+        let mut file = self.case_file(&self.base.parse()?, &self.points[run.point], run.role)?;
         file.friction.seed = self.seed(run);
         let case = self.trimmed(file, &self.folder_name(run))?;
         // Only files can have become others.

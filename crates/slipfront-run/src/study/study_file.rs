@@ -12,7 +12,8 @@ use super::error::StudyError;
 use super::input_copies::{self, Copy};
 use super::{summary_values, tables};
 use slipfront_case::case_file::{
-    CASE_TABLES, CaseError, STUDY_TABLES, Source, Tables, header_below, keys_of, limit_nesting, unknown_key,
+    CASE_TABLES, CaseError, ParsedCase, STUDY_TABLES, Source, Tables, header_below, keys_of, limit_nesting,
+    syntax_error, unknown_key,
 };
 
 /// A study file.
@@ -39,6 +40,13 @@ pub struct Base {
     pub name: String,
     /// The folder that the files it names are relative to.
     pub folder: PathBuf,
+}
+
+impl Base {
+    /// The case file, parsed.
+    pub(super) fn parse(&self) -> Result<ParsedCase<'_>, CaseError> {
+        ParsedCase::parse(&self.text, &self.name)
+    }
 }
 
 /// `[study]`: repetition, reference and what is kept.
@@ -139,7 +147,7 @@ impl Settings {
             return refuse("study.replicates", sentence);
         }
         let mut reference = self.reference.iter().flat_map(axis::overrides);
-        if reference.any(|set| axis::key_of(&set) == "friction.seed") {
+        if reference.any(|set| set.key() == "friction.seed") {
             let sentence =
                 "a reduction is that against the same surface: leave `friction.seed` out of the reference";
             return refuse("study.reference", sentence.to_owned());
@@ -196,7 +204,7 @@ impl StudyFile {
             limit_nesting(&self.base.text)
                 .parse()
                 .map_err(|error: toml::de::Error| {
-                    CaseError::syntax(&Source::new(&self.base.name, &self.base.text, &[]), 0, &error)
+                    syntax_error(&Source::new(&self.base.name, &self.base.text), 0, &error)
                 })?;
         table.insert("base".to_owned(), base.into());
         table.extend(
@@ -249,9 +257,9 @@ impl StudyFile {
     /// # Errors
     /// A sentence that names place, value, bound and remedy.
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
-        let mut source = Source::new(file, text, &[]);
+        let mut source = Source::new(file, text);
         let root = DeTable::parse(limit_nesting(text))
-            .map_err(|error| CaseError::syntax(&source, 0, &error))?
+            .map_err(|error| syntax_error(&source, 0, &error))?
             .into_inner();
         source.note_places(&root);
         let mut tables = Tables {
@@ -281,9 +289,7 @@ impl StudyFile {
         }
         refuse_conflicts(&axes, &source)?;
         // The text has been read as TOML once, so that it is a table.
-        let table = text
-            .parse()
-            .map_err(|error| CaseError::syntax(&source, 0, &error))?;
+        let table = text.parse().map_err(|error| syntax_error(&source, 0, &error))?;
         Ok(Self {
             name: name.to_owned(),
             base,

@@ -7,9 +7,11 @@ use crate::kernel::{Block, TOGETHER};
 use crate::{Lattice, RunError, Snapshot};
 
 /// A quantity with one value per block. Values are dimensionless, as everywhere in this crate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Field {
     /// Contact stress tau_c (Eq. 10), in units of `P mu_s`; not yet scaled by its maximum.
+    #[serde(rename = "contact_stress_star")]
     ContactStress,
     /// True traction `|F_f|/l^2`, in units of `P mu_s`; not a number over a texture.
     Traction,
@@ -26,6 +28,17 @@ pub enum Field {
 }
 
 impl Field {
+    /// Every field.
+    pub const ALL: [Field; 7] = [
+        Field::ContactStress,
+        Field::Traction,
+        Field::DisplacementX,
+        Field::DisplacementY,
+        Field::VelocityX,
+        Field::VelocityY,
+        Field::Sliding,
+    ];
+
     fn value(self, block: &Block, textured: bool) -> f64 {
         match self {
             Field::ContactStress => stress::contact_stress(block),

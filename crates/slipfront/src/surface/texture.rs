@@ -5,6 +5,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use serde::{Deserialize, Serialize};
+
 use crate::model::unit_vector;
 use crate::{Edges, Lattice};
 
@@ -67,7 +69,8 @@ pub fn cavity_percent(lambda: f64, n_blocks: usize, s: u32, w: f64, count: usize
 }
 
 /// Which way a groove runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Orientation {
     /// Across the x axis: the strip runs along y.
     Across,

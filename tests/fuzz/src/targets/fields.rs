@@ -1,6 +1,6 @@
 //! The fields of a run, `fields.nc`.
 
-use slipfront_case::field_name::FieldName;
+use slipfront::observe::Field;
 use slipfront_run::fields::{
     FieldFrame, FieldsData, FieldsFile, StaticFields, read_fields, read_maps, thin, write_fields,
 };
@@ -34,7 +34,7 @@ pub(crate) const FIELDS: Target = Target {
 /// The bytes of a file for a small lattice.
 pub(crate) fn file([nx, ny]: [usize; 2], stride: usize, frames: usize, block_size: f64) -> Vec<u8> {
     let blocks = nx * ny;
-    let names = [FieldName::ContactStressStar, FieldName::Sliding];
+    let names = [Field::ContactStress, Field::Sliding];
     let number = |block: usize| 0.1 * block as f64;
     let frames: Vec<FieldFrame> = (0..frames)
         .map(|k| {
@@ -82,7 +82,7 @@ fn fields(input: &[u8]) {
             expect_round_trip(&data);
         }
     }
-    for name in [FieldName::ContactStressStar, FieldName::VelocityX] {
+    for name in [Field::ContactStress, Field::VelocityX] {
         match read_maps(&path, name, 6) {
             Err(error) => readable(&error),
             Ok(maps) => {

@@ -1,6 +1,6 @@
 //! Numbers with units, and other words of the command line.
 
-use slipfront_case::field_name::FieldName;
+use slipfront_case::field_info::{field_info, field_named};
 use slipfront_case::quantity::{Density, Duration, Kind, Length, Pressure, Quantity, Rate, Speed};
 use slipfront_run::study::Shard;
 
@@ -60,8 +60,8 @@ fn quantity(input: &[u8]) {
     read::<_>(text.parse::<Speed>(), text);
     read::<_>(text.parse::<Duration>(), text);
     read::<_>(text.parse::<Rate>(), text);
-    if let Some(name) = FieldName::from_name(text) {
-        assert_eq!(name.as_str(), text);
+    if let Some(name) = field_named(text) {
+        assert_eq!(field_info(name).name, text);
     }
     // This word reads the environment.
     if text == "slurm" {

@@ -1,6 +1,6 @@
 //! Study files; the cases that they name are those of the repository.
 
-use slipfront_case::case_file::CaseFile;
+use slipfront_case::case_file::ParsedCase;
 use slipfront_run::study::{StudyFile, StudyFolder};
 
 use crate::checks::readable;
@@ -40,7 +40,8 @@ fn study_file(input: &[u8]) {
         .into_iter()
         .flat_map(|axis| axis.levels.iter().take(MAX_LEVELS))
     {
-        if let Err(error) = CaseFile::parse(&study.base.text, &study.base.name, &level.overrides) {
+        let base = ParsedCase::parse(&study.base.text, &study.base.name);
+        if let Err(error) = base.and_then(|base| base.with(&level.overrides)) {
             readable(&error);
         }
     }

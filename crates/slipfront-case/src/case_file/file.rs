@@ -1,0 +1,188 @@
+//! The case file as a whole.
+
+use std::path::Path;
+
+use serde::Serialize;
+use toml::de::DeTable;
+
+use super::check::Check;
+use super::depth::limit_nesting;
+use super::diagnose::syntax_error;
+use super::error::CaseError;
+use super::keys;
+use super::load::read_text;
+use super::motion::{Drive, Friction, Load};
+use super::output::Output;
+use super::overrides::Override;
+use super::slider::Slider;
+use super::source::Source;
+use super::tables::Tables;
+use super::texture::Texture;
+use super::time::Time;
+
+/// A whole case file. The default is the baseline of Fig. 3, Table 1 case 8.
+///
+/// A parsed case is within all bounds; one that was changed in code can be [checked](CaseFile::check) again.
+///
+/// ```
+/// use slipfront_case::case_file::{CaseFile, DriveSpeed};
+/// let text = "[slider]\nblocks = [50, 50]\n";
+/// let case = CaseFile::parse(text, "case.toml", &["drive.speed=1 mm/s".to_owned()])?;
+/// assert_eq!(case.slider.blocks, [50, 50]);
+/// assert!(matches!(&case.drive.speed, DriveSpeed::Speed(speed) if speed.si() == 1e-3));
+/// assert_eq!(case.friction, CaseFile::default().friction);
+/// assert_eq!(CaseFile::parse(&case.to_toml()?, "printed", &[])?, case);
+/// # Ok::<(), slipfront_case::case_file::CaseError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct CaseFile {
+    /// `[slider]`: the lattice of blocks and its material.
+    pub slider: Slider,
+    /// `[load]`: the normal load.
+    pub load: Load,
+    /// `[drive]`: how the slider is pulled.
+    pub drive: Drive,
+    /// `[friction]`: the law and the local coefficients.
+    pub friction: Friction,
+    /// `[[texture]]`: the parts of the surface that do not touch; they unite.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub texture: Vec<Texture>,
+    /// `[time]`: duration, step, end and averaging window.
+    pub time: Time,
+    /// `[output]`: what is written.
+    pub output: Output,
+    /// What the case was read from, for errors found later: see [`Source::error`].
+    #[serde(skip)]
+    pub source: Source,
+}
+
+impl CaseFile {
+    /// Reads a case from the text of a TOML file, changed by `overrides` of the form `drive.v_star=0.05`.
+    ///
+    /// `name` stands for the file in messages. An override's value is TOML, or else a string as it stands; it replaces
+    /// a key that excludes it, such as `drive.v_star` of the file when `drive.speed` is set.
+    ///
+    /// # Errors
+    /// [`CaseError::Invalid`], with its place, for what is not TOML, not a known key, or out of its bounds.
+    pub fn parse(text: &str, name: &str, overrides: &[String]) -> Result<Self, CaseError> {
+        let base = ParsedCase::parse(text, name)?;
+        let overrides: Vec<Override> = overrides
+            .iter()
+            .map(|entry| Override::parse(entry))
+            .collect::<Result<_, _>>()?;
+        base.with(&overrides)
+    }
+
+    /// Reads a case file of at most 16 MiB, as [`parse`](Self::parse) does.
+    ///
+    /// # Errors
+    /// As for `parse`, and when the path is missing, a folder, too large or not UTF-8 text.
+    pub fn load(path: &Path, overrides: &[String]) -> Result<Self, CaseError> {
+        let text = read_text(path)?;
+        Self::parse(&text, &path.display().to_string(), overrides)
+    }
+
+    /// Every file that the case names, relative to the case file, and the key that names it.
+    pub fn files_mut(&mut self) -> impl Iterator<Item = (String, &mut String)> {
+        let textures = self.texture.iter_mut().enumerate();
+        let masks = textures.filter_map(|(index, texture)| match texture {
+            Texture::Mask(mask) => Some((format!("texture.{index}.file"), &mut mask.file)),
+            _ => None,
+        });
+        let fields = [
+            ("friction.mu_static_field", &mut self.friction.mu_static_field),
+            ("friction.mu_kinetic_field", &mut self.friction.mu_kinetic_field),
+        ];
+        masks.chain(
+            fields
+                .into_iter()
+                .filter_map(|(key, name)| Some((key.to_owned(), name.as_mut()?))),
+        )
+    }
+
+    /// Checks every bound that needs nothing but the file. [`parse`](Self::parse) has done so already.
+    ///
+    /// # Errors
+    /// [`CaseError::Invalid`], with the value, its bound and what to do, at the place where the value was written.
+    pub fn check(&self) -> Result<(), CaseError> {
+        let check = |table| Check::new(&self.source, table, table);
+        self.slider.check(&check("slider"))?;
+        self.load.check(&check("load"))?;
+        self.drive.check(&check("drive"))?;
+        self.friction.check(&check("friction"))?;
+        for (index, texture) in self.texture.iter().enumerate() {
+            let path = format!("texture.{index}");
+            texture.check(&Check::new(&self.source, texture.shape(), &path))?;
+        }
+        self.time.check(&check("time"), &self.drive.speed)?;
+        self.output.check(&check("output"))
+    }
+
+    /// Writes the case with every default filled in, in the order of the design; reading it back gives an equal case.
+    ///
+    /// # Errors
+    /// Those of [`check`](Self::check) for a case that was changed in code: what is written can be read.
+    pub fn to_toml(&self) -> Result<String, CaseError> {
+        self.check()?;
+        Ok(toml::to_string(self)?)
+    }
+}
+
+/// A case file that was parsed as TOML, from which cases are made by overrides.
+#[derive(Clone, Debug)]
+pub struct ParsedCase<'t> {
+    root: DeTable<'t>,
+    source: Source,
+}
+
+impl<'t> ParsedCase<'t> {
+    /// Parses the text of a case file, which messages call `name`.
+    ///
+    /// # Errors
+    /// [`CaseError::Invalid`] for what is not TOML.
+    pub fn parse(text: &'t str, name: &str) -> Result<Self, CaseError> {
+        let source = Source::new(name, text);
+        let root = DeTable::parse(limit_nesting(text));
+        let root = root.map_err(|error| syntax_error(&source, 0, &error))?;
+        Ok(Self {
+            root: root.into_inner(),
+            source,
+        })
+    }
+
+    /// The case with these overrides, one after the other.
+    ///
+    /// # Errors
+    /// [`CaseError::Invalid`], with its place, for an unknown key or a value out of its bounds.
+    pub fn with<'o>(&self, overrides: impl IntoIterator<Item = &'o Override>) -> Result<CaseFile, CaseError> {
+        let mut root: DeTable<'_> = self.root.clone();
+        let mut source = self.source.clone();
+        let overrides: Vec<&Override> = overrides.into_iter().collect();
+        for change in &overrides {
+            change.apply(&mut root, &mut source)?;
+        }
+        source.note_places(&root);
+        keys::refuse_both(&root, &source)?;
+        let mut tables = Tables {
+            root,
+            source: &source,
+        };
+        let mut case = CaseFile {
+            slider: tables.read("slider")?,
+            load: tables.read("load")?,
+            drive: tables.read("drive")?,
+            friction: tables.read("friction")?,
+            texture: tables.read_textures()?,
+            time: tables.read("time")?,
+            output: tables.read("output")?,
+            source: Source::default(),
+        };
+        // The first in the file, not the first of the alphabet.
+        if let Some(key) = tables.root.keys().min_by_key(|key| key.span().start) {
+            return Err(source.error_at(key.span(), keys::unknown_table(key.get_ref())));
+        }
+        case.source = source;
+        case.check()?;
+        Ok(case)
+    }
+}

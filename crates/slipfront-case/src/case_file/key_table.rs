@@ -1,0 +1,383 @@
+//! The table of keys: for every key of a case file what it takes, its bounds, default and title.
+//!
+//! Bounds on quantities are generous: they refuse typing errors (a block of 1000 km), not unusual materials.
+
+use std::ops::Bound::{self, Excluded, Included, Unbounded};
+
+use slipfront::observe::Field;
+use slipfront::surface::Orientation;
+use slipfront::{Edges, FrictionLaw, StopReason};
+
+use super::probe::words_of;
+
+/// A range of numbers.
+pub type Bounds = (Bound<f64>, Bound<f64>);
+
+/// What a key takes.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    /// A number, or one of these words in its place. The remark ends the sentence about a number out of bounds.
+    Number {
+        /// The bounds.
+        bounds: Bounds,
+        /// Advice, or what the number is.
+        remark: &'static str,
+        /// Words that stand for a number.
+        words: &'static [&'static str],
+    },
+    /// A string of number and unit.
+    Quantity {
+        /// The SI unit of the bounds.
+        unit: &'static str,
+        /// The bounds.
+        bounds: Bounds,
+    },
+    /// A whole number, or a pair of them.
+    Whole {
+        /// The smallest.
+        least: u64,
+        /// The largest.
+        most: u64,
+        /// What it must be, where "from 1 to 64" does not say enough.
+        noun: &'static str,
+        /// Ends the sentence about a number out of bounds.
+        remark: &'static str,
+    },
+    /// One of the words of an enum.
+    Words(fn() -> &'static [&'static str]),
+    /// `true` or `false`.
+    Switch,
+    /// The path of a file of one of these formats.
+    File(&'static [&'static str]),
+    /// A value whose bounds depend on others, or that has a form of its own: its bounds in words.
+    Special(&'static str),
+}
+
+/// What a quantity is called along an axis of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Title {
+    /// What it is, in words.
+    pub words: &'static str,
+    /// Its symbol; empty if it has none. Subscripts are Unicode's subscript letters.
+    pub symbol: &'static str,
+    /// Its unit as pictures print it; empty for a number without unit.
+    pub unit: &'static str,
+}
+
+/// A key of a case file.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// Its name within its table.
+    pub name: &'static str,
+    /// What it takes.
+    pub kind: Kind,
+    /// Its default as TOML; empty if it has none.
+    pub default: &'static str,
+    /// The key that sets the same thing: a table has one of the two.
+    pub partner: Option<&'static str>,
+    /// Its title; none for keys that no picture has along an axis.
+    pub title: Option<Title>,
+    /// What it means, in one line.
+    pub doc: &'static str,
+}
+
+/// The keys that stand together: those of a table, or of a shape of texture.
+#[derive(Clone, Copy, Debug)]
+pub struct Section {
+    /// The name of the table; for a shape of texture, the shape.
+    pub name: &'static str,
+    /// Whether it is a shape of `[[texture]]`.
+    pub is_shape: bool,
+    /// Its keys, in the order of the documentation. `shape` itself is not among those of a texture.
+    pub keys: &'static [Key],
+}
+
+impl Section {
+    /// The top-level table of the file that holds its keys.
+    pub fn table(&self) -> &'static str {
+        if self.is_shape { TEXTURE } else { self.name }
+    }
+
+    /// The key of this name.
+    pub fn key(&self, name: &str) -> Option<&'static Key> {
+        self.keys.iter().find(|key| key.name == name)
+    }
+}
+
+/// The table of the textures.
+pub(super) const TEXTURE: &str = "texture";
+
+/// Most blocks along an axis.
+pub(super) const MAX_BLOCKS: u64 = 100_000;
+/// dt* at which the scheme becomes unstable: 2/sqrt(6.5 x 0.75) = 0.9058.
+pub(super) const UNSTABLE_STEP: f64 = 0.9058;
+/// The longest time, in t*.
+pub(super) const MAX_TIME_STAR: f64 = 1e9;
+/// The largest coordinate or size of a texture, m.
+const MAX_LENGTH: f64 = 1e9;
+/// TOML's largest integer.
+const MAX_SEED: u64 = i64::MAX.unsigned_abs();
+
+const POSITIVE_TIME: Bounds = above(0.0, MAX_TIME_STAR);
+const COVERAGE: Kind = number(between(0.0, 100.0), "it is in percent of the whole area");
+const DEGREES: Kind = number(within(-360.0, 360.0), "it is in degrees from x towards y");
+const SIGMA: Kind = number(
+    within(0.0, 1.0),
+    "it is relative to the mean coefficient, so that 0.05 is 5 percent",
+);
+const SIZE: Kind = quantity("m", above(0.0, MAX_LENGTH));
+const COORDINATE: Kind = quantity("m", within(-MAX_LENGTH, MAX_LENGTH));
+const COEFFICIENTS: Kind = Kind::File(&["npy", "csv"]);
+
+/// Every section of a case file.
+pub const SECTIONS: [Section; 10] = [
+    table("slider", SLIDER),
+    table("load", LOAD),
+    table("drive", DRIVE),
+    table("friction", FRICTION),
+    table("time", TIME),
+    table("output", OUTPUT),
+    shape("cavity", CAVITY),
+    shape("groove", GROOVE),
+    shape("polygon", POLYGON),
+    shape("mask", MASK),
+];
+
+#[rustfmt::skip]
+const SLIDER: &[Key] = &[
+    key("blocks", "[25, 25]", whole(1, MAX_BLOCKS), "blocks along x and along y").title("blocks along a side", "", ""),
+    key("block_size", "\"1 um\"", quantity("m", within(1e-12, 1e3)), "edge of a block").title("block size", "l", "m"),
+    key("young_modulus", "\"100 GPa\"", quantity("Pa", within(1e-3, 1e15)), "Young's modulus")
+        .title("Young's modulus", "E", "Pa"),
+    key("density", "\"10 g/cm^3\"", quantity("kg/m^3", within(1e-6, 1e9)), "density")
+        .title("density", "\u{3c1}", "kg/m\u{b3}"),
+    key("omega_star", "0.1", number(within(0.0, 1e3), "a slider that rings little has 1"), "damping of the blocks' motion")
+        .or("damping_rate").title("damping", "\u{3a9}*", ""),
+    key("damping_rate", "", quantity("1/s", within(0.0, 1e24)), "damping with its unit")
+        .or("omega_star").title("damping", "\u{3a9}", "1/s"),
+    key("edges", "\"free\"", Kind::Words(words_of::<Edges>), "what lies beyond the edges that bound x and those that bound y"),
+];
+
+#[rustfmt::skip]
+const LOAD: &[Key] = &[
+    key("pressure", "\"100 kPa\"", quantity("Pa", within(1e-9, 1e15)), "normal load over the whole area, textured or not")
+        .title("pressure", "P", "Pa"),
+    key("redistribute", "true", Kind::Switch, "whether the blocks in contact carry the load of the textured ones"),
+];
+
+#[rustfmt::skip]
+const DRIVE: &[Key] = &[
+    key("v_star", "0.03", number(above(0.0, 10.0), "the paper's runs have 0.01 to 0.2"), "speed of the drive")
+        .or("speed").title("drive speed", "V*", ""),
+    key("speed", "", quantity("m/s", within(1e-18, 1e6)), "speed of the drive with its unit")
+        .or("v_star").title("drive speed", "V", "m/s"),
+    key("direction", "0", DEGREES, "direction of the drive, degrees from x towards y")
+        .title("direction of the drive", "\u{3b8}", "\u{b0}"),
+];
+
+#[rustfmt::skip]
+const FRICTION: &[Key] = &[
+    key("law", "\"projection\"", Kind::Words(words_of::<FrictionLaw>), "the reading of Eq. 4"),
+    key("mu_static", "1.0", number(above(0.0, 100.0), "it is the scale of all forces"), "mean static coefficient")
+        .title("mean static coefficient", "\u{3bc}\u{209b}", ""),
+    key("r_star", "0.5", number(within(0.0, MAX_R_STAR), "it is the kinetic over the static coefficient"),
+        "mean kinetic over mean static coefficient").or("mu_kinetic").title("friction ratio", "R*", ""),
+    key("mu_kinetic", "", Kind::Special("0 to 10 times `mu_static`"), "mean kinetic coefficient")
+        .or("r_star").title("mean kinetic coefficient", "\u{3bc}\u{2096}", ""),
+    key("sigma_static_star", "0.05", SIGMA, "standard deviation of the static coefficients over their mean")
+        .title("spread of static coefficients", "\u{3c3}\u{209b}*", ""),
+    key("sigma_kinetic_star", "0.05", SIGMA, "standard deviation of the kinetic coefficients over *their* mean")
+        .title("spread of kinetic coefficients", "\u{3c3}\u{2096}*", ""),
+    key("seed", "1", whole(0, MAX_SEED), "seed of the random coefficients").title("seed", "", ""),
+    key("mu_static_field", "", COEFFICIENTS, "static coefficients block by block, in place of random ones"),
+    key("mu_kinetic_field", "", COEFFICIENTS, "kinetic coefficients block by block, in place of random ones"),
+];
+
+/// Largest mean kinetic over mean static coefficient.
+pub(super) const MAX_R_STAR: f64 = 10.0;
+
+#[rustfmt::skip]
+const TIME: &[Key] = &[
+    key("duration_star", "\"auto\"", or_word(POSITIVE_TIME, "8/V* shows onset and sliding", AUTO), "length of the run")
+        .or("duration").title("duration", "t*", ""),
+    key("duration", "", quantity("s", within(1e-24, 1e12)), "length of the run with its unit")
+        .or("duration_star").title("duration", "t", "s"),
+    key("step", "\"auto\"", or_word(between(0.0, UNSTABLE_STEP), "beyond it the scheme is unstable; \"auto\" is 0.1",
+        &["auto", "paper"]), "time step").title("time step", "\u{394}t*", ""),
+    key("stop", "\"end\"", Kind::Words(words_of::<StopReason>),
+        "end at the duration, or as soon as the fall that ends the first peak is seen"),
+    key("kinetic_from_star", "\"auto\"", or_word((Included(0.0), Unbounded),
+        "the average is taken from there to the end of the run", AUTO), "start of the window that mu_k* is averaged over"),
+];
+
+#[rustfmt::skip]
+const OUTPUT: &[Key] = &[
+    key("snapshots", "\"auto\"", Kind::Special("`\"auto\"`, a list, or `{ every = 5.0 }`"), "when fields are written"),
+    key("fields", "[\"contact_stress_star\", \"traction\", \"displacement_x\", \"displacement_y\", \"sliding\"]",
+        Kind::Words(words_of::<Field>), "what is written then"),
+    key("stride", "1", Kind::Whole { least: 1, most: MAX_BLOCKS, noun: "", remark: "; 1 writes every block" },
+        "every n-th block in the fields file"),
+    key("series", "\"auto\"", or_word(POSITIVE_TIME, SPACING, AUTO), "spacing of the rows of the series in t*"),
+];
+
+/// What a time between snapshots or rows is.
+pub(super) const SPACING: &str = "it is a spacing in t*";
+
+#[rustfmt::skip]
+const CAVITY: &[Key] = &[
+    key("s", "1", Kind::Whole { least: 1, most: 64, noun: "a whole number ", remark: "" },
+        "kind of outline: an ellipse for 1, else a polygon of s + 1 curved edges").title("cavity shape", "s", ""),
+    key("w", "0", Kind::Special("-1 < w < 1 for s = 1, else -1/s to 1/s"), "how far the outline is from a circle")
+        .title("cavity shape", "w", ""),
+    key("coverage", "", COVERAGE, "size: percent of the whole area")
+        .or("lambda").title("texture coverage", "A*", "%"),
+    key("lambda", "", SIZE, "size: the length of Eq. 17, a circle's radius")
+        .or("coverage").title("cavity size", "\u{3bb}", "m"),
+    key("across", "false", Kind::Switch, "the paper's swap of x and y"),
+    key("center", "\"middle\"", Kind::Special("`\"middle\"`, or a pair within 1e9 m"), "centre of the cavity, or of the `array`"),
+    key("rotate", "0", DEGREES, "rotation, degrees from x towards y").title("rotation of the texture", "", "\u{b0}"),
+    key("array", "[1, 1]", whole(1, 1000), "how many cavities along x and along y"),
+];
+
+#[rustfmt::skip]
+const GROOVE: &[Key] = &[
+    key("orientation", "\"across\"", Kind::Words(words_of::<Orientation>),
+        "whether the groove runs along y (across the x axis) or along x"),
+    key("coverage", "", COVERAGE, "size: percent of the whole area").or("width").title("texture coverage", "A*", "%"),
+    key("width", "", SIZE, "size: the width").or("coverage").title("groove width", "", "m"),
+    key("offset", "\"0 um\"", COORDINATE, "distance of the groove's middle line from the slider's")
+        .title("groove offset", "", "m"),
+];
+
+const POLYGON: &[Key] = &[key(
+    "points",
+    "",
+    Kind::Special("at least 3 pairs within 1e9 m"),
+    "the corners",
+)];
+
+#[rustfmt::skip]
+const MASK: &[Key] = &[
+    key("file", "", Kind::File(&["png", "npy"]), "an image, stretched over the slider"),
+    key("threshold", "0.5", number(between(0.0, 1.0), "it is a share of white"),
+        "a pixel of an image is dark below this share of white"),
+];
+
+/// The bounds of coordinates that stand in lists.
+pub(super) const COORDINATES: Bounds = within(-MAX_LENGTH, MAX_LENGTH);
+/// The bounds of the times of snapshots.
+pub(super) const SNAPSHOT_TIMES: Bounds = within(0.0, MAX_TIME_STAR);
+/// The bounds of times between snapshots.
+pub(super) const SPACINGS: Bounds = POSITIVE_TIME;
+
+const AUTO: &[&str] = &["auto"];
+
+impl Key {
+    const fn or(mut self, partner: &'static str) -> Self {
+        self.partner = Some(partner);
+        self
+    }
+
+    const fn title(mut self, words: &'static str, symbol: &'static str, unit: &'static str) -> Self {
+        self.title = Some(Title { words, symbol, unit });
+        self
+    }
+}
+
+const fn table(name: &'static str, keys: &'static [Key]) -> Section {
+    Section {
+        name,
+        is_shape: false,
+        keys,
+    }
+}
+
+const fn shape(name: &'static str, keys: &'static [Key]) -> Section {
+    Section {
+        name,
+        is_shape: true,
+        keys,
+    }
+}
+
+const fn key(name: &'static str, default: &'static str, kind: Kind, doc: &'static str) -> Key {
+    Key {
+        name,
+        kind,
+        default,
+        partner: None,
+        title: None,
+        doc,
+    }
+}
+
+const fn number(bounds: Bounds, remark: &'static str) -> Kind {
+    or_word(bounds, remark, &[])
+}
+
+const fn or_word(bounds: Bounds, remark: &'static str, words: &'static [&'static str]) -> Kind {
+    Kind::Number {
+        bounds,
+        remark,
+        words,
+    }
+}
+
+const fn quantity(unit: &'static str, bounds: Bounds) -> Kind {
+    Kind::Quantity { unit, bounds }
+}
+
+const fn whole(least: u64, most: u64) -> Kind {
+    Kind::Whole {
+        least,
+        most,
+        noun: "",
+        remark: "",
+    }
+}
+
+/// From `low` to `high`, both included.
+const fn within(low: f64, high: f64) -> Bounds {
+    (Included(low), Included(high))
+}
+
+/// More than `low`, at most `high`.
+const fn above(low: f64, high: f64) -> Bounds {
+    (Excluded(low), Included(high))
+}
+
+/// More than `low`, less than `high`.
+const fn between(low: f64, high: f64) -> Bounds {
+    (Excluded(low), Excluded(high))
+}
+
+/// The key that a path such as `drive.v_star` leads to, and the position of the texture in one such as `texture.0.w`.
+fn find(path: &str) -> Option<(&'static Key, Option<usize>)> {
+    let (table, rest) = path.split_once('.')?;
+    let (texture, name) = match rest.split_once('.') {
+        Some((index, name)) if table == TEXTURE => (Some(index.parse().ok()?), name),
+        _ => (None, rest),
+    };
+    let mut sections = SECTIONS.iter().filter(|section| section.table() == table);
+    let key = sections.find_map(|section| section.key(name))?;
+    Some((key, texture))
+}
+
+/// The title of a key such as `drive.v_star` or `texture.0.coverage`, and the position of its texture.
+pub fn title_of(path: &str) -> Option<(Title, Option<usize>)> {
+    let (key, texture) = find(path)?;
+    Some((key.title?, texture))
+}
+
+/// Whether a key, such as `texture.0.file` or `file` within its table, names a file.
+pub fn names_a_file(key: &str) -> bool {
+    let name = key.rsplit('.').next().unwrap_or(key);
+    let mut keys = SECTIONS.iter().filter_map(|section| section.key(name));
+    keys.any(|key| matches!(key.kind, Kind::File(_)))
+}
+
+/// The names of the keys that exclude `key` in a table: each sets the same thing.
+pub(super) fn partners<'k>(table: &'k str, key: &'k str) -> impl Iterator<Item = &'static str> + 'k {
+    let sections = SECTIONS.iter().filter(move |section| section.table() == table);
+    sections.filter_map(move |section| section.key(key)?.partner)
+}

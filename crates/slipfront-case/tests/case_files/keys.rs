@@ -1,0 +1,66 @@
+use slipfront_case::case_file::{CaseFile, Kind, SECTIONS, Section};
+
+/// A case that has a texture of the shape, and how its keys are reached.
+fn base(section: &Section) -> (String, String) {
+    if !section.is_shape {
+        return (String::new(), section.name.to_owned());
+    }
+    let needed = match section.name {
+        "cavity" | "groove" => "coverage = 10",
+        "mask" => "file = 'mask.png'",
+        _ => "points = [['0 um', '0 um'], ['1 um', '0 um'], ['0 um', '1 um']]",
+    };
+    let text = format!("[[texture]]\nshape = '{}'\n{needed}", section.name);
+    (text, "texture.0".to_owned())
+}
+
+fn with(section: &Section, key: &str, value: &str) -> Result<CaseFile, String> {
+    let (text, table) = base(section);
+    let set = format!("{table}.{key}={value}");
+    CaseFile::parse(&text, "case.toml", &[set]).map_err(|error| error.to_string())
+}
+
+/// The default of the table is what a file without the key has.
+#[test]
+fn defaults_are_those_of_an_empty_file() {
+    for section in &SECTIONS {
+        let without = CaseFile::parse(&base(section).0, "case.toml", &[]).unwrap();
+        for key in section.keys.iter().filter(|key| !key.default.is_empty()) {
+            let case = with(section, key.name, key.default).unwrap();
+            assert_eq!(case, without, "{}.{}", section.name, key.name);
+        }
+    }
+}
+
+/// No key has bounds that its struct forgets to check.
+#[test]
+fn every_bound_of_the_table_is_checked() {
+    for section in &SECTIONS {
+        for key in section.keys {
+            let absurd = match key.kind {
+                Kind::Number { bounds, .. } if bounds.1 == std::ops::Bound::Unbounded => "-1e300".to_owned(),
+                Kind::Number { .. } => "1e300".to_owned(),
+                Kind::Quantity { unit, .. } => format!("1e300 {unit}"),
+                Kind::Whole { most, .. } if most > u64::from(u32::MAX) => continue,
+                Kind::Whole { most, .. } if key.default.starts_with('[') => format!("[1, {}]", most + 1),
+                Kind::Whole { most, .. } => (most + 1).to_string(),
+                Kind::File(_) => "mask.unknown".to_owned(),
+                Kind::Words(_) | Kind::Switch | Kind::Special(_) => "unknown".to_owned(),
+            };
+            let said = with(section, key.name, &absurd).expect_err(key.name);
+            assert!(said.contains(&format!(".{}`", key.name)), "{said}");
+        }
+    }
+}
+
+/// A key has one partner, which has it as its own.
+#[test]
+fn partners_are_mutual() {
+    for section in &SECTIONS {
+        for key in section.keys {
+            let Some(partner) = key.partner else { continue };
+            let partner = section.key(partner).unwrap();
+            assert_eq!(partner.partner, Some(key.name));
+        }
+    }
+}
