@@ -1,9 +1,11 @@
-//! Tells the crate the git revision that it is built from, if it is built in a checkout of its own.
+//! Hashes the sources, for the identity of the build, and asks for the git revision, where it is built in a checkout of its own.
+
+mod hash_sources;
 
 use std::path::Path;
 use std::process::Command;
 
-/// What decides the numbers of a run, relative to this crate: a change elsewhere is none of theirs.
+/// What decides the numbers of a run, relative to this crate; a change elsewhere in the checkout does not make it another program.
 const SOURCES: [&str; 5] = [
     "../slipfront/src",
     "../slipfront-case/src",
@@ -12,7 +14,8 @@ const SOURCES: [&str; 5] = [
     "../../Cargo.lock",
 ];
 
-fn main() {
+fn main() -> std::io::Result<()> {
+    hash_sources::hash_sources()?;
     // HEAD changes with the branch; its log grows with every commit.
     let heads = ["HEAD", "logs/HEAD"].map(|name| git(&["rev-parse", "--git-path", name]));
     let heads = heads.iter().flatten().map(String::as_str);
@@ -25,6 +28,7 @@ fn main() {
     if let Some(revision) = revision() {
         println!("cargo::rustc-env=SLIPFRONT_REVISION={revision}");
     }
+    Ok(())
 }
 
 /// The commit, and whether the sources are its; none outside of git.

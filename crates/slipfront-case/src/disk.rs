@@ -186,3 +186,8 @@ pub fn json(value: &impl Serialize) -> Vec<u8> {
 pub fn is_folder(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|found| found.is_dir())
 }
+
+/// Whether two paths lead to the same file or folder, which exists.
+pub fn is_same(one: &Path, other: &Path) -> bool {
+    matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other)
+}

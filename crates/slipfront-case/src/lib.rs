@@ -15,3 +15,6 @@ pub mod machine;
 pub mod number_format;
 pub mod quantity;
 pub mod text;
+
+/// BLAKE3 hash of the sources of this crate.
+pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");

@@ -117,75 +117,40 @@ impl fmt::Display for Dimension {
 /// Why a text is not a quantity of the wanted dimension.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum QuantityError {
-    /// A bare number, as a TOML number or as a string.
     #[error("{value} has no unit; {wanted} is written as a string with its unit, such as {example:?}")]
     NoUnit {
-        /// The number as written.
         value: String,
-        /// The quantity that is wanted, with its article.
         wanted: &'static str,
-        /// A correct quantity.
         example: &'static str,
     },
-    /// The text does not begin with a number.
     #[error("{text:?} does not begin with a number; {wanted} is wanted, such as {example:?}")]
     NoNumber {
-        /// The text as written.
         text: String,
-        /// The quantity that is wanted, with its article.
         wanted: &'static str,
-        /// A correct quantity.
         example: &'static str,
     },
-    /// A unit that is not known.
     #[error("unknown unit `{unit}` in {text:?}: {advice}")]
     UnknownUnit {
-        /// The text as written.
         text: String,
-        /// The unit that is not known.
         unit: String,
-        /// The nearest unit, or the list of units.
         advice: String,
     },
-    /// The unit cannot be read.
     #[error("the unit of {text:?} cannot be read: {why}")]
-    Unit {
-        /// The text as written.
-        text: String,
-        /// What is wrong with it.
-        why: &'static str,
-    },
-    /// A quantity of another dimension.
+    Unit { text: String, why: &'static str },
     #[error("{text:?} is {given} ({dimension}); {wanted} is wanted, such as {example:?}")]
     Dimension {
-        /// The text as written.
         text: String,
-        /// What it is, with its article.
         given: &'static str,
-        /// Its dimension.
         dimension: Dimension,
-        /// The quantity that is wanted, with its article.
         wanted: &'static str,
-        /// A correct quantity.
         example: &'static str,
     },
-    /// A number too large or too small for an `f64`.
     #[error("{text:?} is too {what} a number to compute with")]
-    Range {
-        /// The text as written.
-        text: String,
-        /// `large` or `small`.
-        what: &'static str,
-    },
-    /// A text of more than 200 bytes.
+    Range { text: String, what: &'static str },
     #[error("a text of {bytes} bytes is too long for a quantity such as {example:?}")]
-    TooLong {
-        /// The length of the text.
-        bytes: usize,
-        /// A correct quantity.
-        example: &'static str,
-    },
+    TooLong { bytes: usize, example: &'static str },
 }
 
 /// What a [`Quantity`] measures: implemented by the markers in [`kind`] only.

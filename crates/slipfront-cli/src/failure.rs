@@ -1,17 +1,17 @@
-//! How a command fails: by its input, or while running.
+//! Why a command fails, and the exit status that follows.
 
 use std::process::ExitCode;
 
-use crate::say::say;
+use crate::print_stderr::print_stderr;
 use crate::signals::Signals;
 
-/// Why a command ends, which decides its exit status.
+/// Why a command failed.
 pub(crate) enum Failure {
     /// Bad input or usage: status 2.
     Input(anyhow::Error),
-    /// Failed while running: status 1.
+    /// An error while running: status 1.
     Running(anyhow::Error),
-    /// Stopped by this signal: status 128 + signal.
+    /// Stopped by a signal of this number: status 128 + number.
     Stopped(i32, anyhow::Error),
 }
 
@@ -24,19 +24,19 @@ impl Failure {
         Self::Running(error.into())
     }
 
-    /// Stopped by the signal that came.
+    /// A command that one of `signals` has stopped.
     pub(crate) fn stopped(signals: &Signals, error: impl Into<anyhow::Error>) -> Self {
         Self::Stopped(signals.stopped().unwrap_or_default(), error.into())
     }
 
-    /// Says on stderr what is wrong.
+    /// Prints the error to stderr, and gives the exit status.
     pub(crate) fn report(self) -> ExitCode {
         let (error, status) = match self {
             Self::Input(error) => (error, 2),
             Self::Running(error) => (error, 1),
             Self::Stopped(signal, error) => (error, 128 + signal as u8),
         };
-        say(&format!("error: {error}"));
+        print_stderr(&format!("error: {error}"));
         ExitCode::from(status)
     }
 }

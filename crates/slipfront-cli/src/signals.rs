@@ -67,7 +67,7 @@ impl Signals {
 
 /// Makes a write that a limit of the size of files forbids fail with a reason, where the signal of it would end the process
 /// without a word.
-pub(crate) fn let_writes_fail() -> std::io::Result<()> {
+pub(crate) fn ignore_sigxfsz() -> std::io::Result<()> {
     #[cfg(unix)]
     signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
     Ok(())

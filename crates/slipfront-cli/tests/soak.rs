@@ -9,11 +9,14 @@
 #![cfg(target_os = "linux")] // Where /proc tells how much memory a process has had.
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
+#[path = "support/mod.rs"]
+mod support;
+
 use std::collections::BTreeMap;
-use std::path::Path;
-use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
+
+use support::workspace::Workspace;
 
 /// What a run took and left.
 struct Soaked {
@@ -23,22 +26,11 @@ struct Soaked {
     files: BTreeMap<String, u64>,
 }
 
-fn soak(folder: &Path, duration_star: f64) -> Soaked {
-    let out = folder.join(format!("{duration_star:e}"));
-    let mut child = Command::new(env!("CARGO_BIN_EXE_slipfront"))
-        .args([
-            "run",
-            "--quiet",
-            "--set",
-            "slider.blocks=[6,5]",
-            "--set",
-            "drive.v_star=0.1",
-        ])
-        .args(["--set", &format!("time.duration_star={duration_star}"), "--out"])
-        .arg(&out)
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
+fn soak(workspace: &Workspace, duration_star: f64) -> Soaked {
+    let out = format!("{duration_star:e}");
+    let mut child = workspace.start(&format!(
+        "run --quiet --set slider.blocks=[6,5] --set drive.v_star=0.1 --set time.duration_star={duration_star} --out {out}"
+    ));
     let mut peak_kib = 0;
     let status = loop {
         // Most is taken while the pictures are drawn, for some tenths of a second at the end.
@@ -52,9 +44,9 @@ fn soak(folder: &Path, duration_star: f64) -> Soaked {
         sleep(Duration::from_millis(1));
     };
     assert!(status.success(), "{status}");
-    let summary = std::fs::read(out.join("summary.json")).unwrap();
+    let summary = workspace.read(&format!("{out}/summary.json"));
     let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap();
-    let files = std::fs::read_dir(&out).unwrap().map(|entry| {
+    let files = std::fs::read_dir(workspace.path(&out)).unwrap().map(|entry| {
         let entry = entry.unwrap();
         let name = entry.file_name().into_string().unwrap();
         (name, entry.metadata().unwrap().len())
@@ -69,12 +61,12 @@ fn soak(folder: &Path, duration_star: f64) -> Soaked {
 
 #[test]
 fn a_longer_run_takes_no_more() {
-    let folder = tempfile::tempdir().unwrap();
+    let workspace = Workspace::new();
     let long = std::env::var("SLIPFRONT_SOAK").is_ok_and(|form| form == "long");
     let durations: &[f64] = if long { &[1e4, 1e5, 1e6, 1e7] } else { &[1e4, 1e5] };
     let runs: Vec<Soaked> = durations
         .iter()
-        .map(|&duration| soak(folder.path(), duration))
+        .map(|&duration| soak(&workspace, duration))
         .collect();
     for run in &runs {
         let bytes: u64 = run.files.values().sum();

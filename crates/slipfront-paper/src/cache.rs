@@ -1,45 +1,47 @@
-//! What figures found, kept on disk as soon as it is found: a call that was stopped does not begin again.
+//! The data of figures, stored as soon as they are measured, so that a call that was stopped does not measure them again.
 //!
-//! A file holds a checksum and the figure's findings. One that is damaged, or that another program, other cases or
-//! other options made, counts as not there.
+//! A file holds the data of a figure under a step rule, and a checksum. A damaged file, and one that was made by another
+//! program, with other cases or with other options, is ignored.
 
 use std::path::{Path, PathBuf};
 
 use crate::embedded_cases::FILES;
 use crate::error::PaperError;
-use crate::measurements::Found;
-use crate::runner::StepRule;
+use crate::figure_data::FigureData;
+use crate::step_rule::StepRule;
 use slipfront_case::disk::{read_limited, remove_unfinished, write_atomic};
-use slipfront_run::manifest::Manifest;
-use slipfront_run::names::FOUND;
+use slipfront_run::checksum;
+use slipfront_run::names::FIGURE_CACHE;
+use slipfront_run::program;
 use slipfront_run::run_folder::error::FolderError;
 
-/// A longer file holds something else: a figure's findings take some megabytes at the most.
+/// Most bytes of a file; the data of a figure take some megabytes.
 const MAX_BYTES: u64 = 1 << 28;
 
-/// Findings of earlier calls in one folder.
+/// The stored data of figures in a results folder.
 #[derive(Debug)]
-pub struct Saved {
+pub struct FigureCache {
     folder: PathBuf,
-    /// Hash of the program, its cases and the options: what findings depend on besides figure and step.
+    /// Hash of the program, its cases and the options: all that the data depend on besides figure and step rule.
     origin: blake3::Hash,
 }
 
-impl Saved {
-    /// Those in `folder`, made by this build of the program.
+impl FigureCache {
+    /// The data below the results folder `folder` that this build of the program has stored.
     ///
     /// # Errors
     /// When the folder cannot be made.
     pub fn open(folder: &Path, reduced: bool) -> Result<Self, PaperError> {
-        let folder = folder.join(FOUND);
+        let folder = folder.join(FIGURE_CACHE);
         std::fs::create_dir_all(&folder).map_err(|source| FolderError::Unwritable {
             path: folder.clone(),
             source,
         })?;
-        // The records of the folder above are open, so that nobody else writes here.
+        // The lock on the records of the results folder is held: unfinished files are of a process that has ended.
         remove_unfinished(&folder);
         let mut hasher = blake3::Hasher::new();
-        hasher.update(Manifest::this_build().as_bytes());
+        hasher.update(program::this_build().as_bytes());
+        hasher.update(env!("SLIPFRONT_SOURCE_HASH").as_bytes());
         for (name, text) in FILES {
             hasher.update(name.as_bytes()).update(text.as_bytes());
         }
@@ -50,7 +52,7 @@ impl Saved {
         })
     }
 
-    /// The file of a figure's findings.
+    /// The file of a figure.
     pub fn path(&self, figure: &str, step: StepRule) -> PathBuf {
         let step = match step {
             StepRule::Auto => "auto",
@@ -59,39 +61,29 @@ impl Saved {
         self.folder.join(format!("{figure}-{step}.bin"))
     }
 
-    /// Hash of a file's contents and of what made them.
-    fn checksum(&self, findings: &[u8]) -> blake3::Hash {
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(self.origin.as_bytes()).update(findings);
-        hasher.finalize()
+    /// The contents of a file: the data and their checksum.
+    pub fn with_checksum(&self, data: &[u8]) -> Vec<u8> {
+        checksum::with_checksum(self.origin.as_bytes(), data)
     }
 
-    /// The bytes of a file: findings under their checksum.
-    pub fn sealed(&self, findings: &[u8]) -> Vec<u8> {
-        [self.checksum(findings).as_bytes(), findings].concat()
-    }
-
-    /// What a figure found in an earlier call.
-    pub fn load(&self, figure: &str, step: StepRule) -> Option<Found> {
+    /// The data of a figure; none if its file is missing, damaged or of another origin.
+    pub fn load(&self, figure: &str, step: StepRule) -> Option<FigureData> {
         let bytes = read_limited(&self.path(figure, step), MAX_BYTES).ok()?;
-        let (checksum, findings) = bytes.split_at_checked(blake3::OUT_LEN)?;
-        if self.checksum(findings).as_bytes() != checksum {
-            return None;
-        }
-        postcard::from_bytes(findings).ok()
+        let data = checksum::verified(self.origin.as_bytes(), &bytes)?;
+        postcard::from_bytes(data).ok()
     }
 
-    /// Keeps what a figure found.
+    /// Stores the data of a figure.
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn save(&self, figure: &str, step: StepRule, found: &Found) -> Result<(), PaperError> {
+    pub fn save(&self, figure: &str, step: StepRule, data: &FigureData) -> Result<(), PaperError> {
         let path = self.path(figure, step);
-        // Plain data: it always has a binary form.
-        let Ok(findings) = postcard::to_stdvec(found) else {
+        // Serialisation of plain data into memory does not fail.
+        let Ok(data) = postcard::to_stdvec(data) else {
             return Ok(());
         };
-        Ok(write_atomic(&path, &self.sealed(&findings))
+        Ok(write_atomic(&path, &self.with_checksum(&data))
             .map_err(|source| FolderError::Write { path, source })?)
     }
 }
@@ -99,42 +91,39 @@ impl Saved {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measurements::Number;
+    use crate::number::Number;
 
     #[test]
-    fn findings_come_back_unless_damaged_or_made_otherwise() {
+    fn data_come_back_unless_damaged_or_made_otherwise() {
         let folder = tempfile::tempdir().unwrap();
-        let saved = Saved::open(folder.path(), true).unwrap();
-        let mut found = Found::default();
-        found.number("fig99.one", Number::of(&[1.0, 2.0]));
-        found.value("fig99.none", f64::INFINITY);
-        saved.save("fig99", StepRule::Auto, &found).unwrap();
-        assert_eq!(
-            saved.load("fig99", StepRule::Auto).unwrap().numbers,
-            found.numbers
-        );
-        assert!(saved.load("fig99", StepRule::Paper).is_none());
+        let cache = FigureCache::open(folder.path(), true).unwrap();
+        let mut data = FigureData::default();
+        data.number("fig99.one", Number::of(&[1.0, 2.0]));
+        data.value("fig99.none", f64::INFINITY);
+        cache.save("fig99", StepRule::Auto, &data).unwrap();
+        assert_eq!(cache.load("fig99", StepRule::Auto).unwrap().numbers, data.numbers);
+        assert!(cache.load("fig99", StepRule::Paper).is_none());
         assert!(
-            Saved::open(folder.path(), false)
+            FigureCache::open(folder.path(), false)
                 .unwrap()
                 .load("fig99", StepRule::Auto)
                 .is_none()
         );
-        let path = saved.path("fig99", StepRule::Auto);
+        let path = cache.path("fig99", StepRule::Auto);
         let whole = std::fs::read(&path).unwrap();
         for cut in [0, 31, whole.len() - 1] {
             std::fs::write(&path, &whole[..cut]).unwrap();
-            assert!(saved.load("fig99", StepRule::Auto).is_none(), "{cut}");
+            assert!(cache.load("fig99", StepRule::Auto).is_none(), "{cut}");
         }
         std::fs::File::create(&path).unwrap().set_len(1 << 40).unwrap();
-        assert!(saved.load("fig99", StepRule::Auto).is_none());
-        // What a kill left is removed.
+        assert!(cache.load("fig99", StepRule::Auto).is_none());
+        // Unfinished files of a killed process are removed.
         std::fs::write(folder.path().join("found/.slipfront123456"), "half of").unwrap();
-        Saved::open(folder.path(), true).unwrap();
+        FigureCache::open(folder.path(), true).unwrap();
         assert_eq!(std::fs::read_dir(folder.path().join("found")).unwrap().count(), 1);
         let mut flipped = whole;
         flipped[40] ^= 1;
         std::fs::write(&path, flipped).unwrap();
-        assert!(saved.load("fig99", StepRule::Auto).is_none());
+        assert!(cache.load("fig99", StepRule::Auto).is_none());
     }
 }

@@ -1,4 +1,4 @@
-//! The claims of the paper: data in `crates/slipfront-paper/cases/claims.toml`, judged against what the figures have measured.
+//! The claims of the paper, read from `cases/claims.toml` of this crate and judged by the numbers of the figures.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use crate::embedded_cases::CLAIMS;
 use crate::error::PaperError;
-use crate::measurements::Number;
+use crate::number::Number;
 
 /// A claim of the paper and how it is judged.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -16,43 +16,43 @@ pub struct Claim {
     pub number: u32,
     /// Where the paper makes it: section, then figure, table or equation.
     pub place: String,
-    /// What it says, in our words.
+    /// What it says, in other words than the paper's.
     pub claim: String,
-    /// What was measured, in words.
+    /// Description of the number that was measured.
     pub measured: String,
-    /// The number that was measured; its first part is the figure that measures it.
+    /// Name of the number that was measured: `figure.number`.
     pub quantity: String,
-    /// Unit of that number; may be empty.
+    /// Unit of the number; may be empty.
     #[serde(default)]
     pub unit: String,
-    /// Digits after the point with which it is shown.
+    /// Digits after the point with which the number is shown.
     #[serde(default = "three")]
     pub digits: usize,
-    /// Where the number must lie for the claim to hold, ends included.
+    /// Bounds of the number within which the claim holds, ends included.
     pub within: [f64; 2],
-    /// What must be so too for the claim to hold without a condition.
+    /// A second number: where it is out of its bounds, the claim holds only with a condition.
     pub condition: Option<Condition>,
-    /// What comes out; anything else is a failure of the program, or news.
+    /// The expected verdict. Another one points to a fault of the program or to a change of the model.
     pub expected: Verdict,
-    /// Number of the deviation that explains it.
+    /// Number of the deviation from the paper's print (D1 to D12) that explains the verdict.
     pub deviation: Option<String>,
-    /// What else a reader should know.
+    /// A remark for the reader; may be empty.
     #[serde(default)]
     pub remark: String,
-    /// Whether the reduced version measures it well enough to judge.
+    /// Whether two surfaces and one time step are enough to judge it.
     #[serde(default = "yes")]
     pub reduced: bool,
 }
 
-/// What must be so for a claim to hold without a condition.
+/// The condition of a claim.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Condition {
-    /// The number that decides.
+    /// Name of the number that decides.
     pub quantity: String,
-    /// Where it must lie, ends included.
+    /// Bounds of the number within which the claim holds without a condition, ends included.
     pub within: [f64; 2],
-    /// Under which condition alone the claim holds otherwise.
+    /// The condition in words.
     pub only: String,
 }
 
@@ -64,7 +64,7 @@ fn yes() -> bool {
     true
 }
 
-/// What came of a claim.
+/// Whether a claim holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -77,7 +77,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// In words.
+    /// The verdict in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Holds => "holds",
@@ -87,16 +87,16 @@ impl Verdict {
     }
 }
 
-/// A claim with what was measured.
+/// A claim, what was measured, and the verdict.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Judged {
+pub struct ClaimResult {
     /// The claim.
     pub claim: Claim,
-    /// The number that it is about.
+    /// The measured number.
     pub number: Number,
-    /// The number of its condition.
+    /// The measured number of its condition.
     pub condition: Option<Number>,
-    /// What came out.
+    /// Whether it holds.
     pub verdict: Verdict,
 }
 
@@ -130,7 +130,7 @@ impl Claim {
     ///
     /// # Errors
     /// [`PaperError::Unmeasured`] when its number is not among them.
-    pub fn judge(self, numbers: &BTreeMap<String, Number>) -> Result<Judged, PaperError> {
+    pub fn judge(self, numbers: &BTreeMap<String, Number>) -> Result<ClaimResult, PaperError> {
         let measured = |quantity: &String| {
             numbers
                 .get(quantity)
@@ -156,7 +156,7 @@ impl Claim {
             (true, true) => Verdict::Holds,
             (true, false) => Verdict::HoldsWithCondition,
         };
-        Ok(Judged {
+        Ok(ClaimResult {
             claim: self,
             number,
             condition,
@@ -165,7 +165,7 @@ impl Claim {
     }
 }
 
-impl Judged {
+impl ClaimResult {
     /// Whether the verdict is the expected one.
     pub fn as_expected(&self) -> bool {
         self.verdict == self.claim.expected
@@ -173,7 +173,7 @@ impl Judged {
 
     /// The measured number with its interval and unit.
     pub fn measured(&self) -> String {
-        let number = with_interval(&self.number, self.claim.digits);
+        let number = self.number.shown(self.claim.digits);
         match self.claim.unit.as_str() {
             "" => number,
             unit => format!("{number} {unit}"),
@@ -181,26 +181,13 @@ impl Judged {
     }
 }
 
-/// A number with the half width of its interval. Less than half a last digit is written as a power of ten.
-pub(super) fn with_interval(number: &Number, digits: usize) -> String {
-    let small = number.value != 0.0 && number.value.abs() < 0.5 * 0.1_f64.powi(digits as i32);
-    let value = if number.value == 0.0 {
-        "0".to_owned()
-    } else if small {
-        format!("{:.1e}", number.value)
-    } else {
-        format!("{:.digits$}", number.value)
-    };
-    match number.interval {
-        Some([low, high]) if high > low => {
-            let half = 0.5 * (high - low);
-            format!("{value} \u{b1} {half:.digits$}")
-        }
-        _ => value,
-    }
+/// Number of claims with each verdict: holds, holds with a condition, does not hold.
+pub(super) fn count_verdicts(results: &[ClaimResult]) -> [usize; 3] {
+    [Verdict::Holds, Verdict::HoldsWithCondition, Verdict::DoesNotHold]
+        .map(|verdict| results.iter().filter(|result| result.verdict == verdict).count())
 }
 
-/// A range in words.
+/// Bounds in words.
 fn bounds([low, high]: [f64; 2], unit: &str) -> String {
     let unit = if unit.is_empty() {
         String::new()
@@ -249,10 +236,10 @@ mod tests {
     }
 
     #[test]
-    fn a_claim_stands_and_falls_with_its_number() {
+    fn a_claim_holds_if_its_number_is_within_bounds() {
         assert_eq!(verdict(claim([0.0, 1.0], None), 1.0, 9.0), Verdict::Holds);
         assert_eq!(verdict(claim([0.0, 1.0], None), 1.001, 9.0), Verdict::DoesNotHold);
-        // What could not be measured does not hold.
+        // A claim whose number could not be measured does not hold.
         assert_eq!(
             verdict(claim([0.0, f64::INFINITY], None), f64::NAN, 9.0),
             Verdict::DoesNotHold
@@ -260,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn a_condition_tells_where_it_holds_and_saves_nothing() {
+    fn a_condition_restricts_a_claim_that_holds_and_saves_none_that_does_not() {
         let conditioned = || claim([0.0, 1.0], Some([0.0, 1.0]));
         assert_eq!(verdict(conditioned(), 0.5, 0.5), Verdict::Holds);
         assert_eq!(verdict(conditioned(), 0.5, 2.0), Verdict::HoldsWithCondition);
@@ -269,11 +256,11 @@ mod tests {
 
     #[test]
     fn another_verdict_than_the_expected_one_is_noticed() {
-        let judged = |value| {
+        let result = |value| {
             let numbers = BTreeMap::from([("fig99.main".to_owned(), Number::exact(value))]);
             claim([0.0, 1.0], None).judge(&numbers).unwrap()
         };
-        assert!(judged(0.5).as_expected() && !judged(2.0).as_expected());
+        assert!(result(0.5).as_expected() && !result(2.0).as_expected());
     }
 
     #[test]
@@ -286,29 +273,20 @@ mod tests {
     }
 
     #[test]
-    fn numbers_show_what_is_known_of_them() {
-        let number = |value: f64, interval| with_interval(&Number { value, interval }, 2);
-        assert_eq!(number(0.126, Some([0.1, 0.152])), "0.13 \u{b1} 0.03");
-        assert_eq!(number(-0.126, None), "-0.13");
-        assert_eq!(number(0.0, None), "0");
-        assert_eq!(number(0.00021, None), "2.1e-4");
-    }
-
-    #[test]
-    fn the_list_of_the_paper_is_whole() {
+    fn the_list_of_claims_is_complete() {
         let claims = claims().unwrap();
         assert!(claims.len() >= 30);
         for (index, claim) in claims.iter().enumerate() {
             assert_eq!(claim.number as usize, index + 1);
             assert!(
-                super::super::FIGURES
+                crate::figures::FIGURES
                     .iter()
                     .any(|figure| figure.name == claim.figure()),
                 "{}",
                 claim.quantity
             );
             assert!(claim.within[0] <= claim.within[1], "claim {}", claim.number);
-            // What fails, and what holds with a condition only, owes the reader a reason.
+            // A claim that fails, or holds with a condition only, needs a reason.
             let reasoned = claim.deviation.is_some() || claim.condition.is_some() || !claim.remark.is_empty();
             assert!(
                 claim.expected == Verdict::Holds || reasoned,

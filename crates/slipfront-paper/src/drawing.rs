@@ -1,13 +1,13 @@
-//! Pictures as data: drawn when they are wanted, and written as CSV beside.
+//! Pictures as data, to be drawn and to be written as CSV.
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::PaperError;
-use crate::measurements::Number;
+use crate::number::Number;
 
 use slipfront_plot::{BarChart, FieldMaps, FrictionCurve, Picture, PictureError, Response, Responses, Shape};
 
-/// What is drawn.
+/// The contents of a picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Drawing {
     /// mu* and N* against t*.
@@ -37,10 +37,10 @@ impl Drawing {
         }
     }
 
-    /// Its numbers as CSV, the shortest that read back as the same bits.
+    /// Its numbers as CSV. They have as many digits as are needed to read back the same bits.
     ///
     /// # Errors
-    /// When they cannot be put into words.
+    /// When they cannot be written as CSV.
     pub fn csv(&self) -> Result<Vec<u8>, PaperError> {
         let mut table = csv::Writer::from_writer(Vec::new());
         match self {
@@ -94,11 +94,12 @@ impl Drawing {
     }
 }
 
+/// An empty cell for NaN.
 fn known(value: f64) -> Option<f64> {
     (!value.is_nan()).then_some(value)
 }
 
-/// A measured curve of a response picture.
+/// A curve of measured numbers.
 pub(super) fn measured(label: &str, x: &[f64], numbers: &[Number]) -> Response {
     let column = |which: usize| numbers.iter().map(|number| number.ends()[which]).collect();
     Response {
@@ -111,7 +112,7 @@ pub(super) fn measured(label: &str, x: &[f64], numbers: &[Number]) -> Response {
     }
 }
 
-/// A formula beside what was measured.
+/// A curve of a formula.
 pub(super) fn formula(label: &str, x: &[f64], value: impl Fn(f64) -> f64) -> Response {
     let blank = vec![f64::NAN; x.len()];
     Response {

@@ -1,6 +1,6 @@
-//! The files of `cases/` in this crate, kept in the program so that `slipfront paper` works anywhere.
+//! The files of `cases/` in this crate, embedded in the program so that `slipfront paper` needs no other files.
 
-/// A table of (name, text) from names relative to `cases/` in this crate.
+/// Pairs of name and text, from names relative to `cases/` without `.toml`.
 macro_rules! files {
     ($($name:literal),* $(,)?) => {
         &[$(($name, include_str!(concat!("../cases/", $name, ".toml")))),*]
@@ -49,5 +49,5 @@ pub(super) const FILES: &[(&str, &str)] = files![
     "table1/case8",
 ];
 
-/// The claims of the paper and what is expected of them.
+/// The text of the list of claims.
 pub(super) const CLAIMS: &str = include_str!("../cases/claims.toml");

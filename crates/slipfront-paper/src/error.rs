@@ -1,4 +1,4 @@
-//! What can go wrong with the paper.
+//! Errors of `slipfront paper`.
 
 use slipfront::RunError;
 use thiserror::Error;
@@ -8,76 +8,36 @@ use slipfront_plot::PictureError;
 use slipfront_run::run_folder::error::FolderError;
 use slipfront_run::study::StudyError;
 
-/// A paper that could not be gone through.
+/// Why the figures could not be run or the report not be written.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum PaperError {
-    /// A figure that the paper does not have.
     #[error("the paper has no `{given}`: take {known}, or all")]
-    Figure {
-        /// What was asked for.
-        given: String,
-        /// What there is.
-        known: String,
-    },
-    /// A case file.
+    Figure { given: String, known: String },
     #[error(transparent)]
     Case(#[from] CaseError),
-    /// A study file, its records, or a signal to stop.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// A run.
     #[error("the run {name} failed: {source}")]
-    Run {
-        /// Its name.
-        name: String,
-        /// Why.
-        source: RunError,
-    },
-    /// A run of a study.
+    Run { name: String, source: RunError },
     #[error("a run of {study} failed: {reason}")]
-    StudyRun {
-        /// Name of the study.
-        study: String,
-        /// Why.
-        reason: String,
-    },
-    /// Something that a figure needs did not come about in a run.
+    StudyRun { study: String, reason: String },
     #[error("{file} gave no {what}")]
-    Lacks {
-        /// The case or study.
-        file: String,
-        /// What is missing.
-        what: String,
-    },
-    /// A file of `cases/paper/`.
-    #[error("a file of cases/paper cannot be read: {0}")]
+    Lacks { file: String, what: String },
+    #[error("a file of the paper's cases cannot be read: {0}")]
     Text(#[from] toml::de::Error),
-    /// A claim about something that no figure measures.
     #[error("claim {number} is about `{quantity}`, which is not measured")]
-    Unmeasured {
-        /// Number of the claim.
-        number: u32,
-        /// Its quantity.
-        quantity: String,
-    },
-    /// A picture.
+    Unmeasured { number: u32, quantity: String },
     #[error("cannot draw {name}: {source}")]
-    Picture {
-        /// Its name.
-        name: String,
-        /// What is wrong with it.
-        source: PictureError,
-    },
-    /// A table could not be put into words.
+    Picture { name: String, source: PictureError },
     #[error("cannot write a table: {0}")]
     Table(#[from] csv::Error),
-    /// A file of the results folder.
     #[error(transparent)]
     Folder(#[from] FolderError),
 }
 
 impl PaperError {
-    /// Whether a signal asked to stop, and everything finished is safe.
+    /// Whether a signal asked to stop. Finished runs of studies and finished figures are stored then.
     pub fn is_interruption(&self) -> bool {
         matches!(self, Self::Study(StudyError::Interrupted))
     }

@@ -1,29 +1,35 @@
-//! The whole paper: every figure and table run again, and every claim judged.
+//! The paper behind the model: every figure and table is run again, and every claim is judged.
 //!
 //! ```text
-//! cases/*.toml -> runs -> Found (numbers, pictures, tables) -> verdicts -> report
+//! cases/*.toml -> runs -> FigureData (numbers, pictures, tables) -> verdicts -> report
 //! ```
 //!
-//! A figure is a file of its own (`figures/fig12.rs`), its cases stand in `cases/fig12.toml`, and the claims about it in
-//! `cases/claims.toml`. Read by the command `slipfront paper`.
+//! A figure has a file of its own (`figures/fig12.rs`); its cases are in `cases/fig12.toml`, and the claims about it in
+//! `cases/claims.toml`. The command is `slipfront paper`.
 
 mod cache;
 mod claims;
 mod drawing;
 mod embedded_cases;
 mod error;
+mod figure_data;
 mod figures;
-mod measurements;
+mod number;
 mod paper;
 mod report;
+mod run;
 mod runner;
+mod statistics;
+mod step_rule;
+mod sweep;
 
-pub use cache::Saved;
-pub use claims::{Claim, Condition, Judged, Verdict, claims};
+pub use cache::FigureCache;
+pub use claims::{Claim, ClaimResult, Condition, Verdict, claims};
 pub use drawing::Drawing;
 pub use error::PaperError;
+pub use figure_data::{FigureData, Panel, Table};
 pub use figures::{FIGURES, Figure, figures};
-pub use measurements::{Found, Number, Panel, Table};
+pub use number::Number;
 pub use paper::{Options, Paper, Stage, run};
 pub use report::{docs_page, foreign_docs, summary, write, write_docs};
-pub use runner::StepRule;
+pub use step_rule::StepRule;

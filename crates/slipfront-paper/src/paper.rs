@@ -6,71 +6,84 @@ use std::sync::atomic::AtomicBool;
 
 use slipfront_run::study::{self, Records};
 
-use crate::cache::Saved;
-use crate::claims::{Claim, Judged, claims};
+use crate::cache::FigureCache;
+use crate::claims::{Claim, ClaimResult, claims};
 use crate::error::PaperError;
+use crate::figure_data::FigureData;
 use crate::figures::{FIGURES, Figure};
-use crate::measurements::{Found, Number};
-use crate::runner::{Bench, StepRule};
+use crate::number::Number;
+use crate::runner::FigureRunner;
+use crate::step_rule::StepRule;
 
-/// How the paper is gone through.
+/// How figures are run.
 #[derive(Clone, Copy, Debug)]
 pub struct Options<'a> {
     /// Runs at once.
     pub threads: usize,
-    /// Set by a signal: everything ends, finished runs of studies are safe.
+    /// Set by a signal: all runs end, and the finished runs of studies stay recorded.
     pub stop: &'a AtomicBool,
-    /// Two random surfaces in place of five, one time step, and only the claims that survive that.
+    /// Two random surfaces in place of five, one time step, and only the claims that can be judged by that.
     pub reduced: bool,
-    /// Folder in which findings are kept: a figure that this program has finished there is not run again.
+    /// Folder of the results. A figure whose data this program has stored there is not run again.
     pub folder: &'a Path,
 }
 
-/// How far it has come.
+impl Options<'_> {
+    /// The step rules under which figures are run.
+    fn step_rules(&self) -> &'static [StepRule] {
+        match self.reduced {
+            true => &[StepRule::Auto],
+            false => &[StepRule::Auto, StepRule::Paper],
+        }
+    }
+}
+
+/// How many figures are done, and which one is being run.
 #[derive(Clone, Copy, Debug)]
 pub struct Stage<'a> {
     /// Figures done so far, under both step rules together.
     pub done: usize,
     /// Figures to do.
     pub total: usize,
-    /// The present one.
+    /// The present figure.
     pub figure: &'a Figure,
-    /// Its time step.
+    /// Its step rule.
     pub step: StepRule,
-    /// The present study of that figure, if it has come to one.
+    /// Progress of the study that the figure is running, if it is running one.
     pub study: Option<&'a study::Progress>,
 }
 
-/// What came of the figures and claims.
+/// Data of the figures, and results of the claims about them.
 #[derive(Debug)]
 pub struct Paper {
-    /// Each figure and what it found with the step of 0.1.
-    pub figures: Vec<(Figure, Found)>,
-    /// The claims about them.
-    pub judged: Vec<Judged>,
-    /// The same claims in the same order, measured with the paper's step; empty in the reduced version.
-    pub judged_by_paper_step: Vec<Judged>,
+    /// Each figure and its data with the time step of 0.1.
+    pub figures: Vec<(Figure, FigureData)>,
+    /// Results of the claims about these figures.
+    pub results: Vec<ClaimResult>,
+    /// Results of the same claims in the same order with the paper's time step; empty in the reduced version.
+    pub results_by_paper_step: Vec<ClaimResult>,
     /// Whether this is the reduced version.
     pub reduced: bool,
 }
 
 impl Paper {
     /// The claims whose verdict is not the expected one, under either step rule.
-    pub fn surprises(&self) -> impl Iterator<Item = (StepRule, &Judged)> {
+    pub fn unexpected_verdicts(&self) -> impl Iterator<Item = (StepRule, &ClaimResult)> {
         let both = [
-            (StepRule::Auto, &self.judged),
-            (StepRule::Paper, &self.judged_by_paper_step),
+            (StepRule::Auto, &self.results),
+            (StepRule::Paper, &self.results_by_paper_step),
         ];
-        both.into_iter().flat_map(|(rule, judged)| {
-            judged
+        both.into_iter().flat_map(|(rule, results)| {
+            results
                 .iter()
-                .filter(|judged| !judged.as_expected())
-                .map(move |judged| (rule, judged))
+                .filter(|result| !result.as_expected())
+                .map(move |result| (rule, result))
         })
     }
 }
 
-/// Runs figures and judges the claims about them, and about those that earlier calls have finished, with both time steps.
+/// Runs figures under each step rule and judges the claims about them. Figures that earlier calls have finished in the same
+/// folder are part of the result as well.
 ///
 /// # Errors
 /// When a run fails, a record cannot be written, or a signal asks to stop.
@@ -80,77 +93,83 @@ pub fn run(
     options: &Options,
     watch: &mut dyn FnMut(&Stage),
 ) -> Result<Paper, PaperError> {
-    let rules: &[StepRule] = match options.reduced {
-        true => &[StepRule::Auto],
-        false => &[StepRule::Auto, StepRule::Paper],
-    };
-    let saved = Saved::open(options.folder, options.reduced)?;
-    // What earlier calls have finished costs nothing, and the report is of all that is there.
-    let is_there = |figure: &Figure| rules.iter().all(|&rule| saved.load(figure.name, rule).is_some());
-    let is_wanted = |figure: &Figure| figures.iter().any(|wanted| wanted.name == figure.name);
-    let figures: Vec<Figure> = FIGURES
-        .into_iter()
-        .filter(|figure| is_wanted(figure) || is_there(figure))
-        .collect();
-    let total = figures.len() * rules.len();
-    let mut done = 0;
-    let mut passes = Vec::new();
-    for &step in rules {
-        let mut pass = Vec::new();
-        for figure in &figures {
+    let rules = options.step_rules();
+    let cache = FigureCache::open(options.folder, options.reduced)?;
+    let figures = with_finished(figures, &cache, rules);
+    let mut data_by_rule = Vec::new();
+    for (pass, &step) in rules.iter().enumerate() {
+        let mut data = Vec::new();
+        for (index, figure) in figures.iter().enumerate() {
             let stage = Stage {
-                done,
-                total,
+                done: pass * figures.len() + index,
+                total: figures.len() * rules.len(),
                 figure,
                 step,
                 study: None,
             };
             watch(&stage);
-            let mut bench = Bench {
-                records: &mut *records,
-                threads: options.threads,
-                stop: options.stop,
-                step,
-                reduced: options.reduced,
-                watch: &mut |progress| {
-                    watch(&Stage {
-                        study: Some(progress),
-                        ..stage
-                    });
-                },
-            };
-            let found = match saved.load(figure.name, step) {
-                Some(found) => found,
-                None => {
-                    let found = (figure.find)(&mut bench)?;
-                    saved.save(figure.name, step, &found)?;
-                    found
-                }
-            };
-            pass.push((*figure, found));
-            done += 1;
+            data.push((*figure, data_of(&stage, records, options, &cache, watch)?));
         }
-        passes.push(pass);
+        data_by_rule.push(data);
     }
-    let judge = |pass: &[(Figure, Found)]| judge(pass, options.reduced);
-    let judged = passes
-        .iter()
-        .map(|pass| judge(pass))
-        .collect::<Result<Vec<_>, _>>()?;
-    let mut judged = judged.into_iter();
+    let mut results = Vec::new();
+    for data in &data_by_rule {
+        results.push(judge(data, options.reduced)?);
+    }
+    let mut results = results.into_iter();
     Ok(Paper {
-        judged: judged.next().unwrap_or_default(),
-        judged_by_paper_step: judged.next().unwrap_or_default(),
-        figures: passes.swap_remove(0),
+        results: results.next().unwrap_or_default(),
+        results_by_paper_step: results.next().unwrap_or_default(),
+        figures: data_by_rule.swap_remove(0),
         reduced: options.reduced,
     })
 }
 
-/// The claims about these figures.
-fn judge(figures: &[(Figure, Found)], reduced: bool) -> Result<Vec<Judged>, PaperError> {
+/// The wanted figures and those that earlier calls have finished, in the order of the paper.
+fn with_finished(wanted: &[Figure], cache: &FigureCache, rules: &[StepRule]) -> Vec<Figure> {
+    let is_wanted = |figure: &Figure| wanted.iter().any(|wanted| wanted.name == figure.name);
+    let is_finished = |figure: &Figure| rules.iter().all(|&rule| cache.load(figure.name, rule).is_some());
+    FIGURES
+        .into_iter()
+        .filter(|figure| is_wanted(figure) || is_finished(figure))
+        .collect()
+}
+
+/// Data of a figure: from the cache, or measured now and stored there.
+fn data_of(
+    stage: &Stage,
+    records: &mut Records,
+    options: &Options,
+    cache: &FigureCache,
+    watch: &mut dyn FnMut(&Stage),
+) -> Result<FigureData, PaperError> {
+    let Stage { figure, step, .. } = *stage;
+    if let Some(data) = cache.load(figure.name, step) {
+        return Ok(data);
+    }
+    let mut runner = FigureRunner {
+        records,
+        threads: options.threads,
+        stop: options.stop,
+        step,
+        reduced: options.reduced,
+        watch: &mut |progress| {
+            watch(&Stage {
+                study: Some(progress),
+                ..*stage
+            });
+        },
+    };
+    let data = (figure.measure)(&mut runner)?;
+    cache.save(figure.name, step, &data)?;
+    Ok(data)
+}
+
+/// Judges the claims about these figures.
+fn judge(figures: &[(Figure, FigureData)], reduced: bool) -> Result<Vec<ClaimResult>, PaperError> {
     let numbers: BTreeMap<String, Number> = figures
         .iter()
-        .flat_map(|(_, found)| found.numbers.iter().map(|(name, number)| (name.clone(), *number)))
+        .flat_map(|(_, data)| data.numbers.iter().map(|(name, number)| (name.clone(), *number)))
         .collect();
     let about = |claim: &Claim| figures.iter().any(|(figure, _)| figure.name == claim.figure());
     claims()?

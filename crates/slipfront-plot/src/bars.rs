@@ -2,25 +2,27 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::axis::drawable;
-use crate::canvas::{Area, Canvas};
+use crate::axis::Axis;
+use crate::canvas::Canvas;
 use crate::category_axis::CategoryAxis;
 use crate::error_bar::{Interval, error_bar};
 use crate::frame::{left_room, left_side};
+use crate::geometry::Area;
 use crate::legend::{Legend, Sample};
 use crate::picture::{Picture, PictureError};
-use crate::scale::{Direction, Scale};
+use crate::range::drawable;
 use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, OPACITY_BAR, Rgb, WIDTH_FRAME, WIDTH_MARK, curve_colour};
 use crate::text::Text;
+use crate::ticks::{Direction, MAX_STEPS};
 
 const HEIGHT: f64 = 560.0;
 /// Bars narrower than this make the picture wider.
-const NARROWEST: f64 = 14.0;
+const MIN_BAR_WIDTH: f64 = 14.0;
 /// A bar on its own takes this share of its place, bars of a group together this one.
 const SHARE_ALONE: f64 = 0.6;
 const SHARE_GROUP: f64 = 0.8;
 /// No bar is wider than this.
-const WIDEST: f64 = 130.0;
+const MAX_BAR_WIDTH: f64 = 130.0;
 
 /// Bars of named variants.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -57,7 +59,7 @@ pub struct Bar {
     pub high: f64,
 }
 
-/// Draws bars from zero with their confidence intervals as whiskers, as wide as a journal's column (85 mm)
+/// Draws bars from zero with error bars, as wide as a journal's column (85 mm)
 /// unless there are too many.
 ///
 /// One group is drawn as bars of one colour, each with its name below. Of several groups, each has its name
@@ -71,8 +73,8 @@ pub fn bars(chart: &BarChart) -> Result<Picture, PictureError> {
     if places.bars.is_empty() {
         return Err(PictureError::Nothing("bar"));
     }
-    let y = scale(&places.bars);
-    let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Direction::Y));
+    let y = value_axis(&places.bars);
+    let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Direction::Y, MAX_STEPS));
     let room = COLUMN_WIDTH.round() - MARGIN - left;
     let width = room.max(places.narrowest() * places.names.len() as f64).round();
     let mut legend = Legend::default();
@@ -96,7 +98,7 @@ pub fn bars(chart: &BarChart) -> Result<Picture, PictureError> {
 
     let mut canvas = Canvas::new(area.right() + MARGIN, area.bottom() + names.height);
     let title = Text::fitted(&chart.y_title, HEIGHT);
-    left_side(&mut canvas, area, 0.0, &y.ticks(Direction::Y), &title);
+    left_side(&mut canvas, area, 0.0, &y.ticks(Direction::Y, MAX_STEPS), &title);
     legend.draw(&mut canvas);
     names.draw(&mut canvas);
     let slot = area.width / places.names.len() as f64;
@@ -116,7 +118,7 @@ pub fn bars(chart: &BarChart) -> Result<Picture, PictureError> {
     canvas.finish()
 }
 
-fn draw_bar(canvas: &mut Canvas, y: &Scale, bar: &Bar, (middle, width): (f64, f64), colour: Rgb) {
+fn draw_bar(canvas: &mut Canvas, y: &Axis, bar: &Bar, (middle, width): (f64, f64), colour: Rgb) {
     if !drawable(bar.mean) {
         return;
     }
@@ -134,8 +136,8 @@ fn draw_bar(canvas: &mut Canvas, y: &Scale, bar: &Bar, (middle, width): (f64, f6
     }
 }
 
-/// y from zero, with all bars and whiskers.
-fn scale(bars: &[Placed]) -> Scale {
+/// y from zero, with all bars and error bars.
+fn value_axis(bars: &[Placed]) -> Axis {
     let values: Vec<f64> = bars
         .iter()
         .flat_map(|Placed { bar, .. }| {
@@ -144,16 +146,16 @@ fn scale(bars: &[Placed]) -> Scale {
             [0.0, bar.mean, ends[0], ends[1]]
         })
         .collect();
-    let whole = Scale::around(&values, false, 0.06);
+    let whole = Axis::around(&values, false, 0.06);
     // Beyond zero no margin, unless bars lie on that side.
-    let (mut lo, mut hi) = (whole.axis().lo, whole.axis().hi);
+    let (mut lo, mut hi) = (whole.lo, whole.hi);
     let beyond = |side: f64| values.iter().any(|&value| drawable(value) && value * side > 0.0);
     match (beyond(-1.0), beyond(1.0)) {
         (false, true) => lo = 0.0,
         (true, false) => hi = 0.0,
         _ => {}
     }
-    Scale::between(lo, hi, false)
+    Axis::linear(lo, hi)
 }
 
 /// Which bar stands where.
@@ -214,8 +216,8 @@ impl<'a> Places<'a> {
 
     /// How narrow the place of a name may be.
     fn narrowest(&self) -> f64 {
-        let bars = NARROWEST * self.legend.len() as f64 / SHARE_GROUP;
-        bars.max(CategoryAxis::NARROWEST)
+        let bars = MIN_BAR_WIDTH * self.legend.len() as f64 / SHARE_GROUP;
+        bars.max(CategoryAxis::MIN_SLOT)
     }
 
     fn bar_width(&self, slot: f64) -> f64 {
@@ -223,7 +225,7 @@ impl<'a> Places<'a> {
             0 => SHARE_ALONE * slot,
             count => SHARE_GROUP * slot / count as f64,
         };
-        width.min(WIDEST)
+        width.min(MAX_BAR_WIDTH)
     }
 }
 
@@ -255,8 +257,8 @@ mod tests {
 
     fn limits(means: &[f64]) -> (f64, f64) {
         let chart = chart(&[("", &means.iter().map(|&mean| bar("", mean)).collect::<Vec<_>>())]);
-        let y = scale(&Places::of(&chart).bars);
-        (y.axis().lo, y.axis().hi)
+        let y = value_axis(&Places::of(&chart).bars);
+        (y.lo, y.hi)
     }
 
     #[test]
@@ -267,7 +269,7 @@ mod tests {
         assert!(lo < -21.0 && hi == 0.0);
         let (lo, hi) = limits(&[-20.0, 5.0]);
         assert!(lo < -21.0 && hi > 6.0);
-        // A whisker may reach below.
+        // An error bar may reach below.
         assert!(limits(&[0.5]).0 < -0.5);
     }
 
@@ -330,6 +332,6 @@ mod tests {
             .split_once("viewBox=\"0 0 ")
             .and_then(|(_, rest)| rest.split_once(' '));
         let width: f64 = width.and_then(|(width, _)| width.parse().ok()).unwrap();
-        assert!(width > 60.0 * CategoryAxis::NARROWEST);
+        assert!(width > 60.0 * CategoryAxis::MIN_SLOT);
     }
 }

@@ -1,11 +1,12 @@
 //! CategoryAxis side by side below a panel.
 
-use crate::canvas::{Align, Area, Canvas};
+use crate::canvas::Canvas;
+use crate::geometry::{Align, Area};
 use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK};
 use crate::text::{CAP_HEIGHT, Text};
 
 /// CategoryAxis are broken into at most so many lines, and stand upright if that is not enough.
-const MOST_LINES: usize = 3;
+const MAX_LINES: usize = 3;
 const LINE: f64 = 1.25 * SIZE_TICK as f64;
 /// Upright names are broken at the first of these lengths if they can, and cut at the last.
 const LENGTHS: [f64; 2] = [320.0, 480.0];
@@ -30,14 +31,14 @@ enum Lines {
 
 impl CategoryAxis {
     /// An upright name's place is no narrower than this.
-    pub(crate) const NARROWEST: f64 = 1.35 * SIZE_TICK as f64;
+    pub(crate) const MIN_SLOT: f64 = 1.35 * SIZE_TICK as f64;
 
     /// CategoryAxis in places of equal width below `area`.
     pub(crate) fn of(names: &[&str], title: &str, area: Area) -> Self {
         let room = area.width / names.len().max(1) as f64 - APART;
         let wrapped: Option<Vec<_>> = names
             .iter()
-            .map(|name| Text::wrapped(name, SIZE_TICK, room, MOST_LINES))
+            .map(|name| Text::wrapped(name, SIZE_TICK, room, MAX_LINES))
             .collect();
         let (lines, deep) = match wrapped {
             Some(names) => {
@@ -45,7 +46,7 @@ impl CategoryAxis {
                 (Lines::Across(names), LINE * most as f64)
             }
             None => {
-                let most = ((room + APART) / LINE).floor().clamp(1.0, MOST_LINES as f64) as usize;
+                let most = ((room + APART) / LINE).floor().clamp(1.0, MAX_LINES as f64) as usize;
                 let upright = |name: &&str| {
                     LENGTHS
                         .into_iter()

@@ -1,10 +1,10 @@
-//! Confidence intervals as whiskers.
+//! Confidence intervals as error bars.
 
-use crate::axis::drawable;
 use crate::canvas::Canvas;
+use crate::range::drawable;
 use crate::style::Rgb;
 
-/// How far the ends of a whisker reach to both sides.
+/// How far the cross lines at the ends reach to both sides.
 const CAP: f64 = 9.0;
 
 /// A confidence interval that can be drawn.
@@ -23,7 +23,7 @@ impl Interval {
     }
 }
 
-/// Draws an interval from one pixel of y to another.
+/// Draws an error bar from one pixel of y to another.
 pub(crate) fn error_bar(canvas: &mut Canvas, x: f64, (low, high): (f64, f64), width: f64, colour: Rgb) {
     canvas.line((x, low), (x, high), width, colour);
     for y in [low, high] {

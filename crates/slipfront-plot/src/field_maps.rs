@@ -3,21 +3,18 @@
 use serde::{Deserialize, Serialize};
 
 use crate::axis::Axis;
-use crate::canvas::{Align, Area, Canvas, Image, level};
-use crate::frame::{BAR_WIDTH, colour_bar, placed, widest};
-use crate::mask_outline::outline;
+use crate::canvas::Canvas;
+use crate::color_bar::{BAR_MIN_HEIGHT, BAR_WIDTH, bar_room, colour_bar};
+use crate::geometry::{Align, Area, Point};
+use crate::lattice_map::{Cells, TITLE_ROOM, block_count, check_length, draw_titles, place, rimmed_line};
 use crate::picture::{Picture, PictureError};
-use crate::stress::draw_outline;
-use crate::style::{
-    BLACK, MARGIN, RADIUS_MARKER, Rgb, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH, TICK_LENGTH, WHITE, WIDTH_MARK,
-};
+use crate::style::{BLACK, MARGIN, RADIUS_MARKER, Rgb, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH};
 use crate::text::Text;
+use crate::ticks::Direction;
 
 const GAP: f64 = 26.0;
 /// A map is no wider than this: 44 mm.
-const WIDEST: f64 = 520.0;
-/// The colour bar is no shorter than this.
-const BAR_SHORTEST: f64 = 180.0;
+const MAX_WIDTH: f64 = 520.0;
 /// The edge of a mark is drawn with so many corners.
 const MARK_CORNERS: usize = 24;
 const MARK: Rgb = [0xd5, 0x2b, 0x1e];
@@ -66,115 +63,71 @@ pub fn field_maps(maps: &FieldMaps) -> Result<Picture, PictureError> {
         return Err(PictureError::Nothing("map"));
     };
     let [lo, hi] = maps.range;
-    let scale = |start: f64, end: f64| Axis { lo, hi, start, end };
-    let bar_room = BAR_WIDTH + TICK_LENGTH + 7.0 + widest(&placed(&scale(0.0, 1.0), 5)) + MARGIN;
+    let bar_ticks = |start: f64, end: f64| Axis::linear(lo, hi).placed(start, end).ticks(Direction::Y, 5);
+    let bar_width = bar_room(&bar_ticks(MAX_WIDTH, 0.0));
     let columns = maps.columns.clamp(1, maps.maps.len());
     let rows = maps.maps.len().div_ceil(columns);
-    let room = (TEXT_WIDTH - MARGIN - bar_room) / columns as f64;
-    let width = (room - GAP).min(WIDEST).round();
+    let room = (TEXT_WIDTH - 2.0 * MARGIN - bar_width) / columns as f64;
+    let width = (room - GAP).min(MAX_WIDTH).round();
     let height = (width * (first.ny as f64 / first.nx as f64).clamp(0.2, 5.0)).round();
-    let noted = maps.maps.iter().any(|map| !map.note.is_empty());
-    let titles = f64::from(SIZE_LABEL) + if noted { f64::from(SIZE_TICK) + 6.0 } else { 0.0 } + 16.0;
-    // The title of the bar stands over it, on the line of the maps' names.
     let area = |index: usize| Area {
         x: MARGIN + (index % columns) as f64 * (width + GAP),
-        y: MARGIN + titles + (index / columns) as f64 * (height + titles + GAP),
+        y: MARGIN + TITLE_ROOM + (index / columns) as f64 * (height + TITLE_ROOM + GAP),
         width,
         height,
     };
     let lowest = area((rows - 1) * columns).bottom();
     let bar = Area {
         x: area(columns - 1).right() + GAP,
-        y: MARGIN + titles,
+        y: MARGIN + TITLE_ROOM,
         width: BAR_WIDTH,
-        height: (lowest - MARGIN - titles).max(BAR_SHORTEST),
+        height: (lowest - MARGIN - TITLE_ROOM).max(BAR_MIN_HEIGHT),
     };
     let title = Text::math(&maps.value_title, SIZE_LABEL);
-    let right = (bar.x + bar_room - MARGIN).max(bar.x + title.width());
+    let right = bar.x + bar_width.max(title.width());
     let mut canvas = Canvas::new(right + MARGIN, lowest.max(bar.bottom()) + MARGIN);
     for (index, map) in maps.maps.iter().enumerate() {
         draw_map(&mut canvas, map, area(index), maps.range);
     }
-    colour_bar(&mut canvas, bar, &placed(&scale(bar.bottom(), bar.y), 5));
+    colour_bar(&mut canvas, bar, &bar_ticks(bar.bottom(), bar.y));
+    // Over the bar, on the line of the maps' names.
     canvas.text(&title, (bar.x, bar.y - 18.0), Align::Start, BLACK);
     canvas.finish()
 }
 
 fn check(map: &FieldMap) -> Result<(), PictureError> {
-    let (nx, ny) = (map.nx, map.ny);
-    let expected = nx
-        .checked_mul(ny)
-        .filter(|&count| count > 0)
-        .ok_or(PictureError::Lattice { nx, ny })?;
+    let expected = block_count(map.nx, map.ny)?;
     let lengths = [("values", map.values.len()), ("texture", map.textured.len())];
-    match lengths.into_iter().find(|(_, found)| *found != expected) {
-        Some((what, found)) => Err(PictureError::Blocks {
-            what: format!("map `{}`, {what},", map.label),
-            found,
-            expected,
-        }),
-        None => Ok(()),
-    }
+    lengths
+        .into_iter()
+        .try_for_each(|(what, found)| check_length(&format!("map `{}`, {what},", map.label), found, expected))
 }
 
-fn draw_map(canvas: &mut Canvas, map: &FieldMap, area: Area, [lo, hi]: [f64; 2]) {
-    let share = |&value: &f32| level(((f64::from(value) - lo) / (hi - lo)) as f32);
-    // The image's first row is the uppermost.
-    let levels = map
-        .values
-        .chunks_exact(map.nx)
-        .rev()
-        .flatten()
-        .map(share)
-        .collect();
-    canvas.image(Image {
-        area,
-        columns: map.nx,
-        levels,
-    });
-    let place = |x: f64, y: f64| {
-        (
-            area.x + x / map.nx as f64 * area.width,
-            area.bottom() - y / map.ny as f64 * area.height,
-        )
-    };
-    for line in outline(&map.textured, map.nx, map.ny) {
-        let corners: Vec<(f64, f64)> = line.iter().map(|&(x, y)| place(x as f64, y as f64)).collect();
-        draw_outline(canvas, &corners);
-    }
+fn draw_map(canvas: &mut Canvas, map: &FieldMap, area: Area, range: [f64; 2]) {
+    Cells::of(map.nx, map.ny, &map.textured).draw(canvas, area, &map.values, range);
     for &[i, j] in &map.marks {
-        draw_mark(canvas, place(i as f64 + 0.5, j as f64 + 0.5));
+        let centre = ((i as f64 + 0.5) / map.nx as f64, (j as f64 + 0.5) / map.ny as f64);
+        draw_mark(canvas, place(area, centre));
     }
     canvas.frame(area);
-    let middle = area.x + 0.5 * area.width;
     let fitted = |text: &str, size| Text::shortened(text, size, area.width + 0.6 * GAP);
-    let mut baseline = area.y - 14.0;
-    if !map.note.is_empty() {
-        canvas.text(
-            &fitted(&map.note, SIZE_TICK),
-            (middle, baseline),
-            Align::Middle,
-            BLACK,
-        );
-        baseline -= f64::from(SIZE_TICK) + 8.0;
-    }
-    canvas.text(
+    draw_titles(
+        canvas,
+        area,
         &fitted(&map.label, SIZE_LABEL),
-        (middle, baseline),
-        Align::Middle,
-        BLACK,
+        &fitted(&map.note, SIZE_TICK),
     );
 }
 
 /// A circle with a pale rim, seen on every colour of the ramp.
-fn draw_mark(canvas: &mut Canvas, (x, y): (f64, f64)) {
+fn draw_mark(canvas: &mut Canvas, (x, y): Point) {
     let corner = |k: usize| {
-        let (sin, cos) = (std::f64::consts::TAU * k as f64 / MARK_CORNERS as f64).sin_cos();
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * k as f64 / MARK_CORNERS as f64);
         (x + 1.5 * RADIUS_MARKER * cos, y + 1.5 * RADIUS_MARKER * sin)
     };
-    let circle: Vec<(f64, f64)> = (0..=MARK_CORNERS).map(corner).collect();
-    canvas.polyline(circle.clone(), WIDTH_MARK + 3.0, WHITE);
-    canvas.polyline(circle, WIDTH_MARK, MARK);
+    let mut circle: Vec<Point> = (0..MARK_CORNERS).map(corner).collect();
+    circle.push(circle[0]);
+    rimmed_line(canvas, circle, MARK);
 }
 
 #[cfg(test)]

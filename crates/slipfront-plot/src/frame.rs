@@ -1,24 +1,10 @@
 //! The numbered sides of a panel: ticks, their numbers, a title.
 
-use crate::axis::Axis;
-use crate::canvas::{Align, Area, Canvas, Image};
-use crate::scale::Direction;
+use crate::canvas::Canvas;
+use crate::geometry::{Align, Area};
 use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WIDTH_FRAME};
 use crate::text::Text;
-
-/// How wide a colour bar is.
-pub(crate) const BAR_WIDTH: f64 = 30.0;
-
-/// A tick: its pixel along the side, and its number.
-pub(crate) type Tick = (f64, Text);
-
-/// The ticks of an axis.
-pub(crate) fn placed(axis: &Axis, most: usize) -> Vec<Tick> {
-    axis.ticks(most)
-        .into_iter()
-        .map(|(value, text)| (axis.at(value), Text::plain(&text, SIZE_TICK)))
-        .collect()
-}
+use crate::ticks::{Direction, Tick};
 
 /// How wide the widest number is.
 pub(crate) fn widest(ticks: &[Tick]) -> f64 {
@@ -54,8 +40,7 @@ pub(crate) fn left_side(canvas: &mut Canvas, area: Area, edge: f64, ticks: &[Tic
         canvas.tick_left((area.x, *y), text);
     }
     let baseline = edge + MARGIN + 0.8 * f64::from(SIZE_LABEL);
-    let middle = area.y + 0.5 * area.height;
-    canvas.text_upwards(title, (baseline, middle), Align::Middle, BLACK);
+    canvas.text_upwards(title, (baseline, area.centre().1), Align::Middle, BLACK);
 }
 
 /// Draws the lower side of `area`.
@@ -69,21 +54,7 @@ pub(crate) fn lower_side(canvas: &mut Canvas, area: Area, ticks: &[Tick], title:
 /// Writes a title under the numbers below `area`.
 pub(crate) fn lower_title(canvas: &mut Canvas, area: Area, title: &Text) {
     let baseline = area.bottom() + LOWER_ROOM - MARGIN - 4.0;
-    canvas.text(title, (area.x + 0.5 * area.width, baseline), Align::Middle, BLACK);
-}
-
-/// Draws a bar of all colours, dark at its foot.
-pub(crate) fn colour_bar(canvas: &mut Canvas, area: Area, ticks: &[Tick]) {
-    let levels = (0..=254).rev().collect();
-    canvas.image(Image {
-        area,
-        columns: 1,
-        levels,
-    });
-    canvas.frame(area);
-    for (y, text) in ticks {
-        canvas.tick_right((area.right(), *y), text);
-    }
+    canvas.text(title, (area.centre().0, baseline), Align::Middle, BLACK);
 }
 
 /// Draws ticks without numbers on the lower or the left side of `area`, half as long as the others.

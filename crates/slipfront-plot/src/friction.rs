@@ -1,14 +1,14 @@
 //! Friction and the share of sliding blocks against time.
 
-use serde::{Deserialize, Serialize};
-
-use crate::axis::drawable;
-use crate::canvas::{Align, Area, Canvas};
+use crate::canvas::Canvas;
+use crate::friction_curve::{FrictionCurve, Kinetic};
 use crate::friction_layout::{Panels, between};
+use crate::geometry::{Align, Area, Point};
 use crate::label_placement::{Candidate, Placer, around};
 use crate::legend::Legend;
 use crate::picture::{Picture, PictureError};
 use crate::polyline::segments;
+use crate::range::drawable;
 use crate::style::{
     BLACK, COLUMN_WIDTH, CURVES, GREY, MARGIN, Rgb, SIZE_LABEL, WIDTH_CURVE, WIDTH_LEADER, WIDTH_MARK,
     curve_colour,
@@ -19,56 +19,12 @@ const DOT: f64 = 7.0;
 /// The kinetic window's shade.
 const SHADE: Rgb = [0x9a, 0xa5, 0xb1];
 
-/// One run's curve; everything is dimensionless.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct FrictionCurve {
-    /// What the legend calls it; shown only beside other curves.
-    pub label: String,
-    /// t*, never falling.
-    pub time_star: Vec<f64>,
-    /// mu* at these times; NaN leaves a gap.
-    pub mu_star: Vec<f64>,
-    /// N* at these times, in percent.
-    pub sliding_percent: Vec<f64>,
-    /// When the first block in contact slips.
-    pub first_slip_time_star: Option<f64>,
-    /// The peak: (`t_s*`, `mu_s*`).
-    pub peak: Option<(f64, f64)>,
-    /// The window of kinetic friction.
-    pub kinetic: Option<Kinetic>,
-    /// Instants to letter.
-    pub instants: Vec<Instant>,
-}
-
-/// Kinetic friction: the mean of mu* over a window of t*.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Kinetic {
-    /// Where the window begins.
-    pub from: f64,
-    /// Where the window ends.
-    pub to: f64,
-    /// `mu_k*`.
-    pub mean: f64,
-    /// Its standard uncertainty, if known.
-    pub uncertainty: Option<f64>,
-}
-
-/// A lettered instant of a curve.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Instant {
-    /// Its letter.
-    pub letter: char,
-    /// When it is.
-    pub time_star: f64,
-    /// mu* at that time.
-    pub mu_star: f64,
-}
-
 /// Draws mu* and, below it, N* against t*, as wide as a journal's column (85 mm).
 ///
 /// One curve is drawn with all it knows: first slip, peak, kinetic window, lettered instants. Several are
-/// drawn over each other with their peaks, the lettered instants if only one has any, and a legend above. Curves of more than 4000 points are thinned to
-/// the first, last, lowest and highest point of every pixel column, which shows the same picture.
+/// drawn over each other with their peaks, the lettered instants if only one has any, and a legend above. Curves
+/// of more than 4000 points are thinned to the first, last, lowest and highest point of every pixel column, which
+/// shows the same picture.
 ///
 /// # Errors
 ///
@@ -113,177 +69,182 @@ pub fn friction(curves: &[FrictionCurve]) -> Result<Picture, PictureError> {
 fn draw_one(canvas: &mut Canvas, panels: &Panels, curve: &FrictionCurve) {
     let Panels { time, mu, sliding } = panels;
     let mut placer = Placer::new(panels.friction());
-    let colour = CURVES[0];
     let window = curve
         .kinetic
         .filter(|window| drawable(window.mean) && window.from < window.to);
-    if let Some(window) = window {
-        let (from, to) = (time.clamped(window.from), time.clamped(window.to));
-        for axis in [mu, sliding] {
-            canvas.fill(between(from, to, axis.start, axis.end), SHADE, 0.25);
-        }
-        if let Some(uncertainty) = window.uncertainty.filter(|&u| drawable(u)) {
-            let (lo, hi) = (
-                mu.clamped(window.mean - uncertainty),
-                mu.clamped(window.mean + uncertainty),
-            );
-            canvas.fill(between(from, to, lo, hi), CURVES[1], 0.25);
-        }
+    if let Some(window) = &window {
+        shade_window(canvas, panels, window);
     }
-    if let Some(slip) = curve.first_slip_time_star.filter(|&slip| time.holds(slip)) {
-        let x = time.at(slip);
+    let first_slip = curve.first_slip_time_star.filter(|&slip| time.contains(slip));
+    if let Some(x) = first_slip.map(|slip| time.at(slip)) {
         for axis in [mu, sliding] {
             canvas.line((x, axis.start), (x, axis.end), WIDTH_LEADER, GREY);
         }
         placer.avoid(&[(x, mu.start), (x, mu.end)]);
     }
-    for (axis, values) in [(mu, &curve.mu_star), (sliding, &curve.sliding_percent)] {
-        for piece in segments(&curve.time_star, values, time, axis) {
-            if axis.start == mu.start {
-                placer.avoid(&piece);
-            }
-            stroke(canvas, piece, colour);
-        }
-    }
-    if let Some(window) = window {
+    draw_curve(canvas, panels, &mut placer, curve, CURVES[0]);
+    if let Some(window) = &window {
         // Over the curve, which would hide it.
         let y = mu.clamped(window.mean);
         let ends = [(time.clamped(window.from), y), (time.clamped(window.to), y)];
         canvas.line(ends[0], ends[1], WIDTH_MARK, CURVES[1]);
         placer.avoid(&ends);
     }
-    label_one(canvas, panels, &mut placer, curve, window);
-    panels.draw_frames(canvas);
-}
-
-/// The dots and labels of a curve; those that can go in fewest places come first.
-fn label_one(
-    canvas: &mut Canvas,
-    panels: &Panels,
-    placer: &mut Placer,
-    curve: &FrictionCurve,
-    window: Option<Kinetic>,
-) {
-    let Panels { time, mu, .. } = panels;
-    let held = |t: f64, value: f64| time.holds(t) && mu.holds(value);
-    let point = |t: f64, value: f64| (time.at(t), mu.at(value));
-    let instants: Vec<&Instant> = curve
-        .instants
-        .iter()
-        .filter(|i| held(i.time_star, i.mu_star))
-        .collect();
-    let peak = curve.peak.filter(|&(t, value)| held(t, value));
-    let mut dots: Vec<(f64, f64)> = instants.iter().map(|i| point(i.time_star, i.mu_star)).collect();
-    dots.extend(peak.map(|(t, value)| point(t, value)));
-    for &(x, y) in &dots {
-        placer.take(Area {
-            x: x - DOT,
-            y: y - DOT,
-            width: 2.0 * DOT,
-            height: 2.0 * DOT,
-        });
-    }
-    if let Some(window) = window {
-        let text = Text::math(&format!("\u{3bc}_k* = {}", with_uncertainty(&window)), SIZE_LABEL);
-        let (from, to) = (time.clamped(window.from), time.clamped(window.to));
-        let candidates = along_window(panels, &text, from, to, mu.clamped(window.mean));
-        write(canvas, placer, &text, candidates, CURVES[1]);
-    }
-    // Instants at the peak share its label: several labels of one point would take its neighbours' places.
-    let at_peak = |instant: &Instant| {
-        let (x, y) = point(instant.time_star, instant.mu_star);
-        let near = |(t, value)| (x - time.at(t)).hypot(y - mu.at(value)) < 2.0;
-        peak.is_some_and(near) && instant.letter.is_alphanumeric()
-    };
-    if let Some((t, value)) = peak {
-        let letters: Vec<String> = instants
-            .iter()
-            .filter(|i| at_peak(i))
-            .map(|i| i.letter.to_string())
-            .collect();
-        let letter = if letters.is_empty() {
-            String::new()
-        } else {
-            letters.join(", ") + ": "
-        };
-        let text = Text::math(&format!("{letter}\u{3bc}_s* = {}", number(value, 3)), SIZE_LABEL);
+    let marks = Marks::of(panels, curve, curve.peak);
+    marks.keep_free(&mut placer);
+    // Labels that can go in fewest places come first.
+    if let Some(window) = &window {
+        let text = Text::math(&format!("\u{3bc}_k* = {}", with_uncertainty(window)), SIZE_LABEL);
         write(
             canvas,
-            placer,
+            &mut placer,
             &text,
-            around(point(t, value), box_of(&text), &dots),
-            BLACK,
+            along_window(panels, &text, window),
+            CURVES[1],
         );
     }
-    if let Some(slip) = curve.first_slip_time_star.filter(|&slip| time.holds(slip)) {
+    marks.label_peak(canvas, &mut placer);
+    if let Some(slip) = first_slip {
         let text = Text::plain("first slip", SIZE_LABEL);
         write(
             canvas,
-            placer,
+            &mut placer,
             &text,
             beside_line(panels, &text, time.at(slip)),
             GREY,
         );
     }
-    for instant in instants.into_iter().filter(|i| !at_peak(i)) {
-        let text = Text::plain(&instant.letter.to_string(), SIZE_LABEL);
-        let place = point(instant.time_star, instant.mu_star);
-        write(canvas, placer, &text, around(place, box_of(&text), &dots), BLACK);
+    marks.label_instants(canvas, &mut placer);
+    marks.draw_dots(canvas);
+    panels.draw_frames(canvas);
+}
+
+/// Shades the window of kinetic friction in both panels, and the uncertainty of its mean.
+fn shade_window(canvas: &mut Canvas, Panels { time, mu, sliding }: &Panels, window: &Kinetic) {
+    let (from, to) = (time.clamped(window.from), time.clamped(window.to));
+    for axis in [mu, sliding] {
+        canvas.fill(between(from, to, axis.start, axis.end), SHADE, 0.25);
     }
-    for dot in dots {
-        canvas.dot(dot, DOT, BLACK);
+    if let Some(uncertainty) = window.uncertainty.filter(|&u| drawable(u)) {
+        let [lo, hi] = [window.mean - uncertainty, window.mean + uncertainty].map(|value| mu.clamped(value));
+        canvas.fill(between(from, to, lo, hi), CURVES[1], 0.25);
+    }
+}
+
+/// Draws mu* and N*; labels keep off the former.
+fn draw_curve(canvas: &mut Canvas, panels: &Panels, placer: &mut Placer, curve: &FrictionCurve, colour: Rgb) {
+    let Panels { time, mu, sliding } = panels;
+    for segment in segments(&curve.time_star, &curve.mu_star, time, mu) {
+        placer.avoid(&segment);
+        stroke(canvas, segment, colour);
+    }
+    for segment in segments(&curve.time_star, &curve.sliding_percent, time, sliding) {
+        stroke(canvas, segment, colour);
     }
 }
 
 /// Several curves, with their peaks.
 fn draw_many(canvas: &mut Canvas, panels: &Panels, curves: &[FrictionCurve]) {
-    let Panels { time, mu, sliding } = panels;
+    let Panels { time, mu, .. } = panels;
     let mut placer = Placer::new(panels.friction());
     for (index, curve) in curves.iter().enumerate() {
-        for (axis, values) in [(mu, &curve.mu_star), (sliding, &curve.sliding_percent)] {
-            for piece in segments(&curve.time_star, values, time, axis) {
-                if axis.start == mu.start {
-                    placer.avoid(&piece);
-                }
-                stroke(canvas, piece, curve_colour(index, curves.len()));
-            }
-        }
+        let colour = curve_colour(index, curves.len());
+        draw_curve(canvas, panels, &mut placer, curve, colour);
     }
     // Peaks last: no curve may hide one.
     for (index, curve) in curves.iter().enumerate() {
-        if let Some((t, value)) = curve.peak.filter(|&(t, value)| time.holds(t) && mu.holds(value)) {
+        if let Some((t, value)) = curve
+            .peak
+            .filter(|&(t, value)| time.contains(t) && mu.contains(value))
+        {
             canvas.dot((time.at(t), mu.at(value)), DOT, curve_colour(index, curves.len()));
         }
     }
     // Letters of two curves could not be told apart.
     let mut lettered = curves.iter().filter(|curve| !curve.instants.is_empty());
     if let (Some(curve), None) = (lettered.next(), lettered.next()) {
-        letter(canvas, panels, &mut placer, curve);
+        let marks = Marks::of(panels, curve, None);
+        marks.keep_free(&mut placer);
+        marks.label_instants(canvas, &mut placer);
+        marks.draw_dots(canvas);
     }
     panels.draw_frames(canvas);
 }
 
-/// Dots and letters of the instants.
-fn letter(canvas: &mut Canvas, panels: &Panels, placer: &mut Placer, curve: &FrictionCurve) {
-    let Panels { time, mu, .. } = panels;
-    let held = |instant: &&Instant| time.holds(instant.time_star) && mu.holds(instant.mu_star);
-    let instants = curve.instants.iter().filter(held);
-    let places: Vec<(&Instant, (f64, f64))> = instants
-        .map(|instant| (instant, (time.at(instant.time_star), mu.at(instant.mu_star))))
-        .collect();
-    for &(_, (x, y)) in &places {
-        placer.take(Area {
-            x: x - DOT,
-            y: y - DOT,
-            width: 2.0 * DOT,
-            height: 2.0 * DOT,
-        });
+/// The points of a curve that are marked by dots.
+struct Marks {
+    /// The peak and its value.
+    peak: Option<(Point, f64)>,
+    /// Instants and their letters; those at the peak share its label, because several labels of one point would take its
+    /// neighbours' places.
+    instants: Vec<(Point, char)>,
+    at_peak: Vec<char>,
+    /// All of these points.
+    dots: Vec<Point>,
+}
+
+impl Marks {
+    /// The instants of a curve that lie in the panel, and its peak if one is given.
+    fn of(Panels { time, mu, .. }: &Panels, curve: &FrictionCurve, peak: Option<(f64, f64)>) -> Self {
+        let point =
+            |t: f64, value: f64| (time.contains(t) && mu.contains(value)).then(|| (time.at(t), mu.at(value)));
+        let peak = peak.and_then(|(t, value)| Some((point(t, value)?, value)));
+        let instants = curve
+            .instants
+            .iter()
+            .filter_map(|instant| Some((point(instant.time_star, instant.mu_star)?, instant.letter)));
+        let instants: Vec<(Point, char)> = instants.collect();
+        let mut dots: Vec<Point> = instants.iter().map(|(at, _)| *at).collect();
+        dots.extend(peak.map(|(at, _)| at));
+        let is_at_peak = |&(at, letter): &(Point, char)| {
+            let near = |(peak, _): (Point, f64)| libm::hypot(at.0 - peak.0, at.1 - peak.1) < 2.0;
+            peak.is_some_and(near) && letter.is_alphanumeric()
+        };
+        let (at_peak, instants): (Vec<_>, Vec<_>) = instants.into_iter().partition(is_at_peak);
+        Self {
+            peak,
+            instants,
+            at_peak: at_peak.into_iter().map(|(_, letter)| letter).collect(),
+            dots,
+        }
     }
-    let dots: Vec<(f64, f64)> = places.iter().map(|(_, place)| *place).collect();
-    for (instant, place) in places {
-        let text = Text::plain(&instant.letter.to_string(), SIZE_LABEL);
-        write(canvas, placer, &text, around(place, box_of(&text), &dots), BLACK);
-        canvas.dot(place, DOT, BLACK);
+
+    /// Keeps labels off the dots.
+    fn keep_free(&self, placer: &mut Placer) {
+        for (x, y) in &self.dots {
+            placer.take(Area {
+                x: x - DOT,
+                y: y - DOT,
+                width: 2.0 * DOT,
+                height: 2.0 * DOT,
+            });
+        }
+    }
+
+    fn label_peak(&self, canvas: &mut Canvas, placer: &mut Placer) {
+        let Some((peak, value)) = self.peak else { return };
+        let letters: Vec<String> = self.at_peak.iter().map(char::to_string).collect();
+        let letters = match letters[..] {
+            [] => String::new(),
+            _ => letters.join(", ") + ": ",
+        };
+        let text = Text::math(&format!("{letters}\u{3bc}_s* = {}", number(value, 3)), SIZE_LABEL);
+        let places = around(peak, box_of(&text), &self.dots);
+        write(canvas, placer, &text, places, BLACK);
+    }
+
+    fn label_instants(&self, canvas: &mut Canvas, placer: &mut Placer) {
+        for &(at, letter) in &self.instants {
+            let text = Text::plain(&letter.to_string(), SIZE_LABEL);
+            let places = around(at, box_of(&text), &self.dots);
+            write(canvas, placer, &text, places, BLACK);
+        }
+    }
+
+    fn draw_dots(&self, canvas: &mut Canvas) {
+        for &dot in &self.dots {
+            canvas.dot(dot, DOT, BLACK);
+        }
     }
 }
 
@@ -298,11 +259,11 @@ fn write(canvas: &mut Canvas, placer: &mut Placer, text: &Text, candidates: Vec<
     canvas.text(text, (area.x, area.bottom() - text.depth()), Align::Start, colour);
 }
 
-/// Draws a piece of a curve; a piece of one point is a dot.
-fn stroke(canvas: &mut Canvas, piece: Vec<(f64, f64)>, colour: Rgb) {
-    match piece[..] {
+/// Draws a segment of a curve; one of a single point is a dot.
+fn stroke(canvas: &mut Canvas, segment: Vec<Point>, colour: Rgb) {
+    match segment[..] {
         [point] => canvas.dot(point, 0.6 * DOT, colour),
-        _ => canvas.polyline(piece, WIDTH_CURVE, colour),
+        _ => canvas.polyline(segment, WIDTH_CURVE, colour),
     }
 }
 
@@ -312,8 +273,10 @@ fn box_of(text: &Text) -> (f64, f64) {
 }
 
 /// Places for a label of the window: within it if it is wide enough, rather above the mean than below.
-fn along_window(panels: &Panels, text: &Text, from: f64, to: f64, mean: f64) -> Vec<Candidate> {
+fn along_window(panels: &Panels, text: &Text, window: &Kinetic) -> Vec<Candidate> {
     let panel = panels.friction();
+    let (from, to) = (panels.time.clamped(window.from), panels.time.clamped(window.to));
+    let mean = panels.mu.clamped(window.mean);
     let (width, height) = box_of(text);
     let room = (panel.x + MARGIN, panel.right() - MARGIN - width);
     let x = (0.5 * (from + to - width)).min(room.1).max(room.0);
@@ -359,7 +322,7 @@ fn beside_line(panels: &Panels, text: &Text, x: f64) -> Vec<Candidate> {
 fn with_uncertainty(window: &Kinetic) -> String {
     match window.uncertainty.filter(|&u| u > 0.0 && drawable(u)) {
         Some(uncertainty) => {
-            let decimals = (-uncertainty.log10().floor()).clamp(1.0, 5.0) as usize;
+            let decimals = (-libm::log10(uncertainty).floor()).clamp(1.0, 5.0) as usize;
             format!(
                 "{} \u{b1} {}",
                 number(window.mean, decimals),
@@ -373,6 +336,7 @@ fn with_uncertainty(window: &Kinetic) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::friction_curve::Instant;
 
     /// A curve like a real run's: a ramp, a peak, a fall, sliding.
     fn run() -> FrictionCurve {

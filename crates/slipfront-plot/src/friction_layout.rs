@@ -1,11 +1,14 @@
 //! The two panels of a friction picture: mu* above, N* below, on one time axis.
 
-use crate::axis::{Axis, range, widened};
-use crate::canvas::{Area, Canvas};
-use crate::frame::{LOWER_ROOM, left_room, left_side, lower_title, placed, right_end};
-use crate::friction::FrictionCurve;
+use crate::axis::Axis;
+use crate::canvas::Canvas;
+use crate::frame::{LOWER_ROOM, left_room, left_side, lower_title, right_end};
+use crate::friction_curve::FrictionCurve;
+use crate::geometry::Area;
+use crate::range::{range, widened};
 use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, SIZE_LABEL, TICK_LENGTH, WIDTH_LEADER};
 use crate::text::Text;
+use crate::ticks::{Direction, MAX_STEPS, Tick};
 
 const HEIGHT_FRICTION: f64 = 500.0;
 const HEIGHT_SLIDING: f64 = 230.0;
@@ -42,31 +45,17 @@ impl Panels {
         let mu_top = MARGIN;
         let mu_bottom = mu_top + HEIGHT_FRICTION;
         let sliding_top = mu_bottom + GAP;
-        let mu = Axis {
-            lo: if lo == 0.0 { lo } else { lo - room },
-            hi: hi + room,
-            start: mu_bottom,
-            end: mu_top,
-        };
-        let sliding = Axis {
-            lo: 0.0,
-            hi: 100.0,
-            start: sliding_top + HEIGHT_SLIDING,
-            end: sliding_top,
-        };
-        let left = left_room(&[placed(&mu, 6), placed(&sliding, 2)].concat());
+        let mu = Axis::linear(if lo == 0.0 { lo } else { lo - room }, hi + room).placed(mu_bottom, mu_top);
+        let sliding = Axis::linear(0.0, 100.0).placed(sliding_top + HEIGHT_SLIDING, sliding_top);
+        let left = left_room(&[mu_ticks(&mu), sliding_ticks(&sliding)].concat());
         // The last number on the time axis may stand half beyond its end.
-        let mut time = Axis {
-            lo: from,
-            hi: to,
-            start: left,
-            end: COLUMN_WIDTH.round() - 28.0,
-        };
-        time.end = right_end(&placed(&time, 6), left, time.end, COLUMN_WIDTH);
+        let right = COLUMN_WIDTH.round() - 28.0;
+        let time = Axis::linear(from, to).placed(left, right);
+        let time = time.placed(left, right_end(&time_ticks(&time), left, right, COLUMN_WIDTH));
         Self { time, mu, sliding }
     }
 
-    /// The same panels, further down.
+    /// These panels, further down.
     pub(crate) fn lowered(mut self, by: f64) -> Self {
         for axis in [&mut self.mu, &mut self.sliding] {
             axis.start += by;
@@ -91,19 +80,19 @@ impl Panels {
 
     /// Ticks, numbers and titles.
     pub(crate) fn draw_axes(&self, canvas: &mut Canvas) {
-        let titles = [
+        let sides = [
             (
                 &self.mu,
-                6,
+                mu_ticks(&self.mu),
                 "friction \u{3bc}* = \u{3bc}/\u{27e8}\u{3bc}_s\u{27e9}",
             ),
-            (&self.sliding, 2, "sliding N* (%)"),
+            (&self.sliding, sliding_ticks(&self.sliding), "sliding N* (%)"),
         ];
-        for (axis, most, title) in titles {
+        for (axis, ticks, title) in sides {
             let title = Text::math(title, SIZE_LABEL);
-            left_side(canvas, self.of_axis(axis), 0.0, &placed(axis, most), &title);
+            left_side(canvas, self.of_axis(axis), 0.0, &ticks, &title);
         }
-        for (x, text) in placed(&self.time, 6) {
+        for (x, text) in time_ticks(&self.time) {
             canvas.tick_below((x, self.sliding.start), &text);
             let foot = self.mu.start;
             canvas.line((x, foot), (x, foot + TICK_LENGTH), WIDTH_LEADER, BLACK);
@@ -118,6 +107,18 @@ impl Panels {
             canvas.frame(self.of_axis(axis));
         }
     }
+}
+
+fn time_ticks(time: &Axis) -> Vec<Tick> {
+    time.ticks(Direction::X, MAX_STEPS)
+}
+
+fn mu_ticks(mu: &Axis) -> Vec<Tick> {
+    mu.ticks(Direction::Y, MAX_STEPS)
+}
+
+fn sliding_ticks(sliding: &Axis) -> Vec<Tick> {
+    sliding.ticks(Direction::Y, 2)
 }
 
 /// The area between two values of x and two of y.
@@ -144,7 +145,7 @@ mod tests {
                 ..FrictionCurve::default()
             };
             let panels = Panels::of(&[curve]);
-            for (x, text) in placed(&panels.time, 6) {
+            for (x, text) in time_ticks(&panels.time) {
                 assert!(x + 0.5 * text.width() <= COLUMN_WIDTH, "t* = {end}");
             }
             assert!(panels.time.end > 0.8 * COLUMN_WIDTH, "t* = {end}");

@@ -1,14 +1,16 @@
 //! A quantity over two axes of a parametric study.
 
-use crate::axis::{drawable, range, widened};
-use crate::canvas::{Align, Area, Canvas, Image, level, level_colour};
-use crate::frame::{
-    BAR_WIDTH, LOWER_ROOM, Tick, colour_bar, left_room, left_side, lower_side, short_ticks, widest,
-};
+use crate::axis::Axis;
+use crate::canvas::Canvas;
+use crate::color_bar::{BAR_WIDTH, bar_room, colour_bar};
+use crate::color_image::{Image, level, level_colour};
+use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side, short_ticks};
+use crate::geometry::{Align, Area};
 use crate::picture::{Picture, PictureError};
-use crate::scale::{Direction, Scale, apart};
-use crate::style::{BLACK, BLANK, COLUMN_WIDTH, MARGIN, Rgb, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WHITE};
+use crate::range::{drawable, range, widened};
+use crate::style::{BLACK, BLANK, COLUMN_WIDTH, MARGIN, Rgb, SIZE_LABEL, SIZE_TICK, WHITE};
 use crate::text::{MINUS, Text, number};
+use crate::ticks::{Direction, MAX_STEPS, Tick, apart};
 
 const HEIGHT: f64 = 560.0;
 /// A number at the bar's upper end stands half beyond it.
@@ -16,9 +18,9 @@ const TOP: f64 = MARGIN + 8.0;
 /// Between the map and its colour bar.
 const GAP: f64 = 30.0;
 /// Numbers are written in the cells of a map of at most so many columns and rows.
-const MOST_NUMBERED: usize = 8;
+const MAX_NUMBERED: usize = 8;
 /// An axis of more cells is numbered at round values.
-const MOST_NAMED: usize = 12;
+const MAX_NAMED: usize = 12;
 
 /// A map of cells over two axes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -75,9 +77,9 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
     let (top, bottom) = (TOP, TOP + HEIGHT);
     y.place(bottom, top);
     let (y_ticks, y_short) = y.ticks(Direction::Y);
-    let bar_ticks = colours.scale.placed(bottom, top).ticks(Direction::Y);
+    let bar_ticks = colours.axis.placed(bottom, top).ticks(Direction::Y, MAX_STEPS);
     let left = left_room(&y_ticks);
-    let bar_room = BAR_WIDTH + TICK_LENGTH + 7.0 + widest(&bar_ticks) + 14.0 + f64::from(SIZE_LABEL) + MARGIN;
+    let bar_room = bar_room(&bar_ticks) + 14.0 + f64::from(SIZE_LABEL) + MARGIN;
     let area = Area {
         x: left,
         y: top,
@@ -97,44 +99,51 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
     short_ticks(&mut canvas, area, Direction::X, &x_short);
     let title = Text::fitted(&map.x.title, area.width);
     lower_side(&mut canvas, area, &x_ticks, &title);
-    let bar = Area {
-        x: area.right() + GAP,
-        width: BAR_WIDTH,
-        ..area
-    };
-    colour_bar(&mut canvas, bar, &bar_ticks);
+    draw_bar(&mut canvas, area, &bar_ticks, &map.value_title);
     if values.iter().any(|value| value.is_nan()) {
-        draw_blank(&mut canvas, bar);
+        draw_blank(&mut canvas, area);
     }
-    let baseline = COLUMN_WIDTH - MARGIN - 0.24 * f64::from(SIZE_LABEL);
-    let title = Text::fitted(&map.value_title, area.height);
-    let middle = area.y + 0.5 * area.height;
-    canvas.text_upwards(&title, (baseline, middle), Align::Middle, BLACK);
     canvas.finish()
+}
+
+/// Draws the colour bar of a map, and the title of its values.
+fn draw_bar(canvas: &mut Canvas, map: Area, ticks: &[Tick], title: &str) {
+    colour_bar(canvas, bar_area(map), ticks);
+    let baseline = COLUMN_WIDTH - MARGIN - 0.24 * f64::from(SIZE_LABEL);
+    let title = Text::fitted(title, map.height);
+    canvas.text_upwards(&title, (baseline, map.centre().1), Align::Middle, BLACK);
+}
+
+/// Where the colour bar of a map is.
+fn bar_area(map: Area) -> Area {
+    Area {
+        x: map.right() + GAP,
+        width: BAR_WIDTH,
+        ..map
+    }
 }
 
 /// From values to colours.
 struct Colours {
-    scale: Scale,
-    lo: f64,
-    hi: f64,
+    axis: Axis,
 }
 
 impl Colours {
     fn of(values: &[f64]) -> Self {
         let (lo, hi) = widened(range(values.iter().copied()));
-        let scale = Scale::between(lo, hi, false);
-        Self { scale, lo, hi }
+        Self {
+            axis: Axis::linear(lo, hi),
+        }
     }
 
     fn level(&self, value: f64) -> u8 {
-        level(((value - self.lo) / (self.hi - self.lo)) as f32)
+        level(((value - self.axis.lo) / (self.axis.hi - self.axis.lo)) as f32)
     }
 }
 
 /// The cells along an axis, in rising order.
 struct Cells {
-    scale: Scale,
+    axis: Axis,
     /// The index of every cell among the axis' values.
     order: Vec<usize>,
     values: Vec<f64>,
@@ -157,7 +166,7 @@ impl Cells {
         let mut order: Vec<usize> = (0..axis.values.len()).collect();
         order.sort_by(|&a, &b| axis.values[a].total_cmp(&axis.values[b]));
         let values: Vec<f64> = order.iter().map(|&index| axis.values[index]).collect();
-        let whole = Scale::around(&values, axis.log, 0.0);
+        let whole = Axis::around(&values, axis.log, 0.0);
         let measured: Vec<f64> = values.iter().map(|&value| whole.measure(value)).collect();
         if measured.windows(2).any(|pair| pair[0] >= pair[1]) {
             return Err(error("two values are the same"));
@@ -172,9 +181,9 @@ impl Cells {
         };
         edges.insert(0, lo);
         edges.push(hi);
-        let scale = Scale::between(lo, hi, whole.is_log());
+        let axis = Axis::between(lo, hi, whole.is_log);
         Ok(Self {
-            scale,
+            axis,
             order,
             values,
             edges,
@@ -183,14 +192,14 @@ impl Cells {
 
     /// Places the axis between two pixels.
     fn place(&mut self, start: f64, end: f64) {
-        self.scale = self.scale.placed(start, end);
+        self.axis = self.axis.placed(start, end);
     }
 
     /// The pixels where the cells meet, in rising order of value.
     fn edges(&self) -> Vec<f64> {
         self.edges
             .iter()
-            .map(|&edge| self.scale.axis().at(edge).round())
+            .map(|&edge| self.axis.at_measured(edge).round())
             .collect()
     }
 
@@ -200,14 +209,14 @@ impl Cells {
             let written: Option<Vec<String>> = self.values.iter().map(|&v| short(v, digits)).collect();
             let written = written.filter(|texts| texts.windows(2).all(|pair| pair[0] != pair[1]))?;
             let numbers = written.iter().map(|text| Text::number(text, SIZE_TICK));
-            let pixels = self.values.iter().map(|&value| self.scale.at(value));
+            let pixels = self.values.iter().map(|&value| self.axis.at(value));
             let ticks: Vec<Tick> = pixels.zip(numbers).collect();
             apart(&ticks, direction).then_some(ticks)
         };
-        let few = self.values.len() <= MOST_NAMED;
+        let few = self.values.len() <= MAX_NAMED;
         match [4, 3, 2].into_iter().filter(|_| few).find_map(named) {
             Some(ticks) => (ticks, Vec::new()),
-            None => (self.scale.ticks(direction), self.scale.short_ticks()),
+            None => (self.axis.ticks(direction, MAX_STEPS), self.axis.short_ticks()),
         }
     }
 }
@@ -232,7 +241,8 @@ fn short(value: f64, digits: usize) -> Option<String> {
 }
 
 /// Tells below the colour bar what grey is.
-fn draw_blank(canvas: &mut Canvas, bar: Area) {
+fn draw_blank(canvas: &mut Canvas, map: Area) {
+    let bar = bar_area(map);
     let text = Text::plain("none", SIZE_TICK);
     // Beside the axis' title: a number may reach as far as the bar.
     let baseline = bar.bottom() + LOWER_ROOM - MARGIN - 4.0;
@@ -273,10 +283,11 @@ fn image(area: Area, x: &Cells, y: &Cells, values: &[f64], colours: &Colours) ->
 
 /// Writes every value into its cell, if all have room.
 fn draw_numbers(canvas: &mut Canvas, x: &Cells, y: &Cells, values: &[f64], colours: &Colours) {
-    if x.values.len().max(y.values.len()) > MOST_NUMBERED {
+    if x.values.len().max(y.values.len()) > MAX_NUMBERED {
         return;
     }
-    let size = colours.lo.abs().max(colours.hi.abs());
+    let (lo, hi) = (colours.axis.lo, colours.axis.hi);
+    let size = lo.abs().max(hi.abs());
     if !(1e-4..1e6).contains(&size) {
         return;
     }
@@ -288,7 +299,7 @@ fn draw_numbers(canvas: &mut Canvas, x: &Cells, y: &Cells, values: &[f64], colou
     let (room_x, room_y) = (smallest(&edges_x) - 12.0, smallest(&edges_y) - 12.0);
     let height = Text::plain("0", SIZE_TICK).height();
     // Two digits or so of the range, or one less.
-    let decimals = (50.0 / (colours.hi - colours.lo)).log10().ceil().clamp(0.0, 9.0) as usize;
+    let decimals = libm::log10(50.0 / (hi - lo)).ceil().clamp(0.0, 9.0) as usize;
     let texts = [decimals, decimals.saturating_sub(1)]
         .map(|decimals| written(values, decimals))
         .into_iter()
@@ -320,7 +331,7 @@ fn written(values: &[f64], decimals: usize) -> Vec<Text> {
 
 /// Black or white, whichever stands out more.
 fn readable_on(ground: Rgb) -> Rgb {
-    let [red, green, blue] = ground.map(|channel| (f64::from(channel) / 255.0).powf(2.2));
+    let [red, green, blue] = ground.map(|channel| libm::pow(f64::from(channel) / 255.0, 2.2));
     let luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
     // Contrast with white against contrast with black (WCAG 2).
     if 1.05 / (luminance + 0.05) > (luminance + 0.05) / 0.05 {

@@ -1,6 +1,6 @@
 //! Places labels near what they name, clear of each other and, where there is room, of the curve.
 
-use crate::canvas::Area;
+use crate::geometry::{Area, Point};
 
 /// Labels keep so far from each other.
 const CLEARANCE: f64 = 5.0;
@@ -9,7 +9,7 @@ const CLEARANCE: f64 = 5.0;
 pub(crate) struct Placer {
     bounds: Area,
     taken: Vec<Area>,
-    lines: Vec<[(f64, f64); 2]>,
+    lines: Vec<[Point; 2]>,
 }
 
 /// A possible place of a label, and how unwelcome it is: pixels away from the best one.
@@ -17,7 +17,7 @@ pub(crate) struct Candidate {
     pub(crate) area: Area,
     pub(crate) penalty: f64,
     /// The line that would join label and point.
-    pub(crate) leader: Option<[(f64, f64); 2]>,
+    pub(crate) leader: Option<[Point; 2]>,
 }
 
 impl Placer {
@@ -36,7 +36,7 @@ impl Placer {
     }
 
     /// Asks labels to keep off the line through these points.
-    pub(crate) fn avoid(&mut self, points: &[(f64, f64)]) {
+    pub(crate) fn avoid(&mut self, points: &[Point]) {
         self.lines
             .extend(points.windows(2).map(|pair| [pair[0], pair[1]]));
     }
@@ -92,13 +92,13 @@ impl Placer {
 
 /// Places around `point` for a label of this size, near ones first. Far ones get a leader, and so do those which one of the
 /// other `dots` is as near to: there it would be taken for theirs.
-pub(crate) fn around(point: (f64, f64), (width, height): (f64, f64), dots: &[(f64, f64)]) -> Vec<Candidate> {
+pub(crate) fn around(point: Point, (width, height): (f64, f64), dots: &[Point]) -> Vec<Candidate> {
     let mut candidates = Vec::new();
     for gap in [14.0, 22.0, 34.0, 50.0, 70.0, 95.0, 130.0, 180.0] {
         for step in 0..24 {
             // From the upper right, where a reader expects it, to both sides in turn.
             let turn = f64::from((step + 1) / 2) * if step % 2 == 0 { 1.0 } else { -1.0 };
-            let (sin, cos) = ((-0.25 + turn / 12.0) * std::f64::consts::PI).sin_cos();
+            let (sin, cos) = libm::sincos((-0.25 + turn / 12.0) * std::f64::consts::PI);
             // The label's edge, not its centre, stays `gap` away from the point.
             let centre = (
                 point.0 + cos * (gap + 0.5 * width),
@@ -110,17 +110,17 @@ pub(crate) fn around(point: (f64, f64), (width, height): (f64, f64), dots: &[(f6
                 width,
                 height,
             };
-            let to_label = |dot: (f64, f64)| {
+            let to_label = |dot: Point| {
                 (
                     dot.0.clamp(area.x - 3.0, area.right() + 3.0) - dot.0,
                     dot.1.clamp(area.y - 3.0, area.bottom() + 3.0) - dot.1,
                 )
             };
             let (dx, dy) = to_label(point);
-            let distance = dx.hypot(dy);
-            let is_near = |&dot: &(f64, f64)| {
+            let distance = libm::hypot(dx, dy);
+            let is_near = |&dot: &Point| {
                 let (dx, dy) = to_label(dot);
-                dot != point && dx.hypot(dy) < 1.5 * distance
+                dot != point && libm::hypot(dx, dy) < 1.5 * distance
             };
             let strays = dots.iter().any(is_near);
             // The leader starts off its dot, so that it never counts as crossing it.
@@ -153,7 +153,7 @@ pub(crate) fn overlap(a: &Area, b: &Area) -> bool {
 }
 
 /// True when part of the segment lies in the area (Liang and Barsky's clipping).
-fn crosses([from, to]: [(f64, f64); 2], area: &Area) -> bool {
+fn crosses([from, to]: [Point; 2], area: &Area) -> bool {
     let (mut enters, mut leaves) = (0.0f64, 1.0f64);
     for (start, step, lo, hi) in [
         (from.0, to.0 - from.0, area.x, area.right()),

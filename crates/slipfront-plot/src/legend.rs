@@ -1,6 +1,7 @@
 //! The legend above a panel with several curves or bars.
 
-use crate::canvas::{Align, Area, Canvas};
+use crate::canvas::Canvas;
+use crate::geometry::{Align, Area};
 use crate::markers::marker;
 use crate::style::{BLACK, MARGIN, OPACITY_BAR, RADIUS_MARKER, Rgb, SIZE_TICK, WIDTH_CURVE, curve_colour};
 use crate::text::Text;
@@ -46,7 +47,7 @@ impl Legend {
         Self::titled("", labels, Sample::Line, left, right)
     }
 
-    /// The same with a title before the labels, or above them if it is long.
+    /// Places the labels with a title before them, or above them if it is long.
     pub(crate) fn titled(title: &str, labels: &[&str], sample: Sample, left: f64, right: f64) -> Self {
         let title = Text::shortened(title, SIZE_TICK, right - left);
         let width = title.width();
@@ -81,7 +82,7 @@ impl Legend {
         }
     }
 
-    /// The same with a line alone before some of the names.
+    /// Lets some of the names have a line alone before them.
     pub(crate) fn with_lines(mut self, lines: &[bool]) -> Self {
         for (entry, &line) in self.entries.iter_mut().zip(lines) {
             entry.line = line;

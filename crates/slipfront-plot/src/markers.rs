@@ -1,6 +1,7 @@
 //! Points of a curve, each curve's in its own shape: colours alone do not survive a copier.
 
 use crate::canvas::Canvas;
+use crate::geometry::Point;
 use crate::style::{Rgb, WHITE};
 
 /// The corners of the shapes after the disc, for a size of 1; all look equally large.
@@ -12,7 +13,7 @@ const SHAPES: [&[(f64, f64)]; 4] = [
 ];
 
 /// Draws the marker of curve `index`, with a thin white rim that parts it from the curves below.
-pub(crate) fn marker(canvas: &mut Canvas, index: usize, centre: (f64, f64), radius: f64, colour: Rgb) {
+pub(crate) fn marker(canvas: &mut Canvas, index: usize, centre: Point, radius: f64, colour: Rgb) {
     let Some(corners) = (index % (SHAPES.len() + 1))
         .checked_sub(1)
         .map(|shape| SHAPES[shape])
@@ -21,10 +22,10 @@ pub(crate) fn marker(canvas: &mut Canvas, index: usize, centre: (f64, f64), radi
         return;
     };
     for (size, colour) in [(radius + 1.5, WHITE), (radius, colour)] {
-        let points: Vec<(f64, f64)> = corners
+        let points = corners
             .iter()
             .map(|(x, y)| (centre.0 + size * x, centre.1 + size * y))
             .collect();
-        canvas.polygon(&points, colour, 1.0);
+        canvas.polygon(points, colour, 1.0);
     }
 }

@@ -12,11 +12,11 @@ pub(crate) fn outline(textured: &[bool], nx: usize, ny: usize) -> Vec<Vec<(usize
     for open in [true, false] {
         for y in 0..=ny {
             for x in 0..=nx {
-                let starts = |edges: &Edges| (0..4).find(|&way| edges.has((x, y), way));
-                while let Some(way) =
+                let starts = |edges: &Edges| (0..4).find(|&direction| edges.has((x, y), direction));
+                while let Some(direction) =
                     starts(&edges).filter(|_| !open || x == 0 || y == 0 || x == nx || y == ny)
                 {
-                    chains.push(edges.follow((x, y), way));
+                    chains.push(edges.follow((x, y), direction));
                 }
             }
         }
@@ -24,20 +24,20 @@ pub(crate) fn outline(textured: &[bool], nx: usize, ny: usize) -> Vec<Vec<(usize
     chains
 }
 
-/// The ways from a corner: right, up, left, down.
-const WAYS: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
+/// The directions from a corner: right, up, left, down.
+const DIRECTIONS: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
-/// Which ways out of every corner are edges not yet drawn, each with the textured block on its left.
+/// Which directions out of every corner are edges not yet drawn, each with the textured block on its left.
 struct Edges {
     corners_x: usize,
-    ways: Vec<u8>,
+    directions: Vec<u8>,
 }
 
 impl Edges {
     fn of(textured: &[bool], nx: usize, ny: usize) -> Self {
         let mut edges = Self {
             corners_x: nx + 1,
-            ways: vec![0; (nx + 1) * (ny + 1)],
+            directions: vec![0; (nx + 1) * (ny + 1)],
         };
         let at = |x: usize, y: usize| textured[y * nx + x];
         for y in 0..ny {
@@ -61,39 +61,39 @@ impl Edges {
         edges
     }
 
-    fn add(&mut self, (x, y): (usize, usize), way: usize) {
-        self.ways[y * self.corners_x + x] |= 1 << way;
+    fn add(&mut self, (x, y): (usize, usize), direction: usize) {
+        self.directions[y * self.corners_x + x] |= 1 << direction;
     }
 
-    fn has(&self, (x, y): (usize, usize), way: usize) -> bool {
-        self.ways[y * self.corners_x + x] & 1 << way != 0
+    fn has(&self, (x, y): (usize, usize), direction: usize) -> bool {
+        self.directions[y * self.corners_x + x] & 1 << direction != 0
     }
 
-    fn remove(&mut self, (x, y): (usize, usize), way: usize) {
-        self.ways[y * self.corners_x + x] &= !(1 << way);
+    fn remove(&mut self, (x, y): (usize, usize), direction: usize) {
+        self.directions[y * self.corners_x + x] &= !(1 << direction);
     }
 
-    /// The chain that starts at a corner this way; its edges are removed.
-    fn follow(&mut self, start: (usize, usize), way: usize) -> Vec<(usize, usize)> {
+    /// The chain that starts at a corner in this direction; its edges are removed.
+    fn follow(&mut self, start: (usize, usize), direction: usize) -> Vec<(usize, usize)> {
         let mut chain = vec![start];
-        let (mut corner, mut way) = (start, way);
+        let (mut corner, mut direction) = (start, direction);
         loop {
-            self.remove(corner, way);
+            self.remove(corner, direction);
             corner = (
-                corner.0.wrapping_add_signed(WAYS[way].0),
-                corner.1.wrapping_add_signed(WAYS[way].1),
+                corner.0.wrapping_add_signed(DIRECTIONS[direction].0),
+                corner.1.wrapping_add_signed(DIRECTIONS[direction].1),
             );
             // Left before straight before right: two textured blocks that meet at a corner only stay two
             // areas.
             let next = [1, 0, 3]
                 .into_iter()
-                .map(|turn| (way + turn) % 4)
+                .map(|turn| (direction + turn) % 4)
                 .find(|&next| self.has(corner, next));
-            if next != Some(way) || corner == start {
+            if next != Some(direction) || corner == start {
                 chain.push(corner);
             }
             match next {
-                Some(next) if corner != start => way = next,
+                Some(next) if corner != start => direction = next,
                 _ => return chain,
             }
         }

@@ -1,22 +1,22 @@
 //! A series of values as lines on a panel.
 
-use crate::axis::{Axis, drawable};
+use crate::axis::Axis;
+use crate::geometry::Point;
+use crate::range::drawable;
 
 /// Longer curves are thinned.
-const POINTS_KEPT: usize = 4000;
+const MAX_POINTS: usize = 4000;
 
-/// The curve in pixels: one piece for every stretch without a gap.
-pub(crate) fn segments(times: &[f64], values: &[f64], time: &Axis, axis: &Axis) -> Vec<Vec<(f64, f64)>> {
-    let points: Vec<(f64, f64)> = times.iter().copied().zip(values.iter().copied()).collect();
+/// A curve in pixels: one segment for every stretch without a gap.
+pub(crate) fn segments(xs: &[f64], ys: &[f64], x: &Axis, y: &Axis) -> Vec<Vec<Point>> {
+    let points: Vec<Point> = xs.iter().copied().zip(ys.iter().copied()).collect();
     points
-        .split(|&(t, value)| !drawable(t) || !drawable(value))
-        .filter(|piece| !piece.is_empty())
-        .map(|piece| {
-            let pixels: Vec<(f64, f64)> = piece
-                .iter()
-                .map(|&(t, value)| (time.at(t), axis.clamped(value)))
-                .collect();
-            if times.len() > POINTS_KEPT {
+        .split(|&(at, value)| !drawable(at) || !drawable(value))
+        .filter(|segment| !segment.is_empty())
+        .map(|segment| {
+            let place = |&(at, value): &Point| (x.at(at), y.clamped(value));
+            let pixels: Vec<Point> = segment.iter().map(place).collect();
+            if xs.len() > MAX_POINTS {
                 thinned(&pixels)
             } else {
                 pixels
@@ -26,7 +26,7 @@ pub(crate) fn segments(times: &[f64], values: &[f64], time: &Axis, axis: &Axis) 
 }
 
 /// The first, lowest, highest and last point of every pixel column, in their order.
-fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+fn thinned(points: &[Point]) -> Vec<Point> {
     let mut kept = Vec::new();
     for column in points.chunk_by(|a, b| a.0.floor() == b.0.floor()) {
         let by_height = |&a: &usize, &b: &usize| column[a].1.total_cmp(&column[b].1);
@@ -46,7 +46,7 @@ mod tests {
 
     #[test]
     fn thinning_keeps_the_spikes_and_the_order() {
-        let mut points: Vec<(f64, f64)> = (0..10_000).map(|i| (0.05 * f64::from(i), 100.0)).collect();
+        let mut points: Vec<Point> = (0..10_000).map(|i| (0.05 * f64::from(i), 100.0)).collect();
         points[4321].1 = 3.0;
         points[4322].1 = 250.0;
         let kept = thinned(&points);
@@ -57,12 +57,7 @@ mod tests {
 
     #[test]
     fn a_missing_value_leaves_a_gap() {
-        let axis = Axis {
-            lo: 0.0,
-            hi: 4.0,
-            start: 0.0,
-            end: 4.0,
-        };
+        let axis = Axis::linear(0.0, 4.0).placed(0.0, 4.0);
         let times = [0.0, 1.0, 2.0, 3.0, 4.0];
         let parts = segments(&times, &[0.0, 1.0, f64::NAN, 3.0, 4.0], &axis, &axis);
         assert_eq!(parts, [[(0.0, 0.0), (1.0, 1.0)], [(3.0, 3.0), (4.0, 4.0)]]);

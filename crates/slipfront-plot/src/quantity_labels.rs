@@ -1,6 +1,7 @@
 //! What a quantity is called along an axis and in a legend.
 
-use crate::text::{Text, advance};
+use crate::font::advance;
+use crate::text::Text;
 
 /// The names of a quantity.
 #[derive(Clone, Copy, Debug, Default)]

@@ -2,19 +2,21 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::axis::drawable;
-use crate::canvas::{Area, Canvas};
+use crate::axis::Axis;
+use crate::canvas::Canvas;
 use crate::error_bar::{Interval, error_bar};
 use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side, right_end, short_ticks};
+use crate::geometry::Area;
 use crate::legend::{Legend, Sample};
 use crate::markers::marker;
 use crate::picture::{Picture, PictureError};
 use crate::polyline::segments;
-use crate::scale::{Direction, Scale};
+use crate::range::drawable;
 use crate::style::{
     COLUMN_WIDTH, GREY, MARGIN, RADIUS_MARKER, Rgb, WIDTH_CURVE, WIDTH_LEADER, WIDTH_MARK, curve_colour,
 };
 use crate::text::Text;
+use crate::ticks::{Direction, MAX_STEPS};
 
 const HEIGHT: f64 = 560.0;
 /// Between the last number below the panel, half of which may stand beyond it, and the picture's edge.
@@ -56,93 +58,101 @@ pub struct Response {
 
 /// Draws means with their confidence bands, as wide as a journal's column (85 mm).
 ///
-/// y starts where the values do, not at zero. A point without neighbours has a whisker in place of a band.
+/// y starts where the values do, not at zero. A point without neighbours has an error bar in place of a band.
 /// Several curves have a legend above, and markers of different shapes.
 ///
 /// # Errors
 ///
 /// No curve, or a curve whose columns differ in length.
 pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
-    let curves = &responses.curves;
-    if curves.is_empty() {
+    if responses.curves.is_empty() {
         return Err(PictureError::Nothing("curve"));
     }
-    curves.iter().try_for_each(check)?;
-    let curves: Vec<Curve> = curves.iter().map(Curve::of).collect();
-    let xs: Vec<f64> = curves.iter().flat_map(|curve| curve.x.clone()).collect();
-    let x = Scale::around(&xs, responses.log_x, 0.04);
-    let ys: Vec<f64> = curves.iter().flat_map(Curve::values).collect();
-    let y = Scale::around(&ys, responses.log_y, 0.06);
-    let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Direction::Y));
-    let right = COLUMN_WIDTH.round() - RIGHT;
-    let right = right_end(
-        &x.placed(left, right).ticks(Direction::X),
-        left,
-        right,
-        COLUMN_WIDTH,
-    );
-    let mut legend = Legend::default();
-    if curves.len() > 1 {
-        let labels: Vec<&str> = responses.curves.iter().map(|c| c.label.as_str()).collect();
-        let lines: Vec<bool> = curves.iter().map(|curve| curve.line).collect();
-        legend =
-            Legend::titled(&responses.legend_title, &labels, Sample::Marker, left, right).with_lines(&lines);
-    }
-    let area = Area {
-        x: left,
-        y: MARGIN + legend.height,
-        width: right - left,
-        height: HEIGHT,
-    };
-    let (x, y) = (x.placed(left, right), y.placed(area.bottom(), area.y));
-
-    let mut canvas = Canvas::new(COLUMN_WIDTH, area.bottom() + LOWER_ROOM);
-    let title = Text::fitted(&responses.y_title, HEIGHT);
-    left_side(&mut canvas, area, 0.0, &y.ticks(Direction::Y), &title);
-    short_ticks(&mut canvas, area, Direction::Y, &y.short_ticks());
-    short_ticks(&mut canvas, area, Direction::X, &x.short_ticks());
-    let title = Text::fitted(&responses.x_title, area.width);
-    lower_side(&mut canvas, area, &x.ticks(Direction::X), &title);
+    responses.curves.iter().try_for_each(check)?;
+    let curves: Vec<Curve> = responses.curves.iter().map(Curve::of).collect();
+    let (panel, legend) = Panel::of(responses, &curves);
+    let mut canvas = Canvas::new(COLUMN_WIDTH, panel.area.bottom() + LOWER_ROOM);
+    panel.draw_sides(&mut canvas, responses);
     legend.draw(&mut canvas);
-    if !y.is_log() && y.axis().lo < 0.0 && y.axis().hi > 0.0 {
-        canvas.line((area.x, y.at(0.0)), (area.right(), y.at(0.0)), WIDTH_LEADER, GREY);
+    panel.draw_curves(&mut canvas, &curves);
+    canvas.frame(panel.area);
+    canvas.finish()
+}
+
+/// Where the curves are drawn.
+struct Panel {
+    area: Area,
+    x: Axis,
+    y: Axis,
+}
+
+impl Panel {
+    /// A panel that holds all curves, and the legend above it.
+    fn of(responses: &Responses, curves: &[Curve]) -> (Self, Legend) {
+        let xs: Vec<f64> = curves.iter().flat_map(|curve| curve.x.clone()).collect();
+        let x = Axis::around(&xs, responses.log_x, 0.04);
+        let ys: Vec<f64> = curves.iter().flat_map(Curve::values).collect();
+        let y = Axis::around(&ys, responses.log_y, 0.06);
+        let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Direction::Y, MAX_STEPS));
+        let right = COLUMN_WIDTH.round() - RIGHT;
+        let x_ticks = x.placed(left, right).ticks(Direction::X, MAX_STEPS);
+        let right = right_end(&x_ticks, left, right, COLUMN_WIDTH);
+        let mut legend = Legend::default();
+        if curves.len() > 1 {
+            let labels: Vec<&str> = responses.curves.iter().map(|c| c.label.as_str()).collect();
+            let lines: Vec<bool> = curves.iter().map(|curve| curve.line).collect();
+            let title = &responses.legend_title;
+            legend = Legend::titled(title, &labels, Sample::Marker, left, right).with_lines(&lines);
+        }
+        let area = Area {
+            x: left,
+            y: MARGIN + legend.height,
+            width: right - left,
+            height: HEIGHT,
+        };
+        let panel = Self {
+            area,
+            x: x.placed(left, right),
+            y: y.placed(area.bottom(), area.y),
+        };
+        (panel, legend)
     }
-    // All bands, then all curves, then all points: nothing hides a point.
-    let opacity = if curves.len() > 4 { 0.13 } else { 0.2 };
-    let coloured: Vec<(&Curve, Rgb)> = curves
-        .iter()
-        .enumerate()
-        .map(|(index, curve)| (curve, curve_colour(index, curves.len())))
-        .collect();
-    for (curve, colour) in &coloured {
-        curve.draw_band(&mut canvas, &x, &y, *colour, opacity);
+
+    /// Draws ticks, numbers and titles, and a line at zero.
+    fn draw_sides(&self, canvas: &mut Canvas, responses: &Responses) {
+        let Self { area, x, y } = self;
+        let title = Text::fitted(&responses.y_title, area.height);
+        left_side(canvas, *area, 0.0, &y.ticks(Direction::Y, MAX_STEPS), &title);
+        short_ticks(canvas, *area, Direction::Y, &y.short_ticks());
+        short_ticks(canvas, *area, Direction::X, &x.short_ticks());
+        let title = Text::fitted(&responses.x_title, area.width);
+        lower_side(canvas, *area, &x.ticks(Direction::X, MAX_STEPS), &title);
+        if !y.is_log && y.lo < 0.0 && y.hi > 0.0 {
+            canvas.line((area.x, y.at(0.0)), (area.right(), y.at(0.0)), WIDTH_LEADER, GREY);
+        }
     }
-    for (curve, colour) in &coloured {
-        for piece in segments(
-            &measured(&curve.x, &x),
-            &measured(&curve.mean, &y),
-            x.axis(),
-            y.axis(),
-        ) {
-            if piece.len() > 1 {
-                canvas.polyline(piece, WIDTH_CURVE, *colour);
+
+    /// Draws all bands, then all curves, then all points: nothing hides a point.
+    fn draw_curves(&self, canvas: &mut Canvas, curves: &[Curve]) {
+        let Self { x, y, .. } = self;
+        let opacity = if curves.len() > 4 { 0.13 } else { 0.2 };
+        let colour = |index: usize| curve_colour(index, curves.len());
+        for (index, curve) in curves.iter().enumerate() {
+            curve.draw_band(canvas, x, y, colour(index), opacity);
+        }
+        for (index, curve) in curves.iter().enumerate() {
+            for segment in segments(&curve.x, &curve.mean, x, y) {
+                if segment.len() > 1 {
+                    canvas.polyline(segment, WIDTH_CURVE, colour(index));
+                }
+            }
+        }
+        for (index, curve) in curves.iter().enumerate().filter(|(_, curve)| !curve.line) {
+            for point in segments(&curve.x, &curve.mean, x, y).concat() {
+                marker(canvas, index, point, RADIUS_MARKER, colour(index));
             }
         }
     }
-    for (index, (curve, colour)) in coloured.iter().enumerate().filter(|(_, (curve, _))| !curve.line) {
-        for point in segments(
-            &measured(&curve.x, &x),
-            &measured(&curve.mean, &y),
-            x.axis(),
-            y.axis(),
-        )
-        .concat()
-        {
-            marker(&mut canvas, index, point, RADIUS_MARKER, *colour);
-        }
-    }
-    canvas.frame(area);
-    canvas.finish()
 }
 
 fn check(curve: &Response) -> Result<(), PictureError> {
@@ -170,10 +180,6 @@ struct Curve {
     low: Vec<f64>,
     high: Vec<f64>,
     line: bool,
-}
-
-fn measured(values: &[f64], scale: &Scale) -> Vec<f64> {
-    values.iter().map(|&value| scale.measure(value)).collect()
 }
 
 impl Curve {
@@ -204,17 +210,16 @@ impl Curve {
         [&self.mean, &self.low, &self.high].into_iter().flatten().copied()
     }
 
-    fn draw_band(&self, canvas: &mut Canvas, x: &Scale, y: &Scale, colour: Rgb, opacity: f64) {
-        let xs = measured(&self.x, x);
-        let lows = segments(&xs, &measured(&self.low, y), x.axis(), y.axis());
-        let highs = segments(&xs, &measured(&self.high, y), x.axis(), y.axis());
+    fn draw_band(&self, canvas: &mut Canvas, x: &Axis, y: &Axis, colour: Rgb, opacity: f64) {
+        let lows = segments(&self.x, &self.low, x, y);
+        let highs = segments(&self.x, &self.high, x, y);
         for (low, high) in lows.into_iter().zip(highs) {
             if let ([low], [high]) = (&low[..], &high[..]) {
                 error_bar(canvas, low.0, (low.1, high.1), WIDTH_MARK, colour);
                 continue;
             }
-            let edge: Vec<(f64, f64)> = low.into_iter().chain(high.into_iter().rev()).collect();
-            canvas.polygon(&edge, colour, opacity);
+            let edge = low.into_iter().chain(high.into_iter().rev()).collect();
+            canvas.polygon(edge, colour, opacity);
         }
     }
 }
@@ -283,7 +288,7 @@ mod tests {
         assert_eq!(bands(&svg(std::slice::from_ref(&curve))), 1);
         curve.mean[3] = f64::NAN;
         assert_eq!(bands(&svg(std::slice::from_ref(&curve))), 2);
-        // The last point alone has a whisker.
+        // The last point alone has an error bar.
         curve.low[5] = f64::NAN;
         assert_eq!(bands(&svg(std::slice::from_ref(&curve))), 1);
         curve.high.fill(f64::NAN);

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::canvas::{Align, Area, Canvas};
+use crate::canvas::Canvas;
+use crate::geometry::{Align, Area};
 use crate::picture::{Picture, PictureError};
 use crate::style::{BLACK, COLUMN_WIDTH, CURVES, MARGIN, SIZE_TICK, WIDTH_MARK};
 use crate::text::Text;
@@ -59,7 +60,7 @@ pub fn shapes(shapes: &[Shape]) -> Result<Picture, PictureError> {
             .iter()
             .map(|[px, py]| (x + scale * px, y - scale * py))
             .collect();
-        canvas.polygon(&points, CURVES[0], 0.25);
+        canvas.polygon(points.clone(), CURVES[0], 0.25);
         points.extend(points.first().copied());
         canvas.polyline(points, WIDTH_MARK, CURVES[0]);
         let label = Text::shortened(&shape.label, SIZE_TICK, room + GAP);

@@ -1,26 +1,28 @@
-//! Maps of the contact stress.
+//! Maps of the contact stress, with axes along the slider's sides.
 
 use crate::axis::Axis;
-use crate::canvas::{Align, Area, Canvas, Image, level};
-use crate::frame::{BAR_WIDTH, LOWER_ROOM, colour_bar, left_side, lower_side, placed, widest};
-use crate::mask_outline::outline;
+use crate::canvas::Canvas;
+use crate::color_bar::{BAR_MIN_HEIGHT, BAR_WIDTH, bar_room, colour_bar};
+use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side};
+use crate::geometry::{Align, Area};
+use crate::lattice_map::{Cells, TITLE_ROOM, block_count, check_length, draw_titles};
 use crate::picture::{Picture, PictureError};
-use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH, TICK_LENGTH, WHITE, WIDTH_MARK};
+use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH};
 use crate::text::{Text, number};
+use crate::ticks::{Direction, Tick};
 
-/// More blocks than this along a side are averaged in groups.
-const CELLS: usize = 256;
 /// Maps in a row.
-const COLUMNS: usize = 6;
-
+const MAX_COLUMNS: usize = 6;
 const GAP: f64 = 30.0;
 /// A single map is no wider than this: 44 mm.
-const WIDEST: f64 = 520.0;
-const TALLEST: f64 = 620.0;
-/// The colour bar is no shorter than this.
-const BAR_SHORTEST: f64 = 180.0;
+const MAX_WIDTH: f64 = 520.0;
+const MAX_HEIGHT: f64 = 620.0;
 /// A strip is drawn no thinner than this share of its length.
-const THINNEST: f64 = 1.0 / 6.0;
+const MIN_RATIO: f64 = 1.0 / 6.0;
+/// A side shorter than this has fewer numbers.
+const SHORT_SIDE: f64 = 130.0;
+/// The ends of the colour scale.
+const RANGE: [f64; 2] = [0.0, 1.0];
 
 /// One map of the contact stress.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,39 +67,16 @@ pub fn stress(maps: &StressMaps) -> Result<Picture, PictureError> {
     check(maps)?;
     let layout = Layout::of(maps);
     let mut canvas = Canvas::new(layout.width, layout.height);
-    let cells = Cells {
-        nx: maps.nx,
-        ny: maps.ny,
-        columns: maps.nx.min(CELLS),
-        rows: maps.ny.min(CELLS),
-    };
-    let share = cells.mean(|block| if maps.textured[block] { 1.0 } else { 0.0 });
-    let textured: Vec<bool> = share.into_iter().map(|share| share > 0.5).collect();
-    let lines = outline(&textured, cells.columns, cells.rows);
+    let cells = Cells::of(maps.nx, maps.ny, &maps.textured);
     for (index, map) in maps.maps.iter().enumerate() {
         let area = layout.map(index);
-        let values = cells.mean(|block| map.values[block]);
-        // The image's first row is the uppermost.
-        let levels = values
-            .chunks_exact(cells.columns)
-            .rev()
-            .flatten()
-            .map(|&value| level(value))
-            .collect();
-        canvas.image(Image {
-            area,
-            columns: cells.columns,
-            levels,
-        });
-        for line in &lines {
-            let corner = |&(x, y): &(usize, usize)| {
-                let (x, y) = (x as f64 / cells.columns as f64, y as f64 / cells.rows as f64);
-                (area.x + x * area.width, area.bottom() - y * area.height)
-            };
-            draw_outline(&mut canvas, &line.iter().map(corner).collect::<Vec<_>>());
-        }
+        cells.draw(&mut canvas, area, &map.values, RANGE);
         canvas.frame(area);
-        layout.draw_titles(&mut canvas, index, map);
+        let mut label = title(map);
+        if label.width() > layout.pitch_x - 0.5 * GAP {
+            label = Text::shortened(&map.label, SIZE_LABEL, layout.pitch_x - 0.5 * GAP);
+        }
+        draw_titles(&mut canvas, area, &label, &friction(map));
     }
     layout.draw_axes(&mut canvas, maps.maps.len());
     layout.draw_bar(&mut canvas);
@@ -105,78 +84,17 @@ pub fn stress(maps: &StressMaps) -> Result<Picture, PictureError> {
 }
 
 fn check(maps: &StressMaps) -> Result<(), PictureError> {
-    let StressMaps {
-        nx, ny, block_size, ..
-    } = *maps;
-    let expected = nx
-        .checked_mul(ny)
-        .filter(|&count| count > 0)
-        .ok_or(PictureError::Lattice { nx, ny })?;
-    if !(block_size > 0.0 && block_size < 1e9) {
-        return Err(PictureError::BlockSize(block_size.to_string()));
+    let expected = block_count(maps.nx, maps.ny)?;
+    if !(maps.block_size > 0.0 && maps.block_size < 1e9) {
+        return Err(PictureError::BlockSize(maps.block_size.to_string()));
     }
     if maps.maps.is_empty() {
         return Err(PictureError::Nothing("map"));
     }
-    let mut lengths = vec![("the texture".to_string(), maps.textured.len())];
-    lengths.extend(
-        maps.maps
-            .iter()
-            .map(|map| (format!("map `{}`", map.label), map.values.len())),
-    );
-    match lengths.into_iter().find(|(_, found)| *found != expected) {
-        Some((what, found)) => Err(PictureError::Blocks {
-            what,
-            found,
-            expected,
-        }),
-        None => Ok(()),
-    }
-}
-
-/// A dark line with a pale rim, seen on every colour of the ramp.
-pub(crate) fn draw_outline(canvas: &mut Canvas, corners: &[(f64, f64)]) {
-    let mut points = corners.to_vec();
-    // A closed line is drawn past its start: only so is that corner rounded like the others.
-    if points.len() > 2 && points.first() == points.last() {
-        points.push(points[1]);
-    }
-    canvas.polyline(points.clone(), WIDTH_MARK + 3.0, WHITE);
-    canvas.polyline(points, WIDTH_MARK, BLACK);
-}
-
-/// Blocks gathered into the cells that are drawn.
-struct Cells {
-    nx: usize,
-    ny: usize,
-    columns: usize,
-    rows: usize,
-}
-
-impl Cells {
-    /// The mean of every cell over its blocks that are not NaN.
-    fn mean(&self, value: impl Fn(usize) -> f32) -> Vec<f32> {
-        let from = |cell: usize, cells: usize, blocks: usize| cell * blocks / cells;
-        let mut means = Vec::with_capacity(self.columns * self.rows);
-        for row in 0..self.rows {
-            let ys = from(row, self.rows, self.ny)..from(row + 1, self.rows, self.ny);
-            for column in 0..self.columns {
-                let xs = from(column, self.columns, self.nx)..from(column + 1, self.columns, self.nx);
-                let (mut sum, mut count) = (0.0f64, 0u32);
-                for y in ys.clone() {
-                    for x in xs.clone() {
-                        let value = value(y * self.nx + x);
-                        if !value.is_nan() {
-                            sum += f64::from(value);
-                            count += 1;
-                        }
-                    }
-                }
-                means.push((sum / f64::from(count)) as f32);
-            }
-        }
-        means
-    }
+    check_length("the texture", maps.textured.len(), expected)?;
+    maps.maps
+        .iter()
+        .try_for_each(|map| check_length(&format!("map `{}`", map.label), map.values.len(), expected))
 }
 
 /// Where everything is.
@@ -189,52 +107,50 @@ struct Layout {
     map_width: f64,
     map_height: f64,
     left: f64,
-    top: f64,
     pitch_x: f64,
     pitch_y: f64,
-    /// The slider's extent along x and y, in `unit`.
-    extent: (f64, f64),
+    /// The slider's sides along x and y, in `unit`.
+    sides: (Axis, Axis),
     unit: &'static str,
 }
+
+/// Where the uppermost maps start.
+const TOP: f64 = MARGIN + TITLE_ROOM;
 
 impl Layout {
     fn of(maps: &StressMaps) -> Self {
         let (length_x, length_y) = (maps.nx as f64 * maps.block_size, maps.ny as f64 * maps.block_size);
         let (unit, factor) = unit_of(length_x.max(length_y));
-        let extent = (length_x * factor, length_y * factor);
-        let columns = maps.maps.len().min(COLUMNS);
-        let rows = maps.maps.len().div_ceil(COLUMNS);
-        let ratio = (length_y / length_x).clamp(THINNEST, 1.0 / THINNEST);
+        let sides = (
+            Axis::linear(0.0, length_x * factor),
+            Axis::linear(0.0, length_y * factor),
+        );
+        let columns = maps.maps.len().min(MAX_COLUMNS);
+        let rows = maps.maps.len().div_ceil(MAX_COLUMNS);
+        let ratio = (length_y / length_x).clamp(MIN_RATIO, 1.0 / MIN_RATIO);
 
-        let numbers_y = widest(&placed(&axis_of(extent.1), 4));
-        let left = (MARGIN + f64::from(SIZE_LABEL) + 12.0 + numbers_y + TICK_LENGTH + 7.0).round();
-        let right = bar_room();
+        let left = left_room(&sides.1.placed(MAX_HEIGHT, 0.0).ticks(Direction::Y, 4));
+        let right = GAP + bar_room(&bar_ticks(MAX_HEIGHT, 0.0)) + MARGIN;
         let room = (TEXT_WIDTH - left - right + GAP) / columns as f64;
-        let map_width = (room - GAP).min(WIDEST).min(TALLEST / ratio).round();
+        let map_width = (room - GAP).min(MAX_WIDTH).min(MAX_HEIGHT / ratio).round();
         let map_height = (map_width * ratio).round();
         // A narrow map may have a wider title.
-        let titles = maps
-            .maps
-            .iter()
-            .map(|map| title(map).width())
-            .fold(map_width, f64::max);
+        let titles = maps.maps.iter().map(|map| title(map).width());
+        let titles = titles.fold(map_width, f64::max);
         let pitch_x = (titles + GAP).min(room).max(map_width + GAP).round();
-
-        let top = (MARGIN + 2.0 * f64::from(SIZE_LABEL) + 18.0).round();
-        let pitch_y = map_height + LOWER_ROOM + top - MARGIN;
+        let pitch_y = map_height + LOWER_ROOM + TITLE_ROOM;
         let lowest = (rows - 1) as f64 * pitch_y + map_height + LOWER_ROOM;
         Self {
             width: left + columns as f64 * pitch_x - GAP + right,
-            height: top + lowest.max(BAR_SHORTEST + 2.0 * MARGIN),
+            height: TOP + lowest.max(BAR_MIN_HEIGHT + 2.0 * MARGIN),
             columns,
             rows,
             map_width,
             map_height,
             left,
-            top,
             pitch_x,
             pitch_y,
-            extent,
+            sides,
             unit,
         }
     }
@@ -245,67 +161,31 @@ impl Layout {
         let slack = self.pitch_x - GAP - self.map_width;
         Area {
             x: (self.left + column as f64 * self.pitch_x + 0.5 * slack).round(),
-            y: self.top + row as f64 * self.pitch_y,
+            y: TOP + row as f64 * self.pitch_y,
             width: self.map_width,
             height: self.map_height,
         }
     }
 
-    fn draw_titles(&self, canvas: &mut Canvas, index: usize, map: &StressMap) {
-        let area = self.map(index);
-        let middle = area.x + 0.5 * area.width;
-        let mut upper = title(map);
-        if upper.width() > self.pitch_x - 0.5 * GAP {
-            upper = Text::shortened(&map.label, SIZE_LABEL, self.pitch_x - 0.5 * GAP);
-        }
-        canvas.text(&upper, (middle, area.y - 58.0), Align::Middle, BLACK);
-        if map.mu_star.is_finite() {
-            let lower = Text::plain(&format!("\u{3bc}* = {}", number(map.mu_star, 3)), SIZE_TICK);
-            canvas.text(&lower, (middle, area.y - 16.0), Align::Middle, BLACK);
-        }
-    }
-
     /// Numbers below the lowest map of every column and left of every row.
     fn draw_axes(&self, canvas: &mut Canvas, count: usize) {
+        let most = |side: f64| if side < SHORT_SIDE { 2 } else { 4 };
         for index in 0..count {
             let area = self.map(index);
             if index % self.columns == 0 {
-                let axis = Axis {
-                    start: area.bottom(),
-                    end: area.y,
-                    ..axis_of(self.extent.1)
-                };
-                let most = if area.height < 130.0 { 2 } else { 4 };
-                let mut lowest = f64::INFINITY;
-                let mut ticks = placed(&axis, most);
-                for (at, text) in &mut ticks {
-                    // A number that would touch the one before is left out.
-                    if *at + text.height() + 8.0 > lowest {
-                        *text = Text::plain("", SIZE_TICK);
-                    } else {
-                        lowest = *at;
-                    }
-                }
+                let axis = self.sides.1.placed(area.bottom(), area.y);
+                let ticks = axis.ticks(Direction::Y, most(area.height));
                 let title = Text::plain(&format!("y ({})", self.unit), SIZE_LABEL);
                 left_side(canvas, area, area.x - self.left, &ticks, &title);
             }
             if index + self.columns >= count {
-                let axis = Axis {
-                    start: area.x,
-                    end: area.right(),
-                    ..axis_of(self.extent.0)
-                };
-                let most = if area.width < 130.0 { 2 } else { 4 };
-                let mut free = f64::NEG_INFINITY;
-                let limit = area.x + 0.5 * (area.width + self.pitch_x) - 4.0;
-                let mut ticks = placed(&axis, most);
+                let axis = self.sides.0.placed(area.x, area.right());
+                let mut ticks = axis.ticks(Direction::X, most(area.width));
+                // No number may touch the first one of the next map.
+                let end = area.x + 0.5 * (area.width + self.pitch_x) - 4.0;
                 for (at, text) in &mut ticks {
-                    let half = 0.5 * text.width();
-                    // Nor may it touch the next map's first.
-                    if *at - half < free || *at + half > limit {
+                    if *at + 0.5 * text.width() > end {
                         *text = Text::plain("", SIZE_TICK);
-                    } else {
-                        free = *at + half + 12.0;
                     }
                 }
                 let title = Text::plain(&format!("x ({})", self.unit), SIZE_LABEL);
@@ -316,29 +196,23 @@ impl Layout {
 
     /// The colour bar, as tall as all rows.
     fn draw_bar(&self, canvas: &mut Canvas) {
-        let height = ((self.rows - 1) as f64 * self.pitch_y + self.map_height).max(BAR_SHORTEST);
-        let x = self.left + self.columns as f64 * self.pitch_x;
+        let height = ((self.rows - 1) as f64 * self.pitch_y + self.map_height).max(BAR_MIN_HEIGHT);
         let area = Area {
-            x,
-            y: self.top,
+            x: self.left + self.columns as f64 * self.pitch_x,
+            y: TOP,
             width: BAR_WIDTH,
             height,
         };
-        let axis = Axis {
-            lo: 0.0,
-            hi: 1.0,
-            start: area.bottom(),
-            end: area.y,
-        };
-        colour_bar(canvas, area, &placed(&axis, 5));
+        colour_bar(canvas, area, &bar_ticks(area.bottom(), area.y));
         let title = Text::math("\u{3c4}_c*", SIZE_LABEL);
-        canvas.text(
-            &title,
-            (area.x + 0.5 * area.width, area.y - 22.0),
-            Align::Middle,
-            BLACK,
-        );
+        canvas.text(&title, (area.centre().0, area.y - 22.0), Align::Middle, BLACK);
     }
+}
+
+/// The numbers of a colour bar between two pixels.
+fn bar_ticks(start: f64, end: f64) -> Vec<Tick> {
+    let [lo, hi] = RANGE;
+    Axis::linear(lo, hi).placed(start, end).ticks(Direction::Y, 5)
 }
 
 /// The first line over a map.
@@ -351,6 +225,14 @@ fn title(map: &StressMap) -> Text {
     Text::plain(&format!("{}: {time}", map.label), SIZE_LABEL)
 }
 
+/// The second line over a map; empty if the friction is not known.
+fn friction(map: &StressMap) -> Text {
+    if !map.mu_star.is_finite() {
+        return Text::plain("", SIZE_TICK);
+    }
+    Text::plain(&format!("\u{3bc}* = {}", number(map.mu_star, 3)), SIZE_TICK)
+}
+
 /// The unit in which a length reads well, and how many of it make a metre.
 fn unit_of(length: f64) -> (&'static str, f64) {
     match length {
@@ -359,20 +241,6 @@ fn unit_of(length: f64) -> (&'static str, f64) {
         ..1.0 => ("mm", 1e3),
         _ => ("m", 1.0),
     }
-}
-
-fn axis_of(extent: f64) -> Axis {
-    Axis {
-        lo: 0.0,
-        hi: extent,
-        start: 0.0,
-        end: 1.0,
-    }
-}
-
-/// The room for the colour bar and its numbers, right of the last map.
-fn bar_room() -> f64 {
-    GAP + BAR_WIDTH + TICK_LENGTH + 7.0 + Text::plain("0.0", SIZE_TICK).width() + MARGIN
 }
 
 #[cfg(test)]
@@ -432,19 +300,6 @@ mod tests {
         blank.maps[0].mu_star = f64::NAN;
         let svg = stress(&blank).unwrap().svg;
         assert!(svg.contains(">A: t* = 0.0</text>") && !svg.contains("NaN"));
-    }
-
-    #[test]
-    fn groups_of_blocks_are_averaged_without_the_blank_ones() {
-        let cells = Cells {
-            nx: 4,
-            ny: 2,
-            columns: 2,
-            rows: 1,
-        };
-        let values = [1.0, 2.0, f32::NAN, f32::NAN, 3.0, f32::NAN, f32::NAN, f32::NAN];
-        let means = cells.mean(|block| values[block]);
-        assert!(means[0] == 2.0 && means[1].is_nan());
     }
 
     #[test]

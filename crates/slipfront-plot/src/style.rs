@@ -1,7 +1,5 @@
 //! Sizes and colours shared by all pictures. One unit of length is one pixel of the PNG at 300 dots per inch.
 
-use kuva::plot::ColorMap;
-
 /// Pixels in an inch.
 pub(crate) const DPI: f64 = 300.0;
 /// Pixels in a millimetre.
@@ -24,7 +22,7 @@ pub(crate) const WIDTH_MARK: f64 = 2.5;
 pub(crate) const WIDTH_FRAME: f64 = 2.0;
 /// Leaders: 0.35 pt.
 pub(crate) const WIDTH_LEADER: f64 = 1.5;
-/// How opaque bars are: the whisker before a bar must be seen.
+/// How opaque bars are: the error bar in front of a bar must be seen.
 pub(crate) const OPACITY_BAR: f64 = 0.65;
 /// The points of a curve.
 pub(crate) const RADIUS_MARKER: f64 = 8.0;
@@ -62,11 +60,7 @@ pub(crate) fn curve_colour(index: usize, count: usize) -> Rgb {
     ramp(0.9 * index as f64 / (count - 1) as f64)
 }
 
-/// Viridis, perceptually uniform, from 0 (dark) to 1 (bright); the table is the crate `colorous`'
-/// (Apache-2.0), which `kuva` brings.
+/// Viridis, perceptually uniform, from 0 (dark) to 1 (bright).
 pub(crate) fn ramp(value: f64) -> Rgb {
-    let (red, green, blue) = ColorMap::Viridis
-        .map_rgb(value)
-        .unwrap_or((BLANK[0], BLANK[1], BLANK[2]));
-    [red, green, blue]
+    colorous::VIRIDIS.eval_continuous(value).as_array()
 }

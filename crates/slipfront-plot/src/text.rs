@@ -1,18 +1,8 @@
 //! Short texts with subscripts, and how wide they are.
 
+use crate::font::advance;
 use crate::style::{SIZE_LABEL, SIZE_TICK};
 
-/// How far a character moves the pen, in 1/2048 of the font size, for `DejaVu` Sans from space to tilde.
-#[rustfmt::skip]
-const ADVANCES: [u16; 95] = [
-    651, 821, 942, 1716, 1303, 1946, 1597, 563, 799, 799, 1024, 1716, 651, 739, 651, 690,
-    1303, 1303, 1303, 1303, 1303, 1303, 1303, 1303, 1303, 1303, 690, 690, 1716, 1716, 1716, 1087,
-    2048, 1401, 1405, 1430, 1577, 1294, 1178, 1587, 1540, 604, 604, 1343, 1141, 1767, 1532, 1612,
-    1235, 1612, 1423, 1300, 1251, 1499, 1401, 2025, 1403, 1251, 1403, 799, 690, 799, 1716, 1024,
-    1024, 1255, 1300, 1126, 1300, 1260, 721, 1300, 1298, 569, 569, 1186, 569, 1995, 1298, 1253,
-    1300, 1300, 842, 1067, 803, 1298, 1212, 1675, 1212, 1212, 1075, 1303, 690, 1303, 1716,
-];
-const UNITS_PER_EM: f64 = 2048.0;
 /// Height of capitals and digits over the font size.
 pub(crate) const CAP_HEIGHT: f64 = 0.729;
 
@@ -211,26 +201,6 @@ impl Run {
     pub(crate) fn width(&self) -> f64 {
         self.text.chars().map(advance).sum::<f64>() * f64::from(self.size)
     }
-}
-
-/// How far `character` moves the pen, over the font size.
-pub(crate) fn advance(character: char) -> f64 {
-    let units = match character {
-        ' '..='~' => ADVANCES[character as usize - ' ' as usize],
-        '\u{3bc}' | '\u{b5}' => 1303,
-        '\u{3c4}' => 1233,
-        '\u{3c3}' => 1298,
-        '\u{3a9}' => 1565,
-        '\u{27e8}' | '\u{27e9}' => 799,
-        '\u{2212}' | '\u{b1}' | '\u{d7}' => 1716,
-        '\u{b0}' => 1024,
-        '\u{b2}' | '\u{b3}' => 821,
-        '\u{370}'..='\u{3ff}' => 1300,
-        '\u{c0}'..='\u{24f}' => 1260,
-        // Unknown: an em is wide enough for nearly everything, so nothing collides.
-        _ => 2048,
-    };
-    f64::from(units) / UNITS_PER_EM
 }
 
 /// `value` with `decimals` digits after the point and a true minus sign; never a negative zero.

@@ -11,11 +11,13 @@ use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::manifest::Manifest;
+use crate::checksum::{HashingWriter, verify_reader};
 use crate::names::{CHECKPOINT, PREVIOUS};
+use crate::program;
+use crate::run_folder::unfinished::Unfinished;
 use crate::running::{RunState, Running};
 use slipfront_case::case::Case;
-use slipfront_case::disk::{open_regular, remove_if_there, sync_folder, write_temp};
+use slipfront_case::disk::{open_regular, sync_folder, write_temp};
 use slipfront_case::text::truncated;
 
 /// How the file is laid out. A program reads no other layout.
@@ -42,7 +44,7 @@ struct Layout {
 
 /// A checkpoint as it was read.
 #[derive(Debug)]
-pub struct Saved {
+pub struct LoadedCheckpoint {
     /// The state of the run.
     pub state: RunState,
     /// Its step.
@@ -55,59 +57,34 @@ pub struct Saved {
 
 /// Why a run cannot go on from a checkpoint.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum CheckpointError {
-    /// It cannot be read.
     #[error("cannot read {}: {source}", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// It is not as it was written.
+    Unreadable { path: PathBuf, source: std::io::Error },
     #[error("{} is damaged: {why}", path.display())]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        why: &'static str,
-    },
-    /// It is laid out as another version does.
+    Damaged { path: PathBuf, why: &'static str },
     #[error(
         "{} has layout {found}, and this version reads layout {LAYOUT}: resume with the version that wrote it",
         path.display()
     )]
-    Layout {
-        /// The file.
-        path: PathBuf,
-        /// Its layout.
-        found: u32,
-    },
-    /// It is not from this program.
+    Layout { path: PathBuf, found: u32 },
     #[error(
         "{} was written by {found}, and this is {here}, which may not give the same bits: resume with that version",
         path.display()
     )]
     Program {
-        /// The file.
         path: PathBuf,
-        /// The program that wrote it.
         found: String,
-        /// The program that reads it.
         here: &'static str,
     },
-    /// It is not of this run.
     #[error("{} belongs to another case than the case.toml and inputs beside it", path.display())]
-    Case {
-        /// The file.
-        path: PathBuf,
-    },
+    Case { path: PathBuf },
 }
 
 /// Saves the checkpoints of one run.
 #[derive(Debug)]
 pub struct Checkpoints {
-    folder: PathBuf,
+    folder: Unfinished,
     program: &'static str,
     case_blake3: String,
     started: Timestamp,
@@ -121,8 +98,8 @@ impl Checkpoints {
     /// Those of a run of `case` in `folder` that begins at `started`.
     pub fn new(folder: &Path, case: &Case, started: Timestamp) -> Self {
         Self {
-            folder: folder.to_owned(),
-            program: Manifest::this_build(),
+            folder: Unfinished::of(folder),
+            program: program::this_build(),
             case_blake3: hash_of(case),
             started,
             latest_is_whole: false,
@@ -131,7 +108,7 @@ impl Checkpoints {
     }
 
     /// Those of a run that goes on from a checkpoint.
-    pub fn after(folder: &Path, case: &Case, saved: &Saved) -> Self {
+    pub fn after(folder: &Path, case: &Case, saved: &LoadedCheckpoint) -> Self {
         Self {
             latest_is_whole: saved.latest,
             saved_step: Some(saved.step),
@@ -162,8 +139,8 @@ impl Checkpoints {
             step: running.snapshot().step,
             started: self.started,
         };
-        let whole = write_temp(&self.folder, |file| write(file, &header, running))?;
-        let [latest, previous] = [CHECKPOINT, PREVIOUS].map(|name| self.folder.join(name));
+        let whole = write_temp(&self.folder.temporary(), |file| write(file, &header, running))?;
+        let [latest, previous] = [CHECKPOINT, PREVIOUS].map(|name| self.folder.path().join(name));
         if std::mem::take(&mut self.latest_is_whole) {
             match std::fs::rename(&latest, &previous) {
                 Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
@@ -173,18 +150,7 @@ impl Checkpoints {
         whole.persist(&latest)?;
         self.latest_is_whole = true;
         self.saved_step = Some(header.step);
-        sync_folder(&self.folder)
-    }
-
-    /// Removes all checkpoints: the run is complete.
-    ///
-    /// # Errors
-    /// What the system says.
-    pub fn remove(folder: &Path) -> std::io::Result<()> {
-        for name in [CHECKPOINT, PREVIOUS] {
-            remove_if_there(&folder.join(name))?;
-        }
-        Ok(())
+        sync_folder(self.folder.path())
     }
 
     /// Reads the latest checkpoint of a run folder, or the one before it; none if there is none. Where a kill has left
@@ -192,15 +158,19 @@ impl Checkpoints {
     ///
     /// # Errors
     /// When it cannot be read, is damaged, or is that of another program or case.
-    pub fn load(folder: &Path, case: &Case, previous: bool) -> Result<Option<Saved>, CheckpointError> {
+    pub fn load(
+        folder: &Path,
+        case: &Case,
+        previous: bool,
+    ) -> Result<Option<LoadedCheckpoint>, CheckpointError> {
         let names: &[&str] = if previous {
             &[PREVIOUS]
         } else {
             &[CHECKPOINT, PREVIOUS]
         };
         for name in names {
-            let path = folder.join(name);
-            // A link that leads nowhere is not no checkpoint.
+            let path = Unfinished::of(folder).path().join(name);
+            // A link with nothing at its end must be refused, and not taken for no checkpoint.
             if path.symlink_metadata().is_ok() {
                 let mut saved = read(&path, case)?;
                 saved.latest = *name == CHECKPOINT;
@@ -223,40 +193,19 @@ fn hash_of(case: &Case) -> String {
     hasher.finalize().to_hex().to_string()
 }
 
-/// Hands on what is written, and hashes it.
-struct Sealing<W> {
-    inner: W,
-    hasher: blake3::Hasher,
-}
-
-impl<W: Write> Write for Sealing<W> {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        let written = self.inner.write(bytes)?;
-        self.hasher.update(&bytes[..written]);
-        Ok(written)
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        self.inner.flush()
-    }
-}
-
 fn write(file: &mut File, header: &Header, running: &Running) -> std::io::Result<()> {
-    let hasher = blake3::Hasher::new();
-    let mut sealing = BufWriter::with_capacity(1 << 20, Sealing { inner: file, hasher });
-    serde_json::to_writer(&mut sealing, header)?;
-    sealing.write_all(b"\n")?;
-    // Postcard swallows what the system says of a failed write: it is asked again.
-    let written = postcard::to_io(&running.state(), &mut sealing).map(|_| ());
-    sealing.flush()?;
+    let mut writer = BufWriter::with_capacity(1 << 20, HashingWriter::new(file));
+    serde_json::to_writer(&mut writer, header)?;
+    writer.write_all(b"\n")?;
+    // Postcard drops the system's error of a failed write; `flush` gives it again.
+    let written = postcard::to_io(&running.state(), &mut writer).map(|_| ());
+    writer.flush()?;
     written.map_err(std::io::Error::other)?;
-    let Sealing { inner, hasher } = sealing
-        .into_inner()
-        .map_err(std::io::IntoInnerError::into_error)?;
-    inner.write_all(hasher.finalize().as_bytes())
+    let writer = writer.into_inner().map_err(std::io::IntoInnerError::into_error)?;
+    writer.finish()
 }
 
-fn read(path: &Path, case: &Case) -> Result<Saved, CheckpointError> {
+fn read(path: &Path, case: &Case) -> Result<LoadedCheckpoint, CheckpointError> {
     let unreadable = |source| CheckpointError::Unreadable {
         path: path.to_owned(),
         source,
@@ -281,9 +230,10 @@ fn read(path: &Path, case: &Case) -> Result<Saved, CheckpointError> {
     let header: Header = serde_json::from_slice(&line).map_err(|_| unknown())?;
     // Nothing is made of bytes before they are known to be those that were written.
     reader.rewind().map_err(unreadable)?;
-    let sealed = check_seal(&mut reader).map_err(unreadable)?;
-    let sealed = sealed.ok_or_else(|| damaged("its checksum does not fit"))?;
-    let here = Manifest::this_build();
+    let length = reader.get_ref().metadata().map_err(unreadable)?.len();
+    let end = verify_reader(&mut reader, length).map_err(unreadable)?;
+    let end = end.ok_or_else(|| damaged("its checksum does not fit"))?;
+    let here = program::this_build();
     if header.program != here {
         return Err(CheckpointError::Program {
             path: path.to_owned(),
@@ -298,12 +248,12 @@ fn read(path: &Path, case: &Case) -> Result<Saved, CheckpointError> {
     }
     let begin = line.len() as u64;
     reader.seek(SeekFrom::Start(begin)).map_err(unreadable)?;
-    let mut body = reader.take(sealed - begin);
+    let mut body = reader.take(end - begin);
     // Room for one number at a time.
     let mut number = [0; 16];
     let state = postcard::from_io((&mut body, &mut number)).map(|(state, _)| state);
     match state {
-        Ok(state) if body.limit() == 0 => Ok(Saved {
+        Ok(state) if body.limit() == 0 => Ok(LoadedCheckpoint {
             state,
             step: header.step,
             started: header.started,
@@ -311,17 +261,4 @@ fn read(path: &Path, case: &Case) -> Result<Saved, CheckpointError> {
         }),
         _ => Err(damaged("it holds no state of a run")),
     }
-}
-
-/// Number of bytes under the seal; none if it does not fit.
-fn check_seal(reader: &mut BufReader<File>) -> std::io::Result<Option<u64>> {
-    let length = reader.get_ref().metadata()?.len();
-    let Some(sealed) = length.checked_sub(blake3::OUT_LEN as u64) else {
-        return Ok(None);
-    };
-    let mut hasher = blake3::Hasher::new();
-    hasher.update_reader(reader.by_ref().take(sealed))?;
-    let mut seal = Vec::new();
-    reader.read_to_end(&mut seal)?;
-    Ok((hasher.finalize().as_bytes() == seal.as_slice()).then_some(sealed))
 }

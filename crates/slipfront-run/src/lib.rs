@@ -7,11 +7,14 @@
 //! Each arrow is one function: [`running::run`], [`results::write`], `pictures::draw` (with the feature `plot`).
 
 pub mod checkpoint;
+pub mod checksum;
+pub mod error;
 pub mod fields;
 pub mod manifest;
 pub mod names;
 #[cfg(feature = "plot")]
 pub mod pictures;
+pub mod program;
 pub mod results;
 pub mod run_folder;
 pub mod running;

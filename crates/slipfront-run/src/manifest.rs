@@ -3,9 +3,7 @@
 //! It is the only file of a run that another run of the same case does not repeat, and the last to be written.
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 use slipfront::surface::STREAMS;
@@ -13,6 +11,7 @@ use slipfront::{Kernel, Model, simd_width};
 use thiserror::Error;
 
 use crate::names::MANIFEST;
+use crate::program;
 
 use crate::run_folder::error::FolderError;
 use crate::run_folder::resume_command::resume_command;
@@ -20,8 +19,8 @@ use slipfront_case::disk::{TEXT_MAX_BYTES, json, open_regular, read_limited};
 use slipfront_case::text;
 use slipfront_case::text::truncated;
 
-/// How the last key of a manifest begins in its file: all before it is under the seal.
-const SEAL: &[u8] = b"\"seal\"";
+/// The last key of a manifest in its file. The checksum, its value, is the hash of all bytes before it.
+const CHECKSUM_KEY: &[u8] = b"\"seal\"";
 
 /// What was written, and how it came about. Keys that an earlier version did not write are empty.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -31,6 +30,9 @@ pub struct Manifest {
     /// The git commit that it was built from, with `-dirty` if its sources were changed; null outside of git.
     #[serde(default)]
     pub revision: Option<String>,
+    /// The identity of the build, by which programs that give the same bits are told: see [`program::this_build`].
+    #[serde(default)]
+    pub build: String,
     /// The kernel that made the steps.
     #[serde(default)]
     pub kernel: String,
@@ -57,9 +59,9 @@ pub struct Manifest {
     pub random: Random,
     /// Every other file of the run.
     pub files: Vec<ManifestFile>,
-    /// BLAKE3 hash of the manifest itself up to this key.
-    #[serde(default)]
-    pub seal: String,
+    /// BLAKE3 hash of the manifest itself up to this key, which is called `seal` in the file.
+    #[serde(default, rename = "seal")]
+    pub checksum: String,
 }
 
 /// Seed and streams of the random numbers.
@@ -95,25 +97,21 @@ pub struct ManifestFile {
 }
 
 /// A manifest that cannot be used.
-#[derive(Debug, Error)]
+#[derive(Clone, Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ManifestError {
-    /// There is none.
     #[error(
         "{} holds no manifest.json: it is no run folder, or its run did not end; if it did not, `{}` goes on with it",
         path.display(),
         resume_command(path)
     )]
-    Missing {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// It is not what was written.
+    Missing { path: PathBuf },
     #[error("{} is damaged: {why}", path.display())]
     Damaged {
-        /// The manifest.
         path: PathBuf,
-        /// What is wrong.
         why: String,
+        /// What the manifest says, if it can be parsed at all.
+        unverified: Option<Box<Manifest>>,
     },
 }
 
@@ -140,8 +138,9 @@ impl Manifest {
         let case = files.iter().find(|file| file.name == "case.toml");
         let finished = jiff::Timestamp::now();
         Ok(Self {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            revision: Self::this_revision().map(str::to_owned),
+            version: program::VERSION.to_owned(),
+            revision: program::REVISION.map(str::to_owned),
+            build: program::this_build().to_owned(),
             kernel: Kernel::Fused.for_law(model.law).name().to_owned(),
             simd_width: simd_width().to_owned(),
             threads,
@@ -153,14 +152,14 @@ impl Manifest {
             case_blake3: case.map_or(String::new(), |case| case.blake3.clone()),
             random: Random::of_seed(seed),
             files,
-            seal: String::new(),
+            checksum: String::new(),
         })
     }
 
-    /// The bytes of the file, sealed.
-    pub(crate) fn sealed(mut self) -> (Self, Vec<u8>) {
-        self.seal = String::new();
-        self.seal = seal_of(&json(&self)).unwrap_or_default();
+    /// The manifest with its checksum, and the bytes of its file.
+    pub(crate) fn with_checksum(mut self) -> (Self, Vec<u8>) {
+        self.checksum = String::new();
+        self.checksum = checksum_of(&json(&self)).unwrap_or_default();
         let bytes = json(&self);
         (self, bytes)
     }
@@ -178,74 +177,42 @@ impl Manifest {
                 return Err(ManifestError::Missing { path });
             }
             Err(error) => {
-                let why = error.to_string();
-                return Err(ManifestError::Damaged { path, why });
+                return Err(ManifestError::Damaged {
+                    path,
+                    why: error.to_string(),
+                    unverified: None,
+                });
             }
         };
-        let why = match serde_json::from_slice::<Self>(&bytes) {
-            Ok(manifest) if seal_of(&bytes).as_ref() == Some(&manifest.seal) => return Ok(manifest),
-            Ok(manifest) if manifest.seal.is_empty() => {
-                "it has no seal, by which changes of it are seen".to_owned()
+        let manifest = serde_json::from_slice::<Self>(&bytes);
+        let why = match &manifest {
+            Ok(manifest) if checksum_of(&bytes).as_ref() == Some(&manifest.checksum) => None,
+            Ok(manifest) if manifest.checksum.is_empty() => {
+                Some("it has no seal, by which changes of it are seen".to_owned())
             }
-            Ok(_) => "its seal does not fit, so that it was changed after the run".to_owned(),
-            Err(error) => text::single_line(&error.to_string()),
+            Ok(_) => Some("its seal does not fit, so that it was changed after the run".to_owned()),
+            Err(error) => Some(text::single_line(&error.to_string())),
         };
-        Err(ManifestError::Damaged { path, why })
+        match (manifest, why) {
+            (Ok(manifest), None) => Ok(manifest),
+            (manifest, why) => Err(ManifestError::Damaged {
+                path,
+                why: why.unwrap_or_default(),
+                unverified: manifest.ok().map(Box::new),
+            }),
+        }
     }
 
     /// The program that wrote it, in words.
     pub fn program(&self) -> String {
-        match &self.revision {
-            Some(revision) => truncated(&format!("slipfront {} ({revision})", self.version)),
-            None => truncated(&format!("slipfront {}", self.version)),
-        }
-    }
-
-    /// The program that reads this, in words.
-    pub fn this_program() -> String {
-        Self {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            revision: Self::this_revision().map(str::to_owned),
-            ..Self::default()
-        }
-        .program()
-    }
-
-    /// The program that reads this, told from any other that may not give the same bits: where its version and revision do
-    /// not say it all, by the hash of its file.
-    pub fn this_build() -> &'static str {
-        static BUILD: LazyLock<String> = LazyLock::new(|| {
-            let program = Manifest::this_program();
-            let revision = Manifest::this_revision();
-            if revision.is_some_and(|revision| !revision.ends_with("-dirty")) {
-                return program;
-            }
-            // Where there is this link, it leads to the file even when another has taken its name.
-            let link = Path::new("/proc/self/exe");
-            let file = File::open(link).or_else(|_| std::env::current_exe().and_then(File::open));
-            let mut hasher = blake3::Hasher::new();
-            match file.and_then(|file| hasher.update_reader(file).map(|hasher| hasher.finalize())) {
-                Ok(hash) => format!("{program}, build {}", &hash.to_hex()[..16]),
-                // Nothing is taken for its own that may not be.
-                Err(_) => format!(
-                    "{program}, build unknown, of {} (process {})",
-                    jiff::Timestamp::now(),
-                    std::process::id()
-                ),
-            }
-        });
-        &BUILD
-    }
-
-    /// The git commit that this program was built from, as in [`Manifest::revision`].
-    pub(crate) fn this_revision() -> Option<&'static str> {
-        option_env!("SLIPFRONT_REVISION")
+        truncated(&program::in_words(&self.version, self.revision.as_deref()))
     }
 }
 
-/// The hash of all before the seal; none if there is no seal.
-fn seal_of(manifest: &[u8]) -> Option<String> {
-    let before = manifest.windows(SEAL.len()).rposition(|bytes| bytes == SEAL)?;
+/// The checksum that the bytes of a manifest should have; none if they lack the key of it.
+fn checksum_of(manifest: &[u8]) -> Option<String> {
+    let mut windows = manifest.windows(CHECKSUM_KEY.len());
+    let before = windows.rposition(|bytes| bytes == CHECKSUM_KEY)?;
     Some(blake3::hash(&manifest[..before]).to_hex().to_string())
 }
 

@@ -6,10 +6,14 @@ use slipfront::observe::Field;
 use slipfront_case::case::MAX_MAPS;
 use slipfront_plot::{self as plot, FrictionCurve, Instant, Kinetic, Picture, StressMap, StressMaps};
 
+use crate::error::ResultsError;
 use crate::fields::{self, FieldFrame};
-use crate::results::{ResultsError, read_summary};
+use crate::names::{FIELDS, SERIES, SUMMARY};
 use crate::series;
-use crate::summary::Summary;
+use crate::summary::{Summary, read_summary};
+
+/// The files that pictures are drawn from.
+pub const DRAWN_FROM: [&str; 3] = [SUMMARY, SERIES, FIELDS];
 
 /// Draws the pictures of a run folder from its files.
 ///
@@ -39,7 +43,7 @@ pub fn draw_friction(folders: &[PathBuf]) -> Result<Picture, ResultsError> {
 
 fn friction_curve(folder: &Path) -> Result<FrictionCurve, ResultsError> {
     let summary = read_summary(folder)?;
-    let rows = series::read_csv(&folder.join("series.csv"))?;
+    let rows = series::read_csv(&folder.join(SERIES))?;
     Ok(FrictionCurve {
         time_star: rows.iter().map(|row| row.time_star).collect(),
         mu_star: rows.iter().map(|row| row.mu_star).collect(),
@@ -74,11 +78,11 @@ pub fn marked_curve(label: String, summary: &Summary) -> FrictionCurve {
 
 /// Draws the stress maps of a run; none if it kept no contact stress.
 fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
-    let fields = fields::read_maps(&folder.join("fields.nc"), Field::ContactStress, MAX_MAPS)?;
+    let fields = fields::read_maps(&folder.join(FIELDS), Field::ContactStress, MAX_MAPS)?;
     if fields.names.is_empty() || fields.frames.is_empty() {
         return Ok(None);
     }
-    let rows = series::read_csv(&folder.join("series.csv"))?;
+    let rows = series::read_csv(&folder.join(SERIES))?;
     let instants = read_summary(folder)?.instants;
     // A snapshot between the rows of a thinned series has no mu* of its own, unless it is an instant.
     let mu_star = |frame: &FieldFrame| {

@@ -1,15 +1,18 @@
 //! [`Case`] -> [`Record`]: one run with all observers that its files need.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 use slipfront::checkpoint::BlockNumbers;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{
     Curve, CurveRow, FirstSlip, Frame, Frames, Instants, KineticHistory, Observer, Schedule, Scheduled,
 };
-use slipfront::{Checkpoint, Execution, RunError, Simulation, Snapshot, StopReason};
+use slipfront::{Checkpoint, Execution, RunError, Simulation, Snapshot, Stop, StopReason};
 
+use crate::fields::{FieldFrame, in_si_units};
 use crate::summary::{Observed, Summary};
-use slipfront_case::case::{Case, Snapshots};
+use slipfront_case::case::{Case, Output, Snapshots};
 
 /// Everything a run leaves behind, in memory.
 #[derive(Debug)]
@@ -33,7 +36,7 @@ const BLOCKS_PER_THREAD: usize = 1 << 16;
 ///
 /// # Errors
 /// [`RunError`] when the run diverges.
-pub fn run(case: &Case, threads: usize) -> Result<Record, RunError> {
+pub fn run(case: &Arc<Case>, threads: usize) -> Result<Record, RunError> {
     let mut running = Running::start(case, threads);
     loop {
         if let Some(reason) = running.advance(u64::MAX)? {
@@ -43,9 +46,11 @@ pub fn run(case: &Case, threads: usize) -> Result<Record, RunError> {
 }
 
 /// A run in progress, with all that its files need of it.
-pub struct Running<'c> {
-    case: &'c Case,
-    simulation: Simulation<'c>,
+pub struct Running {
+    case: Arc<Case>,
+    /// When it ends.
+    stop: Stop,
+    simulation: Simulation,
     observers: Observers,
 }
 
@@ -71,16 +76,22 @@ pub struct RunState<N = BlockNumbers, O = Observers> {
     observers: O,
 }
 
+/// The fields of the output of a case, as the observers select them.
+fn selection(output: &Output) -> Selection {
+    Selection {
+        fields: output.fields.clone(),
+        stride: output.stride,
+    }
+}
+
 impl Observers {
-    fn new(case: &Case) -> Self {
+    /// Those of a run of at most `last_step` steps, [`u64::MAX`] for a run without an end.
+    fn new(case: &Case, last_step: u64) -> Self {
         let (time_plan, output) = (&case.time_plan, &case.output);
-        let selection = Selection {
-            fields: output.fields.clone(),
-            stride: output.stride,
-        };
+        let selection = selection(output);
         Self {
             curve: Curve::every(output.series_stride),
-            history: KineticHistory::new(time_plan.last_step),
+            history: KineticHistory::new(last_step),
             fields: match output.snapshots {
                 Snapshots::Instants => Fields::Instants(Box::new(Instants::new(
                     selection,
@@ -94,13 +105,15 @@ impl Observers {
 
     /// Whether they can be those of a run of this case after `step` steps.
     fn belong_to(&self, case: &Case, step: u64) -> bool {
-        let (new, lattice) = (Self::new(case), &case.model.lattice);
+        let (new, lattice) = (Self::new(case, case.time_plan.last_step), &case.model.lattice);
         let fields = match (&self.fields, &new.fields) {
-            (Fields::Instants(old), Fields::Instants(new)) => old.continues(new, lattice, step),
-            (Fields::Frames(old), Fields::Frames(new)) => old.continues(new, lattice, step),
+            (Fields::Instants(old), Fields::Instants(new)) => old.is_consistent_with(new, lattice, step),
+            (Fields::Frames(old), Fields::Frames(new)) => old.is_consistent_with(new, lattice, step),
             _ => false,
         };
-        fields && self.curve.continues(&new.curve, step) && self.history.continues(&new.history, step)
+        fields
+            && self.curve.is_consistent_with(&new.curve, step)
+            && self.history.is_consistent_with(&new.history, step)
     }
 
     fn scheduled(&mut self, snapshots: &Snapshots) -> [Scheduled<'_>; 3] {
@@ -121,7 +134,7 @@ impl Observers {
     }
 }
 
-impl<'c> Running<'c> {
+impl Running {
     fn execution(case: &Case, threads: usize) -> Execution {
         Execution {
             threads: (case.model.lattice.n_blocks() / BLOCKS_PER_THREAD).clamp(1, threads),
@@ -130,17 +143,29 @@ impl<'c> Running<'c> {
     }
 
     /// Begins a run on at most `threads` threads.
-    pub fn start(case: &'c Case, threads: usize) -> Self {
+    pub fn start(case: &Arc<Case>, threads: usize) -> Self {
+        Self::begin(case, threads, case.time_plan.stop, case.time_plan.last_step)
+    }
+
+    /// Begins a run that goes on as long as it is advanced, whatever its case says. Its [state](Self::state) cannot be
+    /// resumed.
+    pub fn start_without_end(case: &Arc<Case>, threads: usize) -> Self {
+        Self::begin(case, threads, Stop::at_step(u64::MAX), u64::MAX)
+    }
+
+    fn begin(case: &Arc<Case>, threads: usize, stop: Stop, last_step: u64) -> Self {
+        let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
         let execution = Self::execution(case, threads);
         Self {
-            case,
-            simulation: Simulation::executed(&case.model, case.time_plan.dt_star, None, execution),
-            observers: Observers::new(case),
+            case: Arc::clone(case),
+            stop,
+            simulation: Simulation::with_execution(model, dt_star, None, execution),
+            observers: Observers::new(case, last_step),
         }
     }
 
     /// Goes on with a run where its state was written down; none if the state is not one of this case.
-    pub fn resume(case: &'c Case, threads: usize, state: RunState) -> Option<Self> {
+    pub fn resume(case: &Arc<Case>, threads: usize, state: RunState) -> Option<Self> {
         let RunState {
             simulation,
             observers,
@@ -149,10 +174,12 @@ impl<'c> Running<'c> {
         if step > case.time_plan.last_step || !observers.belong_to(case, step) {
             return None;
         }
+        let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
         let execution = Self::execution(case, threads);
         Some(Self {
-            case,
-            simulation: Simulation::resume(&case.model, case.time_plan.dt_star, simulation, execution)?,
+            case: Arc::clone(case),
+            stop: case.time_plan.stop,
+            simulation: Simulation::resume(model, dt_star, simulation, execution)?,
             observers,
         })
     }
@@ -163,8 +190,7 @@ impl<'c> Running<'c> {
     /// [`RunError`] when the run diverges.
     pub fn advance(&mut self, steps: u64) -> Result<Option<StopReason>, RunError> {
         let mut observers = self.observers.scheduled(&self.case.output.snapshots);
-        self.simulation
-            .advance(self.case.time_plan.stop, steps, &mut observers)
+        self.simulation.advance(self.stop, steps, &mut observers)
     }
 
     /// The present instant.
@@ -172,9 +198,23 @@ impl<'c> Running<'c> {
         self.simulation.snapshot()
     }
 
+    /// The present fields of the output of the case, in SI units; tau_c* is divided by its largest value so far.
+    pub fn fields(&self) -> FieldFrame {
+        let output = &self.case.output;
+        let frame = selection(output).capture(&self.snapshot());
+        let contact_stress_max = self.simulation.contact_stress_max();
+        in_si_units(
+            frame,
+            String::new(),
+            &output.fields,
+            &self.case.scales,
+            contact_stress_max,
+        )
+    }
+
     /// The case that is run.
-    pub fn case(&self) -> &'c Case {
-        self.case
+    pub fn case(&self) -> &Arc<Case> {
+        &self.case
     }
 
     /// All that the run needs to go on later, to be written down.
@@ -191,6 +231,7 @@ impl<'c> Running<'c> {
             case,
             simulation,
             observers,
+            ..
         } = self;
         let Observers {
             curve,
@@ -198,7 +239,7 @@ impl<'c> Running<'c> {
             fields,
         } = observers;
         let time_plan = &case.time_plan;
-        let first_slip = FirstSlip::of(&simulation);
+        let first_slip = FirstSlip::of(&simulation.snapshot());
         let (instants, frames) = match fields {
             Fields::Instants(instants) => (instants.found(), Vec::new()),
             Fields::Frames(frames) => (Vec::new(), frames.frames),
@@ -228,7 +269,7 @@ impl<'c> Running<'c> {
             instants: &instants,
         };
         Record {
-            summary: Summary::new(case, &found),
+            summary: Summary::new(&case, &found),
             rows: curve.rows,
             frames: if instants.is_empty() {
                 unlettered(frames)
@@ -245,10 +286,10 @@ impl<'c> Running<'c> {
 ///
 /// # Errors
 /// [`RunError`] when the run diverges.
-pub fn run_unless(case: &Case, ends: &dyn Fn() -> bool) -> Option<Result<Record, RunError>> {
+pub fn run_unless(case: &Arc<Case>, ends: &dyn Fn() -> bool) -> Option<Result<Record, RunError>> {
     let mut running = Running::start(case, 1);
     while !ends() {
-        match running.advance(case.steps_per_look()) {
+        match running.advance(case.steps_per_poll()) {
             Ok(None) => {}
             Ok(Some(reason)) => return Some(Ok(running.record(reason))),
             Err(error) => return Some(Err(error)),
@@ -272,4 +313,37 @@ fn merged(mut instants: Vec<(char, Frame)>) -> Vec<(String, Frame)> {
         }
     }
     frames
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use slipfront::observe::Field;
+
+    #[test]
+    fn a_run_without_an_end_goes_on_and_shows_its_fields_in_si_units() {
+        let text = "slider.blocks = [4, 3]\ntime.duration_star = 20\ndrive.v_star = 0.2\n\
+                    output.fields = ['contact_stress_star', 'displacement_x']\n";
+        let case = Arc::new(Case::parse(text, "case", &[]).unwrap());
+        let last_step = case.time_plan.last_step;
+        let mut running = Running::start_without_end(&case, 1);
+        assert_eq!(running.advance(last_step + 100).unwrap(), None);
+        let fields = running.fields();
+        assert_eq!(fields.step, last_step + 100);
+        let place = |name| {
+            case.output
+                .fields
+                .iter()
+                .position(|field| *field == name)
+                .unwrap()
+        };
+        let stress = &fields.values[place(Field::ContactStress)];
+        assert!(stress.iter().all(|star| (0.0..=1.0).contains(star)), "{stress:?}");
+        let displacement = &fields.values[place(Field::DisplacementX)];
+        for (b, metres) in displacement.iter().enumerate() {
+            let star = running.snapshot().block(b).displacement[0];
+            let expected = f64::from(star as f32) * case.scales.displacement();
+            assert_eq!(*metres, expected as f32);
+        }
+    }
 }

@@ -1,10 +1,16 @@
 //! The numbers of a run: what `summary.json` holds.
 
+use std::path::Path;
+
 use serde::{Deserialize, Serialize};
 use slipfront::StopReason;
-use slipfront::observe::{Doubt, Energies, Frame, Kinetic, Peak};
+use slipfront::observe::{Energies, Frame, Kinetic, NoUncertainty, Peak};
 
+use crate::error::ResultsError;
+use crate::names::SUMMARY;
+use crate::run_folder::error::FolderError;
 use slipfront_case::case::Case;
+use slipfront_case::disk::{TEXT_MAX_BYTES, json, read_limited};
 
 /// The numbers of a run. Starred quantities are dimensionless (Eq. 11); times without a star are in s.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -166,6 +172,24 @@ impl Summary {
     }
 }
 
+/// Reads `summary.json` of a run folder.
+///
+/// # Errors
+/// When it is missing or no summary.
+pub fn read_summary(run: &Path) -> Result<Summary, ResultsError> {
+    let path = run.join(SUMMARY);
+    let bytes = read_limited(&path, TEXT_MAX_BYTES).map_err(|source| FolderError::Read {
+        path: path.clone(),
+        source,
+    })?;
+    serde_json::from_slice(&bytes).map_err(|source| ResultsError::Summary { path, source })
+}
+
+/// The summary as it stands in `summary.json`.
+pub fn summary_json(summary: &Summary) -> String {
+    String::from_utf8_lossy(&json(summary)).into_owned()
+}
+
 /// Share of the energy that the ledger may miss; a step of 0.1 stays a factor of ten below.
 const LARGE_ENERGY_ERROR: f64 = 0.01;
 
@@ -200,11 +224,11 @@ fn after_run(run: &Observed) -> Vec<String> {
              time.duration_star or set time.kinetic_from_star"
                 .to_owned(),
         ),
-        Some(Err(Doubt::TooFewBlocks { found, needed_time_star })) => warnings.push(format!(
+        Some(Err(NoUncertainty::TooFewBlocks { found, needed_time_star })) => warnings.push(format!(
             "mu_k* has no uncertainty: a half of the kinetic window holds {found} independent blocks of the 10 needed; \
              a run of time.duration_star = {needed_time_star:.0} or more would do"
         )),
-        Some(Err(Doubt::Drift { halves: [one, other], needed_time_star })) => warnings.push(format!(
+        Some(Err(NoUncertainty::Drift { halves: [one, other], needed_time_star })) => warnings.push(format!(
             "mu_k* has no uncertainty: mu* still drifts, from {one:.4} to {other:.4} between the halves of the kinetic \
              window; run to time.duration_star = {needed_time_star:.0} or more, or begin later with \
              time.kinetic_from_star"

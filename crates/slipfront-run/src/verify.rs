@@ -9,14 +9,14 @@ use std::path::{Component, Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::manifest::{Manifest, ManifestError, ManifestFile};
-use crate::names::{MANIFEST, RUNS};
-use crate::run_folder::contents::is_of_interrupted_run;
+use crate::manifest::{ManifestError, ManifestFile};
+use crate::names::{CASE, MANIFEST, RUNS, UNFINISHED};
 use crate::run_folder::error::FolderError;
+use crate::run_folder::inspection::{CaseDefect, Inspection};
+use crate::run_folder::unfinished::Unfinished;
 use crate::study;
-use crate::study::{Finding, Findings, Plan, Records, RetainRuns, StudyError, StudyFolder};
-use slipfront_case::case_file::CaseFile;
-use slipfront_case::disk::{TEXT_MAX_BYTES, read_limited};
+use crate::study::{Plan, Records, RetainRuns, RunResult, StudyError, StudyFolder, StudyResults};
+use slipfront_case::disk::is_unfinished;
 use slipfront_case::text::{single_line, truncated};
 
 /// What was found in a folder.
@@ -32,46 +32,32 @@ pub struct Verdict {
 
 /// A folder that cannot be verified.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum VerifyError {
-    /// It is no folder at all.
     #[error("{} is no folder: name the folder of a run or a study", path.display())]
-    NotAFolder {
-        /// The path.
-        path: PathBuf,
-    },
-    /// It has no usable manifest.
+    NotAFolder { path: PathBuf },
     #[error(transparent)]
     Manifest(#[from] ManifestError),
-    /// Files that a picture would be drawn from.
     #[error(
         "{difference}: pictures of it would not show what was run; run its case again, or remove {} to draw the files \
         as they are",
         manifest.display()
     )]
-    Changed {
-        /// The first of them, and how it differs.
-        difference: String,
-        /// The manifest that says so.
-        manifest: PathBuf,
-    },
-    /// A study that has not all its runs.
+    Changed { difference: String, manifest: PathBuf },
     #[error(
         "the study in {} lacks {runs} runs{}: finish it, or merge it with its other shards, and verify it then",
         path.display(),
         study::of_others(*others)
     )]
     Unfinished {
-        /// The folder.
         path: PathBuf,
-        /// Runs that are not recorded.
         runs: usize,
-        /// Recorded runs that it does not ask for.
         others: usize,
     },
-    /// A study that cannot be read, or made again.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// There is no place to make it again.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
     #[error("cannot make a folder to compare with: {0}; name one that is writable in TMPDIR")]
     Temporary(std::io::Error),
 }
@@ -81,14 +67,10 @@ pub enum VerifyError {
 /// # Errors
 /// When it is neither, or was not finished.
 pub fn verify(folder: &Path) -> Result<Verdict, VerifyError> {
-    if !folder.is_dir() {
-        let path = folder.to_owned();
-        return Err(VerifyError::NotAFolder { path });
-    }
     if is_study(folder) {
         verify_study(folder)
     } else {
-        verify_run(folder)
+        verify_run(&inspect(folder)?)
     }
 }
 
@@ -97,32 +79,35 @@ pub fn is_study(folder: &Path) -> bool {
     study::is_study(folder) && folder.join(Records::FILE).exists()
 }
 
-/// Refuses files `which` of a finished run that are not as they were written; without a manifest nothing is known of them.
+/// Refuses files `which` of a complete run that are not as they were written; without a manifest nothing is known of them.
 ///
 /// # Errors
 /// When one differs, or the manifest is damaged.
-pub fn expect_as_written(folder: &Path, which: impl Fn(&str) -> bool) -> Result<(), VerifyError> {
-    let manifest = match Manifest::read(folder) {
+pub fn expect_as_written(run: &Inspection, which: impl Fn(&str) -> bool) -> Result<(), VerifyError> {
+    let manifest = match run.manifest() {
         Ok(manifest) => manifest,
         Err(ManifestError::Missing { .. }) => return Ok(()),
         Err(error) => return Err(error.into()),
     };
-    let mut files = manifest.files;
-    files.retain(|file| which(&file.name));
-    match compare(&files, folder, "were written").into_iter().next() {
+    let files = manifest.files.iter().filter(|file| which(&file.name));
+    match differences(files, &run.path, "were written").into_iter().next() {
         None => Ok(()),
         Some(difference) => Err(VerifyError::Changed {
             difference,
-            manifest: folder.join(MANIFEST),
+            manifest: run.path.join(MANIFEST),
         }),
     }
 }
 
-fn verify_run(folder: &Path) -> Result<Verdict, VerifyError> {
-    let manifest = match Manifest::read(folder) {
+/// Compares the files of a run with its manifest.
+///
+/// # Errors
+/// When the folder is not that of a complete run.
+pub fn verify_run(run: &Inspection) -> Result<Verdict, VerifyError> {
+    let manifest = match run.manifest() {
         Ok(manifest) => manifest,
         Err(error @ ManifestError::Missing { .. }) => return Err(error.into()),
-        // A run folder it is, of which nothing else can be said.
+        // It is a run folder, of which nothing else can be said.
         Err(error @ ManifestError::Damaged { .. }) => {
             return Ok(Verdict {
                 differences: vec![error.to_string()],
@@ -130,9 +115,14 @@ fn verify_run(folder: &Path) -> Result<Verdict, VerifyError> {
             });
         }
     };
-    let mut differences = compare(&manifest.files, folder, "were written");
-    differences.extend(unresolved(&folder.join("case.toml")));
+    let mut differences = differences(&manifest.files, &run.path, "were written");
+    differences.extend(unresolved(run));
     let listed = manifest.files.iter().map(|file| file.name.as_str());
+    // A picture that `slipfront plot` was writing has a temporary file beside it.
+    let is_left = |name: &str| match name {
+        UNFINISHED => Unfinished::of(&run.path).is_managed(),
+        name => is_unfinished(name),
+    };
     Ok(Verdict {
         what: format!(
             "{} files as {} wrote them, finished {}",
@@ -141,12 +131,36 @@ fn verify_run(folder: &Path) -> Result<Verdict, VerifyError> {
             truncated(&manifest.finished)
         ),
         differences,
-        notes: strangers(folder, &listed.chain([MANIFEST]).collect(), &["inputs"]),
+        notes: unlisted_files(
+            &run.path,
+            &listed.chain([MANIFEST]).collect(),
+            &["inputs"],
+            is_left,
+        ),
     })
 }
 
-/// Where the files of a folder differ from those listed, which for example `were written`.
-pub fn compare(files: &[ManifestFile], folder: &Path, how: &str) -> Vec<String> {
+/// Inspects the folder of a run.
+///
+/// # Errors
+/// When it is no folder, or cannot be listed.
+pub fn inspect(folder: &Path) -> Result<Inspection, VerifyError> {
+    if !folder.is_dir() {
+        let path = folder.to_owned();
+        return Err(VerifyError::NotAFolder { path });
+    }
+    Inspection::of(folder).map_err(|source| {
+        let path = folder.to_owned();
+        VerifyError::Folder(FolderError::Read { path, source })
+    })
+}
+
+/// Where the files of a folder differ from those listed, which for example `were written`: a sentence for each.
+pub fn differences<'f>(
+    files: impl IntoIterator<Item = &'f ManifestFile>,
+    folder: &Path,
+    how: &str,
+) -> Vec<String> {
     let difference = |file: &ManifestFile| {
         let path = folder.join(&file.name);
         let inside = |part| matches!(part, Component::Normal(_));
@@ -171,18 +185,19 @@ pub fn compare(files: &[ManifestFile], folder: &Path, how: &str) -> Vec<String> 
         };
         Some(single_line(&format!("{} {found}", path.display())))
     };
-    files.iter().filter_map(difference).collect()
+    files.into_iter().filter_map(difference).collect()
 }
 
-/// Why a resolved case is none, or resolves to another one.
-fn unresolved(path: &Path) -> Option<String> {
-    // One that is missing is named already.
-    let text = read_limited(path, TEXT_MAX_BYTES).ok()?;
-    let resolved = CaseFile::load(path, &[]).and_then(|case| case.to_toml());
-    match resolved {
-        Ok(resolved) if resolved.as_bytes() == text => None,
-        Ok(_) => Some(format!("{} is not the resolved case that it was", path.display())),
-        Err(error) => {
+/// Why the case of a run is not a resolved case for this version.
+fn unresolved(run: &Inspection) -> Option<String> {
+    let path = run.path.join(CASE);
+    match &run.case {
+        // One that cannot be read is among the differences already.
+        Ok(_) | Err(CaseDefect::Unreadable(_)) => None,
+        Err(CaseDefect::NotResolved(_)) => {
+            Some(format!("{} is not the resolved case that it was", path.display()))
+        }
+        Err(CaseDefect::Invalid(error)) => {
             let message = error.to_string();
             let line = message.lines().next().unwrap_or_default();
             Some(format!("{} is no case for this version: {line}", path.display()))
@@ -190,8 +205,13 @@ fn unresolved(path: &Path) -> Option<String> {
     }
 }
 
-/// What stands in a folder, and in those of its `folders` that are ours, beside the names that are `known`.
-fn strangers(folder: &Path, known: &BTreeSet<&str>, folders: &[&str]) -> Vec<String> {
+/// A note on each entry of a folder, and of those of its `folders` that slipfront makes, that is not among the `listed`.
+fn unlisted_files(
+    folder: &Path,
+    listed: &BTreeSet<&str>,
+    folders: &[&str],
+    is_left: impl Fn(&str) -> bool,
+) -> Vec<String> {
     let names = |folder: &Path| -> Vec<String> {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
         entries
@@ -205,11 +225,11 @@ fn strangers(folder: &Path, known: &BTreeSet<&str>, folders: &[&str]) -> Vec<Str
     let mut found: Vec<String> = names(folder);
     found.retain(|name| !folders.contains(&name.as_str()));
     found.extend(folders.iter().flat_map(inside));
-    found.retain(|name| !known.contains(name.as_str()));
+    found.retain(|name| !listed.contains(name.as_str()));
     found.sort();
     let in_words = |name: String| {
         let path = folder.join(&name);
-        single_line(&if is_of_interrupted_run(&name) {
+        single_line(&if is_left(&name) {
             format!("{} was left by a run that was interrupted", path.display())
         } else {
             format!("{} is not slipfront's", path.display())
@@ -240,8 +260,8 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
     again.records.merge(folder)?;
     let records = folder.join(Records::FILE);
     let (damaged, records) = (again.records.damaged, records.display());
-    let findings = match study::collect(&plan, &mut again.records) {
-        Ok(findings) => findings,
+    let results = match study::collect(&plan, &mut again.records) {
+        Ok(results) => results,
         Err(StudyError::Missing { runs, others }) if damaged == 0 => {
             let path = folder.to_owned();
             return Err(VerifyError::Unfinished { path, runs, others });
@@ -254,21 +274,22 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
         }
         Err(error) => return Err(error.into()),
     };
-    study::write(&plan, &findings, &again)?;
+    study::write(&plan, &results, &again)?;
     let mut files = files_below(temporary.path(), "").map_err(VerifyError::Temporary)?;
     files.retain(|file| file.name != Records::FILE);
     verdict
         .differences
-        .extend(compare(&files, folder, "follow from the records"));
+        .extend(differences(&files, folder, "follow from the records"));
+    let is_left = |name: &str| name.rsplit('/').next().is_some_and(is_unfinished);
     let known = files.iter().map(|file| file.name.as_str());
     let known = known.chain([Records::FILE, RUNS]).collect();
-    verdict.notes = strangers(folder, &known, &["inputs"]);
+    verdict.notes = unlisted_files(folder, &known, &["inputs"], is_left);
     if damaged > 0 {
         let damage =
             format!("{records} has {damaged} damaged lines, whose runs are recorded once more or not needed");
         verdict.notes.push(damage);
     }
-    let kept = verify_kept(folder, &plan, &findings, &mut verdict)?;
+    let kept = verify_kept(folder, &plan, &results, &mut verdict)?;
     verdict.what = format!(
         "tables and pictures as its {} recorded runs give them, {kept} run folders as they were written",
         again.records.len()
@@ -280,7 +301,7 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
 fn verify_kept(
     folder: &Path,
     plan: &Plan,
-    findings: &Findings,
+    results: &StudyResults,
     verdict: &mut Verdict,
 ) -> Result<usize, VerifyError> {
     let runs = folder.join(RUNS);
@@ -293,14 +314,11 @@ fn verify_kept(
         Err(error) if error.kind() == ErrorKind::NotFound => None,
         Err(error) => return Err(unreadable(error)),
     };
-    let done = findings
-        .runs
-        .iter()
-        .filter(|(_, finding)| match finding.as_ref() {
-            Finding::Done(_) => true,
-            // Of a run that failed the case alone is kept.
-            Finding::Failed(_) => false,
-        });
+    let done = results.runs.iter().filter(|(_, result)| match result.as_ref() {
+        RunResult::Done(_) => true,
+        // Of a run that failed the case alone is kept.
+        RunResult::Failed(_) => false,
+    });
     let done: HashSet<String> = done.map(|(run, _)| plan.folder_name(*run)).collect();
     let (mut kept, mut missing) = (0, done.clone());
     for entry in entries.into_iter().flatten() {
@@ -309,7 +327,7 @@ fn verify_kept(
         if !is_done && !entry.path().is_dir() {
             continue;
         }
-        match verify_run(&entry.path()) {
+        match inspect(&entry.path()).and_then(|run| verify_run(&run)) {
             Ok(of_run) => {
                 verdict.differences.extend(of_run.differences);
                 verdict.notes.extend(of_run.notes);

@@ -1,9 +1,11 @@
-//! Cost of a step of either kernel, in block-steps per second, on the baseline of Fig. 3 once it slides.
+//! Cost of a step of either kernel, in block-steps per second, and of reading a field of all blocks, on the baseline of Fig. 3
+//! once it slides.
 
 #![allow(missing_docs)] // Criterion's macros make public functions without a word.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use slipfront::known_answers::first_slip_time_star;
+use slipfront::exact_solutions::first_slip_time_star;
+use slipfront::observe::Field;
 use slipfront::surface::{Coefficients, Distribution, Load};
 use slipfront::{Drive, Execution, FrictionLaw, Kernel, Lattice, Model, Simulation, Surface, scales};
 
@@ -26,27 +28,54 @@ fn baseline(n: usize) -> Model {
     )
 }
 
+/// A simulation past the transition, when blocks stick and slip: the steps that a run is made of.
+fn sliding(n: usize, kernel: Kernel) -> Simulation {
+    let model = baseline(n);
+    let first = first_slip_time_star(&model.surface.mu_static, &model.surface.mu_kinetic, 1.0, 0.03);
+    // Every block at every step, so that the result does not depend on where the slider happens to rest.
+    let execution = Execution {
+        kernel,
+        skips: false,
+        ..Execution::default()
+    };
+    let mut simulation = Simulation::with_execution(model, 0.1, None, execution);
+    while simulation.time_star() < first + 60.0 {
+        simulation.step();
+    }
+    simulation
+}
+
 fn step(criterion: &mut Criterion, group: &str, kernel: Kernel) {
     let mut group = criterion.benchmark_group(group);
     for n in [25, 50, 200, 512] {
-        let model = baseline(n);
-        // Every block at every step: what is measured does not hang on where the slider happens to rest.
-        let execution = Execution {
-            kernel,
-            skips: false,
-            ..Execution::default()
-        };
-        let mut simulation = Simulation::executed(&model, 0.1, None, execution);
-        // Past the transition, when blocks stick and slip: the steps that a run is made of.
-        let surface = &model.surface;
-        let first = first_slip_time_star(&surface.mu_static, &surface.mu_kinetic, 1.0, 0.03);
-        while simulation.time_star() < first + 60.0 {
-            simulation.step();
-        }
+        let mut simulation = sliding(n, kernel);
         group.throughput(Throughput::Elements((n * n) as u64));
         group.bench_function(BenchmarkId::from_parameter(format!("{n}x{n}")), |bencher| {
             bencher.iter(|| simulation.step());
         });
+    }
+    group.finish();
+}
+
+fn read_field(criterion: &mut Criterion) {
+    let n = 256;
+    let mut group = criterion.benchmark_group("read_field");
+    group.throughput(Throughput::Elements((n * n) as u64));
+    for kernel in [Kernel::Fused, Kernel::Reference] {
+        let simulation = sliding(n, kernel);
+        let mut values = vec![0.0; n * n];
+        for field in [
+            Field::ContactStress,
+            Field::Traction,
+            Field::DisplacementX,
+            Field::VelocityX,
+            Field::Sliding,
+        ] {
+            let name = format!("{} {field:?}", kernel.name());
+            group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
+                bencher.iter(|| simulation.snapshot().read_field(field, &mut values));
+            });
+        }
     }
     group.finish();
 }
@@ -59,5 +88,5 @@ fn fused(criterion: &mut Criterion) {
     step(criterion, "fused_step", Kernel::Fused);
 }
 
-criterion_group!(benches, reference, fused);
+criterion_group!(benches, reference, fused, read_field);
 criterion_main!(benches);

@@ -1,4 +1,4 @@
-//! A step of a lattice that no cache holds, beside what its bytes cost to move.
+//! Time of a step of a lattice larger than any cache, compared with the time to move its bytes.
 //!
 //! ```console
 //! $ cargo run --release -p slipfront --example large_step -- 4096 2
@@ -7,7 +7,7 @@
 //! 4096 x 4096 blocks of the baseline of Fig. 3 on two threads, past their onset, every block at every step. A step must read
 //! displacement and velocity of every block (32 bytes) and its two thresholds (16), and write displacement and velocity
 //! (32): 80 bytes. A plain loop over six arrays that moves just these bytes, on as many threads, gives the time they take. The
-//! two are measured by turns; the best of each counts.
+//! two are measured alternately; the best of each counts.
 
 use std::error::Error;
 use std::time::Instant;
@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         skips: false,
         ..Execution::default()
     };
-    let mut simulation = Simulation::executed(&model, 0.1, None, execution);
+    let mut simulation = Simulation::with_execution(model, 0.1, None, execution);
     let mut arrays: [Vec<f64>; 6] = std::array::from_fn(|k| vec![k as f64; n]);
 
     let (mut step, mut stream) = (f64::INFINITY, f64::INFINITY);
@@ -76,20 +76,19 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Reads six arrays and writes four of them, as a step must.
-fn move_bytes([ux, uy, vx, vy, hold, slide]: &mut [Vec<f64>; 6], threads: usize) {
-    let share = ux.len().div_ceil(threads);
-    let displacements = ux.par_chunks_mut(share).zip(uy.par_chunks_mut(share));
-    let velocities = vx.par_chunks_mut(share).zip(vy.par_chunks_mut(share));
-    let thresholds = hold.par_chunks(share).zip(slide.par_chunks(share));
-    displacements
-        .zip(velocities)
-        .zip(thresholds)
-        .for_each(|(((ux, uy), (vx, vy)), (hold, slide))| {
+fn move_bytes([ux, uy, vx, vy, static_limit, kinetic_force]: &mut [Vec<f64>; 6], threads: usize) {
+    let part = ux.len().div_ceil(threads);
+    let displacements = ux.par_chunks_mut(part).zip(uy.par_chunks_mut(part));
+    let velocities = vx.par_chunks_mut(part).zip(vy.par_chunks_mut(part));
+    let thresholds = static_limit.par_chunks(part).zip(kinetic_force.par_chunks(part));
+    displacements.zip(velocities).zip(thresholds).for_each(
+        |(((ux, uy), (vx, vy)), (static_limit, kinetic_force))| {
             for k in 0..ux.len() {
                 ux[k] += 0.1 * vx[k];
                 uy[k] += 0.1 * vy[k];
-                vx[k] = 0.9 * vx[k] + 1e-9 * hold[k];
-                vy[k] = 0.9 * vy[k] + 1e-9 * slide[k];
+                vx[k] = 0.9 * vx[k] + 1e-9 * static_limit[k];
+                vy[k] = 0.9 * vy[k] + 1e-9 * kinetic_force[k];
             }
-        });
+        },
+    );
 }

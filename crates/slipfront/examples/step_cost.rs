@@ -5,8 +5,9 @@
 //! ```
 //!
 //! A slider of 50 x 50 blocks; the two files hold the local coefficients, row by row from y = 0, as
-//! little-endian f64. `--no-skip` steps every block at every step, also at rest. Prints mu_s*, the step of the peak and nanoseconds per block and step of the loop alone.
-//! `benches/peers/run.sh` holds other programs against it.
+//! little-endian f64. `--no-skip` steps every block at every step, also at rest. Prints mu_s*, the step of the peak
+//! and nanoseconds per block and step of the loop alone.
+//! `benches/peers/run.sh` compares other programs with it.
 
 use std::error::Error;
 use std::time::Instant;
@@ -40,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         1e-6,
         FrictionLaw::Projection,
     );
-    let mut simulation = Simulation::executed(&model, 0.1, None, execution);
+    let mut simulation = Simulation::with_execution(model, 0.1, None, execution);
 
     let began = Instant::now();
     for _ in 0..steps {

@@ -1,8 +1,8 @@
-//! What can go wrong in the physics, each a sentence.
+//! Errors of the physics, each a sentence.
 
 use thiserror::Error;
 
-/// A run that had to end early.
+/// Why a run ended early.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RunError {
     /// A displacement is infinite or not a number.
@@ -22,12 +22,12 @@ pub enum RunError {
         /// The component that is not finite.
         value: f64,
     },
-    /// An observer could not do its work.
+    /// An observer failed.
     #[error("{0}")]
     Observer(String),
 }
 
-/// A surface that cannot carry the slider.
+/// Why a surface is impossible.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SurfaceError {
     /// Every block is textured.

@@ -1,19 +1,18 @@
 //! The friction law with memory (Eq. 4, D1, D2), damping included, in its three readings.
 //!
-//! A law is given what a block feels at t_n and answers with the velocity half a step later, the friction
-//! force and whether the block slides. The [`kernel`](crate::kernel) calls it once per block and step.
+//! From the velocity of a block, the forces on it and its thresholds at t_n, a law finds the velocity half a step later, the
+//! friction force and whether the block slides. The reference kernel calls it once per block and step.
 
 use serde::{Deserialize, Serialize};
 
-use crate::Contact;
-use crate::state::contact_of;
+use crate::state::{Contact, contact_of};
 use crate::vector_field::{add, dot, length};
 
 /// Which reading of Eq. 4 is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FrictionLaw {
-    /// Implicit Coulomb friction with memory (Moreau's time-stepping). The one to use.
+    /// Implicit Coulomb friction with memory (Moreau's time-stepping). The default.
     Projection,
     /// Explicit friction against the velocity; a block sticks when it turns round. For comparison.
     Reversal,
@@ -21,23 +20,23 @@ pub enum FrictionLaw {
     Literal,
 }
 
-/// A block at t_n, as its friction law sees it.
-pub(crate) struct Block {
-    /// Velocity at `t - dt/2`; its memory of sticking, as a block is stuck if and only if it is zero (D12).
+/// What a friction law needs of a block at t_n.
+pub(crate) struct BlockState {
+    /// Velocity at `t - dt/2`. It is zero if and only if the block is stuck (D12).
     pub velocity: [f64; 2],
     /// `F_s + F_c`, and any constant force.
     pub force: [f64; 2],
     /// Static threshold `mu_s F_n`.
-    pub hold: f64,
+    pub static_limit: f64,
     /// Magnitude of kinetic friction `mu_k F_n`.
-    pub slide: f64,
+    pub kinetic_force: f64,
 }
 
 /// What the update that starts at t_n does with the block.
 pub(crate) struct Update {
     /// Velocity at `t + dt/2`.
     pub velocity: [f64; 2],
-    /// Friction force `F_f`; for a block that rests or stops, what balances the others.
+    /// Friction force `F_f`; for a block that sticks, minus the sum of the other forces.
     pub friction: [f64; 2],
     /// Stuck or sliding from t_n on.
     pub contact: Contact,
@@ -46,40 +45,41 @@ pub(crate) struct Update {
 /// Time step and damping (Eq. 5), centred in time so that stability does not depend on it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Integrator {
-    /// `c-/c+`, with `c-+ = 1 -+ Omega dt/2`: what a free block keeps of its velocity.
-    pub(crate) keeps: f64,
-    /// `dt/(m c+)`: what a force adds to it.
-    pub(crate) impulse: f64,
-    /// `m c+/dt`.
-    pub(crate) inverse_impulse: f64,
+    /// `c-/c+`, with `c-+ = 1 -+ Omega dt/2`: the factor by which damping reduces the velocity in a step.
+    pub(crate) velocity_decay: f64,
+    /// `dt/(m c+)`: change of velocity per force.
+    pub(crate) force_to_velocity: f64,
+    /// `m c+/dt`: force per change of velocity.
+    pub(crate) velocity_to_force: f64,
 }
 
 impl Integrator {
     pub(crate) fn new(damping: f64, dt: f64) -> Self {
         let after = 1.0 + 0.5 * damping * dt;
         Self {
-            keeps: (1.0 - 0.5 * damping * dt) / after,
-            impulse: dt / after,
-            inverse_impulse: after / dt,
+            velocity_decay: (1.0 - 0.5 * damping * dt) / after,
+            force_to_velocity: dt / after,
+            velocity_to_force: after / dt,
         }
     }
 
     /// Velocity at `t + dt/2` under a force alone (Eqs. 5-8): `(c- v + dt F/m)/c+`.
     #[inline(always)]
-    fn push(&self, velocity: [f64; 2], force: [f64; 2]) -> [f64; 2] {
-        let one = |v: f64, f: f64| self.keeps * v + self.impulse * f;
+    fn accelerate(&self, velocity: [f64; 2], force: [f64; 2]) -> [f64; 2] {
+        let one = |v: f64, f: f64| self.velocity_decay * v + self.force_to_velocity * f;
         [one(velocity[0], force[0]), one(velocity[1], force[1])]
     }
 }
 
-/// One reading of the law.
+/// One reading of Eq. 4.
 pub(crate) trait Law {
-    fn update(&self, block: &Block, integrator: &Integrator) -> Update;
+    /// The update that starts at t_n.
+    fn update(&self, block: &BlockState, integrator: &Integrator) -> Update;
 }
 
-/// At rest, or stopped: friction balances all other forces.
+/// The block sticks: friction balances all other forces.
 #[inline(always)]
-fn at_rest(force: [f64; 2]) -> Update {
+fn stuck(force: [f64; 2]) -> Update {
     Update {
         velocity: [0.0, 0.0],
         friction: [-force[0], -force[1]],
@@ -87,36 +87,39 @@ fn at_rest(force: [f64; 2]) -> Update {
     }
 }
 
-/// Friction of magnitude `slide` against the direction of `motion`.
+/// Friction of magnitude `kinetic_force` against the direction of `motion`.
 #[inline(always)]
-fn against(motion: [f64; 2], slide: f64) -> [f64; 2] {
+fn friction_against(motion: [f64; 2], kinetic_force: f64) -> [f64; 2] {
     let speed = length(motion);
     if speed > 0.0 {
-        [-slide * motion[0] / speed, -slide * motion[1] / speed]
+        [
+            -kinetic_force * motion[0] / speed,
+            -kinetic_force * motion[1] / speed,
+        ]
     } else {
         [0.0, 0.0]
     }
 }
 
-/// Moreau's time-stepping: the velocity that friction could at most take away, q, is taken from the velocity
-/// that the block would have without it.
+/// Moreau's time-stepping: friction reduces the velocity that the block would have without it by
+/// `q = mu_k F_n dt/(m c+)`, and to zero at most.
 pub(crate) struct Projection;
 
 impl Law for Projection {
-    /// Every block takes the same path, and the outcome is selected: the loop over blocks has no branch.
+    /// Without branches, so that the loop over blocks is vectorised.
     #[inline(always)]
-    fn update(&self, block: &Block, integrator: &Integrator) -> Update {
+    fn update(&self, block: &BlockState, integrator: &Integrator) -> Update {
         let force = block.force;
-        let stays = is_zero(block.velocity) & (dot(force, force) <= block.hold * block.hold);
-        let free = integrator.push(block.velocity, force);
+        let stays = is_zero(block.velocity) & (dot(force, force) <= block.static_limit * block.static_limit);
+        let free = integrator.accelerate(block.velocity, force);
         let speed = length(free);
-        // Where nothing moves, both may be 0 and their ratio no number: nothing is left then either.
-        let taken = integrator.impulse * block.slide / speed;
-        let left = 1.0 - taken;
-        let slides = !stays & (left > 0.0);
-        let pull = taken * integrator.inverse_impulse;
+        // The fraction of the free velocity that friction removes. It is NaN if both are zero, and `slides` is false then.
+        let removed_fraction = integrator.force_to_velocity * block.kinetic_force / speed;
+        let remaining = 1.0 - removed_fraction;
+        let slides = !stays & (remaining > 0.0);
+        let pull = removed_fraction * integrator.velocity_to_force;
         Update {
-            velocity: select(slides, [left * free[0], left * free[1]], [0.0, 0.0]),
+            velocity: select(slides, [remaining * free[0], remaining * free[1]], [0.0, 0.0]),
             friction: select(slides, [-pull * free[0], -pull * free[1]], [-force[0], -force[1]]),
             contact: if slides { Contact::Sliding } else { Contact::Stuck },
         }
@@ -136,21 +139,24 @@ fn select(first: bool, one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
     ]
 }
 
-/// Explicit kinetic friction against the old velocity (the force's direction for a block that breaks loose).
+/// Explicit kinetic friction against the old velocity; against the force for a block that starts to slide.
 pub(crate) struct Reversal;
 
 impl Law for Reversal {
     #[inline(always)]
-    fn update(&self, block: &Block, integrator: &Integrator) -> Update {
+    fn update(&self, block: &BlockState, integrator: &Integrator) -> Update {
         let total = length(block.force);
         let starts = contact_of(block.velocity) == Contact::Stuck;
-        if starts && total <= block.hold.max(block.slide) {
-            return at_rest(block.force);
+        if starts && total <= block.static_limit.max(block.kinetic_force) {
+            return stuck(block.force);
         }
-        let friction = against(if starts { block.force } else { block.velocity }, block.slide);
-        let velocity = integrator.push(block.velocity, add(block.force, friction));
-        if !starts && dot(velocity, block.velocity) <= 0.0 && total <= block.hold {
-            return at_rest(block.force);
+        let friction = friction_against(
+            if starts { block.force } else { block.velocity },
+            block.kinetic_force,
+        );
+        let velocity = integrator.accelerate(block.velocity, add(block.force, friction));
+        if !starts && dot(velocity, block.velocity) <= 0.0 && total <= block.static_limit {
+            return stuck(block.force);
         }
         Update {
             velocity,
@@ -165,14 +171,17 @@ pub(crate) struct Literal;
 
 impl Law for Literal {
     #[inline(always)]
-    fn update(&self, block: &Block, integrator: &Integrator) -> Update {
+    fn update(&self, block: &BlockState, integrator: &Integrator) -> Update {
         let starts = contact_of(block.velocity) == Contact::Stuck;
-        let friction = if length(block.force) <= block.hold {
+        let friction = if length(block.force) <= block.static_limit {
             [-block.force[0], -block.force[1]]
         } else {
-            against(if starts { block.force } else { block.velocity }, block.slide)
+            friction_against(
+                if starts { block.force } else { block.velocity },
+                block.kinetic_force,
+            )
         };
-        let velocity = integrator.push(block.velocity, add(block.force, friction));
+        let velocity = integrator.accelerate(block.velocity, add(block.force, friction));
         Update {
             velocity,
             friction,

@@ -11,7 +11,7 @@ pub const K_STRAIGHT: f64 = 0.75;
 pub const K_DIAGONAL: f64 = 0.375;
 /// Stiffness of the spring that drives a block, `k_s = k_2`, in units of `E l`.
 pub const K_DRIVE: f64 = 0.375;
-/// Poisson's ratio of this lattice, which cannot be chosen.
+/// Poisson's ratio of this lattice, which follows from the springs.
 pub const POISSON_RATIO: f64 = 1.0 / 3.0;
 /// Square of the lattice's highest frequency, `omega_max^2 = 6.5 k_1/m`.
 pub const OMEGA_MAX_SQUARED: f64 = 6.5 * K_STRAIGHT;
@@ -21,7 +21,7 @@ pub fn dt_star_limit() -> f64 {
     2.0 / OMEGA_MAX_SQUARED.sqrt()
 }
 
-/// How the lattice ends along one axis.
+/// What lies beyond the edges of the lattice along one axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Edges {
@@ -31,7 +31,7 @@ pub enum Edges {
     Periodic,
 }
 
-/// The blocks and how they are joined.
+/// The blocks and their arrangement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lattice {
     /// Blocks along x.
@@ -55,7 +55,7 @@ impl Lattice {
     /// A lattice with the given ends along x and along y.
     ///
     /// # Panics
-    /// If a periodic axis has fewer than [`Lattice::MIN_PERIODIC`] blocks: two would be joined twice.
+    /// If a periodic axis has fewer than [`Lattice::MIN_PERIODIC`] blocks: two springs would join the same pair of blocks.
     pub fn with_edges(nx: usize, ny: usize, edges: [Edges; 2]) -> Self {
         for (count, edges) in [nx, ny].into_iter().zip(edges) {
             assert!(
@@ -84,24 +84,27 @@ impl Lattice {
         (b % self.nx, b / self.nx)
     }
 
-    /// How much further the neighbour along `bond` stands in the order of blocks, away from the ends of rows.
+    /// Index of the neighbour along `bond` less the index of the block, away from the ends of rows.
     pub(crate) fn shift(&self, bond: &Bond) -> usize {
         (bond.offset[1] as usize * self.nx).wrapping_add_signed(bond.offset[0])
     }
 
     /// The block `[di, dj]` away from block (i, j), each -1, 0 or 1, or none beyond a free edge.
     pub fn neighbour(&self, i: usize, j: usize, offset: [isize; 2]) -> Option<usize> {
-        let i = beside(i, offset[0], self.nx, self.edges[0])?;
-        let j = beside(j, offset[1], self.ny, self.edges[1])?;
+        let i = neighbour_coordinate(i, offset[0], self.nx, self.edges[0])?;
+        let j = neighbour_coordinate(j, offset[1], self.ny, self.edges[1])?;
         Some(self.block(i, j))
     }
 }
 
-fn beside(place: usize, offset: isize, count: usize, edges: Edges) -> Option<usize> {
-    let wanted = place as isize + offset;
+/// Coordinate along one axis of the neighbour `offset` away; none beyond a free edge.
+fn neighbour_coordinate(coordinate: usize, offset: isize, count: usize, edges: Edges) -> Option<usize> {
+    let neighbour = coordinate as isize + offset;
     match edges {
-        Edges::Periodic => Some(wanted.rem_euclid(count as isize) as usize),
-        Edges::Free => (0..count as isize).contains(&wanted).then_some(wanted as usize),
+        Edges::Periodic => Some(neighbour.rem_euclid(count as isize) as usize),
+        Edges::Free => (0..count as isize)
+            .contains(&neighbour)
+            .then_some(neighbour as usize),
     }
 }
 
@@ -147,7 +150,7 @@ impl Bond {
         rest: [-1.0, 1.0],
         rest_length: std::f64::consts::SQRT_2,
     };
-    /// Every spring of the lattice once.
+    /// The four bonds that, over all blocks, make every spring once.
     pub const ALL: [Bond; 4] = [Bond::EAST, Bond::NORTH, Bond::NORTH_EAST, Bond::NORTH_WEST];
 
     /// Force on the block from this spring (one term of Eq. 3), exact at any strain:

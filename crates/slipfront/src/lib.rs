@@ -1,14 +1,14 @@
 //! Two-dimensional lattice spring-block model of the transition from static to kinetic friction.
 //!
 //! A slider of `nx` x `ny` blocks lies on a rigid plane, is pulled at constant speed through one spring per
-//! block, and holds together by springs to the eight neighbours of each block. Every block obeys
-//! Amontons-Coulomb friction with its own coefficients; blocks over a texture (a cavity, a groove) touch
-//! nothing. The model is that of Tribology International (2023), doi 10.1016/j.triboint.2023.108866, with the
+//! block, and is held together by springs between each block and its eight neighbours. Every block obeys
+//! Amontons-Coulomb friction with its own coefficients; blocks over a texture (a cavity, a groove) have no contact with the
+//! plane. The model is that of Tribology International (2023), doi 10.1016/j.triboint.2023.108866, with the
 //! numbered deviations D1... that the project's book explains.
 //!
 //! This crate is the physics alone: no files, no terminal, no clock. Everything is dimensionless: lengths in
 //! blocks, masses in blocks, time in `l sqrt(rho/E)`, displacements in `P mu_s l/E`, forces in `P mu_s l^2`;
-//! [`scales`] converts, and nothing else does.
+//! all conversions are in [`scales`].
 //!
 //! ```
 //! use slipfront::{Drive, FrictionLaw, Lattice, Model, Simulation, Stop, Surface};
@@ -16,26 +16,30 @@
 //! let lattice = Lattice::free(5, 5);
 //! let surface = Surface::uniform(&lattice, 1.0, 0.5);
 //! let model = Model::new(lattice, surface, Drive::along_x(0.03), 0.1 * 0.75_f64.sqrt(), 1e-6, FrictionLaw::Projection);
-//! let mut simulation = Simulation::at_rest(&model, 0.1);
+//! let mut simulation = Simulation::at_rest(model, 0.1);
 //! simulation.run(Stop::at_step(1000), &mut []).unwrap();
-//! // A uniform lattice slips as one block, when its drive springs reach the threshold: t* = (8/3)/V*.
+//! // A uniform lattice slips as one block, when the force of its drive springs reaches the threshold: t* = (8/3)/V*.
 //! assert!((simulation.peak().time_star - 8.0 / 3.0 / 0.03).abs() < 0.2);
 //! ```
 
 pub mod checkpoint;
+pub mod exact_solutions;
 pub mod kernel;
-pub mod known_answers;
 pub mod lattice;
 pub mod observe;
 pub mod scales;
 pub mod surface;
 
 mod error;
+mod field;
 mod friction;
-mod lanes;
+mod measure;
 mod model;
+mod reductions;
 mod simulation;
+mod snapshot;
 mod state;
+mod stop;
 mod vector_field;
 
 pub use checkpoint::Checkpoint;
@@ -45,7 +49,12 @@ pub use kernel::{Execution, Kernel, simd_width};
 pub use lattice::{Edges, Lattice};
 pub use model::{Drive, Model};
 pub use scales::Scales;
-pub use simulation::{Simulation, Snapshot, Stop, StopReason};
+pub use simulation::Simulation;
+pub use snapshot::Snapshot;
 pub use state::{Contact, State};
+pub use stop::{Stop, StopReason};
 pub use surface::Surface;
 pub use vector_field::VectorField;
+
+/// BLAKE3 hash of the sources of this crate, by which programs that give the same bits are told.
+pub const SOURCE_HASH: &str = env!("SLIPFRONT_SOURCE_HASH");

@@ -1,8 +1,9 @@
-//! Everything that never changes in a run.
+//! What never changes in a run: lattice, surface, drive, damping and friction law.
 
 use crate::friction::FrictionLaw;
 use crate::lattice::{K_DRIVE, Lattice};
 use crate::surface::Surface;
+use crate::vector_field::unit_vector;
 
 /// How the slider is pulled.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,7 +14,7 @@ pub struct Drive {
     pub direction: [f64; 2],
     /// Stiffness `k_s` of the spring on every block, in units of `E l`.
     pub k_drive: f64,
-    /// A constant force on every block beside the spring's, in units of `P mu_s l^2`; zero in the paper.
+    /// A constant force on every block in addition to the drive spring's, in units of `P mu_s l^2`; zero in the paper.
     pub constant_force: [f64; 2],
 }
 
@@ -36,53 +37,31 @@ impl Drive {
         }
     }
 
-    /// Displacement of the driven spring ends at `time_star`.
+    /// Displacement of the driven ends of the drive springs at `time_star`.
     #[inline]
-    pub fn reach(&self, time_star: f64) -> [f64; 2] {
+    pub fn position(&self, time_star: f64) -> [f64; 2] {
         let along = self.v_star * time_star;
         [along * self.direction[0], along * self.direction[1]]
     }
 
-    /// Pull on a block at displacement `u` (Eq. 2), with the constant force: `F_s = k_s (V t - u)`.
+    /// Force of the drive spring on a block at displacement `u` (Eq. 2), `F_s = k_s (V t - u)`, with the constant force.
     pub fn force(&self, u: [f64; 2], time_star: f64) -> [f64; 2] {
-        let reach = self.reach(time_star);
+        let position = self.position(time_star);
         [
-            self.k_drive * (reach[0] - u[0]) + self.constant_force[0],
-            self.k_drive * (reach[1] - u[1]) + self.constant_force[1],
+            self.k_drive * (position[0] - u[0]) + self.constant_force[0],
+            self.k_drive * (position[1] - u[1]) + self.constant_force[1],
         ]
     }
 }
 
-/// (cos, sin) of an angle in degrees; exact in the axes and symmetric about them, so that a drive along y is
-/// the mirror image of a drive along x to the last bit.
-pub(crate) fn unit_vector(degrees: f64) -> [f64; 2] {
-    let turned = degrees.rem_euclid(360.0);
-    let (quarter, rest) = ((turned / 90.0).floor(), turned.rem_euclid(90.0));
-    let [c, s] = if rest == 45.0 {
-        [std::f64::consts::FRAC_1_SQRT_2; 2]
-    } else if rest < 45.0 {
-        let angle = rest.to_radians();
-        [libm::cos(angle), libm::sin(angle)]
-    } else {
-        let angle = (90.0 - rest).to_radians();
-        [libm::sin(angle), libm::cos(angle)]
-    };
-    match quarter as u8 % 4 {
-        0 => [c, s],
-        1 => [-s, c],
-        2 => [-c, -s],
-        _ => [s, -c],
-    }
-}
-
-/// The slider, its surface and its drive.
+/// The slider with its surface and drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
     /// Blocks and springs.
     pub lattice: Lattice,
     /// Friction of every block.
     pub surface: Surface,
-    /// The pull.
+    /// How it is pulled.
     pub drive: Drive,
     /// Damping `Omega` per unit of dimensionless time (see [`crate::scales::damping`]).
     pub damping: f64,
@@ -124,30 +103,13 @@ impl Model {
     /// ```
     pub fn steady_level(&self) -> f64 {
         let n = self.surface.n_blocks();
-        let friction = (0..n).map(|b| self.surface.slide(b)).sum::<f64>() / n as f64;
+        let friction = (0..n).map(|b| self.surface.kinetic_force(b)).sum::<f64>() / n as f64;
         friction + self.damping * self.drive.v_star
     }
 
     /// Time of the first slip of a block in contact on a surface without texture, exact:
     /// `t* = min_i max(mu_si, mu_ki) F_n,i/(k_s V*)`.
     pub fn first_slip_estimate(&self) -> f64 {
-        self.surface.weakest() / (self.drive.k_drive * self.drive.v_star)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn directions_are_exact_and_symmetric() {
-        assert_eq!(unit_vector(90.0), [0.0, 1.0]);
-        assert_eq!(unit_vector(-90.0), [0.0, -1.0]);
-        assert_eq!(unit_vector(180.0), [-1.0, 0.0]);
-        let [c, s] = unit_vector(45.0);
-        assert!(c == s && (c * c + s * s - 1.0).abs() < 1e-15);
-        let [a, b] = unit_vector(30.0);
-        assert_eq!(unit_vector(60.0), [b, a]);
-        assert_eq!(unit_vector(120.0), [-b, a]);
+        self.surface.min_slip_threshold() / (self.drive.k_drive * self.drive.v_star)
     }
 }

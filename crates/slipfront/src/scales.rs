@@ -1,4 +1,4 @@
-//! Dimensional to dimensionless and back (Eq. 11). The only place of the physics that converts.
+//! Conversion between dimensional and dimensionless quantities (Eq. 11), in this file alone.
 //!
 //! Lengths count in blocks, masses in block masses, times in `l sqrt(rho/E)` (D4: the paper prints no `l`),
 //! displacements in `P mu_s l/E`, forces in `P mu_s l^2`. The case parser builds a [`Scales`]; writers of
@@ -56,7 +56,7 @@ impl Scales {
         self.stress() * self.block_size * self.block_size * self.displacement()
     }
 
-    /// The load's strain, `eps = P mu_s/E`: how much the geometry bends the springs' law.
+    /// The load's strain, `eps = P mu_s/E`, which measures how nonlinear the springs are.
     pub fn epsilon(&self) -> f64 {
         self.pressure * self.mu_static_mean / self.young_modulus
     }

@@ -1,15 +1,23 @@
-//! The loop: evaluate, observe, stop, step.
+//! The loop of a run: evaluate, observe, stop, step.
 
-use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
-use crate::checkpoint::{Checkpoint, Numbers};
-use crate::kernel::{Block, Engine, Execution, Held, Totals};
-use crate::observe::{CurvePoint, Peak, Scheduled};
-use crate::{Model, RunError, State, VectorField};
+use crate::checkpoint::Checkpoint;
+use crate::error::RunError;
+use crate::kernel::block_column::{BlockColumn, checkpoint};
+use crate::kernel::engine::Engine;
+use crate::kernel::execution::Execution;
+use crate::kernel::totals::Totals;
+use crate::measure::{CurvePoint, Peak};
+use crate::model::Model;
+use crate::observe::observer::Scheduled;
+use crate::snapshot::Snapshot;
+use crate::state::State;
+use crate::stop::{Stop, StopReason};
 
 /// A run in progress.
-pub struct Simulation<'m> {
-    model: &'m Model,
+pub struct Simulation {
+    model: Arc<Model>,
     dt_star: f64,
     step: u64,
     engine: Engine,
@@ -17,191 +25,71 @@ pub struct Simulation<'m> {
     point: CurvePoint,
     peak: Peak,
     /// Whether observers have seen the present step.
-    shown: bool,
+    observed: bool,
 }
 
-/// All that can be seen of a run at one instant t_n. Forces, friction and contact are those of the update that
-/// starts at t_n.
-pub struct Snapshot<'a> {
-    /// What never changes.
-    pub model: &'a Model,
-    /// n.
-    pub step: u64,
-    /// `t* = n dt*`.
-    pub time_star: f64,
-    /// Time step.
-    pub dt_star: f64,
-    /// Sums over all blocks.
-    pub totals: Totals,
-    /// mu* and N*.
-    pub point: CurvePoint,
-    /// The first peak of mu*, as far as it can be known by now.
-    pub peak: Peak,
-    /// Whether the run ends here.
-    pub last: bool,
-    engine: &'a Engine,
-}
-
-/// Differences of mu* that rounding cannot make: a prediction closer than this is none.
-const CLEARLY: f64 = 1e-9;
-
-impl Snapshot<'_> {
-    /// Displacement, velocity and forces of block `b`. Forces are found anew: to be asked for now and then, not at every
-    /// step.
-    pub fn block(&self, b: usize) -> Block {
-        let mut block = [Block::default()];
-        self.look(b, &mut block);
-        block[0]
-    }
-
-    /// The same of blocks `first`, `first + 1`, ..., as many as there is room for: of many together it takes a tenth of the
-    /// time that it takes of one by one.
-    ///
-    /// # Panics
-    /// If the lattice has fewer.
-    pub fn look(&self, first: usize, blocks: &mut [Block]) {
-        self.engine
-            .look(self.model, self.step, self.dt_star, first, blocks);
-    }
-
-    /// Energies held now.
-    ///
-    /// # Panics
-    /// If nobody wanted them: see [`Observer::wants_energies`](crate::observe::Observer::wants_energies).
-    pub fn held(&self) -> Held {
-        self.totals
-            .held
-            .expect("energies are measured where an observer wants them")
-    }
-
-    /// mu* one step on, which the velocities of the blocks tell already, to rounding.
-    pub(crate) fn mu_star_next(&self) -> f64 {
-        let mut totals = self.totals;
-        for axis in 0..2 {
-            totals.displacement[axis] += self.dt_star * totals.velocity_after[axis];
-        }
-        let time_star = (self.step + 1) as f64 * self.dt_star;
-        CurvePoint::measure(self.model, &totals, time_star).mu_star
-    }
-
-    /// Whether mu* will be higher one step on.
-    pub(crate) fn rises(&self) -> bool {
-        self.mu_star_next() > self.point.mu_star + CLEARLY
-    }
-
-    /// Whether mu* will be lower one step on.
-    pub(crate) fn falls(&self) -> bool {
-        self.mu_star_next() < self.point.mu_star - CLEARLY
-    }
-}
-
-/// When a run ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Stop {
-    last_step: u64,
-    after_onset: bool,
-}
-
-/// Why a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum StopReason {
-    /// The last step is done.
-    End,
-    /// The fall that ends the first peak of mu* was seen.
-    #[serde(rename = "after_onset")]
-    Onset,
-}
-
-impl Stop {
-    /// After `last_step` steps.
-    pub fn at_step(last_step: u64) -> Self {
-        Self {
-            last_step,
-            after_onset: false,
-        }
-    }
-
-    /// As soon as the fall that ends the first peak is seen, and after `last_step` steps at the latest.
-    pub fn after_onset(last_step: u64) -> Self {
-        Self {
-            last_step,
-            after_onset: true,
-        }
-    }
-
-    /// Whether the next step may be the last. That mu* will have fallen can be told before.
-    fn may_end(&self, now: &Snapshot) -> bool {
-        now.step + 1 >= self.last_step || (self.after_onset && now.peak.ends_at(now.mu_star_next() - CLEARLY))
-    }
-
-    fn reached(&self, now: &Snapshot) -> Option<StopReason> {
-        if self.after_onset && now.peak.ended {
-            Some(StopReason::Onset)
-        } else if now.step >= self.last_step {
-            Some(StopReason::End)
-        } else {
-            None
-        }
-    }
-}
-
-impl<'m> Simulation<'m> {
+impl Simulation {
     /// A slider at rest at t = 0. `dt_star` must stay below [`crate::lattice::dt_star_limit`].
-    pub fn at_rest(model: &'m Model, dt_star: f64) -> Self {
-        Self::executed(model, dt_star, None, Execution::default())
+    pub fn at_rest(model: impl Into<Arc<Model>>, dt_star: f64) -> Self {
+        Self::with_execution(model, dt_star, None, Execution::default())
     }
 
     /// A slider in a given state at t = 0.
-    pub fn from_state(model: &'m Model, dt_star: f64, state: State) -> Self {
-        Self::executed(model, dt_star, Some(state), Execution::default())
+    pub fn from_state(model: impl Into<Arc<Model>>, dt_star: f64, state: State) -> Self {
+        Self::with_execution(model, dt_star, Some(state), Execution::default())
     }
 
     /// A slider in a given state, or at rest, computed as `execution` says.
-    pub fn executed(model: &'m Model, dt_star: f64, state: Option<State>, execution: Execution) -> Self {
-        let mut engine = Engine::new(model, dt_star, state, execution);
-        let totals = engine.step(model, 0, true);
+    pub fn with_execution(
+        model: impl Into<Arc<Model>>,
+        dt_star: f64,
+        state: Option<State>,
+        execution: Execution,
+    ) -> Self {
+        let model = model.into();
+        let mut engine = Engine::new(&model, dt_star, state, execution);
+        let totals = engine.step(&model, 0, true);
         let mut simulation = Self {
+            peak: Peak::new(model.steady_level()),
             model,
             dt_star,
             step: 0,
             engine,
             totals,
             point: CurvePoint::default(),
-            peak: Peak::new(model.steady_level()),
-            shown: false,
+            observed: false,
         };
         simulation.measure();
         simulation
     }
 
-    /// A run that goes on from a checkpoint as if it had never been stopped, with the same bits, computed as `execution`
+    /// A run that continues from a checkpoint with the same bits as if it had not been stopped, computed as `execution`
     /// says. None if the checkpoint is that of another lattice or another kernel.
     pub fn resume(
-        model: &'m Model,
+        model: impl Into<Arc<Model>>,
         dt_star: f64,
         checkpoint: Checkpoint,
         execution: Execution,
     ) -> Option<Self> {
+        let model = model.into();
         let (step, totals, peak) = (checkpoint.step, checkpoint.totals, checkpoint.peak);
-        let engine = Engine::resume(model, dt_star, checkpoint, execution)?;
+        let engine = Engine::resume(&model, dt_star, checkpoint, execution)?;
         Some(Self {
+            point: CurvePoint::measure(&model, &totals, step as f64 * dt_star),
             model,
             dt_star,
             step,
             engine,
             totals,
-            point: CurvePoint::measure(model, &totals, step as f64 * dt_star),
             peak,
-            shown: true,
+            observed: true,
         })
     }
 
-    /// What [`Simulation::resume`] needs, to be written down. Taken between two calls of [`Simulation::advance`], it goes
-    /// with what the observers have seen.
-    pub fn checkpoint(&self) -> Checkpoint<Numbers<'_>> {
-        self.engine
-            .checkpoint(self.model, self.step, self.totals, self.peak)
+    /// What [`Simulation::resume`] needs, to be serialized. Taken between two calls of [`Simulation::advance`], it belongs
+    /// together with what the observers have recorded by then.
+    pub fn checkpoint(&self) -> Checkpoint<BlockColumn<'_>> {
+        checkpoint(&self.engine, &self.model, self.step, self.totals, self.peak)
     }
 
     /// Steps until `stop`, showing every instant to the observers that are due, the last one included.
@@ -232,17 +120,17 @@ impl<'m> Simulation<'m> {
             let mut now = self.snapshot();
             let reason = stop.reached(&now);
             now.last = reason.is_some();
-            if !self.shown {
+            if !self.observed {
                 for observer in observers.iter_mut().filter(|o| o.due(now.step)) {
                     observer.observe(&now)?;
                 }
             }
             if reason.is_some() || now.step >= last_step {
-                self.shown = true;
+                self.observed = true;
                 return Ok(reason);
             }
             let next = now.step + 1;
-            let energies = stop.may_end(&now) || observers.iter().any(|o| o.wants_energies(next));
+            let energies = stop.may_end(&now) || observers.iter().any(|o| o.needs_energies(next));
             self.step_with(energies);
             self.check_finite()?;
         }
@@ -255,21 +143,21 @@ impl<'m> Simulation<'m> {
 
     fn step_with(&mut self, energies: bool) {
         self.step += 1;
-        self.shown = false;
-        self.totals = self.engine.step(self.model, self.step, energies);
+        self.observed = false;
+        self.totals = self.engine.step(&self.model, self.step, energies);
         self.measure();
     }
 
     fn measure(&mut self) {
         let time_star = self.time_star();
-        self.point = CurvePoint::measure(self.model, &self.totals, time_star);
-        self.peak.watch(self.step, time_star, self.point.mu_star);
+        self.point = CurvePoint::measure(&self.model, &self.totals, time_star);
+        self.peak.update(self.step, time_star, self.point.mu_star);
     }
 
     /// The present instant.
     pub fn snapshot(&self) -> Snapshot<'_> {
         Snapshot {
-            model: self.model,
+            model: &self.model,
             step: self.step,
             time_star: self.time_star(),
             dt_star: self.dt_star,
@@ -281,7 +169,7 @@ impl<'m> Simulation<'m> {
         }
     }
 
-    /// Time of the present instant: a product, so that no rounding adds up.
+    /// Time of the present instant: step times time step, so that no rounding errors add up.
     pub fn time_star(&self) -> f64 {
         self.step as f64 * self.dt_star
     }
@@ -290,38 +178,31 @@ impl<'m> Simulation<'m> {
     pub fn state(&self) -> State {
         let n = self.model.lattice.n_blocks();
         let mut state = State::at_rest(n);
-        let State {
-            displacement,
-            velocity,
-        } = &mut state;
         for b in 0..n {
-            let [u, v] = self.engine.motion(b);
-            let set = |field: &mut VectorField, [x, y]: [f64; 2]| (field.x[b], field.y[b]) = (x, y);
-            set(displacement, u);
-            set(velocity, v);
+            let [[ux, uy], [vx, vy]] = self.engine.motion(b);
+            (state.displacement.x[b], state.displacement.y[b]) = (ux, uy);
+            (state.velocity.x[b], state.velocity.y[b]) = (vx, vy);
         }
         state
     }
 
-    /// The first peak of mu* as known by now.
+    /// The first peak of mu* as far as it is known by now.
     pub fn peak(&self) -> Peak {
         self.peak
     }
 
-    /// t* at which each block first slid while in contact; not a number where none has.
+    /// When each block first slid while in contact, t*; NaN where none has.
     pub fn first_slip_time_star(&self) -> Vec<f64> {
-        (0..self.model.lattice.n_blocks())
-            .map(|b| self.engine.first_slip(b))
-            .collect()
+        self.snapshot().first_slip_time_star()
     }
 
     /// The largest contact stress (Eq. 10) over blocks in contact and all steps so far, in units of `P mu_s`: the scale of
     /// tau_c*.
     pub fn contact_stress_max(&self) -> f64 {
-        self.engine.contact_stress_max(self.model, self.step)
+        self.engine.contact_stress_max(&self.model, self.step)
     }
 
-    /// One sum tells for all blocks: a single displacement that is not finite spoils mu*.
+    /// Checks mu* alone: a single displacement that is not finite makes it NaN or infinite.
     fn check_finite(&self) -> Result<(), RunError> {
         if self.point.mu_star.is_finite() && self.point.mu_lateral_star.is_finite() {
             return Ok(());

@@ -1,8 +1,8 @@
 //! What changes from step to step: displacements and velocities.
 
-use crate::VectorField;
+use crate::vector_field::VectorField;
 
-/// Whether a block rests on the substrate or slides over it.
+/// Whether a block sticks to the substrate or slides over it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Contact {
@@ -13,7 +13,7 @@ pub enum Contact {
 }
 
 /// A state at step n: displacements at t_n, velocities half a step earlier or later (leapfrog, D6). A block slides if and
-/// only if its velocity is not zero (D12): that is all the memory that friction needs (D2).
+/// only if its velocity is not zero (D12), so that the friction law (D2) needs no further memory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// Displacement **u** from the rest site, in units of `P mu_s l/E`.
@@ -32,7 +32,7 @@ impl State {
     }
 }
 
-/// Sliding means a velocity that is not zero (D12).
+/// A block slides if and only if its velocity is not zero (D12).
 #[inline(always)]
 pub(crate) fn contact_of(velocity: [f64; 2]) -> Contact {
     if velocity == [0.0, 0.0] {

@@ -59,3 +59,42 @@ pub(crate) fn length(a: [f64; 2]) -> f64 {
 pub(crate) fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] + b[0], a[1] + b[1]]
 }
+
+/// (cos, sin) of an angle in degrees; exact in the axes and symmetric about them, so that a drive along y is
+/// the mirror image of a drive along x to the last bit.
+pub(crate) fn unit_vector(degrees: f64) -> [f64; 2] {
+    let turned = degrees.rem_euclid(360.0);
+    let (quarter, rest) = ((turned / 90.0).floor(), turned.rem_euclid(90.0));
+    let [c, s] = if rest == 45.0 {
+        [std::f64::consts::FRAC_1_SQRT_2; 2]
+    } else if rest < 45.0 {
+        let angle = rest.to_radians();
+        [libm::cos(angle), libm::sin(angle)]
+    } else {
+        let angle = (90.0 - rest).to_radians();
+        [libm::sin(angle), libm::cos(angle)]
+    };
+    match quarter as u8 % 4 {
+        0 => [c, s],
+        1 => [-s, c],
+        2 => [-c, -s],
+        _ => [s, -c],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_are_exact_and_symmetric() {
+        assert_eq!(unit_vector(90.0), [0.0, 1.0]);
+        assert_eq!(unit_vector(-90.0), [0.0, -1.0]);
+        assert_eq!(unit_vector(180.0), [-1.0, 0.0]);
+        let [c, s] = unit_vector(45.0);
+        assert!(c == s && (c * c + s * s - 1.0).abs() < 1e-15);
+        let [a, b] = unit_vector(30.0);
+        assert_eq!(unit_vector(60.0), [b, a]);
+        assert_eq!(unit_vector(120.0), [-b, a]);
+    }
+}

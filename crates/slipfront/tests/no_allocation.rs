@@ -1,12 +1,12 @@
-//! A step allocates nothing, and neither does watching a run, but for what observers say they keep.
+//! A step allocates nothing, and observers allocate only what they keep.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use slipfront::observe::frames::{Field, Selection};
-use slipfront::observe::{Curve, Instants, KineticHistory, KineticStart, Schedule, Scheduled};
+use slipfront::observe::frames::Selection;
+use slipfront::observe::{Curve, Field, Instants, KineticHistory, KineticStart, Schedule, Scheduled};
 use slipfront::surface::{Coefficients, Distribution, Load};
 use slipfront::{Drive, Execution, FrictionLaw, Kernel, Lattice, Model, Simulation, Stop, Surface};
 
@@ -95,7 +95,7 @@ fn a_step_allocates_nothing() {
                 kernel,
                 ..Execution::default()
             };
-            let mut simulation = Simulation::executed(&model, 0.1, None, execution);
+            let mut simulation = Simulation::with_execution(model.clone(), 0.1, None, execution);
             let calls = allocations(|| (0..1000).for_each(|_| simulation.step()));
             assert_eq!(calls, 0, "{law:?} {kernel:?}");
             // 1000 steps go through onset, which comes at t* = 82 here.
@@ -110,7 +110,7 @@ fn a_step_allocates_nothing() {
 fn watching_allocates_only_what_is_kept() {
     let model = model(FrictionLaw::Projection);
     let steps = 2670;
-    let mut simulation = Simulation::at_rest(&model, 0.1);
+    let mut simulation = Simulation::at_rest(model.clone(), 0.1);
     let fields = vec![Field::ContactStress, Field::Traction, Field::Sliding];
     let n_fields = fields.len() as u64;
     let selection = Selection { fields, stride: 1 };
@@ -124,7 +124,7 @@ fn watching_allocates_only_what_is_kept() {
     });
     assert_eq!(none, 0);
 
-    let mut simulation = Simulation::at_rest(&model, 0.1);
+    let mut simulation = Simulation::at_rest(model.clone(), 0.1);
     let mut observers = [
         Scheduled::always(&mut every_step),
         Scheduled::new(Schedule::Every(10), &mut sparse),
@@ -134,7 +134,7 @@ fn watching_allocates_only_what_is_kept() {
     });
     assert!(curves <= 2 * 16, "{curves} allocations for two curves");
 
-    let mut simulation = Simulation::at_rest(&model, 0.1);
+    let mut simulation = Simulation::at_rest(model.clone(), 0.1);
     let mut observers = [Scheduled::always(&mut instants)];
     let captures = allocations(|| {
         simulation.run(Stop::at_step(steps), &mut observers).unwrap();

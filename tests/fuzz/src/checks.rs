@@ -1,17 +1,17 @@
-//! What is asked of every parser.
+//! Checks that all targets share.
 
 use std::fmt::Display;
 
-/// The longest message, in characters: a sentence and a line of the file with its caret.
-const LONGEST: usize = 2000;
+/// Most characters of a message: a sentence and a line of the file with its caret.
+const MAX_CHARS: usize = 2000;
 
-/// An error is a message that a person can read on a terminal, whatever the file holds.
+/// Demands that the message of an error is readable on a terminal: not empty, not too long, without control characters.
 pub(crate) fn readable(error: &impl Display) {
     let message = error.to_string();
     assert!(!message.trim().is_empty(), "an error without words");
     let length = message.chars().count();
     assert!(
-        length <= LONGEST,
+        length <= MAX_CHARS,
         "a message of {length} characters: {message:.200}"
     );
     let odd = message

@@ -1,4 +1,4 @@
-//! Seeds of the targets, and what earlier fuzzing has found.
+//! Inputs of the targets: seeds, and findings of earlier fuzzing.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -8,13 +8,13 @@ use slipfront_case::case_file::{Kind, SECTIONS};
 use crate::Target;
 use crate::scratch::repository;
 
-/// A named input.
+/// An input and the name by which a failure calls it.
 pub type Input = (String, Vec<u8>);
 
 impl Target {
-    /// Inputs that its parser was written for, or against.
+    /// Valid and invalid inputs to begin with.
     pub fn seeds(&self) -> Vec<Input> {
-        let mut seeds: Vec<Input> = (self.made)()
+        let mut seeds: Vec<Input> = (self.generated)()
             .into_iter()
             .enumerate()
             .map(|(k, bytes)| (format!("made {k}"), bytes))
@@ -29,12 +29,13 @@ impl Target {
         seeds
     }
 
-    /// Inputs on which a check once failed.
+    /// Inputs on which the check has failed before.
     pub fn findings(&self) -> Vec<Input> {
         files_of(&own_folder("findings", self.name), "")
     }
 
-    /// The text of its dictionary, as libFuzzer reads it; those of case and study files have the keys of a case as well.
+    /// The text of its dictionary in the format of libFuzzer, for case and study files with the keys of a case; empty without
+    /// one.
     pub fn words(&self) -> String {
         let Some(name) = self.dictionary else {
             return String::new();
@@ -76,7 +77,7 @@ fn own_folder(folder: &str, name: &str) -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(folder).join(name)
 }
 
-/// The files of a folder, in order; none where there is no folder.
+/// The files of a folder with this ending, in order; none if there is no folder.
 fn files_of(folder: &Path, ending: &str) -> Vec<Input> {
     let entries = std::fs::read_dir(folder).into_iter().flatten();
     let mut paths: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();

@@ -1,8 +1,8 @@
 //! Fuzz targets: one for every parser, each defined once.
 //!
 //! A [`Target`] takes any bytes and panics when a parser does something that it must not: panic itself, give an error
-//! that is no sentence, take more memory than input or a stated limit allow, or read something that it cannot write
-//! and read again. `cargo test` runs all targets on seeds, earlier findings and a fixed number of mutations
+//! message that cannot be read, take more memory than its limit, or read something that does not survive writing and reading
+//! again. `cargo test` runs all targets on seeds, earlier findings and a fixed number of mutations
 //! (`tests/replay.rs`); libFuzzer runs one of them for hours (`run.sh`).
 
 // Checks fail by panicking.
@@ -18,30 +18,30 @@ mod targets;
 pub use mutate::Mutator;
 pub use targets::TARGETS;
 
-/// What is run on bytes that may be anything.
+/// A check of one parser, which is run on arbitrary bytes.
 #[derive(Clone, Copy)]
 pub struct Target {
-    /// Its name: that of its folders below `seeds/` and `findings/`.
+    /// The name, also of the folders of its inputs below `seeds/` and `findings/`.
     pub name: &'static str,
-    /// What it reads and checks.
+    /// Reads the input and panics if something is wrong.
     check: fn(&[u8]),
-    /// Inputs that are made here.
-    made: fn() -> Vec<Vec<u8>>,
-    /// Inputs that stand in the repository: files, or folders of files of one ending.
+    /// Makes seeds in code, so that they follow the format.
+    generated: fn() -> Vec<Vec<u8>>,
+    /// Seeds among the files of the repository: paths, or a folder and an ending such as `cases/*.toml`.
     files: &'static [&'static str],
-    /// Its words, a file in `dictionaries/`.
+    /// A file in `dictionaries/` with words of the format, which mutations insert.
     pub dictionary: Option<&'static str>,
     /// The longest input that is tried, in bytes.
-    pub longest: usize,
-    /// The memory that it may take.
+    pub max_bytes: usize,
+    /// The most memory that the check may take.
     memory: Memory,
-    /// Mutations that `cargo test` tries: a share of a second.
+    /// Mutations that `cargo test` tries, within a fraction of a second.
     pub mutations: usize,
     /// Long inputs that `cargo test` tries.
     pub repetitions: usize,
 }
 
-/// Most memory at once: a limit that the parser states, or what follows from the length of the input.
+/// Most memory at once: a constant, and a multiple of the length of the input.
 #[derive(Clone, Copy)]
 struct Memory {
     bytes: usize,
@@ -49,15 +49,15 @@ struct Memory {
 }
 
 impl Target {
-    /// The target of this name.
+    /// The target with this name.
     pub fn named(name: &str) -> Option<&'static Self> {
         TARGETS.iter().find(|target| target.name == name)
     }
 
-    /// Runs all checks.
+    /// Runs the check, and measures its memory.
     ///
     /// # Panics
-    /// When one fails.
+    /// When the check fails or takes too much memory.
     pub fn run(&self, input: &[u8]) {
         let most = self.memory.bytes + self.memory.per_byte * input.len();
         let taken = memory::peak_of(|| (self.check)(input));

@@ -1,12 +1,12 @@
-//! Random changes of inputs, the same on every run of one seed.
+//! Random changes of inputs, which depend on a seed alone.
 
 use std::collections::VecDeque;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// Bytes that parsers are touchy about.
-const ODD: [&[u8]; 24] = [
+/// Bytes that often reveal errors of parsers.
+const SPECIAL: [&[u8]; 24] = [
     b"\0",
     b"\n",
     b"\r\n",
@@ -33,21 +33,21 @@ const ODD: [&[u8]; 24] = [
     b"9223372036854775808",
 ];
 
-/// Changes inputs in ways that parsers may not expect.
+/// Makes new inputs from seeds.
 pub struct Mutator {
     random: ChaCha8Rng,
     words: Vec<Vec<u8>>,
-    longest: usize,
+    max_bytes: usize,
 }
 
 impl Mutator {
-    /// With the words of a dictionary; inputs become no longer than `longest`.
-    pub fn new(seed: u64, dictionary: &str, longest: usize) -> Self {
+    /// `dictionary` is the text of a dictionary; inputs become no longer than `max_bytes`.
+    pub fn new(seed: u64, dictionary: &str, max_bytes: usize) -> Self {
         let words = dictionary.lines().filter_map(word);
         Self {
             random: ChaCha8Rng::seed_from_u64(seed),
-            words: words.chain(ODD.map(<[u8]>::to_vec)).collect(),
-            longest,
+            words: words.chain(SPECIAL.map(<[u8]>::to_vec)).collect(),
+            max_bytes,
         }
     }
 
@@ -57,11 +57,11 @@ impl Mutator {
         for _ in 0..=self.below(8) {
             self.change(&mut input, seeds);
         }
-        input.truncate(self.longest);
+        input.truncate(self.max_bytes);
         input
     }
 
-    /// A seed in which one stretch is repeated until all is about this long, with something else in every repetition.
+    /// A seed in which a piece is repeated until the input has about this length; half of the inputs number the repetitions.
     pub fn repeated(&mut self, seeds: &[Vec<u8>], length: usize) -> Vec<u8> {
         let seed = seeds[self.below(seeds.len())].clone();
         let (start, end) = self.range(seed.len());
@@ -125,7 +125,7 @@ impl Mutator {
         self.words[which].clone()
     }
 
-    /// A stretch of something of this length, a short one more often than not.
+    /// A random range within so many bytes, in three of four cases a short one.
     fn range(&mut self, length: usize) -> (usize, usize) {
         let start = self.below(length + 1);
         let most = if self.below(4) == 0 { length } else { 16 };
@@ -137,7 +137,7 @@ impl Mutator {
     }
 }
 
-/// The lines in which a stretch lies.
+/// The whole lines around a range.
 fn lines_around(text: &[u8], start: usize, end: usize) -> &[u8] {
     let first = text[..start]
         .iter()
@@ -150,7 +150,7 @@ fn lines_around(text: &[u8], start: usize, end: usize) -> &[u8] {
     &text[first..last]
 }
 
-/// The word of a line of a dictionary as libFuzzer reads it: `name="\x00word"`.
+/// The word of a line of a dictionary in the format of libFuzzer: `name="\x00word"`.
 fn word(line: &str) -> Option<Vec<u8>> {
     if line.starts_with('#') {
         return None;

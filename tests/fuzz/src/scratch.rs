@@ -1,4 +1,4 @@
-//! A folder for the files that parsers read, one for each process.
+//! A temporary folder of this process for the files that parsers read.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use tempfile::TempDir;
 
 static FOLDER: LazyLock<TempDir> = LazyLock::new(|| {
-    // Records wait for the disk after every line: memory does not keep them waiting.
+    // Records are synced to the disk after every line, which is fast in memory.
     let in_memory = || TempDir::new_in("/dev/shm");
     let asked = std::env::var_os("TMPDIR").map(|_| TempDir::new());
     asked
@@ -15,7 +15,7 @@ static FOLDER: LazyLock<TempDir> = LazyLock::new(|| {
         .unwrap()
 });
 
-/// A file with these bytes, which keeps them until the next of its name is written.
+/// Writes a file into the folder.
 pub(crate) fn file(name: &str, bytes: &[u8]) -> PathBuf {
     let path = FOLDER.path().join(name);
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -23,7 +23,7 @@ pub(crate) fn file(name: &str, bytes: &[u8]) -> PathBuf {
     path
 }
 
-/// An empty folder.
+/// An empty folder inside the folder.
 pub(crate) fn folder(name: &str) -> PathBuf {
     let path = FOLDER.path().join(name);
     if path.exists() {

@@ -7,11 +7,11 @@ use std::sync::{Mutex, PoisonError};
 
 use slipfront_fuzz::{Mutator, TARGETS, Target};
 
-/// Runs a target; an input that fails is kept in a file that is named.
+/// Runs a target on all of its inputs.
 fn replay(name: &str) {
-    // Memory is counted for the whole process.
-    static ALONE: Mutex<()> = Mutex::new(());
-    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    // Memory is measured for the whole process.
+    static MEASURING: Mutex<()> = Mutex::new(());
+    let _measuring = MEASURING.lock().unwrap_or_else(PoisonError::into_inner);
     let target = Target::named(name).unwrap();
     let inputs = [target.findings(), target.seeds()].concat();
     assert!(!inputs.is_empty(), "{name} has no seeds");
@@ -19,22 +19,22 @@ fn replay(name: &str) {
         run(target, bytes, name);
     }
     let seeds: Vec<Vec<u8>> = inputs.into_iter().map(|(_, bytes)| bytes).collect();
-    let mut mutator = Mutator::new(1, &target.words(), target.longest);
+    let mut mutator = Mutator::new(1, &target.words(), target.max_bytes);
     for number in 0..target.mutations {
         run(target, &mutator.mutated(&seeds), &format!("mutation {number}"));
     }
-    // What grows with the square of the length shows only here.
+    // Time or memory that grows with the square of the length is noticed only in long inputs.
     for number in 0..target.repetitions {
         run(
             target,
-            &mutator.repeated(&seeds, LONG),
+            &mutator.repeated(&seeds, LONG_BYTES),
             &format!("repetition {number}"),
         );
     }
 }
 
-/// Bytes of an input that is long.
-const LONG: usize = 300_000;
+/// Length of the long inputs, in bytes.
+const LONG_BYTES: usize = 300_000;
 
 fn run(target: &Target, bytes: &[u8], name: &str) {
     let failed = std::panic::catch_unwind(|| target.run(bytes)).is_err();
@@ -70,7 +70,7 @@ replay! {
     csv_table
     mask_png
     records
-    saved
+    figure_cache
     checkpoint
     fields
     summary

@@ -19,118 +19,72 @@ use crate::text::single_line;
 
 /// What is wrong with an array or image file: one sentence that ends with the remedy.
 #[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ArrayError {
-    /// The file cannot be opened or read.
     #[error(
         "cannot read `{}`: {source}; check the path (relative to the case file) and its permissions",
         path.display()
     )]
-    Read {
-        /// Path of the file.
-        path: PathBuf,
-        /// What the operating system said.
-        source: io::Error,
-    },
-    /// The extension is not that of a known format.
+    Read { path: PathBuf, source: io::Error },
     #[error(
         "cannot tell the format of `{}` from {found}; name a file that ends in {known}",
         path.display()
     )]
     Extension {
-        /// Path of the file.
         path: PathBuf,
-        /// The extension found, as a phrase.
         found: String,
-        /// The extensions that are known here.
         known: &'static str,
     },
-    /// The file is not a valid one of its format: a wrong magic number, truncated or corrupt.
     #[error("`{}` is not a readable {format} file: {}; write the file again", path.display(), single_line(detail))]
     Broken {
-        /// Path of the file.
         path: PathBuf,
-        /// The format it should have.
         format: &'static str,
-        /// What is wrong.
         detail: String,
     },
-    /// The array holds something that is not a real number.
     #[error(
         "`{}` holds values of type {found} where real numbers, integers or booleans are wanted; \
          convert the array with `.astype(float)` before saving it",
         path.display()
     )]
-    Dtype {
-        /// Path of the file.
-        path: PathBuf,
-        /// The type found, as numpy writes it.
-        found: String,
-    },
-    /// The file is longer than its lattice can need.
+    Dtype { path: PathBuf, found: String },
     #[error("`{}` has {found} bytes where {wanted}; {remedy}", path.display())]
     TooLong {
-        /// Path of the file.
         path: PathBuf,
-        /// Its length.
         found: u64,
-        /// The longest that is read, as a phrase.
         wanted: String,
-        /// The remedy.
         remedy: &'static str,
     },
-    /// The array has another shape than the lattice.
     #[error("`{}` has {found} where {wanted} is wanted; {remedy}", path.display())]
     Shape {
-        /// Path of the file.
         path: PathBuf,
-        /// The shape found, as a phrase.
         found: String,
-        /// The shape wanted, as a phrase.
         wanted: String,
-        /// The remedy.
         remedy: &'static str,
     },
-    /// One value is out of bounds or no number at all.
     #[error(
         "`{}` has {value} in row {row}, column {column} (both counted from 0), where {wanted} is wanted; \
          correct this value",
         path.display()
     )]
     Value {
-        /// Path of the file.
         path: PathBuf,
-        /// Row j, counted from 0 (the smallest y).
         row: usize,
-        /// Column i, counted from 0.
         column: usize,
-        /// The value as it stands in the file.
         value: String,
-        /// The bound.
         wanted: &'static str,
     },
-    /// The image has more pixels than a mask can need.
     #[error(
         "the image `{}` has {width} x {height} pixels where at most {limit} pixels are read; scale it down",
         path.display()
     )]
     TooManyPixels {
-        /// Path of the file.
         path: PathBuf,
-        /// Pixels per row.
         width: u32,
-        /// Number of rows.
         height: u32,
-        /// The largest number of pixels that is read.
         limit: u64,
     },
-    /// The image cannot be written.
     #[error("cannot write `{}`: {source}; check that the folder exists, is writable and has room", path.display())]
-    Write {
-        /// Path of the file.
-        path: PathBuf,
-        /// What the operating system said.
-        source: io::Error,
-    },
+    Write { path: PathBuf, source: io::Error },
 }
 
 /// Reads the bytes of a file for a lattice of `nx` x `ny` blocks. They are read once, so that the copy in the run folder

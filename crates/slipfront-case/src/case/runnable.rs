@@ -86,7 +86,11 @@ impl Case {
         Self::to_run(CaseFile::parse(text, name, overrides)?, name, folder)
     }
 
-    fn to_run(file: CaseFile, name: &str, folder: &Path) -> Result<Self, CaseError> {
+    /// Makes a case of a case file that was read already, to be run; the files it names stand relative to `folder`.
+    ///
+    /// # Errors
+    /// As for [`load`](Self::load).
+    pub fn to_run(file: CaseFile, name: &str, folder: &Path) -> Result<Self, CaseError> {
         let Parameters {
             lattice,
             output,
@@ -179,8 +183,8 @@ impl Case {
         self.time_plan.last_step as f64 * self.model.lattice.n_blocks() as f64
     }
 
-    /// Steps to advance before progress and signals are checked again: some milliseconds of work.
-    pub fn steps_per_look(&self) -> u64 {
+    /// Steps of a running case between two checks of its progress and of reasons to stop: some milliseconds.
+    pub fn steps_per_poll(&self) -> u64 {
         const BLOCK_STEPS: u64 = 200_000;
         (BLOCK_STEPS / self.model.lattice.n_blocks() as u64).max(1)
     }

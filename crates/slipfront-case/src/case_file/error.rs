@@ -12,41 +12,18 @@ use crate::text::{MAX_EXCERPT, single_line, truncated};
 /// A case file that cannot be used.
 #[derive(Debug, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum CaseError {
-    /// The file cannot be read.
     #[error("cannot read {}: {source}", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// The path names a folder.
+    Unreadable { path: PathBuf, source: io::Error },
     #[error("{} is a folder: name the file in it", path.display())]
-    Folder {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// The file is larger than any case file is.
+    Folder { path: PathBuf },
     #[error("{} is larger than {limit_mib} MiB, so it is no case or study file", path.display())]
-    TooLarge {
-        /// The file.
-        path: PathBuf,
-        /// The largest size that is read, in MiB.
-        limit_mib: u64,
-    },
-    /// The file is not text.
+    TooLarge { path: PathBuf, limit_mib: u64 },
     #[error("{}:{line}: the file is not UTF-8 text", path.display())]
-    NotText {
-        /// The file.
-        path: PathBuf,
-        /// The line of the first byte that is not UTF-8, from 1.
-        line: usize,
-    },
-    /// The case cannot be expressed in TOML.
+    NotText { path: PathBuf, line: usize },
     #[error("the case cannot be written as TOML: {0}")]
     Unwritable(#[from] toml::ser::Error),
-    /// Something that is written in the case, or in a `--set`, is wrong.
     #[error(transparent)]
     Invalid(Box<Invalid>),
 }

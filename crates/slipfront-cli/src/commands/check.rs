@@ -1,10 +1,11 @@
-//! `slipfront check`: what a case means and costs, without running it.
+//! `slipfront check`: the physics and the cost of a case, without running it.
 
 use clap::Args;
 
-use super::{CaseArgs, print};
+use crate::case_args::CaseArgs;
+use crate::estimate_cost::seconds_per_step;
 use crate::failure::Failure;
-use crate::probe::seconds_per_step;
+use crate::print::print;
 use crate::report;
 
 /// Validate a case and print what it means and what it will cost

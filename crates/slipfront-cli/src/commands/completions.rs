@@ -1,11 +1,10 @@
-//! `slipfront completions`: for the shell.
+//! `slipfront completions`: a script that completes command lines in a shell.
 
-use clap::{Args, CommandFactory};
+use clap::{Args, Command};
 use clap_complete::Shell;
 
-use super::print;
-use crate::Cli;
 use crate::failure::Failure;
+use crate::print::print;
 
 /// Print completions for a shell
 #[derive(Args)]
@@ -17,9 +16,10 @@ pub(crate) struct Completions {
 }
 
 impl Completions {
-    pub(crate) fn execute(self) -> Result<(), Failure> {
+    /// `command` is the description of the whole command line.
+    pub(crate) fn execute(self, mut command: Command) -> Result<(), Failure> {
         let mut script = Vec::new();
-        clap_complete::generate(self.shell, &mut Cli::command(), "slipfront", &mut script);
+        clap_complete::generate(self.shell, &mut command, "slipfront", &mut script);
         print(&String::from_utf8_lossy(&script))
     }
 }

@@ -1,18 +1,17 @@
-//! `slipfront paper`: every figure of the paper again, every claim judged.
+//! `slipfront paper`: computes the figures of the paper and judges its claims.
 
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use slipfront_case::disk::is_empty;
-use slipfront_paper::{Options, Stage, StepRule};
+use slipfront_paper::Options;
 use slipfront_run::study::{Records, is_study};
 
-use super::{print, set_threads};
 use crate::failure::Failure;
-use crate::say::say;
+use crate::print::print;
+use crate::progress::paper::PaperProgress;
 use crate::signals::Signals;
+use crate::threads::set_threads;
 
 /// Run the figures and tables of the paper again, and judge its claims one by one
 #[derive(Args)]
@@ -58,7 +57,7 @@ impl Paper {
             reduced: self.reduced,
             folder: &self.out,
         };
-        let progress = Progress::new(self.quiet);
+        let progress = PaperProgress::new(self.quiet);
         let done = slipfront_paper::run(&figures, &mut records, &options, &mut |stage| {
             progress.show(stage);
         });
@@ -78,7 +77,7 @@ impl Paper {
             print(&slipfront_paper::summary(&paper))?;
             print(&format!("{}\n", self.out.join("report.html").display()))?;
         }
-        match paper.surprises().count() {
+        match paper.unexpected_verdicts().count() {
             0 => Ok(()),
             count => Err(Failure::running(anyhow::anyhow!(
                 "{count} verdicts are not the expected ones: see {}",
@@ -88,7 +87,7 @@ impl Paper {
     }
 }
 
-/// Refuses to replace pages that others have written.
+/// Refuses to replace pages that an earlier call has not written.
 fn refuse_foreign(docs: &Path) -> Result<(), Failure> {
     let Some(path) = slipfront_paper::foreign_docs(docs) else {
         return Ok(());
@@ -100,7 +99,7 @@ fn refuse_foreign(docs: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// Opens the records of an earlier call, or begins them in an empty folder.
+/// Opens the records of an earlier call, or creates them in an empty folder.
 fn open(folder: &Path) -> Result<Records, Failure> {
     let unusable = |error: std::io::Error| {
         Failure::input(anyhow::anyhow!(
@@ -118,61 +117,4 @@ fn open(folder: &Path) -> Result<Records, Failure> {
         )));
     }
     Records::open(folder).map_err(Failure::input)
-}
-
-/// Progress on stderr: a bar on a terminal, else a line for each figure.
-enum Progress {
-    Silent,
-    Bar(ProgressBar),
-    Lines,
-}
-
-impl Progress {
-    fn new(quiet: bool) -> Self {
-        if quiet {
-            return Self::Silent;
-        }
-        if !std::io::stderr().is_terminal() {
-            return Self::Lines;
-        }
-        let bar = ProgressBar::new(0);
-        if let Ok(style) = ProgressStyle::with_template("{bar:32} {pos}/{len} figures  {elapsed}  {msg}") {
-            bar.set_style(style.progress_chars("=> "));
-        }
-        Self::Bar(bar)
-    }
-
-    fn show(&self, stage: &Stage) {
-        let step = match stage.step {
-            StepRule::Auto => "",
-            StepRule::Paper => ", with the paper's time step",
-        };
-        match self {
-            Self::Silent => {}
-            Self::Bar(bar) => {
-                let runs = stage.study.map_or(String::new(), |study| {
-                    format!(", {} of {} runs", study.done, study.total)
-                });
-                bar.set_length(stage.total as u64);
-                bar.set_position(stage.done as u64);
-                bar.set_message(format!("{}{step}{runs}", stage.figure.name));
-            }
-            Self::Lines => {
-                if stage.study.is_none() {
-                    say(&format!(
-                        "{:>2} of {}: {}{step}",
-                        stage.done + 1,
-                        stage.total,
-                        stage.figure.title
-                    ));
-                }
-            }
-        }
-    }
-
-    fn finish(&self) {
-        if let Self::Bar(bar) = self {
-            bar.finish_and_clear();
-        }
-    }
 }

@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use slipfront_case::disk::write_atomic;
+use slipfront_case::disk::{is_same, write_atomic};
 use slipfront_plot::Picture;
 use slipfront_run::names::MANIFEST;
-use slipfront_run::verify::expect_as_written;
-use slipfront_run::{pictures, results};
+use slipfront_run::pictures;
+use slipfront_run::verify::{expect_as_written, inspect};
 
-use super::print;
 use crate::failure::Failure;
+use crate::print::print;
 
 /// Draw the pictures of a run again, or the friction curves of several runs over each other
 #[derive(Args)]
@@ -33,7 +33,9 @@ impl Plot {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         for folder in &self.folders {
             expect_results(folder)?;
-            expect_as_written(folder, |name| results::DRAWN_FROM.contains(&name)).map_err(Failure::input)?;
+            inspect(folder)
+                .and_then(|run| expect_as_written(&run, |name| pictures::DRAWN_FROM.contains(&name)))
+                .map_err(Failure::input)?;
         }
         let (out, drawn) = match self.folders.as_slice() {
             [folder] => (folder.clone(), pictures::draw(folder).map_err(Failure::input)?),
@@ -81,11 +83,6 @@ fn expect_results(folder: &Path) -> Result<(), Failure> {
         Err(error) => format!("cannot read {}: {error}", path.display()),
     };
     Err(Failure::input(anyhow::anyhow!(sentence)))
-}
-
-fn is_same(folder: &Path, other: &Path) -> bool {
-    let [folder, other] = [folder, other].map(|folder| folder.canonicalize().ok());
-    folder.is_some() && folder == other
 }
 
 /// Refuses the folder of a run that these are not the pictures of, and pictures that are there already.

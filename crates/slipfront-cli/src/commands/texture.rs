@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use slipfront_case::arrays;
 use slipfront_case::arrays::ArrayError;
+use slipfront_case::disk::is_same;
 
-use super::{CaseArgs, is_same, print};
+use crate::case_args::CaseArgs;
 use crate::failure::Failure;
+use crate::print::print;
 use crate::report;
 
 /// Write the texture of a case as a mask: one pixel per block, textured ones black
@@ -39,7 +41,7 @@ impl Texture {
             );
             return Err(Failure::input(anyhow::anyhow!(sentence)));
         }
-        // A link counts even if it leads nowhere.
+        // A broken link is a file of the user as well, and `exists` does not see it.
         if self.out.symlink_metadata().is_ok() && !self.force {
             let sentence = format!(
                 "{} exists: choose another name, or replace it with --force",

@@ -1,21 +1,25 @@
 //! `slipfront verify`: what stands in results folders, against what was written there.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::Args;
 use jiff::Timestamp;
 use slipfront_case::case::Case;
 use slipfront_run::manifest::Manifest;
+use slipfront_run::program;
 use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
+use slipfront_run::run_folder::inspection::{CaseDefect, Inspection};
 use slipfront_run::running::Running;
-use slipfront_run::verify::{Verdict, VerifyError, compare, is_study, verify};
+use slipfront_run::verify::{Verdict, VerifyError, differences, inspect, is_study, verify, verify_run};
 
-use super::{print, set_threads};
 use crate::failure::Failure;
-use crate::progress::Progress;
-use crate::say::say;
+use crate::print::print;
+use crate::print_stderr::print_stderr;
+use crate::progress::run::RunProgress;
 use crate::signals::Signals;
+use crate::threads::set_threads;
 
 /// Check that results are what was written: every file of a run against its manifest, a study against its records
 #[derive(Args)]
@@ -61,7 +65,7 @@ impl Verify {
                 // The others are looked at all the same.
                 Err(Failure::Input(error)) => {
                     unusable += 1;
-                    say(&format!("error: {error}"));
+                    print_stderr(&format!("error: {error}"));
                 }
                 Err(failure) => return Err(failure),
             }
@@ -85,13 +89,18 @@ impl Verify {
                 folder.display()
             )));
         }
-        *verdict = verify(folder).map_err(Failure::input)?;
-        rerun.map_or(Ok(()), |signals| self.repeat(folder, signals, verdict))
+        let Some(signals) = rerun else {
+            *verdict = verify(folder).map_err(Failure::input)?;
+            return Ok(());
+        };
+        let run = inspect(folder).map_err(Failure::input)?;
+        *verdict = verify_run(&run).map_err(Failure::input)?;
+        self.repeat(&run, signals, verdict)
     }
 
     /// Runs the case of a folder again beside it, and adds what differs.
-    fn repeat(&self, folder: &Path, signals: &Signals, verdict: &mut Verdict) -> Result<(), Failure> {
-        let started = Timestamp::now();
+    fn repeat(&self, run: &Inspection, signals: &Signals, verdict: &mut Verdict) -> Result<(), Failure> {
+        let (started, folder) = (Timestamp::now(), run.path.as_path());
         let case = folder.join("case.toml");
         // A user may hand over a case through a pipe; in a folder of results it would be waited for.
         if !case.is_file() {
@@ -101,13 +110,20 @@ impl Verify {
             );
             return Err(Failure::input(anyhow::anyhow!(sentence)));
         }
-        let case = Case::load(&case, &[]).map_err(Failure::input)?;
+        let case = match &run.case {
+            Ok(file) => Case::to_run(file.clone(), "case", folder),
+            Err(CaseDefect::NotResolved(file)) => Case::to_run(*file.clone(), "case", folder),
+            // It says why there is none.
+            Err(CaseDefect::Unreadable(_) | CaseDefect::Invalid(_)) => Case::load(&case, &[]),
+        }
+        .map(Arc::new)
+        .map_err(Failure::input)?;
         let again = tempfile::tempdir().map_err(|error| Failure::running(VerifyError::Temporary(error)))?;
         case.check_disk(again.path(), 0, false).map_err(Failure::input)?;
         let mut running = Running::start(&case, rayon::current_num_threads());
-        let mut progress = Progress::new(&running, self.quiet);
+        let mut progress = RunProgress::new(&running, self.quiet);
         let reason = loop {
-            if let Some(reason) = running.advance(case.steps_per_look()).map_err(Failure::running)? {
+            if let Some(reason) = running.advance(case.steps_per_poll()).map_err(Failure::running)? {
                 break reason;
             }
             progress.show(&running.snapshot());
@@ -122,13 +138,13 @@ impl Verify {
         let now = results::write(&case, &mut record, made, started, 1).map_err(Failure::running)?;
         verdict
             .differences
-            .extend(compare(&now.files, folder, "are written now"));
-        if let Ok(before) = Manifest::read(folder) {
+            .extend(differences(&now.files, folder, "are written now"));
+        if let Ok(before) = run.manifest() {
             verdict
                 .differences
-                .extend(no_longer_written(&before, &now, folder));
-            if before.program() != Manifest::this_program() {
-                let programs = (before.program(), Manifest::this_program());
+                .extend(no_longer_written(before, &now, folder));
+            if before.program() != program::this_program() {
+                let programs = (before.program(), program::this_program());
                 verdict.notes.push(format!(
                     "{} was written by {}, and repeated by {}",
                     folder.display(),

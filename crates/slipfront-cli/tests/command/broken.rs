@@ -2,7 +2,9 @@
 
 use std::process::{Command, Stdio};
 
-use super::{Bench, RUN_FILES, program};
+use crate::fixtures::RUN_FILES;
+use crate::support::process::{program, send, stderr, wait_for};
+use crate::support::workspace::Workspace;
 
 /// A step just below the limit of the linear lattice, and strains that stiffen its springs beyond it.
 pub(super) const DIVERGING: &str = "[slider]\nomega_star = 0\n[load]\npressure = '50 GPa'\n[drive]\nv_star = 10\n\
@@ -10,72 +12,62 @@ pub(super) const DIVERGING: &str = "[slider]\nomega_star = 0\n[load]\npressure =
 
 #[test]
 fn a_run_that_diverges_says_where_and_leaves_no_results() {
-    let bench = Bench::new();
-    bench.write("wild.toml", DIVERGING);
-    let said = bench.refused("run wild.toml --quiet -o a", 1);
+    let workspace = Workspace::small();
+    workspace.write("wild.toml", DIVERGING);
+    let said = workspace.fail("run wild.toml --quiet -o a", 1);
     let words = ["displacement of block (", "at step ", "t* = ", "diverged"];
     assert!(words.iter().all(|word| said.contains(word)), "{said}");
-    assert!(bench.files("a").is_empty());
+    assert!(workspace.files("a").is_empty());
 }
 
 /// A reader such as `head -1` that closes the pipe early.
 #[test]
 fn a_closed_pipe_is_no_failure() {
-    let bench = Bench::new();
+    let workspace = Workspace::small();
     for line in ["run small.toml", "check small.toml", "completions zsh", "--help"] {
-        let mut child = Command::new(program())
-            .args(line.split_whitespace())
-            .current_dir(bench.path())
+        let mut process = workspace.process(line);
+        let mut child = process
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
         drop(child.stdout.take());
         let output = child.wait_with_output().unwrap();
-        let said = String::from_utf8_lossy(&output.stderr);
+        let said = stderr(&output);
         assert!(
             output.status.success() && said.is_empty(),
             "{line}: {} {said}",
             output.status
         );
     }
-    assert!(bench.exists("results/small/manifest.json"));
+    assert!(workspace.exists("results/small/manifest.json"));
 }
 
 #[cfg(unix)]
 #[test]
 fn an_interrupt_ends_the_run_and_leaves_it_incomplete() {
     use std::os::unix::process::ExitStatusExt;
-    let bench = Bench::new();
+    let workspace = Workspace::small();
     let long =
         "run --quiet -o a --set slider.blocks=[100,100] --set time.duration_star=1e6 --set output.series=1e3";
-    let mut child = Command::new(program())
-        .args(long.split_whitespace())
-        .current_dir(bench.path())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    let mut waited = 0;
-    while !bench.exists("a") {
-        assert!(waited < 1000, "the run does not begin");
+    let mut child = workspace.start(long);
+    wait_for("folder of the run", || {
         assert!(child.try_wait().unwrap().is_none(), "the run has ended");
-        std::thread::sleep(std::time::Duration::from_millis(10));
-        waited += 1;
-    }
+        workspace.exists("a")
+    });
     std::thread::sleep(std::time::Duration::from_millis(100));
-    let kill = format!("kill -INT {}", child.id());
-    assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
+    send(&child, "-INT");
     let status = child.wait().unwrap();
     // A shell shows a death by signal as 128 + its number.
     let seen = status.code().or(status.signal().map(|signal| 128 + signal));
     assert_eq!(seen, Some(130));
-    assert!(!bench.exists("a/manifest.json"));
+    assert!(!workspace.exists("a/manifest.json"));
 }
 
 /// Every file is either not there, or whole.
-fn assert_incomplete_but_sound(bench: &Bench, whole: &str, broken: &str) {
-    let whole = bench.files(whole);
-    for (name, bytes) in bench.files(broken) {
+fn assert_incomplete_but_sound(workspace: &Workspace, whole: &str, broken: &str) {
+    let whole = workspace.files(whole);
+    for (name, bytes) in workspace.files(broken) {
         assert_ne!(name, "manifest.json", "an incomplete run looks complete");
         assert!(
             whole.get(&name) == Some(&bytes),
@@ -88,30 +80,26 @@ fn assert_incomplete_but_sound(bench: &Bench, whole: &str, broken: &str) {
 #[cfg(unix)]
 #[test]
 fn a_file_that_cannot_be_written_whole_is_not_there_at_all() {
-    let bench = Bench::new();
+    let workspace = Workspace::small();
     // With a short series, so that it is not always the one file that grows too large.
     let run = "run small.toml --quiet --set output.series=1000 -o";
-    bench.done(&format!("{run} whole"));
-    let mut sizes: Vec<usize> = bench.results("whole").values().map(Vec::len).collect();
+    workspace.succeed(&format!("{run} whole"));
+    let mut sizes: Vec<usize> = workspace.run_files("whole").values().map(Vec::len).collect();
     sizes.sort_unstable();
     let mut failed = Vec::new();
     for (number, size) in sizes.iter().enumerate() {
         // In units of 512 bytes.
         let limit = (size - 1) / 512;
         let script = format!("ulimit -f {limit}; exec {} {run} broken{number}", program());
-        let output = Command::new("sh")
-            .args(["-c", &script])
-            .current_dir(bench.path())
-            .output()
-            .unwrap();
-        let said = String::from_utf8_lossy(&output.stderr);
+        let output = workspace.shell(&script);
+        let said = stderr(&output);
         assert_eq!(output.status.code(), Some(1), "limit {limit}: {said}");
         assert!(
             said.starts_with("error: cannot write ") && said.lines().count() == 1,
             "{said}"
         );
         let folder = format!("broken{number}");
-        assert_incomplete_but_sound(&bench, "whole", &folder);
+        assert_incomplete_but_sound(&workspace, "whole", &folder);
         let named = RUN_FILES
             .iter()
             .find(|name| said.contains(&format!("{folder}/{name}")));
@@ -125,7 +113,7 @@ fn a_file_that_cannot_be_written_whole_is_not_there_at_all() {
 /// Runs a line in a folder `disk` of its own size and number of files; gives the status and what was said. Mounting
 /// one takes rights that few have: nothing is tested then.
 #[cfg(target_os = "linux")]
-fn on_a_small_disk(bench: &Bench, options: &str, line: &str) -> Option<(i32, String)> {
+fn on_a_small_disk(workspace: &Workspace, options: &str, line: &str) -> Option<(i32, String)> {
     // A mount in a name space of its own goes away by itself.
     let script = format!(
         "mkdir disk && mount -t tmpfs -o {options} tmpfs disk || exit 77
@@ -137,21 +125,21 @@ fn on_a_small_disk(bench: &Bench, options: &str, line: &str) -> Option<(i32, Str
     );
     let status = Command::new("unshare")
         .args(["--mount", "sh", "-c", &script])
-        .current_dir(bench.path())
+        .current_dir(workspace.path(""))
         .stderr(Stdio::null())
         .status();
-    if !bench.exists("said") {
+    if !workspace.exists("said") {
         return None;
     }
-    let said = String::from_utf8(bench.read("said")).unwrap();
-    Some((status.unwrap().code().unwrap(), said))
+    Some((status.unwrap().code().unwrap(), workspace.read_text("said")))
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn a_disk_without_room_is_said_before_the_run() {
-    let bench = Bench::new();
-    let Some((status, said)) = on_a_small_disk(&bench, "size=1m", "run small.toml --quiet -o disk/a") else {
+    let workspace = Workspace::small();
+    let Some((status, said)) = on_a_small_disk(&workspace, "size=1m", "run small.toml --quiet -o disk/a")
+    else {
         return;
     };
     assert_eq!(status, 2, "{said}");
@@ -162,37 +150,37 @@ fn a_disk_without_room_is_said_before_the_run() {
     ] {
         assert!(said.contains(word), "{said}");
     }
-    assert!(!bench.exists("left/a"));
+    assert!(!workspace.exists("left/a"));
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn a_study_without_room_is_said_before_its_runs() {
-    let bench = Bench::new();
-    bench.write(
+    let workspace = Workspace::small();
+    workspace.write(
         "study.toml",
         "base.slider.blocks = [2, 2]\n[study]\nreplicates = 100\n",
     );
     let line = "study study.toml --quiet -o disk/a";
-    let Some((status, said)) = on_a_small_disk(&bench, "size=64k", line) else {
+    let Some((status, said)) = on_a_small_disk(&workspace, "size=64k", line) else {
         return;
     };
     assert_eq!(status, 2, "{said}");
     for word in ["take about 400.0 KiB where ", "are free in disk/a", "study.keep"] {
         assert!(said.contains(word), "{said}");
     }
-    assert!(bench.read("left/a/records.jsonl").is_empty());
+    assert!(workspace.read("left/a/records.jsonl").is_empty());
 }
 
 /// A disk that takes so many bytes, but not so many files.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_leaves_no_half_results() {
-    let bench = Bench::new();
-    bench.done("run small.toml -o whole");
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o whole");
     // Its own folder, that of the run, and four files.
     let run = "run small.toml --quiet -o disk/a";
-    let Some((status, said)) = on_a_small_disk(&bench, "size=8m,nr_inodes=6", run) else {
+    let Some((status, said)) = on_a_small_disk(&workspace, "size=8m,nr_inodes=6", run) else {
         return;
     };
     assert_eq!(status, 1, "{said}");
@@ -200,6 +188,6 @@ fn a_full_disk_leaves_no_half_results() {
         said.contains("cannot write") && said.contains("No space left"),
         "{said}"
     );
-    assert!(bench.exists("left/a/case.toml"));
-    assert_incomplete_but_sound(&bench, "whole", "left/a");
+    assert!(workspace.exists("left/a/case.toml"));
+    assert_incomplete_but_sound(&workspace, "whole", "left/a");
 }

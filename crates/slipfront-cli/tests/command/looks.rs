@@ -1,28 +1,29 @@
 //! Help, version, completions, and what `check` and `run` print.
 
-use super::{Bench, SMALL};
+use crate::fixtures::SMALL;
+use crate::support::workspace::Workspace;
 
 #[test]
 fn help_names_every_subcommand_and_says_what_it_does() {
-    let bench = Bench::new();
-    let help = bench.done("--help");
+    let workspace = Workspace::small();
+    let help = workspace.succeed("--help");
     for command in ["run", "check", "texture", "plot", "completions"] {
         assert!(help.contains(&format!("\n  {command} ")), "{command}: {help}");
-        let own = bench.done(&format!("{command} --help"));
+        let own = workspace.succeed(&format!("{command} --help"));
         assert!(
             own.contains("Usage: slipfront ") && own.contains("Example"),
             "{own}"
         );
     }
     assert_eq!(
-        bench.done("--version"),
+        workspace.succeed("--version"),
         format!("slipfront {}\n", env!("CARGO_PKG_VERSION"))
     );
 }
 
 #[test]
 fn wrong_usage_is_bad_input() {
-    let bench = Bench::new();
+    let workspace = Workspace::small();
     for line in [
         "",
         "rum",
@@ -32,7 +33,7 @@ fn wrong_usage_is_bad_input() {
         "texture small.toml",
         "plot",
     ] {
-        let said = bench.refused(line, 2);
+        let said = workspace.fail(line, 2);
         assert!(
             said.contains("Usage") || said.contains("--help"),
             "{line}: {said}"
@@ -42,20 +43,20 @@ fn wrong_usage_is_bad_input() {
 
 #[test]
 fn completions_know_subcommands_and_options() {
-    let bench = Bench::new();
+    let workspace = Workspace::small();
     for shell in ["bash", "zsh", "fish"] {
-        let script = bench.done(&format!("completions {shell}"));
+        let script = workspace.succeed(&format!("completions {shell}"));
         for word in ["slipfront", "texture", "threads"] {
             assert!(script.contains(word), "{shell} lacks {word}");
         }
     }
-    assert!(bench.refused("completions dos", 2).contains("bash"));
+    assert!(workspace.fail("completions dos", 2).contains("bash"));
 }
 
 #[test]
 fn check_prints_groups_onset_and_cost_and_runs_nothing() {
-    let bench = Bench::new();
-    let said = bench.done("check small.toml");
+    let workspace = Workspace::small();
+    let said = workspace.succeed("check small.toml");
     for words in [
         "6 x 5 blocks of 1 um",
         "Omega* = 0.1",
@@ -68,15 +69,15 @@ fn check_prints_groups_onset_and_cost_and_runs_nothing() {
     ] {
         assert!(said.contains(words), "{words:?} is missing:\n{said}");
     }
-    assert_eq!(bench.files(".").len(), 1, "check has written something");
+    assert_eq!(workspace.files(".").len(), 1, "check has written something");
 }
 
 #[test]
 fn check_warns_where_the_model_leaves_its_validity() {
-    let bench = Bench::new();
+    let workspace = Workspace::small();
     let groove = "[[texture]]\nshape = 'groove'\nwidth = '2 um'\noffset = '2.5 um'\n";
-    bench.write("odd.toml", format!("{SMALL}{groove}"));
-    let said = bench.done(
+    workspace.write("odd.toml", format!("{SMALL}{groove}"));
+    let said = workspace.succeed(
         "check odd.toml --set drive.v_star=0.3 --set time.step=0.6 --set load.pressure=3GPa \
          --set friction.sigma_static_star=0.9",
     );
@@ -92,23 +93,27 @@ fn check_warns_where_the_model_leaves_its_validity() {
     }
     // A texture that the blocks cannot show, and coefficients that are not what mu_static says.
     let fine = "texture.0={shape=\"cavity\",coverage=50,array=[1000,1000]}";
-    let said = bench.done(&format!("check small.toml --set {fine}"));
+    let said = workspace.succeed(&format!("check small.toml --set {fine}"));
     assert!(
         said.contains("covers 0.00 % of the blocks instead of 50.00 %"),
         "{said}"
     );
-    bench.write("mu.csv", "0.4,0.5,0.6\n0.4,0.5,0.6\n");
+    workspace.write("mu.csv", "0.4,0.5,0.6\n0.4,0.5,0.6\n");
     let given = "check small.toml --set slider.blocks=[3,2] --set friction.mu_static_field=mu.csv";
-    assert!(bench.done(given).contains("a mean of 0.5000, mu_static is 1:"));
+    assert!(
+        workspace
+            .succeed(given)
+            .contains("a mean of 0.5000, mu_static is 1:")
+    );
     // Of these only the size remains where nothing is odd.
-    let calm = bench.done("check small.toml");
+    let calm = workspace.succeed("check small.toml");
     assert_eq!(calm.matches("note:").count(), 1, "{calm}");
 }
 
 #[test]
 fn run_prints_physics_summary_and_where_everything_is() {
-    let bench = Bench::new();
-    let said = bench.done("run small.toml");
+    let workspace = Workspace::small();
+    let said = workspace.succeed("run small.toml");
     for words in [
         "small\n",
         "texture   none",
@@ -124,12 +129,12 @@ fn run_prints_physics_summary_and_where_everything_is() {
 
 #[test]
 fn a_run_says_what_its_numbers_are_worth() {
-    let bench = Bench::new();
-    let stuck = bench.done("run small.toml -o stuck --set time.duration_star=5");
+    let workspace = Workspace::small();
+    let stuck = workspace.succeed("run small.toml -o stuck --set time.duration_star=5");
     assert!(stuck.contains("no block in contact slipped"), "{stuck}");
-    assert!(bench.summary("stuck")["kinetic_friction_star"].is_null());
-    let coarse = bench.done("run small.toml -o coarse --set time.step=0.9");
+    assert!(workspace.summary("stuck")["kinetic_friction_star"].is_null());
+    let coarse = workspace.succeed("run small.toml -o coarse --set time.step=0.9");
     assert!(coarse.contains("the ledger of energies misses"), "{coarse}");
-    let fine = bench.done("run small.toml -o fine");
+    let fine = workspace.succeed("run small.toml -o fine");
     assert!(!fine.contains("the ledger of energies misses"), "{fine}");
 }

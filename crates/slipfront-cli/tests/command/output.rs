@@ -2,7 +2,8 @@
 
 use slipfront_run::fields::{FieldsData, read_fields};
 
-use super::{Bench, RUN_FILES};
+use crate::fixtures::RUN_FILES;
+use crate::support::workspace::Workspace;
 
 /// What `summary.json` holds at least (design, section 3).
 const KEYS: [&str; 26] = [
@@ -34,8 +35,8 @@ const KEYS: [&str; 26] = [
     "version",
 ];
 
-fn fields(bench: &Bench, folder: &str) -> FieldsData {
-    read_fields(&bench.path().join(folder).join("fields.nc")).unwrap()
+fn fields(workspace: &Workspace, folder: &str) -> FieldsData {
+    read_fields(&workspace.path(&format!("{folder}/fields.nc"))).unwrap()
 }
 
 fn times(fields: &FieldsData) -> Vec<f64> {
@@ -43,50 +44,50 @@ fn times(fields: &FieldsData) -> Vec<f64> {
 }
 
 /// Rows of `series.csv`, without its header.
-fn rows(bench: &Bench, folder: &str) -> usize {
-    let text = String::from_utf8(bench.read(&format!("{folder}/series.csv"))).unwrap();
+fn rows(workspace: &Workspace, folder: &str) -> usize {
+    let text = String::from_utf8(workspace.read(&format!("{folder}/series.csv"))).unwrap();
     text.lines().count() - 1
 }
 
 #[test]
 fn the_baseline_needs_no_file_and_writes_these() {
-    let bench = Bench::new();
-    bench.done("run");
-    let files = bench.files("results/baseline");
+    let workspace = Workspace::small();
+    workspace.succeed("run");
+    let files = workspace.files("results/baseline");
     assert_eq!(
         files.keys().collect::<Vec<_>>(),
         RUN_FILES.iter().collect::<Vec<_>>()
     );
-    let summary = bench.summary("results/baseline");
+    let summary = workspace.summary("results/baseline");
     assert_eq!(summary["n_blocks"], 625);
-    let instants: String = fields(&bench, "results/baseline")
+    let instants: String = fields(&workspace, "results/baseline")
         .frames
         .iter()
         .map(|frame| frame.label.as_str())
         .collect();
     assert_eq!(instants, "ABCDEF");
     // All but the header of the series, a row per step.
-    assert_eq!(rows(&bench, "results/baseline"), 2668);
+    assert_eq!(rows(&workspace, "results/baseline"), 2668);
     // As readable as any file that the user makes, not private as temporary files are.
     #[cfg(unix)]
     for name in RUN_FILES {
         use std::os::unix::fs::PermissionsExt;
-        let path = bench.path().join("results/baseline").join(name);
+        let path = workspace.path("results/baseline").join(name);
         let mode = |path| std::fs::metadata(path).unwrap().permissions().mode() & 0o777;
-        assert_eq!(mode(path), mode(bench.path().join("small.toml")), "{name}");
+        assert_eq!(mode(path), mode(workspace.path("small.toml")), "{name}");
     }
 }
 
 #[test]
 fn the_manifest_lists_every_other_file_and_its_length() {
-    let bench = Bench::new();
-    bench.done("run small.toml -o a --threads 2");
-    let manifest: serde_json::Value = serde_json::from_slice(&bench.read("a/manifest.json")).unwrap();
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o a --threads 2");
+    let manifest: serde_json::Value = serde_json::from_slice(&workspace.read("a/manifest.json")).unwrap();
     assert_eq!(manifest["threads"], 2);
     let mut listed = manifest["files"].as_array().unwrap().clone();
     listed.sort_by_key(|file| file["name"].as_str().unwrap().to_owned());
     let names: Vec<_> = listed.iter().map(|file| file["name"].as_str().unwrap()).collect();
-    let files = bench.results("a");
+    let files = workspace.run_files("a");
     assert_eq!(names, files.keys().collect::<Vec<_>>());
     for (file, (name, bytes)) in listed.iter().zip(&files) {
         assert_eq!(file["bytes"], bytes.len(), "{name}");
@@ -95,11 +96,11 @@ fn the_manifest_lists_every_other_file_and_its_length() {
 
 #[test]
 fn the_manifest_says_how_the_run_came_about() {
-    let bench = Bench::new();
-    bench.done("run small.toml -o a --threads 1 --seed 7");
-    let manifest: serde_json::Value = serde_json::from_slice(&bench.read("a/manifest.json")).unwrap();
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o a --threads 1 --seed 7");
+    let manifest: serde_json::Value = serde_json::from_slice(&workspace.read("a/manifest.json")).unwrap();
     assert_eq!(manifest["version"], env!("CARGO_PKG_VERSION"));
-    let case = blake3::hash(&bench.read("a/case.toml")).to_hex();
+    let case = blake3::hash(&workspace.read("a/case.toml")).to_hex();
     assert_eq!(manifest["case_blake3"], case.as_str());
     let random = serde_json::json!({
         "generator": "ChaCha8", "seed": 7, "streams": { "mu_static": 0, "mu_kinetic": 1 }
@@ -127,10 +128,10 @@ fn the_manifest_says_how_the_run_came_about() {
 
 #[test]
 fn json_is_the_summary_and_nothing_else() {
-    let bench = Bench::new();
-    let said = bench.done("run small.toml -o a --json");
+    let workspace = Workspace::small();
+    let said = workspace.succeed("run small.toml -o a --json");
     let summary: serde_json::Value = serde_json::from_str(&said).unwrap();
-    assert_eq!(said.as_bytes(), bench.read("a/summary.json"));
+    assert_eq!(said.as_bytes(), workspace.read("a/summary.json"));
     for key in KEYS {
         assert!(summary.get(key).is_some(), "{key} is missing");
     }
@@ -142,86 +143,92 @@ fn json_is_the_summary_and_nothing_else() {
 
 #[test]
 fn quiet_says_nothing() {
-    let bench = Bench::new();
-    let assert = bench.slipfront("run small.toml --quiet").assert().success();
+    let workspace = Workspace::small();
+    let assert = workspace.command("run small.toml --quiet").assert().success();
     assert!(assert.get_output().stdout.is_empty() && assert.get_output().stderr.is_empty());
-    assert!(bench.exists("results/small/manifest.json"));
-    let json = bench
-        .slipfront("run small.toml -q --json -o b")
+    assert!(workspace.exists("results/small/manifest.json"));
+    let json = workspace
+        .command("run small.toml -q --json -o b")
         .assert()
         .success();
-    assert_eq!(json.get_output().stdout, bench.read("b/summary.json"));
+    assert_eq!(json.get_output().stdout, workspace.read("b/summary.json"));
 }
 
 #[test]
 fn set_and_seed_change_the_case() {
-    let bench = Bench::new();
-    bench.done("run small.toml -o a --set drive.v_star=0.2 --set friction.seed=7");
-    bench.done("run small.toml -o b --set drive.v_star=0.2 --seed 7");
-    bench.done("run small.toml -o c --set drive.v_star=0.2");
-    let summary = bench.summary("a");
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o a --set drive.v_star=0.2 --set friction.seed=7");
+    workspace.succeed("run small.toml -o b --set drive.v_star=0.2 --seed 7");
+    workspace.succeed("run small.toml -o c --set drive.v_star=0.2");
+    let summary = workspace.summary("a");
     assert_eq!((&summary["v_star"], &summary["seed"]), (&0.2.into(), &7.into()));
-    bench.assert_same("a", "b");
-    assert_ne!(bench.read("a/series.csv"), bench.read("c/series.csv"));
+    workspace.assert_same_run("a", "b");
+    assert_ne!(workspace.read("a/series.csv"), workspace.read("c/series.csv"));
 }
 
 #[test]
 fn stop_after_onset_ends_the_run_there() {
-    let bench = Bench::new();
-    bench.done("run small.toml -o whole");
-    bench.done("run small.toml -o onset --set time.stop=after_onset");
-    let (whole, onset) = (bench.summary("whole"), bench.summary("onset"));
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o whole");
+    workspace.succeed("run small.toml -o onset --set time.stop=after_onset");
+    let (whole, onset) = (workspace.summary("whole"), workspace.summary("onset"));
     assert_eq!(onset["static_friction_star"], whole["static_friction_star"]);
     assert_eq!(onset["onset_time_star"], whole["onset_time_star"]);
     assert!(onset["steps"].as_u64().unwrap() < whole["steps"].as_u64().unwrap() / 2);
     assert!(onset["kinetic_friction_star"].is_null() && onset["transition"] == true);
-    assert_eq!(rows(&bench, "onset") as u64, onset["steps"].as_u64().unwrap() + 1);
+    assert_eq!(
+        rows(&workspace, "onset") as u64,
+        onset["steps"].as_u64().unwrap() + 1
+    );
 }
 
 #[test]
 fn snapshots_at_times_at_a_spacing_or_none() {
-    let bench = Bench::new();
-    bench.done("run small.toml -o list --set output.snapshots=[0,12.34,80]");
-    bench.done("run small.toml -o every --set output.snapshots.every=30");
-    bench.done("run small.toml -o none --set output.snapshots=[]");
-    assert_eq!(times(&fields(&bench, "list")), [0.0, 123.0 * 0.1, 80.0]);
-    assert_eq!(times(&fields(&bench, "every")), [0.0, 30.0, 60.0]);
-    assert!(fields(&bench, "none").frames.is_empty());
-    assert!(bench.exists("list/stress.png") && bench.exists("every/stress.svg"));
-    assert!(!bench.exists("none/stress.png") && !bench.exists("none/stress.svg"));
-    assert!(bench.exists("none/manifest.json"));
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o list --set output.snapshots=[0,12.34,80]");
+    workspace.succeed("run small.toml -o every --set output.snapshots.every=30");
+    workspace.succeed("run small.toml -o none --set output.snapshots=[]");
+    assert_eq!(times(&fields(&workspace, "list")), [0.0, 123.0 * 0.1, 80.0]);
+    assert_eq!(times(&fields(&workspace, "every")), [0.0, 30.0, 60.0]);
+    assert!(fields(&workspace, "none").frames.is_empty());
+    assert!(workspace.exists("list/stress.png") && workspace.exists("every/stress.svg"));
+    assert!(!workspace.exists("none/stress.png") && !workspace.exists("none/stress.svg"));
+    assert!(workspace.exists("none/manifest.json"));
     // The static fields are there all the same.
-    assert_eq!(fields(&bench, "none").mu_static.len(), 30);
+    assert_eq!(fields(&workspace, "none").mu_static.len(), 30);
 }
 
 #[test]
 fn a_stride_thins_the_fields_and_a_spacing_the_series() {
-    let bench = Bench::new();
-    bench.done("run small.toml -o all");
-    bench.done("run small.toml -o thin --set output.stride=4 --set output.series=10");
-    let (all, thin) = (fields(&bench, "all"), fields(&bench, "thin"));
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o all");
+    workspace.succeed("run small.toml -o thin --set output.stride=4 --set output.series=10");
+    let (all, thin) = (fields(&workspace, "all"), fields(&workspace, "thin"));
     assert_eq!(
         (thin.frames[0].values[0].len(), all.frames[0].values[0].len()),
         (4, 30)
     );
     let taken: Vec<f32> = [0, 4, 24, 28].map(|block| all.frames[2].values[0][block]).into();
     assert_eq!(thin.frames[2].values[0], taken);
-    assert_eq!(rows(&bench, "thin"), 9);
+    assert_eq!(rows(&workspace, "thin"), 9);
     // What is measured does not depend on what is written.
-    assert_eq!(bench.summary("thin"), bench.summary("all"));
+    assert_eq!(workspace.summary("thin"), workspace.summary("all"));
     // A spacing beyond the end leaves the first row and the last.
-    bench.done("run small.toml -o ends --set output.series=1000 --set output.stride=100");
-    assert_eq!(rows(&bench, "ends"), 2);
+    workspace.succeed("run small.toml -o ends --set output.series=1000 --set output.stride=100");
+    assert_eq!(rows(&workspace, "ends"), 2);
 }
 
 #[test]
 fn periodic_edges_are_told_and_change_the_result() {
-    let bench = Bench::new();
-    bench.done("run small.toml -o free");
-    let said = bench.done("run small.toml -o ring --set slider.edges=['periodic','free']");
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o free");
+    let said = workspace.succeed("run small.toml -o ring --set slider.edges=['periodic','free']");
     assert!(said.contains("periodic in x, free in y edges"), "{said}");
-    assert_ne!(bench.read("free/series.csv"), bench.read("ring/series.csv"));
-    let said = bench.refused(
+    assert_ne!(
+        workspace.read("free/series.csv"),
+        workspace.read("ring/series.csv")
+    );
+    let said = workspace.fail(
         "run small.toml -o c --set slider.blocks=[2,9] --set slider.edges=periodic",
         2,
     );

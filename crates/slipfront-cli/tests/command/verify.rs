@@ -2,63 +2,64 @@
 
 use std::collections::BTreeMap;
 
-use super::{Bench, RUN_FILES};
+use crate::fixtures::RUN_FILES;
+use crate::support::workspace::Workspace;
 
 /// Verifies; gives the status and what was said on stdout and on stderr.
-fn verified(bench: &Bench, line: &str) -> (i32, String, String) {
-    let output = bench.slipfront(&format!("verify {line}")).output().unwrap();
+pub(crate) fn verified(workspace: &Workspace, line: &str) -> (i32, String, String) {
+    let output = workspace.command(&format!("verify {line}")).output().unwrap();
     let [out, err] = [output.stdout, output.stderr].map(|said| String::from_utf8(said).unwrap());
     assert!(!err.contains("panicked"), "{err}");
     (output.status.code().unwrap(), out, err)
 }
 
 /// A run with an input, so that every kind of file is there.
-fn bench_with_a_run() -> Bench {
-    let bench = Bench::masked();
-    bench.done("run masked.toml -o a");
-    bench
+fn workspace_with_a_run() -> Workspace {
+    let workspace = Workspace::masked();
+    workspace.succeed("run masked.toml -o a");
+    workspace
 }
 
-fn remove(bench: &Bench, name: &str) {
-    std::fs::remove_file(bench.path().join(name)).unwrap();
+fn remove(workspace: &Workspace, name: &str) {
+    std::fs::remove_file(workspace.path(name)).unwrap();
 }
 
 /// Changes the manifest as whoever wrote it could have written it.
-fn reseal(bench: &Bench, change: impl Fn(&mut serde_json::Value)) {
-    let mut manifest: serde_json::Value = serde_json::from_slice(&bench.read("a/manifest.json")).unwrap();
+fn reseal(workspace: &Workspace, change: impl Fn(&mut serde_json::Value)) {
+    let mut manifest: serde_json::Value = serde_json::from_slice(&workspace.read("a/manifest.json")).unwrap();
     change(&mut manifest);
     let mut text = serde_json::to_string_pretty(&manifest).unwrap();
     let seal = text.rfind("\"seal\"").unwrap();
     let hash = blake3::hash(&text.as_bytes()[..seal]).to_hex();
     text.replace_range(seal.., &format!("\"seal\": \"{hash}\"\n}}\n"));
-    bench.write("a/manifest.json", text);
+    workspace.write("a/manifest.json", text);
 }
 
 #[test]
 fn a_run_is_what_was_written() {
-    let bench = bench_with_a_run();
-    bench.done("run small.toml -o b");
-    let before = bench.files(".");
-    let (status, said, errors) = verified(&bench, "a b");
+    let workspace = workspace_with_a_run();
+    workspace.succeed("run small.toml -o b");
+    let before = workspace.files(".");
+    let (status, said, errors) = verified(&workspace, "a b");
     assert_eq!((status, errors.as_str()), (0, ""));
     assert_eq!(said.lines().count(), 2, "{said}");
     assert!(said.contains("a: 9 files as slipfront 0.1.0"), "{said}");
-    let (status, said, _) = verified(&bench, "a --quiet");
+    let (status, said, _) = verified(&workspace, "a --quiet");
     assert_eq!((status, said.as_str()), (0, ""));
-    assert!(before == bench.files("."), "verifying has changed something");
+    assert!(before == workspace.files("."), "verifying has changed something");
 }
 
 #[test]
 fn every_changed_byte_is_seen() {
-    let bench = bench_with_a_run();
-    let files = bench.files("a");
+    let workspace = workspace_with_a_run();
+    let files = workspace.files("a");
     assert_eq!(files.len(), RUN_FILES.len() + 1);
     for (name, bytes) in &files {
         for at in [0, bytes.len() / 3, bytes.len() / 2, bytes.len() - 1] {
             let mut changed = bytes.clone();
             changed[at] ^= 1;
-            bench.write(&format!("a/{name}"), changed);
-            let (status, said, errors) = verified(&bench, "a");
+            workspace.write(&format!("a/{name}"), changed);
+            let (status, said, errors) = verified(&workspace, "a");
             assert_eq!(status, 1, "byte {at} of {name}: {said}");
             assert!(
                 errors.contains("1 of 1 folders differ from what was written"),
@@ -73,48 +74,48 @@ fn every_changed_byte_is_seen() {
                 "{name}: {said}"
             );
         }
-        bench.write(&format!("a/{name}"), bytes);
+        workspace.write(&format!("a/{name}"), bytes);
     }
-    assert_eq!(verified(&bench, "a").0, 0);
+    assert_eq!(verified(&workspace, "a").0, 0);
 }
 
 /// Pictures of damaged files would look right.
 #[test]
 fn what_has_changed_is_not_drawn() {
-    let bench = bench_with_a_run();
+    let workspace = workspace_with_a_run();
     for name in ["summary.json", "series.csv", "fields.nc"] {
         let path = format!("a/{name}");
-        let bytes = bench.read(&path);
+        let bytes = workspace.read(&path);
         let mut changed = bytes.clone();
         changed[bytes.len() / 2] ^= 1;
-        bench.write(&path, &changed);
+        workspace.write(&path, &changed);
         for line in ["plot a -o drawn", "plot a a -o drawn"] {
-            let said = bench.refused(line, 2);
+            let said = workspace.fail(line, 2);
             assert!(
                 said.contains(&format!("{path} differs: other bytes were written")),
                 "{said}"
             );
             assert!(said.contains("remove a/manifest.json"), "{said}");
         }
-        bench.write(&path, bytes);
+        workspace.write(&path, bytes);
     }
-    assert!(!bench.exists("drawn"));
+    assert!(!workspace.exists("drawn"));
     // What pictures are not drawn from does not matter.
-    bench.write("a/friction.svg", "changed");
-    bench.done("plot a");
-    let seen = verified(&bench, "a");
+    workspace.write("a/friction.svg", "changed");
+    workspace.succeed("plot a");
+    let seen = verified(&workspace, "a");
     assert_eq!(seen.0, 0, "{}", seen.1);
 }
 
 #[test]
 fn every_byte_of_the_manifest_is_under_its_seal() {
-    let bench = bench_with_a_run();
-    let bytes = bench.read("a/manifest.json");
+    let workspace = workspace_with_a_run();
+    let bytes = workspace.read("a/manifest.json");
     for at in (0..bytes.len()).step_by(29) {
         let mut changed = bytes.clone();
         changed[at] ^= 1;
-        bench.write("a/manifest.json", changed);
-        let (status, said, _) = verified(&bench, "a");
+        workspace.write("a/manifest.json", changed);
+        let (status, said, _) = verified(&workspace, "a");
         assert_eq!(status, 1, "byte {at}");
         assert!(said.starts_with("a/manifest.json is damaged: "), "{said}");
     }
@@ -122,45 +123,47 @@ fn every_byte_of_the_manifest_is_under_its_seal() {
 
 #[test]
 fn missing_and_cut_files_are_named() {
-    let bench = bench_with_a_run();
-    let files = bench.files("a");
+    let workspace = workspace_with_a_run();
+    let files = workspace.files("a");
     for (name, bytes) in &files {
         let path = format!("a/{name}");
         if name != "manifest.json" {
-            remove(&bench, &path);
-            let (status, said, _) = verified(&bench, "a");
+            remove(&workspace, &path);
+            let (status, said, _) = verified(&workspace, "a");
             assert_eq!((status, said), (1, format!("{path} is missing\n")));
-            bench.write(&path, &bytes[..bytes.len() - 1]);
-            let (status, said, _) = verified(&bench, "a");
+            workspace.write(&path, &bytes[..bytes.len() - 1]);
+            let (status, said, _) = verified(&workspace, "a");
             let lengths = format!("{} bytes where {} were written", bytes.len() - 1, bytes.len());
             assert!(status == 1 && said.contains(&lengths), "{said}");
         }
-        bench.write(&path, bytes);
+        workspace.write(&path, bytes);
     }
-    std::fs::remove_file(bench.path().join("a/series.csv")).unwrap();
-    std::fs::create_dir(bench.path().join("a/series.csv")).unwrap();
-    let (status, said, _) = verified(&bench, "a");
+    std::fs::remove_file(workspace.path("a/series.csv")).unwrap();
+    std::fs::create_dir(workspace.path("a/series.csv")).unwrap();
+    let (status, said, _) = verified(&workspace, "a");
     assert!(status == 1 && said.contains("not a regular file"), "{said}");
 }
 
 /// They do no harm: a user may keep notes beside results.
 #[test]
 fn files_of_others_are_named() {
-    let bench = bench_with_a_run();
+    let workspace = workspace_with_a_run();
     for name in [
         "notes.txt",
         "inputs/other.png",
         ".slipfrontAbC123",
         "more/notes.txt",
     ] {
-        bench.write(&format!("a/{name}"), "mine");
+        workspace.write(&format!("a/{name}"), "mine");
     }
-    let (status, said, errors) = verified(&bench, "a");
+    workspace.write("a/.slipfront/journal.jsonl", "");
+    let (status, said, errors) = verified(&workspace, "a");
     assert_eq!((status, errors.as_str()), (0, ""));
     let notes: Vec<&str> = said.lines().skip(1).collect();
     assert_eq!(
         notes,
         [
+            "note: a/.slipfront was left by a run that was interrupted",
             "note: a/.slipfrontAbC123 was left by a run that was interrupted",
             "note: a/inputs/other.png is not slipfront's",
             "note: a/more is not slipfront's",
@@ -171,8 +174,8 @@ fn files_of_others_are_named() {
 
 #[test]
 fn what_is_no_run_folder_is_said_with_status_2() {
-    let bench = bench_with_a_run();
-    std::fs::create_dir(bench.path().join("empty")).unwrap();
+    let workspace = workspace_with_a_run();
+    std::fs::create_dir(workspace.path("empty")).unwrap();
     for (folder, words) in [
         (
             "empty",
@@ -181,26 +184,26 @@ fn what_is_no_run_folder_is_said_with_status_2() {
         ("small.toml", "small.toml is no folder"),
         ("nowhere", "nowhere is no folder"),
     ] {
-        let (status, said, errors) = verified(&bench, folder);
+        let (status, said, errors) = verified(&workspace, folder);
         assert_eq!((status, said.as_str()), (2, ""), "{folder}");
         assert!(errors.contains(words), "{errors}");
     }
     // The others are verified all the same.
-    let (status, said, errors) = verified(&bench, "empty a nowhere");
+    let (status, said, errors) = verified(&workspace, "empty a nowhere");
     assert_eq!(status, 2);
     assert!(said.starts_with("a: 9 files"), "{said}");
     assert!(
         errors.contains("2 of 3 folders cannot be verified, 0 differ"),
         "{errors}"
     );
-    bench.refused("verify", 2);
+    workspace.fail("verify", 2);
 }
 
 #[test]
 fn a_manifest_of_another_version_is_understood() {
-    let bench = bench_with_a_run();
+    let workspace = workspace_with_a_run();
     // Another version may write other keys, and less.
-    reseal(&bench, |manifest| {
+    reseal(&workspace, |manifest| {
         manifest["version"] = "9.9.9".into();
         manifest["weather"] = "fine".into();
         let keys = manifest.as_object_mut().unwrap();
@@ -210,35 +213,35 @@ fn a_manifest_of_another_version_is_understood() {
         let seal = keys.remove("seal").unwrap();
         keys.insert("seal".to_owned(), seal);
     });
-    let (status, said, _) = verified(&bench, "a");
+    let (status, said, _) = verified(&workspace, "a");
     assert_eq!(status, 0, "{said}");
     assert!(said.contains("a: 9 files as slipfront 9.9.9"), "{said}");
-    let (status, said, _) = verified(&bench, "a --rerun --quiet");
+    let (status, said, _) = verified(&workspace, "a --rerun --quiet");
     assert_eq!(status, 0, "{said}");
-    let (_, said, _) = verified(&bench, "a --rerun");
+    let (_, said, _) = verified(&workspace, "a --rerun");
     assert!(
         said.contains("note: a was written by slipfront 9.9.9")
             && said.contains("repeated by slipfront 0.1.0"),
         "{said}"
     );
     // What an early version wrote has no seal.
-    reseal(&bench, |manifest| {
+    reseal(&workspace, |manifest| {
         manifest["seal"] = "".into();
     });
-    let text = String::from_utf8(bench.read("a/manifest.json")).unwrap();
+    let text = String::from_utf8(workspace.read("a/manifest.json")).unwrap();
     let seal = text.rfind(",\n  \"seal\"").unwrap();
-    bench.write("a/manifest.json", format!("{}\n}}\n", &text[..seal]));
-    let (status, said, _) = verified(&bench, "a");
+    workspace.write("a/manifest.json", format!("{}\n}}\n", &text[..seal]));
+    let (status, said, _) = verified(&workspace, "a");
     assert!(status == 1 && said.contains("it has no seal"), "{said}");
 }
 
 #[test]
 fn a_manifest_speaks_of_its_own_folder_alone() {
-    let bench = bench_with_a_run();
-    bench.write("treasure", "mine");
+    let workspace = workspace_with_a_run();
+    workspace.write("treasure", "mine");
     for name in ["../treasure", "/etc/passwd", "inputs/../../treasure"] {
-        reseal(&bench, |manifest| manifest["files"][0]["name"] = name.into());
-        let (status, said, _) = verified(&bench, "a");
+        reseal(&workspace, |manifest| manifest["files"][0]["name"] = name.into());
+        let (status, said, _) = verified(&workspace, "a");
         assert_eq!(status, 1);
         assert!(said.contains("lies outside of its folder"), "{said}");
     }
@@ -247,7 +250,7 @@ fn a_manifest_speaks_of_its_own_folder_alone() {
 /// The sealed case of another version may be none for this one.
 #[test]
 fn a_case_that_is_none_any_more_is_told() {
-    let bench = bench_with_a_run();
+    let workspace = workspace_with_a_run();
     for (from, to, words) in [
         ("[drive]", "[drove]", "is no case for this version: a/case.toml:"),
         (
@@ -256,30 +259,30 @@ fn a_case_that_is_none_any_more_is_told() {
             "is not the resolved case that it was",
         ),
     ] {
-        let before = bench.files("a");
+        let before = workspace.files("a");
         let case = String::from_utf8(before["case.toml"].clone()).unwrap();
         let case = case.replace(from, to);
-        reseal(&bench, |manifest| {
+        reseal(&workspace, |manifest| {
             let file = &mut manifest["files"][0];
             assert_eq!(file["name"], "case.toml");
             file["bytes"] = case.len().into();
             file["blake3"] = blake3::hash(case.as_bytes()).to_hex().to_string().into();
         });
-        bench.write("a/case.toml", &case);
-        let (status, said, _) = verified(&bench, "a");
+        workspace.write("a/case.toml", &case);
+        let (status, said, _) = verified(&workspace, "a");
         assert_eq!((status, said.lines().count()), (1, 1), "{said}");
         assert!(said.contains(words), "{said}");
         for (name, bytes) in before {
-            bench.write(&format!("a/{name}"), bytes);
+            workspace.write(&format!("a/{name}"), bytes);
         }
     }
 }
 
 /// A temporary folder of one's own shows whether anything is left in it.
-fn rerun(bench: &Bench, folder: &str) -> (i32, String) {
-    let temporary = bench.path().join("temporary");
+fn rerun(workspace: &Workspace, folder: &str) -> (i32, String) {
+    let temporary = workspace.path("temporary");
     std::fs::create_dir_all(&temporary).unwrap();
-    let mut command = bench.slipfront(&format!("verify --rerun {folder}"));
+    let mut command = workspace.command(&format!("verify --rerun {folder}"));
     let output = command.env("TMPDIR", &temporary).output().unwrap();
     let left = std::fs::read_dir(&temporary).unwrap().count();
     assert_eq!(left, 0, "something is left behind");
@@ -289,20 +292,20 @@ fn rerun(bench: &Bench, folder: &str) -> (i32, String) {
 
 #[test]
 fn a_repeated_run_gives_the_same() {
-    let bench = bench_with_a_run();
-    let before = bench.files("a");
-    let (status, said) = rerun(&bench, "a");
+    let workspace = workspace_with_a_run();
+    let before = workspace.files("a");
+    let (status, said) = rerun(&workspace, "a");
     assert_eq!(status, 0, "{said}");
     assert!(said.trim_end().ends_with("; the same when repeated"), "{said}");
-    assert!(before == bench.files("a"));
+    assert!(before == workspace.files("a"));
 }
 
 #[test]
 fn a_repeated_run_of_another_case_gives_another() {
-    let bench = bench_with_a_run();
-    let case = String::from_utf8(bench.read("a/case.toml")).unwrap();
-    bench.write("a/case.toml", case.replace("\nseed = 1\n", "\nseed = 2\n"));
-    let (status, said) = rerun(&bench, "a");
+    let workspace = workspace_with_a_run();
+    let case = String::from_utf8(workspace.read("a/case.toml")).unwrap();
+    workspace.write("a/case.toml", case.replace("\nseed = 1\n", "\nseed = 2\n"));
+    let (status, said) = rerun(&workspace, "a");
     assert_eq!(status, 1);
     let named = |words: &str| -> BTreeMap<&str, ()> {
         let lines = said.lines().filter_map(|line| line.strip_suffix(words));
@@ -326,8 +329,8 @@ fn a_repeated_run_of_another_case_gives_another() {
     // The mask is read, and not changed.
     assert!(!said.contains("spot.png"), "{said}");
     // A case that cannot be run is bad input, and what differs is said all the same.
-    bench.write("a/case.toml", "[drive]\nv_star = -1\n");
-    let (status, said) = rerun(&bench, "a");
+    workspace.write("a/case.toml", "[drive]\nv_star = -1\n");
+    let (status, said) = rerun(&workspace, "a");
     assert_eq!(status, 2);
     assert!(said.starts_with("a/case.toml differs: it has "), "{said}");
 }
@@ -335,13 +338,13 @@ fn a_repeated_run_of_another_case_gives_another() {
 /// Files that the repeated run does not write.
 #[test]
 fn a_repeated_run_may_write_less() {
-    let bench = bench_with_a_run();
-    let case = String::from_utf8(bench.read("a/case.toml")).unwrap();
-    bench.write(
+    let workspace = workspace_with_a_run();
+    let case = String::from_utf8(workspace.read("a/case.toml")).unwrap();
+    workspace.write(
         "a/case.toml",
         case.replace("snapshots = \"auto\"", "snapshots = []"),
     );
-    let (status, said) = rerun(&bench, "a");
+    let (status, said) = rerun(&workspace, "a");
     assert_eq!(status, 1);
     for name in ["stress.svg", "stress.png"] {
         assert!(said.contains(&format!("a/{name} is not written now\n")), "{said}");
@@ -351,33 +354,25 @@ fn a_repeated_run_may_write_less() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_repetition_leaves_nothing_behind() {
-    use std::process::{Command, Stdio};
-    let bench = Bench::new();
-    bench.done("run small.toml -o a");
-    let case = String::from_utf8(bench.read("a/case.toml")).unwrap();
+    use crate::support::process::{send, wait_for};
+    use std::process::Stdio;
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o a");
+    let case = String::from_utf8(workspace.read("a/case.toml")).unwrap();
     let long = case
         .replace("blocks = [6, 5]", "blocks = [100, 100]")
         .replace("duration_star = \"auto\"", "duration_star = 1e6");
-    bench.write("a/case.toml", long);
-    let temporary = bench.path().join("temporary");
+    workspace.write("a/case.toml", long);
+    let temporary = workspace.path("temporary");
     std::fs::create_dir(&temporary).unwrap();
-    let mut child = Command::new(super::program())
-        .args(["verify", "--rerun", "--quiet", "a"])
-        .current_dir(bench.path())
-        .env("TMPDIR", &temporary)
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    let mut waited = 0;
-    while std::fs::read_dir(&temporary).unwrap().next().is_none() {
-        assert!(waited < 1000, "the run does not begin");
-        std::thread::sleep(std::time::Duration::from_millis(10));
-        waited += 1;
-    }
+    let mut process = workspace.process("verify --rerun --quiet a");
+    process.env("TMPDIR", &temporary).stdout(Stdio::null());
+    let mut child = process.stderr(Stdio::null()).spawn().unwrap();
+    wait_for("folder of the run", || {
+        std::fs::read_dir(&temporary).unwrap().next().is_some()
+    });
     std::thread::sleep(std::time::Duration::from_millis(100));
-    let kill = format!("kill -INT {}", child.id());
-    assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
+    send(&child, "-INT");
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert_eq!(std::fs::read_dir(&temporary).unwrap().count(), 0);
 }

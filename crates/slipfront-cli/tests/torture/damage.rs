@@ -6,8 +6,10 @@
 use std::process::Command;
 use std::sync::OnceLock;
 
-use crate::bench::{Bench, Ended, Files};
-use crate::jobs::{JOBS, Job, bench, expect_all};
+use crate::bounded::Ended;
+use crate::jobs::{JOBS, Job, expect_all, workspace};
+use crate::support::process::try_send;
+use crate::support::workspace::{Files, Workspace};
 use crate::tally::{Chance, Tally, cases, long};
 
 /// Longer than any disk, and empty.
@@ -88,13 +90,13 @@ impl Damage {
     }
 
     /// Puts it in the place of a file; says whether anything has changed.
-    fn apply(&self, bench: &Bench, name: &str, whole: &[u8]) -> bool {
-        let path = bench.path(name);
+    fn apply(&self, workspace: &Workspace, name: &str, whole: &[u8]) -> bool {
+        let path = workspace.path(name);
         if let Some(bytes) = self.bytes(whole) {
-            bench.write(name, bytes);
+            workspace.write(name, bytes);
             return true;
         }
-        bench.remove(name);
+        workspace.remove(name);
         match self {
             Self::Gone => {}
             Self::Folder => std::fs::create_dir(path).unwrap(),
@@ -105,7 +107,7 @@ impl Damage {
                 .set_len(ENDLESS_BYTES)
                 .unwrap(),
             _ => {
-                bench.write(name, whole);
+                workspace.write(name, whole);
                 return false;
             }
         }
@@ -128,14 +130,14 @@ struct Target<'a> {
 /// Damages a file in every way, asks each time what comes of it, and mends it.
 fn torture(
     tally: &mut Tally,
-    bench: &Bench,
+    workspace: &Workspace,
     target: &Target,
     judge: &dyn Fn(&Damage) -> Result<&'static str, String>,
 ) {
     let Target { kind, name, most } = *target;
-    let whole = bench.read(name);
+    let whole = workspace.read(name);
     for damage in damages(&whole, &mut Chance::new(), most) {
-        if !damage.apply(bench, name, &whole) {
+        if !damage.apply(workspace, name, &whole) {
             continue;
         }
         let ended = judge(&damage);
@@ -146,8 +148,8 @@ fn torture(
             eprintln!("FOUND {kind}, {case}: {finding}");
         }
         tally.note(kind, &case, ended);
-        bench.remove(name);
-        bench.write(name, &whole);
+        workspace.remove(name);
+        workspace.write(name, &whole);
     }
 }
 
@@ -155,14 +157,14 @@ fn torture(
 fn others() -> &'static Others {
     static OTHERS: OnceLock<Others> = OnceLock::new();
     let make = || {
-        let bench = bench();
-        bench.fill("out", &JOBS[0].undisturbed());
+        let workspace = workspace();
+        workspace.fill("out", &JOBS[0].undisturbed());
         let other = "run case.toml --quiet --threads 1 -o other --set drive.v_star=0.12";
-        bench.done(other).unwrap();
-        let study = String::from_utf8(bench.read("study.toml")).unwrap();
-        bench.write("other.toml", study.replace("[0.1, 0.2]", "[0.1, 0.25]"));
-        bench
-            .done("study other.toml --quiet --threads 1 -o study")
+        workspace.succeed_bounded(other).unwrap();
+        let study = String::from_utf8(workspace.read("study.toml")).unwrap();
+        workspace.write("other.toml", study.replace("[0.1, 0.2]", "[0.1, 0.25]"));
+        workspace
+            .succeed_bounded("study other.toml --quiet --threads 1 -o study")
             .unwrap();
         let names = [
             "case.toml",
@@ -183,17 +185,17 @@ fn others() -> &'static Others {
             "study/records.jsonl",
             "study/points.csv",
         ];
-        names.map(|name| (name.to_owned(), bench.read(name))).into()
+        names.map(|name| (name.to_owned(), workspace.read(name))).into()
     };
     OTHERS.get_or_init(make)
 }
 
-/// A bench with the sound results of a job in `out`.
-fn with_results(job: &Job) -> (Bench, Files) {
-    let bench = bench();
+/// A workspace with the sound results of a job in `out`.
+fn with_results(job: &Job) -> (Workspace, Files) {
+    let workspace = workspace();
     let whole = job.undisturbed();
-    bench.fill("out", &whole);
-    (bench, whole)
+    workspace.fill("out", &whole);
+    (workspace, whole)
 }
 
 fn refused(ended: &Ended) -> Result<&'static str, String> {
@@ -207,14 +209,14 @@ const INPUTS: [&str; 5] = ["case.toml", "mask.png", "mask.npy", "mu_k.npy", "mu_
 
 #[test]
 fn of_what_a_case_reads() {
-    let (bench, whole) = with_results(&JOBS[0]);
+    let (workspace, whole) = with_results(&JOBS[0]);
     let mut tally = Tally::new("damage");
     for name in INPUTS {
         let read = |damage: &Damage| {
             if name == "case.toml" && damage.is_waited_for() {
                 return Ok("not tried: waited for");
             }
-            let ended = bench.run("texture case.toml -o texture.png --force")?;
+            let ended = workspace.run_bounded("texture case.toml -o texture.png --force")?;
             if ended.status == 0 {
                 Ok("taken as it is")
             } else {
@@ -226,21 +228,21 @@ fn of_what_a_case_reads() {
             name,
             most: cases(12, 6_000),
         };
-        torture(&mut tally, &bench, &target, &read);
-        bench.remove("again");
+        torture(&mut tally, &workspace, &target, &read);
+        workspace.remove("again");
         let run = |damage: &Damage| {
             if name == "case.toml" && damage.is_waited_for() {
                 return Ok("not tried: waited for");
             }
-            let ended = bench.run("run case.toml --quiet --threads 1 -o again --force")?;
+            let ended = workspace.run_bounded("run case.toml --quiet --threads 1 -o again --force")?;
             match ended.status {
                 0 => {}
                 1 => return Ok("failed"),
                 _ => return refused(&ended),
             }
-            let now = bench.files("again");
+            let now = workspace.files_if_any("again");
             let copy = now.get(&format!("inputs/{name}"));
-            if copy.is_some_and(|copy| *copy != bench.read(name)) {
+            if copy.is_some_and(|copy| *copy != workspace.read(name)) {
                 return Err("another file was recorded".to_owned());
             }
             let recorded = |files: &Files| {
@@ -252,7 +254,7 @@ fn of_what_a_case_reads() {
                 expect_all(&now, &whole)?;
                 return Ok("the same case");
             }
-            bench.done("verify --rerun --quiet again")?;
+            workspace.succeed_bounded("verify --rerun --quiet again")?;
             Ok("recorded as another case")
         };
         let target = Target {
@@ -260,20 +262,20 @@ fn of_what_a_case_reads() {
             name,
             most: cases(1, 300),
         };
-        torture(&mut tally, &bench, &target, &run);
+        torture(&mut tally, &workspace, &target, &run);
     }
     tally.close();
 }
 
 #[test]
 fn of_a_study_file() {
-    let (bench, _) = with_results(&JOBS[1]);
+    let (workspace, _) = with_results(&JOBS[1]);
     let mut tally = Tally::new("damage");
     let read = |damage: &Damage| {
         if damage.is_waited_for() {
             return Ok("not tried: waited for");
         }
-        let ended = bench.run("study slurm study.toml")?;
+        let ended = workspace.run_bounded("study slurm study.toml")?;
         if ended.status == 0 {
             Ok("taken as it is")
         } else {
@@ -285,15 +287,17 @@ fn of_a_study_file() {
         name: "study.toml",
         most: cases(25, 10_000),
     };
-    torture(&mut tally, &bench, &target, &read);
+    torture(&mut tally, &workspace, &target, &read);
     let run = |damage: &Damage| {
         if damage.is_waited_for() {
             return Ok("not tried: waited for");
         }
-        bench.remove("again");
-        let ended = bench.run("study study.toml --quiet --threads 1 -o again")?;
+        workspace.remove("again");
+        let ended = workspace.run_bounded("study study.toml --quiet --threads 1 -o again")?;
         match ended.status {
-            0 => bench.done("verify again").map(|_| "recorded as another study"),
+            0 => workspace
+                .succeed_bounded("verify again")
+                .map(|_| "recorded as another study"),
             1 => Ok("failed"),
             _ => refused(&ended),
         }
@@ -303,22 +307,22 @@ fn of_a_study_file() {
         most: cases(2, 500),
         ..target
     };
-    torture(&mut tally, &bench, &target, &run);
+    torture(&mut tally, &workspace, &target, &run);
     tally.close();
 }
 
 /// Nothing that differs from what was written may pass.
-fn seen(bench: &Bench, line: &str) -> Result<&'static str, String> {
-    let ended = bench.run(line)?;
+fn seen(workspace: &Workspace, line: &str) -> Result<&'static str, String> {
+    let ended = workspace.run_bounded(line)?;
     match ended.status {
-        0 => Err(format!("it is not seen: {}", ended.printed)),
+        0 => Err(format!("it is not seen: {}", ended.stdout)),
         _ => Ok("seen"),
     }
 }
 
 #[test]
 fn of_a_run_folder() {
-    let (bench, whole) = with_results(&JOBS[0]);
+    let (workspace, whole) = with_results(&JOBS[0]);
     let mut tally = Tally::new("damage");
     for name in whole.keys() {
         let target = Target {
@@ -326,10 +330,12 @@ fn of_a_run_folder() {
             name: &format!("out/{name}"),
             most: cases(4, if name.ends_with("json") { 8_000 } else { 1_000 }),
         };
-        torture(&mut tally, &bench, &target, &|_| seen(&bench, "verify out"));
+        torture(&mut tally, &workspace, &target, &|_| {
+            seen(&workspace, "verify out")
+        });
     }
-    bench.done("plot out -o drawn").unwrap();
-    let drawn = bench.files("drawn");
+    workspace.succeed_bounded("plot out -o drawn").unwrap();
+    let drawn = workspace.files_if_any("drawn");
     let of = |name: &str, most: usize| (format!("out/{name}"), most);
     let read = ["summary.json", "series.csv", "fields.nc"];
     for (name, most) in read
@@ -338,10 +344,10 @@ fn of_a_run_folder() {
         .map(|name| of(name, cases(3, 1_000)))
     {
         let judge = |_: &Damage| {
-            bench.remove("drawn");
-            let ended = bench.run("plot out -o drawn")?;
+            workspace.remove("drawn");
+            let ended = workspace.run_bounded("plot out -o drawn")?;
             match ended.status {
-                0 if bench.files("drawn") == drawn => Ok("drawn as it was"),
+                0 if workspace.files_if_any("drawn") == drawn => Ok("drawn as it was"),
                 0 => Err("a wrong picture".to_owned()),
                 _ => refused(&ended),
             }
@@ -351,13 +357,13 @@ fn of_a_run_folder() {
             name: &name,
             most,
         };
-        torture(&mut tally, &bench, &target, &judge);
+        torture(&mut tally, &workspace, &target, &judge);
     }
     // Without a manifest nobody knows what they were.
-    bench.remove("out/manifest.json");
+    workspace.remove("out/manifest.json");
     for (name, most) in read.iter().map(|name| of(name, cases(2, 500))) {
         let judge = |_: &Damage| {
-            let ended = bench.run("plot out -o drawn")?;
+            let ended = workspace.run_bounded("plot out -o drawn")?;
             if ended.status == 0 {
                 Ok("drawn as it is")
             } else {
@@ -369,30 +375,30 @@ fn of_a_run_folder() {
             name: &name,
             most,
         };
-        torture(&mut tally, &bench, &target, &judge);
+        torture(&mut tally, &workspace, &target, &judge);
     }
     tally.close();
 }
 
 /// A folder that is damaged, and made again or refused by the command that made it.
-fn mended(bench: &Bench, job: &Job, whole: &Files) -> Result<&'static str, String> {
-    let ended = bench.run(job.again)?;
+fn mended(workspace: &Workspace, job: &Job, whole: &Files) -> Result<&'static str, String> {
+    let ended = workspace.run_bounded(job.again)?;
     let outcome = match ended.status {
-        0 => expect_all(&bench.files("out"), whole).and_then(|()| {
+        0 => expect_all(&workspace.files_if_any("out"), whole).and_then(|()| {
             if job.verified {
-                bench.done("verify out")?;
+                workspace.succeed_bounded("verify out")?;
             }
             Ok("mended")
         }),
         _ => Ok("refused"),
     };
-    bench.fill("out", whole);
+    workspace.fill("out", whole);
     outcome
 }
 
 #[test]
 fn of_a_study_folder() {
-    let (bench, whole) = with_results(&JOBS[1]);
+    let (workspace, whole) = with_results(&JOBS[1]);
     let mut tally = Tally::new("damage");
     for name in whole.keys() {
         let records = name == "records.jsonl" || name == "study.toml";
@@ -401,7 +407,9 @@ fn of_a_study_folder() {
             name: &format!("out/{name}"),
             most: cases(if records { 2 } else { 1 }, if records { 1_000 } else { 100 }),
         };
-        torture(&mut tally, &bench, &target, &|_| seen(&bench, "verify out"));
+        torture(&mut tally, &workspace, &target, &|_| {
+            seen(&workspace, "verify out")
+        });
         if !long() && !records && !name.ends_with("points.csv") {
             continue;
         }
@@ -410,17 +418,21 @@ fn of_a_study_folder() {
             most: cases(1, if records { 300 } else { 20 }),
             ..target
         };
-        torture(&mut tally, &bench, &target, &|_| mended(&bench, &JOBS[1], &whole));
+        torture(&mut tally, &workspace, &target, &|_| {
+            mended(&workspace, &JOBS[1], &whole)
+        });
     }
     tally.close();
 }
 
 #[test]
 fn of_kept_runs() {
-    let bench = bench();
+    let workspace = workspace();
     let mut tally = Tally::new("damage");
-    bench.done("study kept.toml --quiet --threads 1 -o out").unwrap();
-    let whole = bench.files("out");
+    workspace
+        .succeed_bounded("study kept.toml --quiet --threads 1 -o out")
+        .unwrap();
+    let whole = workspace.files_if_any("out");
     let of_runs = whole.keys().filter(|name| name.starts_with("runs/")).collect();
     for name in Chance::new().some(of_runs, if long() { usize::MAX } else { 4 }) {
         let target = Target {
@@ -428,28 +440,30 @@ fn of_kept_runs() {
             name: &format!("out/{name}"),
             most: cases(1, 100),
         };
-        torture(&mut tally, &bench, &target, &|_| seen(&bench, "verify out"));
+        torture(&mut tally, &workspace, &target, &|_| {
+            seen(&workspace, "verify out")
+        });
     }
     tally.close();
 }
 
 #[test]
 fn of_shards() {
-    let (bench, _) = with_results(&JOBS[1]);
+    let (workspace, _) = with_results(&JOBS[1]);
     let mut tally = Tally::new("damage");
     for shard in ["1", "2"] {
         let line = format!("study study.toml --quiet --threads 1 --shard {shard}/2 -o part{shard}");
-        bench.done(&line).unwrap();
+        workspace.succeed_bounded(&line).unwrap();
     }
     let line = "study merge part1 part2 --quiet -o merged";
-    bench.done(line).unwrap();
-    let whole = bench.files("merged");
+    workspace.succeed_bounded(line).unwrap();
+    let whole = workspace.files_if_any("merged");
     for name in ["part1/records.jsonl", "part2/study.toml", "part1/study.toml"] {
         let judge = |_: &Damage| {
-            bench.remove("merged");
-            let ended = bench.run(line)?;
+            workspace.remove("merged");
+            let ended = workspace.run_bounded(line)?;
             match ended.status {
-                0 => expect_all(&bench.files("merged"), &whole).map(|()| "the same all the same"),
+                0 => expect_all(&workspace.files_if_any("merged"), &whole).map(|()| "the same all the same"),
                 _ => Ok("refused"),
             }
         };
@@ -458,14 +472,14 @@ fn of_shards() {
             name,
             most: cases(2, 500),
         };
-        torture(&mut tally, &bench, &target, &judge);
+        torture(&mut tally, &workspace, &target, &judge);
     }
     tally.close();
 }
 
 #[test]
 fn of_a_paper() {
-    let (bench, whole) = with_results(&JOBS[2]);
+    let (workspace, whole) = with_results(&JOBS[2]);
     let mut tally = Tally::new("damage");
     for name in whole.keys() {
         let kept = name.starts_with("found/") || name == "records.jsonl";
@@ -477,46 +491,46 @@ fn of_a_paper() {
         if !long() && !kept {
             continue;
         }
-        torture(&mut tally, &bench, &target, &|_| mended(&bench, &JOBS[2], &whole));
+        torture(&mut tally, &workspace, &target, &|_| {
+            mended(&workspace, &JOBS[2], &whole)
+        });
     }
     tally.close();
 }
 
 /// A run that was stopped after it had saved two checkpoints.
-fn stopped(bench: &Bench) -> Files {
-    let both = || bench.path("out/checkpoint-previous.bin").exists();
-    let mut child = bench.start(JOBS[3].line);
+fn stopped(workspace: &Workspace) -> Files {
+    let both = || workspace.path("out/.slipfront/checkpoint-previous.bin").exists();
+    let mut child = workspace.start_silent(JOBS[3].line);
     while !both() {
         assert!(child.try_wait().unwrap().is_none(), "no checkpoints were saved");
-        if bench.path("out/case.toml").exists() {
-            let _ = Command::new("kill")
-                .args(["-USR1", &child.id().to_string()])
-                .output();
+        if workspace.path("out/case.toml").exists() {
+            try_send(&child, "-USR1");
         }
         std::thread::sleep(std::time::Duration::from_millis(2));
     }
     child.kill().unwrap();
     child.wait().unwrap();
-    bench.files("out")
+    workspace.files_if_any("out")
 }
 
 #[test]
 fn of_checkpoints() {
-    let (bench, whole) = with_results(&JOBS[3]);
+    let (workspace, whole) = with_results(&JOBS[3]);
     let mut tally = Tally::new("damage");
-    bench.remove("out");
-    let interrupted = stopped(&bench);
+    workspace.remove("out");
+    let interrupted = stopped(&workspace);
     let resumed = |line: &str| {
-        let ended = bench.run(line)?;
-        let now = bench.files("out");
-        bench.fill("out", &interrupted);
+        let ended = workspace.run_bounded(line)?;
+        let now = workspace.files_if_any("out");
+        workspace.fill("out", &interrupted);
         match ended.status {
             0 => expect_all(&now, &whole).map(|()| "resumed to the same answer"),
             _ => refused(&ended),
         }
     };
     for (name, most) in [
-        ("out/checkpoint.bin", cases(8, 3_000)),
+        ("out/.slipfront/checkpoint.bin", cases(8, 3_000)),
         ("out/case.toml", cases(4, 1_000)),
         ("out/inputs/mask.png", cases(2, 500)),
     ] {
@@ -525,11 +539,11 @@ fn of_checkpoints() {
             name,
             most,
         };
-        torture(&mut tally, &bench, &target, &|_| resumed(JOBS[3].again));
+        torture(&mut tally, &workspace, &target, &|_| resumed(JOBS[3].again));
     }
     for (name, most) in [
-        ("out/checkpoint.bin", cases(1, 50)),
-        ("out/checkpoint-previous.bin", cases(1, 200)),
+        ("out/.slipfront/checkpoint.bin", cases(1, 50)),
+        ("out/.slipfront/checkpoint-previous.bin", cases(1, 200)),
     ] {
         let target = Target {
             kind: "runs that are resumed from the checkpoint before",
@@ -537,7 +551,7 @@ fn of_checkpoints() {
             most,
         };
         let line = "run --resume out --previous --quiet --threads 1";
-        torture(&mut tally, &bench, &target, &|_| resumed(line));
+        torture(&mut tally, &workspace, &target, &|_| resumed(line));
     }
     tally.close();
 }

@@ -3,8 +3,9 @@
 use std::process::Command;
 use std::sync::OnceLock;
 
-use crate::bench::{Bench, Ended};
-use crate::jobs::{JOBS, Job, bench, expect_all};
+use crate::bounded::Ended;
+use crate::jobs::{JOBS, Job, expect_all, workspace};
+use crate::support::workspace::Workspace;
 use crate::tally::{Chance, Tally, cases, long};
 
 /// The watcher, compiled with the C compiler that Rust links with; none where it does not work.
@@ -126,18 +127,18 @@ struct Hit {
 }
 
 /// Runs a line with a fault from the call of this number on.
-fn hit(bench: &Bench, line: &str, fault: Fault, number: usize) -> Hit {
-    let log = bench.beside("calls");
+fn hit(workspace: &Workspace, line: &str, fault: Fault, number: usize) -> Hit {
+    let log = tempfile::NamedTempFile::new().unwrap();
     let (from, to) = (
         number.to_string(),
         if fault.lasts { 0 } else { number }.to_string(),
     );
-    let (work, log_path) = (bench.path(""), log.display().to_string());
+    let (work, log_path) = (workspace.path(""), log.path().display().to_string());
     let work = work.to_str().unwrap().trim_end_matches('/');
     let watcher = [watcher().unwrap(), work, fault.action, &from, &to, &log_path];
-    let ended = bench.run_under(&watcher, line);
+    let ended = workspace.run_watched(&watcher, line);
     let (mut call, mut calls) = (None, Vec::new());
-    for line in std::fs::read_to_string(&log).unwrap_or_default().lines() {
+    for line in std::fs::read_to_string(log.path()).unwrap_or_default().lines() {
         let mut words = line.trim_start_matches('*').splitn(3, ' ');
         let mut word = || words.next().unwrap_or_default().to_owned();
         let made = Call {
@@ -168,6 +169,7 @@ fn cause(action: &str) -> &'static str {
 
 /// Whether a sentence names a file: its name, or for one without a name yet its folder.
 fn names(said: &str, path: &str) -> bool {
+    let path = path.split("/.slipfront/tmp/").next().unwrap_or_default();
     let mut parts = path.rsplit('/').filter(|part| !part.starts_with('.'));
     parts.next().is_none_or(|part| said.contains(part))
 }
@@ -175,7 +177,7 @@ fn names(said: &str, path: &str) -> bool {
 /// Every fault at every call of a line, or a sample of them; `judge` says what came of one.
 fn every_fault(
     tally: &mut Tally,
-    bench: &Bench,
+    workspace: &Workspace,
     kind: &str,
     line: &str,
     short: usize,
@@ -183,7 +185,7 @@ fn every_fault(
     prepare: &dyn Fn(),
 ) {
     prepare();
-    let Hit { ended, calls, .. } = hit(bench, line, once("EIO"), 0);
+    let Hit { ended, calls, .. } = hit(workspace, line, once("EIO"), 0);
     ended.unwrap();
     assert!(
         calls.len() > 10,
@@ -203,7 +205,7 @@ fn every_fault(
     let tried = Chance::new().some(tried, most);
     for (fault, number) in tried {
         prepare();
-        let Hit { ended, call, .. } = hit(bench, line, fault, number);
+        let Hit { ended, call, .. } = hit(workspace, line, fault, number);
         let Some(call) = call else {
             tally.note(kind, "", Ok("had ended before"));
             continue;
@@ -233,7 +235,7 @@ fn torture(job: &Job, short: usize) {
     if watcher().is_none() {
         return;
     }
-    let bench = bench();
+    let workspace = workspace();
     let mut tally = Tally::new("faults");
     let whole = job.undisturbed();
     let judge = |fault: Fault, ended: Option<Ended>, call: &Call| {
@@ -241,24 +243,26 @@ fn torture(job: &Job, short: usize) {
             None if fault.kills() => "killed",
             None => return Err("it was killed".to_owned()),
             Some(ended) if ended.status == 0 => {
-                expect_all(&bench.files("out"), &whole)?;
+                expect_all(&workspace.files_if_any("out"), &whole)?;
                 "harmless"
             }
             Some(ended) => {
-                expect_sentence(&ended.said, fault, call)?;
+                expect_sentence(&ended.stderr, fault, call)?;
                 "refused"
             }
         };
-        job.expect_honest(&bench, &whole)?;
-        job.finish(&bench, &whole)?;
+        job.expect_honest(&workspace, &whole)?;
+        job.finish(&workspace, &whole)?;
         Ok(outcome)
     };
     let prepare = || {
-        bench.remove("out");
-        bench.remove("temporary");
-        std::fs::create_dir(bench.path("temporary")).unwrap();
+        workspace.remove("out");
+        workspace.remove("temporary");
+        std::fs::create_dir(workspace.path("temporary")).unwrap();
     };
-    every_fault(&mut tally, &bench, job.name, job.line, short, &judge, &prepare);
+    every_fault(
+        &mut tally, &workspace, job.name, job.line, short, &judge, &prepare,
+    );
     tally.close();
 }
 
@@ -288,23 +292,27 @@ fn of_those_who_read() {
     if watcher().is_none() {
         return;
     }
-    let bench = bench();
+    let workspace = workspace();
     let mut tally = Tally::new("faults");
     let mut whole = JOBS[0].undisturbed();
-    bench.fill("out", &whole);
+    workspace.fill("out", &whole);
     let series = whole.get_mut("series.csv").unwrap();
     let middle = series.len() / 2;
     series[middle] ^= 1;
-    bench.fill("damaged", &whole);
-    bench.done("study study.toml --quiet -o study").unwrap();
-    bench.done("study kept.toml --quiet -o kept").unwrap();
-    let series = bench
-        .files("kept")
+    workspace.fill("damaged", &whole);
+    workspace
+        .succeed_bounded("study study.toml --quiet -o study")
+        .unwrap();
+    workspace
+        .succeed_bounded("study kept.toml --quiet -o kept")
+        .unwrap();
+    let series = workspace
+        .files_if_any("kept")
         .into_keys()
         .find(|name| name.ends_with("series.csv"));
-    bench.write(&format!("kept/{}", series.unwrap()), "changed");
+    workspace.write(&format!("kept/{}", series.unwrap()), "changed");
     let pictures = |folder: &str| {
-        let mut files = bench.files(folder);
+        let mut files = workspace.files_if_any(folder);
         files.retain(|name, _| !name.contains('/') && (name.ends_with("svg") || name.ends_with("png")));
         files
     };
@@ -322,10 +330,10 @@ fn of_those_who_read() {
             ended => Err(format!("{ended:?}")),
         };
         let prepare = || {
-            bench.remove("temporary");
-            std::fs::create_dir(bench.path("temporary")).unwrap();
+            workspace.remove("temporary");
+            std::fs::create_dir(workspace.path("temporary")).unwrap();
         };
-        every_fault(&mut tally, &bench, line, line, short, &judge, &prepare);
+        every_fault(&mut tally, &workspace, line, line, short, &judge, &prepare);
     }
     let judge = |fault: Fault, ended: Option<Ended>, call: &Call| {
         let now = pictures("drawn");
@@ -342,18 +350,20 @@ fn of_those_who_read() {
             {
                 Ok("harmless")
             }
-            Some(ended) if ended.status != 0 => expect_sentence(&ended.said, fault, call).map(|()| "refused"),
+            Some(ended) if ended.status != 0 => {
+                expect_sentence(&ended.stderr, fault, call).map(|()| "refused")
+            }
             ended => Err(format!("{ended:?}")),
         }
     };
     every_fault(
         &mut tally,
-        &bench,
+        &workspace,
         "plot",
         "plot out -o drawn",
         3,
         &judge,
-        &|| bench.remove("drawn"),
+        &|| workspace.remove("drawn"),
     );
     tally.close();
 }
@@ -364,11 +374,11 @@ fn renames_are_seen() {
     if watcher().is_none() {
         return;
     }
-    let bench = bench();
-    let Hit { ended, calls, .. } = hit(&bench, JOBS[0].line, once("EIO"), 0);
+    let workspace = workspace();
+    let Hit { ended, calls, .. } = hit(&workspace, JOBS[0].line, once("EIO"), 0);
     assert_eq!(ended.unwrap().unwrap().status, 0);
     let count = |start: &str| calls.iter().filter(|call| call.name.starts_with(start)).count();
-    let files = bench.files("out").len();
+    let files = workspace.files_if_any("out").len();
     // So are folders: that of the run with its case, that of the inputs, and that of the complete run.
     assert_eq!((count("rename"), count("fsync")), (files, files + 3));
 }

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use serde_json::Value;
 
-use crate::bench::{Bench, Files};
+use crate::support::workspace::{Files, Workspace};
 
 /// A command that writes the folder `out`.
 #[derive(Clone, Copy, Debug)]
@@ -137,15 +137,16 @@ fn npy(kind: &str, nx: usize, ny: usize, data: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// A bench with all that the jobs read.
-pub(crate) fn bench() -> Bench {
-    let bench = Bench::new();
+/// A workspace with all that the jobs read.
+pub(crate) fn workspace() -> Workspace {
+    let workspace = Workspace::new();
+    std::fs::create_dir(workspace.path("temporary")).unwrap();
     let numbers: Vec<u8> = (0..30)
         .flat_map(|k| (0.4 + 0.01 * f64::from(k % 7)).to_le_bytes())
         .collect();
-    bench.write("mu_k.npy", npy("<f8", 6, 5, &numbers));
-    bench.write("mu_s.csv", "1.0, 0.9, 1.1, 0.95, 1.05, 1.0\n".repeat(5));
-    bench.write(
+    workspace.write("mu_k.npy", npy("<f8", 6, 5, &numbers));
+    workspace.write("mu_s.csv", "1.0, 0.9, 1.1, 0.95, 1.05, 1.0\n".repeat(5));
+    workspace.write(
         "mask.npy",
         npy(
             "|b1",
@@ -154,7 +155,7 @@ pub(crate) fn bench() -> Bench {
             &std::array::from_fn::<u8, 30, _>(|k| u8::from(k == 3)),
         ),
     );
-    bench.write(
+    workspace.write(
         "dot.npy",
         npy(
             "|b1",
@@ -163,16 +164,18 @@ pub(crate) fn bench() -> Bench {
             &std::array::from_fn::<u8, 16, _>(|k| u8::from(k == 5)),
         ),
     );
-    bench.write(
+    workspace.write(
         "spot.toml",
         "[slider]\nblocks = [6, 5]\n[[texture]]\nshape = 'cavity'\ncoverage = 15\n",
     );
-    bench.done("texture spot.toml -o mask.png").unwrap();
-    bench.write("case.toml", CASE);
-    bench.write("slow.toml", SLOW);
-    bench.write("study.toml", STUDY);
-    bench.write("kept.toml", KEPT);
-    bench
+    workspace
+        .succeed_bounded("texture spot.toml -o mask.png")
+        .unwrap();
+    workspace.write("case.toml", CASE);
+    workspace.write("slow.toml", SLOW);
+    workspace.write("study.toml", STUDY);
+    workspace.write("kept.toml", KEPT);
+    workspace
 }
 
 impl Job {
@@ -180,9 +183,9 @@ impl Job {
     pub(crate) fn undisturbed(&self) -> Files {
         static WHOLE: Mutex<BTreeMap<&str, Files>> = Mutex::new(BTreeMap::new());
         let make = || {
-            let bench = bench();
-            bench.done(self.line).unwrap();
-            bench.files("out")
+            let workspace = workspace();
+            workspace.succeed_bounded(self.line).unwrap();
+            workspace.files_if_any("out")
         };
         WHOLE
             .lock()
@@ -193,18 +196,15 @@ impl Job {
     }
 }
 
-/// Names of files that are being written.
+/// Names of files that are being written, and of all that belongs to a run which is not complete.
 fn unfinished(name: &str) -> bool {
-    name.rsplit('/').next().is_some_and(|name| name.starts_with('.'))
+    name.split('/').any(|part| part.starts_with('.'))
 }
 
 /// What the disk holds of a run that is not the same each time: when it was made.
 fn told_by_time(name: &str) -> bool {
-    name.ends_with("manifest.json") || name == "records.jsonl" || CHECKPOINTS.contains(&name)
+    name.ends_with("manifest.json") || name == "records.jsonl"
 }
-
-/// What a run goes on with; it is gone when the run is complete.
-const CHECKPOINTS: [&str; 2] = ["checkpoint.bin", "checkpoint-previous.bin"];
 
 /// Outcomes of recorded runs by their identities. A run that is recorded twice is a finding.
 fn records(bytes: &[u8]) -> Result<BTreeMap<String, Value>, String> {
@@ -252,8 +252,7 @@ pub(crate) fn expect_sound(now: &Files, whole: &Files) -> Result<(), String> {
 
 /// Demands that a folder holds exactly what it should.
 pub(crate) fn expect_complete(now: &Files, whole: &Files) -> Result<(), String> {
-    let left_over = |name: &str| unfinished(name) || CHECKPOINTS.contains(&name);
-    if let Some(left) = now.keys().find(|name| left_over(name)) {
+    if let Some(left) = now.keys().find(|name| unfinished(name)) {
         return Err(format!("{left} is left behind"));
     }
     expect_all(now, whole)
@@ -280,15 +279,15 @@ pub(crate) fn expect_all(now: &Files, whole: &Files) -> Result<(), String> {
 
 impl Job {
     /// What to do next, whatever has become of the folder.
-    pub(crate) fn next(&self, bench: &Bench, whole: &Files) -> &'static str {
+    pub(crate) fn next(&self, workspace: &Workspace, whole: &Files) -> &'static str {
         // A run goes on with its case and all that this reads.
         let read = |name: &&String| *name == "case.toml" || name.starts_with("inputs/");
         let whole_case = whole
             .keys()
             .filter(read)
-            .all(|name| bench.path("out").join(name).exists());
-        let complete = bench.path("out/manifest.json").exists();
-        match bench.path("out").exists() {
+            .all(|name| workspace.path("out").join(name).exists());
+        let complete = workspace.path("out/manifest.json").exists();
+        match workspace.path("out").exists() {
             false => self.line,
             // To resume a complete run is to do nothing.
             true if whole_case && !(complete && self.saves) => self.again,
@@ -297,23 +296,24 @@ impl Job {
     }
 
     /// Lets the job go on to its end, and demands the right answer.
-    pub(crate) fn finish(&self, bench: &Bench, whole: &Files) -> Result<(), String> {
-        bench.done(self.next(bench, whole))?;
-        expect_complete(&bench.files("out"), whole)?;
+    pub(crate) fn finish(&self, workspace: &Workspace, whole: &Files) -> Result<(), String> {
+        workspace.succeed_bounded(self.next(workspace, whole))?;
+        expect_complete(&workspace.files_if_any("out"), whole)?;
         if self.verified {
-            let ended = bench.done("verify out")?;
-            if ended.printed.contains("note: ") {
-                return Err(format!("verify finds more: {}", ended.printed));
+            let ended = workspace.succeed_bounded("verify out")?;
+            if ended.stdout.contains("note: ") {
+                return Err(format!("verify finds more: {}", ended.stdout));
             }
         }
         Ok(())
     }
 
     /// Demands that what stands in the folder is right so far, and that it does not look complete unless it is.
-    pub(crate) fn expect_honest(&self, bench: &Bench, whole: &Files) -> Result<(), String> {
-        let now = bench.files("out");
+    pub(crate) fn expect_honest(&self, workspace: &Workspace, whole: &Files) -> Result<(), String> {
+        let now = workspace.files_if_any("out");
         expect_sound(&now, whole)?;
-        if self.verified && bench.path("out").exists() && bench.run("verify out")?.status == 0 {
+        if self.verified && workspace.path("out").exists() && workspace.run_bounded("verify out")?.status == 0
+        {
             expect_all(&now, whole)?;
         }
         Ok(())

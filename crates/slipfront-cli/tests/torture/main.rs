@@ -13,7 +13,10 @@
 // Helpers of tests are not tests by themselves to clippy.
 #![allow(clippy::unwrap_used)]
 
-mod bench;
+#[path = "../support/mod.rs"]
+mod support;
+
+mod bounded;
 mod damage;
 #[cfg(target_os = "linux")]
 mod faults;

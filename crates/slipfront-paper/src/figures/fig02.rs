@@ -4,12 +4,14 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::drawing::{Drawing, formula};
 use crate::error::PaperError;
-use crate::measurements::{Found, largest};
-use crate::runner::Bench;
+use crate::figure_data::FigureData;
+use crate::runner::FigureRunner;
+use crate::statistics::largest;
+use slipfront_case::case::Case;
 use slipfront_plot::{FieldMap, FieldMaps, Response, Responses};
 
-pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
-    let case = bench.case("fig02", &[])?;
+pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
+    let case = runner.case("fig02", &[])?;
     let (lattice, surface, groups) = (&case.model.lattice, &case.model.surface, &case.groups);
     let scaled = |mu: &[f64], mean: f64| -> Vec<f64> { mu.iter().map(|mu| mu / mean).collect() };
     let mean = case.scales.mu_static_mean;
@@ -23,9 +25,9 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
         textured: surface.textured.clone(),
         ..FieldMap::default()
     };
-    let mut found = Found::default();
+    let mut data = FigureData::default();
     let reach = 3.0 * groups.sigma_static_star;
-    found.panel(
+    data.panel(
         "fig02",
         "Local static and kinetic friction coefficients of one random surface, over their means.",
         Drawing::Maps(FieldMaps {
@@ -38,28 +40,39 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
             ],
         }),
     );
-    let bins = bins(1.0, groups.sigma_static_star);
-    let sigma = groups.sigma_static_star;
+    distribution(groups.sigma_static_star, &mu_static, &mu_kinetic, &mut data);
+    let scores = scores(&runner.case_on_surfaces("fig02")?);
+    data.value("fig02.distance_to_gaussian", distance_to_normal(scores));
+    Ok(data)
+}
+
+/// Histograms of both coefficients over their means, beside the Gaussian density.
+fn distribution(sigma: f64, mu_static: &[f64], mu_kinetic: &[f64], data: &mut FigureData) {
+    let bins = bins(1.0, sigma);
     let density =
         |x: f64| libm::exp(-0.5 * ((x - 1.0) / sigma).powi(2)) / (sigma * std::f64::consts::TAU.sqrt());
     let fine: Vec<f64> = (-60..=60).map(|k| 1.0 + 0.05 * sigma * f64::from(k)).collect();
-    found.panel(
+    data.panel(
         "fig02_distribution",
         "The same coefficients as densities, beside the Gaussian of Eq. 1.",
         Drawing::Responses(Responses {
             x_title: "local coefficient over its mean".to_owned(),
             y_title: "density".to_owned(),
             curves: vec![
-                histogram("static", &bins, &mu_static),
-                histogram("kinetic", &bins, &mu_kinetic),
+                histogram("static", &bins, mu_static),
+                histogram("kinetic", &bins, mu_kinetic),
                 formula("Eq. 1", &fine, density),
             ],
             ..Responses::default()
         }),
     );
+}
+
+/// Deviations of all coefficients of these surfaces from their means, over the standard deviation of Eq. 1.
+fn scores(cases: &[Case]) -> Vec<f64> {
     let mut scores = Vec::new();
-    for seed in 1..=bench.surfaces() {
-        let case = bench.case("fig02", &[&format!("friction.seed={seed}")])?;
+    for case in cases {
+        let mean = case.scales.mu_static_mean;
         let (surface, groups) = (&case.model.surface, &case.groups);
         let score = |mu: f64, mean: f64, sigma: f64| (mu / mean - 1.0) / sigma;
         scores.extend(
@@ -76,8 +89,7 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
                 .map(|&mu| score(mu, mean, groups.sigma_kinetic_star)),
         );
     }
-    found.value("fig02.distance_to_gaussian", distance_to_normal(scores));
-    Ok(found)
+    scores
 }
 
 /// Bins of half a standard deviation, to three to both sides.

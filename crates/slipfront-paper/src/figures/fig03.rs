@@ -2,8 +2,10 @@
 
 use crate::drawing::Drawing;
 use crate::error::PaperError;
-use crate::measurements::{Found, Table, largest, smallest};
-use crate::runner::{Bench, Run, mu_star, sliding_percent};
+use crate::figure_data::FigureData;
+use crate::run::{Run, mu_star, sliding_percent};
+use crate::runner::FigureRunner;
+use crate::statistics::{largest, range};
 
 /// The cases whose printed speed does not make V* = 0.03.
 const CORRECTED: [u32; 3] = [3, 6, 7];
@@ -24,8 +26,34 @@ fn files(corrected: bool) -> Vec<String> {
 }
 
 /// Table 1: what its parameters make of V*.
-pub(super) fn find_table(bench: &mut Bench) -> Result<Found, PaperError> {
-    let mut found = Found::default();
+pub(super) fn measure_table(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
+    let mut data = FigureData::default();
+    let mut rows = Vec::new();
+    let (mut printed_error, mut corrected_error) = (0.0_f64, 0.0_f64);
+    for (printed, corrected) in files(false).iter().zip(files(true)) {
+        let (printed, corrected) = (runner.case(printed, &[])?, runner.case(&corrected, &[])?);
+        let error = |v_star: f64| 100.0 * (v_star / V_STAR - 1.0).abs();
+        printed_error = printed_error.max(error(printed.groups.v_star));
+        corrected_error = corrected_error.max(error(corrected.groups.v_star));
+        let speed = |v_star: f64| format!("{:.4}", v_star * printed.scales.speed() * 1e3);
+        let number = |value: f64| {
+            format!("{value:.4}")
+                .trim_end_matches('0')
+                .trim_end_matches('.')
+                .to_owned()
+        };
+        rows.push([
+            (rows.len() + 1).to_string(),
+            speed(printed.groups.v_star),
+            number(printed.scales.pressure / 1e3),
+            number(printed.scales.young_modulus / 1e6),
+            number(printed.scales.density / 1e3),
+            number(printed.scales.mu_static_mean),
+            format!("{:.4}", printed.groups.v_star),
+            speed(corrected.groups.v_star),
+            format!("{:.0e}", printed.groups.epsilon),
+        ]);
+    }
     let header = [
         "case",
         "V (mm/s)",
@@ -37,52 +65,25 @@ pub(super) fn find_table(bench: &mut Bench) -> Result<Found, PaperError> {
         "V (mm/s) for V* = 0.03",
         "epsilon",
     ];
-    let mut table = Table {
-        name: "table1".to_owned(),
-        caption: "Table 1: its speeds as printed, the V* that they make by Eq. 11a, and the speeds that make V* = 0.03 (D3)."
-            .to_owned(),
-        header: header.map(str::to_owned).to_vec(),
-        rows: Vec::new(),
-    };
-    let (mut printed_error, mut corrected_error) = (0.0_f64, 0.0_f64);
-    for (printed, corrected) in files(false).iter().zip(files(true)) {
-        let (printed, corrected) = (bench.case(printed, &[])?, bench.case(&corrected, &[])?);
-        let error = |v_star: f64| 100.0 * (v_star / V_STAR - 1.0).abs();
-        printed_error = printed_error.max(error(printed.groups.v_star));
-        corrected_error = corrected_error.max(error(corrected.groups.v_star));
-        let speed = |v_star: f64| format!("{:.4}", v_star * printed.scales.speed() * 1e3);
-        let number = |value: f64| {
-            format!("{value:.4}")
-                .trim_end_matches('0')
-                .trim_end_matches('.')
-                .to_owned()
-        };
-        table.rows.push(vec![
-            (table.rows.len() + 1).to_string(),
-            speed(printed.groups.v_star),
-            number(printed.scales.pressure / 1e3),
-            number(printed.scales.young_modulus / 1e6),
-            number(printed.scales.density / 1e3),
-            number(printed.scales.mu_static_mean),
-            format!("{:.4}", printed.groups.v_star),
-            speed(corrected.groups.v_star),
-            format!("{:.0e}", printed.groups.epsilon),
-        ]);
-    }
-    found.tables.push(table);
-    found.value("table1.v_star_error_percent", printed_error);
-    found.value("table1.v_star_error_corrected_percent", corrected_error);
-    Ok(found)
+    data.table(
+        "table1",
+        "Table 1: its speeds as printed, the V* that they make by Eq. 11a, and the speeds that make V* = 0.03 (D3).",
+        header,
+        rows,
+    );
+    data.value("table1.v_star_error_percent", printed_error);
+    data.value("table1.v_star_error_corrected_percent", corrected_error);
+    Ok(data)
 }
 
 /// Fig. 3: the curves of the eight cases over each other.
-pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
-    let mut found = Found::default();
-    let corrected = runs(bench, true)?;
-    let printed = runs(bench, false)?;
+pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
+    let mut data = FigureData::default();
+    let corrected = runs(runner, true)?;
+    let printed = runs(runner, false)?;
     // Case 8 is the one that every other figure varies.
     let [.., main] = &corrected[..] else {
-        return Ok(found);
+        return Ok(data);
     };
     let until = main.instant('E')?.time_star;
     for (name, runs) in [("corrected", &corrected), ("printed", &printed)] {
@@ -92,8 +93,8 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
                 .map(|run| main.largest_difference(run, [0.0, until], value));
             largest(differences)
         };
-        found.value(&format!("fig03.spread_{name}"), spread(mu_star));
-        found.value(
+        data.value(&format!("fig03.spread_{name}"), spread(mu_star));
+        data.value(
             &format!("fig03.sliding_spread_{name}_percent"),
             spread(sliding_percent),
         );
@@ -102,15 +103,12 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let pointwise = corrected
         .iter()
         .map(|run| main.largest_difference(run, window, mu_star));
-    found.value("fig03.kinetic_spread", largest(pointwise));
+    data.value("fig03.kinetic_spread", largest(pointwise));
     let means: Vec<f64> = corrected
         .iter()
         .filter_map(|run| run.record.summary.kinetic_friction_star)
         .collect();
-    found.value(
-        "fig03.kinetic_mean_spread",
-        largest(means.iter().copied()) - smallest(means.iter().copied()),
-    );
+    data.value("fig03.kinetic_mean_spread", range(&means));
     let curves = |runs: &[Run]| {
         let label = |index: usize| format!("case {}", index + 1);
         let curves = runs.iter().enumerate().map(|(index, run)| match index {
@@ -119,24 +117,24 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
         });
         Drawing::Curves(curves.collect())
     };
-    found.panel(
+    data.panel(
         "fig03",
         "The eight cases of Table 1, three speeds corrected so that all have V* = 0.03 (D3): friction above, sliding \
          blocks below. A-F are the instants of Fig. 4.",
         curves(&corrected),
     );
-    found.panel(
+    data.panel(
         "fig03_as_printed",
         "The same with the speeds as printed: cases 3, 6 and 7 have V* = 0.015, 0.010 and 0.015, and fall out of line.",
         curves(&printed),
     );
-    Ok(found)
+    Ok(data)
 }
 
-fn runs(bench: &Bench, corrected: bool) -> Result<Vec<Run>, PaperError> {
+fn runs(runner: &FigureRunner, corrected: bool) -> Result<Vec<Run>, PaperError> {
     let cases = files(corrected)
         .iter()
-        .map(|file| bench.case(file, &[]))
+        .map(|file| runner.case(file, &[]))
         .collect::<Result<_, _>>()?;
-    bench.run(cases)
+    runner.run(cases)
 }

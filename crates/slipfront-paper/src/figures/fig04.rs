@@ -4,44 +4,45 @@ use slipfront::observe::Frame;
 
 use crate::drawing::stress_maps;
 use crate::error::PaperError;
-use crate::measurements::{Found, largest, mean, smallest};
-use crate::runner::{Bench, Run, seen_at};
+use crate::figure_data::FigureData;
+use crate::run::{Run, seen_at};
+use crate::runner::FigureRunner;
+use crate::statistics::{largest, mean, smallest};
 use slipfront::observe::Field;
 
-pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
-    let mut found = Found::default();
-    let seeds = (1..=bench.surfaces()).map(|seed| bench.case("fig04", &[&format!("friction.seed={seed}")]));
-    let runs = bench.run(seeds.collect::<Result<_, _>>()?)?;
-    let [main, ..] = &runs[..] else { return Ok(found) };
+pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
+    let mut data = FigureData::default();
+    let runs = runner.run(runner.case_on_surfaces("fig04")?)?;
+    let [main, ..] = &runs[..] else { return Ok(data) };
     let maps = ['A', 'B', 'C', 'D', 'E', 'F']
         .map(|letter| main.stress_map(main.instant(letter)?, &letter.to_string()));
-    found.panel(
+    data.panel(
         "fig04",
         "Contact stress at the instants A-F of Fig. 3: loading, first slip, peak, most blocks sliding, least friction, \
          kinetic phase.",
         stress_maps(maps.into_iter().collect::<Result<_, _>>()?, 3),
     );
-    before_slip(bench, main, &mut found)?;
+    before_slip(runner, main, &mut data)?;
     let over = |value: &dyn Fn(&Run) -> Result<f64, PaperError>| -> Result<Vec<f64>, PaperError> {
         runs.iter().map(value).collect()
     };
     let ranks = over(&first_slip_rank)?;
-    found.value("fig04.worst_rank_of_first_slip", largest(ranks));
-    found.values(
+    data.value("fig04.worst_rank_of_first_slip", largest(ranks));
+    data.values(
         "fig04.stress_left_after_slip_percent",
-        &over(&|run| stress_left(bench, run))?,
+        &over(&|run| stress_left(runner, run))?,
     );
-    found.values("fig04.slipped_at_peak_percent", &over(&slipped_at_peak)?);
-    found.values("fig04.rest_slips_within_percent", &over(&rest_slips_within)?);
-    found.values(
+    data.values("fig04.slipped_at_peak_percent", &over(&slipped_at_peak)?);
+    data.values("fig04.rest_slips_within_percent", &over(&rest_slips_within)?);
+    data.values(
         "fig04.sliding_jump_percent",
         &over(&|run| Ok(run.instant('D')?.point.sliding_percent))?,
     );
-    found.values(
+    data.values(
         "fig04.stress_falls_from_d_to_e_percent",
         &over(&falls_from_d_to_e)?,
     );
-    found.values(
+    data.values(
         "fig04.kinetic_minimum_over_e",
         &over(&|run| {
             let [from, until] = run.kinetic_window()?;
@@ -49,18 +50,18 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
         })?,
     );
     let sliding = |run: &Run| run.record.summary.sliding_percent_kinetic;
-    found.values(
+    data.values(
         "fig04.kinetic_sliding_percent",
         &runs.iter().filter_map(sliding).collect::<Vec<_>>(),
     );
-    Ok(found)
+    Ok(data)
 }
 
 /// Until the first slip: is the stress the same everywhere, does it grow as k_s V* t*, does nothing move?
-fn before_slip(bench: &Bench, main: &Run, found: &mut Found) -> Result<(), PaperError> {
+fn before_slip(runner: &FigureRunner, main: &Run, data: &mut FigureData) -> Result<(), PaperError> {
     let first = main.first_slip()?;
     let times: Vec<f64> = (1..=8).map(|k| first * f64::from(k) / 9.0).collect();
-    let run = bench.run_one(seen_at(bench.case("fig04", &[])?, &times))?;
+    let run = runner.run_one(seen_at(runner.case("fig04", &[])?, &times))?;
     let drive = &run.case.model.drive;
     let (mut error, mut motion) = (0.0_f64, 0.0_f64);
     for (_, frame) in &run.record.frames {
@@ -75,8 +76,8 @@ fn before_slip(bench: &Bench, main: &Run, found: &mut Found) -> Result<(), Paper
             }
         }
     }
-    found.value("fig04.stress_before_slip_error", error);
-    found.value("fig04.motion_before_slip", motion);
+    data.value("fig04.stress_before_slip_error", error);
+    data.value("fig04.motion_before_slip", motion);
     Ok(())
 }
 
@@ -91,22 +92,22 @@ pub(super) fn first_slip_rank(run: &Run) -> Result<f64, PaperError> {
 pub(super) fn first_block(run: &Run) -> Result<usize, PaperError> {
     let earliest = run.first_slip()?;
     let times = &run.record.first_slip_time_star;
-    let found = times.iter().position(|&time| time == earliest);
-    found.ok_or_else(|| PaperError::Lacks {
+    let first = times.iter().position(|&time| time == earliest);
+    first.ok_or_else(|| PaperError::Lacks {
         file: run.case.name.clone(),
         what: "slip".to_owned(),
     })
 }
 
 /// How much of the contact stress of the first block to slip is left soon after, %.
-fn stress_left(bench: &Bench, run: &Run) -> Result<f64, PaperError> {
+fn stress_left(runner: &FigureRunner, run: &Run) -> Result<f64, PaperError> {
     let (first, block) = (run.first_slip()?, first_block(run)?);
     let dt_star = run.case.time_plan.dt_star;
     // Just before the slip, and in steps of 0.5 after it for ten times the travel of a wave over a block.
     let mut times = vec![first - dt_star];
     times.extend((1..=20).map(|k| first + 0.5 * f64::from(k)));
     let seed = format!("friction.seed={}", run.case.file.friction.seed);
-    let again = bench.run_one(seen_at(bench.case("fig04", &[&seed])?, &times))?;
+    let again = runner.run_one(seen_at(runner.case("fig04", &[&seed])?, &times))?;
     let stress = |(_, frame): &(String, Frame)| -> Result<f64, PaperError> {
         Ok(f64::from(again.field(frame, Field::ContactStress)?[block]))
     };

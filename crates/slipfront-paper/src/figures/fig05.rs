@@ -2,20 +2,18 @@
 
 use crate::drawing::{Drawing, stress_maps};
 use crate::error::PaperError;
-use crate::measurements::{Found, mean};
-use crate::runner::Bench;
+use crate::figure_data::FigureData;
+use crate::runner::FigureRunner;
+use crate::statistics::mean;
 
-pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
-    let mut found = Found::default();
-    let sweep = bench.study("fig05")?;
-    let cases = (0..3)
-        .map(|size| sweep.case(&[size], 0))
-        .collect::<Result<_, _>>()?;
-    let runs = bench.run(cases)?;
+pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
+    let mut data = FigureData::default();
+    let sweep = runner.study("fig05")?;
+    let runs = runner.run(sweep.first_cases()?)?;
     let sides = sweep.axis(0);
     let name = |size: usize| format!("{0} \u{d7} {0} blocks", sides[size]);
     let curves = runs.iter().enumerate().map(|(size, run)| run.curve(&name(size)));
-    found.panel(
+    data.panel(
         "fig05",
         "Friction and sliding blocks of sliders of 5 x 5, 25 x 25 and 75 x 75 blocks.",
         Drawing::Curves(curves.collect()),
@@ -26,14 +24,14 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
             maps.push(run.stress_map(run.instant(letter)?, &format!("{}, {letter}", name(size)))?);
         }
     }
-    found.panel(
+    data.panel(
         "fig05c",
         "Contact stress in the three sizes at the peak of friction (C), when most blocks slide (D), and at the least \
          friction after it (E).",
         stress_maps(maps, 3),
     );
     // Each surface against the mean of the largest size: scatter counts as much as bias, as for one run.
-    let long = bench.study("fig05_long")?;
+    let long = runner.study("fig05_long")?;
     for (sweep, quantity) in [(&sweep, "static_friction_star"), (&long, "kinetic_friction_star")] {
         let largest_size = mean(&sweep.values(&[2], quantity));
         let errors = |size: usize| -> Vec<f64> {
@@ -41,12 +39,12 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
             values.iter().map(|value| (value - largest_size).abs()).collect()
         };
         let (small, middle) = (errors(0), errors(1));
-        found.values(&format!("fig05.{quantity}_error_5"), &small);
-        found.values(&format!("fig05.{quantity}_error_25"), &middle);
-        found.value(
+        data.values(&format!("fig05.{quantity}_error_5"), &small);
+        data.values(&format!("fig05.{quantity}_error_25"), &middle);
+        data.value(
             &format!("fig05.{quantity}_error_ratio"),
             mean(&middle) / mean(&small),
         );
     }
-    Ok(found)
+    Ok(data)
 }

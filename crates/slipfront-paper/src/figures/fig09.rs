@@ -2,22 +2,22 @@
 
 use crate::drawing::Drawing;
 use crate::error::PaperError;
-use crate::measurements::{Found, deviation, largest, mean, rises, smallest};
-use crate::runner::{Bench, Run, mu_star};
+use crate::figure_data::FigureData;
+use crate::run::{Run, mu_star};
+use crate::runner::FigureRunner;
+use crate::statistics::{largest, mean, range, rises, smallest};
+use crate::sweep::Sweep;
 
-pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
-    let mut found = Found::default();
-    let sweep = bench.study("fig09")?;
+pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
+    let mut data = FigureData::default();
+    let sweep = runner.study("fig09")?;
     let dampings = sweep.axis(0);
-    let cases = (0..dampings.len())
-        .map(|k| sweep.case(&[k], 0))
-        .collect::<Result<_, _>>()?;
-    let runs = bench.run(cases)?;
+    let runs = runner.run(sweep.first_cases()?)?;
     let curves = runs
         .iter()
         .zip(&dampings)
         .map(|(run, omega)| run.curve(&format!("\u{3a9}* = {omega}")));
-    found.panel(
+    data.panel(
         "fig09",
         "Friction and sliding blocks for six dampings.",
         Drawing::Curves(curves.collect()),
@@ -32,28 +32,32 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let differences = runs
         .iter()
         .map(|run| runs[0].largest_difference(run, before, mu_star));
-    found.value("fig09.difference_before_slip", largest(differences));
+    data.value("fig09.difference_before_slip", largest(differences));
     let onset = runs[0].record.summary.onset_time_star;
     let after = [onset, onset + 2.5 / runs[0].case.groups.v_star];
     let differences = runs
         .iter()
         .map(|run| runs[0].largest_difference(run, after, mu_star));
-    found.value("fig09.difference_after_onset", largest(differences));
+    data.value("fig09.difference_after_onset", largest(differences));
+    friction(&sweep, &runs, &mut data)?;
+    Ok(data)
+}
+
+/// The effect of damping on static and kinetic friction, on the number of sliding blocks and on the fluctuation of friction.
+fn friction(sweep: &Sweep, runs: &[Run], data: &mut FigureData) -> Result<(), PaperError> {
+    let dampings = sweep.axis(0);
     let means = |quantity: &str| -> Vec<f64> {
         (0..dampings.len())
             .map(|k| mean(&sweep.values(&[k], quantity)))
             .collect()
     };
     let statics = means("static_friction_star");
-    found.value(
-        "fig09.static_friction_spread",
-        largest(statics.iter().copied()) - smallest(statics.iter().copied()),
-    );
+    data.value("fig09.static_friction_spread", range(&statics));
     let kinetics = means("kinetic_friction_star");
-    found.value("fig09.least_rise_of_kinetic_friction", smallest(rises(&kinetics)));
+    data.value("fig09.least_rise_of_kinetic_friction", smallest(rises(&kinetics)));
     // With stick-slip and without it, each on its own.
     let (weak, strong) = kinetics.split_at(dampings.partition_point(|&omega| omega < 1.0));
-    found.value(
+    data.value(
         "fig09.least_rise_within_regimes",
         smallest([rises(weak), rises(strong)].concat()),
     );
@@ -61,19 +65,15 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
     let sliding = strong
         .iter()
         .flat_map(|&k| sweep.values(&[k], "sliding_percent_kinetic"));
-    found.value("fig09.least_sliding_of_strong_percent", smallest(sliding));
-    let fluctuation = |run: &Run| -> Result<f64, PaperError> {
-        let [from, until] = run.kinetic_window()?;
-        Ok(deviation(&run.friction_between(from, until)))
-    };
+    data.value("fig09.least_sliding_of_strong_percent", smallest(sliding));
     let fluctuations = strong
         .iter()
-        .map(|&k| fluctuation(&runs[k]))
+        .map(|&k| runs[k].kinetic_fluctuation())
         .collect::<Result<Vec<f64>, _>>()?;
     let usual = dampings.iter().position(|&omega| omega == 0.1).unwrap_or(0);
-    found.value(
+    data.value(
         "fig09.fluctuation_of_strong_percent",
-        100.0 * largest(fluctuations) / fluctuation(&runs[usual])?,
+        100.0 * largest(fluctuations) / runs[usual].kinetic_fluctuation()?,
     );
-    Ok(found)
+    Ok(())
 }

@@ -1,68 +1,67 @@
 //! Fig. 10: kinetic over static friction, R*.
 
-use crate::claims::with_interval;
 use crate::drawing::Drawing;
 use crate::error::PaperError;
-use crate::measurements::{Found, Number, Table, largest, mean, rises};
-use crate::runner::Bench;
+use crate::figure_data::FigureData;
+use crate::number::Number;
+use crate::run::Run;
+use crate::runner::FigureRunner;
+use crate::statistics::{largest, mean, rises};
+use crate::sweep::Sweep;
 
-pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
-    let mut found = Found::default();
-    let sweep = bench.study("fig10")?;
+pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
+    let mut data = FigureData::default();
+    let sweep = runner.study("fig10")?;
     let ratios = sweep.axis(0);
-    let cases = (0..ratios.len())
-        .map(|k| sweep.case(&[k], 0))
-        .collect::<Result<_, _>>()?;
-    let runs = bench.run(cases)?;
+    let runs = runner.run(sweep.first_cases()?)?;
     let curves = runs
         .iter()
         .zip(&ratios)
         .map(|(run, r)| run.curve(&format!("R* = {r}")));
-    found.panel(
+    data.panel(
         "fig10",
         "Friction and sliding blocks for four ratios of kinetic to static friction.",
         Drawing::Curves(curves.collect()),
     );
-    // How far friction falls, surface by surface.
+    // By how much friction falls from its peak, for each surface.
     let fall = |k: usize| {
-        let (peaks, levels) = (
-            sweep.values(&[k], "static_friction_star"),
-            sweep.values(&[k], "kinetic_friction_star"),
-        );
-        let falls: Vec<f64> = peaks
-            .iter()
-            .zip(&levels)
-            .map(|(peak, level)| peak - level)
-            .collect();
+        let [peaks, levels] =
+            ["static_friction_star", "kinetic_friction_star"].map(|quantity| sweep.values(&[k], quantity));
+        let falls: Vec<f64> = peaks.iter().zip(&levels).map(|(a, b)| a - b).collect();
         Number::of(&falls)
     };
     let falls: Vec<f64> = (0..ratios.len()).map(|k| fall(k).value).collect();
-    found.value("fig10.largest_rise_of_fall", largest(rises(&falls)));
-    found.number("fig10.fall_at_one", fall(ratios.len() - 1));
+    data.value("fig10.largest_rise_of_fall", largest(rises(&falls)));
+    data.number("fig10.fall_at_one", fall(ratios.len() - 1));
     let excess = |k: usize| mean(&sweep.values(&[k], "kinetic_friction_star")) - ratios[k];
     let middle = (0..ratios.len()).filter(|&k| [0.5, 0.75].contains(&ratios[k]));
-    found.value(
+    data.value(
         "fig10.worst_excess_in_the_middle",
         largest(middle.map(|k| excess(k).abs())),
     );
-    let lowest: Vec<f64> = sweep.values(&[0], "kinetic_friction_star");
-    found.values(
-        "fig10.excess_of_lowest",
-        &lowest.iter().map(|mu| mu - ratios[0]).collect::<Vec<_>>(),
-    );
-    // The first swing after the onset, which a reader of the figure sees first.
-    let mut early = Vec::new();
-    for run in bench.run(sweep.cases(&[0])?)? {
+    excess_of_lowest(runner, &sweep, &mut data)?;
+    Ok(data)
+}
+
+/// Kinetic friction above R* at the lowest R*, by the window over which it is averaged.
+fn excess_of_lowest(
+    runner: &mut FigureRunner,
+    sweep: &Sweep,
+    data: &mut FigureData,
+) -> Result<(), PaperError> {
+    let ratio = sweep.axis(0)[0];
+    let excess = |mu: Vec<f64>| -> Vec<f64> { mu.iter().map(|mu| mu - ratio).collect() };
+    let usual = sweep.values(&[0], "kinetic_friction_star");
+    data.values("fig10.excess_of_lowest", &excess(usual));
+    // The first swing of friction after the onset, which dominates the figure.
+    let first_swing = |run: &Run| {
         let onset = run.record.summary.onset_time_star;
-        let window = run.friction_between(onset, onset + 2.5 / run.case.groups.v_star);
-        early.push(mean(&window) - ratios[0]);
-    }
-    found.values("fig10.early_excess_of_lowest", &early);
-    let long = bench.study("fig10_long")?.values(&[], "kinetic_friction_star");
-    found.values(
-        "fig10.long_excess_of_lowest",
-        &long.iter().map(|mu| mu - ratios[0]).collect::<Vec<_>>(),
-    );
+        mean(&run.friction_between(onset, onset + 2.5 / run.case.groups.v_star))
+    };
+    let early = runner.run(sweep.cases(&[0])?)?.iter().map(first_swing).collect();
+    data.values("fig10.early_excess_of_lowest", &excess(early));
+    let long = runner.study("fig10_long")?.values(&[], "kinetic_friction_star");
+    data.values("fig10.long_excess_of_lowest", &excess(long));
     let windows = [
         (
             "from t_s* to t_s* + 2.5/V*: the first swing",
@@ -74,14 +73,12 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
         ),
         ("from 12/V* to 60/V*", "fig10.long_excess_of_lowest"),
     ];
-    let row = |(window, name): (&str, &str)| vec![window.to_owned(), with_interval(&found.numbers[name], 3)];
-    let rows = windows.map(row).to_vec();
-    found.tables.push(Table {
-        name: "fig10_windows".to_owned(),
-        caption: "Kinetic friction above R* at R* = 0.25, by the window over which it is averaged (D8)."
-            .to_owned(),
-        header: ["window", "mu_k* - R*"].map(str::to_owned).to_vec(),
+    let rows = windows.map(|(window, name)| [window.to_owned(), data.numbers[name].shown(3)]);
+    data.table(
+        "fig10_windows",
+        "Kinetic friction above R* at R* = 0.25, by the window over which it is averaged (D8).",
+        ["window", "mu_k* - R*"],
         rows,
-    });
-    Ok(found)
+    );
+    Ok(())
 }

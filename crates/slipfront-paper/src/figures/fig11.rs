@@ -4,9 +4,11 @@ use slipfront::Lattice;
 
 use crate::drawing::{Drawing, stress_maps};
 use crate::error::PaperError;
+use crate::figure_data::FigureData;
 use crate::figures::fig04::first_block;
-use crate::measurements::{Found, largest};
-use crate::runner::{Bench, Run, seen_at};
+use crate::run::{Run, seen_at};
+use crate::runner::FigureRunner;
+use crate::statistics::{largest, rises};
 use slipfront_plot::{FieldMap, FieldMaps};
 
 /// Minima of mu_si that are marked.
@@ -14,36 +16,32 @@ const MARKED: usize = 6;
 /// Shares of the slider that have slipped in the panels b-d.
 const SHARES: [f64; 3] = [0.03, 0.2, 0.6];
 
-pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
-    let mut found = Found::default();
-    let seeds = (1..=bench.surfaces()).map(|seed| bench.case("fig11", &[&format!("friction.seed={seed}")]));
-    let runs = bench.run(seeds.collect::<Result<_, _>>()?)?;
-    let [main, ..] = &runs[..] else { return Ok(found) };
-    draw(bench, main, &mut found)?;
+pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
+    let mut data = FigureData::default();
+    let runs = runner.run(runner.case_on_surfaces("fig11")?)?;
+    let [main, ..] = &runs[..] else { return Ok(data) };
+    draw(runner, main, &mut data)?;
     let shares: Vec<f64> = runs.iter().map(nucleations_at_minima).collect();
-    found.values("fig11.nucleations_at_minima_percent", &shares);
+    data.values("fig11.nucleations_at_minima_percent", &shares);
     let places = runs.iter().map(first_block).collect::<Result<Vec<usize>, _>>()?;
     let repeated = (0..places.len())
         .filter(|&k| places[..k].contains(&places[k]))
         .count();
-    found.value("fig11.repeated_first_places", repeated as f64);
-    // The same draw with another spread: the place of the first slip stays, its time moves.
+    data.value("fig11.repeated_first_places", repeated as f64);
+    // The same random numbers with another spread: the first slip is expected at the same block, at another time.
     let mut times = Vec::new();
     let mut moved = 0;
     for sigma in ["0.025", "0.05", "0.1"] {
-        let run = bench.run_one(bench.case("fig11", &[&format!("friction.sigma_static_star={sigma}")])?)?;
+        let run = runner.run_one(runner.case("fig11", &[&format!("friction.sigma_static_star={sigma}")])?)?;
         moved += usize::from(first_block(&run)? != places[0]);
         times.push(run.first_slip()?);
     }
-    found.value("fig11.first_places_moved_by_sigma", moved as f64);
-    found.value(
-        "fig11.largest_rise_of_first_slip",
-        largest(crate::measurements::rises(&times)),
-    );
-    Ok(found)
+    data.value("fig11.first_places_moved_by_sigma", moved as f64);
+    data.value("fig11.largest_rise_of_first_slip", largest(rises(&times)));
+    Ok(data)
 }
 
-fn draw(bench: &Bench, main: &Run, found: &mut Found) -> Result<(), PaperError> {
+fn draw(runner: &FigureRunner, main: &Run, data: &mut FigureData) -> Result<(), PaperError> {
     let (lattice, surface) = (&main.case.model.lattice, &main.case.model.surface);
     let mut minima = minima(lattice, &surface.mu_static);
     minima.truncate(MARKED);
@@ -53,7 +51,7 @@ fn draw(bench: &Bench, main: &Run, found: &mut Found) -> Result<(), PaperError> 
         .collect();
     let reach = 3.0 * main.case.groups.sigma_static_star;
     let mean = main.case.scales.mu_static_mean;
-    found.panel(
+    data.panel(
         "fig11a",
         "Local static friction coefficients; circles around the six lowest of their local minima.",
         Drawing::Maps(FieldMaps {
@@ -69,7 +67,7 @@ fn draw(bench: &Bench, main: &Run, found: &mut Found) -> Result<(), PaperError> 
     );
     let times = SHARES.map(|share| main.time_of_share(share));
     let times = times.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let run = bench.run_one(seen_at(bench.case("fig11", &[])?, &times))?;
+    let run = runner.run_one(seen_at(runner.case("fig11", &[])?, &times))?;
     let mut maps = Vec::new();
     for ((_, frame), label) in run.record.frames.iter().zip(["b", "c", "d"]) {
         maps.push(FieldMap {
@@ -77,7 +75,7 @@ fn draw(bench: &Bench, main: &Run, found: &mut Found) -> Result<(), PaperError> 
             ..run.stress_map(frame, label)?
         });
     }
-    found.panel(
+    data.panel(
         "fig11bcd",
         "Contact stress when 3, 20 and 60 % of the blocks have slipped: fronts start at the circles and grow together.",
         stress_maps(maps, 3),
@@ -94,7 +92,8 @@ fn minima(lattice: &Lattice, mu_static: &[f64]) -> Vec<usize> {
     minima
 }
 
-fn neighbours(lattice: &Lattice, block: usize) -> impl Iterator<Item = usize> {
+/// The blocks around a block, those at its corners included.
+pub(super) fn neighbours(lattice: &Lattice, block: usize) -> impl Iterator<Item = usize> {
     let (i, j) = lattice.column_row(block);
     let around = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| [dx, dy]));
     around

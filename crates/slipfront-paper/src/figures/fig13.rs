@@ -4,8 +4,9 @@ use std::f64::consts::TAU;
 
 use crate::drawing::Drawing;
 use crate::error::PaperError;
-use crate::measurements::{Found, largest};
-use crate::runner::Bench;
+use crate::figure_data::FigureData;
+use crate::runner::FigureRunner;
+use crate::statistics::largest;
 use slipfront_case::case_file;
 use slipfront_case::case_file::CavitySize;
 use slipfront_plot::Shape;
@@ -13,9 +14,9 @@ use slipfront_plot::Shape;
 /// Corners of a drawn outline.
 const CORNERS: usize = 360;
 
-pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
-    let mut found = Found::default();
-    let sweep = bench.plan("fig13")?;
+pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
+    let mut data = FigureData::default();
+    let sweep = runner.plan("fig13")?;
     let mut shapes = Vec::new();
     let (mut misses, mut printed, mut vertices) = (Vec::new(), Vec::new(), Vec::new());
     for (k, label) in sweep.names(0).into_iter().enumerate() {
@@ -39,16 +40,16 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
             printed.push(100.0 * area / n / asked);
         }
     }
-    found.panel(
+    data.panel(
         "fig13",
         "The outlines of Eq. 17 at equal area: ellipses (s = 1), semi-triangles (s = 2), -squares (s = 3) and -pentagons \
          (s = 4), round (w = 1/(5 s)) and sharp (w = 1/s).",
         Drawing::Shapes(shapes),
     );
-    found.value("fig13.worst_coverage_miss_percent", largest(misses));
-    found.value("fig13.area_as_printed_percent", largest(printed));
-    found.value("fig13.vertices_missed", largest(vertices));
-    Ok(found)
+    data.value("fig13.worst_coverage_miss_percent", largest(misses));
+    data.value("fig13.area_as_printed_percent", largest(printed));
+    data.value("fig13.vertices_missed", largest(vertices));
+    Ok(data)
 }
 
 /// Eq. 17 at the area of a circle of radius 1.

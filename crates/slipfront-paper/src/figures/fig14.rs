@@ -2,43 +2,46 @@
 
 use crate::drawing::stress_maps;
 use crate::error::PaperError;
-use crate::measurements::{Found, mean};
-use crate::runner::{Bench, Run, seen_at};
+use crate::figure_data::FigureData;
+use crate::figures::fig11::neighbours;
+use crate::run::{Run, seen_at};
+use crate::runner::FigureRunner;
+use crate::statistics::mean;
 
 /// Shares of the blocks in contact that have slipped, from the left to the right of a panel.
 const SHARES: [f64; 5] = [0.02, 0.1, 0.3, 0.5, 0.8];
 
-pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
-    let mut found = Found::default();
-    let sweep = bench.plan("fig14")?;
+pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
+    let mut data = FigureData::default();
+    let sweep = runner.plan("fig14")?;
     let names = sweep.names(0);
     let mut maps = Vec::new();
     for (k, name) in names.iter().enumerate() {
-        let run = bench.run_one(sweep.case(&[k], 0)?)?;
+        let run = runner.run_one(sweep.case(&[k], 0)?)?;
         let times = SHARES.map(|share| run.time_of_share(share));
         let times = times.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let again = bench.run_one(seen_at(sweep.case(&[k], 0)?, &times))?;
+        let again = runner.run_one(seen_at(sweep.case(&[k], 0)?, &times))?;
         for ((_, frame), share) in again.record.frames.iter().zip(SHARES) {
             let slipped = 100.0 * share;
             maps.push(again.stress_map(frame, &format!("{name}: {slipped:.0} % slipped"))?);
         }
         match name.as_str() {
-            "a" => found.value("fig14.nearness_of_first_slips", nearness(&run, 0.05)),
+            "a" => data.value("fig14.nearness_of_first_slips", nearness(&run, 0.05)),
             "b" => {
-                found.value("fig14.first_slips_at_the_rim_percent", first_at_rim(&run));
-                found.value("fig14.asymmetry_percent", asymmetry(&run));
-                found.value("fig14.elongation", elongation(&run, 0.3)?);
+                data.value("fig14.first_slips_at_the_rim_percent", first_at_rim(&run));
+                data.value("fig14.asymmetry_percent", asymmetry(&run));
+                data.value("fig14.elongation", elongation(&run, 0.3)?);
             }
-            _ => found.value("fig14.elongation_at_45_degrees", elongation(&run, 0.3)?),
+            _ => data.value("fig14.elongation_at_45_degrees", elongation(&run, 0.3)?),
         }
     }
-    found.panel(
+    data.panel(
         "fig14",
         "Contact stress around a circular cavity under 5 % of the slider while slip spreads. a: on a rough surface; b: \
          on a smooth one, driven to the right; c: the same, driven to the upper right.",
         stress_maps(maps, SHARES.len()),
     );
-    Ok(found)
+    Ok(data)
 }
 
 /// Distance of a block from the middle of the slider, along the drive and across it.
@@ -86,15 +89,7 @@ fn first_at_rim(run: &Run) -> f64 {
     let first: Vec<usize> = (0..times.len())
         .filter(|&block| Some(times[block]) == earliest)
         .collect();
-    let touches = |&&block: &&usize| {
-        let (i, j) = lattice.column_row(block);
-        let mut around = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| [dx, dy]));
-        around.any(|offset| {
-            lattice
-                .neighbour(i, j, offset)
-                .is_some_and(|other| textured[other])
-        })
-    };
+    let touches = |&&block: &&usize| neighbours(lattice, block).any(|other| textured[other]);
     100.0 * first.iter().filter(touches).count() as f64 / first.len() as f64
 }
 

@@ -2,8 +2,11 @@
 
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;
-use crate::measurements::{Found, Number, Table, largest, mean, rises, smallest};
-use crate::runner::Bench;
+use crate::figure_data::FigureData;
+use crate::number::values;
+use crate::runner::FigureRunner;
+use crate::statistics::{largest, mean, rises, smallest};
+use crate::sweep::Sweep;
 use slipfront_plot::Responses;
 use slipfront_run::study::REDUCTION;
 
@@ -11,21 +14,15 @@ use slipfront_run::study::REDUCTION;
 const ACROSS: usize = 0;
 const ALONG: usize = 1;
 
-pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
-    let mut found = Found::default();
-    let sweep = bench.study("fig16")?;
+pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
+    let mut data = FigureData::default();
+    let sweep = runner.study("fig16")?;
     let elongations = sweep.axis(0);
-    let curve = |way: usize| -> Vec<Number> {
-        (0..elongations.len())
-            .map(|k| sweep.number(&[k, way], REDUCTION))
-            .collect()
-    };
-    let (across, along) = (curve(ACROSS), curve(ALONG));
-    let grooves = bench.study("fig16_grooves")?;
-    let groove = |way: usize| grooves.number(&[way], REDUCTION);
+    let [across, along] = [ACROSS, ALONG].map(|direction| sweep.numbers(&[direction], REDUCTION));
+    let grooves = runner.study("fig16_grooves")?.numbers(&[], REDUCTION);
     let ends = [elongations[0], elongations[elongations.len() - 1]];
-    let level = |way: usize, label: &str| formula(label, &ends, |_| groove(way).value);
-    found.panel(
+    let level = |direction: usize, label: &str| formula(label, &ends, |_| grooves[direction].value);
+    data.panel(
         "fig16",
         "Reduction of static friction by an elliptical cavity under 10 % of the slider against its elongation, across \
          and along the sliding direction, beside grooves of the same area.",
@@ -42,41 +39,36 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
         }),
     );
     let circle = across[0];
-    found.number("fig16.circle_percent", circle);
-    found.number("fig16.groove_across_percent", groove(ACROSS));
-    let means = |numbers: &[Number]| -> Vec<f64> { numbers.iter().map(|number| number.value).collect() };
-    found.value("fig16.least_rise_across", smallest(rises(&means(&across))));
-    found.value("fig16.gain_across", largest(means(&across)) - circle.value);
-    let losses: Vec<f64> = means(&along)[1..]
+    data.number("fig16.circle_percent", circle);
+    data.number("fig16.groove_across_percent", grooves[ACROSS]);
+    data.value("fig16.least_rise_across", smallest(rises(&values(&across))));
+    data.value("fig16.gain_across", largest(values(&across)) - circle.value);
+    let losses: Vec<f64> = values(&along)[1..]
         .iter()
         .map(|reduction| circle.value - reduction)
         .collect();
-    found.value("fig16.mean_loss_along", mean(&losses));
-    found.value("fig16.largest_loss_along", largest(losses));
-    found.value(
+    data.value("fig16.mean_loss_along", mean(&losses));
+    data.value("fig16.largest_loss_along", largest(losses));
+    data.value(
         "fig16.groove_along_beside_circle",
-        (groove(ALONG).value - circle.value).abs(),
+        (grooves[ALONG].value - circle.value).abs(),
     );
+    generality(&runner.study("fig16_generality")?, &mut data);
+    Ok(data)
+}
 
-    let general = bench.study("fig16_generality")?;
-    let names = general.names(0);
-    let reductions: Vec<Number> = (0..names.len())
-        .map(|k| general.number(&[k], REDUCTION))
-        .collect();
+/// How the reduction by a circular cavity depends on the size and the speed of the slider.
+fn generality(sweep: &Sweep, data: &mut FigureData) {
+    let reductions = sweep.numbers(&[], REDUCTION);
     let others = reductions
         .iter()
         .map(|number| (number.value - reductions[0].value).abs());
-    found.value("fig16.circle_moved_by_size_and_speed", largest(others));
-    found.tables.push(Table {
-        name: "fig16_generality".to_owned(),
-        caption: "The 31 % of the circular cavity under 10 % of the slider, in other sizes and at other speeds (D9)."
-            .to_owned(),
-        header: ["slider", "reduction of mu_s* (%)"].map(str::to_owned).to_vec(),
-        rows: names
-            .into_iter()
-            .zip(&reductions)
-            .map(|(name, number)| vec![name, crate::claims::with_interval(number, 1)])
-            .collect(),
-    });
-    Ok(found)
+    data.value("fig16.circle_moved_by_size_and_speed", largest(others));
+    let rows = sweep.names(0).into_iter().zip(&reductions);
+    data.table(
+        "fig16_generality",
+        "The 31 % of the circular cavity under 10 % of the slider, in other sizes and at other speeds (D9).",
+        ["slider", "reduction of mu_s* (%)"],
+        rows.map(|(name, number)| [name, number.shown(1)]),
+    );
 }

@@ -2,16 +2,19 @@
 
 use crate::drawing::{Drawing, stress_maps};
 use crate::error::PaperError;
-use crate::measurements::{Found, Number, largest, smallest};
-use crate::runner::Bench;
+use crate::figure_data::FigureData;
+use crate::number::{Number, values};
+use crate::run::peak_maps;
+use crate::runner::FigureRunner;
+use crate::statistics::{largest, range};
 use slipfront_plot::{Bar, BarChart, BarGroup};
 use slipfront_run::study::REDUCTION;
 
-pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
-    let mut found = Found::default();
-    let sweep = bench.study("fig18")?;
+pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
+    let mut data = FigureData::default();
+    let sweep = runner.study("fig18")?;
     let names = sweep.names(0);
-    let reductions: Vec<Number> = (0..names.len()).map(|k| sweep.number(&[k], REDUCTION)).collect();
+    let reductions = sweep.numbers(&[], REDUCTION);
     let bar = |(name, number): (&String, &Number)| {
         let [mean, low, high] = number.ends();
         Bar {
@@ -21,7 +24,7 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
             high,
         }
     };
-    found.panel(
+    data.panel(
         "fig18a",
         "Reduction of static friction by cavities of seven shapes, each under 10 % of the slider: means of five surfaces \
          with their 95 % intervals.",
@@ -34,30 +37,20 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
             ..BarChart::default()
         }),
     );
-    let cases = (1..names.len())
-        .map(|k| sweep.case(&[k], 0))
-        .collect::<Result<_, _>>()?;
-    let mut maps = Vec::new();
-    for (run, name) in bench.run(cases)?.iter().zip(&names[1..]) {
-        maps.push(run.stress_map(run.instant('C')?, name)?);
-    }
-    found.panel(
+    let runs = runner.run(sweep.first_cases()?.split_off(1))?;
+    data.panel(
         "fig18b",
         "Contact stress around six of them at the peak of friction.",
-        stress_maps(maps, 3),
+        stress_maps(peak_maps(&runs, &names[1..])?, 3),
     );
-    let means: Vec<f64> = reductions.iter().map(|number| number.value).collect();
-    let polygons = means[1..].iter().copied();
-    found.value(
-        "fig18.spread_percent",
-        largest(polygons.clone()) - smallest(polygons),
-    );
-    found.value(
+    let means = values(&reductions);
+    data.value("fig18.spread_percent", range(&means[1..]));
+    data.value(
         "fig18.farthest_from_circle_percent",
         largest(means.iter().map(|mean| (mean - means[0]).abs())),
     );
     // Round and sharp stand in pairs after the circle.
     let pairs = means[1..].chunks_exact(2).map(|pair| (pair[1] - pair[0]).abs());
-    found.value("fig18.sharpness_percent", largest(pairs));
-    Ok(found)
+    data.value("fig18.sharpness_percent", largest(pairs));
+    Ok(data)
 }

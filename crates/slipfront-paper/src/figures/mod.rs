@@ -1,4 +1,4 @@
-//! The figures and tables of the paper, a file each: which runs it takes, what is measured on them, what is drawn.
+//! The figures and tables of the paper. Each has a file: which cases it runs, what it measures on them, and what is drawn.
 
 mod fig02;
 mod fig03;
@@ -20,47 +20,48 @@ mod fig18;
 mod sensitivity;
 
 use crate::error::PaperError;
-use crate::measurements::Found;
-use crate::runner::Bench;
+use crate::figure_data::FigureData;
+use crate::runner::FigureRunner;
 
 /// A figure or table of the paper.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure {
-    /// Its name: `fig12`.
+    /// Its name, such as `fig12`.
     pub name: &'static str,
-    /// What it shows.
+    /// Its title.
     pub title: &'static str,
-    pub(crate) find: fn(&mut Bench) -> Result<Found, PaperError>,
+    /// Runs its cases and measures its data.
+    pub(crate) measure: fn(&mut FigureRunner) -> Result<FigureData, PaperError>,
 }
 
-/// All figures and tables but the schematic of Fig. 1, and the appendix.
+/// All figures and tables except the schematic of Fig. 1, and an appendix on what the paper leaves open.
 #[rustfmt::skip]
 pub const FIGURES: [Figure; 19] = [
-    Figure { name: "fig02", title: "Fig. 2: a sampled surface", find: fig02::find },
-    Figure { name: "table1", title: "Table 1: eight materials at one dimensionless speed", find: fig03::find_table },
-    Figure { name: "fig03", title: "Fig. 3: eight materials, one curve", find: fig03::find },
-    Figure { name: "fig04", title: "Fig. 4: contact stress through the transition", find: fig04::find },
-    Figure { name: "fig05", title: "Fig. 5: three sizes", find: fig05::find },
-    Figure { name: "fig06", title: "Fig. 6: onset time and number of steps against speed", find: fig06::find },
-    Figure { name: "fig07", title: "Fig. 7: a fast slider", find: fig07::find },
-    Figure { name: "fig08", title: "Fig. 8: static friction against speed", find: fig08::find },
-    Figure { name: "fig09", title: "Fig. 9: damping", find: fig09::find },
-    Figure { name: "fig10", title: "Fig. 10: kinetic over static friction", find: fig10::find },
-    Figure { name: "fig11", title: "Fig. 11: where slip begins", find: fig11::find },
-    Figure { name: "fig12", title: "Fig. 12: static friction against roughness", find: fig12::find },
-    Figure { name: "fig13", title: "Fig. 13: shapes of cavities", find: fig13::find },
-    Figure { name: "fig14", title: "Fig. 14: slip fronts around a circular cavity", find: fig14::find },
-    Figure { name: "fig15", title: "Fig. 15: reduction of static friction against textured area", find: fig15::find },
-    Figure { name: "fig16", title: "Fig. 16: elongated cavities and grooves", find: fig16::find },
-    Figure { name: "fig17", title: "Fig. 17: contact stress around them", find: fig17::find },
-    Figure { name: "fig18", title: "Fig. 18: the shape of a cavity", find: fig18::find },
-    Figure { name: "sensitivity", title: "Appendix: what the paper leaves open", find: sensitivity::find },
+    Figure { name: "fig02", title: "Fig. 2: a sampled surface", measure: fig02::measure },
+    Figure { name: "table1", title: "Table 1: eight materials at one dimensionless speed", measure: fig03::measure_table },
+    Figure { name: "fig03", title: "Fig. 3: eight materials, one curve", measure: fig03::measure },
+    Figure { name: "fig04", title: "Fig. 4: contact stress through the transition", measure: fig04::measure },
+    Figure { name: "fig05", title: "Fig. 5: three sizes", measure: fig05::measure },
+    Figure { name: "fig06", title: "Fig. 6: onset time and number of steps against speed", measure: fig06::measure },
+    Figure { name: "fig07", title: "Fig. 7: a fast slider", measure: fig07::measure },
+    Figure { name: "fig08", title: "Fig. 8: static friction against speed", measure: fig08::measure },
+    Figure { name: "fig09", title: "Fig. 9: damping", measure: fig09::measure },
+    Figure { name: "fig10", title: "Fig. 10: kinetic over static friction", measure: fig10::measure },
+    Figure { name: "fig11", title: "Fig. 11: where slip begins", measure: fig11::measure },
+    Figure { name: "fig12", title: "Fig. 12: static friction against roughness", measure: fig12::measure },
+    Figure { name: "fig13", title: "Fig. 13: shapes of cavities", measure: fig13::measure },
+    Figure { name: "fig14", title: "Fig. 14: slip fronts around a circular cavity", measure: fig14::measure },
+    Figure { name: "fig15", title: "Fig. 15: reduction of static friction against textured area", measure: fig15::measure },
+    Figure { name: "fig16", title: "Fig. 16: elongated cavities and grooves", measure: fig16::measure },
+    Figure { name: "fig17", title: "Fig. 17: contact stress around them", measure: fig17::measure },
+    Figure { name: "fig18", title: "Fig. 18: the shape of a cavity", measure: fig18::measure },
+    Figure { name: "sensitivity", title: "Appendix: what the paper leaves open", measure: sensitivity::measure },
 ];
 
 /// The figures that a user names: `all`, `fig3` or `fig03`, `table1`, `sensitivity`.
 ///
 /// # Errors
-/// [`PaperError::Figure`] names the first that there is not.
+/// [`PaperError::Figure`] names the first unknown one.
 pub fn figures(names: &[String]) -> Result<Vec<Figure>, PaperError> {
     if names.is_empty() || names.iter().any(|name| name == "all") {
         return Ok(FIGURES.to_vec());

@@ -1,30 +1,23 @@
 //! Appendix: how the main numbers move with what the paper leaves open.
 
-use crate::claims::with_interval;
 use crate::error::PaperError;
-use crate::measurements::{Found, Number, Table, largest, mean};
-use crate::runner::Bench;
+use crate::figure_data::FigureData;
+use crate::number::Number;
+use crate::runner::FigureRunner;
+use crate::statistics::{largest, mean};
 use slipfront_run::study::REDUCTION;
 
-pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
-    let mut found = Found::default();
-    let baseline = bench.study("sensitivity")?;
-    let texture = bench.study("sensitivity_texture")?;
+pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
+    let mut data = FigureData::default();
+    let baseline = runner.study("sensitivity")?;
+    let texture = runner.study("sensitivity_texture")?;
     let (names, textured) = (baseline.names(0), texture.names(0));
-    let mut table = Table {
-        name: "sensitivity".to_owned(),
-        caption: "Static and kinetic friction of the baseline (25 x 25 blocks, sigma_s* = 0.05), and the reduction by a \
-                  circular cavity (50 x 50 blocks, sigma_s* = 0, A* = 10 %), when one thing is changed."
-            .to_owned(),
-        header: ["what is changed", "mu_s*", "mu_k*", "reduction (%)"].map(str::to_owned).to_vec(),
-        rows: Vec::new(),
-    };
+    let mut rows = Vec::new();
     let mut variants = names.clone();
     variants.extend(textured.iter().filter(|name| !names.contains(name)).cloned());
     for variant in variants {
-        let cell = |number: Option<Number>, digits| {
-            number.map_or(String::new(), |number| with_interval(&number, digits))
-        };
+        let cell =
+            |number: Option<Number>, digits| number.map_or(String::new(), |number| number.shown(digits));
         let of_baseline = |quantity: &str| {
             let place = names.iter().position(|name| *name == variant)?;
             let number = baseline.number(&[place], quantity);
@@ -32,34 +25,40 @@ pub(super) fn find(bench: &mut Bench) -> Result<Found, PaperError> {
         };
         let place = textured.iter().position(|name| *name == variant);
         let reduction = place.map(|place| texture.number(&[place], REDUCTION));
-        table.rows.push(vec![
+        rows.push([
             variant.clone(),
             cell(of_baseline("static_friction_star"), 3),
             cell(of_baseline("kinetic_friction_star"), 3),
             cell(reduction, 1),
         ]);
     }
-    found.tables.push(table);
+    data.table(
+        "sensitivity",
+        "Static and kinetic friction of the baseline (25 x 25 blocks, sigma_s* = 0.05), and the reduction by a circular \
+         cavity (50 x 50 blocks, sigma_s* = 0, A* = 10 %), when one thing is changed.",
+        ["what is changed", "mu_s*", "mu_k*", "reduction (%)"],
+        rows,
+    );
 
     let place =
         |names: &[String], start: &str| names.iter().position(|name| name.starts_with(start)).unwrap_or(0);
     let literal = place(&names, "friction: literal (Eq. 4 as printed), dt* = 0.02");
     let kinetic = |k: usize| baseline.values(&[k], "kinetic_friction_star");
-    found.values("sensitivity.literal_kinetic_friction", &kinetic(literal));
+    data.values("sensitivity.literal_kinetic_friction", &kinetic(literal));
     let reversal = place(&names, "friction: reversal");
     let statics = |k: usize| baseline.values(&[k], "static_friction_star");
     let apart = statics(0)
         .into_iter()
         .zip(statics(reversal))
         .map(|(one, other)| (one - other).abs());
-    found.value("sensitivity.reversal_moves_static_friction", largest(apart));
+    data.value("sensitivity.reversal_moves_static_friction", largest(apart));
     let reduction = |k: usize| mean(&texture.values(&[k], REDUCTION));
     let shifted = (0..textured.len()).filter(|&k| textured[k].starts_with("centre"));
-    found.value(
+    data.value(
         "sensitivity.shift_moves_reduction",
         largest(shifted.map(|k| (reduction(k) - reduction(0)).abs())),
     );
     let kept = place(&textured, "load: not");
-    found.value("sensitivity.kept_load_reduction_percent", reduction(kept));
-    Ok(found)
+    data.value("sensitivity.kept_load_reduction_percent", reduction(kept));
+    Ok(data)
 }

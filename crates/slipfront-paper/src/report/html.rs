@@ -4,19 +4,18 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD as BASE64;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::{Drawn, claims_of, counts, greek, step_name};
-use crate::claims::{Judged, Verdict};
+use super::drawn::Drawn;
+use super::words::{greek, step_name};
+use crate::claims::{ClaimResult, Verdict, count_verdicts};
+use crate::figure_data::{FigureData, Table};
 use crate::figures::Figure;
-use crate::measurements::{Found, Table};
 use crate::paper::Paper;
-use crate::runner::StepRule;
+use crate::step_rule::StepRule;
 
 const STYLE: &str = include_str!("style.css");
 
 /// The whole page; `drawn` holds the pictures of each figure.
 pub(super) fn page(paper: &Paper, drawn: &[Vec<Drawn>]) -> String {
-    let [holds, conditioned, fails] = counts(&paper.judged);
-    let surprises = paper.surprises().count();
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -27,29 +26,14 @@ pub(super) fn page(paper: &Paper, drawn: &[Vec<Drawn>]) -> String {
                 style { (PreEscaped(STYLE)) }
             }
             body {
-                header {
-                    h1 { "The paper, run again" }
-                    p {
-                        "Every figure and claim of " cite { "2D Spring-block model to study the transition from static \
-                        to kinetic friction of complex-micro-textured contact surfaces" } ", Tribology International 2023, "
-                        a href="https://doi.org/10.1016/j.triboint.2023.108866" { "doi 10.1016/j.triboint.2023.108866" }
-                        ", measured with slipfront " (env!("CARGO_PKG_VERSION")) "."
-                    }
-                    p.count {
-                        strong { (paper.judged.len()) } " claims: " strong { (holds) } " hold, "
-                        strong { (conditioned) } " hold with a condition, " strong { (fails) } " do not hold. "
-                        @if surprises == 0 { "Every verdict is the expected one." }
-                        @else { strong { (surprises) " verdicts are not the expected ones." } }
-                    }
-                    @if paper.reduced { p { "Reduced version: two random surfaces, one time step." } }
-                }
+                (header(paper))
                 main {
                     section {
                         h2 { "Claims" }
                         p {
                             "Intervals are 95 % confidence intervals of the mean over random surfaces. Numbers D1 to D12 are \
                              the deviations from the paper's print that the documentation of the model explains."
-                            @if !paper.judged_by_paper_step.is_empty() {
+                            @if !paper.results_by_paper_step.is_empty() {
                                 " Each claim was measured twice: with " (text(step_name(StepRule::Auto)))
                                 ", and with the paper's " (text(step_name(StepRule::Paper))) " (Eq. 13)."
                             }
@@ -59,8 +43,8 @@ pub(super) fn page(paper: &Paper, drawn: &[Vec<Drawn>]) -> String {
                     nav { h2 { "Figures" } ul { @for (figure, _) in &paper.figures {
                         li { a href={ "#" (figure.name) } { (figure.title) } }
                     } } }
-                    @for ((figure, found), pictures) in paper.figures.iter().zip(drawn) {
-                        (section(paper, figure, found, pictures))
+                    @for ((figure, data), pictures) in paper.figures.iter().zip(drawn) {
+                        (section(paper, figure, data, pictures))
                     }
                 }
             }
@@ -69,22 +53,46 @@ pub(super) fn page(paper: &Paper, drawn: &[Vec<Drawn>]) -> String {
     page.into_string()
 }
 
+/// The title, the paper, and how many claims hold.
+fn header(paper: &Paper) -> Markup {
+    let [holds, conditioned, fails] = count_verdicts(&paper.results);
+    let unexpected = paper.unexpected_verdicts().count();
+    html! {
+        header {
+            h1 { "The paper, run again" }
+            p {
+                "Every figure and claim of " cite { "2D Spring-block model to study the transition from static \
+                to kinetic friction of complex-micro-textured contact surfaces" } ", Tribology International 2023, "
+                a href="https://doi.org/10.1016/j.triboint.2023.108866" { "doi 10.1016/j.triboint.2023.108866" }
+                ", measured with slipfront " (env!("CARGO_PKG_VERSION")) "."
+            }
+            p.count {
+                strong { (paper.results.len()) } " claims: " strong { (holds) } " hold, "
+                strong { (conditioned) } " hold with a condition, " strong { (fails) } " do not hold. "
+                @if unexpected == 0 { "Every verdict is the expected one." }
+                @else { strong { (unexpected) " verdicts are not the expected ones." } }
+            }
+            @if paper.reduced { p { "Reduced version: two random surfaces, one time step." } }
+        }
+    }
+}
+
 fn claims_table(paper: &Paper) -> Markup {
     html! {
         table.claims {
             thead { tr {
                 th { "" } th { "Claim" } th { "Verdict" } th { "Measured" } th { "Holds if" }
-                @if !paper.judged_by_paper_step.is_empty() { th { "With the paper's step" } }
+                @if !paper.results_by_paper_step.is_empty() { th { "With the paper's step" } }
             } }
-            tbody { @for (k, judged) in paper.judged.iter().enumerate() {
-                (claim_row(judged, paper.judged_by_paper_step.get(k)))
+            tbody { @for (k, result) in paper.results.iter().enumerate() {
+                (claim_row(result, paper.results_by_paper_step.get(k)))
             } }
         }
     }
 }
 
-fn claim_row(judged: &Judged, other: Option<&Judged>) -> Markup {
-    let claim = &judged.claim;
+fn claim_row(result: &ClaimResult, other: Option<&ClaimResult>) -> Markup {
+    let claim = &result.claim;
     html! {
         tr id={ "claim-" (claim.number) } {
             td.number { (claim.number) }
@@ -93,20 +101,20 @@ fn claim_row(judged: &Judged, other: Option<&Judged>) -> Markup {
                 a.place href={ "#" (claim.figure()) } { (claim.place) }
                 @if !claim.remark.is_empty() { p.remark { (text(&claim.remark)) } }
             }
-            td class=(class(judged.verdict)) {
-                (judged.verdict.words())
-                @if let (Verdict::HoldsWithCondition, Some(condition)) = (judged.verdict, &claim.condition) {
+            td class=(class(result.verdict)) {
+                (result.verdict.words())
+                @if let (Verdict::HoldsWithCondition, Some(condition)) = (result.verdict, &claim.condition) {
                     ": " (text(&condition.only))
                 }
                 @if let Some(deviation) = &claim.deviation { " (" (deviation) ")" }
-                @if !judged.as_expected() { strong { " not as expected" } }
+                @if !result.as_expected() { strong { " not as expected" } }
             }
-            td data-label="measured" { span.value { (judged.measured()) } " " span.what { (text(&claim.measured)) } }
+            td data-label="measured" { span.value { (result.measured()) } " " span.what { (text(&claim.measured)) } }
             td data-label="holds if" { (claim.criterion()) }
             @if let Some(other) = other {
                 td data-label="with the paper's step" {
                     span.value { (other.measured()) }
-                    @if other.verdict == judged.verdict { ", same verdict" }
+                    @if other.verdict == result.verdict { ", same verdict" }
                     @else { strong { ", " (other.verdict.words()) } }
                 }
             }
@@ -136,7 +144,7 @@ fn class(verdict: Verdict) -> &'static str {
     }
 }
 
-fn section(paper: &Paper, figure: &Figure, found: &Found, pictures: &[Drawn]) -> Markup {
+fn section(paper: &Paper, figure: &Figure, data: &FigureData, pictures: &[Drawn]) -> Markup {
     html! {
         section id=(figure.name) {
             h2 { (figure.title) }
@@ -146,12 +154,12 @@ fn section(paper: &Paper, figure: &Figure, found: &Found, pictures: &[Drawn]) ->
                     figcaption { (caption) " Numbers: " (name) ".csv." }
                 }
             }
-            @for table in &found.tables { (plain_table(table)) }
-            @let claims = claims_of(paper, figure);
+            @for table in &data.tables { (plain_table(table)) }
+            @let claims: Vec<_> = paper.results.iter().filter(|result| result.claim.figure() == figure.name).collect();
             @if !claims.is_empty() {
-                ul.verdicts { @for (judged, _) in claims {
-                    li { a href={ "#claim-" (judged.claim.number) } { "Claim " (judged.claim.number) } ": "
-                        (text(&judged.claim.claim)) " " span class=(class(judged.verdict)) { (judged.verdict.words()) } }
+                ul.verdicts { @for result in claims {
+                    li { a href={ "#claim-" (result.claim.number) } { "Claim " (result.claim.number) } ": "
+                        (text(&result.claim.claim)) " " span class=(class(result.verdict)) { (result.verdict.words()) } }
                 } }
             }
         }

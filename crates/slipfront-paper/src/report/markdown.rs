@@ -2,22 +2,22 @@
 
 use std::fmt::Write as _;
 
-use super::{counts, greek, step_name};
-use crate::claims::{Judged, Verdict};
+use super::words::{greek, step_name};
+use crate::claims::{ClaimResult, Verdict, count_verdicts};
 use crate::paper::Paper;
-use crate::runner::StepRule;
+use crate::step_rule::StepRule;
 
 /// The pictures that the page shows.
 pub(super) const SHOWN: [&str; 8] = [
     "fig03", "fig04", "fig06", "fig12", "fig14", "fig15", "fig16", "fig18a",
 ];
 
-/// How the page begins.
+/// The first line of the page, by which a page of an earlier call is recognised.
 pub(super) const TITLE: &str = "# The paper, claim by claim\n";
 
-/// The page.
-pub(super) fn page(paper: &Paper) -> String {
-    let [holds, conditioned, fails] = counts(&paper.judged);
+/// The text of `paper.md`.
+pub fn page(paper: &Paper) -> String {
+    let [holds, conditioned, fails] = count_verdicts(&paper.results);
     let mut text = format!(
         "{TITLE}\n\
          What becomes of every claim of the paper's text when its figures are run again:\n\n\
@@ -32,21 +32,21 @@ pub(super) fn page(paper: &Paper) -> String {
         greek(step_name(StepRule::Auto)),
         greek(step_name(StepRule::Paper)),
         other_verdicts(paper),
-        paper.judged.len()
+        paper.results.len()
     );
-    for (k, judged) in paper.judged.iter().enumerate() {
-        let claim = &judged.claim;
-        let mut verdict = judged.verdict.words().to_owned();
-        if let (Verdict::HoldsWithCondition, Some(condition)) = (judged.verdict, &claim.condition) {
+    for (k, result) in paper.results.iter().enumerate() {
+        let claim = &result.claim;
+        let mut verdict = result.verdict.words().to_owned();
+        if let (Verdict::HoldsWithCondition, Some(condition)) = (result.verdict, &claim.condition) {
             let _ = write!(verdict, ": {}", condition.only);
         }
         if let Some(deviation) = &claim.deviation {
             let _ = write!(verdict, " ({deviation})");
         }
         let other = paper
-            .judged_by_paper_step
+            .results_by_paper_step
             .get(k)
-            .map_or(String::new(), Judged::measured);
+            .map_or(String::new(), ClaimResult::measured);
         let remark = if claim.remark.is_empty() {
             String::new()
         } else {
@@ -56,7 +56,7 @@ pub(super) fn page(paper: &Paper) -> String {
             claim.number.to_string(),
             format!("{}.{remark}", claim.claim),
             claim.place.clone(),
-            format!("{}: {}", claim.measured, judged.measured()),
+            format!("{}: {}", claim.measured, result.measured()),
             claim.criterion(),
             verdict,
             other,
@@ -73,7 +73,7 @@ pub(super) fn page(paper: &Paper) -> String {
 
 /// In how many verdicts the paper's step differs.
 fn other_verdicts(paper: &Paper) -> String {
-    let pairs = paper.judged.iter().zip(&paper.judged_by_paper_step);
+    let pairs = paper.results.iter().zip(&paper.results_by_paper_step);
     match pairs.filter(|(one, other)| one.verdict != other.verdict).count() {
         0 => "no verdict differs".to_owned(),
         1 => "one verdict differs".to_owned(),
@@ -83,8 +83,8 @@ fn other_verdicts(paper: &Paper) -> String {
 
 /// Some of the pictures, and all tables.
 fn write_figures(paper: &Paper, text: &mut String) {
-    for (figure, found) in &paper.figures {
-        for panel in found
+    for (figure, data) in &paper.figures {
+        for panel in data
             .panels
             .iter()
             .filter(|panel| SHOWN.contains(&panel.name.as_str()))
@@ -95,7 +95,7 @@ fn write_figures(paper: &Paper, text: &mut String) {
                 figure.title, panel.caption, figure.title, panel.name
             );
         }
-        for table in &found.tables {
+        for table in &data.tables {
             let _ = write!(text, "\n## {}\n\n{}\n\n", figure.title, greek(&table.caption));
             let _ = writeln!(text, "| {} |", greek(&table.header.join(" | ")));
             let _ = writeln!(text, "|{}", "---|".repeat(table.header.len()));

@@ -32,19 +32,19 @@ fn every_verdict_is_the_expected_one_and_the_documentation_tells_it() {
     let folder = tempfile::tempdir().unwrap();
     let never = AtomicBool::new(false);
     let paper = run(&["all"], folder.path(), &never).unwrap();
-    let surprises: Vec<String> = paper
-        .surprises()
-        .map(|(_, judged)| {
+    let unexpected_verdicts: Vec<String> = paper
+        .unexpected_verdicts()
+        .map(|(_, result)| {
             format!(
                 "{}: {} {}",
-                judged.claim.number,
-                judged.verdict.words(),
-                judged.measured()
+                result.claim.number,
+                result.verdict.words(),
+                result.measured()
             )
         })
         .collect();
-    assert!(surprises.is_empty(), "{surprises:#?}");
-    assert!(paper.judged.len() >= 60);
+    assert!(unexpected_verdicts.is_empty(), "{unexpected_verdicts:#?}");
+    assert!(paper.results.len() >= 60);
 
     slipfront_paper::write(&paper, folder.path()).unwrap();
     let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
@@ -116,8 +116,13 @@ fn finished_runs_of_a_figure_that_was_not_finished_are_not_run_again() {
         },
     );
     assert_eq!((here, records.len()), (0, runs));
-    assert_eq!(second.unwrap().judged, first.judged);
-    assert!(first.judged.iter().all(|judged| judged.claim.figure() == "fig08"));
+    assert_eq!(second.unwrap().results, first.results);
+    assert!(
+        first
+            .results
+            .iter()
+            .all(|result| result.claim.figure() == "fig08")
+    );
 }
 
 #[test]

@@ -14,19 +14,19 @@ use slipfront_case::disk::open_regular;
 const HEADER_MAX_BYTES: u64 = 1 << 20;
 
 /// What is wrong with a file.
-pub(super) enum Fault {
+pub(super) enum NetCdfError {
     Io(io::Error),
     Broken(String),
 }
 
-impl From<io::Error> for Fault {
-    fn from(source: io::Error) -> Fault {
-        Fault::Io(source)
+impl From<io::Error> for NetCdfError {
+    fn from(source: io::Error) -> NetCdfError {
+        NetCdfError::Io(source)
     }
 }
 
 /// An open file and what its header says.
-pub(super) struct Classic {
+pub(super) struct NetCdf3Reader {
     file: File,
     file_bytes: u64,
     records: usize,
@@ -107,9 +107,9 @@ impl Kind {
     }
 }
 
-impl Classic {
+impl NetCdf3Reader {
     /// Opens a file and reads its header.
-    pub(super) fn open(path: &Path) -> Result<Classic, Fault> {
+    pub(super) fn open(path: &Path) -> Result<NetCdf3Reader, NetCdfError> {
         let mut file = open_regular(path)?;
         let file_bytes = file.metadata()?.len();
         let mut bytes = Vec::new();
@@ -119,7 +119,7 @@ impl Classic {
         let mut header = Header { rest: &bytes };
 
         if header.take(4)? != b"CDF\x02" {
-            return Err(Fault::Broken(
+            return Err(NetCdfError::Broken(
                 "it does not begin like NetCDF-3 with 64-bit offsets".to_owned(),
             ));
         }
@@ -136,7 +136,7 @@ impl Classic {
         each_once(dimensions.iter().map(|dimension| &dimension.name))?;
         each_once(variables.iter().map(|variable| &variable.name))?;
 
-        let mut classic = Classic {
+        let mut classic = NetCdf3Reader {
             file,
             file_bytes,
             records,
@@ -165,12 +165,12 @@ impl Classic {
     }
 
     /// The number of records stands in the header alone: it counts only as far as the file holds their bytes.
-    fn check_records(&self) -> Result<(), Fault> {
+    fn check_records(&self) -> Result<(), NetCdfError> {
         let held = self.file_bytes.checked_div(self.record_bytes).unwrap_or(0);
         if self.records as u64 <= held {
             return Ok(());
         }
-        Err(Fault::Broken(format!(
+        Err(NetCdfError::Broken(format!(
             "its header promises {} instants where {} bytes hold at most {held}",
             self.records, self.file_bytes
         )))
@@ -185,18 +185,18 @@ impl Classic {
     }
 
     /// The numbers of a global attribute.
-    pub(super) fn attribute(&self, name: &str) -> Result<&[f64], Fault> {
+    pub(super) fn attribute(&self, name: &str) -> Result<&[f64], NetCdfError> {
         match self.attributes.iter().find(|attribute| attribute.name == name) {
             Some(attribute) => Ok(&attribute.values),
-            None => Err(Fault::Broken(format!("it has no attribute `{name}`"))),
+            None => Err(NetCdfError::Broken(format!("it has no attribute `{name}`"))),
         }
     }
 
     /// The length of a dimension; 0 for the record dimension.
-    pub(super) fn dimension(&self, name: &str) -> Result<usize, Fault> {
+    pub(super) fn dimension(&self, name: &str) -> Result<usize, NetCdfError> {
         match self.dimensions.iter().find(|dimension| dimension.name == name) {
             Some(dimension) => Ok(dimension.length),
-            None => Err(Fault::Broken(format!("it has no dimension `{name}`"))),
+            None => Err(NetCdfError::Broken(format!("it has no dimension `{name}`"))),
         }
     }
 
@@ -207,13 +207,13 @@ impl Classic {
         name: &str,
         dimensions: &[&str],
         record: usize,
-    ) -> Result<Vec<f64>, Fault> {
+    ) -> Result<Vec<f64>, NetCdfError> {
         let variable = self
             .variables
             .iter()
             .find(|variable| variable.name == name && self.is_over(variable, dimensions))
             .ok_or_else(|| {
-                Fault::Broken(format!("it has no variable `{name}({})`", dimensions.join(", ")))
+                NetCdfError::Broken(format!("it has no variable `{name}({})`", dimensions.join(", ")))
             })?;
         let bytes = self.bytes_at_once(variable).ok_or_else(|| absurd(name))?;
         let skipped = if self.has_records(variable) {
@@ -231,7 +231,7 @@ impl Classic {
                 "it has {} bytes where `{name}` ends at byte {end}",
                 self.file_bytes
             );
-            return Err(Fault::Broken(detail));
+            return Err(NetCdfError::Broken(detail));
         }
         let mut data = vec![0; bytes as usize];
         self.file.seek(SeekFrom::Start(start))?;
@@ -268,15 +268,15 @@ impl Classic {
 }
 
 /// Names that stand twice would be read twice, however long their arrays are.
-fn each_once<'a>(mut names: impl Iterator<Item = &'a String>) -> Result<(), Fault> {
+fn each_once<'a>(mut names: impl Iterator<Item = &'a String>) -> Result<(), NetCdfError> {
     let mut seen = HashSet::new();
     names.find(|name| !seen.insert(*name)).map_or(Ok(()), |twice| {
-        Err(Fault::Broken(format!("its header defines `{twice}` twice")))
+        Err(NetCdfError::Broken(format!("its header defines `{twice}` twice")))
     })
 }
 
-fn absurd(variable: &str) -> Fault {
-    Fault::Broken(format!("`{variable}` has an absurd size"))
+fn absurd(variable: &str) -> NetCdfError {
+    NetCdfError::Broken(format!("`{variable}` has an absurd size"))
 }
 
 /// The bytes of a header that are still to be read.
@@ -285,30 +285,30 @@ struct Header<'a> {
 }
 
 impl<'a> Header<'a> {
-    fn take(&mut self, bytes: usize) -> Result<&'a [u8], Fault> {
+    fn take(&mut self, bytes: usize) -> Result<&'a [u8], NetCdfError> {
         let (taken, rest) = self
             .rest
             .split_at_checked(bytes)
-            .ok_or_else(|| Fault::Broken("its header is corrupt or cut short".to_owned()))?;
+            .ok_or_else(|| NetCdfError::Broken("its header is corrupt or cut short".to_owned()))?;
         self.rest = rest;
         Ok(taken)
     }
 
     /// Takes `bytes` and the padding up to a multiple of 4.
-    fn padded(&mut self, bytes: usize) -> Result<&'a [u8], Fault> {
+    fn padded(&mut self, bytes: usize) -> Result<&'a [u8], NetCdfError> {
         let taken = self.take(bytes)?;
         self.take(bytes.next_multiple_of(4) - bytes)?;
         Ok(taken)
     }
 
-    fn number(&mut self) -> Result<u32, Fault> {
+    fn number(&mut self) -> Result<u32, NetCdfError> {
         let bytes = self.take(4)?;
         Ok(bytes
             .iter()
             .fold(0, |number, byte| number << 8 | u32::from(*byte)))
     }
 
-    fn name(&mut self) -> Result<String, Fault> {
+    fn name(&mut self) -> Result<String, NetCdfError> {
         let bytes = self.number()? as usize;
         Ok(String::from_utf8_lossy(self.padded(bytes)?).into_owned())
     }
@@ -318,22 +318,24 @@ impl<'a> Header<'a> {
         &mut self,
         tag: u32,
         element_bytes: usize,
-        element: impl Fn(&mut Self) -> Result<T, Fault>,
-    ) -> Result<Vec<T>, Fault> {
+        element: impl Fn(&mut Self) -> Result<T, NetCdfError>,
+    ) -> Result<Vec<T>, NetCdfError> {
         let (found, count) = (self.number()?, self.number()? as usize);
         let known = found == tag || (found == 0 && count == 0);
         if !known || count > self.rest.len() / element_bytes {
-            return Err(Fault::Broken("its header is corrupt or cut short".to_owned()));
+            return Err(NetCdfError::Broken(
+                "its header is corrupt or cut short".to_owned(),
+            ));
         }
         (0..count).map(|_| element(self)).collect()
     }
 
-    fn kind(&mut self) -> Result<Kind, Fault> {
+    fn kind(&mut self) -> Result<Kind, NetCdfError> {
         let code = self.number()?;
-        Kind::of(code).ok_or_else(|| Fault::Broken(format!("its header names the unknown type {code}")))
+        Kind::of(code).ok_or_else(|| NetCdfError::Broken(format!("its header names the unknown type {code}")))
     }
 
-    fn attribute(&mut self) -> Result<Attribute, Fault> {
+    fn attribute(&mut self) -> Result<Attribute, NetCdfError> {
         let name = self.name()?;
         let kind = self.kind()?;
         let count = self.number()? as usize;
@@ -343,11 +345,11 @@ impl<'a> Header<'a> {
         })
     }
 
-    fn variable(&mut self, dimensions_known: usize) -> Result<Variable, Fault> {
+    fn variable(&mut self, dimensions_known: usize) -> Result<Variable, NetCdfError> {
         let name = self.name()?;
         let count = self.number()? as usize;
         if count > dimensions_known {
-            return Err(Fault::Broken(format!(
+            return Err(NetCdfError::Broken(format!(
                 "`{name}` has {count} dimensions where {dimensions_known} are known"
             )));
         }
@@ -355,7 +357,7 @@ impl<'a> Header<'a> {
         for _ in 0..count {
             let id = self.number()? as usize;
             if id >= dimensions_known {
-                return Err(Fault::Broken(format!(
+                return Err(NetCdfError::Broken(format!(
                     "`{name}` has a dimension that is not known"
                 )));
             }

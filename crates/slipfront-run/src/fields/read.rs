@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use super::names::{
+use super::netcdf3_reader::{NetCdf3Reader, NetCdfError};
+use super::variables::{
     BLOCK_SIZE, BLOCKS, FIRST_SLIP, LABEL, LABEL_LENGTH, MU_KINETIC, MU_STATIC, STEP, STRIDE, TEXTURED, TIME,
     TIME_STAR, TIME_UNIT, X, Y,
 };
-use super::netcdf3_reader::{Classic, Fault};
 use slipfront::observe::Field;
 
-use super::{FieldFrame, FieldsData, FieldsError};
+use super::error::FieldsError;
+use super::frame::{FieldFrame, FieldsData};
 use slipfront_case::field_info::{field_info, field_named};
 use slipfront_case::text;
 
@@ -22,7 +23,7 @@ use slipfront_case::text;
 /// [`FieldsError`] if the file is missing, cut short, damaged, or not a fields file.
 pub fn read_fields(path: &Path) -> Result<FieldsData, FieldsError> {
     let read = || {
-        let mut file = Classic::open(path)?;
+        let mut file = NetCdf3Reader::open(path)?;
         let all: Vec<usize> = (0..file.records()).collect();
         let data = read_chosen(&mut file, |_| true, &all)?;
         Ok(FieldsData {
@@ -32,7 +33,7 @@ pub fn read_fields(path: &Path) -> Result<FieldsData, FieldsError> {
             ..data
         })
     };
-    read().map_err(|fault| in_words(fault, path))
+    read().map_err(|error| in_words(error, path))
 }
 
 /// Reads what a picture of one field takes, however long the file is: this field alone, at no more than `most`
@@ -43,7 +44,7 @@ pub fn read_fields(path: &Path) -> Result<FieldsData, FieldsError> {
 /// As for [`read_fields`].
 pub fn read_maps(path: &Path, field: Field, most: usize) -> Result<FieldsData, FieldsError> {
     let read = || {
-        let mut file = Classic::open(path)?;
+        let mut file = NetCdf3Reader::open(path)?;
         let records = file.records();
         let shown = records.min(most);
         let spread: Vec<usize> = (0..shown)
@@ -51,14 +52,14 @@ pub fn read_maps(path: &Path, field: Field, most: usize) -> Result<FieldsData, F
             .collect();
         read_chosen(&mut file, |name| name == field, &spread)
     };
-    read().map_err(|fault| in_words(fault, path))
+    read().map_err(|error| in_words(error, path))
 }
 
-fn in_words(fault: Fault, path: &Path) -> FieldsError {
+fn in_words(error: NetCdfError, path: &Path) -> FieldsError {
     let path = path.to_owned();
-    match fault {
-        Fault::Io(source) => FieldsError::Read { path, source },
-        Fault::Broken(detail) => FieldsError::Broken {
+    match error {
+        NetCdfError::Io(source) => FieldsError::Read { path, source },
+        NetCdfError::Broken(detail) => FieldsError::Broken {
             path,
             detail: text::single_line(&detail),
         },
@@ -67,10 +68,10 @@ fn in_words(fault: Fault, path: &Path) -> FieldsError {
 
 /// Some fields at some instants, and the texture; the other arrays are left empty.
 fn read_chosen(
-    file: &mut Classic,
+    file: &mut NetCdf3Reader,
     chosen: impl Fn(Field) -> bool,
     records: &[usize],
-) -> Result<FieldsData, Fault> {
+) -> Result<FieldsData, NetCdfError> {
     let [nx, ny] = counts(file, BLOCKS)?;
     let [stride] = counts(file, STRIDE)?;
     let [block_size] = numbers(file, BLOCK_SIZE)?;
@@ -78,14 +79,14 @@ fn read_chosen(
     for (name, blocks) in [(X, nx), (Y, ny)] {
         let (found, wanted) = (file.dimension(name)?, blocks.div_ceil(stride));
         if found != wanted {
-            return Err(Fault::Broken(format!(
+            return Err(NetCdfError::Broken(format!(
                 "`{name}` has the length {found} where {wanted} is wanted"
             )));
         }
     }
     // The instants are records: otherwise the whole of an array would be read for each of them.
     if !records.is_empty() && file.dimension(TIME)? != 0 {
-        return Err(Fault::Broken(format!("`{TIME}` has a fixed length")));
+        return Err(NetCdfError::Broken(format!("`{TIME}` has a fixed length")));
     }
     // A file without instants has no fields, even if it defines some.
     let names: Vec<Field> = file
@@ -116,7 +117,7 @@ fn read_chosen(
     })
 }
 
-fn read_frame(file: &mut Classic, names: &[Field], record: usize) -> Result<FieldFrame, Fault> {
+fn read_frame(file: &mut NetCdf3Reader, names: &[Field], record: usize) -> Result<FieldFrame, NetCdfError> {
     let time_star = only(TIME_STAR, &file.values(TIME_STAR, &[TIME], record)?)?;
     let step = only(STEP, &file.values(STEP, &[TIME], record)?)? as u64;
     let label = file.values(LABEL, &[TIME, LABEL_LENGTH], record)?;
@@ -139,27 +140,27 @@ fn read_frame(file: &mut Classic, names: &[Field], record: usize) -> Result<Fiel
 }
 
 /// A global attribute of N positive numbers.
-fn numbers<const N: usize>(file: &Classic, name: &str) -> Result<[f64; N], Fault> {
+fn numbers<const N: usize>(file: &NetCdf3Reader, name: &str) -> Result<[f64; N], NetCdfError> {
     match <[f64; N]>::try_from(file.attribute(name)?) {
         Ok(values) if values.iter().all(|value| value.is_finite() && *value > 0.0) => Ok(values),
-        _ => Err(Fault::Broken(format!(
+        _ => Err(NetCdfError::Broken(format!(
             "the attribute `{name}` does not hold positive numbers, {N} in all"
         ))),
     }
 }
 
 /// The same for whole numbers; they fit, because the file stores them with 32 bits.
-fn counts<const N: usize>(file: &Classic, name: &str) -> Result<[usize; N], Fault> {
+fn counts<const N: usize>(file: &NetCdf3Reader, name: &str) -> Result<[usize; N], NetCdfError> {
     let values = numbers::<N>(file, name)?.map(|value| value as usize);
     if values.contains(&0) {
-        return Err(Fault::Broken(format!("the attribute `{name}` is below 1")));
+        return Err(NetCdfError::Broken(format!("the attribute `{name}` is below 1")));
     }
     Ok(values)
 }
 
-fn only(name: &str, values: &[f64]) -> Result<f64, Fault> {
+fn only(name: &str, values: &[f64]) -> Result<f64, NetCdfError> {
     values
         .first()
         .copied()
-        .ok_or_else(|| Fault::Broken(format!("`{name}` is empty")))
+        .ok_or_else(|| NetCdfError::Broken(format!("`{name}` is empty")))
 }

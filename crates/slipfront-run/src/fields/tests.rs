@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 use super::write::write_to;
+use slipfront::observe::Field;
+
 use super::*;
 use slipfront_case::field_info::{field_info, field_named};
 

@@ -9,15 +9,16 @@ use std::rc::Rc;
 
 use netcdf3::{DataSet, FileWriter, InvalidDataSet, Version};
 
-use super::names::{
+use super::variables::{
     BLOCK_SIZE, BLOCKS, FIRST_SLIP, LABEL, LABEL_LENGTH, MU_KINETIC, MU_STATIC, STEP, STRIDE, TEXTURED, TIME,
     TIME_STAR, TIME_UNIT, X, Y,
 };
 use slipfront::observe::Field;
 use slipfront_case::case::smallest_stride;
 
-use super::{FieldsError, FieldsFile, thin};
-use slipfront_case::disk::write_atomic_with;
+use super::error::FieldsError;
+use super::frame::{FieldsFile, thin};
+use slipfront_case::disk::write_temp;
 use slipfront_case::field_info::field_info;
 
 /// Writes `fields.nc`.
@@ -31,9 +32,20 @@ use slipfront_case::field_info::field_info;
 /// [`FieldsError`] if an array does not have the length that `nx`, `ny` and `stride` ask for, one field takes more
 /// than 2 GiB, or the file cannot be written in full.
 pub fn write_fields(path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    write_fields_via(folder.unwrap_or(Path::new(".")), path, file)
+}
+
+/// Writes `fields.nc` as [`write_fields`] does, with its temporary file in a folder on the same file system.
+///
+/// # Errors
+///
+/// As for [`write_fields`].
+pub fn write_fields_via(temporary: &Path, path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
     check(path, file)?;
     let fill = |output: &mut File| write_to(output.try_clone()?, file).map(drop);
-    write_atomic_with(path, fill).map_err(|source| FieldsError::Write {
+    let written = write_temp(temporary, fill).and_then(|written| Ok(written.persist(path)?));
+    written.map_err(|source| FieldsError::Write {
         path: path.to_owned(),
         source,
     })

@@ -2,136 +2,182 @@
 //!
 //! Files appear whole or not at all, and `manifest.json` comes last: where it stands, the run is complete.
 
-pub mod contents;
+mod contents;
+pub mod copy;
 pub mod error;
+pub mod inspection;
 pub mod resume_command;
+pub mod unfinished;
 
 use std::fs::{File, TryLockError};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use slipfront::Model;
-use slipfront_case::disk::{UNFINISHED, holds_only_unfinished, remove_unfinished, sync_folder, write_atomic};
+use slipfront_case::case::{Case, Input};
+use slipfront_case::disk::sync_folder;
 
-use self::contents::{refuse_foreign, remove_checkpoints, remove_own, remove_results, resolved_case};
-pub use self::error::FolderError;
+use self::contents::{RESULTS, refuse_foreign, remove_files};
+use self::error::FolderError;
+use self::inspection::{Contents, Inspection};
+use self::unfinished::Unfinished;
 use crate::manifest::Manifest;
 use crate::names::{CASE, MANIFEST};
-use slipfront_case::case::{Case, Input};
+
+/// A folder that was locked, if it exists, and inspected, for a run that begins or is resumed there.
+#[derive(Debug)]
+pub struct OpenedFolder {
+    /// What it holds.
+    pub inspection: Inspection,
+    existed: bool,
+    lock: Option<File>,
+}
+
+impl OpenedFolder {
+    /// Locks a folder and inspects it.
+    ///
+    /// # Errors
+    /// When another process runs there, or the folder cannot be listed.
+    pub fn open(path: &Path) -> Result<Self, FolderError> {
+        let existed = path.is_dir();
+        let lock = if existed { lock(path)? } else { None };
+        let inspection = inspect(path)?;
+        Ok(Self {
+            inspection,
+            existed,
+            lock,
+        })
+    }
+
+    /// Makes the folder ready for a run that reads these `inputs`: it is created, or empty, or with `force` the files of an
+    /// earlier run are removed (and nothing else).
+    ///
+    /// # Errors
+    /// When it holds something else, which includes foreign files in the place of the copies, or cannot be written.
+    pub fn prepare(mut self, force: bool, inputs: &[Input]) -> Result<RunFolder, FolderError> {
+        let path = self.inspection.path.clone();
+        if !self.existed {
+            std::fs::create_dir_all(&path).map_err(|source| FolderError::Unwritable {
+                path: path.clone(),
+                source,
+            })?;
+            // Another process may have made it since.
+            self = Self::open(&path)?;
+        }
+        match self.inspection.contents {
+            Contents::Empty => {}
+            _ if force => {
+                let managed = &self.inspection.managed_files;
+                refuse_foreign(&path, managed, inputs)?;
+                remove_files(&path, managed.iter().map(String::as_str))?;
+            }
+            Contents::Interrupted => return Err(FolderError::Interrupted { path }),
+            Contents::Foreign | Contents::Complete(_) => return Err(FolderError::NotEmpty { path }),
+        }
+        let unfinished = Unfinished::of(&path);
+        unfinished.create()?;
+        // Without a lock another process may be writing.
+        if self.lock.is_some() {
+            let _ = unfinished.clear_temporary();
+        }
+        Ok(RunFolder {
+            path,
+            unfinished,
+            written: Vec::new(),
+            new: true,
+            _lock: self.lock,
+        })
+    }
+
+    /// Takes over the folder of an interrupted run of this case: removes what it had written of its results, which are
+    /// written again. The case, the files that it reads and the checkpoints stay.
+    ///
+    /// # Errors
+    /// Any error of the system.
+    pub fn resume(self, case: &Case) -> Result<RunFolder, FolderError> {
+        let path = self.inspection.path;
+        remove_files(&path, RESULTS)?;
+        let unfinished = Unfinished::of(&path);
+        unfinished.create()?;
+        unfinished
+            .clear_temporary()
+            .map_err(|source| FolderError::Unwritable {
+                path: path.clone(),
+                source,
+            })?;
+        // A case that was loaded can be written.
+        let text = case.file.to_toml().unwrap_or_default();
+        let inputs = case.inputs.iter();
+        let inputs = inputs.map(|input| (input.name.as_str(), input.bytes.as_slice()));
+        let written = [(CASE, text.as_bytes())]
+            .into_iter()
+            .chain(inputs)
+            .map(|(name, bytes)| (name.to_owned(), Some(blake3::hash(bytes))))
+            .collect();
+        let folder = RunFolder {
+            path,
+            unfinished,
+            written,
+            new: false,
+            _lock: self.lock,
+        };
+        folder.sync()?;
+        Ok(folder)
+    }
+}
+
+fn inspect(path: &Path) -> Result<Inspection, FolderError> {
+    Inspection::of(path).map_err(|source| FolderError::Unwritable {
+        path: path.to_owned(),
+        source,
+    })
+}
 
 /// A folder that a run is being written to.
 #[derive(Debug)]
 pub struct RunFolder {
     path: PathBuf,
-    /// Files of the run, and what is known to stand in them.
+    unfinished: Unfinished,
+    /// Files of the run, and the hash of what this process knows of their contents.
     written: Vec<(String, Option<blake3::Hash>)>,
-    /// Whether this process has made it ready.
+    /// Whether this process began the run.
     new: bool,
     /// Held as long as the run goes on.
     _lock: Option<File>,
 }
 
 impl RunFolder {
-    /// Makes the folder ready for a run that reads these `inputs`: it is created, or empty, or with `force` rid of the
-    /// files of an earlier run (and of nothing else).
+    /// Opens a folder and makes it ready: see [`OpenedFolder::prepare`].
     ///
     /// # Errors
-    /// When it holds something else, which includes foreign files in the place of the copies, or cannot be written.
+    /// Those of [`OpenedFolder::open`] and [`OpenedFolder::prepare`].
     pub fn prepare(path: &Path, force: bool, inputs: &[Input]) -> Result<Self, FolderError> {
-        let unwritable = |source| FolderError::Unwritable {
-            path: path.to_owned(),
-            source,
-        };
-        std::fs::create_dir_all(path).map_err(unwritable)?;
-        let lock = lock(path)?;
-        // A kill may have come before the case was written.
-        if !holds_only_unfinished(path).map_err(unwritable)? {
-            if !force {
-                let path = path.to_owned();
-                // A run that was begun, and neither completed nor removed.
-                let interrupted = !path.join(MANIFEST).exists() && resolved_case(&path).is_some();
-                return Err(if interrupted {
-                    FolderError::Interrupted { path }
-                } else {
-                    FolderError::NotEmpty { path }
-                });
-            }
-            let names = inputs.iter().map(|input| input.name.as_str());
-            refuse_foreign(path, names)?;
-            remove_own(path)?;
-        }
-        if lock.is_some() {
-            remove_unfinished(path);
-        }
-        // A folder that cannot be written should say so before the run, not after it.
-        tempfile::Builder::new()
-            .prefix(UNFINISHED)
-            .tempfile_in(path)
-            .map_err(unwritable)?;
-        Ok(Self {
-            path: path.to_owned(),
-            written: Vec::new(),
-            new: true,
-            _lock: lock,
-        })
+        OpenedFolder::open(path)?.prepare(force, inputs)
     }
 
-    /// Takes over the folder of a run that has a case.
-    ///
-    /// # Errors
-    /// When there is no such run, or another process goes on with it.
-    pub fn reopen(path: &Path) -> Result<Self, FolderError> {
-        if resolved_case(path).is_none() {
-            let why = if !path.exists() {
-                "there is none of this name"
-            } else if !path.is_dir() {
-                "it is a file: name its folder"
-            } else if !path.join(CASE).exists() {
-                "it has no case.toml"
-            } else {
-                "its case.toml is not as this version wrote it; put it back as it was, or run it to another folder"
-            };
-            let path = path.to_owned();
-            return Err(FolderError::NoRun { path, why });
-        }
-        Ok(Self {
-            path: path.to_owned(),
-            written: Vec::new(),
-            new: false,
-            _lock: lock(path)?,
-        })
-    }
-
-    /// Removes what was written of the results of a run before it was interrupted: it is written again. The case, the
-    /// files that it reads and the checkpoints stay.
-    ///
-    /// # Errors
-    /// What the system says.
-    pub fn clear_results(&mut self, case: &Case) -> Result<(), FolderError> {
-        remove_results(&self.path)?;
-        // A case that was loaded can be written.
-        let text = case.file.to_toml().unwrap_or_default();
-        let inputs = case.inputs.iter();
-        let inputs = inputs.map(|input| (input.name.as_str(), input.bytes.as_slice()));
-        self.written = [(CASE, text.as_bytes())]
-            .into_iter()
-            .chain(inputs)
-            .map(|(name, bytes)| (name.to_owned(), Some(blake3::hash(bytes))))
-            .collect();
-        Ok(())
-    }
-
-    /// Removes what this process has written of a run that failed. What others wrote stays.
-    pub fn discard(self) {
+    /// Ends a run that failed: removes what this process has written, if it began the run. A resumed run keeps its case.
+    pub fn discard(mut self) {
         if self.new {
-            // The run has failed, which is worse.
-            let _ = remove_own(&self.path);
+            let names: Vec<String> = self.written.drain(..).map(|(name, _)| name).rev().collect();
+            // The error of the run is what matters.
+            let _ = remove_files(&self.path, names.iter().map(String::as_str));
+            let _ = self.unfinished.remove();
+        } else {
+            self.leave();
         }
     }
 
-    /// Forces the names of the case and of the files that it reads to the disk.
+    /// Ends with the case alone: the hidden subfolder is removed, unless it holds a checkpoint.
+    pub fn leave(self) {
+        if !self.unfinished.has_checkpoint() {
+            let _ = self.unfinished.remove();
+        }
+    }
+
+    /// Syncs the folders of the case and of the files that it reads, so that these survive a power failure.
     ///
     /// # Errors
-    /// What the system says.
+    /// Any error of the system.
     pub fn sync(&self) -> Result<(), FolderError> {
         let inputs = self.path.join("inputs");
         let folders = [self.path.as_path(), &inputs];
@@ -153,14 +199,21 @@ impl RunFolder {
     /// When it cannot be written, or a foreign file stands in its place.
     pub fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
         let path = self.claim(name)?;
-        write_atomic(&path, bytes).map_err(|source| FolderError::Write { path, source })?;
+        self.unfinished
+            .write(&path, |file| file.write_all(bytes))
+            .map_err(|source| FolderError::Write { path, source })?;
         if let Some((_, hash)) = self.written.last_mut() {
             *hash = Some(blake3::hash(bytes));
         }
         Ok(())
     }
 
-    /// The path of a file that somebody else writes, which is noted as part of the run.
+    /// The folder of temporary files, for a file that is [claimed](Self::claim).
+    pub fn temporary(&self) -> PathBuf {
+        self.unfinished.temporary()
+    }
+
+    /// Notes a file as part of the run, and gives its path to whoever writes it.
     ///
     /// # Errors
     /// When a foreign file stands in its place, or its folder cannot be made.
@@ -198,9 +251,10 @@ impl RunFolder {
                 return Err(FolderError::Changed { path });
             }
         }
-        let (manifest, bytes) = manifest.sealed();
+        let (manifest, bytes) = manifest.with_checksum();
         let path = self.path.join(MANIFEST);
-        write_atomic(&path, &bytes)
+        self.unfinished
+            .write(&path, |file| file.write_all(&bytes))
             .and_then(|()| sync_folder(&self.path))
             .map_err(|source| {
                 // What may not be on the disk is not complete.
@@ -208,7 +262,7 @@ impl RunFolder {
                 FolderError::Write { path, source }
             })?;
         // The run is complete whether they can be removed or not.
-        let _ = remove_checkpoints(&self.path);
+        let _ = self.unfinished.remove();
         Ok(manifest)
     }
 }

@@ -33,8 +33,8 @@ pub struct Level {
 }
 
 impl Level {
-    /// How pictures name it: a square's pair of blocks by one number.
-    pub(super) fn shown(&self) -> String {
+    /// Its name in pictures: a pair of equal numbers, such as the blocks of a square slider, is named by one number.
+    pub fn shown(&self) -> String {
         match (self.labels.as_slice(), self.number) {
             ([_], Some(number)) => number.to_string(),
             (labels, _) => labels.join(" "),

@@ -1,189 +1,111 @@
-//! What can go wrong with a study.
+//! Errors of studies.
 
 use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::manifest::Manifest;
-use crate::results::ResultsError;
+use crate::error::ResultsError;
+use crate::program;
 use crate::run_folder::error::FolderError;
 use slipfront_case::case_file::CaseError;
 use slipfront_case::text::display_path;
+#[cfg(feature = "plot")]
 use slipfront_plot::PictureError;
 
 /// A study that cannot be used, or had to stop.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum StudyError {
-    /// The study file, or its base case.
     #[error(transparent)]
     File(#[from] CaseError),
-    /// A point of the study is not a valid case.
     #[error("the point {point} is not a valid case: {source}")]
-    Point {
-        /// Its levels.
-        point: String,
-        /// What is wrong with it.
-        source: CaseError,
-    },
-    /// The product of the axes is very large.
+    Point { point: String, source: CaseError },
     #[error("the study has {runs} runs, more than {limit}: give --yes if that is meant")]
-    Large {
-        /// Runs.
-        runs: u64,
-        /// What is done without asking.
-        limit: u64,
-    },
-    /// The study has more points than can be listed.
+    Large { runs: u64, limit: u64 },
     #[error("the axes of the study multiply to more than {limit} points: take fewer levels")]
-    TooLarge {
-        /// Most points.
-        limit: usize,
-    },
-    /// As many runs at once as there is no memory for.
+    TooLarge { limit: usize },
     #[error(
         "{threads} runs at once take about {needed} of memory where {available} are available to this process: give \
         --threads {fit}"
     )]
     Memory {
-        /// Runs at once.
         threads: usize,
-        /// What they take.
         needed: String,
-        /// What there is.
         available: String,
-        /// How many runs there is memory for.
         fit: usize,
     },
-    /// A run that there is no memory for.
     #[error(
         "a run of the point {point} takes about {needed} of memory where {available} are available to this process: \
         lower `slider.blocks`, or keep no run folders (`study.keep`)"
     )]
     PointMemory {
-        /// Its levels.
         point: String,
-        /// What it takes.
         needed: String,
-        /// What there is.
         available: String,
     },
-    /// Results that there is no room for.
     #[error(
         "the runs still to be done take about {needed} where {free} are free in {}: keep fewer run folders \
         (`study.keep`), or choose another folder with --out",
         path.display()
     )]
     Disk {
-        /// What they take.
         needed: String,
-        /// What there is.
         free: String,
-        /// The folder.
         path: PathBuf,
     },
-    /// The results folder.
     #[error(transparent)]
     Folder(#[from] FolderError),
-    /// The folder holds something that is no study.
     #[error("the folder {} holds other things than a study: choose another with --out", path.display())]
-    NotAStudy {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// Another process works in the folder.
+    NotAStudy { path: PathBuf },
     #[error("another study is running in {}: wait for it, or choose another folder with --out", path.display())]
-    Busy {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// The records could not be read or written.
+    Busy { path: PathBuf },
     #[error("cannot {action} {}: {source}; finished runs are safe, and the study goes on from there when started again",
         path.display())]
     Records {
-        /// What was tried.
         action: &'static str,
-        /// The file.
         path: PathBuf,
-        /// What the system says.
         source: std::io::Error,
     },
-    /// Another file of it could not be written.
     #[error(
         "cannot write {}: {source}; finished runs are safe, and the study goes on from there when started again",
         display_path(path)
     )]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// A file that is no record file.
+    Write { path: PathBuf, source: std::io::Error },
     #[error("{} is not the record file of a study", path.display())]
-    NotRecords {
-        /// The file.
-        path: PathBuf,
-    },
-    /// A folder could not be kept.
+    NotRecords { path: PathBuf },
     #[error(
         "cannot keep the folder of a run: {0}; finished runs are safe, and the study goes on from there when \
         started again"
     )]
     Keep(#[from] ResultsError),
-    /// Shards that do not hold all runs.
     #[error(
         "{runs} runs are in none of the shards{}: finish them, or run the rest with `slipfront study` on the \
         study.toml of the united folder, with --out the folder itself",
         of_others(*others)
     )]
-    Missing {
-        /// Runs that are not there, as far as is known.
-        runs: usize,
-        /// Recorded runs that no point asks for.
-        others: usize,
-    },
-    /// Shards of different studies.
+    Missing { runs: usize, others: usize },
     #[error("{} belongs to another study than {}: merge shards of one study only", other.display(), first.display())]
-    Foreign {
-        /// The folder whose study is taken.
-        first: PathBuf,
-        /// The one that differs.
-        other: PathBuf,
-    },
-    /// A shard that cannot be.
+    Foreign { first: PathBuf, other: PathBuf },
     #[error("the shard `{given}` cannot be: {why}; write i/n with i from 1 to n, such as 2/8, or `slurm`")]
-    Shard {
-        /// What was given.
-        given: String,
-        /// What is wrong with it.
-        why: String,
-    },
-    /// A table could not be put into words.
+    Shard { given: String, why: String },
     #[error("cannot write a table of the study: {0}")]
     Table(#[from] csv::Error),
-    /// A picture.
+    #[cfg(feature = "plot")]
     #[error("cannot draw {name}: {source}")]
-    Picture {
-        /// Which one.
-        name: String,
-        /// What is wrong with it.
-        source: PictureError,
-    },
-    /// Threads could not be started.
+    Picture { name: String, source: PictureError },
     #[error("cannot start the threads of the study: {0}")]
     Threads(std::io::Error),
-    /// A signal asked to stop.
     #[error("stopped by a signal: finished runs are safe, and the same command goes on from there")]
     Interrupted,
 }
 
-/// What recorded runs that no point asks for may be, for the middle of a sentence.
+/// The explanation of recorded runs that do not belong to a study, to be inserted into a sentence.
 pub(crate) fn of_others(runs: usize) -> String {
     match runs {
         0 => String::new(),
         _ => format!(
             ", and {runs} recorded runs are of another program than {}, or of a study that was changed since",
-            Manifest::this_program()
+            program::this_program()
         ),
     }
 }

@@ -1,40 +1,44 @@
-//! The study folder: the study itself, the records, the tables and the pictures.
+//! The results folder of a study: study file, journal, tables, pictures and run folders.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use super::error::StudyError;
-use super::figures;
 use super::input_copies::Copy;
-use super::journal::{Finding, Records};
-use super::plan::Plan;
-use super::scheduler::Findings;
+use super::journal::Records;
+use super::picture_plan;
+use super::plan::{Plan, RunKey};
+use super::record::RunResult;
 use super::study_file::StudyFile;
+use super::study_results::StudyResults;
 use crate::manifest::Manifest;
-use crate::names::{CASE, FOUND, MANIFEST, RECORDS, RUNS, TABLES};
+use crate::names::{CASE, FIGURE_CACHE, RECORDS, RUNS, TABLES};
+use crate::run_folder::copy::copy_run;
 use crate::run_folder::error::FolderError;
 use slipfront_case::disk::{
-    TEXT_MAX_BYTES, is_empty, is_folder, open_limited, open_regular, read_limited, remove_if_there,
-    remove_unfinished, sync_folder, write_atomic, write_atomic_with, write_temp,
+    TEXT_MAX_BYTES, is_empty, is_folder, open_limited, read_limited, remove_if_there, write_atomic,
+    write_temp,
 };
+use slipfront_case::machine::free_disk;
+use slipfront_case::number_format::byte_size;
 
-/// The study as a table with its base inside: what `slipfront study DIR/study.toml` repeats.
+/// The study file in the folder, with the base case as a table in it: `slipfront study DIR/study.toml` repeats the study.
 const STUDY: &str = "study.toml";
 
 /// A study folder with its records open.
 #[derive(Debug)]
 pub struct StudyFolder {
     path: PathBuf,
-    /// What has been run.
+    /// Finished runs.
     pub records: Records,
-    /// Whether the study was another one when the folder was last used.
+    /// Whether the study has changed since the folder was last used.
     pub changed: bool,
-    /// The study as it stands in the folder, where it reads copies of its files.
-    pub(super) study: StudyFile,
+    /// The study in the folder, which reads copies of its files.
+    pub study: StudyFile,
 }
 
 impl StudyFolder {
-    /// Makes the folder ready: new, empty, or one that a study has used before.
+    /// Opens a results folder: a new one, an empty one, or one of an earlier call.
     ///
     /// # Errors
     /// When it holds other things, cannot be written, or another process works in it.
@@ -46,9 +50,9 @@ impl StudyFolder {
         std::fs::create_dir_all(path).map_err(unwritable)?;
         let used = path.join(RECORDS).exists();
         let empty = is_empty(path).map_err(unwritable)?;
-        // The findings of `slipfront paper` stand beside records as well.
-        let of_paper = path.join(FOUND).is_dir() && !is_study(path);
-        if (!used && !empty) || of_paper {
+        // A folder of `slipfront paper` has records and no study file.
+        let is_of_figures = path.join(FIGURE_CACHE).is_dir() && !is_study(path);
+        if (!used && !empty) || is_of_figures {
             return Err(StudyError::NotAStudy {
                 path: path.to_owned(),
             });
@@ -71,15 +75,8 @@ impl StudyFolder {
             study: parse(&text)?,
         };
         folder.copy(&copies)?;
-        // Its tables and pictures would stand beside another study, and follow from the records at any time. One that cannot
-        // be read now has no pictures that are known.
         if let Some(before) = before {
-            if let Ok(before) = parse(&String::from_utf8_lossy(&before)) {
-                folder.remove_pictures(figures::names(&before.axes));
-            }
-            for table in TABLES {
-                let _ = remove_if_there(&path.join(table));
-            }
+            folder.remove_tables_and_pictures(parse(&String::from_utf8_lossy(&before)).ok().as_ref());
         }
         folder.write(STUDY, text.as_bytes())?;
         Ok(folder)
@@ -90,7 +87,7 @@ impl StudyFolder {
         &self.path
     }
 
-    /// Writes a file, whole or not at all.
+    /// Writes a file atomically.
     ///
     /// # Errors
     /// When it cannot be written.
@@ -101,7 +98,7 @@ impl StudyFolder {
         written.map_err(|source| StudyError::Write { path, source })
     }
 
-    /// Copies files, one after the other. None takes its name before all are read: it may be that of an original.
+    /// Copies files, all of them to temporary files first: the name of a copy may be that of another original.
     fn copy(&self, copies: &[Copy]) -> Result<(), StudyError> {
         let failed = |path: &Path| {
             let path = path.to_owned();
@@ -110,7 +107,7 @@ impl StudyFolder {
         let mut staged = Vec::new();
         for Copy { name, original, .. } in copies {
             let path = self.path.join(name);
-            // What a link leads to is somebody else's.
+            // A link may lead to a folder that is not of this study.
             let mut above = path.ancestors().skip(1).take_while(|above| *above != self.path);
             if let Some(link) = above.find(|above| above.symlink_metadata().is_ok() && !is_folder(above)) {
                 let path = link.to_owned();
@@ -130,28 +127,56 @@ impl StudyFolder {
         Ok(())
     }
 
-    /// Copies the run folders that a shard has kept whole and this folder lacks, and the cases of failed runs.
+    /// Copies complete run folders, and the cases of failed runs, from the folder of a shard, where this folder lacks them.
     ///
     /// # Errors
     /// When one cannot be copied.
-    pub fn take_kept(&self, plan: &Plan, findings: &Findings, shard: &Path) -> Result<(), StudyError> {
-        for (run, finding) in &findings.runs {
+    pub fn take_kept(&self, plan: &Plan, results: &StudyResults, shard: &Path) -> Result<(), StudyError> {
+        for (run, result) in &results.runs {
             let name = plan.folder_name(*run);
-            let is_whole = |folder: &Path| match finding.as_ref() {
-                // A kill may have come while it was written.
-                Finding::Done(_) => Manifest::read(folder).is_ok(),
-                Finding::Failed(_) => folder.join(CASE).is_file(),
+            let is_whole = |folder: &Path| match result.as_ref() {
+                // The run folder may be incomplete if the process was killed.
+                RunResult::Done(_) => Manifest::read(folder).is_ok(),
+                RunResult::Failed(_) => folder.join(CASE).is_file(),
             };
             let (from, to) = (shard.join(RUNS).join(&name), self.path.join(RUNS).join(&name));
             if !is_whole(&from) || is_whole(&to) {
                 continue;
             }
-            copy_run(&from, &to).map_err(|source| FolderError::Copy { from, to, source })?;
+            copy_run(&from, &to)?;
         }
         Ok(())
     }
 
-    /// Removes pictures of these names, and none of others; one that cannot be removed does no harm.
+    /// Refuses a study if the disk has no room for the runs that it lacks, with the fewest replicates.
+    ///
+    /// # Errors
+    /// [`StudyError::Disk`].
+    pub fn check_disk(&self, plan: &Plan) -> Result<(), StudyError> {
+        let lacking = |run: &RunKey| self.records.get(&plan.identity(*run)).is_none();
+        let needed = plan.disk(plan.runs(plan.settings.min_replicates()).filter(lacking));
+        match free_disk(&self.path) {
+            Some(free) if needed > free => Err(StudyError::Disk {
+                needed: byte_size(needed),
+                free: byte_size(free),
+                path: self.path.clone(),
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Removes the tables and pictures of the study that the folder had before: they do not belong to the new study, and can be
+    /// made from the records again. If its file could not be read, the names of its pictures are not known, and they stay.
+    fn remove_tables_and_pictures(&self, before: Option<&StudyFile>) {
+        if let Some(before) = before {
+            self.remove_pictures(picture_plan::names(&before.axes));
+        }
+        for table in TABLES {
+            let _ = remove_if_there(&self.path.join(table));
+        }
+    }
+
+    /// Removes the pictures of these names. An error is ignored: an old picture that stays is no reason to stop.
     pub(super) fn remove_pictures(&self, names: impl Iterator<Item = String>) {
         for name in names {
             for ending in ["svg", "png"] {
@@ -161,44 +186,18 @@ impl StudyFolder {
     }
 }
 
-/// Copies the files of a run folder. Its case and its manifest come last: without them, it is not taken for whole.
-fn copy_run(from: &Path, to: &Path) -> std::io::Result<()> {
-    std::fs::create_dir_all(to)?;
-    remove_unfinished(to);
-    let last = [CASE, MANIFEST];
-    for entry in std::fs::read_dir(from)? {
-        let entry = entry?;
-        let (from, to, name) = (entry.path(), to.join(entry.file_name()), entry.file_name());
-        if entry.file_type()?.is_dir() {
-            copy_run(&from, &to)?;
-        } else if !last.iter().any(|last| name == *last) {
-            copy_file(&from, &to)?;
-        }
-    }
-    sync_folder(to)?;
-    for name in last.into_iter().filter(|name| from.join(name).exists()) {
-        copy_file(&from.join(name), &to.join(name))?;
-    }
-    Ok(())
-}
-
-fn copy_file(from: &Path, to: &Path) -> std::io::Result<()> {
-    let mut from = open_regular(from)?;
-    write_atomic_with(to, |to| std::io::copy(&mut from, to).map(|_| ()))
-}
-
-/// Whether a study has used the folder.
+/// Whether the folder is the results folder of a study.
 pub fn is_study(folder: &Path) -> bool {
     folder.join(STUDY).exists()
 }
 
-/// Loads the study of a folder that has run one.
+/// Loads the study file of a results folder.
 ///
 /// # Errors
 /// As for any study file.
 pub fn study_of(folder: &Path) -> Result<StudyFile, StudyError> {
     let path = folder.join(STUDY);
-    // A user may hand over a study through a pipe; in a folder of results it would be waited for.
+    // A study file given by the user may be a pipe; in a results folder, opening a pipe would block without end.
     open_limited(&path, TEXT_MAX_BYTES).map_err(|source| FolderError::Read {
         path: path.clone(),
         source,
@@ -232,4 +231,34 @@ pub fn refuse_foreign(folders: &[PathBuf]) -> Result<(), StudyError> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Changes of the original files during a study have no effect; a changed copy is an error.
+    #[test]
+    fn runs_read_what_their_identity_was_made_of() {
+        let folder = tempfile::tempdir().unwrap();
+        let table = |value: f64| format!("{value},{value}\n").repeat(2);
+        let original = folder.path().join("mu.csv");
+        std::fs::write(&original, table(0.9)).unwrap();
+        let text = "[base]\nslider.blocks = [2, 2]\nfriction.mu_static_field = 'mu.csv'";
+        let file = StudyFile::parse(text, "study.toml", "study", folder.path()).unwrap();
+        let plan = Plan::new(&file, None).unwrap();
+        let run = plan.runs(1).next().unwrap();
+        let out = StudyFolder::open(&folder.path().join("out"), &file).unwrap();
+        std::fs::write(&original, table(0.8)).unwrap();
+        let said = plan.case(run).unwrap_err().to_string();
+        assert!(
+            said.contains("no longer what it was when the study began"),
+            "{said}"
+        );
+        let plan = plan.reading_copies(&out.study);
+        let case = plan.case(run).unwrap();
+        assert_eq!(case.inputs[0].bytes, table(0.9).as_bytes());
+        std::fs::write(folder.path().join("out/inputs/mu.csv"), table(0.7)).unwrap();
+        assert!(plan.case(run).is_err());
+    }
 }

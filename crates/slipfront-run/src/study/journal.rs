@@ -1,7 +1,7 @@
-//! Records of finished runs: one line each, appended, checksummed and forced to the disk.
+//! The journal of a study: a line for every finished run, appended and forced to the disk.
 //!
-//! A line is `<checksum> <json>`. A line that a crash cut short, or that was damaged later, fails its checksum and
-//! counts as not run; the file is cut back to its last whole record before anything is appended.
+//! A line that a crash cut short, or that was damaged later, fails its checksum, and its run counts as not done. Before
+//! anything is appended, a part of a line at the end of the file is cut off.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions, TryLockError};
@@ -9,73 +9,17 @@ use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
-
 use super::error::StudyError;
-use super::summary_values::Numbers;
+use super::record::{Record, RunResult, looks_like_ours, may_begin_ours, parse_line, to_line};
 use crate::names::RECORDS;
-use crate::summary::Summary;
 use slipfront_case::disk::{open_limited, remove_unfinished, sync_folder};
-
-/// How a run ended.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Outcome {
-    /// Its numbers.
-    Done(Box<Summary>),
-    /// Why it failed.
-    Failed(String),
-}
-
-impl Outcome {
-    /// What tables and statistics need of it.
-    fn finding(&self) -> Finding {
-        match self {
-            Self::Done(summary) => Finding::Done(Numbers::of(summary)),
-            Self::Failed(reason) => Finding::Failed(reason.clone()),
-        }
-    }
-
-    /// The same, unless the record file could not hold it: JSON has no infinite numbers.
-    pub(super) fn or_not_finite(self) -> Self {
-        let read_back = |outcome: &Self| {
-            let json = serde_json::to_string(outcome).ok()?;
-            serde_json::from_str::<Self>(&json).ok()
-        };
-        if read_back(&self).as_ref() == Some(&self) {
-            self
-        } else {
-            Self::Failed("a number of its summary is not finite".to_owned())
-        }
-    }
-}
-
-/// What was found of a run.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Finding {
-    /// Its numbers.
-    Done(Numbers),
-    /// Why it failed.
-    Failed(String),
-}
-
-/// One line of the record file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Record {
-    /// What the run was: see [`super::Plan::identity`].
-    pub id: String,
-    /// Seconds that it took. The only thing here that another run of it would not repeat.
-    pub wall_time_s: f64,
-    /// How it ended.
-    pub outcome: Outcome,
-}
 
 /// The record file of a study folder, open for one process alone.
 #[derive(Debug)]
 pub struct Records {
     path: PathBuf,
     file: File,
-    findings: HashMap<String, Arc<Finding>>,
+    results: HashMap<String, Arc<RunResult>>,
     /// Lines that failed their checksum.
     pub damaged: usize,
 }
@@ -84,86 +28,51 @@ impl Records {
     /// Name of the record file in its folder.
     pub const FILE: &str = RECORDS;
 
-    /// Opens the records of a study folder, or begins them.
+    /// Opens the records of a study folder; a folder without them gets an empty file.
     ///
     /// # Errors
     /// When another process has them open, when they cannot be read, or when the file is something else.
     pub fn open(folder: &Path) -> Result<Self, StudyError> {
         let path = folder.join(RECORDS);
-        let failed = |action| {
-            move |path: &Path, source| StudyError::Records {
-                action,
-                path: path.to_owned(),
-                source,
-            }
-        };
-        let (cannot_open, cannot_write) = (failed("open"), failed("write to"));
-        let mut file = OpenOptions::new()
-            .read(true)
-            .append(true)
-            .create(true)
-            .open(&path)
-            .map_err(|source| cannot_open(&path, source))?;
-        let metadata = file.metadata().map_err(|source| cannot_open(&path, source))?;
-        // A pipe would be waited for, and a device never ends.
-        if !metadata.is_file() {
-            return Err(StudyError::NotRecords { path });
-        }
-        // Some file systems of clusters have no locks; the study runs there without.
-        if let Err(TryLockError::WouldBlock) = file.try_lock() {
-            return Err(StudyError::Busy {
-                path: folder.to_owned(),
-            });
-        }
-        // Nobody else writes in the folder from now on.
+        let mut file = open_locked(&path, folder)?;
+        // The lock is held from here on: unfinished files are of a process that has ended.
         remove_unfinished(folder);
-        let lines = Lines::read(&mut file).map_err(|source| cannot_open(&path, source))?;
+        let lines = Lines::read(&mut file).map_err(failed("open", &path))?;
         if lines.are_foreign() {
             return Err(StudyError::NotRecords { path });
         }
-        // What a crash left of a line must not swallow the next one; a record that lacks its line break alone gets it.
-        match lines.end {
-            End::Whole => {}
-            End::NoBreak => file
-                .write_all(b"\n")
-                .and_then(|()| file.sync_data())
-                .map_err(|source| cannot_write(&path, source))?,
-            End::Cut { whole_bytes } => file
-                .set_len(whole_bytes)
-                .map_err(|source| cannot_write(&path, source))?,
-        }
-        file.seek(SeekFrom::End(0))
-            .map_err(|source| cannot_open(&path, source))?;
-        // A new file is only safe from a power cut once its folder is.
+        lines.repair_end(&mut file).map_err(failed("write to", &path))?;
+        file.seek(SeekFrom::End(0)).map_err(failed("open", &path))?;
+        // A new file survives a power cut only once its folder is on the disk.
         if lines.bytes == 0 {
-            sync_folder(folder).map_err(|source| cannot_write(&path, source))?;
+            sync_folder(folder).map_err(failed("write to", &path))?;
         }
-        let findings = lines
+        let results = lines
             .records
             .into_iter()
-            .map(|record| (record.id, Arc::new(record.outcome.finding())))
+            .map(|record| (record.id, Arc::new(record.outcome.result())))
             .collect();
         Ok(Self {
             path,
             file,
-            findings,
+            results,
             damaged: lines.damaged,
         })
     }
 
-    /// What was found of the run with this identity, if it was done.
-    pub fn get(&self, id: &str) -> Option<&Arc<Finding>> {
-        self.findings.get(id)
+    /// The result of the run with this identity, if it is recorded.
+    pub fn get(&self, id: &str) -> Option<&Arc<RunResult>> {
+        self.results.get(id)
     }
 
     /// Number of runs recorded.
     pub fn len(&self) -> usize {
-        self.findings.len()
+        self.results.len()
     }
 
     /// Whether nothing is recorded.
     pub fn is_empty(&self) -> bool {
-        self.findings.is_empty()
+        self.results.is_empty()
     }
 
     /// Appends finished runs and waits until the disk has them.
@@ -175,15 +84,13 @@ impl Records {
             return Ok(());
         }
         let lines: Vec<u8> = records.iter().flat_map(to_line).collect();
-        let failed = |source| StudyError::Records {
-            action: "write to",
-            path: self.path.clone(),
-            source,
-        };
-        let before = self.file.stream_position().map_err(failed)?;
+        let before = self
+            .file
+            .stream_position()
+            .map_err(failed("write to", &self.path))?;
         let written = self.file.write_all(&lines).and_then(|()| self.file.sync_data());
         written.map_err(|source| {
-            // What fits stays, all but a part of a line; if even that cannot be cut off, the next start does it.
+            // Whole lines stay. If a part of a line cannot be cut off, the next start does it.
             let there = self
                 .file
                 .metadata()
@@ -194,48 +101,71 @@ impl Records {
                 .rposition(|&byte| byte == b'\n')
                 .map_or(0, |end| end + 1);
             let _ = self.file.set_len(before + whole as u64);
-            failed(source)
+            failed("write to", &self.path)(source)
         })?;
         for record in records {
-            self.findings
-                .insert(record.id.clone(), Arc::new(record.outcome.finding()));
+            self.results
+                .insert(record.id.clone(), Arc::new(record.outcome.result()));
         }
         Ok(())
     }
 
-    /// Takes over the records of another folder that are not here yet.
+    /// Appends the records of another folder that are not here yet, and returns their number.
     ///
     /// # Errors
     /// When they cannot be read or written.
     pub fn merge(&mut self, folder: &Path) -> Result<usize, StudyError> {
         let path = folder.join(RECORDS);
         let read = open_limited(&path, u64::MAX).and_then(|mut file| Lines::read(&mut file));
-        let lines = read.map_err(|source| StudyError::Records {
-            action: "read",
-            path: path.clone(),
-            source,
-        })?;
+        let lines = read.map_err(failed("read", &path))?;
         if lines.are_foreign() {
             return Err(StudyError::NotRecords { path });
         }
         self.damaged += lines.damaged;
         let mut records = lines.records;
-        records.retain(|record| !self.findings.contains_key(&record.id));
+        records.retain(|record| !self.results.contains_key(&record.id));
         self.append(&records)?;
         Ok(records.len())
     }
 }
 
-fn to_line(record: &Record) -> Vec<u8> {
-    // Our own struct of numbers and strings: serialisation cannot fail.
-    let json = serde_json::to_string(record).unwrap_or_default();
-    format!("{} {json}\n", checksum(json.as_bytes())).into_bytes()
+/// The error of an action on a record file that the system refused.
+fn failed(action: &'static str, path: &Path) -> impl Fn(std::io::Error) -> StudyError {
+    move |source| StudyError::Records {
+        action,
+        path: path.to_owned(),
+        source,
+    }
+}
+
+/// Opens the record file and locks it for this process.
+fn open_locked(path: &Path, folder: &Path) -> Result<File, StudyError> {
+    let file = OpenOptions::new()
+        .read(true)
+        .append(true)
+        .create(true)
+        .open(path)
+        .map_err(failed("open", path))?;
+    let metadata = file.metadata().map_err(failed("open", path))?;
+    // Reading a pipe would wait for a writer, and reading a device might not end.
+    if !metadata.is_file() {
+        return Err(StudyError::NotRecords {
+            path: path.to_owned(),
+        });
+    }
+    // Some file systems of clusters have no locks; the study runs there without one.
+    if let Err(TryLockError::WouldBlock) = file.try_lock() {
+        return Err(StudyError::Busy {
+            path: folder.to_owned(),
+        });
+    }
+    Ok(file)
 }
 
 /// The longest line of a record file: hundreds of times what a run takes.
 const LINE_MAX_BYTES: u64 = 1 << 20;
 
-/// What a record file holds.
+/// The contents of a record file.
 #[derive(Default)]
 struct Lines {
     records: Vec<Record>,
@@ -296,43 +226,26 @@ impl Lines {
         Ok(lines)
     }
 
-    /// Whether this is no record file, not even a damaged one.
+    /// Makes the file end with a line break, so that the next record begins a line: a record that lacks its line break gets
+    /// one, and a part of a record is cut off.
+    fn repair_end(&self, file: &mut File) -> std::io::Result<()> {
+        match self.end {
+            End::Whole => Ok(()),
+            End::NoBreak => file.write_all(b"\n").and_then(|()| file.sync_data()),
+            End::Cut { whole_bytes } => file.set_len(whole_bytes),
+        }
+    }
+
+    /// Whether the file is not a record file, not even a damaged one.
     fn are_foreign(&self) -> bool {
         self.too_long || (self.damaged > 0 && !self.ours)
     }
 }
 
-fn parse_line(line: &[u8]) -> Option<Record> {
-    let (sum, json) = line.split_at_checked(CHECKSUM)?;
-    let json = json.strip_prefix(b" ")?;
-    if checksum(json).as_bytes() != sum {
-        return None;
-    }
-    serde_json::from_slice(json).ok()
-}
-
-/// Whether a line may once have been a record, to tell a damaged file from a foreign one.
-fn looks_like_ours(line: &[u8]) -> bool {
-    line.get(CHECKSUM) == Some(&b' ') && line.get(CHECKSUM + 1) == Some(&b'{')
-}
-
-/// Whether a record may once have been meant to go on after this: it is cut within its checksum, or a power cut left zeros.
-fn may_begin_ours(line: &[u8]) -> bool {
-    let (sum, blank) = line.split_at(line.len().min(CHECKSUM));
-    let is_beginning = sum.iter().all(u8::is_ascii_hexdigit) && b" ".starts_with(blank);
-    is_beginning || line.iter().all(|&byte| byte == 0)
-}
-
-/// Characters of a checksum.
-const CHECKSUM: usize = 16;
-
-fn checksum(bytes: &[u8]) -> String {
-    blake3::hash(bytes).to_hex()[..CHECKSUM].to_owned()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::record::Outcome;
 
     fn record(id: &str) -> Record {
         Record {
@@ -342,7 +255,7 @@ mod tests {
         }
     }
 
-    /// One cut short by its line break alone is whole.
+    /// A line that lacks its line break alone is whole.
     #[test]
     fn a_line_cut_short_anywhere_is_not_run_and_does_not_harm_the_next() {
         let whole = to_line(&record("a"));
@@ -432,20 +345,6 @@ mod tests {
         std::fs::remove_file(&path).unwrap();
         std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
         refused(&mut records);
-    }
-
-    #[test]
-    fn what_json_cannot_hold_is_a_failure() {
-        let outcome = |value| {
-            let summary = Summary {
-                energy_error: value,
-                ..Summary::default()
-            };
-            Outcome::Done(Box::new(summary)).or_not_finite()
-        };
-        assert!(matches!(outcome(0.1), Outcome::Done(_)));
-        assert!(matches!(outcome(f64::NAN), Outcome::Failed(_)));
-        assert!(matches!(outcome(f64::INFINITY), Outcome::Failed(_)));
     }
 
     #[test]

@@ -1,70 +1,50 @@
-//! Studies: a case turned into a designed experiment whose answer is a table and a picture with error bars.
+//! Studies: a case is varied along axes and repeated on several random surfaces; the results are tables and pictures with error
+//! bars.
 //!
 //! ```text
-//! text -> StudyFile -> Plan (every point a valid case) -> Findings -> tables -> pictures
+//! text -> StudyFile -> Plan (every point a valid case) -> StudyResults -> tables -> pictures
 //! ```
 //!
-//! Every finished run is one line of a record file; a study that was stopped goes on from there.
-
-use std::collections::HashSet;
-
-use crate::names::TABLES;
+//! Every finished run is a line of the journal. A study that was stopped is continued from there.
 
 mod axis;
+mod columns;
 mod error;
-mod figures;
+mod execute;
 mod folder;
 mod input_copies;
 mod journal;
+#[cfg(feature = "plot")]
 mod labels;
+mod output;
+mod picture_plan;
+#[cfg(feature = "plot")]
+mod pictures;
 mod plan;
+mod point_statistics;
+mod record;
 mod scheduler;
 mod shard;
 pub mod slurm;
 mod statistics;
 mod study_file;
+mod study_results;
 mod summary_values;
 mod tables;
+mod worker;
 
 pub use axis::{Axis, Level, Spacing};
 pub use error::StudyError;
 pub(crate) use error::of_others;
+pub use execute::{collect, execute};
 pub use folder::{StudyFolder, is_study, refuse_foreign, study_of};
-pub use journal::{Finding, Outcome, Record, Records};
+pub use journal::Records;
+pub use output::write;
 pub use plan::{Plan, Point, Role, RunKey, Warning};
-pub use scheduler::{Findings, PointFindings, Progress, collect, execute};
+pub use point_statistics::{main_quantity, sample};
+pub use record::{Outcome, Record, RunResult};
 pub use shard::Shard;
 pub use statistics::Sample;
 pub use study_file::{Base, RetainRuns, Settings, StoppingRule, StudyFile};
-pub use summary_values::{Numbers, Quantity, REDUCTION, known as quantities};
-pub use tables::sample;
-
-/// The quantity that a study is mostly about: the one that decides on its replicates, else the reduction if it has a reference,
-/// else mu_s*.
-pub fn main_quantity(plan: &Plan) -> &str {
-    if let Some(until) = &plan.settings.until {
-        &until.key
-    } else if plan.has_reference() {
-        REDUCTION
-    } else {
-        "static_friction_star"
-    }
-}
-
-/// Writes tables and pictures of a study to its folder, and removes those of its pictures that it no longer has.
-///
-/// # Errors
-/// When a file cannot be written.
-pub fn write(plan: &Plan, findings: &Findings, folder: &StudyFolder) -> Result<(), StudyError> {
-    let [runs, points] = TABLES;
-    folder.write(runs, &tables::runs(plan, findings)?)?;
-    folder.write(points, &tables::points(plan, findings)?)?;
-    let mut drawn = HashSet::new();
-    for (name, picture) in figures::draw(plan, findings)? {
-        folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
-        folder.write(&format!("{name}.png"), &picture.png)?;
-        drawn.insert(name);
-    }
-    folder.remove_pictures(figures::names(&plan.axes).filter(|name| !drawn.contains(name)));
-    Ok(())
-}
+pub use study_results::{PointResult, Progress, StudyResults};
+pub use summary_values::{Quantity, REDUCTION, SummaryValues, known as quantities};

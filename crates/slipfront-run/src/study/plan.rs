@@ -7,14 +7,13 @@ use rayon::prelude::*;
 
 use super::axis::{self, Axis};
 use super::error::StudyError;
-use super::folder::StudyFolder;
 use super::shard::Shard;
 use super::study_file::{Base, RetainRuns, Settings, StudyFile};
-use crate::manifest::Manifest;
+use crate::program;
 use slipfront_case::case::{Budget, Case, PROGRAM, check_fields};
 use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Output, Override, ParsedCase, Snapshots};
 use slipfront_case::machine;
-use slipfront_case::machine::{available_memory, free_disk};
+use slipfront_case::machine::available_memory;
 use slipfront_case::number_format::byte_size;
 use slipfront_case::text::display_path;
 
@@ -249,11 +248,10 @@ impl Plan {
         Ok(case)
     }
 
-    /// The plan with the copies of input files in the folder in place of the originals, so that these may change while the
-    /// study runs.
+    /// This plan for the study in a results folder, which reads copies of its files there: later changes of the original files
+    /// have no effect on its runs.
     #[must_use]
-    pub fn reading_copies(self, folder: &StudyFolder) -> Self {
-        let study = &folder.study;
+    pub fn reading_copies(self, study: &StudyFile) -> Self {
         Self {
             axes: study.axes.clone(),
             base: study.base.clone(),
@@ -372,23 +370,6 @@ impl Plan {
         runs.map(|run| RECORD_BYTES + kept(run)).sum()
     }
 
-    /// Refuses a study that has no room in its folder for the runs that it still lacks, as far as these are known.
-    ///
-    /// # Errors
-    /// [`StudyError::Disk`].
-    pub fn check_disk(&self, folder: &StudyFolder) -> Result<(), StudyError> {
-        let lacking = |run: &RunKey| folder.records.get(&self.identity(*run)).is_none();
-        let needed = self.disk(self.runs(self.settings.min_replicates()).filter(lacking));
-        match free_disk(folder.path()) {
-            Some(free) if needed > free => Err(StudyError::Disk {
-                needed: byte_size(needed),
-                free: byte_size(free),
-                path: folder.path().to_owned(),
-            }),
-            _ => Ok(()),
-        }
-    }
-
     /// The levels of a point, as a reader would name it.
     pub fn describe(&self, point: &Point) -> String {
         let levels: Vec<String> = self
@@ -444,7 +425,7 @@ fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
         *name = format!("{}.{ending}", hash.unwrap_or_default());
     }
     let mut hasher = blake3::Hasher::new();
-    hasher.update(Manifest::this_build().as_bytes());
+    hasher.update(program::this_build().as_bytes());
     hasher.update(file.to_toml()?.as_bytes());
     Ok(hasher.finalize())
 }
@@ -469,31 +450,6 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-
-    /// Originals may change while a study goes on; a copy that does is noticed.
-    #[test]
-    fn runs_read_what_their_identity_was_made_of() {
-        let folder = tempfile::tempdir().unwrap();
-        let table = |value: f64| format!("{value},{value}\n").repeat(2);
-        let original = folder.path().join("mu.csv");
-        std::fs::write(&original, table(0.9)).unwrap();
-        let text = "[base]\nslider.blocks = [2, 2]\nfriction.mu_static_field = 'mu.csv'";
-        let file = StudyFile::parse(text, "study.toml", "study", folder.path()).unwrap();
-        let plan = Plan::new(&file, None).unwrap();
-        let run = plan.runs(1).next().unwrap();
-        let out = StudyFolder::open(&folder.path().join("out"), &file).unwrap();
-        std::fs::write(&original, table(0.8)).unwrap();
-        let said = plan.case(run).unwrap_err().to_string();
-        assert!(
-            said.contains("no longer what it was when the study began"),
-            "{said}"
-        );
-        let plan = plan.reading_copies(&out);
-        let case = plan.case(run).unwrap();
-        assert_eq!(case.inputs[0].bytes, table(0.9).as_bytes());
-        std::fs::write(folder.path().join("out/inputs/mu.csv"), table(0.7)).unwrap();
-        assert!(plan.case(run).is_err());
-    }
 
     /// Runs at once count with the largest of them, and not with more than there are.
     #[test]

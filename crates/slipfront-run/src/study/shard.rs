@@ -1,4 +1,4 @@
-//! A shard: a part of the points of a study, the same whoever asks.
+//! Shards: a study is divided into parts that are run on different machines.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,7 +6,7 @@ use std::str::FromStr;
 use super::error::StudyError;
 use slipfront_case::text::truncated;
 
-/// Part `number` of `count`, `number` from 1. It holds every `count`-th point, so that shards are equally large.
+/// Part `number` of `count`, counted from 1. It holds every `count`-th point, so that all shards have nearly equal sizes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     number: usize,
@@ -32,7 +32,7 @@ impl Shard {
                 .parse()
                 .map_err(|_| refuse(format!("{name} = {value} is no number")))
         };
-        // An array may begin at any number.
+        // The first index of an array may be any number.
         let first = read("SLURM_ARRAY_TASK_MIN").unwrap_or(1);
         let number = read("SLURM_ARRAY_TASK_ID")?
             .saturating_add(1)

@@ -1,8 +1,8 @@
-//! A batch script for Slurm: few tasks, each a shard that uses all cores of its node.
+//! A batch script for Slurm: an array of tasks, each of which runs a shard on all cores of a node.
 
 use slipfront_case::text::shell_quoted;
 
-/// What a batch script is made for.
+/// The contents of a batch script.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Batch {
     /// Name of the job.
@@ -17,7 +17,7 @@ pub struct Batch {
     pub tasks: usize,
 }
 
-/// The script.
+/// The text of a batch script.
 pub fn script(batch: &Batch) -> String {
     let Batch {
         name,

@@ -2,14 +2,14 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// A sample and what it says of its mean.
+/// Statistics of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Number of values.
     pub n: usize,
     /// Mean.
     pub mean: f64,
-    /// Standard deviation, with n - 1; none of a single value.
+    /// Standard deviation, with n - 1 in the denominator; none for a single value.
     pub deviation: Option<f64>,
     /// Half width of the confidence interval of the mean.
     pub half_width: Option<f64>,
@@ -20,7 +20,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Statistics of `values`, with an interval of this confidence; none of no value.
+    /// Statistics of `values`, with an interval of this confidence; none if there are no values.
     ///
     /// ```text
     /// half width = t(n - 1, (1 + confidence)/2) s/sqrt(n)

@@ -8,9 +8,10 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::axis::{self, Axis, AxisKeys};
+use super::columns::is_column;
 use super::error::StudyError;
 use super::input_copies::{self, Copy};
-use super::{summary_values, tables};
+use super::summary_values::{self, REDUCTION};
 use slipfront_case::case_file::{
     CASE_TABLES, CaseError, ParsedCase, STUDY_TABLES, Source, Tables, header_below, keys_of, limit_nesting,
     syntax_error, unknown_key,
@@ -160,15 +161,14 @@ impl Settings {
             );
         }
         until.check(source)?;
-        if until.key == super::REDUCTION && self.reference.is_none() {
+        if until.key == REDUCTION && self.reference.is_none() {
             let sentence = format!("`{}` needs a `reference` to be reduced from", until.key);
             return refuse("study.until.key", sentence);
         }
         if !summary_values::known().contains(&until.key) {
             let sentence = format!(
                 "`{}` is no number of a summary: take one such as static_friction_star, kinetic_friction_star or {}",
-                until.key,
-                super::REDUCTION
+                until.key, REDUCTION
             );
             return refuse("study.until.key", sentence);
         }
@@ -407,7 +407,7 @@ fn refuse_conflicts(axes: &[Axis], source: &Source) -> Result<(), CaseError> {
     for (k, axis) in axes.iter().enumerate() {
         let refuse = |sentence: String| Err(source.error(&format!("axes.{k}"), sentence));
         for column in &axis.columns {
-            if tables::is_column(column) || summary_values::known().contains(column) {
+            if is_column(column) || summary_values::known().contains(column) {
                 return refuse(format!(
                     "the tables have a column `{column}` already: give the axis another name"
                 ));

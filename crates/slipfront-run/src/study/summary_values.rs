@@ -1,4 +1,4 @@
-//! The numbers of a summary by their names, for tables and statistics.
+//! The numbers of a summary by name, for tables and statistics.
 
 use std::sync::LazyLock;
 
@@ -9,8 +9,8 @@ use crate::summary::Summary;
 /// Reduction of mu_s* against the reference of the same seed, % (Eq. 16).
 pub const REDUCTION: &str = "static_reduction_percent";
 
-/// What a summary holds beside numbers, and the seed, of which no mean is asked.
-const NO_NUMBERS: [&str; 5] = ["kinetic_window_star", "instants", "warnings", "version", "seed"];
+/// Entries of a summary that are not numbers, and the seed, whose mean has no meaning.
+const NOT_QUANTITIES: [&str; 5] = ["kinetic_window_star", "instants", "warnings", "version", "seed"];
 
 static KNOWN: LazyLock<Vec<String>> = LazyLock::new(|| {
     let mut names: Vec<String> = named(&Summary::default())
@@ -26,12 +26,12 @@ pub fn known() -> &'static [String] {
     &KNOWN
 }
 
-/// A number of a run, or of a run and its reference.
+/// A quantity of a run, or of a run and its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Position in the summary.
     Number(usize),
-    /// Eq. 16.
+    /// The reduction of static friction (Eq. 16).
     Reduction,
 }
 
@@ -45,16 +45,16 @@ impl Quantity {
     }
 }
 
-/// The numbers of a summary in the order of [`known`]: all that tables and statistics need of a run.
+/// The numbers of a summary in the order of [`known`]: the part of it that tables and statistics need.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Numbers {
+pub struct SummaryValues {
     values: Box<[Option<f64>]>,
     static_friction_star: f64,
-    /// Whether its static friction is that of a transition.
+    /// Whether the run had a transition from static to kinetic friction.
     pub(super) transition: bool,
 }
 
-impl Numbers {
+impl SummaryValues {
     pub(super) fn of(summary: &Summary) -> Self {
         Self {
             values: named(summary).into_iter().map(|(_, value)| value).collect(),
@@ -69,7 +69,7 @@ impl Numbers {
     }
 }
 
-/// The numbers of a summary and their names. Yes and no are 1 and 0.
+/// The numbers of a summary and their names; true and false are 1 and 0.
 fn named(summary: &Summary) -> Vec<(String, Option<f64>)> {
     let Ok(Value::Object(fields)) = serde_json::to_value(summary) else {
         return Vec::new();
@@ -80,7 +80,7 @@ fn named(summary: &Summary) -> Vec<(String, Option<f64>)> {
     };
     let kept = fields
         .into_iter()
-        .filter(|(name, _)| !NO_NUMBERS.contains(&name.as_str()));
+        .filter(|(name, _)| !NOT_QUANTITIES.contains(&name.as_str()));
     kept.map(|(name, value)| (name, number(value))).collect()
 }
 
@@ -89,6 +89,6 @@ fn named(summary: &Summary) -> Vec<(String, Option<f64>)> {
 /// ```text
 /// 100 (mu_s*(reference) - mu_s*)/mu_s*(reference)
 /// ```
-pub(super) fn reduction_percent(point: &Numbers, reference: &Numbers) -> f64 {
+pub(super) fn reduction_percent(point: &SummaryValues, reference: &SummaryValues) -> f64 {
     100.0 * (reference.static_friction_star - point.static_friction_star) / reference.static_friction_star
 }

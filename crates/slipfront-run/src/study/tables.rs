@@ -1,35 +1,13 @@
-//! `runs.csv`, one row a run, and `points.csv`, the statistics, one row for each point and quantity.
+//! `runs.csv`, with a row for each run, and `points.csv`, with the statistics of each quantity at each point.
 
+use super::columns::{AFTER_AXES, BEFORE_AXES, STATISTICS};
 use super::error::StudyError;
-use super::journal::Finding;
 use super::plan::{Plan, Role};
-use super::scheduler::Findings;
+use super::point_statistics::sample;
+use super::record::RunResult;
 use super::statistics::Sample;
+use super::study_results::StudyResults;
 use super::summary_values::{Quantity, REDUCTION, known};
-
-/// Columns of `runs.csv` before those of the axes, and after them, before the quantities.
-const BEFORE_AXES: [&str; 3] = ["point", "replicate", "role"];
-const AFTER_AXES: [&str; 4] = ["seed", "run", "status", "reason"];
-
-/// Columns of `points.csv` after those of the axes.
-const STATISTICS: [&str; 9] = [
-    "quantity",
-    "n",
-    "mean",
-    "deviation",
-    "low",
-    "high",
-    "min",
-    "max",
-    "narrow_enough",
-];
-
-/// Whether a column other than those of the quantities has this name, so that no axis can.
-pub(super) fn is_column(name: &str) -> bool {
-    [&BEFORE_AXES[..], &AFTER_AXES, &STATISTICS]
-        .concat()
-        .contains(&name)
-}
 
 /// Columns of all axes.
 fn axis_columns(plan: &Plan) -> impl Iterator<Item = &str> {
@@ -39,12 +17,12 @@ fn axis_columns(plan: &Plan) -> impl Iterator<Item = &str> {
         .map(String::as_str)
 }
 
-/// `runs.csv`: what varied, the seed, every number of the summary, and whether the run failed. A reference has rows
-/// of its own.
+/// `runs.csv`: for each run, references included, the levels of its point, the seed, whether it failed and why, and every
+/// number of its summary.
 ///
 /// # Errors
-/// When it cannot be put into words.
-pub(super) fn runs(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyError> {
+/// When it cannot be written as CSV.
+pub(super) fn runs(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, StudyError> {
     let mut table = csv::Writer::from_writer(Vec::new());
     let quantities = quantities(plan);
     table.write_record(
@@ -55,7 +33,7 @@ pub(super) fn runs(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyErr
             .chain(quantities.iter().map(|(name, _)| *name)),
     )?;
     // Sorted by point, replicate and role.
-    for (&run, finding) in &findings.runs {
+    for (&run, result) in &results.runs {
         let point = &plan.points[run.point];
         let mut row = vec![
             point.index.to_string(),
@@ -64,20 +42,20 @@ pub(super) fn runs(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyErr
         ];
         row.extend(plan.columns(point).into_iter().map(|(_, value)| value.to_owned()));
         row.extend([plan.seed(run).to_string(), plan.folder_name(run)]);
-        let numbers = match finding.as_ref() {
-            Finding::Done(numbers) => {
+        let values = match result.as_ref() {
+            RunResult::Done(values) => {
                 row.extend(["done".to_owned(), String::new()]);
-                Some(numbers)
+                Some(values)
             }
-            Finding::Failed(reason) => {
+            RunResult::Failed(reason) => {
                 row.extend(["failed".to_owned(), reason.clone()]);
                 None
             }
         };
         for &(_, quantity) in &quantities {
             let value = match (quantity, run.role) {
-                (Quantity::Number(position), _) => numbers.and_then(|numbers| numbers.get(position)),
-                (Quantity::Reduction, Role::Point) => findings.value(run.point, run.replicate, quantity),
+                (Quantity::Number(position), _) => values.and_then(|values| values.get(position)),
+                (Quantity::Reduction, Role::Point) => results.value(run.point, run.replicate, quantity),
                 (Quantity::Reduction, Role::Reference) => None,
             };
             row.push(cell(value));
@@ -100,17 +78,17 @@ fn quantities(plan: &Plan) -> Vec<(&'static str, Quantity)> {
 /// interval of the mean, smallest and largest; reductions are paired by seed.
 ///
 /// # Errors
-/// When it cannot be put into words.
-pub(super) fn points(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyError> {
+/// When it cannot be written as CSV.
+pub(super) fn points(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, StudyError> {
     let mut table = csv::Writer::from_writer(Vec::new());
     table.write_record(["point"].into_iter().chain(axis_columns(plan)).chain(STATISTICS))?;
     let quantities = quantities(plan);
     for (position, point) in plan.points.iter().enumerate() {
         for &(name, _) in &quantities {
-            let sample = sample(plan, findings, position, name);
+            let sample = sample(plan, results, position, name);
             let until = plan.settings.until.as_ref();
             let decides = until.is_some_and(|until| until.key == name);
-            // That no run has the number which decides is told as well.
+            // A decisive quantity that no run has gets a row without numbers.
             if sample.is_none() && !decides {
                 continue;
             }
@@ -124,22 +102,12 @@ pub(super) fn points(plan: &Plan, findings: &Findings) -> Result<Vec<u8>, StudyE
             row.push(number(|sample| sample.interval().map(|[_, high]| high)));
             row.push(number(|sample| Some(sample.min)));
             row.push(number(|sample| Some(sample.max)));
-            let narrow = findings.points[position].narrow.filter(|_| decides);
+            let narrow = results.points[position].narrow.filter(|_| decides);
             row.push(narrow.map_or(String::new(), |narrow| narrow.to_string()));
             table.write_record(row)?;
         }
     }
     finish(table)
-}
-
-/// Statistics of a quantity at the point at `position` of the plan; none without values.
-pub fn sample(plan: &Plan, findings: &Findings, position: usize, name: &str) -> Option<Sample> {
-    let quantity = Quantity::named(name)?;
-    let replicates = findings.points.get(position)?.replicates;
-    let values: Vec<f64> = (0..replicates)
-        .filter_map(|replicate| findings.value(position, replicate, quantity))
-        .collect();
-    Sample::of(&values, plan.settings.confidence())
 }
 
 fn role_name(role: Role) -> &'static str {
@@ -153,7 +121,7 @@ fn cell(value: Option<f64>) -> String {
     value.map_or(String::new(), number_cell)
 }
 
-/// The shortest number that reads back as the same bits.
+/// As few digits as are needed to read back the same bits.
 fn number_cell(value: f64) -> String {
     format!("{value:?}")
 }

@@ -1,28 +1,37 @@
-//! The reference kernel: one pass over the blocks per equation, to be read beside the paper.
+//! The reference kernel: one pass over the blocks per equation, to be read along with the paper.
 //!
 //! A step moves the blocks (Eq. 8), finds the forces on them (Eqs. 2, 3) and lets friction and damping act (Eqs. 4-7).
-//! Opposite neighbours are summed in pairs, straight ones before diagonal ones, so that a quarter turn or a mirror of the
-//! whole problem mirrors the trajectory to the last bit.
+//! Forces of opposite neighbours are summed in pairs, straight ones before diagonal ones, so that the trajectory of a rotated
+//! or mirrored problem is the rotated or mirrored trajectory, with the same bits.
+
+use std::ops::Range;
 
 use fearless_simd::{Level, dispatch};
 
-use super::{Block, Held, Totals};
+use super::block::Block;
+use super::totals::{StoredEnergy, Totals};
 use crate::checkpoint::Checkpoint;
-use crate::friction::{self, Integrator, Law};
-use crate::lattice::Bond;
-use crate::{Contact, Edges, FrictionLaw, Lattice, Model, State, VectorField, lanes};
+use crate::field::Field;
+use crate::friction::{BlockState, FrictionLaw, Integrator, Law, Literal, Projection, Reversal};
+use crate::lattice::{Bond, Edges, Lattice};
+use crate::model::Model;
+use crate::reductions;
+use crate::state::{Contact, State};
+use crate::vector_field::VectorField;
 
 /// The state of all blocks, and the forces of the latest step.
 #[derive(Debug)]
 pub(crate) struct Reference {
     dt_star: f64,
-    begun: bool,
+    /// Whether the first step has been evaluated, which does not move the blocks.
+    started: bool,
     /// Displacements at t_n, velocities half a step later.
     state: State,
     forces: Forces,
-    /// Thresholds `mu_s F_n` and `mu_k F_n`.
-    hold: Vec<f64>,
-    slide: Vec<f64>,
+    /// `mu_s F_n`.
+    static_limit: Vec<f64>,
+    /// `mu_k F_n`.
+    kinetic_force: Vec<f64>,
     first_slip: Vec<f64>,
     stress_square_max: f64,
 }
@@ -33,10 +42,10 @@ struct Forces {
     drive: VectorField,
     lattice: VectorField,
     friction: VectorField,
-    /// Velocities before the update, after it outside a step.
+    /// Velocities after the update within a step; between steps those before it.
     velocity: VectorField,
     contact: Vec<Contact>,
-    /// Force of the spring along each bond, on its way into `lattice`.
+    /// Force of the spring along each bond, before they are summed into `lattice`.
     springs: [VectorField; 4],
 }
 
@@ -46,7 +55,7 @@ impl Reference {
         let zeros = || VectorField::zeros(n);
         Self {
             dt_star,
-            begun: false,
+            started: false,
             state,
             forces: Forces {
                 drive: zeros(),
@@ -56,18 +65,18 @@ impl Reference {
                 contact: vec![Contact::Stuck; n],
                 springs: [zeros(), zeros(), zeros(), zeros()],
             },
-            hold: (0..n).map(|b| model.surface.hold(b)).collect(),
-            slide: (0..n).map(|b| model.surface.slide(b)).collect(),
+            static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
+            kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
             first_slip: vec![f64::NAN; n],
             stress_square_max: 0.0,
         }
     }
 
-    /// From a checkpoint: evaluates its instant again, which finds forces, friction and the velocities that it left.
+    /// Continues from a checkpoint: its instant is evaluated again to find forces, friction and velocities.
     pub(crate) fn resume(model: &Model, dt_star: f64, checkpoint: Checkpoint) -> Self {
         let state = State {
-            displacement: checkpoint.displacement.map(|read| read.0).into(),
-            velocity: checkpoint.velocity.map(|read| read.0).into(),
+            displacement: checkpoint.displacement.map(|column| column.0).into(),
+            velocity: checkpoint.velocity.map(|column| column.0).into(),
         };
         let mut kernel = Self {
             first_slip: checkpoint.first_slip.0,
@@ -78,7 +87,7 @@ impl Reference {
         kernel
     }
 
-    /// Goes to step `number`: the next one, or the one to begin with.
+    /// Advances to step `number`: the next one, or the one to begin with.
     pub(crate) fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals {
         let time_star = number as f64 * self.dt_star;
         let level = Level::new();
@@ -89,7 +98,7 @@ impl Reference {
 
     #[inline(always)]
     fn advance_and_evaluate(&mut self, model: &Model, time_star: f64) {
-        if std::mem::replace(&mut self.begun, true) {
+        if std::mem::replace(&mut self.started, true) {
             move_blocks(&mut self.state, self.dt_star);
         }
         drive_forces(model, &self.state, time_star, &mut self.forces.drive);
@@ -101,9 +110,9 @@ impl Reference {
         );
         let integrator = Integrator::new(model.damping, self.dt_star);
         match model.law {
-            FrictionLaw::Projection => self.friction_forces(&friction::Projection, &integrator),
-            FrictionLaw::Reversal => self.friction_forces(&friction::Reversal, &integrator),
-            FrictionLaw::Literal => self.friction_forces(&friction::Literal, &integrator),
+            FrictionLaw::Projection => self.friction_forces(&Projection, &integrator),
+            FrictionLaw::Reversal => self.friction_forces(&Reversal, &integrator),
+            FrictionLaw::Literal => self.friction_forces(&Literal, &integrator),
         }
         std::mem::swap(&mut self.state.velocity, &mut self.forces.velocity);
     }
@@ -120,10 +129,10 @@ impl Reference {
             ..
         } = &mut self.forces;
         let before = &self.state.velocity;
-        rub(
+        apply_friction(
             law,
             integrator,
-            [&self.hold, &self.slide],
+            [&self.static_limit, &self.kinetic_force],
             [&before.x, &before.y],
             [&drive.x, &drive.y, &lattice.x, &lattice.y],
             [&mut friction.x, &mut friction.y],
@@ -141,38 +150,45 @@ impl Reference {
         }
     }
 
-    /// Sums over all blocks of what the step has found.
+    /// Sums over all blocks at the present step.
     #[inline(always)]
     fn measure(&mut self, model: &Model, time_star: f64, energies: bool) -> Totals {
-        let n = self.hold.len();
-        let [ux, uy] = cut(&self.state.displacement, n);
-        let ([bx, by], [ax, ay]) = (cut(&self.forces.velocity, n), cut(&self.state.velocity, n));
-        let ([lx, ly], [fx, fy]) = (cut(&self.forces.lattice, n), cut(&self.forces.friction, n));
+        let n = self.static_limit.len();
+        let [ux, uy] = components(&self.state.displacement, n);
+        let ([bx, by], [ax, ay]) = (
+            components(&self.forces.velocity, n),
+            components(&self.state.velocity, n),
+        );
+        let ([lx, ly], [fx, fy]) = (
+            components(&self.forces.lattice, n),
+            components(&self.forces.friction, n),
+        );
         let (textured, contact) = (&model.surface.textured[..n], &self.forces.contact[..n]);
-        let sum = |[x, y]: [&[f64]; 2]| [lanes::sum(n, |b| x[b]), lanes::sum(n, |b| y[b])];
-        let squares = |[x, y]: [&[f64]; 2]| lanes::sum(n, |b| x[b] * x[b] + y[b] * y[b]);
+        let sum = |[x, y]: [&[f64]; 2]| [reductions::sum(n, |b| x[b]), reductions::sum(n, |b| y[b])];
+        let squares = |[x, y]: [&[f64]; 2]| reductions::sum(n, |b| x[b] * x[b] + y[b] * y[b]);
         let (vx, vy) = (|b: usize| 0.5 * (bx[b] + ax[b]), |b: usize| 0.5 * (by[b] + ay[b]));
         let sliding = || contact.iter().map(|&c| c == Contact::Sliding);
-        let stress_square = lanes::largest(n, |b| {
+        let stress_square = reductions::largest(n, |b| {
             let (x, y) = (fx[b] + lx[b], fy[b] + ly[b]);
             if textured[b] { 0.0 } else { x * x + y * y }
         });
         self.stress_square_max = self.stress_square_max.max(stress_square);
         Totals {
             displacement: sum([ux, uy]),
-            velocity: [lanes::sum(n, vx), lanes::sum(n, vy)],
+            velocity: [reductions::sum(n, vx), reductions::sum(n, vy)],
             velocity_after: sum([ax, ay]),
-            velocity_square: lanes::sum(n, |b| vx(b) * vx(b) + vy(b) * vy(b)),
-            friction_power: lanes::sum(n, |b| fx[b] * vx(b) + fy[b] * vy(b)),
+            velocity_square: reductions::sum(n, |b| vx(b) * vx(b) + vy(b) * vy(b)),
+            friction_power: reductions::sum(n, |b| fx[b] * vx(b) + fy[b] * vy(b)),
             n_sliding: sliding().filter(|&slides| slides).count(),
             n_slipping: sliding()
                 .zip(textured)
                 .filter(|&(slides, textured)| slides && !textured)
                 .count(),
-            held: energies.then(|| {
-                let [x, y] = model.drive.reach(time_star);
-                let stretch_square = lanes::sum(n, |b| (x - ux[b]) * (x - ux[b]) + (y - uy[b]) * (y - uy[b]));
-                Held {
+            stored_energy: energies.then(|| {
+                let [x, y] = model.drive.position(time_star);
+                let stretch_square =
+                    reductions::sum(n, |b| (x - ux[b]) * (x - ux[b]) + (y - uy[b]) * (y - uy[b]));
+                StoredEnergy {
                     kinetic: 0.25 * (squares([bx, by]) + squares([ax, ay])),
                     lattice: lattice_energy(&model.lattice, &self.state.displacement, model.epsilon),
                     drive_springs: 0.5 * model.drive.k_drive * stretch_square,
@@ -181,6 +197,7 @@ impl Reference {
         }
     }
 
+    /// Block `b` with the forces on it.
     pub(crate) fn block(&self, b: usize) -> Block {
         Block {
             displacement: self.state.displacement.at(b),
@@ -191,12 +208,58 @@ impl Reference {
         }
     }
 
+    /// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the row, the column
+    /// of the first value, and the values.
+    pub(crate) fn read_rows(
+        &self,
+        model: &Model,
+        field: Field,
+        stride: usize,
+        mut write: impl FnMut(usize, usize, &[f32]),
+    ) {
+        const WIDTH: usize = 128;
+        let lattice = &model.lattice;
+        let level = Level::new();
+        let mut values = [0.0; WIDTH];
+        for j in (0..lattice.ny).step_by(stride) {
+            for i in (0..lattice.nx).step_by(WIDTH) {
+                let values = &mut values[..WIDTH.min(lattice.nx - i)];
+                let first = lattice.block(i, j);
+                dispatch!(level, _ => self.read_blocks(model, field, first, values));
+                write(j, i, values);
+            }
+        }
+    }
+
+    /// Values of `field` of the blocks from `first` on.
+    #[inline(always)]
+    fn read_blocks(&self, model: &Model, field: Field, first: usize, values: &mut [f32]) {
+        let n = values.len();
+        let blocks = first..first + n;
+        let u = part(&self.state.displacement, &blocks);
+        let v = part(&self.state.velocity, &blocks);
+        let lattice = part(&self.forces.lattice, &blocks);
+        let friction = part(&self.forces.friction, &blocks);
+        let textured = &model.surface.textured[blocks];
+        for (k, value) in values.iter_mut().enumerate() {
+            let at = |[x, y]: [&[f64]; 2]| [x[k], y[k]];
+            let block = Block {
+                displacement: at(u),
+                velocity: at(v),
+                force_drive: [0.0; 2],
+                force_lattice: at(lattice),
+                force_friction: at(friction),
+            };
+            *value = field.value(&block, textured[k]) as f32;
+        }
+    }
+
     /// Displacement now and velocity half a step later of block `b`.
     pub(crate) fn motion(&self, b: usize) -> [[f64; 2]; 2] {
         [self.state.displacement.at(b), self.state.velocity.at(b)]
     }
 
-    /// When block `b` first slid while in contact; not a number if it never has.
+    /// When block `b` first slid while in contact; NaN if it never has.
     pub(crate) fn first_slip(&self, b: usize) -> f64 {
         self.first_slip[b]
     }
@@ -213,7 +276,12 @@ impl Reference {
 }
 
 #[inline(always)]
-fn cut(field: &VectorField, n: usize) -> [&[f64]; 2] {
+fn part<'a>(field: &'a VectorField, blocks: &Range<usize>) -> [&'a [f64]; 2] {
+    [&field.x[blocks.clone()], &field.y[blocks.clone()]]
+}
+
+#[inline(always)]
+fn components(field: &VectorField, n: usize) -> [&[f64]; 2] {
     [&field.x[..n], &field.y[..n]]
 }
 
@@ -237,14 +305,14 @@ fn move_blocks(state: &mut State, dt_star: f64) {
 #[inline(always)]
 fn drive_forces(model: &Model, state: &State, time_star: f64, force: &mut VectorField) {
     let drive = &model.drive;
-    let reach = drive.reach(time_star);
-    let pull = |force: &mut [f64], u: &[f64], axis: usize| {
+    let position = drive.position(time_star);
+    let component = |force: &mut [f64], u: &[f64], axis: usize| {
         for (f, u) in force.iter_mut().zip(u) {
-            *f = drive.k_drive * (reach[axis] - u) + drive.constant_force[axis];
+            *f = drive.k_drive * (position[axis] - u) + drive.constant_force[axis];
         }
     };
-    pull(&mut force.x, &state.displacement.x, 0);
-    pull(&mut force.y, &state.displacement.y, 1);
+    component(&mut force.x, &state.displacement.x, 0);
+    component(&mut force.y, &state.displacement.y, 1);
 }
 
 /// Eq. 3: `F_c = sum_j k_ij (r_ij - d_ij) e_ij` over the eight neighbours, every spring computed once.
@@ -270,11 +338,11 @@ fn lattice_forces(model: &Model, state: &State, force: &mut VectorField, springs
 /// Force on every block from its spring along `bond`; zero where a free edge leaves it out.
 #[inline(always)]
 fn spring_forces(lattice: &Lattice, bond: &Bond, u: &VectorField, epsilon: f64, spring: &mut VectorField) {
-    // Seen as one long row, the neighbour of every block stands equally far on: one loop without ends. Where the
-    // row of the lattice ended meanwhile, what it gives is replaced.
+    // In block order the neighbours of all blocks are equally far away: one loop for all rows. What it finds at the ends of
+    // the rows is replaced afterwards.
     let shift = lattice.shift(bond).min(lattice.n_blocks());
     let n = lattice.n_blocks() - shift;
-    pull(
+    bond_forces(
         bond,
         epsilon,
         [&u.x[..n], &u.y[..n]],
@@ -298,9 +366,9 @@ fn spring_forces(lattice: &Lattice, bond: &Bond, u: &VectorField, epsilon: f64, 
     }
 }
 
-/// Forces of one bond on the blocks at `u` from those at `v`.
+/// Forces along one bond on blocks displaced by `u`, from their neighbours displaced by `v`.
 #[inline(always)]
-fn pull(bond: &Bond, epsilon: f64, u: [&[f64]; 2], v: [&[f64]; 2], force: [&mut [f64]; 2]) {
+fn bond_forces(bond: &Bond, epsilon: f64, u: [&[f64]; 2], v: [&[f64]; 2], force: [&mut [f64]; 2]) {
     let [fx, fy] = force;
     let n = fx.len();
     let (ux, uy, vx, vy, fy) = (&u[0][..n], &u[1][..n], &v[0][..n], &v[1][..n], &mut fy[..n]);
@@ -309,10 +377,10 @@ fn pull(bond: &Bond, epsilon: f64, u: [&[f64]; 2], v: [&[f64]; 2], force: [&mut 
     }
 }
 
-/// Adds the eight springs of every block: along each bond its own, less that of the block behind it.
+/// Adds the eight springs of every block: along each bond that to the neighbour ahead, less that of the neighbour behind.
 #[inline(always)]
 fn sum_springs(lattice: &Lattice, springs: [&[f64]; 4], total: &mut [f64]) {
-    // One long row again, from the first block that has all blocks behind it.
+    // One loop for all rows again, from the first block whose neighbours behind it all have indices from 0.
     let first = lattice.shift(&Bond::NORTH_EAST).min(lattice.n_blocks());
     let n = lattice.n_blocks() - first;
     let own = springs.map(|spring| &spring[first..]);
@@ -333,7 +401,7 @@ fn sum_springs(lattice: &Lattice, springs: [&[f64]; 4], total: &mut [f64]) {
         total[lattice.block(i, j)] = (pair(0) + pair(1)) + (pair(2) + pair(3));
     };
     (0..lattice.nx).for_each(|i| replace(i, 0));
-    // Free edges have springs of force zero, which the long row finds where a row ended; periodic ones wrap.
+    // At free edges the loop found springs of force zero, which is right; along a periodic axis neighbours wrap around.
     (1..lattice.ny).for_each(|j| replace(0, j));
     if lattice.edges[0] == Edges::Periodic {
         (1..lattice.ny).for_each(|j| replace(lattice.nx - 1, j));
@@ -350,10 +418,10 @@ fn add_pairs(own: [&[f64]; 4], behind: [&[f64]; 4], total: &mut [f64]) {
     }
 }
 
-/// The friction law on every block: thresholds, velocities and forces in; friction, velocities and contact out.
+/// Applies the friction law to every block: finds friction, velocities and contact from thresholds, velocities and forces.
 #[inline(always)]
-#[allow(clippy::too_many_arguments)] // One slice per array, known not to overlap: the loop is free of checks.
-fn rub<L: Law>(
+#[allow(clippy::too_many_arguments)] // Separate slices are known not to overlap, so that the loop is vectorised.
+fn apply_friction<L: Law>(
     law: &L,
     integrator: &Integrator,
     thresholds: [&[f64]; 2],
@@ -364,18 +432,18 @@ fn rub<L: Law>(
     contact: &mut [Contact],
 ) {
     let n = contact.len();
-    let [hold, slide] = thresholds.map(|array| &array[..n]);
+    let [static_limit, kinetic_force] = thresholds.map(|array| &array[..n]);
     let [vx, vy] = velocity.map(|array| &array[..n]);
     let [drive_x, drive_y, lattice_x, lattice_y] = forces.map(|array| &array[..n]);
     let [friction_x, friction_y] = friction.map(|array| &mut array[..n]);
     let [after_x, after_y] = after.map(|array| &mut array[..n]);
     for b in 0..n {
         let update = law.update(
-            &friction::Block {
+            &BlockState {
                 velocity: [vx[b], vy[b]],
                 force: [drive_x[b] + lattice_x[b], drive_y[b] + lattice_y[b]],
-                hold: hold[b],
-                slide: slide[b],
+                static_limit: static_limit[b],
+                kinetic_force: kinetic_force[b],
             },
             integrator,
         );
@@ -389,8 +457,8 @@ fn rub<L: Law>(
 #[inline(always)]
 fn lattice_energy(lattice: &Lattice, u: &VectorField, epsilon: f64) -> f64 {
     let energy = |bond: &Bond, b: usize, n: usize| bond.energy([u.x[n] - u.x[b], u.y[n] - u.y[b]], epsilon);
-    let of_row = |bond: &Bond, j: usize| -> f64 {
-        // The one block of the row whose neighbour may stand beyond its end; the others stand all alike.
+    let row_energy = |bond: &Bond, j: usize| -> f64 {
+        // One block of the row may have its neighbour beyond the end of the row. The neighbours of all others are equally far away.
         let (end, first) = match bond.offset[0] {
             1 => (Some(lattice.nx - 1), 0),
             -1 => (Some(0), 1),
@@ -404,19 +472,19 @@ fn lattice_energy(lattice: &Lattice, u: &VectorField, epsilon: f64) -> f64 {
             ))
         });
         let inside = lattice.nx - usize::from(end.is_some());
-        let beside = if inside > 0 {
+        let neighbour = if inside > 0 {
             lattice.neighbour(first, j, bond.offset)
         } else {
             None
         };
-        let along = beside.map_or(0.0, |beside| {
+        let along = neighbour.map_or(0.0, |neighbour| {
             let block = lattice.block(first, j);
-            lanes::sum(inside, |k| energy(bond, block + k, beside + k))
+            reductions::sum(inside, |k| energy(bond, block + k, neighbour + k))
         });
         along + beyond.unwrap_or(0.0)
     };
     Bond::ALL
         .iter()
-        .map(|bond| (0..lattice.ny).map(|j| of_row(bond, j)).sum::<f64>())
+        .map(|bond| (0..lattice.ny).map(|j| row_energy(bond, j)).sum::<f64>())
         .sum()
 }

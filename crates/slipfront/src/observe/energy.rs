@@ -1,21 +1,21 @@
-//! The ledger of energies: what the drive gives is held by blocks and springs or lost to friction and damping.
+//! The energy balance: the work of the drive is stored in blocks and springs or lost to friction and damping.
 //!
-//! All in units of `P mu_s l^2` times `P mu_s l/E`.
+//! All energies are in units of `P mu_s l^2` times `P mu_s l/E`.
 
 use serde::{Deserialize, Serialize};
 
-use crate::Snapshot;
-use crate::kernel::Held;
+use crate::kernel::totals::StoredEnergy;
+use crate::snapshot::Snapshot;
 use crate::vector_field::dot;
 
-/// Energies held at an instant, and given and lost since the start.
+/// Energies stored at an instant, and supplied and lost since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energies {
     /// Kinetic energy, the mean of the half steps before and after.
     pub kinetic: f64,
-    /// Held by the springs between blocks.
+    /// Stored in the springs between blocks.
     pub lattice: f64,
-    /// Held by the drive springs.
+    /// Stored in the drive springs.
     pub drive_springs: f64,
     /// Work done by the drive (and by a constant force) since the start.
     pub work: f64,
@@ -23,32 +23,35 @@ pub struct Energies {
     pub friction_loss: f64,
     /// Lost to damping since the start.
     pub damping_loss: f64,
-    /// What was held at the start.
-    pub held_at_start: f64,
+    /// Energy stored at the start.
+    pub stored_at_start: f64,
 }
 
 impl Energies {
-    /// Energy held now.
-    pub fn held(&self) -> f64 {
+    /// Energy stored at this instant.
+    pub fn stored_energy(&self) -> f64 {
         self.kinetic + self.lattice + self.drive_springs
     }
 
-    /// How far the ledger is from closing, relative to all energy that went in:
+    /// Error of the balance, relative to all energy supplied:
     ///
     /// ```text
-    /// error = (work - (held - held at start) - losses)/(|work| + held at start)
+    /// error = (work - (stored - stored at start) - losses)/(|work| + stored at start)
     /// ```
     ///
-    /// It falls with the square of the time step: what it misses is the motion that the last step of a slip takes
-    /// from a block, at most `(mu_k F_n dt)^2/2`. A slider that only slides closes to rounding.
+    /// It falls with the square of the time step: the balance misses the kinetic energy that a block loses in the last step
+    /// of a slip, at most `(mu_k F_n dt)^2/2`. While all blocks slide the error is that of rounding.
     pub fn error(&self) -> f64 {
-        let put_in = self.work.abs() + self.held_at_start;
-        let missing = self.work - (self.held() - self.held_at_start) - self.friction_loss - self.damping_loss;
-        if put_in > 0.0 { missing / put_in } else { 0.0 }
+        let supplied = self.work.abs() + self.stored_at_start;
+        let missing = self.work
+            - (self.stored_energy() - self.stored_at_start)
+            - self.friction_loss
+            - self.damping_loss;
+        if supplied > 0.0 { missing / supplied } else { 0.0 }
     }
 }
 
-/// Powers at one instant.
+/// Powers at one instant: of the drive, of friction and of damping.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Powers {
     work: f64,
@@ -57,7 +60,7 @@ struct Powers {
 }
 
 impl Powers {
-    /// Work of the drive `V . sum F_s`, of friction and of damping per time.
+    /// The drive supplies `V . sum F_s`, and a constant force its own work.
     fn at(now: &Snapshot) -> Self {
         let (model, totals) = (now.model, &now.totals);
         let pull = now.point.mu_star * model.lattice.n_blocks() as f64 * model.drive.v_star;
@@ -69,7 +72,7 @@ impl Powers {
     }
 }
 
-/// Sums works and losses over the steps, by the trapezoidal rule.
+/// Integrates powers over the steps by the trapezoidal rule.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Ledger {
     before: Option<Powers>,
@@ -77,7 +80,7 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Adds the step that ends now. To be called at every step.
+    /// Adds the step that ends now. It must be called at every step.
     pub(crate) fn add(&mut self, now: &Snapshot) {
         let powers = Powers::at(now);
         match self.before {
@@ -87,17 +90,17 @@ impl Ledger {
                 self.totals.friction_loss += half * (before.friction + powers.friction);
                 self.totals.damping_loss += half * (before.damping + powers.damping);
             }
-            None => self.totals.held_at_start = self.energies(now.held()).held(),
+            None => self.totals.stored_at_start = self.energies(now.stored_energy()).stored_energy(),
         }
         self.before = Some(powers);
     }
 
-    /// The ledger at an instant that holds these energies.
-    pub(crate) fn energies(&self, held: Held) -> Energies {
+    /// The balance at an instant with these stored energies.
+    pub(crate) fn energies(&self, stored: StoredEnergy) -> Energies {
         Energies {
-            kinetic: held.kinetic,
-            lattice: held.lattice,
-            drive_springs: held.drive_springs,
+            kinetic: stored.kinetic,
+            lattice: stored.lattice,
+            drive_springs: stored.drive_springs,
             ..self.totals
         }
     }

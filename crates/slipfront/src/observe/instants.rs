@@ -2,13 +2,16 @@
 //!
 //! A: t* = 0.5/V*. B: first slip of a block in contact. C: the peak of mu*. D: the largest N* in
 //! [t_s*, t_s* + 2.5/V*]. E: the smallest mu* from D to the start of the kinetic window. F: the middle of that
-//! window. What a later step may prove wrong is kept as a candidate and overwritten.
+//! window. An instant that a later step may replace is kept as a candidate and overwritten.
 
 use serde::{Deserialize, Serialize};
 
 use super::frames::{Frame, Selection};
-use super::{KineticStart, Observer};
-use crate::{Lattice, RunError, Snapshot};
+use super::observer::Observer;
+use super::summary::KineticStart;
+use crate::error::RunError;
+use crate::lattice::Lattice;
+use crate::snapshot::Snapshot;
 
 /// Letters of the instants.
 const LETTERS: [char; 6] = ['A', 'B', 'C', 'D', 'E', 'F'];
@@ -19,15 +22,15 @@ const D: usize = 3;
 const E: usize = 4;
 const F: usize = 5;
 
-/// Fields at A-F. To be shown every step.
+/// Fields at A-F. It must be called at every step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Instants {
     selection: Selection,
     kinetic: KineticStart,
     end_time_star: f64,
     frames: [Option<Frame>; 6],
-    /// Which of `frames` count; one that was dropped is kept for its memory.
-    held: [bool; 6],
+    /// Which of `frames` are valid; the memory of the others is used again.
+    valid: [bool; 6],
     ended: bool,
     /// Whether the run has gone on long enough to know D, and E.
     known: [bool; 2],
@@ -41,19 +44,19 @@ impl Instants {
             kinetic,
             end_time_star,
             frames: Default::default(),
-            held: [false; 6],
+            valid: [false; 6],
             ended: false,
             known: [false; 2],
         }
     }
 
-    /// Whether it can have come of this new one, on this lattice, up to `step`.
-    pub fn continues(&self, new: &Self, lattice: &Lattice, step: u64) -> bool {
-        let alike = self.selection == new.selection
+    /// Whether this can be the recording that began as `new`, on this lattice, and was called up to `step`.
+    pub fn is_consistent_with(&self, new: &Self, lattice: &Lattice, step: u64) -> bool {
+        let same_settings = self.selection == new.selection
             && self.kinetic == new.kinetic
             && self.end_time_star == new.end_time_star;
         let mut frames = self.frames.iter().flatten();
-        alike && frames.all(|frame| frame.step <= step && self.selection.fits(frame, lattice))
+        same_settings && frames.all(|frame| frame.step <= step && self.selection.matches(frame, lattice))
     }
 
     /// The instants that the run had, in the order of their letters. Without a transition there is no D and E, nor
@@ -61,35 +64,35 @@ impl Instants {
     pub fn found(mut self) -> Vec<(char, Frame)> {
         for (instant, known) in [(D, self.known[0]), (E, self.known[1])] {
             if !(self.ended && known) {
-                self.held[instant] = false;
-            } else if !self.held[instant] {
-                // A later instant that never differed from the one before it was not captured apart.
+                self.valid[instant] = false;
+            } else if !self.valid[instant] {
+                // An instant that coincides with the one before it has no frame of its own.
                 self.frames[instant] = self.frames[instant - 1].clone();
-                self.held[instant] = self.held[instant - 1];
+                self.valid[instant] = self.valid[instant - 1];
             }
         }
-        let held = self.held;
+        let valid = self.valid;
         LETTERS
             .into_iter()
             .zip(self.frames)
-            .zip(held)
-            .filter_map(|((letter, frame), held)| Some((letter, frame.filter(|_| held)?)))
+            .zip(valid)
+            .filter_map(|((letter, frame), valid)| Some((letter, frame.filter(|_| valid)?)))
             .collect()
     }
 
     fn keep(&mut self, instant: usize, now: &Snapshot) {
-        self.held[instant] = true;
+        self.valid[instant] = true;
         match &mut self.frames[instant] {
             Some(frame) => self.selection.capture_into(now, frame),
             none => *none = Some(self.selection.capture(now)),
         }
     }
 
-    /// The candidate for an instant, or for the one before it as long as they coincide.
-    fn candidate(&self, instants: &[usize]) -> Option<&Frame> {
+    /// The frame of the first of these instants that has a valid one.
+    fn first_valid(&self, instants: &[usize]) -> Option<&Frame> {
         instants
             .iter()
-            .filter(|&&instant| self.held[instant])
+            .filter(|&&instant| self.valid[instant])
             .find_map(|&instant| self.frames[instant].as_ref())
     }
 }
@@ -103,42 +106,42 @@ impl Observer for Instants {
         if passes(0.5 / v_star) {
             self.keep(A, now);
         }
-        if !self.held[B] && now.totals.n_slipping > 0 {
+        if !self.valid[B] && now.totals.n_slipping > 0 {
             self.keep(B, now);
         }
         let kinetic_from = self.kinetic.time_star(&now.peak, v_star);
         let middle = 0.5 * (kinetic_from + self.end_time_star);
         if now.peak.ended && !self.ended && middle > now.time_star {
-            // Until now the window was that of a run without a transition.
-            self.held[F] = false;
+            // The end of the peak moves the kinetic window: F was the middle of the window of a run without a transition.
+            self.valid[F] = false;
         }
         self.ended = now.peak.ended;
-        // What follows the peak is judged as if it were the one that counts.
-        let mut counted = now.peak;
-        counted.ended = true;
-        let fall_until = self.kinetic.time_star(&counted, v_star);
+        // D and E follow the present peak as if it had ended already.
+        let mut ended = now.peak;
+        ended.ended = true;
+        let fall_until = self.kinetic.time_star(&ended, v_star);
         let most_until = now.peak.time_star + 2.5 / v_star;
         self.known = [most_until, fall_until].map(|until| now.time_star >= until);
         if now.peak.step == now.step {
-            // While everything in contact sticks, mu* rises at every step: none of these is the peak yet.
-            if (self.held[B] && !now.rises()) || now.last {
+            // While mu* still rises the peak lies ahead, as it does at every step before the first slip.
+            if (self.valid[B] && !now.mu_star_rises()) || now.last {
                 self.keep(C, now);
             }
-            self.held[D] = false;
-            self.held[E] = false;
+            self.valid[D] = false;
+            self.valid[E] = false;
         } else {
             let most = self
-                .candidate(&[D, C])
+                .first_valid(&[D, C])
                 .map_or(0.0, |frame| frame.point.sliding_percent);
             let least = self
-                .candidate(&[E, D, C])
+                .first_valid(&[E, D, C])
                 .map_or(f64::INFINITY, |frame| frame.point.mu_star);
             if now.time_star <= most_until && now.point.sliding_percent > most {
                 self.keep(D, now);
-                self.held[E] = false;
+                self.valid[E] = false;
             } else if now.time_star <= fall_until && now.point.mu_star < least {
-                let falls_on = now.falls() && (now.step + 1) as f64 * now.dt_star <= fall_until;
-                if !falls_on || now.last {
+                let still_falls = now.mu_star_falls() && (now.step + 1) as f64 * now.dt_star <= fall_until;
+                if !still_falls || now.last {
                     self.keep(E, now);
                 }
             }

@@ -2,8 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Observer, Peak};
-use crate::{RunError, Snapshot};
+use super::observer::Observer;
+use crate::error::RunError;
+use crate::measure::Peak;
+use crate::snapshot::Snapshot;
 
 /// Where the kinetic window begins. It ends with the run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -15,7 +17,7 @@ pub enum KineticStart {
 }
 
 impl KineticStart {
-    /// The beginning of the window as far as `peak` tells.
+    /// Where the window begins, t*, with the peak of mu* as far as it is known.
     pub fn time_star(&self, peak: &Peak, v_star: f64) -> f64 {
         match *self {
             KineticStart::At(time_star) => time_star,
@@ -32,15 +34,15 @@ pub struct Kinetic {
     pub window_star: [f64; 2],
     /// mu_k*, the mean of mu*.
     pub mu_star: f64,
-    /// Standard error of mu_k* from blocking, or why there is none to be trusted.
-    pub uncertainty: Result<f64, Doubt>,
+    /// Standard error of mu_k* by the blocking method, or why it cannot be estimated.
+    pub uncertainty: Result<f64, NoUncertainty>,
     /// Mean of N*.
     pub sliding_percent: f64,
 }
 
-/// Why the scatter inside a window says nothing about the mean's uncertainty.
+/// Why the uncertainty of a mean cannot be estimated from the scatter inside its window.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Doubt {
+pub enum NoUncertainty {
     /// One half of the window holds fewer than ten independent blocks.
     TooFewBlocks {
         /// How many it holds.
@@ -57,8 +59,8 @@ pub enum Doubt {
     },
 }
 
-/// Keeps mu* and N* of the whole run in at most [`KineticHistory::BINS`] means over equal stretches of steps, so
-/// that memory does not grow with the run. To be shown every step.
+/// Keeps mu* and N* of the whole run as at most [`KineticHistory::BINS`] means over equal numbers of steps, so that memory
+/// does not grow with the run. It must be called at every step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KineticHistory {
     steps_per_bin: u64,
@@ -74,26 +76,65 @@ struct Bin {
 }
 
 impl KineticHistory {
-    /// Most stretches kept. A run of fewer steps keeps every step.
+    /// Largest number of means. A shorter run keeps every step.
     pub const BINS: u64 = 16_384;
 
-    /// An empty history of a run of `last_step` steps.
+    /// An empty history of a run of `last_step` steps; [`u64::MAX`] for a run without an end. A run that goes on for longer
+    /// averages twice as many steps into each mean as often as it must.
     pub fn new(last_step: u64) -> Self {
-        let steps_per_bin = (last_step + 1).div_ceil(Self::BINS);
+        let steps_per_bin = if last_step == u64::MAX {
+            1
+        } else {
+            last_step / Self::BINS + 1
+        };
         Self {
             steps_per_bin,
             in_bin: 0,
-            bins: Vec::with_capacity((last_step / steps_per_bin + 1) as usize),
+            bins: Vec::with_capacity((last_step / steps_per_bin).min(Self::BINS - 1) as usize + 1),
             sliding_percent_max: 0.0,
         }
     }
 
-    /// Whether it can have come of this new one, shown every step up to `step`.
-    pub fn continues(&self, new: &Self, step: u64) -> bool {
-        let shown = step + 1;
-        self.steps_per_bin == new.steps_per_bin
-            && self.in_bin == shown % self.steps_per_bin
-            && self.bins.len() as u64 == shown.div_ceil(self.steps_per_bin)
+    /// Whether this can be the history that began as `new` and was called at every step up to `step`.
+    pub fn is_consistent_with(&self, new: &Self, step: u64) -> bool {
+        let observed = step.saturating_add(1);
+        let mut steps_per_bin = new.steps_per_bin;
+        while observed.div_ceil(steps_per_bin) > Self::BINS {
+            steps_per_bin *= 2;
+        }
+        self.steps_per_bin == steps_per_bin
+            && self.in_bin == observed % steps_per_bin
+            && self.bins.len() as u64 == observed.div_ceil(steps_per_bin)
+    }
+
+    /// Adds the next step.
+    fn add(&mut self, mu_star: f64, sliding_percent: f64) {
+        if self.in_bin == 0 {
+            if self.bins.len() as u64 == Self::BINS {
+                self.merge_pairs();
+            }
+            self.bins.push(Bin::default());
+        }
+        self.sliding_percent_max = self.sliding_percent_max.max(sliding_percent);
+        let weight = 1.0 / self.steps_per_bin as f64;
+        if let Some(bin) = self.bins.last_mut() {
+            bin.mu_star += weight * mu_star;
+            bin.sliding_percent += weight * sliding_percent;
+        }
+        self.in_bin = (self.in_bin + 1) % self.steps_per_bin;
+    }
+
+    /// Averages the means in pairs: half as many, over twice as many steps each.
+    fn merge_pairs(&mut self) {
+        for k in 0..self.bins.len() / 2 {
+            let [one, other] = [self.bins[2 * k], self.bins[2 * k + 1]];
+            self.bins[k] = Bin {
+                mu_star: 0.5 * (one.mu_star + other.mu_star),
+                sliding_percent: 0.5 * (one.sliding_percent + other.sliding_percent),
+            };
+        }
+        self.bins.truncate(self.bins.len() / 2);
+        self.steps_per_bin *= 2;
     }
 
     /// Largest N* of all steps.
@@ -104,7 +145,7 @@ impl KineticHistory {
     /// Means over the window from `from_star` to the end; none if it is empty.
     pub fn kinetic(&self, from_star: f64, dt_star: f64) -> Option<Kinetic> {
         let bin_time = self.steps_per_bin as f64 * dt_star;
-        // A bin that the end of the run cut short would weigh too much.
+        // The last bin does not count until all of its steps are done.
         let complete = self.bins.len() - usize::from(self.in_bin > 0);
         let first = (from_star / bin_time).ceil().max(0.0) as usize;
         let window = self
@@ -127,16 +168,7 @@ impl KineticHistory {
 
 impl Observer for KineticHistory {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
-        if self.in_bin == 0 {
-            self.bins.push(Bin::default());
-        }
-        self.sliding_percent_max = self.sliding_percent_max.max(now.point.sliding_percent);
-        let share = 1.0 / self.steps_per_bin as f64;
-        if let Some(bin) = self.bins.last_mut() {
-            bin.mu_star += share * now.point.mu_star;
-            bin.sliding_percent += share * now.point.sliding_percent;
-        }
-        self.in_bin = (self.in_bin + 1) % self.steps_per_bin;
+        self.add(now.point.mu_star, now.point.sliding_percent);
         Ok(())
     }
 }
@@ -152,7 +184,7 @@ const NEGLIGIBLE_DRIFT: f64 = 1e-6;
 const MIN_BLOCKS: usize = 10;
 
 /// Standard error of the mean of a correlated series, if its two halves support one.
-fn uncertainty(x: &[f64], window_star: [f64; 2]) -> Result<f64, Doubt> {
+fn uncertainty(x: &[f64], window_star: [f64; 2]) -> Result<f64, NoUncertainty> {
     let halves = x.split_at(x.len() / 2);
     let (one, other) = (blocking(halves.0), blocking(halves.1));
     let found = one.blocks.min(other.blocks);
@@ -160,7 +192,7 @@ fn uncertainty(x: &[f64], window_star: [f64; 2]) -> Result<f64, Doubt> {
     let longer = |factor: f64| window_star[0] + factor * length;
     if found < MIN_BLOCKS {
         let factor = (MIN_BLOCKS as f64 / found.max(1) as f64).max(2.0);
-        return Err(Doubt::TooFewBlocks {
+        return Err(NoUncertainty::TooFewBlocks {
             found,
             needed_time_star: longer(factor),
         });
@@ -168,7 +200,7 @@ fn uncertainty(x: &[f64], window_star: [f64; 2]) -> Result<f64, Doubt> {
     let means = [mean(halves.0), mean(halves.1)];
     let difference = (means[0] - means[1]).abs();
     if difference > NEGLIGIBLE_DRIFT && difference > 3.0 * one.standard_error.hypot(other.standard_error) {
-        return Err(Doubt::Drift {
+        return Err(NoUncertainty::Drift {
             halves: means,
             needed_time_star: longer(2.0),
         });
@@ -257,6 +289,49 @@ mod tests {
         assert!((found / expected - 1.0).abs() < 0.3, "{found} {expected}");
     }
 
+    /// The history of a run in which mu* is this noise.
+    fn history_of(mut history: KineticHistory, noise: &[f64]) -> KineticHistory {
+        for &mu_star in noise {
+            history.add(mu_star, 100.0 * mu_star);
+        }
+        history
+    }
+
+    #[test]
+    fn a_run_without_an_end_keeps_every_step_as_long_as_a_run_with_one_does() {
+        let short = noise(KineticHistory::BINS as usize);
+        let without_end = history_of(KineticHistory::new(u64::MAX), &short);
+        let with_end = history_of(KineticHistory::new(KineticHistory::BINS - 1), &short);
+        assert_eq!(without_end, with_end);
+        assert_eq!(without_end.kinetic(100.0, 0.1), with_end.kinetic(100.0, 0.1));
+    }
+
+    #[test]
+    fn a_run_without_an_end_averages_more_steps_as_it_goes_on() {
+        let new = KineticHistory::new(u64::MAX);
+        // Four steps per mean, as in a run of known length.
+        let long = noise(4 * KineticHistory::BINS as usize);
+        let without_end = history_of(new.clone(), &long);
+        let with_end = history_of(KineticHistory::new(long.len() as u64 - 1), &long);
+        assert_eq!(
+            (without_end.steps_per_bin, without_end.bins.len()),
+            (4, KineticHistory::BINS as usize)
+        );
+        assert!(without_end.is_consistent_with(&new, long.len() as u64 - 1));
+        assert!(!without_end.is_consistent_with(&new, long.len() as u64));
+        let [one, other] = [&without_end, &with_end].map(|history| history.kinetic(1000.0, 0.1).unwrap());
+        assert_eq!(one.window_star, other.window_star);
+        // Means of four are added in another order.
+        assert!((one.mu_star - other.mu_star).abs() < 1e-15);
+        assert!((one.uncertainty.unwrap() - other.uncertainty.unwrap()).abs() < 1e-15);
+        assert!((one.sliding_percent - other.sliding_percent).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_history_of_the_longest_run_is_made_at_once() {
+        assert_eq!(KineticHistory::new(u64::MAX - 1).steps_per_bin, 1 << 50);
+    }
+
     #[test]
     fn drift_and_short_windows_have_none() {
         let drifting: Vec<f64> = noise(4096)
@@ -266,10 +341,10 @@ mod tests {
             .collect();
         assert!(matches!(
             uncertainty(&drifting, [0.0, 1.0]),
-            Err(Doubt::Drift { .. } | Doubt::TooFewBlocks { .. })
+            Err(NoUncertainty::Drift { .. } | NoUncertainty::TooFewBlocks { .. })
         ));
         assert!(
-            matches!(uncertainty(&noise(30), [10.0, 20.0]), Err(Doubt::TooFewBlocks { needed_time_star, .. }) if needed_time_star >= 30.0)
+            matches!(uncertainty(&noise(30), [10.0, 20.0]), Err(NoUncertainty::TooFewBlocks { needed_time_star, .. }) if needed_time_star >= 30.0)
         );
         assert_eq!(uncertainty(&[0.5; 1000], [0.0, 1.0]), Ok(0.0));
     }

@@ -12,7 +12,7 @@ pub struct Distribution {
     pub deviation: f64,
 }
 
-/// Local coefficients of every block, before the texture takes its share.
+/// Local coefficients of every block, as if there were no texture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coefficients {
     /// `mu_si`, one per block.
@@ -23,14 +23,14 @@ pub struct Coefficients {
     pub negative_draws: usize,
 }
 
-/// Named streams of one seed: what is drawn from one never shifts another.
+/// Named random streams of one seed: drawing from one does not change the numbers of another.
 #[derive(Clone, Copy)]
 enum Stream {
     MuStatic = 0,
     MuKinetic = 1,
 }
 
-/// The random streams by what is drawn from them: each is the stream of this number of ChaCha8 under the seed.
+/// Name and ChaCha8 stream number of each quantity that is drawn with the seed.
 pub const STREAMS: [(&str, u64); 2] = [
     ("mu_static", Stream::MuStatic as u64),
     ("mu_kinetic", Stream::MuKinetic as u64),
@@ -39,7 +39,7 @@ pub const STREAMS: [(&str, u64); 2] = [
 impl Coefficients {
     /// Draws `mu_si` and `mu_ki` for `n_blocks` blocks, textured or not, in block order.
     ///
-    /// The standard normals depend on `seed` and the place alone; mean and deviation scale and shift them.
+    /// The standard normals depend on `seed` and the index of the block alone; mean and deviation shift and scale them.
     /// Negative values become 0 and are counted.
     pub fn draw(n_blocks: usize, mu_static: Distribution, mu_kinetic: Distribution, seed: u64) -> Self {
         let mut negative_draws = 0;
@@ -77,8 +77,8 @@ impl Coefficients {
     }
 }
 
-/// Standard normals by Box and Muller, two uniforms each, so that draw n always stands at the same place of
-/// the stream. On `libm`, whose bits do not depend on the machine's own mathematical library.
+/// Standard normals by Box and Muller from two uniforms each, so that draw n always has the same position in the stream.
+/// Sine and logarithm are those of `libm`, with the same bits on every machine.
 fn standard_normals(seed: u64, stream: Stream) -> impl Iterator<Item = f64> {
     let mut key = [0; 32];
     key[..8].copy_from_slice(&seed.to_le_bytes());

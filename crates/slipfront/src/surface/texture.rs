@@ -1,14 +1,14 @@
 //! Textures: which blocks lie over a cavity, a groove, a polygon or a mask (Eqs. 15, 17, 18).
 //!
-//! Positions and sizes are in blocks. A block is textured when its centre lies inside an outline; textures
-//! unite. Periodic axes wrap an outline round, free edges clip it.
-
-use std::f64::consts::{PI, TAU};
+//! Positions and sizes are in blocks. A block is textured when its centre lies inside the outline of any texture. Outlines
+//! wrap around periodic axes and are clipped at free edges.
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::unit_vector;
-use crate::{Edges, Lattice};
+use std::f64::consts::{PI, TAU};
+
+use crate::lattice::{Edges, Lattice};
+use crate::vector_field::unit_vector;
 
 /// A textured zone.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub enum Texture {
     Groove(Groove),
     /// Any polygon, by the even-odd rule.
     Polygon(Vec<[f64; 2]>),
-    /// A picture stretched over the slider.
+    /// An image stretched over the slider.
     Image(MaskImage),
     /// Block by block, row by row from y = 0.
     Blocks(Vec<bool>),
@@ -89,7 +89,7 @@ pub struct Groove {
     pub offset: f64,
 }
 
-/// A black and white picture.
+/// A black and white image.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MaskImage {
     /// Pixels along x.
@@ -101,7 +101,7 @@ pub struct MaskImage {
 }
 
 impl MaskImage {
-    /// Whether block (i, j) of the lattice lies on a dark pixel: the nearest one, the picture stretched.
+    /// Whether block (i, j) of the lattice lies on a dark pixel: the nearest one of the image stretched over the slider.
     fn covers(&self, lattice: &Lattice, i: usize, j: usize) -> bool {
         let column = (2 * i + 1) * self.width / (2 * lattice.nx);
         let row = (2 * (lattice.ny - 1 - j) + 1) * self.height / (2 * lattice.ny);
@@ -114,7 +114,7 @@ impl MaskImage {
 pub struct Meshed {
     /// Textured blocks.
     pub textured: Vec<bool>,
-    /// Indices of the textures that reach over a free edge and are clipped there.
+    /// Indices of the textures that extend beyond a free edge and are clipped there.
     pub clipped: Vec<usize>,
 }
 
@@ -142,7 +142,7 @@ pub fn mesh(lattice: &Lattice, textures: &[Texture]) -> Meshed {
             Texture::Cavity(_) | Texture::Groove(_) | Texture::Polygon(_) => {
                 let mut clipped = false;
                 for outline in outlines(texture, lattice) {
-                    clipped |= reaches_over(&outline, lattice);
+                    clipped |= extends_beyond(&outline, lattice);
                     fill(&outline, lattice, &mut meshed.textured);
                 }
                 meshed.clipped.extend(clipped.then_some(index));
@@ -152,7 +152,7 @@ pub fn mesh(lattice: &Lattice, textures: &[Texture]) -> Meshed {
     meshed
 }
 
-/// A closed outline that can be cut by a horizontal line.
+/// A closed outline that can be intersected with a horizontal line.
 enum Outline {
     Ellipse {
         center: [f64; 2],
@@ -167,7 +167,7 @@ enum Outline {
     },
 }
 
-/// One by one: of a million cavities, each drawn by thousands of vertices, no machine holds the outlines at once.
+/// Outlines of a texture, made one at a time: a million cavities with thousands of vertices each would not fit in memory.
 fn outlines<'a>(texture: &'a Texture, lattice: &Lattice) -> Box<dyn Iterator<Item = Outline> + 'a> {
     match texture {
         Texture::Cavity(cavity) => Box::new(cavity.centers(lattice).map(|center| cavity.outline(center))),
@@ -186,7 +186,7 @@ fn outlines<'a>(texture: &'a Texture, lattice: &Lattice) -> Box<dyn Iterator<Ite
     }
 }
 
-/// Vertices by which a semi-polygon's outline is drawn: they lie on the curve, and its chords leave it by less
+/// Number of vertices of a semi-polygon's outline. They lie on the curve, and the chords between them differ from it by less
 /// than `lambda (1 + s) (2 pi/4096)^2/8`, a ten-thousandth of a block at `lambda` = 100.
 const OUTLINE_VERTICES: usize = 4096;
 
@@ -198,12 +198,12 @@ impl Cavity {
             lattice.ny as f64 / rows as f64,
         ];
         let center = self.center;
-        let place = |k: usize, count: usize| k as f64 - 0.5 * (count as f64 - 1.0);
+        let position = |k: usize, count: usize| k as f64 - 0.5 * (count as f64 - 1.0);
         (0..rows).flat_map(move |b| {
             (0..columns).map(move |a| {
                 [
-                    center[0] + spacing[0] * place(a, columns),
-                    center[1] + spacing[1] * place(b, rows),
+                    center[0] + spacing[0] * position(a, columns),
+                    center[1] + spacing[1] * position(b, rows),
                 ]
             })
         })
@@ -278,8 +278,8 @@ impl Outline {
         }
     }
 
-    /// Whether a point between two crossings is inside. An ellipse excludes its outline, and rounds alike on all
-    /// sides of it, so that its mesh is as symmetric as the ellipse; other outlines are half-open.
+    /// Whether a point between two crossings is inside. An ellipse excludes its outline and is tested by a formula that
+    /// rounds symmetrically, so that its mesh is as symmetric as the ellipse; other outlines are half-open.
     fn contains(&self, [x, y]: [f64; 2]) -> bool {
         match self {
             Outline::Ellipse {
@@ -294,8 +294,8 @@ impl Outline {
         }
     }
 
-    /// Where the line at height `y` runs inside: pairs of x, each in [enter, leave).
-    fn cut(&self, y: f64, crossings: &mut Vec<f64>) {
+    /// Intersections with the horizontal line at `y`: pairs of x, inside in [enter, leave).
+    fn intersect(&self, y: f64, crossings: &mut Vec<f64>) {
         crossings.clear();
         match self {
             Outline::Ellipse {
@@ -313,7 +313,7 @@ impl Outline {
                 if root > 0.0 {
                     let root = root.sqrt();
                     let (enter, leave) = ((-half - root) / square, (-half + root) / square);
-                    // A little too far: `contains` has the last word on a centre that lies on the outline.
+                    // Slightly wider: `contains` decides about a centre that lies on the outline.
                     let margin = 1e-9 * a.abs().max(b.abs());
                     crossings.extend([center[0] + enter - margin, center[0] + leave + margin]);
                 }
@@ -345,7 +345,7 @@ impl Outline {
     }
 }
 
-fn reaches_over(outline: &Outline, lattice: &Lattice) -> bool {
+fn extends_beyond(outline: &Outline, lattice: &Lattice) -> bool {
     let [low, high] = outline.bounds();
     [lattice.nx, lattice.ny].iter().enumerate().any(|(axis, &size)| {
         let over = |at: f64| at.is_finite() && !(0.0..=size as f64).contains(&at);
@@ -358,11 +358,11 @@ fn fill(outline: &Outline, lattice: &Lattice, textured: &mut [bool]) {
     let [low, high] = outline.bounds();
     let mut crossings = Vec::new();
     for row in blocks_between(low[1], high[1], lattice.ny, lattice.edges[1]) {
-        outline.cut(row as f64 + 0.5, &mut crossings);
+        outline.intersect(row as f64 + 0.5, &mut crossings);
         let j = row.rem_euclid(lattice.ny as isize) as usize;
         for inside in crossings.chunks_exact(2) {
             let columns = blocks_between(inside[0], inside[1], lattice.nx, lattice.edges[0]);
-            // Columns beyond once round are covered already; rows are not, as the outline changes from row to row.
+            // One turn around a periodic axis covers all columns of the row.
             for column in columns.take(lattice.nx + 1) {
                 if !outline.contains([column as f64 + 0.5, row as f64 + 0.5]) {
                     continue;
@@ -373,7 +373,7 @@ fn fill(outline: &Outline, lattice: &Lattice, textured: &mut [bool]) {
     }
 }
 
-/// Blocks along one axis whose centre k + 1/2 lies in [from, to); beyond the ends only where they wrap.
+/// Blocks along one axis whose centre k + 1/2 lies in [from, to); outside the lattice only along a periodic axis.
 fn blocks_between(from: f64, to: f64, count: usize, edges: Edges) -> std::ops::Range<isize> {
     let (mut first, mut end) = ((from - 0.5).ceil(), (to - 0.5).ceil());
     if from.is_infinite() || to.is_infinite() || edges == Edges::Free {

@@ -1,4 +1,4 @@
-//! What the test binaries share: a slider described by the paper's groups.
+//! Helpers of all test binaries: a slider described by the dimensionless groups of the paper.
 #![allow(dead_code)] // Each binary uses its own part of this.
 
 use slipfront::observe::{Curve, CurveRow, Kinetic, KineticHistory, KineticStart, Observer, Peak, Scheduled};
@@ -11,21 +11,21 @@ use slipfront::{
 };
 
 /// A slider at rest, stepped by the kernel that this binary tests.
-pub(crate) fn at_rest(model: &Model, dt_star: f64) -> Simulation<'_> {
+pub(crate) fn at_rest(model: &Model, dt_star: f64) -> Simulation {
     executed(model, dt_star, None)
 }
 
 /// A slider in a given state, stepped by the kernel that this binary tests.
-pub(crate) fn from_state(model: &Model, dt_star: f64, state: State) -> Simulation<'_> {
+pub(crate) fn from_state(model: &Model, dt_star: f64, state: State) -> Simulation {
     executed(model, dt_star, Some(state))
 }
 
-fn executed(model: &Model, dt_star: f64, state: Option<State>) -> Simulation<'_> {
+fn executed(model: &Model, dt_star: f64, state: Option<State>) -> Simulation {
     let execution = Execution {
         kernel: crate::KERNEL,
         ..Execution::default()
     };
-    Simulation::executed(model, dt_star, state, execution)
+    Simulation::with_execution(model.clone(), dt_star, state, execution)
 }
 
 /// A run described by the groups of Eq. 11. The default is the baseline of Fig. 3.
@@ -76,7 +76,7 @@ pub(crate) struct Outcome {
 }
 
 impl Slider {
-    /// The same coefficients everywhere.
+    /// With equal coefficients for all blocks.
     pub(crate) fn uniform(self) -> Self {
         Self {
             sigma_static_star: 0.0,
@@ -138,7 +138,7 @@ impl Slider {
         self.observed(turns, &mut [])
     }
 
-    /// The same with every step recorded.
+    /// Runs to t* = `turns`/V* and records every step.
     pub(crate) fn run(&self, turns: f64) -> Outcome {
         let mut curve = Curve::every(1);
         let (peak, kinetic) = self.observed(turns, &mut [&mut curve]);
@@ -173,7 +173,7 @@ impl Slider {
     }
 }
 
-/// Blocks displaced by up to `size`, every `apart`-th of them thrown as well.
+/// Blocks displaced by up to `size`, every `apart`-th of them with a velocity.
 pub(crate) fn thrown(n_blocks: usize, size: f64, apart: usize) -> State {
     let wave = |k: f64, apart: usize| {
         let one = |b: usize| {

@@ -1,4 +1,5 @@
-//! Orders of convergence, on the fused kernel. The same on the reference kernel: `convergence_on_reference`.
+//! Orders of convergence, on the fused kernel. `convergence_on_reference` runs these tests on the reference
+//! kernel.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -7,7 +8,7 @@ mod common;
 
 use slipfront::Kernel;
 
-/// What steps the simulations of this binary.
+/// The kernel of the simulations of this binary.
 const KERNEL: Kernel = Kernel::Fused;
 
 mod orders;

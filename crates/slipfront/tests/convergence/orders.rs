@@ -2,7 +2,7 @@
 //! stop.
 
 use rstest::rstest;
-use slipfront::known_answers::SlipCycle;
+use slipfront::exact_solutions::SlipCycle;
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, State, Surface, VectorField, scales};
 
 use crate::common::{Slider, at_rest, from_state};
@@ -182,7 +182,7 @@ fn in_transition(seed: u64, steps: u32) -> VectorField {
 const TRANSITION: f64 = 27.0;
 
 /// With friction whole trajectories are of first order, since blocks start and stop on steps. The median over
-/// 24 surfaces: on some of them a slip that just happens at one step just fails at another.
+/// 24 surfaces: on some of them a slip that just happens with one time step does not happen with another.
 #[test]
 fn motion_with_friction_is_of_first_order() {
     let counts = [270, 540, 1080, 2160];
@@ -202,8 +202,8 @@ fn motion_with_friction_is_of_first_order() {
     assert_order(&steps, &errors, 1.0, 0.15);
 }
 
-/// What the ledger of energies misses: the last step of every slip takes at most (mu_k F_n dt)^2/2 from the
-/// block that stops, so that it closes to second order although the events themselves are of first.
+/// The error of the energy balance: in the last step of every slip the block loses at most (mu_k F_n dt)^2/2, so that the error
+/// is of second order although the times of the events are of first.
 #[test]
 fn energy_closes_to_second_order() {
     let steps = [0.1, 0.05, 0.025, 0.0125];

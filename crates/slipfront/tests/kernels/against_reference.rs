@@ -1,15 +1,16 @@
 //! The fused kernel against the reference: the same to rounding.
 
 use rstest::rstest;
-use slipfront::kernel::{Block, Totals};
+use slipfront::kernel::Totals;
 use slipfront::surface::{Orientation, Texture};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Simulation, State, Surface, VectorField};
 
 use crate::common::{self, Slider, cavity, groove};
+use crate::fields::assert_fields_match_blocks;
 use crate::{FUSED, REFERENCE, bits, go, has_room};
 
-/// Roundings differ by 1e-16 a spring and step, and a slip hands them on somewhat larger: some 1e-14 until the first peak
-/// has ended, in displacements and velocities of the order of 1.
+/// Rounding errors differ by 1e-16 per spring and step, and a slip amplifies them somewhat: to about 1e-14 up to the end of the
+/// first peak, in displacements and velocities of the order of 1.
 const ROUNDING: f64 = 1e-13;
 
 fn largest(a: &VectorField) -> f64 {
@@ -25,13 +26,13 @@ fn distance(a: &VectorField, b: &VectorField) -> f64 {
 
 /// All sums, those over all blocks divided by their number.
 fn means(totals: &Totals, n_blocks: usize) -> Vec<f64> {
-    let held = totals.held.unwrap_or_default();
+    let stored = totals.stored_energy.unwrap_or_default();
     let mut sums = vec![
         totals.velocity_square,
         totals.friction_power,
-        held.kinetic,
-        held.lattice,
-        held.drive_springs,
+        stored.kinetic,
+        stored.lattice,
+        stored.drive_springs,
     ];
     for pair in [totals.displacement, totals.velocity, totals.velocity_after] {
         sums.extend(pair);
@@ -48,7 +49,7 @@ fn assert_alike(fused: &Simulation, reference: &Simulation) {
         (there.n_sliding, there.n_slipping),
         "step {step}"
     );
-    assert_eq!(here.held.is_some(), there.held.is_some());
+    assert_eq!(here.stored_energy.is_some(), there.stored_energy.is_some());
     let n = one.model.lattice.n_blocks();
     for (a, b) in means(&here, n).iter().zip(means(&there, n)) {
         // Energies of stretched springs may be more than 1.
@@ -69,14 +70,14 @@ fn assert_alike(fused: &Simulation, reference: &Simulation) {
         (&here.velocity, &there.velocity),
     ] {
         let far = distance(a, b);
-        // Only blocks that nothing holds back come to move by more than 1.
+        // Only blocks without friction come to move by more than 1.
         assert!(far < ROUNDING * largest(b), "step {step}: {far:e} apart");
     }
 }
 
-/// Both kernels through up to `steps` steps, or until the first peak has ended; energies are asked for now and then.
+/// Both kernels through up to `steps` steps, or until the first peak has ended; energies are measured at some of the steps.
 fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
-    let run = |execution| Simulation::executed(model, dt_star, state.cloned(), execution);
+    let run = |execution| Simulation::with_execution(model.clone(), dt_star, state.cloned(), execution);
     let (mut fused, mut reference) = (run(FUSED), run(REFERENCE));
     assert_alike(&fused, &reference);
     for step in 1..=steps {
@@ -91,13 +92,11 @@ fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
     let first = reference.first_slip_time_star();
     assert!(first.iter().any(|t| !t.is_nan()), "nothing ever slips");
     assert_eq!(bits(&fused.first_slip_time_star()), bits(&first));
-    // What is shown of a block is found anew from its motion.
+    // The forces of the fused kernel are recomputed from its displacements and velocities.
     let bound = ROUNDING * largest(&reference.state().displacement);
-    let mut together = vec![Block::default(); model.lattice.n_blocks()];
-    fused.snapshot().look(0, &mut together);
-    for (b, together) in together.into_iter().enumerate() {
+    assert_fields_match_blocks(&fused);
+    for b in 0..model.lattice.n_blocks() {
         let (here, there) = (fused.snapshot().block(b), reference.snapshot().block(b));
-        assert_eq!(here, together, "block {b} looks otherwise alone");
         let forces = [
             (here.force_drive, there.force_drive),
             (here.force_lattice, there.force_lattice),
@@ -113,8 +112,8 @@ fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
     }
 }
 
-/// Sizes at and beside the widths of a vector, of the shortest row, and of a tile; and rows of 24 in so many tiles that these
-/// begin at every place in the memory of upward springs, which is 37 vectors long then.
+/// Sizes equal and close to those of a vector, of the shortest row, and of a tile; and rows of 24 blocks in so many tiles that
+/// these begin at every position of the ring buffer of springs, which is 37 vectors long then.
 #[rstest]
 fn lattices_of_every_shape(
     #[values(
@@ -143,7 +142,7 @@ fn lattices_of_every_shape(
     assert_same(&slider.model(), slider.dt_star, None, slider.steps(5.0));
 }
 
-/// Strains for which springs come from either series or the square root, and all the rest that enters a step.
+/// Strains for which spring forces come from either series or the square root, and all other parameters of a step.
 #[rstest]
 fn forces_of_every_kind(
     #[values(0.0, 1e-6, 1e-4, 1e-3, 1e-2)] epsilon: f64,
@@ -187,7 +186,7 @@ fn a_constant_force_alone(
     assert_same(&model, 0.1, None, 400);
 }
 
-/// Blocks that are displaced and thrown at the start, some of them.
+/// Blocks that are displaced at the start, some of them with a velocity.
 #[rstest]
 fn a_state_in_motion(
     #[values([1, 1], [17, 5], [5, 60], [300, 4])] blocks: [usize; 2],
@@ -213,8 +212,8 @@ fn a_state_in_motion(
     assert_same(&slider.model(), slider.dt_star, Some(&state), 100);
 }
 
-/// Far beyond the first peak too: friction hands differences on without making them larger, so that two kernels part only
-/// where one lets a block slip and the other does not, for which it would have to come within rounding of its threshold.
+/// The kernels agree far beyond the first peak: friction does not amplify differences, so that the kernels would diverge only
+/// if the force on a block came so close to its threshold that rounding decides whether it slips.
 #[rstest]
 fn whole_runs(
     #[values([25, 25], [64, 30])] blocks: [usize; 2],
@@ -236,7 +235,7 @@ fn whole_runs(
         ..Slider::default()
     };
     let model = slider.model();
-    let run = |execution| Simulation::executed(&model, slider.dt_star, None, execution);
+    let run = |execution| Simulation::with_execution(model.clone(), slider.dt_star, None, execution);
     let (mut fused, mut reference) = (run(FUSED), run(REFERENCE));
     for step in 1..=slider.steps(16.0) {
         go(&mut fused, false);

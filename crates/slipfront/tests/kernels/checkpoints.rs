@@ -1,8 +1,7 @@
-//! Stops with a checkpoint under the reference kernel, with observers, and what does not fit. Those under the fused kernel
-//! stand beside its other executions.
+//! Checkpoints of the reference kernel, of observers, and of another lattice. Those of the fused kernel are tested in
+//! `executions.rs`.
 
 use rstest::rstest;
-use slipfront::kernel::Block;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{Curve, Field, Instants, KineticHistory, KineticStart, Scheduled};
 use slipfront::{Checkpoint, Execution, FrictionLaw, Simulation, Stop};
@@ -28,9 +27,8 @@ fn everything(simulation: &Simulation) -> Vec<u64> {
     let now = simulation.snapshot();
     let mut numbers = simulation.first_slip_time_star();
     numbers.extend([now.point.mu_star, simulation.contact_stress_max()]);
-    let mut blocks = vec![Block::default(); now.model.lattice.n_blocks()];
-    now.look(0, &mut blocks);
-    for block in blocks {
+    for b in 0..now.model.lattice.n_blocks() {
+        let block = now.block(b);
         for pair in [
             block.displacement,
             block.velocity,
@@ -51,7 +49,7 @@ fn the_reference_kernel_under_every_law(
 ) {
     let slider = slider(law);
     let (model, dt_star) = (slider.model(), slider.dt_star);
-    let start = || Simulation::executed(&model, dt_star, None, REFERENCE);
+    let start = || Simulation::with_execution(model.clone(), dt_star, None, REFERENCE);
     let (mut plain, mut stopped) = (start(), start());
     for step in 0..slider.steps(4.0) {
         if step.is_multiple_of(every) {
@@ -68,8 +66,8 @@ fn the_reference_kernel_under_every_law(
     );
 }
 
-/// A run in one piece and one in pieces of every length, each of which goes on from what was written down of the run and of
-/// its observers: these have seen every instant, and once.
+/// A run without stops and one in parts, each of which continues from a checkpoint of the run and of its observers: these have
+/// seen every instant exactly once.
 #[rstest]
 fn observers_see_every_instant_once(
     #[values(REFERENCE, FUSED)] execution: Execution,
@@ -91,7 +89,7 @@ fn observers_see_every_instant_once(
             Instants::new(selection, KineticStart::Auto, end_star),
         )
     };
-    let start = || Simulation::executed(&model, dt_star, None, execution);
+    let start = || Simulation::with_execution(model.clone(), dt_star, None, execution);
     let (mut curve, mut history, mut instants) = fresh();
     let mut whole = start();
     whole
@@ -137,10 +135,10 @@ fn a_checkpoint_of_another_lattice_or_kernel_does_not_fit() {
         .model()
     });
     let checkpoint = || -> Checkpoint {
-        let simulation = Simulation::executed(&model, 0.1, None, FUSED);
+        let simulation = Simulation::with_execution(model.clone(), 0.1, None, FUSED);
         postcard::from_bytes(&postcard::to_stdvec(&simulation.checkpoint()).unwrap()).unwrap()
     };
-    assert!(Simulation::resume(&model, 0.1, checkpoint(), FUSED).is_some());
-    assert!(Simulation::resume(&model, 0.1, checkpoint(), REFERENCE).is_none());
-    assert!(Simulation::resume(&other, 0.1, checkpoint(), FUSED).is_none());
+    assert!(Simulation::resume(model.clone(), 0.1, checkpoint(), FUSED).is_some());
+    assert!(Simulation::resume(model.clone(), 0.1, checkpoint(), REFERENCE).is_none());
+    assert!(Simulation::resume(other.clone(), 0.1, checkpoint(), FUSED).is_none());
 }

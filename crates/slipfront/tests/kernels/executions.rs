@@ -1,4 +1,4 @@
-//! The fused kernel against itself: threads, rest, and stops with a checkpoint change nothing, not a bit.
+//! The fused kernel gives the same bits on any number of threads, with and without skipping, and across checkpoints.
 
 use rstest::rstest;
 use slipfront::surface::{Orientation, Texture};
@@ -7,11 +7,11 @@ use slipfront::{Drive, Edges, Execution, FrictionLaw, Lattice, Model, Simulation
 use crate::common::{self, Slider, cavity, groove};
 use crate::{FUSED, bits, go, has_room, stopped_and_resumed};
 
-/// Everything that a run shows at one instant, but for its state.
+/// Everything that can be read of a run at one instant except for its state.
 fn shown(simulation: &Simulation) -> Vec<u64> {
     let now = simulation.snapshot();
     let totals = now.totals;
-    let held = totals.held.unwrap_or_default();
+    let stored = totals.stored_energy.unwrap_or_default();
     let mut numbers = vec![
         now.point.mu_star,
         now.point.mu_lateral_star,
@@ -19,9 +19,9 @@ fn shown(simulation: &Simulation) -> Vec<u64> {
         totals.friction_power,
         totals.n_sliding as f64,
         totals.n_slipping as f64,
-        held.kinetic,
-        held.lattice,
-        held.drive_springs,
+        stored.kinetic,
+        stored.lattice,
+        stored.drive_springs,
         simulation.contact_stress_max(),
     ];
     for pair in [totals.displacement, totals.velocity, totals.velocity_after] {
@@ -41,8 +41,8 @@ fn state(simulation: &Simulation) -> Vec<u64> {
         .collect()
 }
 
-/// The fused kernel on one thread, doing every block at every step, against all other ways to execute it, among them stops
-/// after so many steps; energies are asked for now and then.
+/// The fused kernel on one thread without skipping against all other ways to execute it, among them runs in parts of so many
+/// steps; energies are measured at some of the steps.
 fn assert_same_bits(model: &Model, dt_star: f64, from: Option<&State>, steps: u64) {
     let of = |threads| {
         [false, true].map(|skips| Execution {
@@ -56,11 +56,11 @@ fn assert_same_bits(model: &Model, dt_star: f64, from: Option<&State>, steps: u6
         .flat_map(of)
         .skip(1)
         .map(|execution| (execution, u64::MAX));
-    // After every step, at and between looks at the strains, and seldom.
+    // After every step, at and between measurements of the extent of displacements, and seldom.
     let stopped = of(1).into_iter().chain(of(3)).zip([1, 5, 16, 61]);
     let skipping = of(1).into_iter().skip(1).map(|execution| (execution, 16));
     let executions: Vec<_> = unstopped.chain(stopped).chain(skipping).collect();
-    let run = |execution| Simulation::executed(model, dt_star, from.cloned(), execution);
+    let run = |execution| Simulation::with_execution(model.clone(), dt_star, from.cloned(), execution);
     let mut plain = run(FUSED);
     let mut others: Vec<_> = executions.iter().map(|&(execution, _)| run(execution)).collect();
     for step in 1..=steps {
@@ -118,7 +118,7 @@ fn lattices_of_every_shape(
     assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(4.0));
 }
 
-/// Textured blocks hardly rest; strains bring either series and the square root, and go from one to the other.
+/// Textured blocks are seldom at rest; the strains need either series and the square root, and change from one to the other.
 #[rstest]
 fn textures_and_strains(
     #[values(None, Some(cavity([40, 40], 5.0, 1, 0.3, true)), Some(groove(Orientation::Across, 2.0)))]
@@ -137,8 +137,8 @@ fn textures_and_strains(
     assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(4.0));
 }
 
-/// Between slips the whole slider rests, and while some blocks slip the others do. Strains take every kind of springs, and
-/// change it while blocks rest.
+/// Between slips the whole slider is at rest, and during a slip most blocks are. The strains need every formula of springs, and
+/// change it while blocks are at rest.
 #[rstest]
 fn slow_drives(
     #[values([40, 40], [300, 5], [3, 400])] blocks: [usize; 2],
@@ -159,7 +159,7 @@ fn slow_drives(
     assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(3.0));
 }
 
-/// Blocks that are displaced at the start, and a few of them thrown.
+/// Blocks that are displaced at the start, a few of them with a velocity.
 #[rstest]
 fn a_state_in_motion(
     #[values([Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Periodic, Edges::Periodic])]
@@ -177,16 +177,16 @@ fn a_state_in_motion(
     assert_same_bits(&slider.model(), slider.dt_star, Some(&from), 300);
 }
 
-/// A tile of 16 rows rests; in its first row a block that holds more than all others is about to break, and does so at the
-/// very step after a block in the last row of the tile below, which pushes it: the largest contact stress is that of its
-/// last step at rest.
+/// A tile of 16 rows is at rest. In its first row a block with a larger threshold than all others is about to slip. It does so
+/// one step after a block in the last row of the tile below, which pushes it: the largest contact stress is that of its last
+/// step at rest.
 #[test]
 fn the_largest_stress_may_be_that_of_the_last_step_at_rest() {
     let lattice = Lattice::free(16, 32);
-    let (pushing, held) = (lattice.block(8, 15), lattice.block(9, 16));
+    let (pushing, stored) = (lattice.block(8, 15), lattice.block(9, 16));
     let mut from = State::at_rest(512);
     from.displacement.x[pushing] = -1.0;
-    from.displacement.x[held] = -4.0;
+    from.displacement.x[stored] = -4.0;
     let model = |surface| {
         Model::new(
             lattice,
@@ -200,9 +200,9 @@ fn the_largest_stress_may_be_that_of_the_last_step_at_rest() {
     let dt_star = 0.5;
     let mut surface = Surface::uniform(&lattice, 20.0, 20.0);
     let firm = model(surface.clone());
-    // Thresholds that the pushing block passes after 50 steps and the held one after 80, if nothing pushes.
-    for (b, steps) in [(pushing, 50.0), (held, 80.0)] {
-        let block = Simulation::executed(&firm, dt_star, Some(from.clone()), FUSED)
+    // Thresholds that the pushing block reaches after 50 steps and the pushed one after 80, if nothing pushes it.
+    for (b, steps) in [(pushing, 50.0), (stored, 80.0)] {
+        let block = Simulation::with_execution(firm.clone(), dt_star, Some(from.clone()), FUSED)
             .snapshot()
             .block(b);
         let [x, y] = [0, 1].map(|axis| block.force_drive[axis] + block.force_lattice[axis]);

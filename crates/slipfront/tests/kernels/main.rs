@@ -1,5 +1,5 @@
-//! The same cases on every kernel and every way to execute it: the fused kernel against the reference to rounding, and
-//! against itself, on any number of threads and leaving blocks at rest alone or not, bit for bit.
+//! All kernels and ways to execute them compared: the fused kernel agrees with the reference to rounding, and has the same bits
+//! on any number of threads, with and without skipping.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -8,10 +8,10 @@ mod common;
 
 use slipfront::{Edges, Execution, Kernel, Lattice, Model, Simulation, Stop};
 
-/// What steps the simulations of this binary that do not say.
+/// The kernel of the simulations that the common helpers make.
 const KERNEL: Kernel = Kernel::Fused;
 
-/// The fused kernel at its plainest: one thread, every block at every step.
+/// The fused kernel on one thread without skipping.
 const FUSED: Execution = Execution {
     kernel: Kernel::Fused,
     threads: 1,
@@ -23,7 +23,7 @@ const REFERENCE: Execution = Execution {
     ..FUSED
 };
 
-/// A step further, at whose end the energies held are known if `energies` asks for them.
+/// One step, after which the stored energies are known if `energies` is set.
 fn go(simulation: &mut Simulation, energies: bool) {
     if energies {
         let next = simulation.snapshot().step + 1;
@@ -33,7 +33,7 @@ fn go(simulation: &mut Simulation, energies: bool) {
     }
 }
 
-/// To compare numbers to the last bit, those among them that are none.
+/// The bits of numbers, to compare NaN as well.
 fn bits(numbers: &[f64]) -> Vec<u64> {
     numbers.iter().map(|x| x.to_bits()).collect()
 }
@@ -43,18 +43,19 @@ fn has_room(blocks: [usize; 2], edges: [Edges; 2]) -> bool {
     (0..2).all(|axis| edges[axis] == Edges::Free || blocks[axis] >= Lattice::MIN_PERIODIC)
 }
 
-/// The simulation that goes on from what is written down of this one.
-fn stopped_and_resumed<'m>(
+/// A simulation that continues from a checkpoint of this one.
+fn stopped_and_resumed(
     simulation: &Simulation,
-    model: &'m Model,
+    model: &Model,
     dt_star: f64,
     execution: Execution,
-) -> Simulation<'m> {
+) -> Simulation {
     let bytes = postcard::to_stdvec(&simulation.checkpoint()).unwrap();
     let checkpoint = postcard::from_bytes(&bytes).unwrap();
-    Simulation::resume(model, dt_star, checkpoint, execution).unwrap()
+    Simulation::resume(model.clone(), dt_star, checkpoint, execution).unwrap()
 }
 
 mod against_reference;
 mod checkpoints;
 mod executions;
+mod fields;

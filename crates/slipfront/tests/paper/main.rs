@@ -2,7 +2,7 @@
 //!
 //! Numbers beside a claim are those of model.md, section 5, which come from one surface of an independent
 //! program. Tolerances are three standard deviations of the same quantity over ten surfaces of this one,
-//! unless they say else.
+//! unless a comment says otherwise.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -15,7 +15,7 @@ use slipfront::{Drive, Edges, FrictionLaw, Kernel, Lattice, Model, Scales, Surfa
 
 use common::{Slider, at_rest, cavity, groove};
 
-/// What steps the simulations of this binary.
+/// The kernel of the simulations of this binary.
 const KERNEL: Kernel = Kernel::Fused;
 
 /// The slider of the texture figures: 50 x 50 blocks, sigma_s* = 0.
@@ -113,7 +113,7 @@ fn a_groove_without_any_scatter() {
 }
 
 /// Grooves on periodic edges climb again, higher than the first peak, in the next cycle, so that the rule of
-/// the first peak matters. By how much hangs on the step, since nothing breaks the symmetry along the groove:
+/// the first peak matters. By how much depends on the step, since nothing breaks the symmetry along the groove:
 /// 1.3 % at 0.02, 2.3 % at 0.1, 4 % in model.md.
 #[test]
 fn a_groove_on_periodic_edges_climbs_higher_later() {
@@ -158,7 +158,7 @@ fn static_scatter_attenuates_the_effect_of_a_texture() {
     assert!(found.windows(2).all(|pair| pair[1] < pair[0] - 3.0), "{found:?}");
 }
 
-/// Without sharing the texture's load out, the cavity would take 37 % (section 1 of model.md).
+/// Without redistributing the texture's load, the cavity would take 37 % (section 1 of model.md).
 #[test]
 fn without_redistribution_the_cavity_takes_37_percent() {
     let kept = Slider {
@@ -421,7 +421,7 @@ fn implicit_and_explicit_friction_agree() {
     }
 }
 
-/// D7: at V* = 0.2 the slider swings as a whole, sticking and slipping, and does so at any stable step alike.
+/// D7: at V* = 0.2 the slider oscillates as a whole, sticking and slipping, at any stable time step.
 #[rstest]
 fn fast_drives_swing_the_slider_at_any_step(#[values(0.02, 0.1, 0.2, 0.4)] dt_star: f64) {
     let slider = Slider {

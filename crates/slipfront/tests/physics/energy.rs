@@ -1,8 +1,8 @@
-//! Energy: the work of the drive is held by blocks and springs or lost to friction and damping, each loss by
-//! itself an exact figure for one block.
+//! Energy: the work of the drive is stored in blocks and springs or lost to friction and damping. For one block each loss is
+//! known exactly.
 
 use rstest::rstest;
-use slipfront::known_answers::SlipCycle;
+use slipfront::exact_solutions::SlipCycle;
 use slipfront::observe::energy::Energies;
 use slipfront::observe::{Curve, Scheduled};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, State, Stop, Surface, VectorField};
@@ -17,9 +17,9 @@ fn energies(model: &Model, dt: f64, steps: u64, state: State) -> Vec<Energies> {
     curve.rows.iter().map(|row| row.energies).collect()
 }
 
-/// Through onset and far beyond. What is missing is the motion that the last step of a slip takes from a
-/// block that stops, at most (mu_k F_n dt)^2/2 = 5e-5 of energy, in slips that take R V T = 1 each: a few
-/// 1e-5. Where damping lets hardly a block stop, less.
+/// Through onset and far beyond. The balance misses the kinetic energy that a block loses in the last step of a slip, at most
+/// (mu_k F_n dt)^2/2 = 5e-5, in slips that dissipate R V T = 1 each: a few 1e-5. It is less where strong damping lets few blocks
+/// stop.
 #[rstest]
 #[case::baseline(Slider { dt_star: 0.02, ..Slider::default() }, 5e-5)]
 #[case::undamped(Slider { dt_star: 0.02, omega_star: 0.0, ..Slider::default() }, 5e-5)]
@@ -64,7 +64,7 @@ fn before_the_first_slip_all_work_is_in_the_drive_springs() {
     }
 }
 
-/// One slip of one block: friction takes R V T, damping the rest of the drive's work (`SlipCycle`).
+/// One slip of one block: friction dissipates R V T, damping the rest of the drive's work (`SlipCycle`).
 #[rstest]
 fn losses_of_one_slip(#[values(0.0, 0.1, 0.3)] omega_star: f64, #[values(0.03, 0.1)] v_star: f64) {
     let slider = Slider {
@@ -93,8 +93,8 @@ fn losses_of_one_slip(#[values(0.0, 0.1, 0.3)] omega_star: f64, #[values(0.03, 0
     }
 }
 
-/// A block with nothing but friction runs v^2/(2 mu_k) far and loses all of (1/2) v^2 to it; one with nothing
-/// but damping runs v/Omega far and loses (1/2) v^2 to that.
+/// A block with friction alone moves by v^2/(2 mu_k) and loses all of (1/2) v^2 to friction; one with damping alone moves by
+/// v/Omega and loses (1/2) v^2 to damping.
 #[rstest]
 #[case::friction(0.5, 0.0)]
 #[case::damping(0.0, 0.4)]
@@ -132,11 +132,11 @@ fn a_thrown_block_loses_all_its_energy_to_the_one_loss(#[case] kinetic: f64, #[c
     } else {
         (1.0 / (2.0 * kinetic), last.friction_loss, last.damping_loss)
     };
-    // The velocity is given half a step before t = 0: v dt/2 of way, and as much of the loss.
+    // The velocity is given half a step before t = 0: v dt/2 of displacement, and the loss over it.
     assert!((x.hypot(y) - way).abs() < dt, "{} {way}", x.hypot(y));
     assert!((y / x + 4.0 / 3.0).abs() < 1e-12, "it keeps its direction");
     assert!((loss - 0.5).abs() < dt && other == 0.0, "{loss}");
-    assert!(last.kinetic < 1e-12 && (last.held_at_start - 0.5).abs() < dt);
+    assert!(last.kinetic < 1e-12 && (last.stored_at_start - 0.5).abs() < dt);
     assert!(last.error().abs() < 1e-6, "{}", last.error());
 }
 
@@ -159,7 +159,7 @@ fn a_constant_force_does_work() {
     );
     let dt = 0.01;
     let last = *energies(&model, dt, 1000, State::at_rest(1)).last().unwrap();
-    // Uniformly accelerated by 0.5 - 0.2 from t = -dt/2 on: way a t^2/2, work 0.5 per way, 0.2 of it to
+    // Uniformly accelerated by 0.5 - 0.2 from t = -dt/2 on: displacement a t^2/2, work 0.5 per displacement, 0.2 of it to
     // friction.
     let way = 0.5 * 0.3 * 10.0_f64.powi(2);
     assert!(

@@ -1,7 +1,7 @@
 //! First slip: t* = (8/3) min_i max(mu_si, mu_ki)/(mu_s V*), in any direction.
 
 use rstest::rstest;
-use slipfront::known_answers::first_slip_time_star;
+use slipfront::exact_solutions::first_slip_time_star;
 use slipfront::observe::FirstSlip;
 use slipfront::surface::{Coefficients, Load};
 use slipfront::{Drive, FrictionLaw, Lattice, Model, Stop, Surface};
@@ -12,7 +12,7 @@ fn first_slip(model: &Model, dt_star: f64) -> FirstSlip {
     let steps = (4.0 / model.drive.v_star / dt_star) as u64;
     let mut simulation = at_rest(model, dt_star);
     simulation.run(Stop::at_step(steps), &mut []).unwrap();
-    FirstSlip::of(&simulation)
+    FirstSlip::of(&simulation.snapshot())
 }
 
 /// The first instant at which the force exceeds the threshold: at most one step late, never early; rounding
@@ -39,7 +39,7 @@ fn the_weakest_block_slips_when_its_drive_spring_reaches_its_threshold(#[case] s
     assert!((model.first_slip_estimate() / exact - 1.0).abs() < 1e-14);
     let first = first_slip(&model, slider.dt_star);
     assert_is_first_instant_after(first.earliest.unwrap(), exact, slider.dt_star);
-    // And it is that very block.
+    // The block that slips is the one with the least threshold.
     let threshold = |b: usize| drawn.mu_static[b].max(drawn.mu_kinetic[b]);
     let weakest = (0..drawn.mu_static.len()).min_by(|&a, &b| threshold(a).total_cmp(&threshold(b)));
     assert_eq!(first.time_star[weakest.unwrap()], first.earliest.unwrap());
@@ -62,7 +62,7 @@ fn the_scale_of_coefficients_is_their_static_mean() {
     assert_is_first_instant_after(first_slip(&model, 0.01).earliest.unwrap(), exact, 0.01);
 }
 
-/// D12: a block whose kinetic coefficient is the larger holds up to that one.
+/// D12: a block whose kinetic coefficient exceeds the static one sticks up to the kinetic threshold.
 #[test]
 fn a_block_holds_up_to_the_larger_of_its_coefficients() {
     let lattice = Lattice::free(1, 1);

@@ -1,7 +1,7 @@
 //! Slip fronts under a uniform prestress run at c/sqrt(1 - tau^2).
 
 use rstest::rstest;
-use slipfront::known_answers::{Facing, front_speed};
+use slipfront::exact_solutions::{Facing, front_speed};
 use slipfront::lattice::K_STRAIGHT;
 use slipfront::observe::FirstSlip;
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Stop, Surface};
@@ -11,8 +11,8 @@ use crate::common::at_rest;
 const COLUMNS: usize = 80;
 const KINETIC: f64 = 0.25;
 
-/// A strip of `COLUMNS` columns under a constant force per block of prestress `tau`; its first column holds
-/// nothing.
+/// A strip of `COLUMNS` columns under a constant force per block of prestress `tau`; its first column has
+/// no static friction.
 fn strip(rows: usize, direction: [f64; 2], tau: f64) -> Model {
     let edges = if rows == 1 { Edges::Free } else { Edges::Periodic };
     let lattice = Lattice::with_edges(COLUMNS, rows, [Edges::Free, edges]);
@@ -35,7 +35,7 @@ fn measured_delay(model: &Model, dt: f64, expected: f64) -> f64 {
     let steps = (1.2 * COLUMNS as f64 * expected / dt) as u64;
     let mut simulation = at_rest(model, dt);
     simulation.run(Stop::at_step(steps), &mut []).unwrap();
-    let first = FirstSlip::of(&simulation);
+    let first = FirstSlip::of(&simulation.snapshot());
     let (from, to) = (COLUMNS / 2, COLUMNS - 10);
     (first.time_star[to] - first.time_star[from]) / (to - from) as f64
 }

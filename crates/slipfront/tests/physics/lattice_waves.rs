@@ -3,13 +3,13 @@
 use std::f64::consts::{PI, TAU};
 
 use rstest::rstest;
-use slipfront::known_answers::{LatticeWave, lattice_waves, leapfrog_frequency};
+use slipfront::exact_solutions::{LatticeWave, lattice_waves, leapfrog_frequency};
 use slipfront::lattice::{K_DRIVE, POISSON_RATIO, dt_star_limit};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, State, Surface, VectorField, scales};
 
 use crate::common::from_state;
 
-/// A lattice that rests on nothing: linear springs, no friction, drive springs that hold it in place.
+/// A lattice without friction: linear springs, and drive springs that pull each block to its site.
 fn floating(nx: usize, ny: usize, omega_star: f64, k_drive: f64) -> Model {
     let lattice = Lattice::with_edges(nx, ny, [Edges::Periodic; 2]);
     let drive = Drive {
@@ -56,7 +56,7 @@ fn inner(a: &VectorField, b: &VectorField) -> f64 {
 
 /// Amplitude of a standing wave after each step, and the largest part of the motion that is not this wave.
 fn amplitudes(model: &Model, shape: &VectorField, dt: f64, steps: usize, frequency: f64) -> (Vec<f64>, f64) {
-    // Leapfrog's own swing: u(n dt) = cos(w n dt), so that the velocity half a step before 0 is this.
+    // The leapfrog solution is u(n dt) = cos(w n dt); this is its velocity half a step before 0.
     let before = (1.0 - (frequency * dt).cos()) / dt;
     let state = State {
         displacement: shape.clone(),
@@ -132,7 +132,7 @@ fn long_waves_are_those_of_an_isotropic_sheet(
     let wave = lattice_waves(a, b, 0.0)[branch];
     let found = wave.omega_squared / (a * a + b * b);
     assert!((found / c_squared - 1.0).abs() < a * a + b * b, "{found}");
-    // P-waves swing along their way, S-waves across.
+    // P-waves oscillate along their direction, S-waves across it.
     let [px, py] = wave.polarization;
     let along = (px * a + py * b) / a.hypot(b);
     let exact = if branch == 1 { 1.0 } else { 0.0 };
@@ -141,7 +141,7 @@ fn long_waves_are_those_of_an_isotropic_sheet(
     assert!((ratio - 2.0 / (1.0 - POISSON_RATIO)).abs() < 1e-14);
 }
 
-/// The same on the lattice itself: a long P and S wave, at small steps, return after their period.
+/// Long P and S waves simulated with small steps return after their period.
 #[rstest]
 fn long_waves_run_through_the_lattice(
     #[values((0, 3.0 / 8.0), (1, 9.0 / 8.0))] (branch, c_squared): (usize, f64),
@@ -181,7 +181,7 @@ fn growth(dt: f64, omega_star: f64, steps: usize) -> f64 {
 #[rstest]
 fn stability_does_not_depend_on_damping(#[values(0.0, 0.1, 1.0, 3.0, 30.0)] omega_star: f64) {
     assert!((dt_star_limit() - 0.9058).abs() < 5e-5);
-    // Undamped, the swing just below the limit beats with an amplitude of 1/sqrt(1 - (dt/limit)^2) = 22.
+    // Undamped, the oscillation just below the limit beats with an amplitude of 1/sqrt(1 - (dt/limit)^2) = 22.
     assert!(growth(0.999 * dt_star_limit(), omega_star, 6000) < 30.0);
     assert!(growth(1.01 * dt_star_limit(), omega_star, 6000) > 1e6);
 }

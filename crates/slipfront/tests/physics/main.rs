@@ -1,5 +1,5 @@
-//! Exact answers: every law of the model that has a closed solution, on the fused kernel. The same on the reference kernel:
-//! `physics_on_reference`.
+//! Exact answers: every law of the model that has a closed solution, on the fused kernel. `physics_on_reference` runs
+//! these tests on the reference kernel.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -8,7 +8,7 @@ mod common;
 
 use slipfront::Kernel;
 
-/// What steps the simulations of this binary.
+/// The kernel of the simulations of this binary.
 const KERNEL: Kernel = Kernel::Fused;
 
 mod energy;

@@ -1,8 +1,8 @@
-//! What a run shows: the instants A-F, the end of the first peak, divergence.
+//! What is measured on a run: the instants A-F, the end of the first peak, divergence, runs without an end.
 
 use rstest::rstest;
-use slipfront::observe::frames::{Field, Selection};
-use slipfront::observe::{FirstSlip, Instants, KineticStart, Observer, Scheduled};
+use slipfront::observe::frames::Selection;
+use slipfront::observe::{Field, FirstSlip, Instants, KineticHistory, KineticStart, Observer, Scheduled};
 use slipfront::{RunError, Stop, StopReason};
 
 use crate::common::{Slider, at_rest, cavity};
@@ -34,7 +34,7 @@ fn instants_are_those_of_their_definitions(#[case] slider: Slider, #[case] kinet
     simulation
         .run(Stop::at_step(steps), &mut [Scheduled::always(&mut instants)])
         .unwrap();
-    let first = FirstSlip::of(&simulation);
+    let first = FirstSlip::of(&simulation.snapshot());
     let peak = simulation.peak();
     let found = instants.found();
     let letters: String = found.iter().map(|(letter, _)| *letter).collect();
@@ -77,7 +77,7 @@ fn instants_are_those_of_their_definitions(#[case] slider: Slider, #[case] kinet
         assert_eq!(frame.point, rows[frame.step as usize].point, "{letter}");
         assert_eq!(frame.values.len(), 3);
         assert!(frame.values.iter().all(|field| field.len() == 9 * 9));
-        // The fields belong to the same step as the curve: the run repeated up to it shows the same.
+        // The fields belong to the step of the curve: a run up to that step has these fields.
         let mut again = at_rest(&model, slider.dt_star);
         again.run(Stop::at_step(frame.step), &mut []).unwrap();
         let exact = selection.capture(&again.snapshot());
@@ -144,7 +144,7 @@ fn time_is_a_product() {
     }
     let exact = 1000.0 * 0.03;
     assert_eq!(
-        simulation.snapshot().model.drive.reach(simulation.time_star()),
+        simulation.snapshot().model.drive.position(simulation.time_star()),
         [exact, 0.0]
     );
 }
@@ -190,8 +190,8 @@ fn mu_star_is_the_mean_pull_along_and_across_the_drive() {
     assert!(lateral > 1e-4, "there is something across to be seen: {lateral}");
 }
 
-/// D is sought up to t_s* + 2.5/V* and E up to the kinetic window, whatever comes later. On a run whose later
-/// curve is made up, since N* and mu* of a real one seldom reach that far again.
+/// D is searched for up to t_s* + 2.5/V* and E up to the kinetic window, whatever comes later. The later part of the curve is
+/// invented, because N* and mu* of a real run seldom reach such values again.
 #[test]
 fn what_comes_after_the_windows_is_neither_d_nor_e() {
     let slider = Slider {
@@ -220,7 +220,7 @@ fn what_comes_after_the_windows_is_neither_d_nor_e() {
         } else {
             e_until
         };
-        // Just inside each window something stands out, and more so ever after.
+        // Just inside each window N* or mu* is extreme, and later even more so.
         for step in simulation.snapshot().step + 1..=2670 {
             let mut now = simulation.snapshot();
             now.step = step;
@@ -246,4 +246,31 @@ fn what_comes_after_the_windows_is_neither_d_nor_e() {
             time('E')
         );
     }
+}
+
+/// A run without an end is advanced as long as its user likes, and measures what a run of known length does.
+#[test]
+fn a_run_without_an_end_is_a_run_of_known_length_that_has_not_ended() {
+    let slider = Slider::default();
+    let steps = slider.steps(8.0);
+    let mut expected = KineticHistory::new(steps);
+    let mut whole = at_rest(&slider.model(), slider.dt_star);
+    whole
+        .run(Stop::at_step(steps), &mut [Scheduled::always(&mut expected)])
+        .unwrap();
+
+    let mut history = KineticHistory::new(u64::MAX);
+    let mut endless = at_rest(&slider.model(), slider.dt_star);
+    for part in [1, 1000, steps - 1001] {
+        let ended = endless.advance(Stop::never(), part, &mut [Scheduled::always(&mut history)]);
+        assert_eq!(ended, Ok(None));
+    }
+    assert_eq!(endless.snapshot().step, steps);
+    assert_eq!(endless.state(), whole.state());
+    assert_eq!(endless.peak(), whole.peak());
+    assert_eq!(
+        history.kinetic(200.0, slider.dt_star),
+        expected.kinetic(200.0, slider.dt_star)
+    );
+    assert!(history.kinetic(200.0, slider.dt_star).is_some());
 }

@@ -1,5 +1,5 @@
 //! Scale invariance: at equal groups V*, R*, Omega*, sigma* the dimensional quantities do not matter (Eqs.
-//! 11, 12), but for the load's strain eps = P mu_s/E, which bends the springs' law a little.
+//! 11, 12), but for the load's strain eps = P mu_s/E, which makes the springs slightly nonlinear.
 
 use rstest::rstest;
 use slipfront::surface::{Coefficients, Distribution, Load};
@@ -85,7 +85,7 @@ fn without_strain_the_groups_alone_decide(#[values(1, 2, 3)] slider: usize) {
 }
 
 /// Each with its own strain, from 1e-6 to 9e-6: to first order in it. The stretch between neighbours, e = 0.1
-/// to 1, bends a spring's force by eps e^2, and mu* by the mean of that over slipping and stuck ones: 1e-4
+/// to 1, changes the force of a spring by eps e^2, and mu* by the mean of that over slipping and stuck blocks: 1e-4
 /// eps here, bounded by 1e-3 of the strain.
 #[rstest]
 fn a_small_strain_changes_little(#[values(1, 2, 3)] slider: usize) {
@@ -95,7 +95,7 @@ fn a_small_strain_changes_little(#[values(1, 2, 3)] slider: usize) {
     assert!(found < 1e-3 * strain, "{found} at strain {strain}");
 }
 
-/// And in proportion to it: a strain of 1e-9 is a thousandth of that of 1e-6.
+/// The difference is proportional to the strain: a strain of 1e-9 is a thousandth of that of 1e-6.
 #[test]
 fn the_change_is_of_first_order_in_the_strain() {
     let linear = model(&SLIDERS[0], 0.0);
@@ -107,7 +107,7 @@ fn the_change_is_of_first_order_in_the_strain() {
     );
 }
 
-/// Units of case 8 in SI, with a pencil: E = 1e11, rho = 1e4, P = 1e5, mu_s = 1, l = 1e-6.
+/// Units of case 8 in SI, computed by hand: E = 1e11, rho = 1e4, P = 1e5, mu_s = 1, l = 1e-6.
 #[test]
 fn units_of_case_8() {
     let case8 = &SLIDERS[0];

@@ -1,13 +1,13 @@
 //! Every shape of lattice: single blocks, chains, the smallest squares, rectangles.
 
 use rstest::rstest;
-use slipfront::known_answers::lattice_waves;
+use slipfront::exact_solutions::lattice_waves;
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, State, Surface, VectorField};
 
 use crate::common::{Slider, at_rest, from_state};
 
-/// Forces of the lattice alone at a given displacement. Of blocks at rest that nothing else acts on, a step of 1 makes them
-/// velocities, to the last bit.
+/// Forces of the lattice alone at a given displacement. If nothing else acts on blocks at rest, their velocities after a step
+/// of 1 have the same bits as the forces.
 fn lattice_forces(lattice: Lattice, u: VectorField, epsilon: f64) -> VectorField {
     let n = lattice.n_blocks();
     let model = Model::new(
@@ -29,7 +29,7 @@ fn lattice_forces(lattice: Lattice, u: VectorField, epsilon: f64) -> VectorField
     let force = simulation.state().velocity;
     for b in 0..n {
         let shown = simulation.snapshot().block(b).force_lattice;
-        // What is shown may round otherwise than what moved the block: by 1e-16 of each of eight springs.
+        // Recomputed forces may differ from those of the sweep by rounding: by 1e-16 of each of eight springs.
         let differs = (0..2).any(|axis| (shown[axis] - force.at(b)[axis]).abs() > 1e-14);
         assert!(!differs, "block {b} shows {shown:?}, moved by {:?}", force.at(b));
     }
@@ -98,7 +98,7 @@ fn lattice_forces_are_eq_3_to_the_letter(
     let found = lattice_forces(lattice, u, epsilon);
     for b in 0..lattice.n_blocks() {
         let ([fx, fy], [ex, ey]) = (found.at(b), exact.at(b));
-        // The printed form cancels lengths of 1 to a strain of eps.
+        // The printed form subtracts lengths of 1 that differ by a strain of eps.
         let tolerance = 1e-15 + 2e-15 / epsilon;
         assert!(
             (fx - ex).abs() < tolerance && (fy - ey).abs() < tolerance,
@@ -158,8 +158,7 @@ fn chains_along_x_and_along_y_are_the_same() {
     );
 }
 
-/// Across a chain the straight springs give way to first order, so that blocks slip one by one, each as if
-/// alone.
+/// Straight springs resist motion across a chain only to second order, so that each block slips as if it were alone.
 #[test]
 fn a_chain_pulled_across_is_a_row_of_single_blocks() {
     let slider = Slider {
@@ -177,8 +176,8 @@ fn a_chain_pulled_across_is_a_row_of_single_blocks() {
     for b in 0..10 {
         let lattice = Lattice::free(1, 1);
         let surface = Surface::uniform(&lattice, drawn.mu_static[b], drawn.mu_kinetic[b]);
-        assert_eq!(surface.hold(0), model.surface.hold(b));
-        assert_eq!(surface.slide(0), model.surface.slide(b));
+        assert_eq!(surface.static_limit(0), model.surface.static_limit(b));
+        assert_eq!(surface.kinetic_force(0), model.surface.kinetic_force(b));
         let alone = Model::new(lattice, surface, model.drive, model.damping, 0.0, model.law);
         let mut alone = at_rest(&alone, 0.1);
         for _ in 0..3000 {
@@ -191,7 +190,7 @@ fn a_chain_pulled_across_is_a_row_of_single_blocks() {
     }
 }
 
-/// Two blocks, one spring: it is counted once on each, with opposite signs.
+/// Two blocks and one spring, whose force acts on both with opposite signs.
 #[test]
 fn two_blocks_pull_on_each_other() {
     for (lattice, axis) in [(Lattice::free(2, 1), 0), (Lattice::free(1, 2), 1)] {
@@ -219,7 +218,7 @@ fn small_and_odd_lattices_go_through_their_transition(
         ..Slider::default()
     };
     let peak = slider.onset();
-    let (weakest, drawn) = (slider.model().surface.weakest(), slider.coefficients());
+    let (weakest, drawn) = (slider.model().surface.min_slip_threshold(), slider.coefficients());
     let strongest = drawn.mu_static.iter().fold(0.0_f64, |m, mu| m.max(*mu));
     // Between the weakest and the strongest block, but for the k_s V^2 of the slip itself.
     assert!(

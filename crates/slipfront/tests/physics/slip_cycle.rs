@@ -1,7 +1,7 @@
 //! One block, and a uniform lattice, which moves as one: slip, stop, stick, and slip again.
 
 use rstest::rstest;
-use slipfront::known_answers::SlipCycle;
+use slipfront::exact_solutions::SlipCycle;
 
 use crate::common::{Slider, at_rest};
 
@@ -98,7 +98,7 @@ fn first_slip(slider: &Slider) -> Slip {
 
 /// The slip starts at the first instant past the threshold and stops at the first instant past the stop, so
 /// that its duration in steps may err by two of them; the force at the stop is flat to k_s V dt per step; the
-/// start, late by up to a step, lifts the whole slip by up to k_s V dt.
+/// start, late by up to a step, increases all forces of the slip by up to k_s V dt.
 #[rstest]
 fn one_block_and_a_uniform_lattice_slip_as_the_closed_form(
     #[values([1, 1], [2, 2], [7, 5])] blocks: [usize; 2],

@@ -1,9 +1,9 @@
-//! The springs' law (Eq. 3): exact at any strain, and no digit lost at the smallest.
+//! The spring law (Eq. 3): exact at any strain, without loss of digits at the smallest.
 
 use rstest::rstest;
 use slipfront::lattice::{Bond, K_DIAGONAL, K_STRAIGHT};
 
-/// sqrt(1 + x) - 1 in series, where the plain difference of lengths would keep nothing at eps = 1e-12.
+/// sqrt(1 + x) - 1 by its series; the difference of lengths would have no correct digit at eps = 1e-12.
 fn extension_by_series(bond: &Bond, e: [f64; 2], epsilon: f64) -> f64 {
     let d = bond.rest_length;
     let along = bond.rest[0] * e[0] + bond.rest[1] * e[1];

@@ -1,7 +1,7 @@
 //! Steady sliding: mu_k* = mean(mu_ki)/mu_s + sqrt(3/4) Omega* V*, once damping is strong.
 
 use rstest::rstest;
-use slipfront::known_answers::steady_level;
+use slipfront::exact_solutions::steady_level;
 use slipfront::surface::Load;
 
 use crate::common::{Slider, cavity};

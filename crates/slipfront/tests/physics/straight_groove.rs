@@ -1,7 +1,7 @@
 //! A straight groove before anything slips: how the pull on the missing rows loads the rows at its edge.
 
 use rstest::rstest;
-use slipfront::known_answers::{Facing, groove_edge_factor};
+use slipfront::exact_solutions::{Facing, groove_edge_factor};
 use slipfront::observe::FirstSlip;
 use slipfront::surface::Orientation;
 use slipfront::{Edges, Stop};
@@ -15,7 +15,7 @@ fn the_closed_form_has_the_tabulated_values(#[case] facing: Facing, #[case] fact
     assert!((groove_edge_factor(facing, 5) - factor).abs() < 5e-7);
 }
 
-/// The blocks of the groove follow the drive with a constant lag and a swing that damping wipes out, so that
+/// The blocks of the groove follow the drive with a constant lag and an oscillation that damping removes, so that
 /// the *rate* at which the load of an edge row grows is exact: 1e-9 is rounding over the time between two
 /// instants.
 #[rstest]
@@ -67,7 +67,7 @@ fn rows_beside_a_groove_bear_their_factor(
     assert!((rate / exact - 1.0).abs() < 1e-9, "{rate}, exactly {exact}");
 }
 
-/// The edge rows slip when their share of the load, N/N_contact, is reached; the lag and the swing of the
+/// The edge rows slip when the force on them reaches N/N_contact; the lag and the oscillation of the
 /// groove that the quasi-static answer leaves out are of the order of V*.
 #[rstest]
 #[case(Facing::Across, Orientation::Across)]
@@ -89,6 +89,6 @@ fn the_first_slip_beside_a_groove_comes_as_much_earlier(
     let mut simulation = at_rest(&model, slider.dt_star);
     simulation.run(Stop::at_step(slider.steps(2.5)), &mut []).unwrap();
     let exact = (20.0 / 15.0) / (0.375 * slider.v_star * groove_edge_factor(facing, 5));
-    let found = FirstSlip::of(&simulation).earliest.unwrap();
+    let found = FirstSlip::of(&simulation.snapshot()).earliest.unwrap();
     assert!((found / exact - 1.0).abs() < 3e-3, "{found}, exactly {exact}");
 }

@@ -1,9 +1,8 @@
 //! What a texture does to load, friction, counts and times; and the three readings of the friction law.
 
 use rstest::rstest;
-use slipfront::kernel::Block;
-use slipfront::observe::frames::{Field, Selection};
-use slipfront::observe::{FirstSlip, stress};
+use slipfront::observe::frames::Selection;
+use slipfront::observe::{Field, FirstSlip};
 use slipfront::surface::{Load, Orientation};
 use slipfront::{FrictionLaw, State, Stop, Surface, VectorField};
 
@@ -39,7 +38,10 @@ fn blocks_in_contact_carry_the_whole_load() {
             let kept = |mu: f64| if over { 0.0 } else { mu };
             assert_eq!(surface.mu_static[b], kept(drawn.mu_static[b]));
             assert_eq!(surface.mu_kinetic[b], kept(drawn.mu_kinetic[b]));
-            assert!((surface.hold(b) - hold).abs() < 1e-15 && (surface.slide(b) - slide).abs() < 1e-15);
+            assert!(
+                (surface.static_limit(b) - hold).abs() < 1e-15
+                    && (surface.kinetic_force(b) - slide).abs() < 1e-15
+            );
         }
         let kept = Slider {
             load: Load::Kept,
@@ -49,7 +51,7 @@ fn blocks_in_contact_carry_the_whole_load() {
     }
 }
 
-/// A textured block holds nothing, so that it moves as soon as any force acts: in the first step after t = 0.
+/// A textured block has no friction, so that it moves as soon as any force acts: in the first step after t = 0.
 /// N* counts it, first-slip times do not.
 #[rstest]
 fn textured_blocks_move_at_once(#[values(FrictionLaw::Projection, FrictionLaw::Reversal)] law: FrictionLaw) {
@@ -74,7 +76,7 @@ fn textured_blocks_move_at_once(#[values(FrictionLaw::Projection, FrictionLaw::R
         }
     }
     simulation.run(Stop::at_step(1500), &mut []).unwrap();
-    let first = FirstSlip::of(&simulation);
+    let first = FirstSlip::of(&simulation.snapshot());
     for b in 0..625 {
         assert_eq!(
             first.time_star[b].is_nan(),
@@ -103,8 +105,8 @@ fn contact_stress_and_traction_of_stuck_blocks() {
     let mut largest = 0.0_f64;
     for b in (0..625).filter(|&b| !model.surface.textured[b]) {
         let block = now.block(b);
-        assert!((stress::contact_stress(&block) - pull).abs() < 1e-12);
-        largest = largest.max(stress::traction(&block));
+        assert!((block.contact_stress() - pull).abs() < 1e-12);
+        largest = largest.max(block.traction());
     }
     assert!(largest > 1.5 * pull, "the rim bears {largest}, the rest {pull}");
     // All pulls on stuck and sliding blocks add up to the drive's.
@@ -112,19 +114,18 @@ fn contact_stress_and_traction_of_stuck_blocks() {
     assert!((total - now.point.mu_star).abs() < 1e-13);
 }
 
-/// The scale of tau_c* is the largest over blocks in contact and steps, at every step. The stress of a sliding block as it
-/// is shown may round otherwise than when it was found: by some 1e-16 of its forces, which are of the order of 1.
+/// The scale of tau_c* is the largest over blocks in contact and steps, at every step. The recomputed
+/// stress of a sliding block may differ by rounding: by some 1e-16 of its forces, which are of the order of 1.
 #[test]
 fn the_largest_contact_stress_is_over_blocks_in_contact_and_all_steps() {
     let slider = textured();
     let model = slider.model();
     let mut simulation = at_rest(&model, slider.dt_star);
-    let mut blocks = [Block::default(); 625];
     let mut by_hand = 0.0_f64;
     for _ in 0..1200 {
-        simulation.snapshot().look(0, &mut blocks);
+        let now = simulation.snapshot();
         for b in (0..625).filter(|&b| !model.surface.textured[b]) {
-            by_hand = by_hand.max(stress::contact_stress(&blocks[b]));
+            by_hand = by_hand.max(now.block(b).contact_stress());
         }
         let found = simulation.contact_stress_max();
         assert!((found - by_hand).abs() < 1e-14, "{found}, by hand {by_hand}");
@@ -154,7 +155,7 @@ fn two_readings_of_the_law_agree_and_the_literal_one_does_not() {
     assert!(!literal.peak.ended);
 }
 
-/// A peak beside a frictionless groove, where a block stops and starts often, does not hang on the reading
+/// The peak with a frictionless groove, next to which blocks stop and start often, does not depend on the friction law
 /// either.
 #[test]
 fn two_readings_agree_beside_a_groove() {
@@ -171,7 +172,7 @@ fn two_readings_agree_beside_a_groove() {
     assert!(difference < 1e-3, "{difference}");
 }
 
-/// A block over a texture may be torn about as it will: it does not scale the stress of those in contact.
+/// However large the stress of a block over a texture is, the largest contact stress is that of blocks in contact.
 #[test]
 fn the_largest_contact_stress_leaves_textured_blocks_out() {
     let slider = textured();
@@ -185,7 +186,7 @@ fn the_largest_contact_stress_leaves_textured_blocks_out() {
         velocity: VectorField::zeros(625),
     };
     let simulation = from_state(&model, 0.1, torn);
-    assert!(stress::contact_stress(&simulation.snapshot().block(middle)) > 100.0);
+    assert!(simulation.snapshot().block(middle).contact_stress() > 100.0);
     let largest = simulation.contact_stress_max();
     assert!(largest < 1e-12, "all others rest without a pull: {largest}");
 }

@@ -7,7 +7,7 @@ mod common;
 
 use slipfront::Kernel;
 
-/// What steps the simulations of this binary.
+/// The kernel of the simulations of this binary.
 const KERNEL: Kernel = Kernel::Reference;
 
 #[path = "../physics/energy.rs"]

@@ -7,7 +7,8 @@
 mod common;
 
 use proptest::prelude::*;
-use slipfront::observe::frames::{Field, Selection};
+use slipfront::observe::Field;
+use slipfront::observe::frames::Selection;
 use slipfront::observe::{Curve, Instants, KineticHistory, KineticStart, Observer, Scheduled};
 use slipfront::surface::{Cavity, Groove, Load, Orientation, Texture, mesh};
 use slipfront::{
@@ -17,7 +18,7 @@ use slipfront::{
 
 use common::{Slider, at_rest, from_state, thrown};
 
-/// What steps the simulations of this binary.
+/// The kernel of the simulations of this binary.
 const KERNEL: Kernel = Kernel::Fused;
 
 fn edges() -> impl Strategy<Value = [Edges; 2]> {
@@ -143,7 +144,7 @@ proptest! {
         let carried = if slider.load == Load::Kept { n - n_textured } else { n };
         prop_assert!((load / carried as f64 - 1.0).abs() < 1e-12);
         for (b, &over) in textured.iter().enumerate() {
-            let felt = [surface.hold(b), surface.slide(b), surface.normal_force(b)];
+            let felt = [surface.static_limit(b), surface.kinetic_force(b), surface.normal_force(b)];
             let nothing = felt == [0.0; 3];
             prop_assert!(felt.iter().all(|&f| f >= 0.0) && (!over || nothing));
         }
@@ -250,8 +251,8 @@ proptest! {
         prop_assert_eq!(now.totals.n_slipping, (0..n).filter(slips).count());
     }
 
-    /// What friction may do: a sliding block feels mu_k F_n against its motion, a stuck one what balances the
-    /// rest and never more than max(mu_s, mu_k) F_n unless it has just stopped.
+    /// Friction on a sliding block is mu_k F_n against its motion. On a stuck one it balances the other forces and never exceeds
+    /// max(mu_s, mu_k) F_n unless the block has just stopped.
     #[test]
     fn friction_stays_in_its_bounds(slider in slider()) {
         prop_assume!(has_contact(&slider));
@@ -267,10 +268,10 @@ proptest! {
                 let ([fx, fy], [vx, vy]) = (block.force_friction, block.velocity);
                 let friction = (fx * fx + fy * fy).sqrt();
                 if block.slides() {
-                    prop_assert!((friction - model.surface.slide(b)).abs() < 1e-12);
+                    prop_assert!((friction - model.surface.kinetic_force(b)).abs() < 1e-12);
                     prop_assert!(fx * vx + fy * vy <= 0.0);
                 } else if before.at(b) == [0.0, 0.0] {
-                    let threshold = model.surface.hold(b).max(model.surface.slide(b));
+                    let threshold = model.surface.static_limit(b).max(model.surface.kinetic_force(b));
                     prop_assert!(friction <= threshold * (1.0 + 1e-14));
                     let (drive, lattice) = (block.force_drive, block.force_lattice);
                     prop_assert_eq!([fx, fy], [-(drive[0] + lattice[0]), -(drive[1] + lattice[1])]);
@@ -279,8 +280,8 @@ proptest! {
         }
     }
 
-    /// Threads, and leaving blocks at rest alone, change no bit; the reference kernel does the same to rounding, with slips
-    /// or not, at rest at the start or not.
+    /// The number of threads and skipping change no bit, and the reference kernel agrees to rounding, from rest and from a state
+    /// in motion.
     #[test]
     fn kernels_and_executions_agree(
         slider in slider(), lattice in lattice_below(41), moves in any::<bool>(),
@@ -293,7 +294,7 @@ proptest! {
         let (model, n) = (slider.model(), lattice.n_blocks());
         let run = |kernel, threads, skips| {
             let state = moves.then(|| thrown(n, 0.2, 5));
-            Simulation::executed(&model, dt_star, state, Execution { kernel, threads, skips })
+            Simulation::with_execution(model.clone(), dt_star, state, Execution { kernel, threads, skips })
         };
         let mut plain = run(Kernel::Fused, 1, false);
         let mut other = run(Kernel::Fused, threads, skips);
@@ -314,7 +315,7 @@ proptest! {
             let size = |v: &VectorField| v.x.iter().chain(&v.y).fold(1.0_f64, |most, x| x.abs().max(most));
             for (a, b) in [(&here.displacement, &exact.displacement), (&here.velocity, &exact.velocity)] {
                 let far = (0..n).map(|k| (a.x[k] - b.x[k]).abs().max((a.y[k] - b.y[k]).abs())).fold(0.0, f64::max);
-                // Roundings of 1e-16 of some forces in each of hundreds of steps, which add up where nothing takes energy.
+                // Rounding errors of 1e-16 in each of hundreds of steps, which add up where nothing dissipates energy.
                 prop_assert!(far < 1e-12 * size(b), "step {}: {:e} apart", step, far);
             }
         }
@@ -419,7 +420,7 @@ proptest! {
         prop_assert!((found.sliding_percent - 50.0 - 50.0 * mean).abs() < 1e-8);
     }
 
-    /// Fields of a frame against the snapshot they were taken from, at any stride.
+    /// Fields of a frame against those of single blocks, at any stride.
     #[test]
     fn frames_hold_every_nth_block(slider in slider(), stride in 1..6_usize, steps in 0..60_u32) {
         prop_assume!(has_contact(&slider));

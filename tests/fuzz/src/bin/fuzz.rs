@@ -1,4 +1,4 @@
-//! libFuzzer on the target that `SLIPFRONT_FUZZ` names: see `run.sh`.
+//! Runs libFuzzer on the target that `SLIPFRONT_FUZZ` names: see `run.sh`.
 
 #![no_main]
 

@@ -8,7 +8,7 @@ use slipfront_fuzz::TARGETS;
 fn main() -> Result<(), Box<dyn Error>> {
     let out = std::env::args().nth(1);
     for target in TARGETS {
-        println!("{} {}", target.name, target.longest);
+        println!("{} {}", target.name, target.max_bytes);
         let Some(out) = &out else { continue };
         std::fs::create_dir_all(out)?;
         std::fs::write(

@@ -9,7 +9,7 @@ use slipfront_case::arrays::{mask_npy, write_mask_png};
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
 
-/// The lattice that arrays are read for: not square, so that rows and columns are told apart.
+/// The lattice that arrays are read for: not square, so that exchanged rows and columns are noticed.
 const NX: usize = 3;
 const NY: usize = 2;
 
@@ -17,10 +17,10 @@ const NY: usize = 2;
 pub(crate) const NPY: Target = Target {
     name: "npy",
     check: npy,
-    made: npy_files,
+    generated: npy_files,
     files: &[],
     dictionary: Some("npy.dict"),
-    longest: 1024,
+    max_bytes: 1024,
     // Headers of at most 10 000 bytes, twice in memory and as a tree.
     memory: Memory {
         bytes: 1 << 20,
@@ -34,10 +34,10 @@ pub(crate) const NPY: Target = Target {
 pub(crate) const CSV_TABLE: Target = Target {
     name: "csv_table",
     check: csv_table,
-    made: tables,
+    generated: tables,
     files: &["cases/mu_s.csv"],
     dictionary: Some("table.dict"),
-    longest: 1024,
+    max_bytes: 1024,
     // A line of nothing but separators is as many empty fields, of 16 bytes each in two lists that grow.
     memory: Memory {
         bytes: 256 << 10,
@@ -51,10 +51,10 @@ pub(crate) const CSV_TABLE: Target = Target {
 pub(crate) const MASK_PNG: Target = Target {
     name: "mask_png",
     check: mask_png,
-    made: images,
+    generated: images,
     files: &["cases/herringbone.png", "docs/images/texture-mask.png"],
     dictionary: Some("png.dict"),
-    longest: 8192,
+    max_bytes: 8192,
     // The decoder's own buffers, and a byte for each pixel, of which at most 8 x 1040 stand in a byte of the file.
     memory: Memory {
         bytes: 4 << 20,
@@ -157,14 +157,14 @@ fn images() -> Vec<Vec<u8>> {
         bytes
     };
     let mut images: Vec<Vec<u8>> = kinds.iter().map(image).collect();
-    // The same, said to be interlaced.
+    // An image whose header wrongly says that it is interlaced.
     let mut interlaced = images[3].clone();
     interlaced[28] = 1;
     images.push(interlaced);
     images
 }
 
-/// Coefficients are finite and not negative, and read back as the same bits.
+/// Coefficients are finite and not negative, and keep their bits when written and read again.
 fn field(name: &str, input: &[u8]) {
     let values = match arrays::field(Path::new(name), input, NX, NY) {
         Ok(values) => values,
@@ -200,7 +200,7 @@ fn csv_table(input: &[u8]) {
 
 fn mask_png(input: &[u8]) {
     mask(input);
-    // What is behind the checksums of the chunks.
+    // With valid checksums the decoder goes on to the contents of the chunks.
     mask(&with_checksums(input));
 }
 
@@ -221,7 +221,7 @@ fn mask(input: &[u8]) {
     assert_eq!(read.dark, image.dark);
 }
 
-/// The same chunks, each with the checksum that it should have.
+/// The image with the right checksum behind every chunk.
 fn with_checksums(image: &[u8]) -> Vec<u8> {
     let mut sealed = image.to_vec();
     let mut start = 8;

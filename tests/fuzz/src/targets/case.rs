@@ -14,14 +14,14 @@ const CASES: &[&str] = &[
     "crates/slipfront-case/tests/bad/*.toml",
 ];
 
-/// The text of a case, and what is set beside it.
+/// The text of a case with overrides.
 pub(crate) const CASE_FILE: Target = Target {
     name: "case_file",
     check: case_file,
-    made: Vec::new,
+    generated: Vec::new,
     files: CASES,
     dictionary: Some("case.dict"),
-    longest: 4096,
+    max_bytes: 4096,
     memory: Memory {
         bytes: 1 << 20,
         per_byte: 512,
@@ -30,14 +30,14 @@ pub(crate) const CASE_FILE: Target = Target {
     repetitions: 100,
 };
 
-/// A case that is made of it, surface and all, as long as the lattice is small.
+/// The case that follows from the text, with its surface, for a small lattice.
 pub(crate) const CASE: Target = Target {
     name: "case",
     check: case,
-    made: Vec::new,
+    generated: Vec::new,
     files: CASES,
     dictionary: Some("case.dict"),
-    longest: 4096,
+    max_bytes: 4096,
     // The mask of cases/mask.toml has some thousand pixels.
     memory: Memory {
         bytes: 8 << 20,
@@ -47,10 +47,10 @@ pub(crate) const CASE: Target = Target {
     repetitions: 30,
 };
 
-/// Most blocks of a lattice that is made: its memory is bounded by the machine's, not by the file.
-const BLOCKS: u64 = 1000;
+/// Most blocks of a lattice that is made: only the memory of the machine bounds a lattice.
+const MAX_BLOCKS: u64 = 1000;
 
-/// A case file, as far as it is one.
+/// The case file, or nothing after checking the error.
 fn parse(input: &[u8]) -> Option<CaseFile> {
     let text = std::str::from_utf8(input).ok()?;
     let comments = text.lines().take_while(|line| line.starts_with('#'));
@@ -72,7 +72,7 @@ fn parse(input: &[u8]) -> Option<CaseFile> {
     }
 }
 
-/// What can be read can be written, and read again as the same.
+/// A case file that is written and read again is equal.
 fn case_file(input: &[u8]) {
     let Some(case) = parse(input) else { return };
     let printed = case.to_toml().unwrap();
@@ -82,14 +82,16 @@ fn case_file(input: &[u8]) {
     assert_eq!(again.to_toml().unwrap(), printed);
 }
 
-/// A case that is within its bounds can be made, or says why not.
+/// A valid case file gives a case whose values are within their bounds, or a readable error.
 fn case(input: &[u8]) {
     let Some(mut file) = parse(input) else { return };
     // The seeds are of the paper's size.
     for blocks in &mut file.slider.blocks {
         *blocks = (*blocks).min(31);
     }
-    if file.check().is_err() || u64::from(file.slider.blocks[0]) * u64::from(file.slider.blocks[1]) > BLOCKS {
+    if file.check().is_err()
+        || u64::from(file.slider.blocks[0]) * u64::from(file.slider.blocks[1]) > MAX_BLOCKS
+    {
         return;
     }
     match Case::new(file, "case", &repository("cases")) {

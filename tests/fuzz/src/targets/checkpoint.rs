@@ -1,7 +1,7 @@
-//! Checkpoints of runs: a header, the state and a seal over both.
+//! Checkpoints of runs: a header, the state and a checksum over both.
 
-use std::path::Path;
-use std::sync::LazyLock;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, LazyLock};
 
 use jiff::Timestamp;
 use slipfront::StopReason;
@@ -9,21 +9,22 @@ use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::names::CHECKPOINT;
+use slipfront_run::run_folder::unfinished::Unfinished;
 use slipfront_run::running::Running;
 
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
 
-/// The first byte chooses one of [`CASES`]. The file is read as it is, with the seal that it should have, and with that and
-/// the header; a run that can go on from there does so.
+/// The first byte chooses one of [`CASES`]. The rest is read as it is, then with the right checksum, then with the right header
+/// as well; a run is resumed from what can be read.
 pub(crate) const CHECKPOINTS: Target = Target {
     name: "checkpoint",
     check: checkpoint,
-    made,
+    generated,
     files: &[],
     dictionary: Some("json.dict"),
-    longest: 16384,
-    // Postcard reserves at most 1 MiB at once for a list that says it is longer; the kernel has a few blocks.
+    max_bytes: 16384,
+    // Postcard reserves at most 1 MiB at once, however long a list claims to be; the lattices are small.
     memory: Memory {
         bytes: 16 << 20,
         per_byte: 256,
@@ -40,16 +41,16 @@ const TEXTS: [&str; 3] = [
      law = \"literal\"\n[output]\nsnapshots = { every = 2.0 }\nfields = [\"sliding\"]\n",
 ];
 
-static CASES: LazyLock<[Case; 3]> = LazyLock::new(|| {
-    // Not by `parse`, which asks for the memory that a run takes, if only to see whether it is there.
-    let made = |file| Case::new(file, "case", Path::new("")).unwrap();
+static CASES: LazyLock<[Arc<Case>; 3]> = LazyLock::new(|| {
+    // `Case::parse` would reserve the memory of a run, to see whether it is available.
+    let made = |file| Arc::new(Case::new(file, "case", Path::new("")).unwrap());
     TEXTS.map(|text| made(CaseFile::parse(text, "case.toml", &[]).unwrap()))
 });
 
-/// Steps of a run that goes on.
+/// Steps of a resumed run.
 const STEPS: u64 = 20;
 
-fn made() -> Vec<Vec<u8>> {
+fn generated() -> Vec<Vec<u8>> {
     let saved = |number: usize, steps: u64| {
         let mut running = Running::start(&CASES[number], 1);
         running.advance(steps).unwrap();
@@ -64,12 +65,18 @@ fn made() -> Vec<Vec<u8>> {
     ]
 }
 
+/// The latest checkpoint of a run folder.
+fn latest(folder: &Path) -> PathBuf {
+    Unfinished::of(folder).path().join(CHECKPOINT)
+}
+
 /// The bytes of the checkpoint of a run.
 fn save(folder: &Path, running: &Running) -> Vec<u8> {
+    Unfinished::of(folder).create().unwrap();
     Checkpoints::new(folder, running.case(), Timestamp::UNIX_EPOCH)
         .save(running)
         .unwrap();
-    std::fs::read(folder.join(CHECKPOINT)).unwrap()
+    std::fs::read(latest(folder)).unwrap()
 }
 
 fn checkpoint(input: &[u8]) {
@@ -77,28 +84,29 @@ fn checkpoint(input: &[u8]) {
         return;
     };
     let case = &CASES[usize::from(*number) % CASES.len()];
-    go_on(case, file);
-    let unsealed = &file[..file.len().saturating_sub(blake3::OUT_LEN)];
-    go_on(case, &sealed(unsealed));
-    // The state alone, under a header that fits as well.
+    resume(case, file);
+    let without_checksum = &file[..file.len().saturating_sub(blake3::OUT_LEN)];
+    resume(case, &with_checksum(without_checksum));
+    // The state under the right header.
     let folder = scratch::folder("checkpoint");
     let whole = save(&folder, &Running::start(case, 1));
     let length = |bytes: &[u8]| bytes.iter().position(|&byte| byte == b'\n').map(|at| at + 1);
     let header = &whole[..length(&whole).unwrap()];
     let begin = length(file).unwrap_or(0);
-    let state = unsealed.get(begin..).unwrap_or_default();
-    go_on(case, &sealed(&[header, state].concat()));
+    let state = without_checksum.get(begin..).unwrap_or_default();
+    resume(case, &with_checksum(&[header, state].concat()));
 }
 
-/// With the seal that fits.
-fn sealed(bytes: &[u8]) -> Vec<u8> {
+/// Appends the checksum.
+fn with_checksum(bytes: &[u8]) -> Vec<u8> {
     [bytes, blake3::hash(bytes).as_bytes()].concat()
 }
 
-/// A run goes on from what can be read, or the reason is told; what it saves then can be read again.
-fn go_on(case: &Case, file: &[u8]) {
+/// Resumes a run if the file can be read, and demands that what it then saves can be read again.
+fn resume(case: &Arc<Case>, file: &[u8]) {
     let folder = scratch::folder("checkpoint");
-    std::fs::write(folder.join(CHECKPOINT), file).unwrap();
+    Unfinished::of(&folder).create().unwrap();
+    std::fs::write(latest(&folder), file).unwrap();
     let saved = match Checkpoints::load(&folder, case, false) {
         Ok(saved) => saved.unwrap(),
         Err(error) => return readable(&error),
@@ -109,7 +117,7 @@ fn go_on(case: &Case, file: &[u8]) {
     match running.advance(STEPS) {
         Err(error) => readable(&error),
         Ok(ended) => {
-            // A run that has ended is not gone on with.
+            // A run that has ended is not resumed.
             if ended.is_none() {
                 let bytes = save(&folder, &running);
                 let again = Checkpoints::load(&folder, case, false).unwrap().unwrap();

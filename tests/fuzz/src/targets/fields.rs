@@ -8,11 +8,11 @@ use slipfront_run::fields::{
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
 
-/// All of the file, then the maps of one field.
+/// Reads the whole file, then the maps of single fields.
 pub(crate) const FIELDS: Target = Target {
     name: "fields",
     check: fields,
-    made: || {
+    generated: || {
         vec![
             file([4, 3], 1, 2, 1e-6),
             file([5, 4], 2, 1, 5e-324),
@@ -21,8 +21,8 @@ pub(crate) const FIELDS: Target = Target {
     },
     files: &[],
     dictionary: Some("netcdf.dict"),
-    longest: 8192,
-    // A number of one byte becomes one of eight, and all instants are read.
+    max_bytes: 8192,
+    // A value of one byte becomes one of eight, and all frames are read.
     memory: Memory {
         bytes: 1 << 20,
         per_byte: 128,
@@ -31,7 +31,7 @@ pub(crate) const FIELDS: Target = Target {
     repetitions: 40,
 };
 
-/// A file of a small lattice.
+/// The bytes of a file for a small lattice.
 pub(crate) fn file([nx, ny]: [usize; 2], stride: usize, frames: usize, block_size: f64) -> Vec<u8> {
     let blocks = nx * ny;
     let names = [Field::ContactStress, Field::Sliding];
@@ -74,12 +74,12 @@ fn fields(input: &[u8]) {
     match read_fields(&path) {
         Err(error) => readable(&error),
         Ok(data) => {
-            fits(&data);
+            expect_consistent(&data);
             let blocks = data.columns() * data.rows();
             for values in [&data.mu_static, &data.mu_kinetic, &data.first_slip_time_star] {
                 assert_eq!(values.len(), blocks);
             }
-            written_again(&data);
+            expect_round_trip(&data);
         }
     }
     for name in [Field::ContactStress, Field::VelocityX] {
@@ -87,14 +87,14 @@ fn fields(input: &[u8]) {
             Err(error) => readable(&error),
             Ok(maps) => {
                 assert!(maps.frames.len() <= 6 && maps.names.iter().all(|found| *found == name));
-                fits(&maps);
+                expect_consistent(&maps);
             }
         }
     }
 }
 
-/// Every array has a value for every block that was kept, and every field stands there once.
-fn fits(data: &FieldsData) {
+/// Demands that every array has a value for every block that was kept, and that no field occurs twice.
+fn expect_consistent(data: &FieldsData) {
     let blocks = data.columns() * data.rows();
     assert_eq!(data.textured.len(), blocks);
     let mut names = data.names.clone();
@@ -107,9 +107,9 @@ fn fits(data: &FieldsData) {
     }
 }
 
-/// What is read is written, and read again as the same.
-fn written_again(data: &FieldsData) {
-    // Of a thinned file the other blocks are lost.
+/// Demands that the fields are equal when written and read again.
+fn expect_round_trip(data: &FieldsData) {
+    // A thinned file lacks blocks, and cannot be written again.
     if data.stride > 1 {
         return;
     }

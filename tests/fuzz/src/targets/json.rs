@@ -1,21 +1,20 @@
-//! What stands in a run folder as JSON: the summary, and the manifest under its seal.
+//! The JSON files of a run folder: the summary, and the manifest with its checksum.
 
 use slipfront_run::manifest::{Manifest, ManifestFile, Random};
-use slipfront_run::results::{read_summary, summary_json};
 use slipfront_run::run_folder::RunFolder;
-use slipfront_run::run_folder::contents::own_bytes;
 use slipfront_run::run_folder::error::FolderError;
-use slipfront_run::summary::{InstantSummary, Summary};
+use slipfront_run::run_folder::inspection::Inspection;
+use slipfront_run::summary::{InstantSummary, Summary, read_summary, summary_json};
 use slipfront_run::verify::verify;
 
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
 
-/// The numbers of a run.
+/// The summary of a run.
 pub(crate) const SUMMARY: Target = Target {
     name: "summary",
     check: check_summary,
-    made: || {
+    generated: || {
         vec![
             summary_json(&summary()).into_bytes(),
             summary_json(&Summary::default()).into_bytes(),
@@ -23,7 +22,7 @@ pub(crate) const SUMMARY: Target = Target {
     },
     files: &[],
     dictionary: Some("json.dict"),
-    longest: 8192,
+    max_bytes: 8192,
     memory: Memory {
         bytes: 256 << 10,
         per_byte: 64,
@@ -32,14 +31,14 @@ pub(crate) const SUMMARY: Target = Target {
     repetitions: 60,
 };
 
-/// The manifest as it is, then with the seal that it should have, in a folder that is verified and replaced.
+/// The manifest as it is, then with the right checksum, in a folder that is verified and replaced.
 pub(crate) const MANIFEST: Target = Target {
     name: "manifest",
     check: check_manifest,
-    made: manifests,
+    generated: manifests,
     files: &[],
     dictionary: Some("json.dict"),
-    longest: 8192,
+    max_bytes: 8192,
     memory: Memory {
         bytes: 1 << 20,
         per_byte: 256,
@@ -48,7 +47,7 @@ pub(crate) const MANIFEST: Target = Target {
     repetitions: 40,
 };
 
-/// A summary in which nothing is missing.
+/// A summary with a value for every key.
 pub(crate) fn summary() -> Summary {
     Summary {
         static_friction_star: 0.912_345_678_901_234_5,
@@ -84,7 +83,7 @@ pub(crate) fn summary() -> Summary {
     }
 }
 
-/// What is read is written, and read again as the same bytes.
+/// A summary that is written and read again has the same bytes.
 fn check_summary(input: &[u8]) {
     let path = scratch::file("run/summary.json", input);
     match read_summary(path.parent().unwrap()) {
@@ -108,6 +107,7 @@ fn manifests() -> Vec<Vec<u8>> {
     let whole = Manifest {
         version: "0.1.0".to_owned(),
         revision: Some("0123abc".to_owned()),
+        build: "slipfront 0.1.0, sources 0123456789abcdef".to_owned(),
         kernel: "fused".to_owned(),
         simd_width: "avx2".to_owned(),
         threads: 2,
@@ -127,7 +127,7 @@ fn manifests() -> Vec<Vec<u8>> {
             file("inputs/mask.png", b"mask"),
             file("../keep", b"kept"),
         ],
-        seal: String::new(),
+        checksum: String::new(),
     };
     let mut odd = whole.clone();
     let long = format!("inputs/{}", "a".repeat(300));
@@ -141,14 +141,18 @@ fn manifests() -> Vec<Vec<u8>> {
         &long,
     ];
     odd.files.extend(names.map(|name| file(name, b"")));
-    let sealed = |manifest: &Manifest| sealed(&serde_json::to_vec_pretty(manifest).unwrap());
-    vec![sealed(&whole), sealed(&Manifest::default()), sealed(&odd)]
+    let with_checksum = |manifest: &Manifest| with_checksum(&serde_json::to_vec_pretty(manifest).unwrap());
+    vec![
+        with_checksum(&whole),
+        with_checksum(&Manifest::default()),
+        with_checksum(&odd),
+    ]
 }
 
 const CASE: &[u8] = b"[drive]\nv_star = 0.1\n";
 
-/// A manifest whose seal, if it has one, fits what stands before it.
-fn sealed(manifest: &[u8]) -> Vec<u8> {
+/// The manifest with the right checksum, if it has one.
+fn with_checksum(manifest: &[u8]) -> Vec<u8> {
     let name = b"\"seal\"";
     let Some(at) = manifest.windows(name.len()).rposition(|bytes| bytes == name) else {
         return manifest.to_vec();
@@ -160,10 +164,11 @@ fn sealed(manifest: &[u8]) -> Vec<u8> {
 
 fn check_manifest(input: &[u8]) {
     manifest(input);
-    manifest(&sealed(input));
+    manifest(&with_checksum(input));
 }
 
-/// A manifest whose seal fits is what was written; whatever it lists, nothing outside of its folder is touched.
+/// A manifest that can be read is equal when written and read again; whatever files it lists, none outside of its folder is
+/// touched.
 fn manifest(bytes: &[u8]) {
     let folder = scratch::folder("manifests/run");
     let beside = scratch::file("manifests/keep", b"kept");
@@ -184,12 +189,12 @@ fn manifest(bytes: &[u8]) {
         Ok(verdict) => {
             for line in [vec![verdict.what], verdict.differences, verdict.notes].concat() {
                 if !line.is_empty() {
-                    line_of_a_report(&line);
+                    expect_printable(&line);
                 }
             }
         }
     }
-    own_bytes(&folder);
+    Inspection::of(&folder).unwrap().managed_bytes();
     let case = folder.join("case.toml");
     match RunFolder::prepare(&folder, true, &[]) {
         Ok(_) => assert!(!folder.join("manifest.json").exists() && !case.exists()),
@@ -203,8 +208,8 @@ fn manifest(bytes: &[u8]) {
     assert_eq!(std::fs::read(beside).unwrap(), b"kept");
 }
 
-/// What a manifest lists is repeated as it stands there, but as text.
-fn line_of_a_report(line: &str) {
+/// Demands that a line of a report has no control characters, whatever names the manifest lists.
+fn expect_printable(line: &str) {
     let odd = line.chars().find(|c| c.is_control());
     assert!(odd.is_none(), "a line with the character {odd:?}: {line:?}");
 }

@@ -4,17 +4,17 @@ mod arrays;
 mod case;
 mod checkpoint;
 mod fields;
+mod figure_cache;
 mod json;
 mod plot;
 mod quantity;
 mod records;
-mod saved;
 mod series;
 mod study;
 
 use crate::Target;
 
-/// Every target, in the order of a run from case file to picture.
+/// All targets, in the order in which a run reads and writes their files.
 pub const TARGETS: [Target; 15] = [
     case::CASE_FILE,
     case::CASE,
@@ -24,7 +24,7 @@ pub const TARGETS: [Target; 15] = [
     arrays::CSV_TABLE,
     arrays::MASK_PNG,
     records::RECORDS,
-    saved::SAVED,
+    figure_cache::FIGURE_CACHE,
     checkpoint::CHECKPOINTS,
     fields::FIELDS,
     json::SUMMARY,

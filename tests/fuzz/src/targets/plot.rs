@@ -1,21 +1,21 @@
 //! Pictures from the files of a run folder.
 
 use slipfront_run::pictures::{draw, draw_friction};
-use slipfront_run::results::summary_json;
+use slipfront_run::summary::summary_json;
 
 use super::json::summary;
 use super::{fields, series};
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
 
-/// Summary, series and fields one after the other, each but the last ended by [`END`].
+/// Summary, series and fields of a run in one input, separated by [`END`].
 pub(crate) const PLOT: Target = Target {
     name: "plot",
     check: plot,
-    made,
+    generated,
     files: &[],
     dictionary: Some("plot.dict"),
-    longest: 16384,
+    max_bytes: 16384,
     // Canvas and pixels of two pictures: see `budget.rs`.
     memory: Memory {
         bytes: 256 << 20,
@@ -27,7 +27,7 @@ pub(crate) const PLOT: Target = Target {
 
 const END: &[u8] = b"\n==\n";
 
-fn made() -> Vec<Vec<u8>> {
+fn generated() -> Vec<Vec<u8>> {
     let whole = |summary: &str, series: Vec<u8>, fields: Vec<u8>| {
         [summary.as_bytes(), END, &series, END, &fields].concat()
     };
@@ -36,7 +36,7 @@ fn made() -> Vec<Vec<u8>> {
         whole(&plain, series::csv(3), fields::file([4, 3], 1, 2, 1e-6)),
         whole(&plain, series::csv(1), fields::file([3, 2], 1, 0, 1e-6)),
     ];
-    // Numbers that leave no room between them, or too much.
+    // Values near the limits of what a float can represent.
     for (odd, block_size) in [
         ("1e99", 5e-324),
         ("1e308", 9e8),
@@ -78,7 +78,10 @@ fn plot(input: &[u8]) {
                     "{name}"
                 );
                 let odd = tags(&picture.svg).find(|tag| tag.contains("NaN") || tag.contains("inf"));
-                assert!(odd.is_none(), "{name}.svg has a number that is none: {odd:?}");
+                assert!(
+                    odd.is_none(),
+                    "{name}.svg has a number that is not finite: {odd:?}"
+                );
             }
             if input.len() % 2 == 1 {
                 draw_friction(&[folder.to_owned(), folder.to_owned()]).unwrap();
@@ -87,7 +90,7 @@ fn plot(input: &[u8]) {
     }
 }
 
-/// What stands in the tags of a document, but for images: their bytes may spell anything.
+/// The tags of a document except images, whose encoded bytes may contain any word.
 fn tags(svg: &str) -> impl Iterator<Item = &str> {
     let tags = svg.split('<').filter_map(|piece| piece.split('>').next());
     tags.filter(|tag| !tag.starts_with("image"))

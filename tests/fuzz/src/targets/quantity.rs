@@ -7,14 +7,14 @@ use slipfront_run::study::Shard;
 use crate::checks::readable;
 use crate::{Memory, Target};
 
-/// A quantity of every dimension, a shard, the name of a field.
+/// The text as a quantity of every dimension, as a shard and as the name of a field.
 pub(crate) const QUANTITY: Target = Target {
     name: "quantity",
     check: quantity,
-    made,
+    generated,
     files: &[],
     dictionary: Some("quantity.dict"),
-    longest: 256,
+    max_bytes: 256,
     memory: Memory {
         bytes: 64 << 10,
         per_byte: 64,
@@ -23,7 +23,7 @@ pub(crate) const QUANTITY: Target = Target {
     repetitions: 20,
 };
 
-fn made() -> Vec<Vec<u8>> {
+fn generated() -> Vec<Vec<u8>> {
     let texts = [
         "1 um",
         "25 \u{b5}m",
@@ -63,7 +63,7 @@ fn quantity(input: &[u8]) {
     if let Some(name) = field_named(text) {
         assert_eq!(field_info(name).name, text);
     }
-    // That one asks the environment.
+    // This word reads the environment.
     if text == "slurm" {
         return;
     }

@@ -1,4 +1,4 @@
-//! Records of finished runs, one line each under a checksum.
+//! Records of finished runs, one line each with a checksum.
 
 use slipfront_run::study::{Outcome, Record, Records};
 
@@ -6,14 +6,14 @@ use super::json::summary;
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
 
-/// The file as it is, then with the checksums that its lines should have.
+/// The file as it is, then with the right checksum in every line.
 pub(crate) const RECORDS: Target = Target {
     name: "records",
     check: records,
-    made,
+    generated,
     files: &[],
     dictionary: Some("json.dict"),
-    longest: 8192,
+    max_bytes: 8192,
     memory: Memory {
         bytes: 1 << 20,
         per_byte: 256,
@@ -30,11 +30,11 @@ fn record(id: &str, outcome: Outcome) -> Record {
     }
 }
 
-fn made() -> Vec<Vec<u8>> {
+fn generated() -> Vec<Vec<u8>> {
     let done = record("0123456789abcdef", Outcome::Done(Box::new(summary())));
     let plain = record("a", Outcome::Done(Box::default()));
     let failed = record("b", Outcome::Failed("the run diverged at step 12".to_owned()));
-    let line = |record: &Record| sealed(serde_json::to_string(record).unwrap().as_bytes());
+    let line = |record: &Record| with_checksum(serde_json::to_string(record).unwrap().as_bytes());
     vec![
         line(&done),
         line(&failed),
@@ -44,14 +44,14 @@ fn made() -> Vec<Vec<u8>> {
     ]
 }
 
-/// A line with its checksum.
-fn sealed(json: &[u8]) -> Vec<u8> {
+/// A line with the right checksum.
+fn with_checksum(json: &[u8]) -> Vec<u8> {
     let sum = blake3::hash(json).to_hex();
     [&sum.as_bytes()[..16], b" ", json, b"\n"].concat()
 }
 
-/// Without its checksum, if it has one.
-fn unsealed(line: &[u8]) -> &[u8] {
+/// A line without its checksum, if it has one.
+fn without_checksum(line: &[u8]) -> &[u8] {
     match line.get(16) {
         Some(b' ') => &line[17..],
         _ => line,
@@ -60,8 +60,8 @@ fn unsealed(line: &[u8]) -> &[u8] {
 
 fn records(input: &[u8]) {
     drop(open(input));
-    let lines: Vec<&[u8]> = input.split(|&byte| byte == b'\n').map(unsealed).collect();
-    let file: Vec<u8> = lines.iter().flat_map(|json| sealed(json)).collect();
+    let lines: Vec<&[u8]> = input.split(|&byte| byte == b'\n').map(without_checksum).collect();
+    let file: Vec<u8> = lines.iter().flat_map(|json| with_checksum(json)).collect();
     let Some(records) = open(&file) else { return };
     let mut whole = 0;
     for json in &lines {
@@ -79,7 +79,7 @@ fn records(input: &[u8]) {
     assert_eq!(records.damaged, lines.len() - whole);
 }
 
-/// Opens such a file; what was in it is there again after another record has been added.
+/// Opens a file of records, appends a record, and demands that all records are there when it is opened again.
 fn open(file: &[u8]) -> Option<Records> {
     let folder = scratch::folder("records");
     std::fs::write(folder.join(Records::FILE), file).unwrap();
@@ -87,7 +87,7 @@ fn open(file: &[u8]) -> Option<Records> {
         Ok(records) => records,
         Err(error) => {
             readable(&error);
-            // Somebody's notes stay as they are.
+            // A file that is refused is left unchanged.
             assert_eq!(std::fs::read(folder.join(Records::FILE)).unwrap(), file);
             return None;
         }

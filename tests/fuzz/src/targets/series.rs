@@ -9,10 +9,10 @@ use crate::{Memory, Target, scratch};
 pub(crate) const SERIES: Target = Target {
     name: "series",
     check: series,
-    made: || vec![csv(3), csv(1), csv(0)],
+    generated: || vec![csv(3), csv(1), csv(0)],
     files: &[],
     dictionary: Some("table.dict"),
-    longest: 4096,
+    max_bytes: 4096,
     memory: Memory {
         bytes: 256 << 10,
         per_byte: 256,
@@ -21,7 +21,7 @@ pub(crate) const SERIES: Target = Target {
     repetitions: 60,
 };
 
-/// A few rows.
+/// A series of so many rows.
 pub(crate) fn csv(rows: u64) -> Vec<u8> {
     let row = |step: u64| {
         let time_star = step as f64 * 16.0;
@@ -44,7 +44,7 @@ pub(crate) fn csv(rows: u64) -> Vec<u8> {
     to_csv((0..rows).map(row)).unwrap()
 }
 
-/// What is read is written, and read again as the same bits.
+/// A series that is written and read again has the same bits.
 fn series(input: &[u8]) {
     let rows = match read_csv(&scratch::file("run/series.csv", input)) {
         Ok(rows) => rows,

@@ -6,15 +6,15 @@ use slipfront_run::study::{StudyFile, StudyFolder};
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
 
-/// The text of a study, the copy in its results folder, and the cases of a few of its points.
+/// The text of a study, its copy in the results folder, and the cases of some of its points.
 pub(crate) const STUDY_FILE: Target = Target {
     name: "study_file",
     check: study_file,
-    made: Vec::new,
+    generated: Vec::new,
     files: &["cases/studies/*.toml"],
     dictionary: Some("study.dict"),
-    longest: 4096,
-    // An axis has at most 100 000 levels, and points are counted before the next is made.
+    max_bytes: 4096,
+    // An axis has at most 100 000 levels, and the number of points is checked with every axis.
     memory: Memory {
         bytes: 512 << 20,
         per_byte: 1024,
@@ -23,8 +23,8 @@ pub(crate) const STUDY_FILE: Target = Target {
     repetitions: 60,
 };
 
-/// Levels of each axis that are tried.
-const LEVELS: usize = 3;
+/// Most levels of the longest axis whose cases are parsed.
+const MAX_LEVELS: usize = 3;
 
 fn study_file(input: &[u8]) {
     let Ok(text) = std::str::from_utf8(input) else {
@@ -36,7 +36,10 @@ fn study_file(input: &[u8]) {
         Err(error) => return readable(&error),
     };
     let axis = study.axes.iter().max_by_key(|axis| axis.levels.len());
-    for level in axis.into_iter().flat_map(|axis| axis.levels.iter().take(LEVELS)) {
+    for level in axis
+        .into_iter()
+        .flat_map(|axis| axis.levels.iter().take(MAX_LEVELS))
+    {
         let base = ParsedCase::parse(&study.base.text, &study.base.name);
         if let Err(error) = base.and_then(|base| base.with(&level.overrides)) {
             readable(&error);
@@ -55,13 +58,13 @@ fn study_file(input: &[u8]) {
             if !names_files(text) {
                 assert_eq!(format!("{:?}", again.axes), format!("{:?}", study.axes));
             }
-            // The copy of the copy is the copy.
+            // A study read from its results folder is not changed by opening the folder again.
             assert!(!StudyFolder::open(&out, &again).unwrap().changed);
         }
     }
 }
 
-/// Whether names of files may have become those of copies.
+/// Whether the study may name files, whose names differ in the copy.
 fn names_files(text: &str) -> bool {
     text.contains("file") || text.contains("field") || text.contains('\\')
 }

@@ -1,24 +1,29 @@
 //! `slipfront run`: one case, from the file to the pictures.
 
+mod complete;
+mod options;
 mod resume;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::Args;
 use jiff::Timestamp;
 use slipfront_case::case::Case;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::results;
-use slipfront_run::run_folder::RunFolder;
-use slipfront_run::run_folder::contents::own_bytes;
+use slipfront_run::run_folder::OpenedFolder;
 use slipfront_run::running::Running;
 
-use super::{CaseArgs, print, set_threads};
+use self::complete::complete;
+use self::options::RunOptions;
+use crate::case_args::CaseArgs;
+use crate::checkpoint_timer::Interval;
 use crate::failure::Failure;
-use crate::progress::Progress;
+use crate::print::print;
 use crate::report;
-use crate::saving::{Interval, Saving};
 use crate::signals::Signals;
+use crate::threads::set_threads;
 
 /// Run a case: print its physics, show progress, write results and pictures
 #[derive(Args)]
@@ -64,26 +69,10 @@ pub(crate) struct Run {
     json: bool,
 }
 
-/// How a run is executed and shown.
-struct Manner {
-    threads: usize,
-    interval: Interval,
-    signals: Signals,
-    quiet: bool,
-    json: bool,
-}
-
-impl Manner {
-    /// Whether physics and summary are printed for a reader.
-    fn talks(&self) -> bool {
-        !self.quiet && !self.json
-    }
-}
-
 impl Run {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let started = Timestamp::now();
-        let manner = Manner {
+        let options = RunOptions {
             threads: set_threads(self.threads)?,
             interval: self.checkpoint,
             signals: Signals::catch().map_err(Failure::running)?,
@@ -91,62 +80,34 @@ impl Run {
             json: self.json,
         };
         if let Some(folder) = &self.resume {
-            return resume::resume(folder, self.previous, manner);
+            return resume::resume(folder, self.previous, options);
         }
         let case_path = self.case.path().map(Path::to_owned);
-        let case = self.case.load()?;
+        let case = Arc::new(self.case.load()?);
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&case.name));
         refuse_to_replace(case_path.as_deref(), &case, &out)?;
-        let replaced = if self.force { own_bytes(&out) } else { 0 };
-        case.check_disk(&out, replaced, manner.interval.saves())
+        let folder = OpenedFolder::open(&out).map_err(Failure::input)?;
+        let replaced = if self.force {
+            folder.inspection.managed_bytes()
+        } else {
+            0
+        };
+        case.check_disk(&out, replaced, options.interval.saves())
             .map_err(Failure::input)?;
-        let mut folder = RunFolder::prepare(&out, self.force, &case.inputs).map_err(Failure::input)?;
+        let mut folder = folder.prepare(self.force, &case.inputs).map_err(Failure::input)?;
         // What the run needs to go on if it is stopped.
         results::write_case(&case, &mut folder).map_err(Failure::running)?;
-        if manner.talks() {
+        if options.is_verbose() {
             print(&report::physics(&case))?;
         }
         let checkpoints = Checkpoints::new(&out, &case, started);
-        complete(Running::start(&case, manner.threads), folder, checkpoints, manner)
+        complete(
+            Running::start(&case, options.threads),
+            folder,
+            checkpoints,
+            options,
+        )
     }
-}
-
-/// Takes a run to its end and writes its results.
-fn complete(
-    mut running: Running,
-    folder: RunFolder,
-    checkpoints: Checkpoints,
-    manner: Manner,
-) -> Result<(), Failure> {
-    let (case, out) = (running.case(), folder.path().to_owned());
-    let (threads, talks) = (manner.threads, manner.talks());
-    let started = checkpoints.started();
-    let mut saving = Saving::new(&out, checkpoints, manner.interval, manner.signals);
-    let mut progress = Progress::new(&running, manner.quiet);
-    let reason = loop {
-        match running.advance(case.steps_per_look()) {
-            Ok(Some(reason)) => break reason,
-            Ok(None) => {}
-            Err(error) => {
-                // It would diverge again: there is nothing to go on with.
-                folder.discard();
-                return Err(Failure::running(error));
-            }
-        }
-        progress.show(&running.snapshot());
-        saving.look(&running, &progress)?;
-    };
-    progress.finish();
-    let mut record = running.record(reason);
-    results::write(case, &mut record, folder, started, threads)
-        .map_err(|error| Failure::running(anyhow::anyhow!("{error}; {}", saving.remedy())))?;
-    if manner.json {
-        print(&results::summary_json(&record.summary))?;
-    } else if talks {
-        print(&report::summary(case, &record.summary))?;
-        print(&files(case, &out))?;
-    }
-    Ok(())
 }
 
 /// Refuses a folder that holds the case to be run, or a file that it reads, where the results go: with `--force` it would be
@@ -166,28 +127,4 @@ fn refuse_to_replace(path: Option<&Path>, case: &Case, out: &Path) -> Result<(),
         path.display()
     );
     Err(Failure::input(anyhow::anyhow!(sentence)))
-}
-
-fn files(case: &Case, out: &Path) -> String {
-    let mut text = format!("files in {}\n", out.display());
-    for (name, what) in [
-        ("friction.svg .png", "friction and sliding blocks against time"),
-        ("stress.svg .png", "maps of the contact stress"),
-        ("series.csv", "the curve, row by row"),
-        ("fields.nc", "the fields, for ParaView, Python, MATLAB"),
-        ("summary.json", "the numbers above"),
-        ("case.toml", "the case, every default filled in"),
-    ] {
-        let exists = out.join(name.split(' ').next().unwrap_or(name)).exists();
-        if exists {
-            text += &format!("  {name:<18} {what}\n");
-        }
-    }
-    if !case.inputs.is_empty() {
-        text += &format!(
-            "  {:<18} {}\n",
-            "inputs/", "copies of the files that the case reads"
-        );
-    }
-    text
 }

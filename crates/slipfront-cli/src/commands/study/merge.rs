@@ -1,4 +1,4 @@
-//! `slipfront study merge`: the shards of a study in one.
+//! `slipfront study merge`: unites the shards of a study in one folder.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use slipfront_run::study::{Plan, StudyFolder, collect, is_study, refuse_foreign,
 
 use super::run::finish;
 use crate::failure::Failure;
-use crate::say::say;
+use crate::print_stderr::print_stderr;
 
 /// Unite the shards of a study: their records, tables and pictures; may be repeated
 #[derive(Args)]
@@ -26,7 +26,7 @@ pub(crate) struct Merge {
 impl Merge {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let mut folders = self.shards.clone();
-        // What is there already must be of the same study, so that merging may be repeated.
+        // Merging may be repeated: the folder then holds a study, which must be the one that the shards belong to.
         folders.extend(is_study(&self.out).then(|| self.out.clone()));
         refuse_foreign(&folders).map_err(Failure::input)?;
         let study = study_of(&self.shards[0]).map_err(Failure::input)?;
@@ -37,17 +37,17 @@ impl Merge {
             taken += folder.records.merge(shard).map_err(Failure::running)?;
         }
         if !self.quiet {
-            say(&format!(
+            print_stderr(&format!(
                 "{taken} runs taken over from {} shards",
                 self.shards.len()
             ));
         }
-        let findings = collect(&plan, &mut folder.records).map_err(Failure::running)?;
+        let results = collect(&plan, &mut folder.records).map_err(Failure::running)?;
         for shard in &self.shards {
             folder
-                .take_kept(&plan, &findings, shard)
+                .take_kept(&plan, &results, shard)
                 .map_err(Failure::running)?;
         }
-        finish(&plan, &findings, &folder, self.quiet)
+        finish(&plan, &results, &folder, self.quiet)
     }
 }

@@ -1,4 +1,4 @@
-//! `slipfront study`: sweeps, ensembles and error bars.
+//! `slipfront study`: sweeps and ensembles of runs, with error bars.
 
 mod merge;
 mod run;

@@ -1,19 +1,21 @@
-//! `slipfront study STUDY.toml`: run what is missing, then write tables and pictures.
+//! `slipfront study STUDY.toml`: runs what is missing, then writes tables and pictures.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use slipfront_case::disk::is_same;
 use slipfront_run::study;
-use slipfront_run::study::{Findings, Plan, RunKey, Shard, StudyError, StudyFile, StudyFolder};
+use slipfront_run::study::{Plan, RunKey, Shard, StudyError, StudyFile, StudyFolder, StudyResults};
 
-use crate::commands::{is_same, print, set_threads};
+use crate::estimate_cost::seconds_per_step;
 use crate::failure::Failure;
-use crate::probe::seconds_per_step;
-use crate::progress::StudyProgress;
+use crate::print::print;
+use crate::print_stderr::print_stderr;
+use crate::progress::study::StudyProgress;
 use crate::report;
-use crate::say::say;
 use crate::signals::Signals;
+use crate::threads::set_threads;
 
 #[derive(Args)]
 pub(crate) struct StudyRun {
@@ -40,14 +42,17 @@ pub(crate) struct StudyRun {
     yes: bool,
 }
 
-/// Runs that are done without asking.
-const MANY: u64 = 10_000;
+/// Most runs of a study that is run without `--yes`.
+const MAX_UNCONFIRMED_RUNS: u64 = 10_000;
 
-/// Refuses a very large study unless it is meant.
-pub(super) fn refuse_large(file: &StudyFile, meant: bool) -> Result<(), Failure> {
+/// Refuses a very large study unless the user has confirmed it.
+pub(super) fn refuse_large(file: &StudyFile, confirmed: bool) -> Result<(), Failure> {
     let runs = file.count_runs().map_err(Failure::input)?;
-    if runs > MANY && !meant {
-        return Err(Failure::input(StudyError::Large { runs, limit: MANY }));
+    if runs > MAX_UNCONFIRMED_RUNS && !confirmed {
+        return Err(Failure::input(StudyError::Large {
+            runs,
+            limit: MAX_UNCONFIRMED_RUNS,
+        }));
     }
     Ok(())
 }
@@ -68,13 +73,14 @@ impl StudyRun {
         let out = self.out.unwrap_or_else(|| default_out(&file.name, self.shard));
         refuse_to_replace(&path, &file, &out)?;
         let mut folder = StudyFolder::open(&out, &file).map_err(Failure::input)?;
-        plan.check_disk(&folder).map_err(Failure::input)?;
-        let plan = plan.reading_copies(&folder);
+        folder.check_disk(&plan).map_err(Failure::input)?;
+        let plan = plan.reading_copies(&folder.study);
         complete(&plan, &mut folder, threads, self.quiet)
     }
 }
 
-/// Refuses a folder where the study with its base inside would take the place of the file that names the base.
+/// Refuses the folder of the study file itself if that names its base by a path: the results contain the study with its base
+/// written out, which would replace the file.
 fn refuse_to_replace(path: &Path, file: &StudyFile, out: &Path) -> Result<(), Failure> {
     if !file.has_base_file() || !is_same(path, &out.join("study.toml")) {
         return Ok(());
@@ -86,7 +92,7 @@ fn refuse_to_replace(path: &Path, file: &StudyFile, out: &Path) -> Result<(), Fa
     Err(Failure::input(anyhow::anyhow!(sentence)))
 }
 
-/// Shards of one study do not share a folder.
+/// The folder for the results by default; each shard has its own.
 fn default_out(name: &str, shard: Option<Shard>) -> PathBuf {
     let name = match shard {
         Some(shard) => format!("{name}-{}", shard.to_string().replace('/', "-of-")),
@@ -100,7 +106,7 @@ fn complete(plan: &Plan, folder: &mut StudyFolder, threads: usize, quiet: bool) 
     let signals = Signals::catch().map_err(Failure::running)?;
     let mut progress = StudyProgress::new(quiet);
     if !quiet {
-        notes(folder);
+        print_notes(folder);
     }
     let path = folder.path().to_owned();
     let done = study::execute(
@@ -114,45 +120,45 @@ fn complete(plan: &Plan, folder: &mut StudyFolder, threads: usize, quiet: bool) 
         },
     );
     progress.finish();
-    let findings = done.map_err(|error| match error {
+    let results = done.map_err(|error| match error {
         StudyError::Interrupted => Failure::stopped(&signals, error),
         error => Failure::running(error),
     })?;
-    finish(plan, &findings, folder, quiet)
+    finish(plan, &results, folder, quiet)
 }
 
-/// What is to be known of a folder that has been used before.
-fn notes(folder: &StudyFolder) {
+/// Prints what the user must know of a folder that has been used before.
+fn print_notes(folder: &StudyFolder) {
     if folder.records.damaged > 0 {
-        say(&format!(
+        print_stderr(&format!(
             "note: {} damaged lines of the record file are passed over; their runs count as not run",
             folder.records.damaged
         ));
     }
     if folder.changed {
-        say(
+        print_stderr(
             "note: the study has changed since this folder was last used; runs that still belong to it are kept",
         );
     }
 }
 
-/// Writes tables and pictures, and says what was found.
+/// Writes tables and pictures, and prints the answer of the study.
 pub(super) fn finish(
     plan: &Plan,
-    findings: &Findings,
+    results: &StudyResults,
     folder: &StudyFolder,
     quiet: bool,
 ) -> Result<(), Failure> {
-    study::write(plan, findings, folder).map_err(Failure::running)?;
+    study::write(plan, results, folder).map_err(Failure::running)?;
     if !quiet {
-        print(&report::study(plan, findings, folder.path()))?;
+        print(&report::study(plan, results, folder.path()))?;
     }
-    failures(plan, findings)
+    expect_no_failures(plan, results)
 }
 
-/// A study with failed runs is done, but not well.
-fn failures(plan: &Plan, findings: &Findings) -> Result<(), Failure> {
-    let failed: Vec<(RunKey, &str)> = findings.failures().collect();
+/// Fails if runs of the study have failed; tables and pictures are written all the same.
+fn expect_no_failures(plan: &Plan, results: &StudyResults) -> Result<(), Failure> {
+    let failed: Vec<(RunKey, &str)> = results.failures().collect();
     let Some((run, reason)) = failed.first() else {
         return Ok(());
     };
@@ -160,17 +166,18 @@ fn failures(plan: &Plan, findings: &Findings) -> Result<(), Failure> {
     let sentence = format!(
         "{} of {} runs failed, the others stand in the tables; the first, replicate {} of the point {place}: {reason}",
         failed.len(),
-        findings.runs.len(),
+        results.runs.len(),
         run.replicate
     );
     Err(Failure::running(anyhow::anyhow!(sentence)))
 }
 
+/// The plan of a study, and its cost as measured on this machine.
 fn dry_run(plan: &Plan, threads: usize) -> Result<String, Failure> {
-    // One run at a time is tried here; the study itself may be meant for another machine.
+    // Only one run must fit into this machine: the study may be meant for another one.
     plan.check_memory(1).map_err(Failure::input)?;
     let (mut block_steps, mut seconds) = (0.0, 0.0);
-    // A block of a large lattice costs more than one that fits into the cache.
+    // The time per block depends on the size of the lattice: a small one fits into the cache.
     let mut rates: HashMap<usize, f64> = HashMap::new();
     for run in plan.runs(1) {
         let (cost, n_blocks) = plan.cost(run);

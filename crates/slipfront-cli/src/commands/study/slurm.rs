@@ -1,4 +1,4 @@
-//! `slipfront study slurm`: a batch script.
+//! `slipfront study slurm`: prints a batch script for the queue of a cluster.
 
 use std::path::PathBuf;
 
@@ -7,8 +7,8 @@ use slipfront_run::study::slurm::{Batch, script};
 use slipfront_run::study::{Plan, StudyFile};
 
 use super::run::refuse_large;
-use crate::commands::print;
 use crate::failure::Failure;
+use crate::print::print;
 
 /// Print a batch script for Slurm: few tasks, each using all cores of its node, that can be requeued
 #[derive(Args)]
@@ -31,7 +31,7 @@ impl Slurm {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let study = StudyFile::load(&self.study).map_err(Failure::input)?;
         refuse_large(&study, self.yes)?;
-        // A study that cannot run should not reach the queue.
+        // An invalid study is refused here, not by a task that has waited in the queue.
         let points = Plan::new(&study, None).map_err(Failure::input)?.points.len();
         let out = self
             .out

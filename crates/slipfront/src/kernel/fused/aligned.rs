@@ -1,4 +1,4 @@
-//! Arrays that begin on a cache line, so that vectors of eight numbers do not straddle two.
+//! Arrays that begin on a cache line, so that no vector of eight numbers extends over two.
 
 use std::ops::{Deref, DerefMut};
 
@@ -7,35 +7,35 @@ use super::vector::LANES;
 /// A fixed number of f64 on a 64-byte boundary.
 #[derive(Debug)]
 pub(super) struct Aligned {
-    /// The numbers, with room before them for the boundary; never moved, as its length never changes.
-    room: Vec<f64>,
+    /// The numbers, after up to seven unused ones. It never grows, so that its memory never moves.
+    storage: Vec<f64>,
     first: usize,
     len: usize,
 }
 
 impl Aligned {
     pub(super) fn filled(len: usize, value: f64) -> Self {
-        let room = vec![value; len + LANES - 1];
-        let first = room.as_ptr().align_offset(64).min(LANES - 1);
-        Self { room, first, len }
+        let storage = vec![value; len + LANES - 1];
+        let first = storage.as_ptr().align_offset(64).min(LANES - 1);
+        Self { storage, first, len }
     }
 }
 
 impl Aligned {
-    /// The cache lines from element `k` on, which may lie beyond the end.
+    /// The cache lines from element `k` on, which may be beyond the end.
     #[inline(always)]
-    pub(super) fn lines(&self, k: usize) -> Lines {
-        Lines(self.as_ptr().wrapping_add(k).cast())
+    pub(super) fn cache_lines(&self, k: usize) -> CacheLines {
+        CacheLines(self.as_ptr().wrapping_add(k).cast())
     }
 }
 
-/// Cache lines that will be needed. A lattice larger than the cache would otherwise be waited for: the arrays are many, and
-/// what moves first in a tile is far from what was touched last.
+/// Cache lines to fetch ahead of their use. On a lattice larger than the cache the sweep would otherwise wait for memory: it
+/// reads more arrays than processors fetch ahead by themselves.
 #[derive(Clone, Copy)]
-pub(super) struct Lines(*const i8);
+pub(super) struct CacheLines(*const i8);
 
-impl Lines {
-    /// Asks the processor to fetch the line of the given number.
+impl CacheLines {
+    /// Asks the processor to fetch the line with this index.
     #[inline(always)]
     pub(super) fn prefetch(self, line: usize) {
         #[cfg(target_arch = "x86_64")]
@@ -57,18 +57,18 @@ impl Deref for Aligned {
 
     #[inline(always)]
     fn deref(&self) -> &[f64] {
-        &self.room[self.first..self.first + self.len]
+        &self.storage[self.first..self.first + self.len]
     }
 }
 
 impl DerefMut for Aligned {
     #[inline(always)]
     fn deref_mut(&mut self) -> &mut [f64] {
-        &mut self.room[self.first..self.first + self.len]
+        &mut self.storage[self.first..self.first + self.len]
     }
 }
 
-/// A plane vector per element.
+/// A plane vector per element, one array per component.
 #[derive(Debug)]
 pub(super) struct Vectors {
     pub(super) x: Aligned,

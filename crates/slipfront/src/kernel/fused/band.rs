@@ -1,28 +1,31 @@
-//! The arrays of a band of tiles, and the sweep that takes them through a step.
+//! The arrays of a band of tiles, and the sweep that takes the band through a step.
+
+use std::ops::Range;
 
 use fearless_simd::{Simd, SimdBase};
 
 use super::aligned::{Aligned, Vectors};
 use super::blocks::{
-    ChunksMut, FrictionLoop, Halfway, LatticeLoop, Step, Sums, TileSums, UpwardLoop, friction,
+    ChunksMut, FreeMotion, FrictionLoop, LatticeLoop, Step, Sums, TileSums, UpwardLoop, friction,
     lattice_forces, spring, stretch_square, upward_springs,
 };
 use super::layout::{Layout, TILE};
-use super::rest::{Resting, patience};
+use super::rest::{RestingTile, steps_until_slip};
 use super::springs::Geometry;
-use super::vector::{LANES, Plane, load, load_plane, splat};
+use super::vector::{LANES, Vec2x8, load, load_vec2, splat};
 use crate::lattice::Bond;
-use crate::{Model, State};
+use crate::model::Model;
+use crate::state::State;
 
-/// What the last sweep left of a tile.
+/// A tile after its latest sweep.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tile {
     pub(super) sums: TileSums,
     /// Whether an element of it moves, ghosts included.
     pub(super) moving: bool,
-    /// The first step at which a block of it may break, if nothing around it moves; 0 if nobody has looked.
-    pub(super) wake: u64,
-    /// Largest u_x, -u_x, u_y, -u_y of its blocks, when last looked.
+    /// The first step at which a block of it may slip if nothing around it moves; 0 if unknown.
+    pub(super) active_from_step: u64,
+    /// Largest u_x, -u_x, u_y, -u_y of its blocks at the latest measurement.
     pub(super) extent: [f64; 4],
     /// Whether it has moved since.
     pub(super) extent_is_old: bool,
@@ -30,81 +33,91 @@ pub(super) struct Tile {
 
 /// What is to be done with a tile in a sweep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Order {
-    /// A block of it or beside it moves, or a block of it may break.
+pub(super) struct TileTask {
+    /// It is swept: one of its blocks or a neighbour moves, or one of its blocks may slip.
     pub(super) active: bool,
-    /// It was left alone until now.
-    pub(super) wakes: bool,
-    /// Its upward springs are needed, by itself or by a tile to the north.
-    pub(super) near: bool,
-    /// No block of it or beside it moves: it may be left alone until one breaks.
-    pub(super) quiet: bool,
+    /// It is swept after having been skipped.
+    pub(super) was_skipped: bool,
+    /// Its springs to the next row are needed, by itself or by a tile to the north.
+    pub(super) needs_springs: bool,
+    /// Nothing moves in it or next to it: it can be skipped from now on until a block slips.
+    pub(super) newly_resting: bool,
 }
 
-/// A run of tiles with all that one thread needs to take them through a step.
+/// Consecutive tiles with all that one thread needs to take them through a step.
 ///
 /// Indices of the arrays count from the first element of the front halo; those of arrays without halos from the first
 /// element of the band.
 #[derive(Debug)]
 pub(super) struct Band {
-    /// First tile, and first element.
+    /// Index of the first tile.
     pub(super) first_tile: usize,
+    /// Index of the first element.
     pub(super) first: usize,
-    /// Number of elements, whole vectors.
+    /// Number of elements, in whole vectors.
     pub(super) len: usize,
     pub(super) tiles: Vec<Tile>,
-    pub(super) orders: Vec<Order>,
-    /// Elements before and after the band whose displacements it knows.
+    pub(super) tasks: Vec<TileTask>,
+    /// Number of elements before and after the band of which it keeps the displacements.
     pub(super) halo: usize,
-    /// With halos: displacements at t_n.
+    /// Displacements at t_n, with halos.
     pub(super) displacement: Vectors,
     /// Velocities at t_n + dt/2.
     pub(super) velocity: Vectors,
-    hold_squares: Aligned,
-    slide_impulses: Aligned,
+    /// Squares of the static thresholds `mu_s F_n`.
+    static_limit_squares: Aligned,
+    /// Change of velocity by kinetic friction in a step, `dt mu_k F_n/(m c+)`.
+    kinetic_impulses: Aligned,
+    /// t* of the first slip in contact.
     pub(super) first_slip: Aligned,
-    /// With the front halo: springs to the east, to the north-west, to the next row at all.
+    /// Which elements have a neighbour to the east, to the west, and in the next row; with the front halo.
     masks: [Vec<u8>; 3],
+    /// Which elements are blocks.
     blocks: Vec<u8>,
-    touching: Vec<u8>,
+    /// Which elements are blocks in contact.
+    in_contact: Vec<u8>,
     /// Which elements move, ghosts included.
     moving: Vec<u8>,
+    /// Which blocks in contact have ever slid.
     slipped: Vec<u8>,
-    /// Forces of the latest upward springs, as a ring over the elements.
+    /// Forces of the latest springs to the next row: a ring buffer over the elements.
     upward: [Vectors; 3],
-    /// `F_c` of the tile at hand.
+    /// `F_c` of the present tile.
     lattice: Vectors,
-    /// What the friction law leaves half-way.
+    /// `F_s` of the present tile.
     drive: Vectors,
+    /// Velocities without friction of the present tile.
     free: Vectors,
-    taken: Aligned,
+    /// Fractions of these that kinetic friction removes.
+    removed_fraction: Aligned,
     /// Elements from a row to the next.
     stride: usize,
 }
 
-/// Where more blocks of a tile move than this, all tiles around it are taken to be touched.
-const FEW: u32 = 32;
+/// Number of sliding blocks in a tile above which all tiles around it are marked, instead of those around each block.
+const MAX_MARKED_BLOCKS: u32 = 32;
 
-/// Elements repeated after the end of the ring, for vectors that reach over it.
+/// Number of elements that are repeated after the end of the ring buffer, for vectors that extend over its end.
 const MIRROR: usize = 2 * LANES;
 
-fn vectors(elements: usize) -> usize {
+/// Number of elements in as many whole vectors as these need.
+fn whole_vectors(elements: usize) -> usize {
     elements.next_multiple_of(LANES)
 }
 
 impl Band {
-    /// The tiles `first_tile..end_tile` of a lattice in `state`, with time steps of `dt_star`.
+    /// The given tiles of a lattice in `state`, or at rest, with time steps of `dt_star`.
     pub(super) fn new(
         layout: &Layout,
         model: &Model,
         state: Option<&State>,
         dt_star: f64,
-        tiles: std::ops::Range<usize>,
+        tiles: Range<usize>,
     ) -> Self {
         let first = tiles.start * TILE;
-        let len = vectors((tiles.end * TILE).min(layout.len()) - first);
-        let halo = vectors(layout.stride + 1 + LANES);
-        let ring = vectors(layout.stride + 1 + TILE + LANES) + MIRROR;
+        let len = whole_vectors((tiles.end * TILE).min(layout.len()) - first);
+        let halo = whole_vectors(layout.stride + 1 + LANES);
+        let ring = whole_vectors(layout.stride + 1 + TILE + LANES) + MIRROR;
         let bytes = || vec![0; len / LANES];
         let mut masks: [Vec<u8>; 3] = Default::default();
         for vector in 0..(halo + len) / LANES {
@@ -118,57 +131,66 @@ impl Band {
             first,
             len,
             tiles: vec![Tile::default(); tiles.len()],
-            orders: vec![Order::default(); tiles.len()],
+            tasks: vec![TileTask::default(); tiles.len()],
             halo,
             displacement: Vectors::zeros(halo + len + halo),
             velocity: Vectors::zeros(len),
-            hold_squares: Aligned::filled(len, f64::INFINITY),
-            // A ghost has the velocity of the block that it copies: only endless friction keeps it from sliding by itself.
-            slide_impulses: Aligned::filled(len, f64::INFINITY),
+            static_limit_squares: Aligned::filled(len, f64::INFINITY),
+            // A ghost has the velocity of its block: infinite friction keeps it from moving by itself.
+            kinetic_impulses: Aligned::filled(len, f64::INFINITY),
             first_slip: Aligned::filled(len, f64::NAN),
             masks,
             blocks: bytes(),
-            touching: bytes(),
+            in_contact: bytes(),
             moving: bytes(),
             slipped: bytes(),
             upward: [Vectors::zeros(ring), Vectors::zeros(ring), Vectors::zeros(ring)],
             lattice: Vectors::zeros(TILE),
             drive: Vectors::zeros(TILE),
             free: Vectors::zeros(TILE),
-            taken: Aligned::filled(TILE, 0.0),
+            removed_fraction: Aligned::filled(TILE, 0.0),
             stride: layout.stride,
         };
-        let impulse = Step::new(model, 0, dt_star).impulse;
+        let force_to_velocity = Step::new(model, 0, dt_star).force_to_velocity;
         for k in 0..len {
-            let Some(b) = layout.block(first + k) else {
-                continue;
-            };
-            let (hold, slide) = (model.surface.hold(b), model.surface.slide(b));
-            band.hold_squares[k] = hold * hold;
-            band.slide_impulses[k] = impulse * slide;
-            let bit = 1 << (k % LANES);
-            band.blocks[k / LANES] |= bit;
-            if !model.surface.textured[b] {
-                band.touching[k / LANES] |= bit;
-            }
-            band.tiles[k / TILE].extent_is_old = true;
-            if let Some(state) = state {
-                let (u, v) = (state.displacement.at(b), state.velocity.at(b));
-                band.displacement.set(halo + k, u);
-                band.velocity.set(k, v);
-                band.set_moving(k, v != [0.0, 0.0]);
-                let tile = &mut band.tiles[k / TILE];
-                tile.sums.speed_square = tile.sums.speed_square.max(v[0] * v[0] + v[1] * v[1]);
+            if let Some(b) = layout.block(first + k) {
+                band.set_surface(k, model, b, force_to_velocity);
+                if let Some(state) = state {
+                    band.set_state(k, state, b);
+                }
             }
         }
         band
     }
 
-    /// Takes over when blocks first slid, as if every tile had just been swept: what a checkpoint tells of contact stresses
-    /// includes those of tiles at rest.
+    /// Sets the thresholds of block `b` at element `k`.
+    fn set_surface(&mut self, k: usize, model: &Model, b: usize, force_to_velocity: f64) {
+        let static_limit = model.surface.static_limit(b);
+        self.static_limit_squares[k] = static_limit * static_limit;
+        self.kinetic_impulses[k] = force_to_velocity * model.surface.kinetic_force(b);
+        let bit = 1 << (k % LANES);
+        self.blocks[k / LANES] |= bit;
+        if !model.surface.textured[b] {
+            self.in_contact[k / LANES] |= bit;
+        }
+        self.tiles[k / TILE].extent_is_old = true;
+    }
+
+    /// Sets displacement and velocity of block `b` at element `k`.
+    fn set_state(&mut self, k: usize, state: &State, b: usize) {
+        let (u, v) = (state.displacement.at(b), state.velocity.at(b));
+        self.displacement.set(self.halo + k, u);
+        self.velocity.set(k, v);
+        self.set_moving(k, v != [0.0, 0.0]);
+        let speed_square = &mut self.tiles[k / TILE].sums.speed_square;
+        *speed_square = speed_square.max(v[0] * v[0] + v[1] * v[1]);
+    }
+
+    /// Continues from a checkpoint with these first slips, as if every tile had just been swept: the largest contact stress of
+    /// a checkpoint includes the skipped tiles.
     pub(super) fn resume(&mut self, layout: &Layout, first_slip: &[f64]) {
-        for order in &mut self.orders {
-            order.active = true;
+        for task in &mut self.tasks {
+            task.active = true;
         }
         for k in 0..self.len {
             let Some(b) = layout.block(self.first + k) else {
@@ -182,11 +204,11 @@ impl Band {
     }
 
     /// Elements of the band's tile `t`, counted from the band's first.
-    pub(super) fn elements(&self, t: usize) -> std::ops::Range<usize> {
+    pub(super) fn elements(&self, t: usize) -> Range<usize> {
         t * TILE..((t + 1) * TILE).min(self.len)
     }
 
-    /// Notes whether an element moves.
+    /// Records whether an element moves.
     pub(super) fn set_moving(&mut self, k: usize, moves: bool) {
         let bit = 1 << (k % LANES);
         if moves {
@@ -197,17 +219,17 @@ impl Band {
         }
     }
 
-    /// Marks all tiles that hold a moving element or an element that a spring joins to one.
-    pub(super) fn mark_touched(&self, layout: &Layout, touched: &mut [bool]) {
+    /// Marks all tiles that contain a moving element or a neighbour of one.
+    pub(super) fn mark_moving_neighbours(&self, layout: &Layout, has_moving_neighbour: &mut [bool]) {
         for t in (0..self.tiles.len()).filter(|&t| self.tiles[t].moving) {
             let elements = self.elements(t);
             let mut mark = |from: usize, to: usize| {
                 let (first, last) = (self.first + from, self.first + to - 1);
                 layout
                     .tiles_around(first, last)
-                    .for_each(|tile| touched[tile] = true);
+                    .for_each(|tile| has_moving_neighbour[tile] = true);
             };
-            if self.tiles[t].sums.sliding > FEW {
+            if self.tiles[t].sums.sliding > MAX_MARKED_BLOCKS {
                 mark(elements.start, elements.end);
                 continue;
             }
@@ -217,14 +239,14 @@ impl Band {
         }
     }
 
-    /// Displacement of an element one step on, without moving it.
-    pub(super) fn advanced(&self, k: usize, moves: f64) -> [f64; 2] {
+    /// Displacement that an element will have after moving by `move_dt`.
+    pub(super) fn advanced(&self, k: usize, move_dt: f64) -> [f64; 2] {
         let ([ux, uy], [vx, vy]) = (self.displacement.at(self.halo + k), self.velocity.at(k));
-        [ux + moves * vx, uy + moves * vy]
+        [ux + move_dt * vx, uy + move_dt * vy]
     }
 
-    /// One step: displacements to t_n, forces there, velocities to t_n + dt/2, by the orders given. The halos hold the
-    /// displacements at t_n of what lies around the band.
+    /// One step of the scheduled tiles: displacements to t_n, forces there, velocities to t_n + dt/2. The halos contain the
+    /// displacements at t_n of the elements around the band.
     #[inline(always)]
     pub(super) fn sweep<S: Simd, G: Geometry>(
         &mut self,
@@ -234,20 +256,20 @@ impl Band {
         step: Step,
         energies: bool,
     ) {
-        // Springs reach a row and a block ahead: what they pull on moves first.
+        // Springs lead to elements a row and a block ahead, which must have moved before.
         let n_tiles = self.tiles.len();
         let ahead = self.tiles_ahead().min(n_tiles);
         for t in 0..ahead {
-            self.advance(simd, t, step.moves);
+            self.advance(simd, t, step.move_dt);
         }
-        let behind = vectors(self.stride + 1);
+        let behind = whole_vectors(self.stride + 1);
         self.upward(simd, geometry, self.halo - behind, self.halo);
         for t in 0..n_tiles {
             if t + ahead < n_tiles {
-                self.advance(simd, t + ahead, step.moves);
+                self.advance(simd, t + ahead, step.move_dt);
             }
-            let (order, elements) = (self.orders[t], self.elements(t));
-            if order.near {
+            let (task, elements) = (self.tasks[t], self.elements(t));
+            if task.needs_springs {
                 self.upward(
                     simd,
                     geometry,
@@ -255,22 +277,22 @@ impl Band {
                     self.halo + elements.end,
                 );
             }
-            if order.active {
-                if energies || order.quiet {
+            if task.active {
+                if energies || task.newly_resting {
                     self.tile::<S, G, true>(simd, geometry, step, t);
                 } else {
                     self.tile::<S, G, false>(simd, geometry, step, t);
                 }
             }
-            if order.quiet && self.tiles[t].sums.sliding == 0 {
-                self.tiles[t].wake = step
+            if task.newly_resting && self.tiles[t].sums.sliding == 0 {
+                self.tiles[t].active_from_step = step
                     .number
-                    .saturating_add(self.patience(simd, model, step, t).max(1));
+                    .saturating_add(self.steps_until_slip(simd, model, step, t).max(1));
             }
         }
     }
 
-    /// Tiles ahead of the one at hand whose displacements must be those of the step.
+    /// Number of tiles after the present one that must have moved before its forces are computed.
     #[inline(always)]
     fn tiles_ahead(&self) -> usize {
         (self.stride + MIRROR).div_ceil(TILE)
@@ -278,7 +300,7 @@ impl Band {
 
     /// Eq. 8: `u += dt v` in a tile that moves.
     #[inline(always)]
-    fn advance<S: Simd>(&mut self, simd: S, t: usize, moves: f64) {
+    fn advance<S: Simd>(&mut self, simd: S, t: usize, move_dt: f64) {
         if !self.tiles[t].moving {
             return;
         }
@@ -289,17 +311,21 @@ impl Band {
         let uy = self.displacement.y[from..to].as_chunks_mut().0;
         let vx = self.velocity.x[elements.clone()].as_chunks().0;
         let vy = self.velocity.y[elements].as_chunks().0;
-        let dt = splat(simd, moves);
+        let dt = splat(simd, move_dt);
         for (((ux, uy), vx), vy) in ux.iter_mut().zip(uy).zip(vx).zip(vy) {
             (load(simd, ux) + dt * load(simd, vx)).store_array(ux);
             (load(simd, uy) + dt * load(simd, vy)).store_array(uy);
         }
     }
 
-    /// Pieces of the elements `from..to` of which neither the places of their own springs nor those of the springs behind
-    /// them run over the end of the ring: first element, end, and the two places.
+    /// Divides the elements `from..to` at the end of the ring buffer, where their own springs or those of the row below wrap
+    /// around: first element, end, and the two positions in the buffer.
     #[inline(always)]
-    fn pieces(&self, from: usize, to: usize) -> impl Iterator<Item = (usize, usize, usize, usize)> + use<> {
+    fn ring_segments(
+        &self,
+        from: usize,
+        to: usize,
+    ) -> impl Iterator<Item = (usize, usize, usize, usize)> + use<> {
         let (ring, stride) = (self.upward[0].x.len() - MIRROR, self.stride);
         let mut first = from;
         std::iter::from_fn(move || {
@@ -314,17 +340,17 @@ impl Band {
         })
     }
 
-    /// Upward springs of the elements `from..to`, into the ring.
+    /// Springs of the elements `from..to` to the next row, into the ring buffer.
     #[inline(always)]
     fn upward<S: Simd, G: Geometry>(&mut self, simd: S, geometry: G, from: usize, to: usize) {
-        for (first, end, own, _) in self.pieces(from, to) {
+        for (first, end, own, _) in self.ring_segments(from, to) {
             let n = end - first;
             let (x, y) = (&self.displacement.x, &self.displacement.y);
             let at = |k: usize| [x[k..k + n].as_chunks().0, y[k..k + n].as_chunks().0];
             let north = first + self.stride;
             let vectors = first / LANES..end / LANES;
             let [north_f, north_east_f, north_west_f] = &mut self.upward;
-            let stretch = UpwardLoop {
+            let arrays = UpwardLoop {
                 here: at(first),
                 there: [at(north), at(north + 1), at(north - 1)],
                 masks: self.masks.each_ref().map(|masks| &masks[vectors.clone()]),
@@ -334,7 +360,7 @@ impl Band {
                     chunks_mut(north_west_f, own, n),
                 ],
             };
-            upward_springs(simd, geometry, stretch);
+            upward_springs(simd, geometry, arrays);
             if own < MIRROR {
                 let ring = self.upward[0].x.len() - MIRROR;
                 for force in &mut self.upward {
@@ -345,21 +371,38 @@ impl Band {
         }
     }
 
-    /// Forces and velocities of a tile, whose upward springs and those of the row behind are in the ring.
+    /// Forces and velocities of a tile. Its springs to the next row and those of the row below are in the ring buffer.
     #[inline(always)]
     fn tile<S: Simd, G: Geometry, const ENERGY: bool>(&mut self, simd: S, geometry: G, step: Step, t: usize) {
+        let mut sums = Sums::zero(simd);
+        self.lattice_forces::<S, G, ENERGY>(simd, geometry, t, &mut sums);
+        self.friction::<S, ENERGY>(simd, step, t, &mut sums);
+        let tile = &mut self.tiles[t];
+        tile.sums = sums.totals();
+        tile.moving = tile.sums.sliding > 0;
+        tile.active_from_step = 0;
+    }
+
+    /// Eq. 3 in a tile.
+    #[inline(always)]
+    fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
+        &mut self,
+        simd: S,
+        geometry: G,
+        t: usize,
+        sums: &mut Sums<S>,
+    ) {
         let elements = self.elements(t);
         let start = self.halo + elements.start;
-        let mut sums = Sums::zero(simd);
         let mut west = self.east_springs(simd, geometry, start - LANES);
-        for (first, end, own, behind) in self.pieces(start, self.halo + elements.end) {
+        for (first, end, own, behind) in self.ring_segments(start, self.halo + elements.end) {
             let n = end - first;
             let (x, y) = (&self.displacement.x, &self.displacement.y);
             let at = |k: usize| [x[k..k + n].as_chunks().0, y[k..k + n].as_chunks().0];
             let [north, north_east, north_west] = &self.upward;
             let vectors = first / LANES..end / LANES;
             let halo = self.halo / LANES;
-            let stretch = LatticeLoop {
+            let arrays = LatticeLoop {
                 here: at(first),
                 east: at(first + 1),
                 has_east: &self.masks[0][vectors.clone()],
@@ -376,50 +419,52 @@ impl Band {
                 ],
                 force: chunks_mut(&mut self.lattice, first - start, n),
             };
-            lattice_forces::<S, G, ENERGY>(simd, geometry, stretch, &mut west, &mut sums.lattice_energy);
+            lattice_forces::<S, G, ENERGY>(simd, geometry, arrays, &mut west, &mut sums.lattice_energy);
         }
-        let n = elements.len();
+    }
+
+    /// Eqs. 2 and 4-7 in a tile.
+    #[inline(always)]
+    fn friction<S: Simd, const ENERGY: bool>(&mut self, simd: S, step: Step, t: usize, sums: &mut Sums<S>) {
+        let elements = self.elements(t);
+        let (start, n) = (self.halo + elements.start, elements.len());
         let next = elements.start + TILE;
         let moving_next = next + self.tiles_ahead() * TILE;
-        let ahead = [
-            self.hold_squares.lines(next),
-            self.slide_impulses.lines(next),
-            self.displacement.x.lines(self.halo + moving_next),
-            self.displacement.y.lines(self.halo + moving_next),
-            self.velocity.x.lines(moving_next),
-            self.velocity.y.lines(moving_next),
+        let prefetched = [
+            self.static_limit_squares.cache_lines(next),
+            self.kinetic_impulses.cache_lines(next),
+            self.displacement.x.cache_lines(self.halo + moving_next),
+            self.displacement.y.cache_lines(self.halo + moving_next),
+            self.velocity.x.cache_lines(moving_next),
+            self.velocity.y.cache_lines(moving_next),
         ];
         let vectors = elements.start / LANES..elements.end / LANES;
-        let stretch = FrictionLoop {
+        let arrays = FrictionLoop {
             displacement: chunks(&self.displacement, start, n),
             lattice: chunks(&self.lattice, 0, n),
-            hold_squares: self.hold_squares[elements.clone()].as_chunks().0,
-            slide_impulses: self.slide_impulses[elements.clone()].as_chunks().0,
+            static_limit_squares: self.static_limit_squares[elements.clone()].as_chunks().0,
+            kinetic_impulses: self.kinetic_impulses[elements.clone()].as_chunks().0,
             blocks: &self.blocks[vectors.clone()],
-            touching: &self.touching[vectors.clone()],
+            in_contact: &self.in_contact[vectors.clone()],
             velocity: chunks_mut(&mut self.velocity, elements.start, n),
             moving: &mut self.moving[vectors.clone()],
             slipped: &mut self.slipped[vectors],
             first_slip: self.first_slip[elements.clone()].as_chunks_mut().0,
-            ahead,
+            prefetched,
         };
-        let halfway = Halfway {
+        let motion = FreeMotion {
             drive: chunks_mut(&mut self.drive, 0, n),
             free: chunks_mut(&mut self.free, 0, n),
-            taken: self.taken[..n].as_chunks_mut().0,
+            removed_fraction: self.removed_fraction[..n].as_chunks_mut().0,
         };
-        friction::<S, ENERGY>(simd, step, stretch, halfway, &mut sums);
-        let tile = &mut self.tiles[t];
-        tile.sums = sums.totals();
-        tile.moving = tile.sums.sliding > 0;
-        tile.wake = 0;
+        friction::<S, ENERGY>(simd, step, arrays, motion, sums);
     }
 
     /// Springs to the east of the eight elements from `first` on.
     #[inline(always)]
-    fn east_springs<S: Simd, G: Geometry>(&self, simd: S, geometry: G, first: usize) -> Plane<S> {
-        let here = load_plane(simd, chunks(&self.displacement, first, LANES), 0);
-        let there = load_plane(simd, chunks(&self.displacement, first + 1, LANES), 0);
+    fn east_springs<S: Simd, G: Geometry>(&self, simd: S, geometry: G, first: usize) -> Vec2x8<S> {
+        let here = load_vec2(simd, chunks(&self.displacement, first, LANES), 0);
+        let there = load_vec2(simd, chunks(&self.displacement, first + 1, LANES), 0);
         spring(
             simd,
             geometry,
@@ -430,21 +475,21 @@ impl Band {
         )
     }
 
-    /// How long a tile at rest can be left alone; its lattice forces are those of the sweep at hand.
+    /// For how many steps a tile at rest can be skipped; its lattice forces are those of the present sweep.
     #[inline(always)]
-    fn patience<S: Simd>(&self, simd: S, model: &Model, step: Step, t: usize) -> u64 {
+    fn steps_until_slip<S: Simd>(&self, simd: S, model: &Model, step: Step, t: usize) -> u64 {
         let elements = self.elements(t);
         let n = elements.len();
-        let blocks = Resting {
+        let blocks = RestingTile {
             displacement: chunks(&self.displacement, self.halo + elements.start, n),
             lattice: chunks(&self.lattice, 0, n),
-            hold_squares: self.hold_squares[elements.clone()].as_chunks().0,
-            slide_impulses: self.slide_impulses[elements].as_chunks().0,
+            static_limit_squares: self.static_limit_squares[elements.clone()].as_chunks().0,
+            kinetic_impulses: self.kinetic_impulses[elements].as_chunks().0,
         };
-        patience(simd, &step, &model.drive, &blocks)
+        steps_until_slip(simd, &step, &model.drive, &blocks)
     }
 
-    /// Looks at the displacements of the tiles that have moved since they were last looked at.
+    /// Measures the extent of displacements in the tiles that have moved since the latest measurement.
     pub(super) fn measure_extents(&mut self) {
         for t in 0..self.tiles.len() {
             if !self.tiles[t].extent_is_old {
@@ -464,12 +509,12 @@ impl Band {
         }
     }
 
-    /// Squared stretches of the drive springs of the tiles at rest, which the sweep to this step has left alone; of all
-    /// tiles if there was no sweep.
+    /// Updates the squared stretches of the drive springs in the tiles that the sweep to this step has skipped; in all tiles if
+    /// there was no sweep.
     #[inline(always)]
-    pub(super) fn stretch_at_rest<S: Simd>(&mut self, simd: S, step: Step, swept: bool) {
+    pub(super) fn update_skipped_stretch<S: Simd>(&mut self, simd: S, step: Step, swept: bool) {
         for t in 0..self.tiles.len() {
-            if !(swept && self.orders[t].active) {
+            if !(swept && self.tasks[t].active) {
                 let elements = self.elements(t);
                 let displacement = chunks(&self.displacement, self.halo + elements.start, elements.len());
                 let blocks = &self.blocks[elements.start / LANES..elements.end / LANES];
@@ -478,14 +523,14 @@ impl Band {
         }
     }
 
-    /// Largest `tau_c^2` of the blocks in contact of a tile at rest.
+    /// Largest `tau_c^2` of the blocks in contact of a tile in which nothing moves.
     pub(super) fn resting_stress_square(&self, t: usize, step: &Step) -> f64 {
         let mut most = 0.0_f64;
         for k in self.elements(t) {
-            if self.touching[k / LANES] >> (k % LANES) & 1 == 1 {
+            if self.in_contact[k / LANES] >> (k % LANES) & 1 == 1 {
                 let [ux, uy] = self.displacement.at(self.halo + k);
-                let x = step.k_drive * (step.reach[0] - ux) + step.constant_force[0];
-                let y = step.k_drive * (step.reach[1] - uy) + step.constant_force[1];
+                let x = step.k_drive * (step.drive_position[0] - ux) + step.constant_force[0];
+                let y = step.k_drive * (step.drive_position[1] - uy) + step.constant_force[1];
                 most = most.max(x * x + y * y);
             }
         }

@@ -1,70 +1,71 @@
-//! A stretch of blocks through one step, eight at a time: springs (Eq. 3), then drive, friction and damping (Eqs. 2, 4-7).
+//! Consecutive elements through one step, eight at a time: springs (Eq. 3), then drive, friction and damping (Eqs. 2, 4-7).
 //!
-//! Two loops rather than one: the chain from a displacement to a new velocity is long, and processors overlap more
-//! vectors of the two halves than of the whole.
+//! Each of these is a loop of its own: processors overlap more iterations of short loops than of a long one.
 
-use fearless_simd::{Simd, SimdBase, SimdFloat};
+use fearless_simd::{Simd, SimdBase, SimdFloat, f64x8};
 
-use super::aligned::Lines;
+use super::aligned::CacheLines;
 use super::springs::Geometry;
 use super::vector::{
-    Eight, LANES, Plane, add, behind, bits, dot, is_zero, keep, largest, load, load_plane, mask, scale,
-    select, splat, square, subtract, total,
+    LANES, Vec2x8, add, bits, dot, is_zero, lane_max, lane_sum, load, load_vec2, mask, or_zero, scale,
+    select, shift_in, splat, square, subtract,
 };
-use crate::Model;
+use crate::friction::Integrator;
 use crate::lattice::Bond;
+use crate::model::Model;
 
-/// Eight elements by eight.
+/// One number per element, in vectors of eight.
 pub(super) type Chunks<'a> = &'a [[f64; LANES]];
 pub(super) type ChunksMut<'a> = &'a mut [[f64; LANES]];
 
-/// Numbers that are the same for every block in a step.
+/// What is common to all blocks in a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {
     /// n.
     pub(super) number: u64,
     /// `t*` of the step.
     pub(super) time_star: f64,
-    /// `dt*`, and by how much of it displacements move before the forces act.
+    /// `dt*`.
     pub(super) dt_star: f64,
-    pub(super) moves: f64,
-    /// Displacement of the driven spring ends.
-    pub(super) reach: [f64; 2],
+    /// Time for which displacements move before forces are evaluated: `dt*`, or 0 at the start.
+    pub(super) move_dt: f64,
+    /// Displacement of the driven ends of the drive springs.
+    pub(super) drive_position: [f64; 2],
     /// `k_s`.
     pub(super) k_drive: f64,
-    /// Force on every block beside the drive spring's.
+    /// Force on every block in addition to the drive spring's.
     pub(super) constant_force: [f64; 2],
-    /// `c-/c+` of damping: what a free block keeps of its velocity.
-    pub(super) keeps: f64,
-    /// `dt/(m c+)`: what a force adds to it.
-    pub(super) impulse: f64,
-    /// `m c+/dt`.
-    pub(super) inverse_impulse: f64,
+    /// `c-/c+`, the factor by which damping reduces the velocity in a step.
+    pub(super) velocity_decay: f64,
+    /// `dt/(m c+)`: change of velocity per force.
+    pub(super) force_to_velocity: f64,
+    /// `m c+/dt`: force per change of velocity.
+    pub(super) velocity_to_force: f64,
 }
 
 impl Step {
     pub(super) fn new(model: &Model, number: u64, dt_star: f64) -> Self {
-        let integrator = crate::friction::Integrator::new(model.damping, dt_star);
+        let integrator = Integrator::new(model.damping, dt_star);
         let time_star = number as f64 * dt_star;
         Self {
             number,
             time_star,
             dt_star,
-            moves: dt_star,
-            reach: model.drive.reach(time_star),
+            move_dt: dt_star,
+            drive_position: model.drive.position(time_star),
             k_drive: model.drive.k_drive,
             constant_force: model.drive.constant_force,
-            keeps: integrator.keeps,
-            impulse: integrator.impulse,
-            inverse_impulse: integrator.inverse_impulse,
+            velocity_decay: integrator.velocity_decay,
+            force_to_velocity: integrator.force_to_velocity,
+            velocity_to_force: integrator.velocity_to_force,
         }
     }
 }
 
-/// Springs along the three bonds to the next row (north, north-east, north-west): their forces on the blocks below them.
+/// x and y of a quantity of the springs to the next row: north, north-east and north-west.
 pub(super) type Upward<T> = [[T; 2]; 3];
 
-/// What the upward springs of a stretch of elements need, and where their forces go.
+/// Input of [`upward_springs`], and where the forces on the lower blocks are stored.
 pub(super) struct UpwardLoop<'a> {
     pub(super) here: [Chunks<'a>; 2],
     /// Displacements of the neighbours along the three bonds.
@@ -74,7 +75,7 @@ pub(super) struct UpwardLoop<'a> {
     pub(super) force: Upward<ChunksMut<'a>>,
 }
 
-/// What all springs of a stretch of elements need, and where their sum goes.
+/// Input of [`lattice_forces`], and where the sums are stored.
 pub(super) struct LatticeLoop<'a> {
     pub(super) here: [Chunks<'a>; 2],
     pub(super) east: [Chunks<'a>; 2],
@@ -96,46 +97,46 @@ pub(super) fn spring<S: Simd, G: Geometry>(
     geometry: G,
     bond: &Bond,
     present: u8,
-    here: Plane<S>,
-    there: Plane<S>,
-) -> Plane<S> {
-    where_present(simd, present, geometry.force(simd, bond, subtract(there, here)))
+    here: Vec2x8<S>,
+    there: Vec2x8<S>,
+) -> Vec2x8<S> {
+    zero_missing(simd, present, geometry.force(simd, bond, subtract(there, here)))
 }
 
-/// Zero where a bit is missing. Away from edges and textures none is: without AVX-512 the test is cheaper than the mask.
+/// Zero where a bit of `present` is 0. Few vectors have such bits, so that without AVX-512 the test is cheaper than the mask.
 #[inline(always)]
-fn where_present<S: Simd>(simd: S, present: u8, a: Plane<S>) -> Plane<S> {
+fn zero_missing<S: Simd>(simd: S, present: u8, a: Vec2x8<S>) -> Vec2x8<S> {
     if present == u8::MAX {
         a
     } else {
-        keep(simd, mask(simd, present), a)
+        or_zero(simd, mask(simd, present), a)
     }
 }
 
 /// Eq. 3: the springs to the next row, each computed once for the blocks at its two ends.
 #[inline(always)]
-pub(super) fn upward_springs<S: Simd, G: Geometry>(simd: S, geometry: G, stretch: UpwardLoop) {
-    let [[nx, ny], [nex, ney], [nwx, nwy]] = stretch.force;
+pub(super) fn upward_springs<S: Simd, G: Geometry>(simd: S, geometry: G, arrays: UpwardLoop) {
+    let [[nx, ny], [nex, ney], [nwx, nwy]] = arrays.force;
     let n = nx.len();
     let (ny, nex, ney) = (&mut ny[..n], &mut nex[..n], &mut ney[..n]);
     let (nwx, nwy) = (&mut nwx[..n], &mut nwy[..n]);
-    let here = cut(stretch.here, n);
-    let [north, north_east, north_west] = stretch.there;
-    let (north, north_east, north_west) = (cut(north, n), cut(north_east, n), cut(north_west, n));
-    let [has_east, has_west, has_north] = stretch.masks;
+    let here = first_n(arrays.here, n);
+    let [north, north_east, north_west] = arrays.there;
+    let (north, north_east, north_west) = (first_n(north, n), first_n(north_east, n), first_n(north_west, n));
+    let [has_east, has_west, has_north] = arrays.masks;
     let (has_east, has_west, has_north) = (&has_east[..n], &has_west[..n], &has_north[..n]);
     for c in 0..n {
-        let u = load_plane(simd, here, c);
+        let u = load_vec2(simd, here, c);
         let (up, right, left) = (has_north[c], has_east[c], has_west[c]);
-        let there = load_plane(simd, north, c);
+        let there = load_vec2(simd, north, c);
         let [x, y] = spring(simd, geometry, &Bond::NORTH, up, u, there);
         x.store_array(&mut nx[c]);
         y.store_array(&mut ny[c]);
-        let there = load_plane(simd, north_east, c);
+        let there = load_vec2(simd, north_east, c);
         let [x, y] = spring(simd, geometry, &Bond::NORTH_EAST, up & right, u, there);
         x.store_array(&mut nex[c]);
         y.store_array(&mut ney[c]);
-        let there = load_plane(simd, north_west, c);
+        let there = load_vec2(simd, north_west, c);
         let [x, y] = spring(simd, geometry, &Bond::NORTH_WEST, up & left, u, there);
         x.store_array(&mut nwx[c]);
         y.store_array(&mut nwy[c]);
@@ -143,48 +144,48 @@ pub(super) fn upward_springs<S: Simd, G: Geometry>(simd: S, geometry: G, stretch
 }
 
 /// Eq. 3: the sum of all eight springs of every block. Opposite neighbours are paired, straight ones before diagonal ones,
-/// so that a quarter turn or a mirror of the whole problem mirrors the trajectory to the last bit.
+/// so that the trajectory of a rotated or mirrored problem is the rotated or mirrored trajectory, with the same bits.
 ///
-/// `west`: springs to the east of the eight elements before the stretch; becomes that of its last eight. `energy` grows by
-/// the energy of the springs if it is asked for.
+/// `west`: springs to the east of the eight elements before these; becomes that of the last eight. If `ENERGY`, the energy of
+/// the springs is added to `energy`.
 #[inline(always)]
 pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
     simd: S,
     geometry: G,
-    stretch: LatticeLoop,
-    west: &mut Plane<S>,
-    energy: &mut Eight<S>,
+    arrays: LatticeLoop,
+    west: &mut Vec2x8<S>,
+    energy: &mut f64x8<S>,
 ) {
-    let [fx, fy] = stretch.force;
+    let [fx, fy] = arrays.force;
     let n = fx.len();
     let fy = &mut fy[..n];
-    let (here, there) = (cut(stretch.here, n), cut(stretch.east, n));
-    let [north, north_east, north_west] = stretch.own;
-    let (north, north_east, north_west) = (cut(north, n), cut(north_east, n), cut(north_west, n));
-    let [south, south_west, south_east] = stretch.behind;
-    let (south, south_west, south_east) = (cut(south, n), cut(south_west, n), cut(south_east, n));
-    let (has_east, blocks) = (&stretch.has_east[..n], &stretch.blocks[..n]);
+    let (here, there) = (first_n(arrays.here, n), first_n(arrays.east, n));
+    let [north, north_east, north_west] = arrays.own;
+    let (north, north_east, north_west) = (first_n(north, n), first_n(north_east, n), first_n(north_west, n));
+    let [south, south_west, south_east] = arrays.behind;
+    let (south, south_west, south_east) = (first_n(south, n), first_n(south_west, n), first_n(south_east, n));
+    let (has_east, blocks) = (&arrays.has_east[..n], &arrays.blocks[..n]);
     let mut before = *west;
     for c in 0..n {
-        let u = load_plane(simd, here, c);
+        let u = load_vec2(simd, here, c);
         let east = spring(
             simd,
             geometry,
             &Bond::EAST,
             has_east[c],
             u,
-            load_plane(simd, there, c),
+            load_vec2(simd, there, c),
         );
-        let west = behind(before, east);
+        let west = shift_in(before, east);
         before = east;
-        let north = load_plane(simd, north, c);
-        let north_east = load_plane(simd, north_east, c);
-        let north_west = load_plane(simd, north_west, c);
+        let north = load_vec2(simd, north, c);
+        let north_east = load_vec2(simd, north_east, c);
+        let north_west = load_vec2(simd, north_west, c);
         let [x, y] = add(
-            add(subtract(east, west), subtract(north, load_plane(simd, south, c))),
+            add(subtract(east, west), subtract(north, load_vec2(simd, south, c))),
             add(
-                subtract(north_east, load_plane(simd, south_west, c)),
-                subtract(north_west, load_plane(simd, south_east, c)),
+                subtract(north_east, load_vec2(simd, south_west, c)),
+                subtract(north_west, load_vec2(simd, south_east, c)),
             ),
         );
         x.store_array(&mut fx[c]);
@@ -193,56 +194,58 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
             // (k/2) extension^2 = F^2/(2k), and k_1 = 2 k_2.
             let straight = square(east) + square(north);
             let diagonal = square(north_east) + square(north_west);
-            let held = straight + splat(simd, 2.0) * diagonal;
-            *energy += where_present(simd, blocks[c], [held, held])[0];
+            let energies = straight + splat(simd, 2.0) * diagonal;
+            *energy += zero_missing(simd, blocks[c], [energies, energies])[0];
         }
     }
     *west = before;
 }
 
 #[inline(always)]
-fn cut([x, y]: [Chunks<'_>; 2], n: usize) -> [Chunks<'_>; 2] {
+fn first_n([x, y]: [Chunks<'_>; 2], n: usize) -> [Chunks<'_>; 2] {
     [&x[..n], &y[..n]]
 }
 
-/// What friction and drive need of a stretch of elements, and what they change.
+/// Input and output of [`friction`].
 pub(super) struct FrictionLoop<'a> {
     pub(super) displacement: [Chunks<'a>; 2],
     pub(super) lattice: [Chunks<'a>; 2],
     /// Squares of the static thresholds `mu_s F_n`.
-    pub(super) hold_squares: Chunks<'a>,
-    /// Kinetic friction's impulse in a step, `q = dt mu_k F_n/(m c+)`.
-    pub(super) slide_impulses: Chunks<'a>,
-    /// Which elements are blocks, and blocks in contact.
+    pub(super) static_limit_squares: Chunks<'a>,
+    /// Change of velocity by kinetic friction in a step, `q = dt mu_k F_n/(m c+)`.
+    pub(super) kinetic_impulses: Chunks<'a>,
+    /// Which elements are blocks.
     pub(super) blocks: &'a [u8],
-    pub(super) touching: &'a [u8],
+    /// Which elements are blocks in contact.
+    pub(super) in_contact: &'a [u8],
     /// At `t - dt/2`, then at `t + dt/2`.
     pub(super) velocity: [ChunksMut<'a>; 2],
     /// Which blocks move after the step.
     pub(super) moving: &'a mut [u8],
-    /// Which blocks in contact have ever slid, and since when.
+    /// Which blocks in contact have ever slid.
     pub(super) slipped: &'a mut [u8],
+    /// When they first did.
     pub(super) first_slip: ChunksMut<'a>,
-    /// What later tiles will need first.
-    pub(super) ahead: [Lines; 6],
+    /// Memory of later tiles, fetched ahead.
+    pub(super) prefetched: [CacheLines; 6],
 }
 
-/// Sums over the eight lanes.
+/// Sums over the elements of a tile, one per lane.
 pub(super) struct Sums<S: Simd> {
-    displacement: Plane<S>,
-    velocity: Plane<S>,
-    motion_square: Eight<S>,
-    friction_work: Eight<S>,
-    stress_square: Eight<S>,
-    speed_square: Eight<S>,
-    pub(super) lattice_energy: Eight<S>,
-    velocity_squares: Eight<S>,
-    stretch_square: Eight<S>,
+    displacement: Vec2x8<S>,
+    velocity: Vec2x8<S>,
+    motion_square: f64x8<S>,
+    friction_work: f64x8<S>,
+    stress_square: f64x8<S>,
+    speed_square: f64x8<S>,
+    pub(super) lattice_energy: f64x8<S>,
+    velocity_squares: f64x8<S>,
+    stretch_square: f64x8<S>,
     sliding: u32,
     slipping: u32,
 }
 
-/// The same over all blocks of a tile.
+/// Sums over all blocks of a tile.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct TileSums {
     /// `sum u`.
@@ -255,16 +258,17 @@ pub(super) struct TileSums {
     pub(super) friction_work: f64,
     /// Largest `tau_c^2` of a block in contact.
     pub(super) stress_square: f64,
-    /// No less than the square of the highest speed.
+    /// Square of the highest speed, ghosts included.
     pub(super) speed_square: f64,
-    /// Twice k_1 times the energy of the springs, if it was asked for.
+    /// Energy of the springs times `2 k_1`, at steps at which energies are needed.
     pub(super) lattice_energy: f64,
-    /// `sum v(t - dt/2)^2 + v(t + dt/2)^2`, if asked for.
+    /// `sum v(t - dt/2)^2 + v(t + dt/2)^2`, at steps at which energies are needed.
     pub(super) velocity_squares: f64,
-    /// `sum (V t - u)^2`, if asked for.
+    /// `sum (V t - u)^2`, at steps at which energies are needed.
     pub(super) stretch_square: f64,
-    /// Blocks that slide, and those of them in contact.
+    /// Number of blocks that slide.
     pub(super) sliding: u32,
+    /// Number of sliding blocks that are in contact.
     pub(super) slipping: u32,
 }
 
@@ -290,15 +294,15 @@ impl<S: Simd> Sums<S> {
     #[inline(always)]
     pub(super) fn totals(&self) -> TileSums {
         TileSums {
-            displacement: [total(self.displacement[0]), total(self.displacement[1])],
-            velocity: [total(self.velocity[0]), total(self.velocity[1])],
-            motion_square: total(self.motion_square),
-            friction_work: total(self.friction_work),
-            stress_square: largest(self.stress_square),
-            speed_square: largest(self.speed_square),
-            lattice_energy: total(self.lattice_energy),
-            velocity_squares: total(self.velocity_squares),
-            stretch_square: total(self.stretch_square),
+            displacement: self.displacement.map(lane_sum),
+            velocity: self.velocity.map(lane_sum),
+            motion_square: lane_sum(self.motion_square),
+            friction_work: lane_sum(self.friction_work),
+            stress_square: lane_max(self.stress_square),
+            speed_square: lane_max(self.speed_square),
+            lattice_energy: lane_sum(self.lattice_energy),
+            velocity_squares: lane_sum(self.velocity_squares),
+            stretch_square: lane_sum(self.stretch_square),
             sliding: self.sliding,
             slipping: self.slipping,
         }
@@ -307,13 +311,19 @@ impl<S: Simd> Sums<S> {
 
 /// Stretch of the drive springs, `V t - u`.
 #[inline(always)]
-fn drive_stretch<S: Simd>(simd: S, step: Step, u: Plane<S>) -> Plane<S> {
-    subtract([splat(simd, step.reach[0]), splat(simd, step.reach[1])], u)
+fn drive_stretch<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
+    subtract(
+        [
+            splat(simd, step.drive_position[0]),
+            splat(simd, step.drive_position[1]),
+        ],
+        u,
+    )
 }
 
 /// Eq. 2: `F_s = k_s (V t - u)`, with any constant force.
 #[inline(always)]
-pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Plane<S>) -> Plane<S> {
+pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
     let constant = [
         splat(simd, step.constant_force[0]),
         splat(simd, step.constant_force[1]),
@@ -329,125 +339,131 @@ pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Plane<S>) -> Plane<S> {
 pub(super) fn stretch_square<S: Simd>(simd: S, step: Step, displacement: [Chunks; 2], blocks: &[u8]) -> f64 {
     let mut sum = splat(simd, 0.0);
     for (c, &present) in blocks.iter().enumerate() {
-        let square = square(drive_stretch(simd, step, load_plane(simd, displacement, c)));
-        sum += where_present(simd, present, [square, square])[0];
+        let square = square(drive_stretch(simd, step, load_vec2(simd, displacement, c)));
+        sum += zero_missing(simd, present, [square, square])[0];
     }
-    total(sum)
+    lane_sum(sum)
 }
 
-/// Room for what the first half of the law leaves to the second, over a tile.
-pub(super) struct Halfway<'a> {
+/// What [`free_motion`] finds for [`friction`], over a tile.
+pub(super) struct FreeMotion<'a> {
     /// `F_s`.
     pub(super) drive: [ChunksMut<'a>; 2],
     /// Velocity that the block would have without friction.
     pub(super) free: [ChunksMut<'a>; 2],
-    /// Share of it that friction would take.
-    pub(super) taken: ChunksMut<'a>,
+    /// Fraction of it that friction removes if the block slides.
+    pub(super) removed_fraction: ChunksMut<'a>,
 }
 
-/// The first half of the friction law: drive (Eq. 2), damping (Eq. 5), and the velocity without friction.
+/// The first part of the friction law: drive (Eq. 2), damping (Eq. 5), and the velocity without friction.
 #[inline(always)]
-fn free_motion<S: Simd>(simd: S, step: Step, stretch: &FrictionLoop, halfway: &mut Halfway) {
-    let n = halfway.taken.len();
-    let (u, lattice) = (cut(stretch.displacement, n), cut(stretch.lattice, n));
-    let velocity = [&stretch.velocity[0][..n], &stretch.velocity[1][..n]];
-    let slide_impulses = &stretch.slide_impulses[..n];
-    let [dx, dy] = &mut halfway.drive;
-    let [fx, fy] = &mut halfway.free;
+fn free_motion<S: Simd>(simd: S, step: Step, arrays: &FrictionLoop, motion: &mut FreeMotion) {
+    let n = motion.removed_fraction.len();
+    let (u, lattice) = (first_n(arrays.displacement, n), first_n(arrays.lattice, n));
+    let velocity = [&arrays.velocity[0][..n], &arrays.velocity[1][..n]];
+    let kinetic_impulses = &arrays.kinetic_impulses[..n];
+    let [dx, dy] = &mut motion.drive;
+    let [fx, fy] = &mut motion.free;
     let (dx, dy, fx, fy) = (&mut dx[..n], &mut dy[..n], &mut fx[..n], &mut fy[..n]);
-    let taken = &mut halfway.taken[..n];
+    let removed_fraction = &mut motion.removed_fraction[..n];
     for c in 0..n {
-        let drive = pull(simd, step, load_plane(simd, u, c));
-        let force = add(drive, load_plane(simd, lattice, c));
+        let drive = pull(simd, step, load_vec2(simd, u, c));
+        let force = add(drive, load_vec2(simd, lattice, c));
         let free = add(
-            scale(splat(simd, step.keeps), load_plane(simd, velocity, c)),
-            scale(splat(simd, step.impulse), force),
+            scale(splat(simd, step.velocity_decay), load_vec2(simd, velocity, c)),
+            scale(splat(simd, step.force_to_velocity), force),
         );
-        let share = load(simd, &slide_impulses[c]) / square(free).sqrt();
+        let removed = load(simd, &kinetic_impulses[c]) / square(free).sqrt();
         drive[0].store_array(&mut dx[c]);
         drive[1].store_array(&mut dy[c]);
         free[0].store_array(&mut fx[c]);
         free[1].store_array(&mut fy[c]);
-        share.store_array(&mut taken[c]);
+        removed.store_array(&mut removed_fraction[c]);
     }
 }
 
-/// Eqs. 2 and 4-7 by Moreau's time-stepping: the same operations as [`crate::friction::Projection`], eight blocks at a time,
-/// with everything summed that observers ask for at every step.
+/// Eqs. 2 and 4-7 by Moreau's time-stepping: the operations of [`crate::friction::Projection`], eight blocks at a time, and all
+/// sums that observers need at every step.
 #[inline(always)]
 pub(super) fn friction<S: Simd, const ENERGY: bool>(
     simd: S,
     step: Step,
-    stretch: FrictionLoop,
-    mut halfway: Halfway,
+    arrays: FrictionLoop,
+    mut motion: FreeMotion,
     sums: &mut Sums<S>,
 ) {
-    free_motion(simd, step, &stretch, &mut halfway);
-    let [vx, vy] = stretch.velocity;
+    free_motion(simd, step, &arrays, &mut motion);
+    let [vx, vy] = arrays.velocity;
     let n = vx.len();
     let vy = &mut vy[..n];
-    let (u, lattice_force) = (cut(stretch.displacement, n), cut(stretch.lattice, n));
-    let [dx, dy] = halfway.drive;
-    let [fx, fy] = halfway.free;
+    let (u, lattice_force) = (first_n(arrays.displacement, n), first_n(arrays.lattice, n));
+    let [dx, dy] = motion.drive;
+    let [fx, fy] = motion.free;
     let (drive_force, free_velocity) = ([&dx[..n], &dy[..n]], [&fx[..n], &fy[..n]]);
-    let taken = &halfway.taken[..n];
-    let hold_squares = &stretch.hold_squares[..n];
-    let (blocks, touching) = (&stretch.blocks[..n], &stretch.touching[..n]);
-    let (moving, slipped) = (&mut stretch.moving[..n], &mut stretch.slipped[..n]);
-    let first_slip = &mut stretch.first_slip[..n];
+    let removed_fraction = &motion.removed_fraction[..n];
+    let static_limit_squares = &arrays.static_limit_squares[..n];
+    let (blocks, in_contact) = (&arrays.blocks[..n], &arrays.in_contact[..n]);
+    let (moving, slipped) = (&mut arrays.moving[..n], &mut arrays.slipped[..n]);
+    let first_slip = &mut arrays.first_slip[..n];
     let zero = splat(simd, 0.0);
     for c in 0..n {
-        for lines in stretch.ahead {
+        for lines in arrays.prefetched {
             lines.prefetch(c);
         }
-        let lattice = load_plane(simd, lattice_force, c);
-        let drive = load_plane(simd, drive_force, c);
-        let free = load_plane(simd, free_velocity, c);
-        let taken = load(simd, &taken[c]);
+        let lattice = load_vec2(simd, lattice_force, c);
+        let drive = load_vec2(simd, drive_force, c);
+        let free = load_vec2(simd, free_velocity, c);
+        let removed_fraction = load(simd, &removed_fraction[c]);
         let before = [load(simd, &vx[c]), load(simd, &vy[c])];
 
         let force = add(drive, lattice);
-        let stays = is_zero(simd, before) & square(force).simd_le(load(simd, &hold_squares[c]));
-        let left = splat(simd, 1.0) - taken;
-        let slides = !stays & left.simd_gt(zero);
-        let after = keep(simd, slides, scale(left, free));
+        let sticks = is_zero(simd, before) & square(force).simd_le(load(simd, &static_limit_squares[c]));
+        let remaining = splat(simd, 1.0) - removed_fraction;
+        let slides = !sticks & remaining.simd_gt(zero);
+        let after = or_zero(simd, slides, scale(remaining, free));
         after[0].store_array(&mut vx[c]);
         after[1].store_array(&mut vy[c]);
 
-        // Friction with its sign turned: of a sliding block, else what balances the other forces.
-        let rubbing = scale(taken * splat(simd, step.inverse_impulse), free);
-        let against = select(slides, rubbing, force);
-        let displacement = load_plane(simd, u, c);
-        let motion = where_present(simd, blocks[c], add(before, after));
-        sums.displacement = add(sums.displacement, where_present(simd, blocks[c], displacement));
+        // Minus the friction force: kinetic friction of a sliding block, else the sum of the other forces.
+        let kinetic = scale(removed_fraction * splat(simd, step.velocity_to_force), free);
+        let against = select(slides, kinetic, force);
+        let displacement = load_vec2(simd, u, c);
+        let both = zero_missing(simd, blocks[c], add(before, after));
+        sums.displacement = add(sums.displacement, zero_missing(simd, blocks[c], displacement));
         sums.velocity = add(sums.velocity, after);
-        sums.motion_square += square(motion);
-        sums.friction_work -= dot(against, motion);
+        sums.motion_square += square(both);
+        sums.friction_work -= dot(against, both);
         sums.speed_square = sums.speed_square.max(square(after));
         // Eq. 10; for a stuck block F_f + F_c = -F_s to the last bit.
-        let stress = select(slides, subtract(lattice, rubbing), drive);
-        let stress = where_present(simd, touching[c], stress);
+        let stress = select(slides, subtract(lattice, kinetic), drive);
+        let stress = zero_missing(simd, in_contact[c], stress);
         sums.stress_square = sums.stress_square.max(square(stress));
         if ENERGY {
             let stretch_square = square(drive_stretch(simd, step, displacement));
-            let squares = where_present(simd, blocks[c], [square(before) + square(after), stretch_square]);
+            let squares = zero_missing(simd, blocks[c], [square(before) + square(after), stretch_square]);
             sums.velocity_squares += squares[0];
             sums.stretch_square += squares[1];
         }
 
         let slides = bits(slides);
         moving[c] = slides;
-        let slips = slides & touching[c];
+        let slips = slides & in_contact[c];
         sums.sliding += slides.count_ones();
         sums.slipping += slips.count_ones();
-        // At most once per block in a whole run.
-        let new = slips & !slipped[c];
-        if new != 0 {
-            slipped[c] |= new;
-            for (lane, time) in first_slip[c].iter_mut().enumerate() {
-                if new >> lane & 1 == 1 {
-                    *time = step.time_star;
-                }
+        mark_first_slips(slips, &mut slipped[c], &mut first_slip[c], step.time_star);
+    }
+}
+
+/// Records the time for those of eight blocks that slip for the first time.
+#[inline(always)]
+fn mark_first_slips(slips: u8, slipped: &mut u8, first_slip: &mut [f64; LANES], time_star: f64) {
+    let new = slips & !*slipped;
+    // Seldom true: at most once per block in a run.
+    if new != 0 {
+        *slipped |= new;
+        for (lane, time) in first_slip.iter_mut().enumerate() {
+            if new >> lane & 1 == 1 {
+                *time = time_star;
             }
         }
     }

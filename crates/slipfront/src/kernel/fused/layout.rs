@@ -1,19 +1,19 @@
-//! Where the blocks of the lattice stand in the arrays of the fused kernel.
+//! Where the blocks of the lattice are stored in the arrays of the fused kernel.
 //!
-//! Row follows row in one long line of elements, so that the neighbours of element e are always e + 1, e + stride and
-//! e + stride +- 1, whatever the row, and vectors of eight run over the ends of rows. Springs that a free edge leaves out
-//! are masked. Along a periodic x axis every row has a ghost at either end, which copies the block at its other end.
-//! Elements that are no blocks are inert: their threshold is infinite and no sum counts them.
+//! Rows follow one another in one array of elements, so that the neighbours of element e are always e + 1, e + stride and
+//! e + stride +- 1, whatever the row, and vectors of eight elements may contain the end of a row. Springs that do not exist at a
+//! free edge are masked. Along a periodic x axis every row has a ghost at either end, a copy of the block at its other end.
+//! Elements that are no blocks never move, because their threshold is infinite, and are excluded from all sums.
 
 use super::vector::LANES;
-use crate::{Edges, Lattice};
+use crate::lattice::{Edges, Lattice};
 
-/// Elements of a tile, the unit of skipping and of summing: sums over blocks are sums over tiles of sums over their eight
-/// lanes, for any number of threads.
+/// Number of elements in a tile, which is skipped and summed as a whole: sums over blocks are sums over tiles of sums over
+/// eight lanes, for any number of threads.
 pub(super) const TILE: usize = 256;
 
-/// Shortest row: springs of one vector may not pull on blocks of the same vector in the next row.
-const SHORTEST_ROW: usize = 16;
+/// Least number of elements in a row: a vector must not contain two blocks that a spring to the next row joins.
+const MIN_ROW_ELEMENTS: usize = 16;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layout {
@@ -29,7 +29,7 @@ impl Layout {
         let ghosts = usize::from(lattice.edges[0] == Edges::Periodic);
         Self {
             lattice: *lattice,
-            stride: (lattice.nx + 2 * ghosts).max(SHORTEST_ROW),
+            stride: (lattice.nx + 2 * ghosts).max(MIN_ROW_ELEMENTS),
             ghosts,
         }
     }
@@ -39,7 +39,7 @@ impl Layout {
         self.lattice.ny * self.stride
     }
 
-    /// Number of tiles that hold them; the last is filled up with inert elements to whole vectors only.
+    /// Number of tiles. The last is shorter; only its last vector is filled up with elements that are no blocks.
     pub(super) fn n_tiles(&self) -> usize {
         self.len().div_ceil(TILE)
     }
@@ -55,7 +55,7 @@ impl Layout {
         self.element(i, j)
     }
 
-    /// Column of an element: none for one that is no block.
+    /// Column of an element; none of one that is no block.
     fn column(&self, element: usize) -> Option<usize> {
         let i = (element % self.stride).checked_sub(self.ghosts)?;
         (i < self.lattice.nx).then_some(i)
@@ -73,10 +73,16 @@ impl Layout {
         self.lattice.ny
     }
 
-    /// Ghosts of row `j`: element and the element that it copies.
+    /// The ghosts of row `j`, each with the element that it copies.
     pub(super) fn ghosts_of_row(&self, j: usize) -> [(usize, usize); 2] {
         let (first, last) = (self.element(0, j), self.element(self.lattice.nx - 1, j));
         [(first - 1, last), (last + 1, first)]
+    }
+
+    /// The row at the other end for one beyond a periodic edge; none beyond a free edge.
+    pub(super) fn wrapped_row(&self, row: isize) -> Option<usize> {
+        let ny = self.lattice.ny as isize;
+        (self.is_periodic_along_y() || (0..ny).contains(&row)).then(|| row.rem_euclid(ny) as usize)
     }
 
     pub(super) fn has_ghosts(&self) -> bool {
@@ -87,9 +93,9 @@ impl Layout {
         self.lattice.edges[1] == Edges::Periodic
     }
 
-    /// Which springs of an element exist: to the east and north-east, to the north-west, to the next row at all. `element`
-    /// may lie before the first or after the last row.
-    fn springs(&self, element: isize) -> [bool; 3] {
+    /// Which neighbours of an element exist: to the east, to the west, and in the next row. `element` may lie before the first or
+    /// after the last row.
+    fn neighbours(&self, element: isize) -> [bool; 3] {
         let row = element.div_euclid(self.stride as isize);
         let periodic = self.is_periodic_along_y();
         let up = periodic || (0..self.lattice.ny as isize - 1).contains(&row);
@@ -103,19 +109,19 @@ impl Layout {
         ]
     }
 
-    /// Masks of the eight elements from `first` on: see [`Layout::springs`].
+    /// [`Layout::neighbours`] of the eight elements from `first` on, one bit each.
     pub(super) fn masks(&self, first: isize) -> [u8; 3] {
         let mut bits = [0; 3];
         for lane in 0..LANES {
-            for (bits, exists) in bits.iter_mut().zip(self.springs(first + lane as isize)) {
+            for (bits, exists) in bits.iter_mut().zip(self.neighbours(first + lane as isize)) {
                 *bits |= u8::from(exists) << lane;
             }
         }
         bits
     }
 
-    /// Tiles that hold the elements from `from` to `to`. What lies before the first row or after the last is left out, or
-    /// found at the other end if the axis is periodic.
+    /// Tiles that contain the elements from `from` to `to`. Elements before the first row or after the last are left out, or
+    /// taken from the other end if the axis is periodic.
     pub(super) fn tiles(&self, from: isize, to: isize) -> impl Iterator<Item = usize> + use<> {
         let (n, periodic) = (self.len() as isize, self.is_periodic_along_y());
         let mut element = from;
@@ -136,7 +142,7 @@ impl Layout {
         })
     }
 
-    /// Tiles that hold the elements from `first` to `last` and all elements that springs join to them.
+    /// Tiles that contain the elements from `first` to `last` or neighbours of them.
     pub(super) fn tiles_around(&self, first: usize, last: usize) -> impl Iterator<Item = usize> + use<> {
         let (layout, stride) = (*self, self.stride as isize);
         [-stride, 0, stride]
@@ -144,7 +150,7 @@ impl Layout {
             .flat_map(move |row| layout.tiles(first as isize + row - 1, last as isize + row + 1))
     }
 
-    /// Tiles that hold the elements to the south of those from `first` to `last`, whose upward springs pull on them.
+    /// Tiles that contain the southern neighbours of the elements from `first` to `last`.
     pub(super) fn tiles_below(&self, first: usize, last: usize) -> impl Iterator<Item = usize> + use<> {
         let below = self.stride as isize;
         self.tiles(first as isize - below - 1, last as isize - below + 1)
@@ -155,7 +161,7 @@ impl Layout {
 mod tests {
     use super::*;
 
-    /// Tiles around the ghosts that copy the blocks from `first` to `last`.
+    /// Tiles around the ghosts of the blocks from `first` to `last`.
     fn ghosts_around(layout: &Layout, first: usize, last: usize) -> Vec<usize> {
         if !layout.has_ghosts() {
             return Vec::new();
@@ -167,7 +173,7 @@ mod tests {
             .collect()
     }
 
-    /// Held against the neighbours that the lattice itself knows.
+    /// Compared with the neighbours that the lattice itself knows.
     #[test]
     fn neighbouring_tiles_hold_all_neighbouring_blocks() {
         use Edges::{Free, Periodic};

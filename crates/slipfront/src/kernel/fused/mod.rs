@@ -1,21 +1,23 @@
 //! The fast kernel: the equations of [`reference`](super::reference) in one sweep over the blocks.
 //!
-//! Blocks stand in one long line ([`layout`]), cut into tiles of 256 elements. A sweep takes tile after tile through a
-//! step ([`band`]): displacements, springs, friction and all sums, eight blocks at a time ([`blocks`]), each spring once.
-//! Springs come from a series where that is as exact as the square root ([`springs`]). A tile at rest, with nothing moving
-//! around it, is left alone until a block of it can break ([`rest`]). Bands of tiles are shared out among threads.
+//! Blocks are stored row after row in one array ([`layout`]), divided into tiles of 256 elements. A sweep takes tile after tile
+//! through a step ([`band`]): displacements, springs, friction and all sums, eight blocks at a time ([`blocks`]), each spring
+//! once. Spring forces come from a series where that is as exact as the square root ([`springs`]). A tile at rest with nothing
+//! moving around it is skipped until one of its blocks can slip ([`rest`]). Every thread sweeps a band of tiles.
 //!
 //! A step must read displacement, velocity and two thresholds of every block and write displacement and velocity: 80 bytes,
-//! which is what a lattice larger than the cache costs at best (`examples/large_step.rs`). Springs pass through a ring that
-//! stays in the cache.
+//! which bounds the speed on a lattice larger than the cache (`examples/large_step.rs`). Spring forces pass through a ring
+//! buffer that stays in the cache.
 //!
-//! The trajectory has the same bits for any number of threads and any SIMD width, whether work is skipped or not: sums are
+//! The trajectory has the same bits for any number of threads and any SIMD width, whether tiles are skipped or not: sums are
 //! sums over tiles, and the choice between series and square root is made for the whole lattice.
 
 mod aligned;
 mod band;
 mod blocks;
+mod field_rows;
 mod layout;
+mod recompute;
 mod rest;
 mod springs;
 mod vector;
@@ -25,26 +27,32 @@ mod tests;
 
 use fearless_simd::{Level, dispatch};
 
+use self::aligned::Vectors;
 use self::band::Band;
 use self::blocks::Step;
+use self::field_rows::Motion;
 use self::layout::Layout;
 use self::springs::{Series, SquareRoot};
-use super::{Held, Totals};
-use crate::checkpoint::{Checkpoint, Strains};
+use crate::checkpoint::Checkpoint;
+use crate::field::Field;
+use crate::kernel::block::Block;
+use crate::kernel::strain_bound::StrainBound;
+use crate::kernel::totals::{StoredEnergy, Totals};
 use crate::lattice::K_STRAIGHT;
-use crate::{Model, State};
+use crate::model::Model;
+use crate::state::State;
 
-/// Steps from one exact look at the largest differences of displacement to the next; between, they are bounded.
-const LOOK_EVERY: u64 = 16;
+/// Steps between two measurements of the extent of displacements; in between it is bounded.
+const EXTENT_INTERVAL: u64 = 16;
 
-/// How springs are computed in a sweep.
+/// How spring forces are computed in a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Springs {
     /// Small strains: 1e-4 and less.
     ShortSeries,
     /// Up to 1e-2.
     LongSeries,
-    /// Any.
+    /// At any strain.
     SquareRoot,
 }
 
@@ -55,29 +63,28 @@ pub(crate) struct Fused {
     dt_star: f64,
     bands: Vec<Band>,
     level: Level,
-    /// Whether tiles at rest are left alone.
+    /// Whether tiles at rest are skipped.
     skips: bool,
-    /// For every tile: whether a block of it, or beside one of it, moves; whether a tile in the sweep needs its springs.
-    touched: Vec<bool>,
-    near: Vec<bool>,
-    /// If nothing moves: the first step at which a block may break.
-    wake: u64,
-    /// Step of the latest sweep, how it computed springs, and what it found.
-    swept: Option<u64>,
+    /// For every tile, whether one of its blocks or a neighbour of one moves.
+    has_moving_neighbour: Vec<bool>,
+    /// For every tile, whether a tile in the sweep needs its springs.
+    needs_springs: Vec<bool>,
+    /// The first step at which a block may slip, if nothing moves.
+    active_from_step: u64,
+    /// Step of the latest sweep.
+    swept_step: Option<u64>,
+    /// How the latest sweep computed springs.
     springs: Option<Springs>,
-    latest: Totals,
-    /// Largest u_x, -u_x, u_y, -u_y at the latest look, and how much they may have grown since.
-    extent: [f64; 4],
-    growth: f64,
-    /// Largest strains of the short and of the long series.
-    reaches: [f64; 2],
-    /// Highest speed after the latest sweep.
-    speed: f64,
+    /// Sums of the latest sweep.
+    totals: Totals,
+    strain_bound: StrainBound,
+    /// Largest strains for the short and for the long series.
+    strain_limits: [f64; 2],
     stress_square_max: f64,
 }
 
 impl Fused {
-    /// Takes over a state, or begins at rest; the blocks are shared out among `threads`.
+    /// Begins in a given state, or at rest; the blocks are divided among `threads`.
     pub(crate) fn new(
         model: &Model,
         dt_star: f64,
@@ -88,19 +95,19 @@ impl Fused {
         Self::at_level(model, dt_star, state, threads, skips, Level::new())
     }
 
-    /// From a checkpoint. Every tile is swept at the next step, whether it could have been left alone or not: both give
-    /// the same bits. The step of the checkpoint counts as one in which all were.
+    /// Continues from a checkpoint. Every tile is swept at the next step, also those that could be skipped: both give the same
+    /// bits. The step of the checkpoint counts as one in which all tiles were swept.
     pub(crate) fn resume(
         model: &Model,
         dt_star: f64,
         checkpoint: Checkpoint,
-        strains: Strains,
+        strain_bound: StrainBound,
         threads: usize,
         skips: bool,
     ) -> Self {
         let state = State {
-            displacement: checkpoint.displacement.map(|read| read.0).into(),
-            velocity: checkpoint.velocity.map(|read| read.0).into(),
+            displacement: checkpoint.displacement.map(|column| column.0).into(),
+            velocity: checkpoint.velocity.map(|column| column.0).into(),
         };
         let mut kernel = Self::new(model, dt_star, Some(&state), threads, skips);
         drop(state);
@@ -108,23 +115,17 @@ impl Fused {
             band.resume(&kernel.layout, &checkpoint.first_slip.0);
         }
         Self {
-            latest: checkpoint.totals,
+            totals: checkpoint.totals,
             stress_square_max: checkpoint.stress_square_max,
-            swept: Some(checkpoint.step),
-            extent: strains.extent,
-            growth: strains.growth,
-            speed: strains.speed,
+            swept_step: Some(checkpoint.step),
+            strain_bound,
             ..kernel
         }
     }
 
-    /// What the choice of springs goes by.
-    pub(crate) fn strains(&self) -> Strains {
-        Strains {
-            extent: self.extent,
-            growth: self.growth,
-            speed: self.speed,
-        }
+    /// What the choice of springs depends on.
+    pub(crate) fn strain_bound(&self) -> StrainBound {
+        self.strain_bound
     }
 
     fn at_level(
@@ -148,7 +149,7 @@ impl Fused {
             .map(|tile| tile.sums.speed_square)
             .fold(0.0, f64::max);
         let sum = |v: &[f64]| v.iter().sum();
-        let latest = Totals {
+        let totals = Totals {
             velocity_after: state.map_or([0.0; 2], |state| [sum(&state.velocity.x), sum(&state.velocity.y)]),
             ..Totals::default()
         };
@@ -158,165 +159,166 @@ impl Fused {
             bands,
             level,
             skips,
-            touched: vec![false; n_tiles],
-            near: vec![false; n_tiles],
-            wake: 0,
-            swept: None,
+            has_moving_neighbour: vec![false; n_tiles],
+            needs_springs: vec![false; n_tiles],
+            active_from_step: 0,
+            swept_step: None,
             springs: None,
-            latest,
-            extent: [f64::NEG_INFINITY; 4],
-            growth: 0.0,
-            reaches: [Series::<3>::reach(), Series::<7>::reach()],
-            speed: speed_square.sqrt(),
+            totals,
+            strain_bound: StrainBound {
+                extent: [f64::NEG_INFINITY; 4],
+                growth: 0.0,
+                speed: speed_square.sqrt(),
+            },
+            strain_limits: [Series::<3>::strain_limit(), Series::<7>::strain_limit()],
             stress_square_max: 0.0,
         };
         kernel.copy_ghosts();
         kernel
     }
 
-    /// Goes to step `number`: the next one, or 0 to begin with.
+    /// Advances to step `number`: the next one, or 0 to begin with.
     pub(crate) fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals {
         let mut step = Step::new(model, number, self.dt_star);
-        if self.swept.is_none() {
+        if self.swept_step.is_none() {
             // At the start displacements are those of t_0 already.
-            step.moves = 0.0;
+            step.move_dt = 0.0;
         }
         let springs = self.choose_springs(model, &step);
-        // A tile at rest keeps the energy of its springs, which is to be that of the springs of today, to the last bit.
-        let anew = self.springs != Some(springs);
-        if !self.skips || anew || number >= self.wake {
-            self.give_orders(number, anew);
-            self.note_ends_of_rest(model, number);
-            self.fill_halos(step.moves);
+        // Skipped tiles keep the energy of their springs. After a change of formula it must be found anew, to have the same bits.
+        let springs_changed = self.springs != Some(springs);
+        if !self.skips || springs_changed || number >= self.active_from_step {
+            self.schedule_tiles(number, springs_changed);
+            self.record_skipped_stress_maxima(model, number);
+            self.fill_halos(step.move_dt);
             let level = self.level;
-            for_each(&mut self.bands, &|band| {
+            for_each_band(&mut self.bands, &|band| {
                 sweep(level, band, model, step, springs, energies);
             });
             self.copy_ghosts();
-            (self.swept, self.springs) = (Some(number), Some(springs));
-            self.add_up();
+            (self.swept_step, self.springs) = (Some(number), Some(springs));
+            self.sum_tiles();
         }
         Totals {
-            held: energies.then(|| self.held(step)),
-            ..self.latest
+            stored_energy: energies.then(|| self.stored_energy(step)),
+            ..self.totals
         }
     }
 
-    /// Springs of a step: by a bound on all differences of displacement, from their extent at the latest look and the
-    /// highest speeds since. To be asked at every step, swept or not, so that skipping does not change the answer.
+    /// How to compute springs in a step, by the bound on all strains. It must be called at every step, swept or not, so that
+    /// skipping does not change the choice.
     fn choose_springs(&mut self, model: &Model, step: &Step) -> Springs {
-        if step.number.is_multiple_of(LOOK_EVERY) {
+        if step.number.is_multiple_of(EXTENT_INTERVAL) {
             let mut extent = [f64::NEG_INFINITY; 4];
-            for_each(&mut self.bands, &Band::measure_extents);
+            for_each_band(&mut self.bands, &Band::measure_extents);
             for tile in self.bands.iter().flat_map(|band| &band.tiles) {
                 for (most, value) in extent.iter_mut().zip(tile.extent) {
                     *most = most.max(value);
                 }
             }
-            (self.extent, self.growth) = (extent, 0.0);
+            (self.strain_bound.extent, self.strain_bound.growth) = (extent, 0.0);
         }
-        self.growth += 2.0 * step.moves * self.speed;
-        let [right, left, top, bottom] = self.extent;
-        let (ex, ey) = (right + left + self.growth, top + bottom + self.growth);
-        // |eps s|/d^2 of any spring.
-        let strain = model.epsilon * (2.0 * (ex + ey) + model.epsilon * (ex * ex + ey * ey));
-        if strain <= self.reaches[0] {
+        self.strain_bound.growth += 2.0 * step.move_dt * self.strain_bound.speed;
+        let strain = self.strain_bound.max_strain(model.epsilon);
+        if strain <= self.strain_limits[0] {
             Springs::ShortSeries
-        } else if strain <= self.reaches[1] {
+        } else if strain <= self.strain_limits[1] {
             Springs::LongSeries
         } else {
             Springs::SquareRoot
         }
     }
 
-    /// Tells every tile what to do in the sweep to step `number`: all are swept `anew` where springs are no longer computed
-    /// as before.
-    fn give_orders(&mut self, number: u64, anew: bool) {
-        let begins = self.swept.is_none();
-        let follows = self.swept.is_some_and(|swept| swept + 1 == number);
+    /// Decides what is done with every tile in the sweep to step `number`. All are swept if the formula of springs has changed.
+    fn schedule_tiles(&mut self, number: u64, springs_changed: bool) {
+        let begins = self.swept_step.is_none();
+        let follows = self.swept_step.is_some_and(|swept| swept + 1 == number);
         let Self {
             layout,
             bands,
-            touched,
-            near,
+            has_moving_neighbour,
+            needs_springs,
             ..
         } = self;
-        touched.fill(false);
-        near.fill(false);
+        has_moving_neighbour.fill(false);
+        needs_springs.fill(false);
         for band in bands.iter() {
-            band.mark_touched(layout, touched);
+            band.mark_moving_neighbours(layout, has_moving_neighbour);
         }
         for band in bands.iter_mut() {
             for t in 0..band.tiles.len() {
-                let moved = touched[band.first_tile + t];
-                let (tile, order) = (&band.tiles[t], &mut band.orders[t]);
-                let rested = !(begins || follows && order.active);
-                order.active = !self.skips || anew || moved || tile.wake <= number;
-                order.wakes = order.active && rested;
-                order.quiet = self.skips && order.active && !moved;
-                if order.active {
+                let moved = has_moving_neighbour[band.first_tile + t];
+                let (tile, task) = (&band.tiles[t], &mut band.tasks[t]);
+                let rested = !(begins || follows && task.active);
+                task.active = !self.skips || springs_changed || moved || tile.active_from_step <= number;
+                task.was_skipped = task.active && rested;
+                task.newly_resting = self.skips && task.active && !moved;
+                if task.active {
                     let elements = band.elements(t);
                     let (first, last) = (band.first + elements.start, band.first + elements.end - 1);
-                    near[band.first_tile + t] = true;
-                    layout.tiles_below(first, last).for_each(|tile| near[tile] = true);
+                    needs_springs[band.first_tile + t] = true;
+                    layout
+                        .tiles_below(first, last)
+                        .for_each(|tile| needs_springs[tile] = true);
                 }
             }
         }
         for band in bands.iter_mut() {
-            for (order, &near) in band.orders.iter_mut().zip(&near[band.first_tile..]) {
-                order.near = near;
+            for (task, &needs_springs) in band.tasks.iter_mut().zip(&needs_springs[band.first_tile..]) {
+                task.needs_springs = needs_springs;
             }
         }
     }
 
-    /// Contact stresses of the tiles that were left alone up to the step before `number`. They are largest at the beginning,
-    /// which a sweep has seen, or at the end: at the next step the block that bears most may slide already.
-    fn note_ends_of_rest(&mut self, model: &Model, number: u64) {
+    /// Contact stresses of the tiles that were skipped up to the step before `number`. They are largest at the first skipped
+    /// step, which the sweep before has measured, or at the last: at the next step the block with the largest may slide
+    /// already.
+    fn record_skipped_stress_maxima(&mut self, model: &Model, number: u64) {
         for band in &self.bands {
-            for t in (0..band.tiles.len()).filter(|&t| band.orders[t].wakes) {
+            for t in (0..band.tiles.len()).filter(|&t| band.tasks[t].was_skipped) {
                 let step = Step::new(model, number - 1, self.dt_star);
                 self.stress_square_max = self.stress_square_max.max(band.resting_stress_square(t, &step));
             }
         }
     }
 
-    /// Displacements beyond the ends of every band, as they will be in the coming step. Those beyond a free edge stay zero:
-    /// no spring leads there.
-    fn fill_halos(&mut self, moves: f64) {
+    /// Displacements beyond the ends of every band, as they will be after moving by `move_dt`. Those beyond a free edge stay
+    /// zero: no spring leads there.
+    fn fill_halos(&mut self, move_dt: f64) {
         if self.bands.len() == 1 && !self.layout.is_periodic_along_y() {
             return;
         }
         let (n, halo) = (self.layout.len() as isize, self.bands[0].halo);
         for b in 0..self.bands.len() {
             let (first, len) = (self.bands[b].first as isize, self.bands[b].len);
-            // Behind the last row stand elements of the band's last vector already.
+            // The last vector of a band may extend beyond the last row.
             let rows = len.min(self.layout.len() - self.bands[b].first);
             for k in (0..halo).chain(halo + rows..halo + len + halo) {
                 let element = first + k as isize - halo as isize;
                 let wrapped = element.rem_euclid(n);
                 if wrapped == element || self.layout.is_periodic_along_y() {
-                    let (other, at) = self.find(wrapped as usize);
-                    let u = self.bands[other].advanced(at, moves);
+                    let (other, at) = self.locate(wrapped as usize);
+                    let u = self.bands[other].advanced(at, move_dt);
                     self.bands[b].displacement.set(k, u);
                 }
             }
         }
     }
 
-    /// Band of an element, and its place there.
-    fn find(&self, element: usize) -> (usize, usize) {
+    /// Band of an element, and its index there.
+    fn locate(&self, element: usize) -> (usize, usize) {
         let band = self.bands.partition_point(|band| band.first <= element) - 1;
         (band, element - self.bands[band].first)
     }
 
-    /// Ghosts move as the blocks that they copy.
+    /// Copies displacements and velocities to the ghosts from their blocks.
     fn copy_ghosts(&mut self) {
         if !self.layout.has_ghosts() {
             return;
         }
         for j in 0..self.layout.rows() {
             for (ghost, copied) in self.layout.ghosts_of_row(j) {
-                let ((from, at), (to, k)) = (self.find(copied), self.find(ghost));
+                let ((from, at), (to, k)) = (self.locate(copied), self.locate(ghost));
                 let band = &self.bands[from];
                 let (u, v) = (band.displacement.at(band.halo + at), band.velocity.at(at));
                 let band = &mut self.bands[to];
@@ -327,10 +329,10 @@ impl Fused {
         }
     }
 
-    /// Sums over the lattice of what the tiles know after a sweep.
-    fn add_up(&mut self) {
-        let before = self.latest.velocity_after;
-        let (mut totals, mut speed_square, mut wake) = (Totals::default(), 0.0_f64, u64::MAX);
+    /// Sums over the lattice, from those over the tiles after a sweep.
+    fn sum_tiles(&mut self) {
+        let before = self.totals.velocity_after;
+        let (mut totals, mut speed_square, mut active_from_step) = (Totals::default(), 0.0_f64, u64::MAX);
         for tile in self.bands.iter().flat_map(|band| &band.tiles) {
             let sums = &tile.sums;
             for axis in 0..2 {
@@ -343,19 +345,20 @@ impl Fused {
             totals.n_slipping += sums.slipping as usize;
             speed_square = speed_square.max(sums.speed_square);
             self.stress_square_max = self.stress_square_max.max(sums.stress_square);
-            wake = wake.min(if tile.moving { 0 } else { tile.wake });
+            active_from_step = active_from_step.min(if tile.moving { 0 } else { tile.active_from_step });
         }
         let after = totals.velocity_after;
         totals.velocity = [0.5 * (before[0] + after[0]), 0.5 * (before[1] + after[1])];
-        (self.latest, self.speed, self.wake) = (totals, speed_square.sqrt(), wake);
+        (self.totals, self.strain_bound.speed, self.active_from_step) =
+            (totals, speed_square.sqrt(), active_from_step);
     }
 
-    /// Energies held at the present step.
-    fn held(&mut self, step: Step) -> Held {
-        // The springs of the drive stretch on while a tile is left alone.
-        let (level, swept) = (self.level, self.swept == Some(step.number));
-        for_each(&mut self.bands, &|band| {
-            dispatch!(level, simd => band.stretch_at_rest(simd, step, swept));
+    /// Energies stored at the present step.
+    fn stored_energy(&mut self, step: Step) -> StoredEnergy {
+        // The drive springs of skipped tiles stretch, too.
+        let (level, swept) = (self.level, self.swept_step == Some(step.number));
+        for_each_band(&mut self.bands, &|band| {
+            dispatch!(level, simd => band.update_skipped_stretch(simd, step, swept));
         });
         let (mut velocity_squares, mut lattice, mut stretch_square) = (0.0, 0.0, 0.0);
         for tile in self.bands.iter().flat_map(|band| &band.tiles) {
@@ -363,7 +366,7 @@ impl Fused {
             lattice += tile.sums.lattice_energy;
             stretch_square += tile.sums.stretch_square;
         }
-        Held {
+        StoredEnergy {
             kinetic: 0.25 * velocity_squares,
             lattice: lattice / (2.0 * K_STRAIGHT),
             drive_springs: 0.5 * step.k_drive * stretch_square,
@@ -375,8 +378,8 @@ impl Fused {
         let step = Step::new(model, number, self.dt_star);
         let mut square = self.stress_square_max;
         for band in &self.bands {
-            let rests = |&t: &usize| self.swept != Some(number) || !band.orders[t].active;
-            for t in (0..band.tiles.len()).filter(rests) {
+            let is_skipped = |&t: &usize| self.swept_step != Some(number) || !band.tasks[t].active;
+            for t in (0..band.tiles.len()).filter(is_skipped) {
                 square = square.max(band.resting_stress_square(t, &step));
             }
         }
@@ -385,31 +388,88 @@ impl Fused {
 
     /// Displacement now and velocity half a step later of block `b`.
     pub(crate) fn motion(&self, b: usize) -> [[f64; 2]; 2] {
-        let (band, k) = self.find(self.layout.element_of(b));
+        let (band, k) = self.locate(self.layout.element_of(b));
         let band = &self.bands[band];
         [band.displacement.at(band.halo + k), band.velocity.at(k)]
     }
 
-    /// When block `b` first slid while in contact; not a number if it never has.
+    /// Block `b` with the forces on it at step `number`, the present one.
+    pub(crate) fn block(&self, model: &Model, number: u64, b: usize) -> Block {
+        recompute::block(model, number as f64 * self.dt_star, b, |b| self.motion(b))
+    }
+
+    /// Values of `field` in every `stride`-th row at step `number`, the present one, several blocks of a row at a time: `write`
+    /// is given the row, the column of the first value, and the values.
+    pub(crate) fn read_rows(
+        &self,
+        model: &Model,
+        number: u64,
+        field: Field,
+        stride: usize,
+        mut write: impl FnMut(usize, usize, &[f32]),
+    ) {
+        let step = Step::new(model, number, self.dt_star);
+        dispatch!(self.level, simd => {
+            field_rows::read_rows(simd, model, step, field, stride, self, &mut write);
+        });
+    }
+
+    /// Copies a vector of the elements from `first` on; those outside the lattice are left as they are. `vectors` gives the
+    /// array of a band, and where its first element is.
+    fn copy_elements(
+        &self,
+        first: isize,
+        [x, y]: [&mut [f64]; 2],
+        vectors: impl Fn(&Band) -> (&Vectors, usize),
+    ) {
+        let end = first + x.len() as isize;
+        for band in &self.bands {
+            let band_end = (band.first + band.len) as isize;
+            let (from, to) = (first.max(band.first as isize), end.min(band_end));
+            if from < to {
+                let (vectors, offset) = vectors(band);
+                let read = from as usize - band.first + offset..to as usize - band.first + offset;
+                let written = (from - first) as usize..(to - first) as usize;
+                x[written.clone()].copy_from_slice(&vectors.x[read.clone()]);
+                y[written].copy_from_slice(&vectors.y[read]);
+            }
+        }
+    }
+
+    /// When block `b` first slid while in contact; NaN if it never has.
     pub(crate) fn first_slip(&self, b: usize) -> f64 {
-        let (band, k) = self.find(self.layout.element_of(b));
+        let (band, k) = self.locate(self.layout.element_of(b));
         self.bands[band].first_slip[k]
     }
 }
 
-/// The same work for every band, shared out among the threads of the pool.
-fn for_each(bands: &mut [Band], work: &(impl Fn(&mut Band) + Sync)) {
+impl Motion for Fused {
+    fn displacements(&self, row: isize, first: isize, into: [&mut [f64]; 2]) {
+        if let Some(row) = self.layout.wrapped_row(row) {
+            let element = self.layout.element(0, row) as isize + first;
+            self.copy_elements(element, into, |band| (&band.displacement, band.halo));
+        }
+    }
+
+    fn velocities(&self, row: usize, first: usize, into: [&mut [f64]; 2]) {
+        let element = self.layout.element(first, row) as isize;
+        self.copy_elements(element, into, |band| (&band.velocity, 0));
+    }
+}
+
+/// Runs `work` on every band, on the threads of the pool.
+fn for_each_band(bands: &mut [Band], work: &(impl Fn(&mut Band) + Sync)) {
     match bands {
         [] => {}
         [band] => work(band),
         _ => {
             let (one, other) = bands.split_at_mut(bands.len() / 2);
-            rayon::join(|| for_each(one, work), || for_each(other, work));
+            rayon::join(|| for_each_band(one, work), || for_each_band(other, work));
         }
     }
 }
 
-/// One band through a step, with the widest instructions at hand.
+/// Takes a band through a step with the vector instructions of `level`.
 fn sweep(level: Level, band: &mut Band, model: &Model, step: Step, springs: Springs, energies: bool) {
     let epsilon = model.epsilon;
     match springs {

@@ -1,7 +1,7 @@
-//! How long blocks at rest will stay so.
+//! How long blocks at rest will stay at rest.
 //!
 //! While a block and its neighbours are stuck, the force on it grows by that of its drive spring alone, linearly:
-//! `F(t) = F + k_s V t`. It breaks when `|F(t)|` passes its threshold `T = max(mu_s, mu_k) F_n` (D12):
+//! `F(t) = F + k_s V t`. It slips when `|F(t)|` passes its threshold `T = max(mu_s, mu_k) F_n` (D12):
 //!
 //! ```text
 //! c t^2 + 2 a t = T^2 - F^2,   a = F . k_s V,   c = (k_s V)^2
@@ -11,24 +11,24 @@
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat};
 
 use super::blocks::{Chunks, Step, pull};
-use super::vector::{add, dot, largest, load, load_plane, splat, square};
-use crate::Drive;
+use super::vector::{add, dot, lane_max, load, load_vec2, splat, square};
+use crate::model::Drive;
 
-/// Blocks at rest.
-pub(super) struct Resting<'a> {
+/// Blocks of a tile in which nothing moves.
+pub(super) struct RestingTile<'a> {
     pub(super) displacement: [Chunks<'a>; 2],
     /// `F_c`.
     pub(super) lattice: [Chunks<'a>; 2],
-    pub(super) hold_squares: Chunks<'a>,
-    pub(super) slide_impulses: Chunks<'a>,
+    pub(super) static_limit_squares: Chunks<'a>,
+    pub(super) kinetic_impulses: Chunks<'a>,
 }
 
-/// Number of steps, never too large, before the first of the blocks can break; forces are those of `step`.
+/// Number of steps from `step` until the first of the blocks can slip, or somewhat less.
 ///
-/// With a drive at an angle, a block of which one force component shrinks while the other grows is not left alone, so that
-/// the largest contact stress of a time at rest always stands at its beginning or at its end.
+/// With a drive at an angle it is zero if one component of the drive force on a block shrinks while the other grows. So the
+/// contact stress of a skipped block is always largest at the first or at the last skipped step.
 #[inline(always)]
-pub(super) fn patience<S: Simd>(simd: S, step: &Step, drive: &Drive, blocks: &Resting) -> u64 {
+pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, drive: &Drive, blocks: &RestingTile) -> u64 {
     let [bx, by] = drive.direction.map(|d| drive.k_drive * drive.v_star * d);
     let growth_square = bx * bx + by * by;
     if growth_square == 0.0 {
@@ -38,11 +38,11 @@ pub(super) fn patience<S: Simd>(simd: S, step: &Step, drive: &Drive, blocks: &Re
     let c = splat(simd, growth_square);
     let zero = splat(simd, 0.0);
     let mut soonest = splat(simd, f64::NEG_INFINITY);
-    for k in 0..blocks.hold_squares.len() {
-        let drive = pull(simd, *step, load_plane(simd, blocks.displacement, k));
-        let force = add(drive, load_plane(simd, blocks.lattice, k));
-        let slide = load(simd, &blocks.slide_impulses[k]) * splat(simd, step.inverse_impulse);
-        let threshold_square = load(simd, &blocks.hold_squares[k]).max(slide * slide);
+    for k in 0..blocks.static_limit_squares.len() {
+        let drive = pull(simd, *step, load_vec2(simd, blocks.displacement, k));
+        let force = add(drive, load_vec2(simd, blocks.lattice, k));
+        let kinetic_force = load(simd, &blocks.kinetic_impulses[k]) * splat(simd, step.velocity_to_force);
+        let threshold_square = load(simd, &blocks.static_limit_squares[k]).max(kinetic_force * kinetic_force);
         let a = dot(force, growth);
         let room = threshold_square - square(force);
         let time = ((a * a + c * room).sqrt() - a) / c;
@@ -51,15 +51,15 @@ pub(super) fn patience<S: Simd>(simd: S, step: &Step, drive: &Drive, blocks: &Re
         } else {
             room.simd_ge(zero)
         };
-        // At the threshold, or where rounding makes the root no number, there is no time left.
+        // At the threshold, or if rounding makes the root NaN, the block may slip at once.
         let time = (grows & room.simd_ge(zero) & time.simd_ge(zero)).select(time, zero);
         soonest = soonest.max(-time);
     }
-    // Forces are known to some units of their last place: as many steps earlier as the load needs to grow by that, and
-    // two more for the roundings of the root and of the division.
-    let reach = step.reach[0].abs() + step.reach[1].abs();
-    let noise = 1e-13 * (1.0 + step.k_drive * reach) / growth_square.sqrt();
-    let steps = (-largest(soonest) * (1.0 - 1e-9) - noise) / step.dt_star - 2.0;
-    // A conversion of floats saturates: at zero below, at the largest number above.
+    // Forces have rounding errors of some units of their last place: the result is shortened by the time in which the load
+    // grows by that, and by two steps for the rounding of the root and of the division.
+    let distance = step.drive_position[0].abs() + step.drive_position[1].abs();
+    let noise = 1e-13 * (1.0 + step.k_drive * distance) / growth_square.sqrt();
+    let steps = (-lane_max(soonest) * (1.0 - 1e-9) - noise) / step.dt_star - 2.0;
+    // The conversion saturates: at zero if negative, at the largest integer if too large.
     steps as u64
 }

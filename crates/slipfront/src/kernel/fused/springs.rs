@@ -1,18 +1,18 @@
 //! The force of a stretched spring (Eq. 3), eight at a time: by the square root, or by a series that is as exact.
 
-use fearless_simd::{Simd, SimdFloat};
+use fearless_simd::{Simd, SimdFloat, f64x8};
 
-use super::vector::{Eight, Plane, scale, splat, square};
+use super::vector::{Vec2x8, scale, splat, square};
 use crate::lattice::Bond;
 
-/// How the force of a spring is found.
+/// How the force of a spring is computed.
 pub(super) trait Geometry: Copy {
-    /// Force of the spring along `bond` on a block, as [`Bond::force`]; `e`: displacement of the neighbour less that of
+    /// Force of the spring along `bond` on a block, as [`Bond::force`]; `e` is the displacement of the neighbour less that of
     /// the block.
-    fn force<S: Simd>(self, simd: S, bond: &Bond, e: Plane<S>) -> Plane<S>;
+    fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S>;
 }
 
-/// By the length itself, exact at any strain.
+/// By the length of the spring, exact at any strain, with the same bits as [`Bond::force`].
 #[derive(Clone, Copy)]
 pub(super) struct SquareRoot {
     pub(super) epsilon: f64,
@@ -20,7 +20,7 @@ pub(super) struct SquareRoot {
 
 impl Geometry for SquareRoot {
     #[inline(always)]
-    fn force<S: Simd>(self, simd: S, bond: &Bond, e: Plane<S>) -> Plane<S> {
+    fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S> {
         let epsilon = splat(simd, self.epsilon);
         let r = [
             splat(simd, bond.rest[0]) + epsilon * e[0],
@@ -35,7 +35,7 @@ impl Geometry for SquareRoot {
     }
 }
 
-/// By a series, exact to rounding at small strain, without a square root or a division.
+/// By a series without square root or division, exact to rounding at small strain.
 ///
 /// With the stretch `s = (r^2 - d^2)/eps = 2 d.e + eps e^2` and `z = eps s/d^2`, so that `r = d sqrt(1 + z)`:
 ///
@@ -44,8 +44,8 @@ impl Geometry for SquareRoot {
 /// g(z) = (1 - (1 + z)^(-1/2))/z = 1/2 - 3/8 z + 5/16 z^2 - 35/128 z^3 + ...
 /// ```
 ///
-/// The coefficients of g fall in size, so that what is left out after the term in `z^DEGREE` is less than
-/// `2 |z|^(DEGREE + 1)` of the whole for `|z| <= 1/4`: see [`Series::reach`].
+/// The coefficients of g decrease, so that the truncation error after the term in `z^DEGREE` is less than
+/// `2 |z|^(DEGREE + 1)`, relative to g, for `|z| <= 1/4`: see [`Series::strain_limit`].
 #[derive(Clone, Copy)]
 pub(super) struct Series<const DEGREE: usize> {
     pub(super) epsilon: f64,
@@ -66,7 +66,7 @@ const G: [f64; 8] = [
 impl<const DEGREE: usize> Series<DEGREE> {
     /// Largest `|z|` at which the series is exact to rounding: `2 |z|^(DEGREE + 1) <= 2^-54`, a quarter of a unit in the
     /// last place.
-    pub(super) fn reach() -> f64 {
+    pub(super) fn strain_limit() -> f64 {
         libm::exp2(-55.0 / (DEGREE + 1) as f64)
     }
 
@@ -86,7 +86,7 @@ impl<const DEGREE: usize> Series<DEGREE> {
 
 impl<const DEGREE: usize> Geometry for Series<DEGREE> {
     #[inline(always)]
-    fn force<S: Simd>(self, simd: S, bond: &Bond, e: Plane<S>) -> Plane<S> {
+    fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S> {
         // d.e of a rest vector of ones and zeros.
         let along = match bond.offset {
             [1, 0] => e[0],
@@ -102,21 +102,21 @@ impl<const DEGREE: usize> Geometry for Series<DEGREE> {
             tension = tension * s + splat(simd, coefficients[m]);
         }
         let tension = tension * s;
-        let bend = epsilon * tension;
+        let per_displacement = epsilon * tension;
         [
-            along_axis(bond.offset[0], tension, bend * e[0]),
-            along_axis(bond.offset[1], tension, bend * e[1]),
+            along_axis(bond.offset[0], tension, per_displacement * e[0]),
+            along_axis(bond.offset[1], tension, per_displacement * e[1]),
         ]
     }
 }
 
-/// `tension d + bend` without a multiplication by the one or zero of d.
+/// `tension d + correction` for a component d of the rest vector, which is 0, 1 or -1.
 #[inline(always)]
-fn along_axis<S: Simd>(rest: isize, tension: Eight<S>, bend: Eight<S>) -> Eight<S> {
+fn along_axis<S: Simd>(rest: isize, tension: f64x8<S>, correction: f64x8<S>) -> f64x8<S> {
     match rest {
-        0 => bend,
-        1 => tension + bend,
-        _ => bend - tension,
+        0 => correction,
+        1 => tension + correction,
+        _ => correction - tension,
     }
 }
 
@@ -136,7 +136,7 @@ mod tests {
         })
     }
 
-    /// By either form, whose roundings are some units of the last place each.
+    /// Both formulas against [`Bond::force`]: each has a rounding error of some units of the last place.
     fn assert_same<const DEGREE: usize>(bond: &Bond, e: [f64; 2], epsilon: f64) {
         let exact = bond.force(e, epsilon);
         let by_root = force(SquareRoot { epsilon }, bond, e);
@@ -153,20 +153,20 @@ mod tests {
         }
     }
 
-    /// Up to its reach, in all directions.
+    /// Up to the largest strain, in all directions.
     fn series_is_exact<const DEGREE: usize>() {
-        let reach = Series::<DEGREE>::reach();
-        assert!((2.0 * reach.powi(DEGREE as i32 + 1) * 2_f64.powi(54) - 1.0).abs() < 1e-12);
+        let limit = Series::<DEGREE>::strain_limit();
+        assert!((2.0 * limit.powi(DEGREE as i32 + 1) * 2_f64.powi(54) - 1.0).abs() < 1e-12);
         for epsilon in [1e-12, 1e-6, 1e-3, 0.2] {
             for bond in &Bond::ALL {
                 for sign in [-1.0, 1.0] {
                     // Along the spring, (1 + eps t)^2 = 1 + z.
-                    let t = ((1.0 + sign * reach).sqrt() - 1.0) / epsilon;
+                    let t = ((1.0 + sign * limit).sqrt() - 1.0) / epsilon;
                     assert_same::<DEGREE>(bond, bond.rest.map(|d| t * d), epsilon);
                 }
                 for k in 1..2000 {
                     // |z| <= 2 eps |e| + (eps e)^2.
-                    let size = 0.499 * reach / epsilon * f64::from(k) / 2000.0;
+                    let size = 0.499 * limit / epsilon * f64::from(k) / 2000.0;
                     let (y, x) = f64::from(k).sin_cos();
                     assert_same::<DEGREE>(bond, [size * x, size * y], epsilon);
                 }
@@ -180,19 +180,19 @@ mod tests {
         series_is_exact::<7>();
     }
 
-    /// The bound of [`Series`], and that it is no more than ten times too large.
+    /// The bound on the truncation error of [`Series`], which is at most ten times too large.
     #[test]
-    fn what_the_series_leave_out_is_bounded() {
+    fn the_truncation_error_is_bounded() {
         for degree in [3, 7] {
             for size in [0.25, 0.2, 0.1, 0.05] {
                 for z in [-size, size] {
                     let sum = (0..=degree).rev().fold(0.0, |sum, m| sum * z + G[m]);
                     let root = f64::sqrt(1.0 + z);
                     let exact = 1.0 / (root * (root + 1.0));
-                    let (left_out, bound) = ((sum / exact - 1.0).abs(), 2.0 * size.powi(degree as i32 + 1));
+                    let (error, bound) = ((sum / exact - 1.0).abs(), 2.0 * size.powi(degree as i32 + 1));
                     assert!(
-                        (0.1 * bound..bound).contains(&left_out),
-                        "{degree} {z}: {left_out:e} {bound:e}"
+                        (0.1 * bound..bound).contains(&error),
+                        "{degree} {z}: {error:e} {bound:e}"
                     );
                 }
             }

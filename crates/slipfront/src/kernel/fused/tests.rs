@@ -1,10 +1,14 @@
-//! What only the inside of the kernel shows: vector widths, rest, and how much of it is left alone.
+//! Tests of what is private to the kernel: vector widths, the bound on strains, and which tiles are skipped.
 
 use proptest::prelude::*;
 
 use super::*;
-use crate::surface::{Coefficients, Distribution, Load};
-use crate::{Drive, Edges, FrictionLaw, Lattice, Surface, VectorField, scales};
+use crate::friction::FrictionLaw;
+use crate::lattice::{Edges, Lattice};
+use crate::model::Drive;
+use crate::scales;
+use crate::surface::{Coefficients, Distribution, Load, Surface};
+use crate::vector_field::VectorField;
 
 fn model(lattice: Lattice, v_star: f64, degrees: f64, epsilon: f64) -> Model {
     let n = lattice.n_blocks();
@@ -40,7 +44,7 @@ fn levels() -> Vec<Level> {
     levels
 }
 
-/// All motions and sums now and then in a run of `steps`, to the last bit.
+/// The bits of all displacements, velocities and sums at every tenth step.
 fn history(model: &Model, level: Level, steps: u64) -> Vec<u64> {
     let mut kernel = Fused::at_level(model, 0.2, None, 1, true, level);
     let mut bits = Vec::new();
@@ -50,13 +54,13 @@ fn history(model: &Model, level: Level, steps: u64) -> Vec<u64> {
         if !energies {
             continue;
         }
-        let held = totals.held.expect("energies were asked for");
+        let stored = totals.stored_energy.expect("energies were asked for");
         let mut numbers = vec![
             totals.velocity_square,
             totals.friction_power,
-            held.kinetic,
-            held.lattice,
-            held.drive_springs,
+            stored.kinetic,
+            stored.lattice,
+            stored.drive_springs,
             kernel.stress_square_max(model, number),
         ];
         numbers.extend(
@@ -90,8 +94,8 @@ fn every_vector_width_gives_the_same_bits() {
     }
 }
 
-/// What decides between the series and the square root is never less than the largest difference of displacement, nor
-/// more by the way of two blocks between two looks: the fastest go at less than 1.5.
+/// The bound on differences of displacement is never too small, and too large by at most twice the distance that the fastest
+/// block, at a speed below 1.5, moves between two measurements.
 #[test]
 fn differences_of_displacement_are_bounded() {
     let model = model(Lattice::free(30, 30), 0.3, 20.0, 1e-3);
@@ -111,39 +115,40 @@ fn differences_of_displacement_are_bounded() {
             }
             for axis in [0, 2] {
                 let exact = extent[axis] + extent[axis + 1];
-                let bound = kernel.extent[axis] + kernel.extent[axis + 1] + kernel.growth;
+                let StrainBound { extent, growth, .. } = kernel.strain_bound;
+                let bound = extent[axis] + extent[axis + 1] + growth;
                 // Displacements round by 1e-16 of themselves.
                 let over = bound - exact * (1.0 - 1e-14);
                 assert!(
-                    (0.0..2.0 * 1.5 * 0.2 * LOOK_EVERY as f64).contains(&over),
+                    (0.0..2.0 * 1.5 * 0.2 * EXTENT_INTERVAL as f64).contains(&over),
                     "{exact}, bound {bound}"
                 );
             }
         }
-        assert!(kernel.latest.n_sliding > 0);
+        assert!(kernel.totals.n_sliding > 0);
     }
 }
 
-/// At a slow drive hardly anything is done until the first slip, and half of it is spared afterwards.
+/// With a slow drive nearly all tiles are skipped until the first slip, and nearly half of them afterwards.
 #[test]
 fn slow_drives_are_mostly_rest() {
     let model = model(Lattice::free(64, 64), 0.002, 0.0, 1e-6);
     let mut kernel = Fused::new(&model, 0.5, None, 1, true);
-    // Tiles that a sweep has taken, before and after the first slip, and steps from then on.
+    // Number of swept tiles before and after the first slip, and number of steps after it.
     let (mut before, mut after, mut steps) = (0, 0, 0);
     for number in 0..3000 {
         let totals = kernel.step(&model, number, false);
-        let swept = kernel.swept == Some(number);
-        let orders = kernel.bands.iter().flat_map(|band| &band.orders);
-        let taken = orders.filter(|order| swept && order.active).count();
+        let swept = kernel.swept_step == Some(number);
+        let tasks = kernel.bands.iter().flat_map(|band| &band.tasks);
+        let removed_fraction = tasks.filter(|task| swept && task.active).count();
         if totals.n_sliding > 0 || steps > 0 {
             steps += 1;
-            after += taken;
+            after += removed_fraction;
         } else {
-            before += taken;
+            before += removed_fraction;
         }
     }
-    let tiles = kernel.touched.len();
+    let tiles = kernel.has_moving_neighbour.len();
     assert!(steps > 1000 && steps < 2000, "{steps} steps after the first slip");
     // Once at the start, and just before the first slip.
     assert!(before <= 3 * tiles, "{before} of {tiles} tiles");
@@ -156,8 +161,8 @@ fn slow_drives_are_mostly_rest() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Blocks at rest, bent: the kernel that leaves them alone until it must look again does so in time, and not much too
-    /// early where the pull on every block grows.
+    /// Displaced blocks at rest are skipped until the first of them slips, and not swept again much too early if the force on
+    /// every block grows.
     #[test]
     fn rest_ends_in_time(
         u in prop::collection::vec([-0.1..0.1_f64, -0.1..0.1_f64], 9),
@@ -169,8 +174,8 @@ proptest! {
     ) {
         let mut model = model(Lattice::free(3, 3), v_star, degrees, 1e-3);
         model.drive.constant_force = constant;
-        for (b, (hold, slide)) in holds.into_iter().enumerate() {
-            (model.surface.mu_static[b], model.surface.mu_kinetic[b]) = (hold, slide);
+        for (b, (static_limit, kinetic_force)) in holds.into_iter().enumerate() {
+            (model.surface.mu_static[b], model.surface.mu_kinetic[b]) = (static_limit, kinetic_force);
         }
         let state = State {
             displacement: VectorField { x: u.iter().map(|u| u[0]).collect(), y: u.iter().map(|u| u[1]).collect() },
@@ -180,11 +185,11 @@ proptest! {
         let mut plain = Fused::new(&model, dt_star, Some(&state), 1, false);
         resting.step(&model, 0, false);
         let mut slips = |number| plain.step(&model, number, false).n_sliding > 0;
-        let first = (0..100_000).find(|&number| slips(number)).expect("a block breaks");
-        prop_assert!(resting.wake <= first, "woken at {}, to break at {first}", resting.wake);
+        let first = (0..100_000).find(|&number| slips(number)).expect("a block slips");
+        prop_assert!(resting.active_from_step <= first, "active from step {}, first slip at {first}", resting.active_from_step);
         let along_an_axis = model.drive.direction.contains(&0.0);
         if along_an_axis && first > 0 {
-            prop_assert!(first - resting.wake <= 5, "woken at {}, to break at {first}", resting.wake);
+            prop_assert!(first - resting.active_from_step <= 5, "active from step {}, first slip at {first}", resting.active_from_step);
         }
     }
 }

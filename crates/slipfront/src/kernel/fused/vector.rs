@@ -1,109 +1,117 @@
-//! Eight numbers at a time: plane vectors of eight blocks, and sums that do not depend on the processor.
+//! Plane vectors of eight blocks at a time, and sums that do not depend on the processor.
 //!
-//! Every function is `#[inline(always)]`, so that it is compiled with the instructions of the width that the sweep was
-//! entered with. Nothing here fuses a multiplication with an addition: all widths round alike.
+//! Every function is `#[inline(always)]`, so that it is compiled for the vector width of its caller. Multiplications and
+//! additions are never fused, so that all widths give the same bits.
 
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 /// Blocks in a vector, on every processor.
 pub(super) const LANES: usize = 8;
 
-/// A number for each of eight blocks.
-pub(super) type Eight<S> = f64x8<S>;
-/// A plane vector for each of eight blocks.
-pub(super) type Plane<S> = [Eight<S>; 2];
-/// Yes or no for each of eight blocks.
-pub(super) type Mask<S> = mask64x8<S>;
+/// A plane vector, `[x, y]`, for each of eight blocks.
+pub(super) type Vec2x8<S> = [f64x8<S>; 2];
 
 #[inline(always)]
-pub(super) fn splat<S: Simd>(simd: S, value: f64) -> Eight<S> {
+pub(super) fn splat<S: Simd>(simd: S, value: f64) -> f64x8<S> {
     f64x8::splat(simd, value)
 }
 
 #[inline(always)]
-pub(super) fn load<S: Simd>(simd: S, from: &[f64; LANES]) -> Eight<S> {
+pub(super) fn load<S: Simd>(simd: S, from: &[f64; LANES]) -> f64x8<S> {
     f64x8::load_array_ref(simd, from)
 }
 
 /// Both components of eight blocks.
 #[inline(always)]
-pub(super) fn load_plane<S: Simd>(simd: S, [x, y]: [&[[f64; LANES]]; 2], chunk: usize) -> Plane<S> {
+pub(super) fn load_vec2<S: Simd>(simd: S, [x, y]: [&[[f64; LANES]]; 2], chunk: usize) -> Vec2x8<S> {
     [load(simd, &x[chunk]), load(simd, &y[chunk])]
 }
 
+/// Both components of eight blocks from the `k`-th on.
 #[inline(always)]
-pub(super) fn mask<S: Simd>(simd: S, bits: u8) -> Mask<S> {
+pub(super) fn load_at<S: Simd, const N: usize>(simd: S, [x, y]: &[[f64; N]; 2], k: usize) -> Vec2x8<S> {
+    [
+        f64x8::from_slice(simd, &x[k..k + LANES]),
+        f64x8::from_slice(simd, &y[k..k + LANES]),
+    ]
+}
+
+/// Stores both components of eight blocks from the `k`-th on.
+#[inline(always)]
+pub(super) fn store_at<S: Simd, const N: usize>(a: Vec2x8<S>, [x, y]: &mut [[f64; N]; 2], k: usize) {
+    a[0].store_slice(&mut x[k..k + LANES]);
+    a[1].store_slice(&mut y[k..k + LANES]);
+}
+
+#[inline(always)]
+pub(super) fn mask<S: Simd>(simd: S, bits: u8) -> mask64x8<S> {
     mask64x8::from_bitmask(simd, u64::from(bits))
 }
 
 #[inline(always)]
-pub(super) fn bits<S: Simd>(mask: Mask<S>) -> u8 {
+pub(super) fn bits<S: Simd>(mask: mask64x8<S>) -> u8 {
     mask.to_bitmask() as u8
 }
 
 #[inline(always)]
-pub(super) fn square<S: Simd>(a: Plane<S>) -> Eight<S> {
+pub(super) fn square<S: Simd>(a: Vec2x8<S>) -> f64x8<S> {
     a[0] * a[0] + a[1] * a[1]
 }
 
 #[inline(always)]
-pub(super) fn dot<S: Simd>(a: Plane<S>, b: Plane<S>) -> Eight<S> {
+pub(super) fn dot<S: Simd>(a: Vec2x8<S>, b: Vec2x8<S>) -> f64x8<S> {
     a[0] * b[0] + a[1] * b[1]
 }
 
 #[inline(always)]
-pub(super) fn add<S: Simd>(a: Plane<S>, b: Plane<S>) -> Plane<S> {
+pub(super) fn add<S: Simd>(a: Vec2x8<S>, b: Vec2x8<S>) -> Vec2x8<S> {
     [a[0] + b[0], a[1] + b[1]]
 }
 
 #[inline(always)]
-pub(super) fn subtract<S: Simd>(a: Plane<S>, b: Plane<S>) -> Plane<S> {
+pub(super) fn subtract<S: Simd>(a: Vec2x8<S>, b: Vec2x8<S>) -> Vec2x8<S> {
     [a[0] - b[0], a[1] - b[1]]
 }
 
 #[inline(always)]
-pub(super) fn scale<S: Simd>(factor: Eight<S>, a: Plane<S>) -> Plane<S> {
+pub(super) fn scale<S: Simd>(factor: f64x8<S>, a: Vec2x8<S>) -> Vec2x8<S> {
     [factor * a[0], factor * a[1]]
 }
 
 #[inline(always)]
-pub(super) fn is_zero<S: Simd>(simd: S, a: Plane<S>) -> Mask<S> {
+pub(super) fn is_zero<S: Simd>(simd: S, a: Vec2x8<S>) -> mask64x8<S> {
     let zero = splat(simd, 0.0);
     a[0].simd_eq(zero) & a[1].simd_eq(zero)
 }
 
 #[inline(always)]
-pub(super) fn select<S: Simd>(first: Mask<S>, one: Plane<S>, other: Plane<S>) -> Plane<S> {
+pub(super) fn select<S: Simd>(first: mask64x8<S>, one: Vec2x8<S>, other: Vec2x8<S>) -> Vec2x8<S> {
     [first.select(one[0], other[0]), first.select(one[1], other[1])]
 }
 
-/// Where `kept`, else zero.
+/// `a` where the mask is set, else zero.
 #[inline(always)]
-pub(super) fn keep<S: Simd>(simd: S, kept: Mask<S>, a: Plane<S>) -> Plane<S> {
+pub(super) fn or_zero<S: Simd>(simd: S, mask: mask64x8<S>, a: Vec2x8<S>) -> Vec2x8<S> {
     let zero = splat(simd, 0.0);
-    select(kept, a, [zero, zero])
+    select(mask, a, [zero, zero])
 }
 
-/// The last block of `before` and the first seven of `a`.
+/// Shifts `a` by one block: the last of `before` and the first seven of `a`.
 #[inline(always)]
-pub(super) fn behind<S: Simd>(before: Plane<S>, a: Plane<S>) -> Plane<S> {
+pub(super) fn shift_in<S: Simd>(before: Vec2x8<S>, a: Vec2x8<S>) -> Vec2x8<S> {
     [before[0].slide::<7>(a[0]), before[1].slide::<7>(a[1])]
 }
 
-/// Sum of the eight, in pairs.
+/// Sum of the eight numbers, in pairs.
 #[inline(always)]
-pub(super) fn total<S: Simd>(v: Eight<S>) -> f64 {
-    total_of(v.to_array())
-}
-
-#[inline(always)]
-pub(super) fn total_of([a, b, c, d, e, f, g, h]: [f64; LANES]) -> f64 {
+pub(super) fn lane_sum<S: Simd>(v: f64x8<S>) -> f64 {
+    let [a, b, c, d, e, f, g, h] = v.to_array();
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
-/// Largest of the eight.
+/// Largest of the eight numbers.
 #[inline(always)]
-pub(super) fn largest<S: Simd>(v: Eight<S>) -> f64 {
+pub(super) fn lane_max<S: Simd>(v: f64x8<S>) -> f64 {
     let [a, b, c, d, e, f, g, h] = v.to_array();
     a.max(b).max(c.max(d)).max(e.max(f).max(g.max(h)))
 }

@@ -1,0 +1,172 @@
+//! When the checkpoints of a run are saved: by the clock, when asked for, and when the run is told to stop.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::time::{Duration, Instant};
+
+use slipfront_run::checkpoint::Checkpoints;
+use slipfront_run::run_folder::resume_command::resume_command;
+use slipfront_run::running::Running;
+
+use crate::failure::Failure;
+use crate::progress::run::RunProgress;
+use crate::signals::Signals;
+
+/// Wall time from one checkpoint to the next; none for no checkpoints at all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Interval(Option<Duration>);
+
+impl Interval {
+    /// Whether checkpoints are saved at all.
+    pub(crate) fn saves(self) -> bool {
+        self.0.is_some()
+    }
+}
+
+impl FromStr for Interval {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "off" {
+            return Ok(Self(None));
+        }
+        let duration = text.parse::<jiff::SignedDuration>();
+        duration
+            .ok()
+            .and_then(|duration| Duration::try_from(duration).ok())
+            .map(|duration| Self(Some(duration)))
+            .ok_or_else(|| "write a time such as 5min, 30s or 1h, or `off` for no checkpoints".to_owned())
+    }
+}
+
+/// A checkpoint is followed by at least this many times the time that it took: in the long run they take 1 % at most.
+const RUN_PER_SAVE: u32 = 99;
+
+/// Wall time to the next checkpoint after one that took `cost`.
+fn pause(every: Duration, cost: Duration) -> Duration {
+    every.max(cost.saturating_mul(RUN_PER_SAVE))
+}
+
+/// Saves the checkpoints of a run when they are due.
+pub(crate) struct CheckpointTimer {
+    folder: PathBuf,
+    checkpoints: Checkpoints,
+    interval: Interval,
+    due: Option<Instant>,
+    signals: Signals,
+}
+
+impl CheckpointTimer {
+    /// The first checkpoint is due an interval from now.
+    pub(crate) fn new(folder: &Path, checkpoints: Checkpoints, interval: Interval, signals: Signals) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            checkpoints,
+            interval,
+            due: interval.0.and_then(|every| Instant::now().checked_add(every)),
+            signals,
+        }
+    }
+
+    /// Saves a checkpoint if it is time, or if one was asked for.
+    ///
+    /// # Errors
+    /// [`Failure::Stopped`] if the run is to end here. A checkpoint that could not be saved does not end it.
+    pub(crate) fn save_if_due(&mut self, running: &Running, progress: &RunProgress) -> Result<(), Failure> {
+        if self.signals.stopped().is_some() {
+            return Err(self.stop(running));
+        }
+        let asked = self.signals.take_usr1();
+        if asked && !self.interval.saves() {
+            progress.note("warning: no checkpoint is saved, since --checkpoint is off");
+        } else if asked || self.due.is_some_and(|due| Instant::now() >= due) {
+            let began = Instant::now();
+            let step = running.snapshot().step;
+            match self.checkpoints.save(running) {
+                Ok(()) if asked => {
+                    let seconds = began.elapsed().as_secs_f64();
+                    progress.note(&format!("saved a checkpoint of step {step} in {seconds:.2} s"));
+                }
+                Ok(()) => {}
+                Err(error) => {
+                    let kept = self.checkpoints.saved_step().map_or_else(
+                        || "there is none before it".to_owned(),
+                        |step| format!("that of step {step} is kept"),
+                    );
+                    progress.note(&format!(
+                        "warning: cannot save a checkpoint of step {step} in {}: {error}; the run goes on, and {kept}",
+                        self.folder.display()
+                    ));
+                }
+            }
+            let pause = pause(self.interval.0.unwrap_or_default(), began.elapsed());
+            self.due = Instant::now().checked_add(pause);
+        }
+        Ok(())
+    }
+
+    /// Saves a last checkpoint, and says how the run ends.
+    fn stop(&mut self, running: &Running) -> Failure {
+        let (step, last_step) = (running.snapshot().step, running.case().time_plan.last_step);
+        let stopped = format!("stopped by a signal at step {step} of {last_step}");
+        if !self.interval.saves() {
+            let sentence = format!("{stopped}; nothing is saved, since --checkpoint is off");
+            return Failure::stopped(&self.signals, anyhow::anyhow!(sentence));
+        }
+        match self.checkpoints.save(running) {
+            Ok(()) => {
+                let sentence = format!(
+                    "{stopped}, which is saved: `{}` goes on",
+                    resume_command(&self.folder)
+                );
+                Failure::stopped(&self.signals, anyhow::anyhow!(sentence))
+            }
+            // Not stopped as a signal should: a job script must not take it for one that has lost nothing.
+            Err(error) => {
+                let (folder, remedy) = (self.folder.display(), self.remedy());
+                Failure::running(anyhow::anyhow!(
+                    "{stopped}, which cannot be saved in {folder}: {error}; {remedy}"
+                ))
+            }
+        }
+    }
+
+    /// The remedy when the disk has refused something.
+    pub(crate) fn remedy(&self) -> String {
+        let command = resume_command(&self.folder);
+        let from = self
+            .checkpoints
+            .saved_step()
+            .map_or("from the start".to_owned(), |step| format!("from step {step}"));
+        format!("`{command}` goes on {from} when that is mended")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_checkpoint_that_took_long_is_followed_by_a_long_pause() {
+        let seconds = Duration::from_secs;
+        assert_eq!(pause(seconds(300), seconds(1)), seconds(300));
+        assert_eq!(pause(seconds(300), seconds(10)), seconds(990));
+        assert_eq!(
+            pause(Duration::ZERO, Duration::from_millis(10)),
+            Duration::from_millis(990)
+        );
+    }
+
+    #[test]
+    fn intervals_are_written_as_people_write_them() {
+        let interval = |text: &str| text.parse::<Interval>().map(|interval| interval.0);
+        let seconds = |seconds| Ok(Some(Duration::from_secs(seconds)));
+        assert_eq!(interval("5min"), seconds(300));
+        assert_eq!(interval("1h 30min"), seconds(5400));
+        assert_eq!(interval("0s"), seconds(0));
+        assert_eq!(interval("off"), Ok(None));
+        for wrong in ["", "5", "-5min", "soon", "1 fortnight"] {
+            assert!(interval(wrong).is_err(), "{wrong}");
+        }
+    }
+}

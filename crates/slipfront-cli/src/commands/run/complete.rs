@@ -1,0 +1,80 @@
+//! The part of `slipfront run` that a new run and a resumed one share: from the first step to the manifest.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use slipfront_case::case::Case;
+use slipfront_run::checkpoint::Checkpoints;
+use slipfront_run::results;
+use slipfront_run::run_folder::RunFolder;
+use slipfront_run::running::Running;
+use slipfront_run::summary::summary_json;
+
+use super::options::RunOptions;
+use crate::checkpoint_timer::CheckpointTimer;
+use crate::failure::Failure;
+use crate::print::print;
+use crate::progress::run::RunProgress;
+use crate::report;
+
+/// Takes a run to its end and writes its results.
+pub(super) fn complete(
+    mut running: Running,
+    folder: RunFolder,
+    checkpoints: Checkpoints,
+    options: RunOptions,
+) -> Result<(), Failure> {
+    let (case, out) = (Arc::clone(running.case()), folder.path().to_owned());
+    let (threads, is_verbose) = (options.threads, options.is_verbose());
+    let started = checkpoints.started();
+    let mut timer = CheckpointTimer::new(&out, checkpoints, options.interval, options.signals);
+    let mut progress = RunProgress::new(&running, options.quiet);
+    let reason = loop {
+        match running.advance(case.steps_per_poll()) {
+            Ok(Some(reason)) => break reason,
+            Ok(None) => {}
+            Err(error) => {
+                // It would diverge again: there is nothing to go on with.
+                folder.discard();
+                return Err(Failure::running(error));
+            }
+        }
+        progress.show(&running.snapshot());
+        timer.save_if_due(&running, &progress)?;
+    };
+    progress.finish();
+    let mut record = running.record(reason);
+    results::write(&case, &mut record, folder, started, threads)
+        .map_err(|error| Failure::running(anyhow::anyhow!("{error}; {}", timer.remedy())))?;
+    if options.json {
+        print(&summary_json(&record.summary))?;
+    } else if is_verbose {
+        print(&report::summary(&case, &record.summary))?;
+        print(&files(&case, &out))?;
+    }
+    Ok(())
+}
+
+fn files(case: &Case, out: &Path) -> String {
+    let mut text = format!("files in {}\n", out.display());
+    for (name, what) in [
+        ("friction.svg .png", "friction and sliding blocks against time"),
+        ("stress.svg .png", "maps of the contact stress"),
+        ("series.csv", "the curve, row by row"),
+        ("fields.nc", "the fields, for ParaView, Python, MATLAB"),
+        ("summary.json", "the numbers above"),
+        ("case.toml", "the case, every default filled in"),
+    ] {
+        let exists = out.join(name.split(' ').next().unwrap_or(name)).exists();
+        if exists {
+            text += &format!("  {name:<18} {what}\n");
+        }
+    }
+    if !case.inputs.is_empty() {
+        text += &format!(
+            "  {:<18} {}\n",
+            "inputs/", "copies of the files that the case reads"
+        );
+    }
+    text
+}

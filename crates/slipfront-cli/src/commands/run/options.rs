@@ -1,0 +1,20 @@
+//! How a run is executed and shown.
+
+use crate::checkpoint_timer::Interval;
+use crate::signals::Signals;
+
+/// How a run is executed and shown.
+pub(super) struct RunOptions {
+    pub(super) threads: usize,
+    pub(super) interval: Interval,
+    pub(super) signals: Signals,
+    pub(super) quiet: bool,
+    pub(super) json: bool,
+}
+
+impl RunOptions {
+    /// Whether physics and summary are printed for a reader.
+    pub(super) fn is_verbose(&self) -> bool {
+        !self.quiet && !self.json
+    }
+}

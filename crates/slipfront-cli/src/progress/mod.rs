@@ -1,0 +1,6 @@
+//! Progress on stderr: of a run, of a study, of the figures of the paper.
+
+pub(crate) mod display;
+pub(crate) mod paper;
+pub(crate) mod run;
+pub(crate) mod study;

@@ -1,0 +1,72 @@
+//! What `slipfront check` adds to the physics of a case.
+
+use slipfront::lattice::dt_star_limit;
+use slipfront_case::case::Case;
+use slipfront_case::machine::available_memory;
+use slipfront_case::number_format::{byte_size, four_digits, with_si_prefix};
+
+use super::summary::notes;
+use super::times::{duration, instant};
+
+/// The expected onset, the stability of the step, the cost and the warnings; `seconds` is the time that the run takes.
+pub(crate) fn cost(case: &Case, seconds: f64) -> String {
+    onset(case) + &scales(case) + &resources(case, seconds) + &notes(&case.warnings())
+}
+
+fn onset(case: &Case) -> String {
+    let at = |star: f64| {
+        let late = if star > case.time_plan.end_star() {
+            ", after the end of the run: lengthen `time.duration_star`"
+        } else {
+            ""
+        };
+        (instant(star, &case.scales), late)
+    };
+    let mut text = String::new();
+    if case.file.texture.is_empty() {
+        let (first, late) = at(case.model.first_slip_estimate());
+        text += &format!("first slip        {first}, exactly{late}\n");
+    }
+    let (onset, late) = at(2.5 / case.groups.v_star);
+    text += &format!("onset expected    about {onset} (Eq. 12){late}\n");
+    text
+}
+
+fn scales(case: &Case) -> String {
+    format!(
+        "steady level      mu* = {}\n\
+         scales            time {}, displacement {}, stress {}\n\
+         stability         dt* = {} of at most {:.4}\n",
+        four_digits(case.model.steady_level()),
+        with_si_prefix(case.scales.time(), "s"),
+        with_si_prefix(case.scales.displacement(), "m"),
+        with_si_prefix(case.scales.stress(), "Pa"),
+        four_digits(case.time_plan.dt_star),
+        dt_star_limit()
+    )
+}
+
+fn resources(case: &Case, seconds: f64) -> String {
+    let budget = &case.budget;
+    let (memory, resumed) = (budget.memory(), budget.resumed().memory());
+    let available = available_memory().map_or(String::new(), |there| {
+        format!(" of {} available", byte_size(there))
+    });
+    // Of a small run, pictures take the most in any case.
+    let to_resume = if resumed > memory {
+        format!("; {} to go on from a checkpoint", byte_size(resumed))
+    } else {
+        String::new()
+    };
+    format!(
+        "cost              {:.3e} block-steps, {} on this machine\n\
+         memory            {}{available}{to_resume}\n\
+         disk              {}, the snapshots {} of it; {} more for checkpoints while it runs\n",
+        case.block_steps(),
+        duration(seconds),
+        byte_size(memory),
+        byte_size(budget.disk()),
+        byte_size(budget.disk_of_snapshots()),
+        byte_size(budget.disk_of_checkpoints())
+    )
+}

@@ -1,0 +1,13 @@
+//! What the commands print: the physics of a case as a tree, its cost, the summary of a run, the plan and the answer of a study.
+
+mod cost;
+
+mod physics;
+mod study;
+mod summary;
+mod times;
+
+pub(crate) use cost::cost;
+pub(crate) use physics::{physics, texture};
+pub(crate) use study::{plan, study};
+pub(crate) use summary::summary;

@@ -1,0 +1,112 @@
+//! The resolved physics of a case.
+
+use slipfront::FrictionLaw;
+use slipfront_case::case::Case;
+use slipfront_case::number_format::{four_digits, with_si_prefix};
+
+/// The resolved physics of a case, as a tree.
+pub(crate) fn physics(case: &Case) -> String {
+    let branches = [
+        ("slider", slider(case)),
+        ("material", material(case)),
+        ("load", load(case)),
+        ("drive", drive(case)),
+        ("friction", friction(case)),
+        ("texture", texture(case)),
+        ("time", time(case)),
+    ];
+    let mut text = format!("{}\n", case.name);
+    for (number, (name, value)) in branches.iter().enumerate() {
+        let branch = if number + 1 < branches.len() {
+            "\u{251c}\u{2500}"
+        } else {
+            "\u{2514}\u{2500}"
+        };
+        text += &format!("{branch} {name:<9} {value}\n");
+    }
+    text
+}
+
+fn slider(case: &Case) -> String {
+    let lattice = &case.model.lattice;
+    let [edges_x, edges_y] = lattice.edges.map(|edges| format!("{edges:?}").to_lowercase());
+    let edges = if edges_x == edges_y {
+        edges_x
+    } else {
+        format!("{edges_x} in x, {edges_y} in y")
+    };
+    let size = with_si_prefix(case.scales.block_size, "m");
+    format!("{} x {} blocks of {size}, {edges} edges", lattice.nx, lattice.ny)
+}
+
+fn material(case: &Case) -> String {
+    format!(
+        "E = {}, rho = {} kg/m^3, Omega* = {}",
+        with_si_prefix(case.scales.young_modulus, "Pa"),
+        four_digits(case.scales.density),
+        four_digits(case.groups.omega_star)
+    )
+}
+
+fn load(case: &Case) -> String {
+    let pressure = with_si_prefix(case.scales.pressure, "Pa");
+    format!("P = {pressure}, strain {:.2e}", case.groups.epsilon)
+}
+
+fn drive(case: &Case) -> String {
+    let v_star = case.groups.v_star;
+    format!(
+        "V* = {} ({}) at {} degrees",
+        four_digits(v_star),
+        with_si_prefix(v_star * case.scales.speed(), "m/s"),
+        case.file.drive.direction
+    )
+}
+
+fn friction(case: &Case) -> String {
+    let (groups, friction) = (&case.groups, &case.file.friction);
+    let law = match friction.law {
+        FrictionLaw::Projection => "projection",
+        FrictionLaw::Reversal => "reversal (for comparison)",
+        FrictionLaw::Literal => "literal (for comparison)",
+    };
+    let spread = |field: &Option<String>, sigma: f64| match field {
+        Some(file) => format!("from {file}"),
+        None => format!("sigma* = {}", four_digits(sigma)),
+    };
+    format!(
+        "{law}; mu_s = {} ({}), R* = {} ({}), seed {}",
+        four_digits(friction.mu_static),
+        spread(&friction.mu_static_field, groups.sigma_static_star),
+        four_digits(groups.r_star),
+        spread(&friction.mu_kinetic_field, groups.sigma_kinetic_star),
+        friction.seed
+    )
+}
+
+/// The share of the blocks that is textured, and the share asked for.
+pub(crate) fn texture(case: &Case) -> String {
+    if case.file.texture.is_empty() {
+        return "none".to_owned();
+    }
+    let asked = case
+        .texture
+        .asked_percent
+        .map_or(String::new(), |asked| format!(", {} % asked", four_digits(asked)));
+    format!(
+        "{} % of the blocks{asked}",
+        four_digits(case.texture.meshed_percent)
+    )
+}
+
+fn time(case: &Case) -> String {
+    let time_plan = &case.time_plan;
+    let end_star = time_plan.end_star();
+    format!(
+        "to t* = {} ({}) in {} steps of dt* = {}",
+        four_digits(end_star),
+        with_si_prefix(end_star * case.scales.time(), "s"),
+        time_plan.last_step,
+        four_digits(time_plan.dt_star)
+    )
+}

@@ -1,0 +1,171 @@
+//! The plan of a study, and its answer.
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use slipfront_case::number_format::{byte_size, with_uncertainty};
+use slipfront_run::study::{self, Plan, RunKey, RunResult, StudyResults};
+
+use super::times::duration;
+
+/// Most levels of an axis that are printed.
+const MAX_LEVELS: usize = 10;
+
+/// Most points that are printed.
+const MAX_POINTS: usize = 40;
+
+/// Most warnings about the cases of a study that are printed.
+const MAX_WARNINGS: usize = 8;
+
+/// The plan of a study and what it will cost.
+pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) -> String {
+    let settings = &plan.settings;
+    let (min, max) = (settings.min_replicates(), settings.max_replicates());
+    let replicates = match &settings.until {
+        None => format!("{} replicates", settings.replicates),
+        Some(until) => format!(
+            "{min} to {max} replicates, until {} is known within {}",
+            until.key, until.half_width
+        ),
+    };
+    let reference = if plan.has_reference() {
+        ", each with its reference"
+    } else {
+        ""
+    };
+    let runs = |replicates| plan.runs(replicates).count();
+    let runs = if runs(min) == runs(max) {
+        runs(min).to_string()
+    } else {
+        format!("{} to {}", runs(min), runs(max))
+    };
+    format!(
+        "{}\n{}  {} points, {replicates}{reference}: at most {runs} runs\n  \
+         {block_steps:.2e} block-steps, {} on {threads} threads of this machine\n  \
+         {} of memory for {threads} runs at once, {} on the disk\n{}",
+        plan.name,
+        axes(plan),
+        plan.points.len(),
+        duration(seconds),
+        byte_size(plan.memory(threads)),
+        byte_size(plan.disk(plan.runs(min))),
+        case_warnings(plan)
+    )
+}
+
+/// The axes with their levels, a line each.
+fn axes(plan: &Plan) -> String {
+    let mut text = String::new();
+    for axis in &plan.axes {
+        let mut levels: Vec<String> = axis.levels.iter().map(|level| level.labels.join(" & ")).collect();
+        if levels.len() > MAX_LEVELS {
+            let between = format!("... ({} levels) ...", levels.len());
+            levels.splice(MAX_LEVELS / 2..levels.len() - 1, [between]);
+        }
+        text += &format!("  {}: {}\n", axis.columns.join(" & "), levels.join(", "));
+    }
+    text
+}
+
+/// Warnings about the cases of a study, each with the points that it concerns.
+fn case_warnings(plan: &Plan) -> String {
+    let all = plan.warnings();
+    let mut text = String::new();
+    for warning in all.iter().take(MAX_WARNINGS) {
+        let first = plan.describe(&plan.points[warning.first]);
+        let place = match (warning.points, plan.points.len()) {
+            (some, all) if some == all => "at every point".to_owned(),
+            (1, _) => format!("at the point {first}"),
+            (some, _) => format!("at {some} points, the first {first}"),
+        };
+        text += &format!("note: {} ({place})\n", warning.sentence);
+    }
+    if all.len() > MAX_WARNINGS {
+        let more = all.len() - MAX_WARNINGS;
+        text += &format!("note: and {more} more of the kind, which `slipfront check` tells for a case\n");
+    }
+    text
+}
+
+/// The answer of a study: its main quantity at every point, notes, and the folder of tables and pictures.
+pub(crate) fn study(plan: &Plan, results: &StudyResults, folder: &Path) -> String {
+    format!(
+        "{}\n{}{}runs.csv, points.csv and pictures in {}\n",
+        study::main_quantity(plan),
+        points(plan, results),
+        notes(plan, results),
+        folder.display()
+    )
+}
+
+/// The main quantity at every point, a line each.
+fn points(plan: &Plan, results: &StudyResults) -> String {
+    let shown = plan.points.len().min(MAX_POINTS);
+    let names: Vec<String> = plan.points[..shown]
+        .iter()
+        .map(|point| plan.describe(point))
+        .collect();
+    let width = names.iter().map(|name| name.chars().count()).max();
+    let width = width.unwrap_or_default();
+    let mut text = String::new();
+    for (point, name) in names.iter().enumerate() {
+        text += &format!("  {name:<width$}   {}\n", point_value(plan, results, point));
+    }
+    if plan.points.len() > shown {
+        text += &format!("  and {} more points in points.csv\n", plan.points.len() - shown);
+    }
+    text
+}
+
+/// The main quantity at a point with its interval, and what a reader must know of it.
+fn point_value(plan: &Plan, results: &StudyResults, point: usize) -> String {
+    let is_here = |run: &RunKey| run.point == point;
+    let has_failed = || {
+        results
+            .runs
+            .iter()
+            .any(|(run, result)| is_here(run) && matches!(**result, RunResult::Failed(_)))
+    };
+    let mut text = match study::sample(plan, results, point, study::main_quantity(plan)) {
+        Some(sample) => {
+            let mean = with_uncertainty(sample.mean, sample.half_width);
+            format!("{mean}   n = {}", sample.n)
+        }
+        None if has_failed() => "failed".to_owned(),
+        None => "none".to_owned(),
+    };
+    if results.points[point].narrow == Some(false) {
+        text += "   (interval still too wide)";
+    }
+    let without = results.without_transition().filter(is_here).count();
+    if without > 0 {
+        let runs = results.runs.keys().filter(|run| is_here(run)).count();
+        text += &format!("   (no transition in {without} of {runs} runs)");
+    }
+    text
+}
+
+/// What a reader must know of the study as a whole.
+fn notes(plan: &Plan, results: &StudyResults) -> String {
+    let mut text = String::new();
+    // Points share references: each counts once.
+    let without: HashSet<String> = results
+        .without_transition()
+        .map(|run| plan.identity(run))
+        .collect();
+    if !without.is_empty() {
+        text += &format!(
+            "note: mu* never fell half-way to its steady level in {} runs, and static_friction_star is the largest mu* of them: \
+             lengthen `time.duration_star` of the base, unless they were expected to have no transition\n",
+            without.len()
+        );
+    }
+    text += &case_warnings(plan);
+    if results.orphaned_runs > 0 {
+        text += &format!(
+            "note: {} recorded runs are not part of the study as it is now; they stay in records.jsonl\n",
+            results.orphaned_runs
+        );
+    }
+    text
+}

@@ -1,0 +1,75 @@
+//! The summary of a run, to be read at a glance.
+
+use slipfront_case::case::Case;
+use slipfront_case::number_format::{four_digits, with_si_prefix, with_uncertainty};
+use slipfront_run::summary::Summary;
+
+use super::times::instant;
+
+/// The summary of a run, a line for each number, and its warnings.
+pub(crate) fn summary(case: &Case, summary: &Summary) -> String {
+    let mut lines = vec![("static friction", static_friction(case, summary))];
+    if let Some(first) = summary.first_slip_time_star {
+        lines.push(("first slip", format!("at {}", instant(first, &case.scales))));
+    }
+    lines.push(("kinetic friction", kinetic_friction(case, summary)));
+    lines.push(("sliding blocks", sliding_blocks(summary)));
+    lines.push(("energy", energy(summary)));
+    let mut text = String::from("\n");
+    for (name, value) in lines {
+        text += &format!("{name:<18}{value}\n");
+    }
+    text + &notes(&summary.warnings)
+}
+
+fn static_friction(case: &Case, summary: &Summary) -> String {
+    format!(
+        "mu_s* = {:.4}   mu_s = {:.4}   at {}",
+        summary.static_friction_star,
+        summary.static_friction,
+        instant(summary.onset_time_star, &case.scales)
+    )
+}
+
+fn kinetic_friction(case: &Case, summary: &Summary) -> String {
+    let kinetic = summary
+        .kinetic_friction_star
+        .zip(summary.kinetic_friction)
+        .zip(summary.kinetic_window_star);
+    let Some(((star, mu), [from, to])) = kinetic else {
+        return "none: the run has no kinetic window".to_owned();
+    };
+    let uncertainty = summary.kinetic_friction_star_uncertainty;
+    let dimensional = uncertainty.map(|error| error * case.scales.mu_static_mean);
+    format!(
+        "mu_k* = {}   mu_k = {}   over t* = {} to {}",
+        with_uncertainty(star, uncertainty),
+        with_uncertainty(mu, dimensional),
+        four_digits(from),
+        four_digits(to)
+    )
+}
+
+fn sliding_blocks(summary: &Summary) -> String {
+    let most = format!("N* = {:.1} % at most", summary.sliding_percent_max);
+    match summary.sliding_percent_kinetic {
+        Some(kinetic) => format!("{most}, {kinetic:.1} % in that window"),
+        None => most,
+    }
+}
+
+fn energy(summary: &Summary) -> String {
+    format!(
+        "{} put in, the ledger closes to {:.1e}",
+        with_si_prefix(summary.work_j, "J"),
+        summary.energy_error.abs()
+    )
+}
+
+/// Warnings, a line for each.
+pub(super) fn notes(warnings: &[String]) -> String {
+    warnings
+        .iter()
+        .map(|warning| format!("note: {warning}\n"))
+        .collect()
+}

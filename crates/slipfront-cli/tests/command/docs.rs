@@ -1,0 +1,151 @@
+//! Every command line in the book is one that the command understands, and every link in it leads somewhere.
+
+use std::path::{Path, PathBuf};
+
+use assert_cmd::Command;
+
+use crate::support::process::program;
+
+fn pages() -> Vec<PathBuf> {
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let mut pages = vec![repository.join("README.md")];
+    for folder in ["docs", "docs/guide", "docs/reference", "docs/validation"] {
+        let entries = std::fs::read_dir(repository.join(folder)).expect("the book can be listed");
+        pages.extend(entries.flatten().map(|entry| entry.path()));
+    }
+    pages.retain(|page| page.extension().is_some_and(|extension| extension == "md"));
+    pages
+}
+
+/// The words of a shell line up to a pipe, a redirection or a comment.
+fn words(line: &str) -> Vec<String> {
+    let mut words = Vec::new();
+    let mut word: Option<String> = None;
+    let mut quote = None;
+    for c in line.chars() {
+        match quote {
+            Some(end) if c == end => quote = None,
+            Some(_) => word.get_or_insert_default().push(c),
+            None if c == '\'' || c == '"' => {
+                quote = Some(c);
+                word.get_or_insert_default();
+            }
+            None if c == '|' || c == '>' || (c == '#' && word.is_none()) => break,
+            None if c.is_whitespace() => words.extend(word.take()),
+            None => word.get_or_insert_default().push(c),
+        }
+    }
+    words.extend(word);
+    words
+}
+
+/// What stands behind `slipfront` or `cargo run --release --` in the `$` lines of the console blocks.
+fn commands(page: &str) -> Vec<Vec<String>> {
+    let mut found = Vec::new();
+    let mut console = false;
+    for line in page.lines() {
+        if let Some(info) = line.trim_start().strip_prefix("```") {
+            console = info.trim() == "console";
+            continue;
+        }
+        let Some(line) = line.strip_prefix("$ ").filter(|_| console) else {
+            continue;
+        };
+        let arguments = ["slipfront ", "cargo run --release -- "]
+            .iter()
+            .find_map(|program| line.strip_prefix(program));
+        found.extend(arguments.map(words));
+    }
+    found
+}
+
+#[test]
+fn every_command_in_the_book_is_understood() {
+    let mut count = 0;
+    for page in pages() {
+        for arguments in commands(&std::fs::read_to_string(&page).unwrap()) {
+            // With --help at its end a line is parsed up to there and nothing is run: what is wrong is told first.
+            let parsed = Command::new(program())
+                .args(&arguments)
+                .arg("--help")
+                .output()
+                .unwrap();
+            let message = String::from_utf8_lossy(&parsed.stderr);
+            assert!(
+                parsed.status.success(),
+                "{}: {arguments:?}\n{message}",
+                page.display()
+            );
+            count += 1;
+        }
+    }
+    assert!(count >= 10, "only {count} commands were found");
+}
+
+#[test]
+fn lines_are_split_as_a_shell_does() {
+    assert_eq!(
+        words("run --set 'drive.speed=1 mm/s' -o \"a b\"  # why"),
+        ["run", "--set", "drive.speed=1 mm/s", "-o", "a b"]
+    );
+    assert_eq!(words("run --json | jq ."), ["run", "--json"]);
+}
+
+/// The lines of a page outside of its fenced blocks.
+fn prose(page: &str) -> impl Iterator<Item = &str> {
+    let mut fenced = false;
+    page.lines().filter(move |line| {
+        let fence = line.trim_start().starts_with("```");
+        fenced ^= fence;
+        !fenced && !fence
+    })
+}
+
+/// The anchor of a heading: small letters, a hyphen for each blank, nothing else but digits, hyphens and underscores.
+fn anchor(heading: &str) -> String {
+    heading
+        .trim()
+        .to_lowercase()
+        .replace(' ', "-")
+        .chars()
+        .filter(|&c| c.is_alphanumeric() || c == '-' || c == '_')
+        .collect()
+}
+
+fn anchors(page: &str) -> Vec<String> {
+    prose(page)
+        .filter(|line| line.starts_with('#'))
+        .map(|line| anchor(line.trim_start_matches('#')))
+        .collect()
+}
+
+#[test]
+fn every_link_in_the_book_leads_somewhere() {
+    let (mut count, mut broken) = (0, String::new());
+    for page in pages() {
+        let text = std::fs::read_to_string(&page).unwrap();
+        let parts = prose(&text).flat_map(|line| line.split("](").skip(1));
+        for target in parts.filter_map(|part| part.split(')').next()) {
+            if target.starts_with("http") {
+                continue;
+            }
+            count += 1;
+            let (file, place) = target.split_once('#').unwrap_or((target, ""));
+            let path = match file {
+                "" => page.clone(),
+                file => page.parent().unwrap().join(file),
+            };
+            let leads = match place {
+                "" => path.exists(),
+                place => std::fs::read_to_string(&path)
+                    .is_ok_and(|text| anchors(&text).iter().any(|anchor| anchor == place)),
+            };
+            if !leads {
+                broken += &format!("{}: {target}\n", page.display());
+            }
+        }
+    }
+    assert!(broken.is_empty(), "{broken}");
+    assert!(count >= 50, "only {count} links were found");
+    assert_eq!(anchor(" What 31 % means"), "what-31--means");
+}

@@ -1,0 +1,64 @@
+//! Small cases, and what is asked of the folders of their runs.
+
+use crate::support::workspace::{Files, Workspace};
+
+/// A small and quick case: 30 blocks, 800 steps.
+pub(crate) const SMALL: &str = "[slider]\nblocks = [6, 5]\n[drive]\nv_star = 0.1\n";
+
+/// [`SMALL`] with a mask.
+pub(crate) const MASKED: &str =
+    "[slider]\nblocks = [6, 5]\n[drive]\nv_star = 0.1\n[[texture]]\nshape='mask'\nfile='spot.png'\n";
+
+/// Every file of a run without inputs (design, section 3).
+pub(crate) const RUN_FILES: [&str; 9] = [
+    "case.toml",
+    "fields.nc",
+    "friction.png",
+    "friction.svg",
+    "manifest.json",
+    "series.csv",
+    "stress.png",
+    "stress.svg",
+    "summary.json",
+];
+
+impl Workspace {
+    /// A workspace that holds `small.toml`.
+    pub(crate) fn small() -> Self {
+        let workspace = Self::new();
+        workspace.write("small.toml", SMALL);
+        workspace
+    }
+
+    /// A workspace that holds `small.toml`, and `masked.toml` with the mask `spot.png` that it reads.
+    pub(crate) fn masked() -> Self {
+        let workspace = Self::small();
+        workspace.succeed("texture small.toml -o spot.png --set texture.0={shape=\"cavity\",coverage=15}");
+        workspace.write("masked.toml", MASKED);
+        workspace
+    }
+
+    pub(crate) fn summary(&self, folder: &str) -> serde_json::Value {
+        serde_json::from_slice(&self.read(&format!("{folder}/summary.json"))).unwrap()
+    }
+
+    /// Every file of a run but the manifest, which may differ between repetitions.
+    pub(crate) fn run_files(&self, folder: &str) -> Files {
+        let mut files = self.files(folder);
+        assert!(files.remove("manifest.json").is_some(), "{folder} is incomplete");
+        files
+    }
+
+    /// Demands that two runs have the same bytes, file by file.
+    pub(crate) fn assert_same_run(&self, one: &str, other: &str) {
+        let (one_files, other_files) = (self.run_files(one), self.run_files(other));
+        let names: Vec<_> = one_files.keys().collect();
+        assert_eq!(names, other_files.keys().collect::<Vec<_>>(), "{one}, {other}");
+        for (name, bytes) in &one_files {
+            assert!(
+                bytes == &other_files[name],
+                "{name} differs between {one} and {other}"
+            );
+        }
+    }
+}

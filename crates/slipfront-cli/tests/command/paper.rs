@@ -1,0 +1,95 @@
+//! `slipfront paper` from outside, on the figures that cost least.
+
+use std::process::Output;
+
+use crate::support::process::{stderr, stdout};
+use crate::support::workspace::Workspace;
+
+/// Makes figures into the folder `paper`.
+fn paper(workspace: &Workspace, figures: &str) -> Output {
+    workspace.output(&format!("paper --reduced --out paper {figures}"))
+}
+
+#[test]
+fn figures_are_made_judged_and_reported() {
+    let workspace = Workspace::new();
+    // Twice: what is there is replaced.
+    for _ in 0..2 {
+        let output = paper(&workspace, "fig13 table1 --docs docs");
+        let text = stdout(&output);
+        assert!(output.status.success(), "{text}");
+        assert!(
+            text.contains("4 claims: 2 hold, 0 hold with a condition, 2 do not hold"),
+            "{text}"
+        );
+        assert!(text.contains("report.html"));
+    }
+    for name in [
+        "fig13.svg",
+        "fig13.png",
+        "fig13.csv",
+        "table1.csv",
+        "claims.csv",
+        "numbers.csv",
+        "report.html",
+    ] {
+        assert!(workspace.exists(&format!("paper/{name}")), "{name}");
+    }
+    assert!(workspace.exists("docs/paper.md"));
+    let claims = workspace.read_text("paper/claims.csv");
+    assert_eq!(claims.lines().count(), 5);
+    // A part of them leaves the rest in the report.
+    assert!(paper(&workspace, "table1").status.success());
+    assert_eq!(workspace.read_text("paper/claims.csv"), claims);
+}
+
+#[test]
+fn quiet_says_nothing() {
+    let output = paper(&Workspace::new(), "fig13 --quiet");
+    assert!(output.status.success() && output.stdout.is_empty() && output.stderr.is_empty());
+}
+
+/// Demands that the figures are refused with this sentence and status 2.
+fn refused(workspace: &Workspace, figures: &str, sentence: &str) {
+    let output = paper(workspace, figures);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains(sentence), "{said}");
+}
+
+#[test]
+fn what_cannot_be_done_is_said_before_anything_is_written() {
+    let workspace = Workspace::new();
+    refused(&workspace, "fig19", "the paper has no `fig19`");
+    assert!(!workspace.exists("paper"));
+    workspace.write("paper/notes.txt", "mine");
+    refused(&workspace, "fig13", "holds other things");
+    assert_eq!(std::fs::read_dir(workspace.path("paper")).unwrap().count(), 1);
+}
+
+/// Neither a page of somebody's nor a study is replaced by figures, nor figures by a study.
+#[test]
+fn what_others_have_written_stays() {
+    let workspace = Workspace::new();
+    workspace.write("docs/paper.md", "# My manuscript");
+    refused(
+        &workspace,
+        "fig13 --docs docs",
+        "paper.md is not of an earlier call",
+    );
+    assert!(!workspace.exists("paper"));
+    workspace.write("paper/records.jsonl", "");
+    workspace.write("paper/study.toml", "study.replicates = 1");
+    refused(
+        &workspace,
+        "fig13",
+        "holds other things than figures of the paper",
+    );
+    workspace.remove("paper/study.toml");
+    std::fs::create_dir(workspace.path("paper/found")).unwrap();
+    workspace.write("study.toml", "base.slider.blocks = [2, 2]");
+    let output = workspace.output("study study.toml --out paper");
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("holds other things than a study"), "{said}");
+}

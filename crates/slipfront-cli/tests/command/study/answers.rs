@@ -1,0 +1,300 @@
+//! What the tables and pictures say, and on what they do not depend.
+
+use std::collections::BTreeSet;
+
+use super::results::{SMALL, SMALL_RUNS, deviation, mean};
+use crate::support::process::stderr;
+use crate::support::workspace::Workspace;
+
+/// Until the interval of mu_s* is narrow: some points need more than the fewest replicates, none the most.
+fn adaptive(half_width: &str, max: &str) -> String {
+    let until = format!(
+        "until = {{ key = 'static_friction_star', half_width = {half_width}, min = 3, max = {max} }}"
+    );
+    SMALL.replace("replicates = 3", &until)
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bytes() {
+    let workspace = Workspace::with_study(SMALL);
+    workspace.write("adaptive.toml", adaptive("0.012", "12"));
+    for study in ["study", "adaptive"] {
+        for threads in ["1", "2", "7"] {
+            let (file, out) = (format!("{study}.toml"), format!("{study}-{threads}"));
+            workspace.succeed(&format!("study {file} -o {out} --threads {threads}"));
+            workspace
+                .results(&out)
+                .assert_same(&workspace.results(&format!("{study}-1")));
+        }
+    }
+    workspace.results("study-7").assert_each_run_once(SMALL_RUNS);
+    let counts: Vec<usize> = (0..6)
+        .map(|point| {
+            workspace
+                .results("adaptive-2")
+                .numbers(point, "point", "seed")
+                .len()
+        })
+        .collect();
+    assert!(
+        counts.iter().any(|&count| (4..12).contains(&count)),
+        "nothing was decided: {counts:?}"
+    );
+}
+
+#[test]
+fn where_the_interval_stays_wide_it_is_said() {
+    let workspace = Workspace::with_study(&adaptive("1e-6", "4"));
+    let said = workspace.succeed("study study.toml -o wide");
+    assert_eq!(said.matches("interval still too wide").count(), 6, "{said}");
+    let decided: Vec<String> = workspace
+        .results("wide")
+        .table("points.csv")
+        .iter()
+        .filter(|row| row["quantity"] == "static_friction_star")
+        .map(|row| row["narrow_enough"].clone())
+        .collect();
+    assert_eq!(decided, ["false"; 6]);
+}
+
+#[test]
+fn the_same_replicate_has_the_same_surface_at_every_point() {
+    // The first slip of a bare surface is at t* = (8/3) min(mu)/V*, up to a step: it tells the surface.
+    let workspace = Workspace::with_study(
+        "base.slider.blocks = [6, 6]\nbase.time.stop = 'after_onset'\n[study]\nreplicates = 8\n[[axes]]\nkey = 'drive.v_star'\nlist = [0.05, 0.1]",
+    );
+    let results = workspace.study("out");
+    let scaled = |point, v_star: f64| -> Vec<f64> {
+        let times = results.numbers(point, "point", "first_slip_time_star");
+        times.into_iter().map(|time| time * v_star).collect()
+    };
+    let (slow, fast) = (scaled(0, 0.05), scaled(1, 0.1));
+    let step = 0.1 * 0.1;
+    for (slow, fast) in slow.iter().zip(&fast) {
+        assert!((slow - fast).abs() < step, "{slow} {fast}");
+    }
+    assert!(
+        deviation(&slow) > 5.0 * step,
+        "all replicates are alike: {slow:?}"
+    );
+    assert_eq!(
+        results.numbers(1, "point", "seed"),
+        (1..=8).map(f64::from).collect::<Vec<_>>()
+    );
+}
+
+#[test]
+fn reductions_are_paired_and_their_statistics_those_of_the_pairs() {
+    // What a little more speed does is small beside what another surface does.
+    let workspace = Workspace::with_study(
+        "base.slider.blocks = [6, 6]\nbase.time.stop = 'after_onset'\n[study]\nreplicates = 12\n\
+         reference = { drive.v_star = 0.12 }\n[[axes]]\nkey = 'drive.v_star'\nlist = [0.1, 0.08]",
+    );
+    let results = workspace.study("out");
+    let column = |role, name| results.numbers(0, role, name);
+    let (slow, fast) = (
+        column("point", "static_friction_star"),
+        column("reference", "static_friction_star"),
+    );
+    let reduction = |slow: f64, fast: f64| 100.0 * (fast - slow) / fast;
+    let paired: Vec<f64> = slow.iter().zip(&fast).map(|(s, f)| reduction(*s, *f)).collect();
+    assert_eq!(column("point", "static_reduction_percent"), paired);
+
+    let elsewhere = fast.iter().cycle().skip(1);
+    let unpaired: Vec<f64> = slow
+        .iter()
+        .zip(elsewhere)
+        .map(|(s, f)| reduction(*s, *f))
+        .collect();
+    assert!(
+        deviation(&paired) < 0.5 * deviation(&unpaired),
+        "{} {}",
+        deviation(&paired),
+        deviation(&unpaired)
+    );
+
+    let points = results.table("points.csv");
+    let row = points
+        .iter()
+        .find(|row| row["point"] == "0" && row["quantity"] == "static_reduction_percent")
+        .unwrap();
+    let number = |name: &str| -> f64 { row[name].parse().unwrap() };
+    assert_eq!(number("n"), 12.0);
+    // t(11, 97.5 %) of a printed table.
+    let half = 2.200985 * deviation(&paired) / 12f64.sqrt();
+    for (name, expected) in [
+        ("mean", mean(&paired)),
+        ("deviation", deviation(&paired)),
+        ("low", mean(&paired) - half),
+        ("high", mean(&paired) + half),
+        ("min", paired.iter().copied().fold(f64::INFINITY, f64::min)),
+        ("max", paired.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
+    ] {
+        assert!(
+            (number(name) - expected).abs() < 1e-5 * expected.abs(),
+            "{name}: {} {expected}",
+            number(name)
+        );
+    }
+}
+
+#[test]
+fn a_reference_that_points_share_is_run_once() {
+    let workspace = Workspace::with_study(&SMALL.replace(
+        "0.12, 0.14, 0.16, 0.18]",
+        "]\n[[axes]]\nkey = 'texture.0.coverage'\nlist = [17, 34]",
+    ));
+    // 2 speeds, 2 coverages, 3 surfaces; the bare slider knows no coverage.
+    workspace.study("out").assert_each_run_once(12 + 6);
+}
+
+#[test]
+fn a_failed_run_is_told_and_neither_repeated_nor_in_the_way() {
+    let workspace = Workspace::with_study(SMALL);
+    let results = workspace.study("out");
+    // No valid case diverges, so that one is made to have failed: the sixth line is some run of a point.
+    let text = std::fs::read_to_string(results.records()).unwrap();
+    let failed: String = text
+        .lines()
+        .map(|line| {
+            let mut record: serde_json::Value = serde_json::from_str(&line[17..]).unwrap();
+            let id = record["id"].as_str().unwrap();
+            let first = &results.table("runs.csv")[0]["run"];
+            if id.starts_with(first.as_str()) {
+                record["outcome"] = serde_json::json!({ "failed": "block (3, 2) diverged" });
+            }
+            let json = record.to_string();
+            format!("{} {json}\n", &blake3::hash(json.as_bytes()).to_hex()[..16])
+        })
+        .collect();
+    std::fs::write(results.records(), failed).unwrap();
+    let output = workspace.output("study study.toml -o out");
+    assert_eq!(output.status.code(), Some(1));
+    let said = stderr(&output);
+    assert!(
+        said.contains(" runs failed") && said.contains("block (3, 2) diverged"),
+        "{said}"
+    );
+    results.assert_each_run_once(SMALL_RUNS);
+    let rows = results.table("runs.csv");
+    assert_eq!(
+        (rows[0]["status"].as_str(), rows[0]["reason"].as_str()),
+        ("failed", "block (3, 2) diverged")
+    );
+    assert_eq!(
+        rows.iter().filter(|row| row["status"] == "done").count(),
+        SMALL_RUNS - 1
+    );
+    let counts: Vec<String> = results
+        .table("points.csv")
+        .iter()
+        .filter(|row| row["quantity"] == "static_reduction_percent")
+        .map(|row| row["n"].clone())
+        .collect();
+    assert_eq!(counts, ["2", "3", "3", "3", "3", "3"]);
+}
+
+#[test]
+fn a_dry_run_tells_the_plan_and_runs_nothing() {
+    let workspace = Workspace::with_study(SMALL);
+    let said = workspace.succeed("study study.toml --dry-run -o out");
+    for part in [
+        "6 points",
+        "3 replicates",
+        "36 runs",
+        "block-steps, ",
+        " of memory for ",
+        // A line of the records and of the tables for each run.
+        "144.0 KiB on the disk",
+        "drive.v_star: 0.08, 0.1, 0.12, 0.14, 0.16, 0.18",
+    ] {
+        assert!(said.contains(part), "{part} is not in\n{said}");
+    }
+    assert!(!workspace.path("out").exists());
+}
+
+#[test]
+fn pictures_are_those_that_the_axes_ask_for() {
+    let workspace = Workspace::with_study(&SMALL.replace(
+        "0.12, 0.14, 0.16, 0.18]",
+        "]\n[[axes]]\nkey = 'friction.r_star'\nlist = [0.4, 0.5]",
+    ));
+    workspace.write(
+        "names.toml",
+        "base.slider.blocks = [4, 4]\nbase.time.stop = 'after_onset'\n[[axes]]\nname = 'damping'\n\
+         variants = { weak = { slider.omega_star = 0.1 }, strong = { slider.omega_star = 1 } }",
+    );
+    let two_numbers = workspace.study("numbers");
+    for name in ["static_friction_star", "static_reduction_percent"] {
+        for file in [format!("{name}.svg"), format!("{name}_map.png")] {
+            assert!(two_numbers.has(&file), "{file}");
+        }
+    }
+    // A study that has changed keeps no picture of what it was.
+    workspace.succeed("study names.toml -o numbers");
+    assert!(two_numbers.has("static_friction_star.svg"));
+    assert!(
+        !two_numbers.has("static_friction_star_map.svg") && !two_numbers.has("static_reduction_percent.png")
+    );
+}
+
+/// Its mu_s* is that of a run which never slid: a mean of it must not pass for one.
+#[test]
+fn runs_without_a_transition_are_pointed_out() {
+    let workspace = Workspace::with_study(&SMALL.replace("stop = \"after_onset\"", "duration_star = 25"));
+    let said = workspace.succeed("study study.toml -o out");
+    let row = |speed: &str| {
+        let mut rows = said
+            .lines()
+            .filter(|line| line.contains(&format!("v_star = {speed} ")));
+        rows.next().unwrap_or_else(|| panic!("{said}")).to_owned()
+    };
+    assert!(row("0.08").contains("(no transition in 6 of 6 runs)"), "{said}");
+    assert!(!row("0.18").contains("no transition"), "{said}");
+    // References are shared by points.
+    let without: BTreeSet<String> = workspace
+        .results("out")
+        .table("runs.csv")
+        .iter()
+        .filter(|row| row["transition"].starts_with('0'))
+        .map(|row| row["run"].clone())
+        .collect();
+    assert!(without.len() >= 6, "{without:?}");
+    let note = format!("steady level in {} runs", without.len());
+    assert!(said.contains(&note), "{said}");
+}
+
+/// The cases of a study have no other place to say it.
+#[test]
+fn what_deserves_a_word_is_said_once() {
+    let workspace = Workspace::with_study(
+        "base.slider.blocks = [30, 30]\nbase.time.stop = 'after_onset'\n\
+         base.texture = [{ shape = 'cavity', coverage = 5, array = [10, 10] }]\n[study]\nreplicates = 1\n\
+         [[axes]]\nkey = 'texture.0.coverage'\nlist = [0.2, 11]",
+    );
+    for line in ["study study.toml --dry-run", "study study.toml -o out"] {
+        let said = workspace.succeed(line);
+        let note = "of the blocks instead of 0.20 %: it is clipped, overlaps, or is too fine for the blocks \
+                    (at the point texture.0.coverage = 0.2)";
+        assert_eq!(said.matches(note).count(), 1, "{said}");
+        assert_eq!(said.matches("note: ").count(), 1, "{said}");
+    }
+}
+
+/// Few values are soon close together, and none never: neither is an interval that is narrow enough.
+#[test]
+fn runs_without_the_number_that_decides_do_not_count_for_it() {
+    let until = "base.slider.blocks = [4, 4]\nbase.time.stop = 'after_onset'\n\
+                 study.until = { key = 'kinetic_friction_star', half_width = 1, min = 3, max = 50 }\n";
+    let workspace = Workspace::with_study(until);
+    let said = workspace.succeed("study study.toml -o out");
+    assert!(said.contains("none   (interval still too wide)"), "{said}");
+    let results = workspace.results("out");
+    assert_eq!(results.recorded().len(), 3);
+    let rows = results.table("points.csv");
+    let row = rows
+        .iter()
+        .find(|row| row["quantity"] == "kinetic_friction_star")
+        .unwrap();
+    assert_eq!((row["n"].as_str(), row["narrow_enough"].as_str()), ("0", "false"));
+}

@@ -1,0 +1,164 @@
+//! Killed, stopped, without disk: nothing is lost and nothing repeated.
+
+use std::process::{Child, Output};
+use std::thread::sleep;
+use std::time::Duration;
+
+use super::results::{Results, SMALL, SMALL_RUNS};
+use crate::support::process::{program, send, stderr, wait_for};
+use crate::support::workspace::Workspace;
+
+/// Long enough to be interrupted: 90 runs of some ten milliseconds.
+const LONG: &str = r#"
+[base.slider]
+blocks = [14, 14]
+[[base.texture]]
+shape = "cavity"
+coverage = 10
+[study]
+replicates = 5
+reference = { texture = [] }
+[[axes]]
+key = "drive.v_star"
+logspace = [0.03, 0.06, 3]
+[[axes]]
+key = "friction.r_star"
+list = [0.4, 0.5, 0.6]
+"#;
+const LONG_RUNS: usize = 90;
+
+fn start(workspace: &Workspace, out: &str) -> Child {
+    workspace.start(&format!("study study.toml --quiet --out {out}"))
+}
+
+fn count(results: &Results) -> usize {
+    if results.records().exists() {
+        results.recorded().len()
+    } else {
+        0
+    }
+}
+
+/// Waits until `more` runs are recorded beyond those that are.
+fn wait_for_runs(results: &Results, more: usize) {
+    let before = count(results);
+    wait_for("new record of a run", || count(results) >= before + more);
+}
+
+/// A small generator, so that the random moments are the same ones every time.
+fn random(state: &mut u64) -> u64 {
+    *state = state
+        .wrapping_mul(6_364_136_223_846_793_005)
+        .wrapping_add(1_442_695_040_888_963_407);
+    *state >> 33
+}
+
+#[test]
+fn killed_ten_times_the_answer_is_the_same_to_the_byte() {
+    let workspace = Workspace::with_study(LONG);
+    let whole = workspace.study("whole");
+    whole.assert_each_run_once(LONG_RUNS);
+
+    let killed = workspace.results("killed");
+    let mut state = 42;
+    for kill in 0..10 {
+        let mut child = start(&workspace, "killed");
+        if kill > 0 {
+            // The first is killed at any moment, however early.
+            wait_for_runs(&killed, 1 + (random(&mut state) % 5) as usize);
+        }
+        sleep(Duration::from_micros(random(&mut state) % 12_000));
+        child.kill().unwrap();
+        let status = child.wait().unwrap();
+        assert_eq!(status.code(), None, "kill {kill} came too late: {status}");
+    }
+    let before = count(&killed);
+    assert!((9..LONG_RUNS).contains(&before), "{before}");
+    workspace.study("killed").assert_same(&whole);
+    killed.assert_each_run_once(LONG_RUNS);
+}
+
+#[test]
+fn signals_stop_it_with_their_status_and_it_goes_on() {
+    let workspace = Workspace::with_study(LONG);
+    for (signal, status) in [("-INT", 130), ("-TERM", 143)] {
+        let results = workspace.results("stopped");
+        let child = start(&workspace, "stopped");
+        wait_for_runs(&results, 3);
+        // The first of them is no reason to stop.
+        for signal in ["-USR1", signal] {
+            send(&child, signal);
+        }
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(status), "{}", stderr(&output));
+        assert!(
+            stderr(&output).contains("goes on from there"),
+            "{}",
+            stderr(&output)
+        );
+    }
+    let stopped = count(&workspace.results("stopped"));
+    assert!((6..LONG_RUNS).contains(&stopped), "{stopped}");
+    workspace.study("stopped").assert_each_run_once(LONG_RUNS);
+    workspace
+        .results("stopped")
+        .assert_same(&workspace.study("whole"));
+}
+
+/// Runs `study.toml` under a limit of `ulimit`.
+fn limited(workspace: &Workspace, limit: &str, arguments: &str) -> Output {
+    let program = program();
+    workspace.shell(&format!(
+        "ulimit {limit}; exec {program} study study.toml --quiet {arguments}"
+    ))
+}
+
+#[test]
+fn a_full_disk_ends_it_with_a_sentence_and_it_goes_on() {
+    let workspace = Workspace::with_study(SMALL);
+    let output = limited(&workspace, "-f 16", "-o full");
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let said = stderr(&output);
+    assert!(
+        said.contains("records.jsonl") && said.contains("finished runs are safe"),
+        "{said}"
+    );
+    let before = count(&workspace.results("full"));
+    assert!((1..SMALL_RUNS).contains(&before), "{before}");
+    let full = workspace.study("full");
+    full.assert_each_run_once(SMALL_RUNS);
+    full.assert_same(&workspace.study("whole"));
+}
+
+/// As `run` does, and not with an abort in the middle.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_the_system_does_not_give_is_refused_before_it_begins() {
+    let workspace = Workspace::with_study(
+        "base.slider.blocks = [1500, 1500]\nbase.time.duration_star = 1\nstudy.replicates = 1",
+    );
+    let output = limited(&workspace, "-v 200000", "--threads 1 -o out");
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("are available to this process: lower `slider.blocks`"),
+        "{}",
+        stderr(&output)
+    );
+    assert!(!workspace.path("out").exists());
+}
+
+#[test]
+fn two_processes_do_not_share_a_folder() {
+    let workspace = Workspace::with_study(LONG);
+    let mut first = start(&workspace, "shared");
+    wait_for_runs(&workspace.results("shared"), 1);
+    let second = workspace.output("study study.toml -o shared");
+    first.kill().unwrap();
+    first.wait().unwrap();
+    assert_eq!(second.status.code(), Some(2));
+    assert!(
+        stderr(&second).contains("another study is running"),
+        "{}",
+        stderr(&second)
+    );
+}

@@ -1,0 +1,170 @@
+//! What is refused, with which sentence, before anything is run.
+
+use crate::support::process::stderr;
+use crate::support::workspace::Workspace;
+
+#[test]
+fn bad_studies_are_refused_with_a_sentence() {
+    let axis = |text: &str| format!("base.slider.blocks = [4, 4]\n[[axes]]\n{text}");
+    let study = |text: &str| format!("base.slider.blocks = [4, 4]\n[study]\n{text}");
+    for (text, sentence) in [
+        (
+            axis("key = 'drive.v_star'\nlist = []"),
+            "the axis of `drive.v_star` is empty",
+        ),
+        (
+            axis("name = 'shape'\nvariants = {}"),
+            "the axis of `shape` is empty",
+        ),
+        (axis("zip = {}"), "is empty"),
+        (
+            axis("key = 'drive.v_star'"),
+            "needs one of `list`, `linspace` and `logspace`",
+        ),
+        (
+            axis("key = 'drive.v_star'\nlist = [0.1]\nlogspace = [0.1, 1, 2]"),
+            "needs one of",
+        ),
+        (
+            axis("key = 'drive.v_star'\nlist = [0.1]\nname = 'speed'"),
+            "nothing else together",
+        ),
+        (axis("key = 'drive.v_star'\nlist = [0.1, 0.1]"), "stands twice"),
+        (
+            axis("key = 'drive.v_star'\nlogspace = [0, 1, 3]"),
+            "must lie above 0",
+        ),
+        (axis("key = 'drive.v_star'\nlinspace = [0.1, 1, 1]"), "give 2 to"),
+        (axis("key = 'drive.v_star'\nlits = [0.1]"), "did you mean `list`?"),
+        // A hundred lines that would make ten million levels.
+        (
+            axis(&vec!["key = 'drive.v_star'\nlinspace = [0.1, 1, 100000]"; 100].join("\n[[axes]]\n")),
+            "multiply to more than 1000000 points",
+        ),
+        (
+            axis("key = 'drive.v_sar'\nlist = [0.1]"),
+            "did you mean `v_star`?",
+        ),
+        (
+            axis("zip = { 'drive.v_star' = [0.1], 'friction.r_star' = [0.5, 0.6] }"),
+            "equally long",
+        ),
+        (axis("zip = { drive.v_star = [0.1] }"), "stand in quotes"),
+        (
+            axis("name = 'mean'\nvariants = { a = {} }"),
+            "have a column `mean` already",
+        ),
+        (
+            axis("key = 'drive.v_star'\nlist = [0.1]\n[[axes]]\nkey = 'drive.v_star'\nlist = [0.2]"),
+            "stands on two axes",
+        ),
+        (
+            axis(
+                "key = 'texture.0.coverage'\nlist = [5]\n[[axes]]\nname = 'shape'\n\
+                 variants = { groove = { texture = [{ shape = 'groove', coverage = 10 }] } }",
+            ),
+            "leaves nothing of `texture.0.coverage`",
+        ),
+        (
+            axis("key = 'drive.v_star'\nlist = [0.1]\n[[axes]]\nkey = 'drive.speed'\nlist = ['1 mm/s']"),
+            "leaves nothing of `drive.v_star`",
+        ),
+        (
+            axis("key = 'drive.v_star'\nlist = [0.1, -1]"),
+            "the point drive.v_star = -1 is not a valid case",
+        ),
+        (
+            axis("zip = { 'texture.0.coverage' = [5], texture = [[{ shape = 'groove', coverage = 30 }]] }"),
+            "of which one leaves nothing of the other",
+        ),
+        (
+            axis("name = 'a'\nvariants = { b = { drive.v_star = 0.1, drive.speed = '1 mm/s' } }"),
+            "of which one leaves nothing of the other",
+        ),
+        (axis("key = 'drive.v_star '\nlist = [0.1]"), "has a blank in it"),
+        (
+            axis("key = 'output.stride'\nlist = [1, 2]"),
+            "changes what is written and nothing that a run finds",
+        ),
+        (
+            study("reference = { friction.seed = 77 }"),
+            "leave `friction.seed` out of the reference",
+        ),
+        (
+            "[[texture]]\nshape = 'cavity'".to_owned(),
+            "in a study file, write [[base.texture]]",
+        ),
+        (study("replicates = 0"), "must lie between 1 and"),
+        (study("replicate = 2"), "did you mean `replicates`?"),
+        (study("keep = 'al'"), "did you mean \"all\"?"),
+        (study("reference = { textur = [] }"), "did you mean [[texture]]?"),
+        (
+            study("until = { key = 'static_reduction_percent', half_width = 1, max = 9 }"),
+            "needs a `reference`",
+        ),
+        (
+            study("until = { key = 'mu_s', half_width = 0.1, max = 9 }"),
+            "`mu_s` is no number of a summary",
+        ),
+        (
+            study("until = { key = 'static_friction_star', half_width = 0.1, mim = 2, max = 9 }"),
+            "did you mean `min`?",
+        ),
+        (
+            study("until = { key = 'static_friction_star', half_width = 0, max = 9 }"),
+            "must be more than 0",
+        ),
+        (
+            study("until = { key = 'static_friction_star', half_width = 0.1, min = 1, max = 9 }"),
+            "one run has no interval",
+        ),
+        (
+            study("until = { key = 'static_friction_star', half_width = 0.1, confidence = 95, max = 9 }"),
+            "must lie between 0 and 1",
+        ),
+        (
+            study("replicates = 3\nuntil = { key = 'static_friction_star', half_width = 0.1, max = 9 }"),
+            "exclude each other",
+        ),
+        ("[studdy]\nreplicates = 2".to_owned(), "did you mean `study`?"),
+        ("replicates = 2".to_owned(), "it belongs in [study]"),
+        ("base = 'nowhere.toml'".to_owned(), "cannot read nowhere.toml"),
+        ("base = 3".to_owned(), "`base` must be the path of a case file"),
+        (
+            "[base.slider]\nbloks = [4, 4]".to_owned(),
+            "did you mean `blocks`?",
+        ),
+        ("axes = 3".to_owned(), "`axes` must be a list of tables"),
+        ("[study".to_owned(), "not valid TOML"),
+    ] {
+        let workspace = Workspace::with_study(&text);
+        let output = workspace.output("study study.toml -o out");
+        assert_eq!(output.status.code(), Some(2), "{text}\n{}", stderr(&output));
+        assert!(stderr(&output).contains(sentence), "{text}\n{}", stderr(&output));
+        assert!(!workspace.path("out").exists(), "{text}");
+    }
+}
+
+#[test]
+fn a_very_large_study_is_asked_for() {
+    let text = "base.slider.blocks = [2, 2]\nstudy.replicates = 101\n\
+                [[axes]]\nkey = 'drive.v_star'\nlinspace = [0.1, 0.2, 100]";
+    let workspace = Workspace::with_study(text);
+    let output = workspace.output("study study.toml -o out");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        stderr(&output).contains("10100 runs, more than 10000: give --yes"),
+        "{}",
+        stderr(&output)
+    );
+    assert!(!workspace.path("out").exists());
+    assert!(
+        workspace
+            .succeed("study study.toml --dry-run")
+            .contains("10100 runs")
+    );
+    assert_eq!(workspace.output("study slurm study.toml").status.code(), Some(2));
+    // With --yes it starts: its first part, which is small.
+    workspace.succeed("study study.toml --yes --quiet --shard 1/100 -o out");
+    workspace.results("out").assert_each_run_once(101);
+}

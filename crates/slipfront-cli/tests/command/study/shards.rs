@@ -1,0 +1,176 @@
+//! Parts of a study on several machines.
+
+use super::results::{SMALL, SMALL_RUNS};
+use crate::support::process::{stderr, stdout};
+use crate::support::workspace::Workspace;
+
+#[test]
+fn two_shards_merged_are_one_study() {
+    let workspace = Workspace::with_study(SMALL);
+    let whole = workspace.study("whole");
+    for part in ["1", "2"] {
+        workspace.succeed(&format!("study study.toml --shard {part}/2 -o part{part}"));
+        workspace
+            .results(&format!("part{part}"))
+            .assert_each_run_once(SMALL_RUNS / 2);
+    }
+    let missing = workspace.output("study merge part1 -o half");
+    assert_eq!(missing.status.code(), Some(1));
+    assert!(
+        stderr(&missing).contains("18 runs are in none of the shards"),
+        "{}",
+        stderr(&missing)
+    );
+
+    for merged in ["merged", "merged", "half"] {
+        let output = workspace.output(&format!("study merge part1 part2 -o {merged}"));
+        assert!(output.status.success(), "{}", stderr(&output));
+        workspace.results(merged).assert_same(&whole);
+        workspace.results(merged).assert_each_run_once(SMALL_RUNS);
+    }
+    let again = workspace.output("study merge part2 part1 -o merged");
+    assert!(stderr(&again).contains("0 runs taken over"), "{}", stderr(&again));
+    // A united folder is a study folder like any other.
+    workspace.succeed("study merged/study.toml -o merged");
+    workspace.results("merged").assert_each_run_once(SMALL_RUNS);
+}
+
+#[test]
+fn run_folders_that_shards_kept_are_taken_over() {
+    let kept = SMALL
+        .replace("replicates = 3", "replicates = 1\nkeep = 'all'")
+        .replace("[0.08, 0.1, 0.12, 0.14, 0.16, 0.18]", "[0.1, 0.12]");
+    let workspace = Workspace::with_study(&kept);
+    workspace.study("whole");
+    for part in ["1", "2"] {
+        let out = format!("part{part}");
+        workspace.succeed(&format!("study study.toml --shard {part}/2 -o {out}"));
+    }
+    // What kills left: of an earlier try, of a run in the folder, and of one in a shard which another one holds whole.
+    workspace.write("merged/records.jsonl", "");
+    for run in std::fs::read_dir(workspace.path("part2/runs")).unwrap() {
+        let run = run.unwrap().file_name().into_string().unwrap();
+        for out in ["merged", "part1"] {
+            workspace.write(&format!("{out}/runs/{run}/case.toml"), "half of");
+            workspace.write(&format!("{out}/runs/{run}/.slipfront/tmp/AbCdEf"), "half of");
+        }
+    }
+    for _ in 0..2 {
+        workspace.succeed("study merge part1 part2 -o merged");
+        let names = |out: &str| -> std::collections::BTreeSet<_> {
+            let runs = std::fs::read_dir(workspace.path(out).join("runs")).unwrap();
+            runs.map(|entry| entry.unwrap().file_name()).collect()
+        };
+        assert_eq!(names("merged"), names("whole"));
+        for run in names("whole") {
+            for file in ["fields.nc", "summary.json", "case.toml"] {
+                let read = |out: &str| {
+                    std::fs::read(workspace.path(out).join("runs").join(&run).join(file)).unwrap()
+                };
+                assert!(read("merged") == read("whole"), "{run:?}/{file}");
+            }
+            assert!(
+                !workspace
+                    .path("merged/runs")
+                    .join(&run)
+                    .join(".slipfront")
+                    .exists()
+            );
+        }
+    }
+    let verify = workspace.output("verify merged");
+    let said = stdout(&verify);
+    assert!(
+        verify.status.success() && said.contains("4 run folders") && !said.contains("note"),
+        "{said}"
+    );
+}
+
+#[test]
+fn foreign_shards_are_refused() {
+    let workspace = Workspace::with_study(SMALL);
+    workspace.write("other.toml", SMALL.replace("0.08", "0.09"));
+    workspace.succeed("study study.toml --shard 1/2 -o ours");
+    workspace.succeed("study other.toml --shard 2/2 -o theirs");
+    for (shards, out) in [(["ours", "theirs"], "merged"), (["ours", "ours"], "theirs")] {
+        let output = workspace.output(&format!("study merge {} {} -o {out}", shards[0], shards[1]));
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+        assert!(
+            stderr(&output).contains("belongs to another study"),
+            "{}",
+            stderr(&output)
+        );
+    }
+    let output = workspace.output("study merge nowhere -o merged");
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+}
+
+#[test]
+fn adaptive_shards_merged_are_one_study() {
+    let until = "until = { key = 'static_friction_star', half_width = 0.02, min = 3, max = 12 }";
+    let workspace = Workspace::with_study(&SMALL.replace("replicates = 3", until));
+    let whole = workspace.study("whole");
+    for part in ["1/3", "2/3", "3/3"] {
+        workspace.succeed(&format!("study study.toml --shard {part} -o part{}", &part[..1]));
+    }
+    workspace.succeed("study merge part1 part2 part3 -o merged");
+    workspace.results("merged").assert_same(&whole);
+}
+
+#[test]
+fn a_shard_of_slurm_is_read_from_its_environment() {
+    let workspace = Workspace::with_study(SMALL);
+    workspace.succeed("study study.toml --shard 2/3 -o given");
+    let task = |out: &str, id: &str| {
+        let mut command = workspace.command(&format!("study study.toml --shard slurm -o {out}"));
+        command
+            .env("SLURM_ARRAY_TASK_ID", id)
+            .env("SLURM_ARRAY_TASK_COUNT", "3");
+        command
+    };
+    // An array may begin at any number; without one it is taken to begin at 1.
+    task("one", "2").assert().success();
+    task("zero", "1")
+        .env("SLURM_ARRAY_TASK_MIN", "0")
+        .assert()
+        .success();
+    for out in ["one", "zero"] {
+        workspace.results(out).assert_same(&workspace.results("given"));
+    }
+    let outside = task("outside", "4").assert().code(2);
+    let said = stderr(outside.get_output());
+    assert!(said.contains("there is no part 4 of 3"), "{said}");
+    let nowhere = workspace.output("study study.toml --shard slurm -o nowhere");
+    assert_eq!(nowhere.status.code(), Some(2));
+    assert!(
+        stderr(&nowhere).contains("SLURM_ARRAY_TASK_ID is not set"),
+        "{}",
+        stderr(&nowhere)
+    );
+    assert!(!workspace.path("nowhere").exists());
+}
+
+#[test]
+fn more_shards_than_points_leave_some_with_nothing_to_do() {
+    let workspace = Workspace::with_study(SMALL);
+    workspace.succeed("study study.toml --shard 7/7 -o none");
+    assert_eq!(workspace.results("none").recorded().len(), 0);
+    assert_eq!(workspace.results("none").table("runs.csv").len(), 0);
+}
+
+#[test]
+fn a_batch_script_asks_for_no_more_tasks_than_points() {
+    let workspace = Workspace::with_study(SMALL);
+    let script = workspace.succeed("study slurm study.toml --tasks 9 -o there");
+    let out = workspace.path("there");
+    for line in [
+        "#SBATCH --array=1-6\n",
+        "#SBATCH --requeue\n",
+        "--shard \"$SLURM_ARRAY_TASK_ID/6\"",
+        &format!("--out {}/shard-", out.display()),
+    ] {
+        assert!(script.contains(line), "{line} is not in\n{script}");
+    }
+    workspace.write("wrong.toml", SMALL.replace("0.08", "-1"));
+    assert_eq!(workspace.output("study slurm wrong.toml").status.code(), Some(2));
+}

@@ -1,0 +1,7 @@
+//! What the tests of the command share: a folder to work in, and the processes that work there.
+
+// Every test binary uses a part of it.
+#![allow(dead_code)]
+
+pub(crate) mod process;
+pub(crate) mod workspace;

@@ -1,0 +1,59 @@
+//! Processes of the command: started, signalled and waited for.
+
+use std::process::{Child, Command, Output};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// The path of the command under test.
+pub(crate) fn program() -> &'static str {
+    env!("CARGO_BIN_EXE_slipfront")
+}
+
+/// What a process has printed to stderr.
+pub(crate) fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// What a process has printed to stdout.
+pub(crate) fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// Sends a signal such as `-INT` to a process that has not been waited for.
+pub(crate) fn send(child: &Child, signal: &str) {
+    assert!(try_send(child, signal), "{signal} cannot be sent");
+}
+
+/// Sends a signal to a process that may have ended; says whether it was still there.
+pub(crate) fn try_send(child: &Child, signal: &str) -> bool {
+    let kill = Command::new("kill")
+        .args([signal, &child.id().to_string()])
+        .output();
+    kill.unwrap().status.success()
+}
+
+/// Waits until a condition holds, and fails after a minute.
+pub(crate) fn wait_for(what: &str, mut holds: impl FnMut() -> bool) {
+    let began = Instant::now();
+    while !holds() {
+        assert!(began.elapsed() < Duration::from_secs(60), "no {what}");
+        sleep(Duration::from_millis(1));
+    }
+}
+
+/// Waits until the command has installed its signal handlers: a signal that comes before ends it.
+pub(crate) fn wait_for_signal_handlers(child: &Child) {
+    let status = format!("/proc/{}/status", child.id());
+    // SIGXCPU, number 24, is caught last; a process that has ended has no mask.
+    let caught = || {
+        let text = std::fs::read_to_string(&status).unwrap_or_default();
+        let mask = text.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+        let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+        mask.is_none_or(|mask| mask >> 23 & 1 == 1)
+    };
+    if cfg!(target_os = "linux") {
+        wait_for("signals to be caught", caught);
+    } else {
+        sleep(Duration::from_millis(300));
+    }
+}

@@ -1,0 +1,148 @@
+//! A temporary folder in which the command is run.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Output, Stdio};
+
+use assert_cmd::Command;
+use tempfile::TempDir;
+
+use super::process::{program, stderr, stdout};
+
+/// Files by their names, with their bytes.
+pub(crate) type Files = BTreeMap<String, Vec<u8>>;
+
+/// A larger file is not read: it is one of the empty files of a TiB that tests make.
+const MAX_READ_BYTES: u64 = 1 << 30;
+
+/// A temporary folder. Names of files are relative to it, and commands run in it.
+pub(crate) struct Workspace {
+    folder: TempDir,
+}
+
+impl Workspace {
+    pub(crate) fn new() -> Self {
+        Self {
+            folder: TempDir::new().unwrap(),
+        }
+    }
+
+    /// The path of a file or folder.
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// Writes a file, and makes the folders above it.
+    pub(crate) fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
+        let path = self.path(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, bytes).unwrap();
+    }
+
+    pub(crate) fn read(&self, name: &str) -> Vec<u8> {
+        let path = self.path(name);
+        std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    }
+
+    pub(crate) fn read_text(&self, name: &str) -> String {
+        String::from_utf8(self.read(name)).unwrap()
+    }
+
+    pub(crate) fn exists(&self, name: &str) -> bool {
+        self.path(name).exists()
+    }
+
+    /// Removes a file, link or folder, if it is there.
+    pub(crate) fn remove(&self, name: &str) {
+        let path = self.path(name);
+        match path.symlink_metadata() {
+            Ok(metadata) if metadata.is_dir() => std::fs::remove_dir_all(path).unwrap(),
+            Ok(_) => std::fs::remove_file(path).unwrap(),
+            Err(_) => {}
+        }
+    }
+
+    /// Makes a folder that holds exactly these files.
+    pub(crate) fn fill(&self, folder: &str, files: &Files) {
+        self.remove(folder);
+        for (name, bytes) in files {
+            self.write(&format!("{folder}/{name}"), bytes);
+        }
+    }
+
+    /// Every regular file below a folder with its bytes.
+    pub(crate) fn files(&self, folder: &str) -> Files {
+        let mut files = Files::new();
+        collect(&self.path(folder), "", &mut files);
+        files
+    }
+
+    /// The command with its arguments in one line.
+    pub(crate) fn process(&self, line: &str) -> std::process::Command {
+        let mut process = std::process::Command::new(program());
+        process
+            .args(line.split_whitespace())
+            .current_dir(self.folder.path());
+        // Tests may run in a task of Slurm themselves.
+        for name in ["ID", "COUNT", "MIN"] {
+            process.env_remove(format!("SLURM_ARRAY_TASK_{name}"));
+        }
+        process
+    }
+
+    /// The command, to be run and asserted on.
+    pub(crate) fn command(&self, line: &str) -> Command {
+        Command::from_std(self.process(line))
+    }
+
+    /// Runs the command.
+    pub(crate) fn output(&self, line: &str) -> Output {
+        self.process(line).output().unwrap()
+    }
+
+    /// Runs the command, which must succeed; gives what it prints to stdout.
+    pub(crate) fn succeed(&self, line: &str) -> String {
+        let output = self.command(line).assert().success().get_output().clone();
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// Runs the command, which must fail with this status and without results; gives what it prints to stderr.
+    pub(crate) fn fail(&self, line: &str, status: i32) -> String {
+        let output = self.output(line);
+        let errors = stderr(&output);
+        let context = format!("{line}\n{}{errors}", stdout(&output));
+        assert_eq!(output.status.code(), Some(status), "{context}");
+        assert!(output.stdout.is_empty(), "it fails but prints results: {context}");
+        assert!(!errors.contains("panicked"), "{context}");
+        errors
+    }
+
+    /// Starts the command; its stderr can be read, its stdout is lost.
+    pub(crate) fn start(&self, line: &str) -> Child {
+        let mut process = self.process(line);
+        process.stdout(Stdio::null()).stderr(Stdio::piped());
+        process.spawn().unwrap()
+    }
+
+    /// Runs a script of the shell.
+    pub(crate) fn shell(&self, script: &str) -> Output {
+        let mut shell = std::process::Command::new("sh");
+        shell.args(["-c", script]).current_dir(self.folder.path());
+        shell.output().unwrap()
+    }
+}
+
+fn collect(folder: &Path, prefix: &str, files: &mut Files) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let entry = entry.unwrap();
+        let name = format!("{prefix}{}", entry.file_name().into_string().unwrap());
+        let kind = entry.file_type().unwrap();
+        if kind.is_dir() {
+            collect(&entry.path(), &format!("{name}/"), files);
+        } else if kind.is_file() && entry.metadata().unwrap().len() > MAX_READ_BYTES {
+            files.insert(name, b"very large".to_vec());
+        } else if kind.is_file() {
+            files.insert(name, std::fs::read(entry.path()).unwrap());
+        }
+    }
+}

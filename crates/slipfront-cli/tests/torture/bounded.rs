@@ -1,0 +1,112 @@
+//! The command with bounds on its time and memory, and what its end must look like.
+
+use std::process::{Child, Output, Stdio};
+use std::time::Duration;
+
+use assert_cmd::Command;
+
+use crate::support::process::{program, stderr, stdout};
+use crate::support::workspace::{Files, Workspace};
+
+/// The longest that a command may take: all of these end within a second on an idle machine.
+const MAX_SECONDS: u64 = 120;
+/// The most address space that a command may take, in KiB: 1 GiB, of which its threads reserve the greater part without
+/// using it.
+const MAX_MEMORY_KIB: u64 = 1 << 20;
+
+/// How a command ended.
+#[derive(Debug)]
+pub(crate) struct Ended {
+    pub(crate) status: i32,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
+}
+
+impl Workspace {
+    /// Runs a line. A hang, a crash, a panic, too much memory, an unknown status and a failure without a sentence are
+    /// findings.
+    pub(crate) fn run_bounded(&self, line: &str) -> Result<Ended, String> {
+        inspect(line, &self.bounded(&[], line).output().unwrap())
+    }
+
+    /// Runs a line under a watcher, which may let it be killed: then there is no end.
+    pub(crate) fn run_watched(&self, watcher: &[&str], line: &str) -> Result<Option<Ended>, String> {
+        let output = self.bounded(watcher, line).output().unwrap();
+        match output.status.code() {
+            None if output.stderr.is_empty() => Ok(None),
+            _ => inspect(line, &output).map(Some),
+        }
+    }
+
+    /// Runs a line that must succeed.
+    pub(crate) fn succeed_bounded(&self, line: &str) -> Result<Ended, String> {
+        let ended = self.run_bounded(line)?;
+        match ended.status {
+            0 => Ok(ended),
+            status => Err(format!("`{line}` ends with status {status}: {}", ended.stderr)),
+        }
+    }
+
+    /// Starts a line that will be killed.
+    pub(crate) fn start_silent(&self, line: &str) -> Child {
+        let mut process = self.process(line);
+        process.env("TMPDIR", self.path("temporary"));
+        process.stdout(Stdio::null()).stderr(Stdio::null());
+        process.spawn().unwrap()
+    }
+
+    /// Every file below a folder with its bytes; nothing if there is no folder.
+    pub(crate) fn files_if_any(&self, folder: &str) -> Files {
+        if self.path(folder).is_dir() {
+            self.files(folder)
+        } else {
+            Files::new()
+        }
+    }
+
+    /// A line of slipfront under `watcher`, with bounds on memory and time.
+    fn bounded(&self, watcher: &[&str], line: &str) -> Command {
+        let mut command = Command::new("sh");
+        command
+            .args(["-c", &format!("ulimit -v {MAX_MEMORY_KIB} && exec \"$@\""), "sh"])
+            .args(watcher)
+            .arg(program())
+            .args(line.split_whitespace())
+            .current_dir(self.path(""))
+            .env("TMPDIR", self.path("temporary"))
+            .env_remove("SLURM_ARRAY_TASK_ID")
+            .env("RUST_BACKTRACE", "0")
+            .timeout(Duration::from_secs(MAX_SECONDS));
+        command
+    }
+}
+
+fn inspect(line: &str, output: &Output) -> Result<Ended, String> {
+    let (stdout, stderr) = (stdout(output), stderr(output));
+    let Some(status) = output.status.code() else {
+        return Err(format!("`{line}` ends by {}: {stderr}", output.status));
+    };
+    let sound = match status {
+        0 => true,
+        1 | 2 => stderr.lines().any(|line| line.starts_with("error: ")),
+        _ => false,
+    };
+    let alarming = [
+        "panicked",
+        "RUST_BACKTRACE",
+        "memory allocation of",
+        "fault of the program",
+    ];
+    if !sound
+        || alarming
+            .iter()
+            .any(|word| stderr.contains(word) || stdout.contains(word))
+    {
+        return Err(format!("`{line}` ends with status {status}: {stdout}{stderr}"));
+    }
+    Ok(Ended {
+        status,
+        stdout,
+        stderr,
+    })
+}

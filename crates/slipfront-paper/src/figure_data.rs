@@ -1,0 +1,85 @@
+//! What is measured for a figure: numbers, pictures and tables.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::drawing::Drawing;
+use crate::number::Number;
+
+/// A table of the report.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Table {
+    /// Name of its file.
+    pub name: String,
+    /// Its caption.
+    pub caption: String,
+    /// Names of its columns.
+    pub header: Vec<String>,
+    /// Its rows.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// A picture of a figure.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Panel {
+    /// Name of its files.
+    pub name: String,
+    /// Its caption.
+    pub caption: String,
+    /// Its contents.
+    pub drawing: Drawing,
+}
+
+/// All data of a figure.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct FigureData {
+    /// Measured numbers by name; claims are judged by them.
+    pub numbers: BTreeMap<String, Number>,
+    /// Pictures.
+    pub panels: Vec<Panel>,
+    /// Tables.
+    pub tables: Vec<Table>,
+}
+
+impl FigureData {
+    /// Adds a number.
+    pub(super) fn number(&mut self, name: &str, number: Number) {
+        self.numbers.insert(name.to_owned(), number);
+    }
+
+    /// Adds a single value.
+    pub(super) fn value(&mut self, name: &str, value: f64) {
+        self.number(name, Number::exact(value));
+    }
+
+    /// Adds the mean of values, one for each surface.
+    pub(super) fn values(&mut self, name: &str, values: &[f64]) {
+        self.number(name, Number::of(values));
+    }
+
+    /// Adds a picture.
+    pub(super) fn panel(&mut self, name: &str, caption: &str, drawing: Drawing) {
+        self.panels.push(Panel {
+            name: name.to_owned(),
+            caption: caption.to_owned(),
+            drawing,
+        });
+    }
+
+    /// Adds a table.
+    pub(super) fn table<const COLUMNS: usize>(
+        &mut self,
+        name: &str,
+        caption: &str,
+        header: [&str; COLUMNS],
+        rows: impl IntoIterator<Item = [String; COLUMNS]>,
+    ) {
+        self.tables.push(Table {
+            name: name.to_owned(),
+            caption: caption.to_owned(),
+            header: header.map(str::to_owned).to_vec(),
+            rows: rows.into_iter().map(|row| row.to_vec()).collect(),
+        });
+    }
+}

@@ -1,0 +1,86 @@
+//! Tables of claims and numbers as CSV.
+
+use crate::claims::ClaimResult;
+use crate::error::PaperError;
+use crate::paper::Paper;
+
+/// Rows as CSV.
+pub(super) fn csv<'a>(rows: impl Iterator<Item = &'a Vec<String>>) -> Result<Vec<u8>, PaperError> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        table.write_record(row)?;
+    }
+    table
+        .into_inner()
+        .map_err(|error| csv::Error::from(error.into_error()).into())
+}
+
+/// `claims.csv`: a row for each claim.
+pub(super) fn claims_csv(paper: &Paper) -> Result<Vec<u8>, PaperError> {
+    let header = [
+        "number",
+        "place",
+        "claim",
+        "measured",
+        "value",
+        "low",
+        "high",
+        "unit",
+        "criterion",
+        "verdict",
+        "expected",
+        "value_by_paper_step",
+        "verdict_by_paper_step",
+        "deviation",
+        "remark",
+    ];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    for (index, result) in paper.results.iter().enumerate() {
+        let ClaimResult { claim, number, .. } = result;
+        let other = paper.results_by_paper_step.get(index);
+        let [low, high] = number
+            .interval
+            .map_or_else(Default::default, |ends| ends.map(|end| format!("{end:?}")));
+        rows.push(vec![
+            claim.number.to_string(),
+            claim.place.clone(),
+            claim.claim.clone(),
+            claim.measured.clone(),
+            format!("{:?}", number.value),
+            low,
+            high,
+            claim.unit.clone(),
+            claim.criterion(),
+            result.verdict.words().to_owned(),
+            claim.expected.words().to_owned(),
+            other.map_or(String::new(), |other| format!("{:?}", other.number.value)),
+            other.map_or(String::new(), |other| other.verdict.words().to_owned()),
+            claim.deviation.clone().unwrap_or_default(),
+            claim.remark.clone(),
+        ]);
+    }
+    csv(rows.iter())
+}
+
+/// Every number that was measured, those of claims among them.
+pub(super) fn numbers_csv(paper: &Paper) -> Result<Vec<u8>, PaperError> {
+    let mut rows = vec![["quantity", "value", "low", "high"].map(str::to_owned).to_vec()];
+    for (name, number) in paper.figures.iter().flat_map(|(_, data)| &data.numbers) {
+        let [_, low, high] = number.ends();
+        let interval = [low, high].map(|end| {
+            if end.is_nan() {
+                String::new()
+            } else {
+                format!("{end:?}")
+            }
+        });
+        rows.push(
+            [
+                vec![name.clone(), format!("{:?}", number.value)],
+                interval.to_vec(),
+            ]
+            .concat(),
+        );
+    }
+    csv(rows.iter())
+}

@@ -1,0 +1,81 @@
+//! Writes the results folder and the page of `docs/validation`.
+
+use std::path::{Path, PathBuf};
+
+use super::drawn::{Drawn, draw};
+use super::markdown::page;
+use super::tables::{claims_csv, csv, numbers_csv};
+use super::{html, markdown};
+use crate::error::PaperError;
+use crate::paper::Paper;
+use slipfront_case::disk::{begins_with, write_atomic};
+use slipfront_run::run_folder::error::FolderError;
+
+/// Writes pictures, tables and the report to a folder.
+///
+/// # Errors
+/// When a picture cannot be drawn or a file not be written.
+pub fn write(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
+    let mut drawn = Vec::new();
+    for (_, data) in &paper.figures {
+        let pictures = draw(data)?;
+        for (panel, Drawn { name, picture, .. }) in data.panels.iter().zip(&pictures) {
+            write_file(folder, &format!("{name}.svg"), picture.svg.as_bytes())?;
+            write_file(folder, &format!("{name}.png"), &picture.png)?;
+            write_file(folder, &format!("{name}.csv"), &panel.drawing.csv()?)?;
+        }
+        for table in &data.tables {
+            let rows = [&table.header].into_iter().chain(&table.rows);
+            write_file(folder, &format!("{}.csv", table.name), &csv(rows)?)?;
+        }
+        drawn.push(pictures);
+    }
+    write_file(folder, "claims.csv", &claims_csv(paper)?)?;
+    write_file(folder, "numbers.csv", &numbers_csv(paper)?)?;
+    write_file(folder, "report.html", html::page(paper, &drawn).as_bytes())
+}
+
+/// The first file of others that [`write_docs`] would replace in a folder.
+pub fn foreign_docs(folder: &Path) -> Option<PathBuf> {
+    let page = folder.join(PAGE);
+    if begins_with(&page, markdown::TITLE.as_bytes()) {
+        return None;
+    }
+    let pictures = markdown::SHOWN.iter().map(|name| folder.join(docs_picture(name)));
+    [page]
+        .into_iter()
+        .chain(pictures)
+        .find(|path| path.symlink_metadata().is_ok())
+}
+
+/// The page of the claims.
+const PAGE: &str = "paper.md";
+
+/// The path of a picture of that page.
+fn docs_picture(name: &str) -> String {
+    format!("images/paper-{name}.png")
+}
+
+/// Writes the claims table as `paper.md` with some of its pictures: what stands in `docs/validation`.
+///
+/// # Errors
+/// When a picture cannot be drawn or a file not be written.
+pub fn write_docs(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
+    // First, since it tells that the pictures are of an earlier call.
+    write_file(folder, PAGE, page(paper).as_bytes())?;
+    for (_, data) in &paper.figures {
+        for Drawn { name, picture, .. } in draw(data)? {
+            if markdown::SHOWN.contains(&name.as_str()) {
+                write_file(folder, &docs_picture(&name), &picture.png)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn write_file(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), PaperError> {
+    let path = folder.join(name);
+    let parent = path.parent().unwrap_or(folder).to_owned();
+    let written = std::fs::create_dir_all(parent).and_then(|()| write_atomic(&path, bytes));
+    written.map_err(|source| FolderError::Write { path, source }.into())
+}

@@ -1,0 +1,197 @@
+//! A run of a figure, and what is measured on it.
+
+use std::sync::Arc;
+
+use slipfront::observe::{CurvePoint, Frame};
+
+use crate::error::PaperError;
+use crate::statistics::deviation;
+use slipfront::observe::Field;
+use slipfront_case::case::{Case, Snapshots};
+use slipfront_plot::{FieldMap, FrictionCurve};
+use slipfront_run::pictures::marked_curve;
+use slipfront_run::running::Record;
+
+/// A case whose fields are kept at these times alone.
+pub(super) fn seen_at(mut case: Case, times_star: &[f64]) -> Case {
+    let step = |time: &f64| (time / case.time_plan.dt_star).round() as u64;
+    let mut steps: Vec<u64> = times_star.iter().map(step).collect();
+    steps.dedup();
+    case.output.snapshots = Snapshots::At(steps);
+    case
+}
+
+/// Maps of contact stress at the peaks of several runs.
+pub(super) fn peak_maps(runs: &[Run], labels: &[String]) -> Result<Vec<FieldMap>, PaperError> {
+    let labelled = runs.iter().zip(labels);
+    labelled
+        .map(|(run, label)| run.stress_map(run.instant('C')?, label))
+        .collect()
+}
+
+/// A case and the record of its run.
+pub(super) struct Run {
+    pub(super) case: Arc<Case>,
+    pub(super) record: Record,
+}
+
+impl Run {
+    /// The frame of one of the instants A-F.
+    pub(super) fn instant(&self, letter: char) -> Result<&Frame, PaperError> {
+        let found = self
+            .record
+            .frames
+            .iter()
+            .find(|(letters, _)| letters.contains(letter));
+        found
+            .map(|(_, frame)| frame)
+            .ok_or_else(|| self.lacks(&format!("instant {letter}")))
+    }
+
+    /// The values of a field in a frame of this run.
+    pub(super) fn field<'f>(&self, frame: &'f Frame, field: Field) -> Result<&'f [f32], PaperError> {
+        let index = self.case.output.fields.iter().position(|&name| name == field);
+        let values = index.and_then(|index| frame.values.get(index));
+        values.map(Vec::as_slice).ok_or_else(|| self.lacks("such field"))
+    }
+
+    /// A map of tau_c*, NaN where the slider is textured.
+    pub(super) fn stress_map(&self, frame: &Frame, label: &str) -> Result<FieldMap, PaperError> {
+        let largest = self.record.contact_stress_max as f32;
+        let values = self.field(frame, Field::ContactStress)?;
+        let textured = &self.case.model.surface.textured;
+        let scaled = values.iter().zip(textured);
+        Ok(FieldMap {
+            note: format!(
+                "t* = {:.1}, \u{3bc}* = {:.3}",
+                frame.time_star, frame.point.mu_star
+            ),
+            values: scaled
+                .map(|(value, &textured)| if textured { f32::NAN } else { value / largest })
+                .collect(),
+            ..self.blank_map(label)
+        })
+    }
+
+    /// A map of this lattice without values.
+    pub(super) fn blank_map(&self, label: &str) -> FieldMap {
+        let lattice = &self.case.model.lattice;
+        FieldMap {
+            label: label.to_owned(),
+            nx: lattice.nx,
+            ny: lattice.ny,
+            textured: self.case.model.surface.textured.clone(),
+            ..FieldMap::default()
+        }
+    }
+
+    /// The curve with its peak, its kinetic window and the letters of its instants.
+    pub(super) fn lettered_curve(&self, label: &str) -> FrictionCurve {
+        let rows = &self.record.rows;
+        FrictionCurve {
+            time_star: rows.iter().map(|row| row.time_star).collect(),
+            mu_star: rows.iter().map(|row| row.point.mu_star).collect(),
+            sliding_percent: rows.iter().map(|row| row.point.sliding_percent).collect(),
+            ..marked_curve(label.to_owned(), &self.record.summary)
+        }
+    }
+
+    /// The curve with its peak and its kinetic window.
+    pub(super) fn curve(&self, label: &str) -> FrictionCurve {
+        FrictionCurve {
+            instants: Vec::new(),
+            ..self.lettered_curve(label)
+        }
+    }
+
+    /// A quantity of the curve at a time, interpolated linearly between two rows.
+    pub(super) fn at(&self, time_star: f64, value: fn(&CurvePoint) -> f64) -> f64 {
+        let rows = &self.record.rows;
+        let after = rows
+            .partition_point(|row| row.time_star < time_star)
+            .min(rows.len() - 1);
+        let (a, b) = (&rows[after.saturating_sub(1)], &rows[after]);
+        let span = b.time_star - a.time_star;
+        let share = if span > 0.0 {
+            (time_star - a.time_star) / span
+        } else {
+            0.0
+        };
+        value(&a.point) + share.clamp(0.0, 1.0) * (value(&b.point) - value(&a.point))
+    }
+
+    /// The largest difference of a quantity from that of another run, over the rows of this run in a window of time.
+    pub(super) fn largest_difference(
+        &self,
+        other: &Run,
+        [from, until]: [f64; 2],
+        value: fn(&CurvePoint) -> f64,
+    ) -> f64 {
+        let rows = self.record.rows.iter();
+        rows.filter(|row| (from..=until).contains(&row.time_star))
+            .map(|row| (value(&row.point) - other.at(row.time_star, value)).abs())
+            .fold(0.0, f64::max)
+    }
+
+    /// mu* in each row of a window of time.
+    pub(super) fn friction_between(&self, from: f64, until: f64) -> Vec<f64> {
+        let rows = self.record.rows.iter();
+        rows.filter(|row| (from..=until).contains(&row.time_star))
+            .map(|row| row.point.mu_star)
+            .collect()
+    }
+
+    /// The window of kinetic friction.
+    pub(super) fn kinetic_window(&self) -> Result<[f64; 2], PaperError> {
+        let window = self.record.summary.kinetic_window_star;
+        window.ok_or_else(|| self.lacks("kinetic window"))
+    }
+
+    /// Standard deviation of mu* in the window of kinetic friction.
+    pub(super) fn kinetic_fluctuation(&self) -> Result<f64, PaperError> {
+        let [from, until] = self.kinetic_window()?;
+        Ok(deviation(&self.friction_between(from, until)))
+    }
+
+    /// t* of the first slip of any block.
+    pub(super) fn first_slip(&self) -> Result<f64, PaperError> {
+        let time = self.record.summary.first_slip_time_star;
+        time.ok_or_else(|| self.lacks("slip"))
+    }
+
+    /// Times of the first slip of the blocks in contact, in rising order.
+    pub(super) fn slip_times(&self) -> Vec<f64> {
+        let times = self.record.first_slip_time_star.iter().copied();
+        let mut times: Vec<f64> = times.filter(|time| !time.is_nan()).collect();
+        times.sort_by(f64::total_cmp);
+        times
+    }
+
+    /// t* at which this share of the blocks in contact has slipped.
+    pub(super) fn time_of_share(&self, share: f64) -> Result<f64, PaperError> {
+        let times = self.slip_times();
+        let contact = self.case.model.surface.n_contact() as f64;
+        let index = ((share * contact).ceil() as usize).saturating_sub(1);
+        times
+            .get(index)
+            .copied()
+            .ok_or_else(|| self.lacks(&format!("slip of {share} of all blocks")))
+    }
+
+    fn lacks(&self, what: &str) -> PaperError {
+        PaperError::Lacks {
+            file: self.case.name.clone(),
+            what: what.to_owned(),
+        }
+    }
+}
+
+/// mu* of a point of a curve.
+pub(super) fn mu_star(point: &CurvePoint) -> f64 {
+    point.mu_star
+}
+
+/// N* of a point of a curve.
+pub(super) fn sliding_percent(point: &CurvePoint) -> f64 {
+    point.sliding_percent
+}

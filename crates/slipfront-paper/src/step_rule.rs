@@ -1,0 +1,10 @@
+//! The two ways in which the time step of the paper's cases is chosen.
+
+/// How the time step is chosen where a case does not say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepRule {
+    /// `dt* = 0.1`.
+    Auto,
+    /// The paper's, `dt* = (2/3) V*` (Eq. 13).
+    Paper,
+}

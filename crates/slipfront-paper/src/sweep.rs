@@ -1,0 +1,94 @@
+//! A study of the paper, its results by the levels of its axes, and the cases of its runs.
+
+use slipfront::Stop;
+
+use crate::error::PaperError;
+use crate::number::Number;
+use slipfront_case::case::Case;
+use slipfront_run::study::{Plan, Quantity, RetainRuns, Role, RunKey, StudyResults};
+
+/// A study and its results.
+pub(super) struct Sweep {
+    pub(super) plan: Plan,
+    pub(super) results: StudyResults,
+}
+
+impl Sweep {
+    /// Numbers of an axis; on an axis of names, the positions of its levels.
+    pub(super) fn axis(&self, axis: usize) -> Vec<f64> {
+        let levels = self.plan.axes[axis].levels.iter().enumerate();
+        levels
+            .map(|(place, level)| level.number.unwrap_or(place as f64))
+            .collect()
+    }
+
+    /// Names of the levels of an axis.
+    pub(super) fn names(&self, axis: usize) -> Vec<String> {
+        let levels = self.plan.axes[axis].levels.iter();
+        levels.map(|level| level.labels.join(" ")).collect()
+    }
+
+    /// Position of the point with these levels.
+    pub(super) fn point(&self, levels: &[usize]) -> usize {
+        self.plan
+            .axes
+            .iter()
+            .zip(levels)
+            .fold(0, |index, (axis, level)| index * axis.levels.len() + level)
+    }
+
+    /// A quantity at the point with these levels: one value for each surface.
+    pub(super) fn values(&self, levels: &[usize], quantity: &str) -> Vec<f64> {
+        let point = self.point(levels);
+        let (replicates, quantity) = (
+            0..self.results.points[point].replicates,
+            Quantity::named(quantity),
+        );
+        replicates
+            .filter_map(|replicate| self.results.value(point, replicate, quantity?))
+            .collect()
+    }
+
+    /// Mean and interval of a quantity over the surfaces of a point.
+    pub(super) fn number(&self, levels: &[usize], quantity: &str) -> Number {
+        Number::of(&self.values(levels, quantity))
+    }
+
+    /// Mean and interval of a quantity along the first axis, at these levels of the other axes.
+    pub(super) fn numbers(&self, others: &[usize], quantity: &str) -> Vec<Number> {
+        (0..self.plan.axes[0].levels.len())
+            .map(|level| self.number(&[&[level], others].concat(), quantity))
+            .collect()
+    }
+
+    /// The case of a run of a point, to be run to its end with its curve and fields.
+    pub(super) fn case(&self, levels: &[usize], replicate: usize) -> Result<Case, PaperError> {
+        let run = RunKey {
+            point: self.point(levels),
+            replicate,
+            role: Role::Point,
+        };
+        // A plan that keeps its runs gives their cases with curves and fields.
+        let mut plan = self.plan.clone();
+        plan.settings.keep = RetainRuns::All;
+        let mut case = plan.case(run)?;
+        case.name = format!("{}, {}", plan.name, plan.describe(&plan.points[run.point]));
+        // The largest contact stress of all, which maps are scaled by, may come late.
+        case.time_plan.stop = Stop::at_step(case.time_plan.last_step);
+        Ok(case)
+    }
+
+    /// The cases of each level of the only axis, on the first surface.
+    pub(super) fn first_cases(&self) -> Result<Vec<Case>, PaperError> {
+        (0..self.plan.axes[0].levels.len())
+            .map(|level| self.case(&[level], 0))
+            .collect()
+    }
+
+    /// Cases of all surfaces of a point.
+    pub(super) fn cases(&self, levels: &[usize]) -> Result<Vec<Case>, PaperError> {
+        (0..self.plan.settings.max_replicates())
+            .map(|replicate| self.case(levels, replicate))
+            .collect()
+    }
+}

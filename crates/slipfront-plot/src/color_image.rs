@@ -1,0 +1,59 @@
+//! Images whose pixels are levels of the colour ramp: maps and colour bars.
+
+use crate::geometry::Area;
+use crate::style::{BLANK, Rgb, ramp};
+
+/// An image whose pixels are levels of the colour ramp.
+pub(crate) struct Image {
+    pub(crate) area: Area,
+    pub(crate) columns: usize,
+    /// Row by row, the uppermost first; see [`level`].
+    pub(crate) levels: Vec<u8>,
+}
+
+impl Image {
+    pub(crate) fn rows(&self) -> usize {
+        self.levels.len() / self.columns
+    }
+}
+
+/// The level of a blank pixel.
+const LEVEL_BLANK: u8 = 255;
+
+/// The level of a value from 0 to 1; NaN is blank.
+pub(crate) fn level(value: f32) -> u8 {
+    if value.is_nan() {
+        LEVEL_BLANK
+    } else {
+        (value.clamp(0.0, 1.0) * f32::from(LEVEL_BLANK - 1)).round() as u8
+    }
+}
+
+pub(crate) fn level_colour(level: u8) -> Rgb {
+    if level == LEVEL_BLANK {
+        BLANK
+    } else {
+        ramp(f64::from(level) / f64::from(LEVEL_BLANK - 1))
+    }
+}
+
+/// The colours of all levels.
+pub(crate) fn palette() -> Vec<Rgb> {
+    (0..=u8::MAX).map(level_colour).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_span_the_ramp_and_leave_one_for_blank() {
+        assert_eq!(
+            [0.0, 1.0, 2.0, -1.0, f32::NAN, f32::INFINITY].map(level),
+            [0, 254, 254, 0, 255, 254]
+        );
+        assert_eq!(level_colour(0), [0x44, 0x01, 0x54]);
+        assert_eq!(level_colour(254), [0xfd, 0xe7, 0x25]);
+        assert_eq!(level_colour(255), BLANK);
+    }
+}

@@ -1,0 +1,339 @@
+//! A canvas as pixels, drawn by `tiny-skia`. Its features `simd` and `std` are off, so that every machine computes the same bits.
+
+use skrifa::outline::OutlinePen;
+use tiny_skia::{
+    Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Rect, Shader, Stroke,
+    Transform,
+};
+
+use crate::canvas::{Canvas, Element, Primitive};
+use crate::color_image::{Image, palette};
+use crate::font;
+use crate::geometry::Point;
+use crate::style::Rgb;
+
+/// Red, green and blue of every pixel, row by row; none if there are too many for the memory.
+pub(crate) fn rgb(canvas: &Canvas) -> Option<Vec<u8>> {
+    let mut pixmap = Pixmap::new(canvas.width as u32, canvas.height as u32)?;
+    pixmap.fill(Color::WHITE);
+    for image in &canvas.images {
+        draw_image(&mut pixmap, image);
+    }
+    for element in &canvas.elements {
+        draw(&mut pixmap, element);
+    }
+    let pixels = pixmap.pixels().iter();
+    Some(
+        pixels
+            .flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()])
+            .collect(),
+    )
+}
+
+/// Draws an element; one without extent leaves no trace.
+fn draw(
+    pixmap: &mut Pixmap,
+    Element {
+        primitive,
+        colour,
+        opacity,
+    }: &Element,
+) {
+    let [red, green, blue] = *colour;
+    let paint = Paint {
+        shader: Shader::SolidColor(Color::from_rgba8(
+            red,
+            green,
+            blue,
+            (opacity * 255.0).round() as u8,
+        )),
+        ..Paint::default()
+    };
+    let path = match primitive {
+        Primitive::Line { points, closed, .. } => path(points, *closed),
+        Primitive::Polygon(points) => path(points, true),
+        Primitive::Rectangle(area) => Rect::from_xywh(
+            area.x as f32,
+            area.y as f32,
+            area.width as f32,
+            area.height as f32,
+        )
+        .map(PathBuilder::from_rect),
+        Primitive::Disc { centre, radius } => {
+            PathBuilder::from_circle(centre.0 as f32, centre.1 as f32, *radius as f32)
+        }
+        Primitive::Letters {
+            text,
+            size,
+            at,
+            upwards,
+        } => letters(text, f64::from(*size), *at, *upwards),
+    };
+    let Some(path) = path else { return };
+    if let Primitive::Line { width, .. } = primitive {
+        let stroke = Stroke {
+            width: *width as f32,
+            line_cap: LineCap::Butt,
+            line_join: LineJoin::Round,
+            ..Stroke::default()
+        };
+        pixmap.stroke_path(&path, &paint, &stroke, Transform::identity(), None);
+    } else {
+        pixmap.fill_path(&path, &paint, FillRule::Winding, Transform::identity(), None);
+    }
+}
+
+/// A path through points; none through fewer than two, or where one is no number.
+fn path(points: &[Point], closed: bool) -> Option<Path> {
+    let mut path = PathBuilder::new();
+    for &(x, y) in points {
+        if path.is_empty() {
+            path.move_to(x as f32, y as f32);
+        } else {
+            path.line_to(x as f32, y as f32);
+        }
+    }
+    if closed {
+        path.close();
+    }
+    path.finish()
+}
+
+/// The outlines of letters on a baseline.
+fn letters(text: &str, size: f64, at: Point, upwards: bool) -> Option<Path> {
+    let mut pen = Pen {
+        outline: PathBuilder::new(),
+        size: size as f32,
+        origin: (0.0, 0.0),
+        upwards,
+    };
+    let mut along = 0.0;
+    for character in text.chars() {
+        let (x, y) = if upwards {
+            (at.0, at.1 - along)
+        } else {
+            (at.0 + along, at.1)
+        };
+        pen.origin = (x as f32, y as f32);
+        font::draw(character, &mut pen);
+        along += font::advance(character) * size;
+    }
+    pen.outline.finish()
+}
+
+/// Puts the outline of a letter, y upwards and for a font size of 1, into a path.
+struct Pen {
+    outline: PathBuilder,
+    size: f32,
+    origin: (f32, f32),
+    upwards: bool,
+}
+
+impl Pen {
+    fn place(&self, x: f32, y: f32) -> (f32, f32) {
+        let (along, above) = (self.size * x, self.size * y);
+        if self.upwards {
+            (self.origin.0 - above, self.origin.1 - along)
+        } else {
+            (self.origin.0 + along, self.origin.1 - above)
+        }
+    }
+}
+
+impl OutlinePen for Pen {
+    fn move_to(&mut self, x: f32, y: f32) {
+        let (x, y) = self.place(x, y);
+        self.outline.move_to(x, y);
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        let (x, y) = self.place(x, y);
+        self.outline.line_to(x, y);
+    }
+
+    fn quad_to(&mut self, cx: f32, cy: f32, x: f32, y: f32) {
+        let ((cx, cy), (x, y)) = (self.place(cx, cy), self.place(x, y));
+        self.outline.quad_to(cx, cy, x, y);
+    }
+
+    fn curve_to(&mut self, ax: f32, ay: f32, bx: f32, by: f32, x: f32, y: f32) {
+        let ((ax, ay), (bx, by), (x, y)) = (self.place(ax, ay), self.place(bx, by), self.place(x, y));
+        self.outline.cubic_to(ax, ay, bx, by, x, y);
+    }
+
+    fn close(&mut self) {
+        self.outline.close();
+    }
+}
+
+/// A pixel of an image takes the mean of so many points along each side.
+const SAMPLES: usize = 4;
+
+/// Draws an image onto whole pixels. Where cells meet within a pixel, their colours are mixed.
+fn draw_image(pixmap: &mut Pixmap, image: &Image) {
+    let (left, top) = (image.area.x.round() as usize, image.area.y.round() as usize);
+    let (right, bottom) = (
+        image.area.right().round() as usize,
+        image.area.bottom().round() as usize,
+    );
+    let pitch = pixmap.width() as usize;
+    let (width, height) = (
+        right.min(pitch) - left,
+        bottom.min(pixmap.height() as usize) - top,
+    );
+    let colours = palette();
+    let columns = cells(image.columns, width);
+    let rows = cells(image.rows(), height);
+    let mut row_sums = vec![[0; 3]; width];
+    let mut summed = None;
+    for (y, rows) in rows.chunks_exact(SAMPLES).enumerate() {
+        let mut sums = vec![[0; 3]; width];
+        for &row in rows {
+            if summed != Some(row) {
+                sum_row(
+                    &mut row_sums,
+                    &image.levels[row * image.columns..],
+                    &columns,
+                    &colours,
+                );
+                summed = Some(row);
+            }
+            for (sum, row_sum) in sums.iter_mut().zip(&row_sums) {
+                for (channel, part) in sum.iter_mut().zip(row_sum) {
+                    *channel += part;
+                }
+            }
+        }
+        let start = (top + y) * pitch + left;
+        for (pixel, sum) in pixmap.pixels_mut()[start..start + width].iter_mut().zip(&sums) {
+            let count = (SAMPLES * SAMPLES) as u16;
+            let [red, green, blue] = sum.map(|channel: u16| ((channel + count / 2) / count) as u8);
+            *pixel = ColorU8::from_rgba(red, green, blue, 255).premultiply();
+        }
+    }
+}
+
+/// The cell at every sample along a side.
+fn cells(count: usize, pixels: usize) -> Vec<usize> {
+    let samples = pixels * SAMPLES;
+    (0..samples)
+        .map(|sample| (2 * sample + 1) * count / (2 * samples))
+        .collect()
+}
+
+/// Adds up the colours of the samples of every pixel of a row.
+fn sum_row(sums: &mut [[u16; 3]], levels: &[u8], columns: &[usize], colours: &[Rgb]) {
+    for (sum, columns) in sums.iter_mut().zip(columns.chunks_exact(SAMPLES)) {
+        *sum = [0; 3];
+        for &column in columns {
+            let colour = colours[usize::from(levels[column])];
+            for (channel, value) in sum.iter_mut().zip(colour) {
+                *channel += u16::from(value);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Align, Area};
+    use crate::style::{BLACK, CURVES, WHITE};
+    use crate::text::Text;
+
+    /// The colours at some points of a small picture.
+    fn pixels<const COUNT: usize>(draw: impl Fn(&mut Canvas), at: [(usize, usize); COUNT]) -> [Rgb; COUNT] {
+        let mut canvas = Canvas::new(40.0, 30.0);
+        draw(&mut canvas);
+        let rgb = rgb(&canvas).unwrap();
+        at.map(|(x, y)| {
+            let start = (y * 40 + x) * 3;
+            [rgb[start], rgb[start + 1], rgb[start + 2]]
+        })
+    }
+
+    const AREA: Area = Area {
+        x: 10.0,
+        y: 10.0,
+        width: 8.0,
+        height: 6.0,
+    };
+
+    #[test]
+    fn a_line_is_as_wide_as_asked_and_ends_where_it_ends() {
+        let line = |canvas: &mut Canvas| canvas.line((10.0, 10.0), (20.0, 10.0), 2.0, BLACK);
+        let found = pixels(line, [(10, 9), (19, 10), (9, 9), (20, 10), (15, 8), (15, 11)]);
+        assert_eq!(found, [BLACK, BLACK, WHITE, WHITE, WHITE, WHITE]);
+        // Half a pixel is half as dark.
+        let fine = |canvas: &mut Canvas| canvas.line((10.0, 10.0), (20.0, 10.0), 1.0, [0, 0, 0]);
+        let [[red, ..]] = pixels(fine, [(15, 10)]);
+        assert!((126..=129).contains(&red), "{red}");
+    }
+
+    #[test]
+    fn a_frame_has_whole_corners() {
+        let found = pixels(
+            |canvas| canvas.frame(AREA),
+            [(10, 10), (17, 15), (14, 13), (9, 13), (18, 13)],
+        );
+        assert_eq!(found, [BLACK, BLACK, WHITE, BLACK, BLACK]);
+    }
+
+    #[test]
+    fn areas_are_filled_to_their_edges() {
+        let at = [(10, 10), (17, 15), (18, 15), (9, 10)];
+        let fill = |canvas: &mut Canvas| canvas.fill(AREA, CURVES[0], 1.0);
+        assert_eq!(pixels(fill, at), [CURVES[0], CURVES[0], WHITE, WHITE]);
+        let faint = |canvas: &mut Canvas| canvas.fill(AREA, [0, 0, 0], 0.2);
+        assert_eq!(pixels(faint, at)[0], [204, 204, 204]);
+        let corners = vec![(10.0, 10.0), (18.0, 10.0), (18.0, 16.0), (10.0, 16.0)];
+        let polygon = |canvas: &mut Canvas| canvas.polygon(corners.clone(), CURVES[0], 1.0);
+        assert_eq!(pixels(polygon, at), [CURVES[0], CURVES[0], WHITE, WHITE]);
+    }
+
+    #[test]
+    fn a_dot_has_a_rim() {
+        let dot = |canvas: &mut Canvas| {
+            let ground = Area { width: 30.0, ..AREA };
+            canvas.fill(ground, BLACK, 1.0);
+            canvas.dot((20.0, 13.0), 3.8, CURVES[1]);
+        };
+        assert_eq!(
+            pixels(dot, [(20, 13), (24, 13), (11, 13)]),
+            [CURVES[1], WHITE, BLACK]
+        );
+    }
+
+    #[test]
+    fn letters_stand_on_their_baseline_and_may_read_upwards() {
+        // A minus sign is a bar: from 217 to 1499 of 2048 along, from 557 to 727 above the baseline.
+        let minus = Text::plain("\u{2212}", 24);
+        let text = |canvas: &mut Canvas| canvas.text(&minus, (10.0, 20.0), Align::Start, BLACK);
+        assert_eq!(
+            pixels(text, [(13, 12), (26, 12), (20, 10), (20, 15), (11, 12), (30, 12)]),
+            [BLACK, BLACK, WHITE, WHITE, WHITE, WHITE]
+        );
+        let upwards = |canvas: &mut Canvas| canvas.text_upwards(&minus, (20.0, 28.0), Align::Start, BLACK);
+        assert_eq!(
+            pixels(
+                upwards,
+                [(12, 24), (12, 11), (10, 18), (15, 18), (12, 27), (12, 8)]
+            ),
+            [BLACK, BLACK, WHITE, WHITE, WHITE, WHITE]
+        );
+    }
+
+    #[test]
+    fn cells_that_meet_within_a_pixel_are_mixed() {
+        let image = |canvas: &mut Canvas| {
+            canvas.image(Image {
+                area: Area { width: 3.0, ..AREA },
+                columns: 2,
+                levels: vec![0, 254],
+            });
+        };
+        let [dark, mixed, bright] = pixels(image, [(10, 12), (11, 12), (12, 12)]);
+        assert_eq!((dark, bright), ([0x44, 0x01, 0x54], [0xfd, 0xe7, 0x25]));
+        assert_eq!(mixed, [161, 116, 61]);
+    }
+}

@@ -1,0 +1,169 @@
+//! One picture of every kind has the same bytes on every machine.
+//!
+//! The digests change with the look of the pictures, and with the version of the crate that compresses the PNG.
+
+use slipfront_plot::{
+    Bar, BarChart, BarGroup, FieldMap, FieldMaps, FrictionCurve, HeatAxis, HeatMap, Instant, Kinetic,
+    Picture, Response, Responses, Shape, StressMap, StressMaps, bars, field_maps, friction, heat_map,
+    response, shapes, stress,
+};
+
+/// The first digits of the hashes of both files.
+fn digests(picture: &Picture) -> [String; 2] {
+    [picture.svg.as_bytes(), &picture.png[..]].map(|bytes| blake3::hash(bytes).to_hex()[..16].to_string())
+}
+
+/// Numbers that look random and come from whole numbers alone.
+fn numbers(count: usize) -> Vec<f64> {
+    (0..count)
+        .map(|index| (index * index * 7919 % 1009) as f64 / 1009.0)
+        .collect()
+}
+
+fn curve() -> FrictionCurve {
+    let time_star: Vec<f64> = (0..1000).map(|step| 0.25 * f64::from(step)).collect();
+    FrictionCurve {
+        label: "one curve".to_string(),
+        mu_star: time_star
+            .iter()
+            .map(|t| (t / 80.0).min(0.9) + 0.1 * (t % 3.0) / 3.0)
+            .collect(),
+        sliding_percent: numbers(1000).iter().map(|number| 100.0 * number).collect(),
+        time_star,
+        first_slip_time_star: Some(60.0),
+        peak: Some((80.0, 0.95)),
+        kinetic: Some(Kinetic {
+            from: 150.0,
+            to: 249.0,
+            mean: 0.92,
+            uncertainty: Some(0.02),
+        }),
+        instants: vec![Instant {
+            letter: 'A',
+            time_star: 20.0,
+            mu_star: 0.25,
+        }],
+    }
+}
+
+fn stress_maps() -> StressMaps {
+    let map = |label: &str| StressMap {
+        label: label.to_string(),
+        time_star: 12.5,
+        mu_star: 0.5,
+        values: numbers(30 * 20).iter().map(|&number| number as f32).collect(),
+    };
+    StressMaps {
+        nx: 30,
+        ny: 20,
+        block_size: 1e-6,
+        textured: (0..30 * 20).map(|block| block % 30 < 10 && block > 200).collect(),
+        maps: vec![map("A"), map("B")],
+    }
+}
+
+fn maps() -> FieldMaps {
+    FieldMaps {
+        value_title: "mu_s".to_string(),
+        range: [0.0, 1.0],
+        columns: 1,
+        maps: vec![FieldMap {
+            label: "a map".to_string(),
+            note: "and a note".to_string(),
+            nx: 25,
+            ny: 25,
+            values: numbers(625).iter().map(|&number| number as f32).collect(),
+            textured: (0..625).map(|block| block % 25 == 12).collect(),
+            marks: vec![[3, 4]],
+        }],
+    }
+}
+
+fn responses() -> Responses {
+    let response = |label: &str, factor: f64| Response {
+        label: label.to_string(),
+        x: vec![0.01, 0.02, 0.05, 0.1],
+        mean: [1.0, 2.0, 4.0, 3.0].map(|mean| factor * mean).to_vec(),
+        low: [0.5, 1.5, 3.5, 2.5].map(|mean| factor * mean).to_vec(),
+        high: [1.5, 2.5, 4.5, 3.5].map(|mean| factor * mean).to_vec(),
+        line: false,
+    };
+    Responses {
+        x_title: "V*".to_string(),
+        log_x: true,
+        y_title: "\u{3bc}*".to_string(),
+        legend_title: "size".to_string(),
+        curves: vec![response("5 x 5", 1.0), response("25 x 25", 1.2)],
+        ..Responses::default()
+    }
+}
+
+fn chart() -> BarChart {
+    let bar = |label: &str, mean: f64| Bar {
+        label: label.to_string(),
+        mean,
+        low: mean - 1.0,
+        high: mean + 1.0,
+    };
+    let group = |label: &str| BarGroup {
+        label: label.to_string(),
+        bars: vec![bar("slow", 3.0), bar("fast", 4.0)],
+    };
+    BarChart {
+        y_title: "reduction (%)".to_string(),
+        x_title: "shape".to_string(),
+        legend_title: "drive".to_string(),
+        groups: vec![group("circle"), group("groove across")],
+    }
+}
+
+fn heat() -> HeatMap {
+    let axis = |title: &str, values: &[f64]| HeatAxis {
+        title: title.to_string(),
+        values: values.to_vec(),
+        log: true,
+    };
+    HeatMap {
+        x: axis("V*", &[0.01, 0.03, 0.1]),
+        y: axis("A* (%)", &[5.0, 10.0, 20.0]),
+        value_title: "\u{3bc}*".to_string(),
+        values: numbers(9),
+    }
+}
+
+fn outlines() -> [Shape; 1] {
+    [Shape {
+        label: "triangle".to_string(),
+        points: vec![[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]],
+    }]
+}
+
+#[test]
+fn every_kind_of_picture_has_its_bytes() {
+    let found = [
+        ("friction", friction(&[curve()])),
+        ("frictions", friction(&[curve(), curve()])),
+        ("stress", stress(&stress_maps())),
+        ("fields", field_maps(&maps())),
+        ("response", response(&responses())),
+        ("bars", bars(&chart())),
+        ("heat map", heat_map(&heat())),
+        ("shapes", shapes(&outlines())),
+    ]
+    .map(|(name, picture)| {
+        let [svg, png] = digests(&picture.unwrap());
+        format!("{name}: {svg} {png}")
+    });
+    assert_eq!(found.join("\n"), EXPECTED.trim());
+}
+
+const EXPECTED: &str = "
+friction: ef6d50c92d97b621 e569e4e2f40f8dd2
+frictions: a801ec10e573e7f0 ad58ad9da0a50dda
+stress: 29fa383c29e2d9d5 ff8ce7ab956b00c0
+fields: 7e4b1ffba21a31b0 842c86a43f85bbe9
+response: ba4e4a0d0d72a45c fdb7df3e8496e780
+bars: ec38e49d1f4e2ea0 ae053ce9b5007d18
+heat map: e7651fdc77e95e94 ea8a063496b66975
+shapes: 60442453361eadd4 1d817f13f4c4d253
+";

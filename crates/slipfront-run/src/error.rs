@@ -1,0 +1,40 @@
+//! What can go wrong with the results of a run.
+
+use std::path::PathBuf;
+
+use slipfront_case::case_file::CaseError;
+use slipfront_case::text;
+#[cfg(feature = "plot")]
+use slipfront_plot::PictureError;
+use thiserror::Error;
+
+use crate::fields::FieldsError;
+use crate::run_folder::error::FolderError;
+use crate::series::SeriesError;
+
+/// What can go wrong with results.
+#[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum ResultsError {
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    #[error(transparent)]
+    Fields(#[from] FieldsError),
+    #[error(transparent)]
+    Series(#[from] SeriesError),
+    #[error("cannot write series.csv: {0}")]
+    Csv(#[from] csv::Error),
+    #[error("{} is not the summary of a slipfront run: {}", path.display(), text::single_line(&source.to_string()))]
+    Summary {
+        path: PathBuf,
+        source: serde_json::Error,
+    },
+    #[cfg(feature = "plot")]
+    #[error("cannot draw {name}: {source}")]
+    Picture {
+        name: &'static str,
+        source: PictureError,
+    },
+}

@@ -1,0 +1,105 @@
+//! What a fields file holds.
+
+use slipfront::observe::Field;
+
+/// What never changes in a run, block by block: `nx * ny` values each, row-major, row j = 0 first, not thinned.
+#[derive(Debug, Clone, Copy)]
+pub struct StaticFields<'a> {
+    /// Whether the block is texture.
+    pub textured: &'a [bool],
+    /// Static friction coefficients.
+    pub mu_static: &'a [f64],
+    /// Kinetic friction coefficients.
+    pub mu_kinetic: &'a [f64],
+    /// Time t* of the first slip; NaN = never slipped.
+    pub first_slip_time_star: &'a [f64],
+}
+
+/// The fields of one instant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FieldFrame {
+    /// Time t*.
+    pub time_star: f64,
+    /// Name of the instant: `A` to `F`, several letters if they coincide, or empty.
+    pub label: String,
+    /// Number of the time step.
+    pub step: u64,
+    /// One array per name in [`FieldsFile::names`], in the unit of [`FieldInfo::unit`], thinned by [`thin`] and
+    /// row-major.
+    pub values: Vec<Vec<f32>>,
+}
+
+/// All that goes into `fields.nc`.
+#[derive(Debug, Clone, Copy)]
+pub struct FieldsFile<'a> {
+    /// Number of blocks along x, before thinning.
+    pub nx: usize,
+    /// Number of blocks along y, before thinning.
+    pub ny: usize,
+    /// Every n-th block is kept, in both directions, from block 0 on.
+    pub stride: usize,
+    /// Edge of a block, in m.
+    pub block_size: f64,
+    /// Duration of one unit of t*, in s.
+    pub time_unit_s: f64,
+    /// The fields that every frame holds, each at most once.
+    pub names: &'a [Field],
+    /// What never changes.
+    pub statics: StaticFields<'a>,
+    /// The instants, in order of time; NetCDF wants each time once. There may be none.
+    pub frames: &'a [FieldFrame],
+}
+
+/// The contents of a `fields.nc`; every array is thinned to `columns() * rows()` values and row-major.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FieldsData {
+    /// Number of blocks along x, before thinning.
+    pub nx: usize,
+    /// Number of blocks along y, before thinning.
+    pub ny: usize,
+    /// Every n-th block is in the file, in both directions, from block 0 on.
+    pub stride: usize,
+    /// Edge of a block, in m.
+    pub block_size: f64,
+    /// Duration of one unit of t*, in s.
+    pub time_unit_s: f64,
+    /// The fields of every frame, in the order of [`FieldFrame::values`]; none if there are no frames.
+    pub names: Vec<Field>,
+    /// Whether the block is texture.
+    pub textured: Vec<bool>,
+    /// Static friction coefficients.
+    pub mu_static: Vec<f64>,
+    /// Kinetic friction coefficients.
+    pub mu_kinetic: Vec<f64>,
+    /// Time t* of the first slip; NaN = never slipped.
+    pub first_slip_time_star: Vec<f64>,
+    /// The instants, in order of time.
+    pub frames: Vec<FieldFrame>,
+}
+
+impl FieldsData {
+    /// Number of values along x.
+    pub fn columns(&self) -> usize {
+        self.nx.div_ceil(self.stride.max(1))
+    }
+
+    /// Number of values along y.
+    pub fn rows(&self) -> usize {
+        self.ny.div_ceil(self.stride.max(1))
+    }
+}
+
+/// Keeps every `stride`-th value of every `stride`-th row, from the first on.
+///
+/// `values` is row-major with rows of `nx`; a `stride` of 0 counts as 1. The result has rows of
+/// `nx.div_ceil(stride)`.
+///
+/// ```
+/// # use slipfront_run::fields::thin;
+/// assert_eq!(thin(&[0, 1, 2, 10, 11, 12, 20, 21, 22], 3, 2), [0, 2, 20, 22]);
+/// ```
+pub fn thin<T: Copy>(values: &[T], nx: usize, stride: usize) -> Vec<T> {
+    let stride = stride.max(1);
+    let rows = values.chunks(nx.max(1)).step_by(stride);
+    rows.flat_map(|row| row.iter().step_by(stride)).copied().collect()
+}

@@ -1,0 +1,37 @@
+//! Which program this is: for the manifest, and to tell programs apart that may not give the same bits.
+
+use std::sync::LazyLock;
+
+/// Version of slipfront.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// The git commit that it was built from, with `-dirty` if its sources were changed; none outside of a checkout.
+pub const REVISION: Option<&str> = option_env!("SLIPFRONT_REVISION");
+
+/// This program in words.
+pub fn this_program() -> String {
+    in_words(VERSION, REVISION)
+}
+
+/// A program in words.
+pub fn in_words(version: &str, revision: Option<&str>) -> String {
+    match revision {
+        Some(revision) => format!("slipfront {version} ({revision})"),
+        None => format!("slipfront {version}"),
+    }
+}
+
+/// The identity of the build: version, and a hash of the sources of slipfront, slipfront-case and slipfront-run and of the
+/// locked versions of what they use. Programs of one identity give the same bits, whichever program they are part of.
+pub fn this_build() -> &'static str {
+    static BUILD: LazyLock<String> = LazyLock::new(|| {
+        let hashes = [
+            slipfront::SOURCE_HASH,
+            slipfront_case::SOURCE_HASH,
+            env!("SLIPFRONT_SOURCE_HASH"),
+        ];
+        let hash = blake3::hash(hashes.concat().as_bytes()).to_hex();
+        format!("slipfront {VERSION}, sources {}", &hash[..16])
+    });
+    &BUILD
+}

@@ -1,0 +1,155 @@
+//! What a run folder holds: read once, and passed on to whoever needs it.
+
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use slipfront_case::case_file::{CaseError, CaseFile, read_text};
+use slipfront_case::disk::{TEXT_MAX_BYTES, is_folder, open_limited};
+
+use super::contents::managed_files;
+use super::error::FolderError;
+use super::unfinished::Unfinished;
+use crate::manifest::{Manifest, ManifestError};
+use crate::names::{CASE, UNFINISHED};
+
+/// A folder that may be that of a run, as it was found.
+#[derive(Debug)]
+pub struct Inspection {
+    /// The folder.
+    pub path: PathBuf,
+    /// Whose it is.
+    pub contents: Contents,
+    /// Its `case.toml`.
+    pub case: Result<CaseFile, CaseDefect>,
+    /// Paths in the folder of the files that slipfront wrote, in the order in which they may be removed.
+    pub managed_files: Vec<String>,
+}
+
+/// Whose a folder is.
+#[derive(Debug)]
+pub enum Contents {
+    /// Nobody's: it does not exist, or holds no more than a run leaves that is killed before it has written its case.
+    Empty,
+    /// Somebody else's.
+    Foreign,
+    /// That of a run which is not complete: it has a resolved case, and no manifest.
+    Interrupted,
+    /// That of a run which was completed: it has a manifest.
+    Complete(Result<Manifest, ManifestError>),
+}
+
+/// Why the case in a folder is not one that a run has written.
+#[derive(Debug)]
+pub enum CaseDefect {
+    /// It cannot be read.
+    Unreadable(std::io::Error),
+    /// It is not a case.
+    Invalid(CaseError),
+    /// It is a case, but not a resolved one, byte for byte.
+    NotResolved(Box<CaseFile>),
+}
+
+impl Inspection {
+    /// Reads the case and the manifest of a folder.
+    ///
+    /// # Errors
+    /// When the folder cannot be listed.
+    pub fn of(folder: &Path) -> std::io::Result<Self> {
+        let case = read_case(folder);
+        let manifest = Manifest::read(folder);
+        let listed = match &manifest {
+            Ok(manifest) => Some(manifest),
+            Err(ManifestError::Damaged { unverified, .. }) => unverified.as_deref(),
+            Err(ManifestError::Missing { .. }) => None,
+        };
+        let managed_files = managed_files(folder, listed, case.as_ref().ok());
+        let contents = match manifest {
+            Err(ManifestError::Missing { .. }) if case.is_ok() => Contents::Interrupted,
+            Err(ManifestError::Missing { .. }) if is_unused(folder)? => Contents::Empty,
+            Err(ManifestError::Missing { .. }) => Contents::Foreign,
+            manifest => Contents::Complete(manifest),
+        };
+        Ok(Self {
+            path: folder.to_owned(),
+            contents,
+            case,
+            managed_files,
+        })
+    }
+
+    /// The manifest of a run that is complete.
+    ///
+    /// # Errors
+    /// When there is none, or it is not as it was written.
+    pub fn manifest(&self) -> Result<&Manifest, ManifestError> {
+        match &self.contents {
+            Contents::Complete(manifest) => manifest.as_ref().map_err(Clone::clone),
+            Contents::Empty | Contents::Foreign | Contents::Interrupted => Err(ManifestError::Missing {
+                path: self.path.clone(),
+            }),
+        }
+    }
+
+    /// The case of a run that can be resumed, or is complete.
+    ///
+    /// # Errors
+    /// When there is no such run.
+    pub fn case_to_resume(&self) -> Result<&CaseFile, FolderError> {
+        let path = self.path.clone();
+        let why = match &self.case {
+            Ok(case) => {
+                let unfinished = path.join(UNFINISHED);
+                if unfinished.symlink_metadata().is_ok() && !is_folder(&unfinished) {
+                    return Err(FolderError::Foreign { path: unfinished });
+                }
+                return Ok(case);
+            }
+            Err(_) if !path.exists() => "there is none of this name",
+            Err(_) if !path.is_dir() => "it is a file: name its folder",
+            Err(CaseDefect::Unreadable(error)) if error.kind() == ErrorKind::NotFound => {
+                "it has no case.toml"
+            }
+            Err(_) => {
+                "its case.toml is not as this version wrote it; put it back as it was, or run it to another folder"
+            }
+        };
+        Err(FolderError::NoRun { path, why })
+    }
+
+    /// Bytes that are free when the files of the run in the folder are removed.
+    pub fn managed_bytes(&self) -> u64 {
+        let length = |name| std::fs::symlink_metadata(self.path.join(name)).map_or(0, |file| file.len());
+        self.managed_files.iter().map(length).sum()
+    }
+}
+
+/// The case in a folder if it is a resolved one. Another was not written by a run, and what it names may be the only copy
+/// that there is.
+fn read_case(folder: &Path) -> Result<CaseFile, CaseDefect> {
+    let path = folder.join(CASE);
+    // A user may hand over a case through a pipe; in a folder of results it would block.
+    open_limited(&path, TEXT_MAX_BYTES).map_err(CaseDefect::Unreadable)?;
+    let text = read_text(&path).map_err(CaseDefect::Invalid)?;
+    let case = CaseFile::parse(&text, &path.display().to_string(), &[]).map_err(CaseDefect::Invalid)?;
+    match case.to_toml() {
+        Ok(resolved) if resolved == text => Ok(case),
+        Ok(_) => Err(CaseDefect::NotResolved(Box::new(case))),
+        Err(error) => Err(CaseDefect::Invalid(error)),
+    }
+}
+
+/// Whether a folder does not exist, or holds nothing but a hidden subfolder of slipfront without a checkpoint.
+fn is_unused(folder: &Path) -> std::io::Result<bool> {
+    let entries = match std::fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(true),
+        Err(error) => return Err(error),
+    };
+    let unfinished = Unfinished::of(folder);
+    for entry in entries {
+        if entry?.file_name() != UNFINISHED || !unfinished.is_managed() || unfinished.has_checkpoint() {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}

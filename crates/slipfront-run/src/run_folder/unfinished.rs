@@ -1,0 +1,151 @@
+//! The hidden subfolder of a run folder, which holds everything that belongs to a run which is not complete: temporary
+//! files that are being written, and checkpoints. It is removed when the run is complete.
+
+use std::fs::{File, OpenOptions};
+use std::io::{ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+
+use slipfront_case::disk::{is_empty, is_folder, open_regular, remove_if_there, write_temp};
+
+use super::error::FolderError;
+use crate::names::{CHECKPOINT, JOURNAL, PREVIOUS, TEMPORARY, UNFINISHED};
+
+/// The first line of the journal. A kill may have come before the whole of it was written.
+const SIGNATURE: &[u8] = b"{\"slipfront_run\":1}\n";
+
+/// The hidden subfolder of a run folder, whether it exists or not.
+#[derive(Clone, Debug)]
+pub struct Unfinished {
+    path: PathBuf,
+}
+
+impl Unfinished {
+    /// That of a run folder.
+    pub fn of(run: &Path) -> Self {
+        Self {
+            path: run.join(UNFINISHED),
+        }
+    }
+
+    /// The subfolder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The folder of temporary files.
+    pub fn temporary(&self) -> PathBuf {
+        self.path.join(TEMPORARY)
+    }
+
+    /// Whether slipfront made the subfolder: it has a journal, or nothing yet. A link is never slipfront's.
+    pub fn is_managed(&self) -> bool {
+        is_folder(&self.path) && (self.has_journal() || is_empty(&self.path).unwrap_or(false))
+    }
+
+    fn has_journal(&self) -> bool {
+        let mut beginning = Vec::new();
+        let file = open_regular(&self.path.join(JOURNAL));
+        let read = file.and_then(|file| file.take(SIGNATURE.len() as u64).read_to_end(&mut beginning));
+        read.is_ok() && SIGNATURE.starts_with(&beginning)
+    }
+
+    /// Whether a checkpoint was saved.
+    pub fn has_checkpoint(&self) -> bool {
+        let mut names = [CHECKPOINT, PREVIOUS].into_iter();
+        names.any(|name| self.path.join(name).symlink_metadata().is_ok())
+    }
+
+    /// Makes the subfolder, where it is not there yet.
+    ///
+    /// # Errors
+    /// When it cannot be made, or a link or a file stands in its place.
+    pub fn create(&self) -> Result<(), FolderError> {
+        let run = self.path.parent().unwrap_or(&self.path);
+        make_folder(&self.path, run)?;
+        let path = self.path.join(JOURNAL);
+        let journal = OpenOptions::new().write(true).create_new(true).open(&path);
+        match journal.and_then(|mut journal| journal.write_all(SIGNATURE)) {
+            Err(source) if source.kind() != ErrorKind::AlreadyExists => {
+                return Err(FolderError::Write { path, source });
+            }
+            _ => {}
+        }
+        let temporary = self.temporary();
+        make_folder(&temporary, &temporary)
+    }
+
+    /// Writes a file atomically: as a temporary file here, which is then renamed to `path`.
+    ///
+    /// # Errors
+    /// Any error of the system; the temporary file is removed then.
+    pub fn write(
+        &self,
+        path: &Path,
+        fill: impl FnOnce(&mut File) -> std::io::Result<()>,
+    ) -> std::io::Result<()> {
+        write_temp(&self.temporary(), fill)?.persist(path)?;
+        Ok(())
+    }
+
+    /// What may be in it beside the journal, as paths in the run folder.
+    pub(super) fn files(&self) -> Vec<String> {
+        let temporary = names_in(&self.temporary()).into_iter();
+        let temporary = temporary.map(|name| format!("{TEMPORARY}/{name}"));
+        let names = temporary.chain([CHECKPOINT, PREVIOUS].map(str::to_owned));
+        names.map(|name| format!("{UNFINISHED}/{name}")).collect()
+    }
+
+    /// Removes the temporary files that a killed program left.
+    ///
+    /// # Errors
+    /// Any error of the system.
+    pub fn clear_temporary(&self) -> std::io::Result<()> {
+        let folder = self.temporary();
+        let mut names = names_in(&folder).into_iter();
+        names.try_for_each(|name| remove_if_there(&folder.join(name)))
+    }
+
+    /// Removes the subfolder: the run is complete. Files of others stay, and the subfolder with them.
+    ///
+    /// # Errors
+    /// Any error of the system.
+    pub fn remove(&self) -> std::io::Result<()> {
+        self.clear_temporary()?;
+        for name in [CHECKPOINT, PREVIOUS] {
+            remove_if_there(&self.path.join(name))?;
+        }
+        let _ = std::fs::remove_dir(self.temporary());
+        // Until here it says whose the rest is.
+        remove_if_there(&self.path.join(JOURNAL))?;
+        let _ = std::fs::remove_dir(&self.path);
+        Ok(())
+    }
+}
+
+/// Makes a folder; an error names `told`.
+fn make_folder(path: &Path, told: &Path) -> Result<(), FolderError> {
+    match std::fs::create_dir(path) {
+        Err(error) if error.kind() == ErrorKind::AlreadyExists && !is_folder(path) => {
+            Err(FolderError::Foreign {
+                path: path.to_owned(),
+            })
+        }
+        Err(source) if source.kind() != ErrorKind::AlreadyExists => Err(FolderError::Unwritable {
+            path: told.to_owned(),
+            source,
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Names of the entries of a folder but its subfolders; none behind a link.
+fn names_in(folder: &Path) -> Vec<String> {
+    if !is_folder(folder) {
+        return Vec::new();
+    }
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let files = entries.filter(|entry| entry.file_type().is_ok_and(|kind| !kind.is_dir()));
+    files
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect()
+}

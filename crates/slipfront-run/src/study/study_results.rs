@@ -1,0 +1,86 @@
+//! Results of a study: of every run, and of every point.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::plan::{Role, RunKey};
+use super::record::RunResult;
+use super::summary_values::{Quantity, SummaryValues, reduction_percent};
+
+/// How many runs of a study are done.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Progress {
+    /// Runs done, those of earlier processes included.
+    pub done: usize,
+    /// Runs known to be needed. The number grows while intervals are too wide.
+    pub total: usize,
+    /// Runs that this process has done.
+    pub here: usize,
+    /// Failed runs.
+    pub failed: usize,
+    /// The largest half width of an interval so far, of the quantity that decides on replication.
+    pub worst: Option<f64>,
+}
+
+/// The results of a study.
+#[derive(Clone, Debug, Default)]
+pub struct StudyResults {
+    /// The result of every run that the tables hold.
+    pub runs: BTreeMap<RunKey, Arc<RunResult>>,
+    /// The result of each point of the plan.
+    pub points: Vec<PointResult>,
+    /// Number of recorded runs that are not part of the study as it is now.
+    pub orphaned_runs: usize,
+}
+
+/// Replication of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PointResult {
+    /// Number of replicates in the tables.
+    pub replicates: usize,
+    /// Whether the confidence interval is as narrow as the study asks; none if it does not ask.
+    pub narrow: Option<bool>,
+}
+
+impl StudyResults {
+    /// A quantity of a replicate of a point. A reduction is against the reference of the same seed.
+    pub fn value(&self, point: usize, replicate: usize, quantity: Quantity) -> Option<f64> {
+        let values = |role| {
+            self.summary_values(RunKey {
+                point,
+                replicate,
+                role,
+            })
+        };
+        match quantity {
+            Quantity::Number(position) => values(Role::Point)?.get(position),
+            Quantity::Reduction => Some(reduction_percent(values(Role::Point)?, values(Role::Reference)?)),
+        }
+    }
+
+    /// The values of a run that did not fail.
+    fn summary_values(&self, run: RunKey) -> Option<&SummaryValues> {
+        match self.runs.get(&run)?.as_ref() {
+            RunResult::Done(values) => Some(values),
+            RunResult::Failed(_) => None,
+        }
+    }
+
+    /// Runs without a transition: their static friction is only the largest mu* of the run.
+    pub fn without_transition(&self) -> impl Iterator<Item = RunKey> {
+        let runs = self.runs.iter();
+        runs.filter_map(|(run, result)| match result.as_ref() {
+            RunResult::Done(values) => (!values.transition).then_some(*run),
+            RunResult::Failed(_) => None,
+        })
+    }
+
+    /// Failed runs and the reasons.
+    pub fn failures(&self) -> impl Iterator<Item = (RunKey, &str)> {
+        let runs = self.runs.iter();
+        runs.filter_map(|(run, result)| match result.as_ref() {
+            RunResult::Failed(reason) => Some((*run, reason.as_str())),
+            RunResult::Done(_) => None,
+        })
+    }
+}

@@ -1,0 +1,65 @@
+//! Which kernel computes a run, and on how many threads.
+
+use fearless_simd::Level;
+
+use crate::friction::FrictionLaw;
+
+/// Which kernel computes the steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    /// One pass per equation, to be read along with the paper, for every [`FrictionLaw`].
+    Reference,
+    /// One sweep for all equations, for [`FrictionLaw::Projection`]; the reference kernel computes the other laws.
+    Fused,
+}
+
+/// How a run is computed. Results have the same bits for any `threads` and `skips`. The two kernels agree to rounding up
+/// to the first slip; afterwards a difference in rounding can change which block slips first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Execution {
+    /// What computes the steps.
+    pub kernel: Kernel,
+    /// Threads that share the blocks of the fused kernel; useful from about 100 000 blocks.
+    pub threads: usize,
+    /// Whether blocks at rest are skipped until they can slip.
+    pub skips: bool,
+}
+
+impl Kernel {
+    /// The kernel that computes a friction law when this one is asked for.
+    pub fn for_law(self, law: FrictionLaw) -> Self {
+        match law {
+            FrictionLaw::Projection => self,
+            FrictionLaw::Reversal | FrictionLaw::Literal => Self::Reference,
+        }
+    }
+
+    /// Its name in a manifest.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Reference => "reference",
+            Self::Fused => "fused",
+        }
+    }
+}
+
+impl Default for Execution {
+    fn default() -> Self {
+        Self {
+            kernel: Kernel::Fused,
+            threads: 1,
+            skips: true,
+        }
+    }
+}
+
+/// The widest vector instructions of this processor that the kernels use; results do not depend on them.
+pub fn simd_width() -> &'static str {
+    match Level::new() {
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512(_) => "AVX-512",
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2(_) => "AVX2",
+        _ => "baseline",
+    }
+}

@@ -1,0 +1,35 @@
+//! Sums over all blocks, which every kernel finds at every step.
+
+use serde::{Deserialize, Serialize};
+
+/// Sums over all blocks at t_n, in units of this crate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Totals {
+    /// `sum u`.
+    pub displacement: [f64; 2],
+    /// `sum v` at t_n, the mean of the half steps around it.
+    pub velocity: [f64; 2],
+    /// `sum v` at `t_n + dt/2`.
+    pub velocity_after: [f64; 2],
+    /// `sum v^2` at t_n.
+    pub velocity_square: f64,
+    /// `sum F_f . v` at t_n, the power of friction: negative.
+    pub friction_power: f64,
+    /// Number of blocks that slide from t_n on, textured ones included.
+    pub n_sliding: usize,
+    /// Number of sliding blocks that are in contact.
+    pub n_slipping: usize,
+    /// Stored energies, at steps at which an observer needs them.
+    pub stored_energy: Option<StoredEnergy>,
+}
+
+/// Energies stored at t_n, in units of `P mu_s l^2` times `P mu_s l/E`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StoredEnergy {
+    /// Kinetic energy, the mean of the half steps before and after.
+    pub kinetic: f64,
+    /// In the springs between blocks.
+    pub lattice: f64,
+    /// In the drive springs.
+    pub drive_springs: f64,
+}

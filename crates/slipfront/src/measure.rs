@@ -1,0 +1,134 @@
+//! What one instant of a run measures: the friction coefficient mu* (Eq. 9), the percentage of sliding blocks N*, and the
+//! first peak of mu*.
+
+use serde::{Deserialize, Serialize};
+
+use crate::kernel::totals::Totals;
+use crate::model::Model;
+use crate::vector_field::dot;
+
+/// The whole slider at one instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CurvePoint {
+    /// mu*, the drive springs' force along the sliding direction over the load; can be negative.
+    pub mu_star: f64,
+    /// The drive springs' force across the sliding direction, to the left of it, over the load.
+    pub mu_lateral_star: f64,
+    /// Number of blocks that slide, textured ones included.
+    pub n_sliding: usize,
+    /// N*, the sliding blocks in % of all blocks.
+    pub sliding_percent: f64,
+}
+
+impl CurvePoint {
+    /// Eq. 9 over mu_s, from the mean displacement:
+    ///
+    /// ```text
+    /// mu* = (1/N) sum_i F_s,i . d = k_s (V* t* - mean(u . d))
+    /// ```
+    pub(crate) fn measure(model: &Model, totals: &Totals, time_star: f64) -> Self {
+        let (drive, n) = (&model.drive, model.lattice.n_blocks() as f64);
+        let mean = totals.displacement.map(|sum| sum / n);
+        let position = drive.position(time_star);
+        let pull = [
+            drive.k_drive * (position[0] - mean[0]),
+            drive.k_drive * (position[1] - mean[1]),
+        ];
+        let [dx, dy] = drive.direction;
+        Self {
+            mu_star: dot(pull, [dx, dy]),
+            mu_lateral_star: dot(pull, [-dy, dx]),
+            n_sliding: totals.n_sliding,
+            sliding_percent: 100.0 * totals.n_sliding as f64 / n,
+        }
+    }
+}
+
+/// The first peak of mu* that is followed by a fall of at least half-way to the steady level L. It is found while the run
+/// goes on: until such a fall is seen it is the largest mu* so far.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Peak {
+    /// mu* at the peak: mu_s* once `ended`.
+    pub mu_star: f64,
+    /// Step of the peak.
+    pub step: u64,
+    /// Time of the peak: t_s* once `ended`.
+    pub time_star: f64,
+    /// Whether the fall has been seen.
+    pub ended: bool,
+    /// Largest mu* of the whole run so far.
+    pub mu_star_max: f64,
+    steady_level: f64,
+}
+
+impl Peak {
+    /// Before the first step; `steady_level` is L, see [`Model::steady_level`].
+    pub(crate) fn new(steady_level: f64) -> Self {
+        let lowest = f64::NEG_INFINITY;
+        Self {
+            mu_star: lowest,
+            step: 0,
+            time_star: 0.0,
+            ended: false,
+            mu_star_max: lowest,
+            steady_level,
+        }
+    }
+
+    /// Whether a fall to `mu_star` would end the peak.
+    pub(crate) fn ends_at(&self, mu_star: f64) -> bool {
+        self.mu_star > self.steady_level && mu_star <= 0.5 * (self.mu_star + self.steady_level)
+    }
+
+    /// Takes mu* of the next step into account.
+    pub(crate) fn update(&mut self, step: u64, time_star: f64, mu_star: f64) {
+        self.mu_star_max = self.mu_star_max.max(mu_star);
+        if self.ended {
+            return;
+        }
+        if mu_star > self.mu_star {
+            (self.mu_star, self.step, self.time_star) = (mu_star, step, time_star);
+        } else {
+            self.ended = self.ends_at(mu_star);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn peak_of(level: f64, curve: &[f64]) -> Peak {
+        let mut peak = Peak::new(level);
+        for (n, &mu) in curve.iter().enumerate() {
+            peak.update(n as u64, n as f64, mu);
+        }
+        peak
+    }
+
+    #[test]
+    fn the_first_peak_counts_even_if_a_later_one_is_higher() {
+        let peak = peak_of(0.5, &[0.0, 0.4, 0.8, 1.0, 0.9, 0.75, 0.2, 0.9, 1.1, 0.1]);
+        assert_eq!(
+            (peak.mu_star, peak.step, peak.ended, peak.mu_star_max),
+            (1.0, 3, true, 1.1)
+        );
+    }
+
+    #[test]
+    fn a_dip_of_less_than_half_way_does_not_end_the_climb() {
+        let peak = peak_of(0.5, &[0.0, 0.8, 0.7, 0.9, 0.6]);
+        assert_eq!((peak.mu_star, peak.step, peak.ended), (0.9, 3, true));
+    }
+
+    #[test]
+    fn of_equal_values_the_first_is_the_peak() {
+        assert_eq!(peak_of(0.5, &[0.0, 1.0, 0.9, 1.0, 0.2]).step, 1);
+    }
+
+    #[test]
+    fn without_a_fall_the_largest_value_is_taken() {
+        let peak = peak_of(1.0, &[0.0, 0.5, 0.9, 0.95, 0.94]);
+        assert_eq!((peak.mu_star, peak.ended), (0.95, false));
+    }
+}

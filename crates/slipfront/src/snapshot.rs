@@ -1,0 +1,98 @@
+//! What observers see of a run.
+
+use crate::field::Field;
+use crate::kernel::block::Block;
+use crate::kernel::engine::Engine;
+use crate::kernel::totals::{StoredEnergy, Totals};
+use crate::measure::{CurvePoint, Peak};
+use crate::model::Model;
+
+/// A run at one instant t_n. Forces, friction and contact are those of the update that starts at t_n.
+pub struct Snapshot<'a> {
+    /// Lattice, surface and drive, which never change in a run.
+    pub model: &'a Model,
+    /// Number of the step, n.
+    pub step: u64,
+    /// `t* = n dt*`.
+    pub time_star: f64,
+    /// Time step.
+    pub dt_star: f64,
+    /// Sums over all blocks.
+    pub totals: Totals,
+    /// mu* and N*.
+    pub point: CurvePoint,
+    /// The first peak of mu* as far as it is known at t_n.
+    pub peak: Peak,
+    /// Whether the run ends here.
+    pub last: bool,
+    pub(crate) engine: &'a Engine,
+}
+
+/// Changes of mu* below this are taken for rounding errors.
+pub(crate) const MU_STAR_ROUNDING: f64 = 1e-9;
+
+impl Snapshot<'_> {
+    /// Displacement, velocity and forces of block `b`. The fused kernel keeps no forces, so that they are recomputed: to
+    /// read all blocks, use [`read_field`](Self::read_field).
+    pub fn block(&self, b: usize) -> Block {
+        self.engine.block(self.model, self.step, b)
+    }
+
+    /// Writes `field` of every block, row by row from y = 0, into `values`: the same numbers as
+    /// [`Field::value`] of every [`block`](Self::block), rounded to `f32`.
+    ///
+    /// # Panics
+    /// If there is not one value per block.
+    pub fn read_field(&self, field: Field, values: &mut [f32]) {
+        let lattice = &self.model.lattice;
+        assert_eq!(values.len(), lattice.n_blocks(), "one value per block");
+        self.read_rows(field, 1, |j, i, part| {
+            let first = lattice.block(i, j);
+            values[first..first + part.len()].copy_from_slice(part);
+        });
+    }
+
+    /// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the row, the column
+    /// of the first value, and the values.
+    pub(crate) fn read_rows(&self, field: Field, stride: usize, write: impl FnMut(usize, usize, &[f32])) {
+        self.engine.read_rows(self.model, self.step, field, stride, write);
+    }
+
+    /// Energies stored now.
+    ///
+    /// # Panics
+    /// If no observer needed them at this step: see
+    /// [`Observer::needs_energies`](crate::observe::Observer::needs_energies).
+    pub fn stored_energy(&self) -> StoredEnergy {
+        self.totals
+            .stored_energy
+            .expect("an observer needs the energies of this step")
+    }
+
+    /// When each block first slid while in contact, t*; NaN where none has.
+    pub fn first_slip_time_star(&self) -> Vec<f64> {
+        (0..self.model.lattice.n_blocks())
+            .map(|b| self.engine.first_slip(b))
+            .collect()
+    }
+
+    /// mu* at the next step, which the velocities of the blocks already determine up to rounding.
+    pub(crate) fn mu_star_next(&self) -> f64 {
+        let mut totals = self.totals;
+        for axis in 0..2 {
+            totals.displacement[axis] += self.dt_star * totals.velocity_after[axis];
+        }
+        let time_star = (self.step + 1) as f64 * self.dt_star;
+        CurvePoint::measure(self.model, &totals, time_star).mu_star
+    }
+
+    /// Whether mu* will be higher at the next step.
+    pub(crate) fn mu_star_rises(&self) -> bool {
+        self.mu_star_next() > self.point.mu_star + MU_STAR_ROUNDING
+    }
+
+    /// Whether mu* will be lower at the next step.
+    pub(crate) fn mu_star_falls(&self) -> bool {
+        self.mu_star_next() < self.point.mu_star - MU_STAR_ROUNDING
+    }
+}

@@ -1,0 +1,63 @@
+//! When a run ends.
+
+use serde::{Deserialize, Serialize};
+
+use crate::snapshot::{MU_STAR_ROUNDING, Snapshot};
+
+/// When a run ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stop {
+    last_step: u64,
+    after_onset: bool,
+}
+
+/// Why a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StopReason {
+    /// The last step is done.
+    End,
+    /// The fall that ends the first peak of mu* was seen.
+    #[serde(rename = "after_onset")]
+    Onset,
+}
+
+impl Stop {
+    /// After `last_step` steps.
+    pub fn at_step(last_step: u64) -> Self {
+        Self {
+            last_step,
+            after_onset: false,
+        }
+    }
+
+    /// As soon as the fall that ends the first peak is seen, and after `last_step` steps at the latest.
+    pub fn after_onset(last_step: u64) -> Self {
+        Self {
+            last_step,
+            after_onset: true,
+        }
+    }
+
+    /// Never: the run goes on for as long as it is advanced.
+    pub fn never() -> Self {
+        Self::at_step(u64::MAX)
+    }
+
+    /// Whether the next step may be the last. A fall of mu* is known one step ahead.
+    pub(crate) fn may_end(&self, now: &Snapshot) -> bool {
+        let onset_ends = || now.peak.ends_at(now.mu_star_next() - MU_STAR_ROUNDING);
+        now.step + 1 >= self.last_step || (self.after_onset && onset_ends())
+    }
+
+    /// Why the run ends now, if it does.
+    pub(crate) fn reached(&self, now: &Snapshot) -> Option<StopReason> {
+        if self.after_onset && now.peak.ended {
+            Some(StopReason::Onset)
+        } else if now.step >= self.last_step {
+            Some(StopReason::End)
+        } else {
+            None
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Fields of all blocks, read at once, against the same fields of single blocks: the same bits.
+
+use rstest::rstest;
+use slipfront::observe::frames::Selection;
+use slipfront::observe::{Field, Frames, Schedule, Scheduled};
+use slipfront::surface::{Orientation, Texture};
+use slipfront::{Edges, Execution, FrictionLaw, Simulation, Stop};
+
+use crate::common::{Slider, cavity, groove, thrown};
+use crate::{FUSED, REFERENCE, has_room, stopped_and_resumed};
+
+const FIELDS: [Field; 7] = [
+    Field::ContactStress,
+    Field::Traction,
+    Field::DisplacementX,
+    Field::DisplacementY,
+    Field::VelocityX,
+    Field::VelocityY,
+    Field::Sliding,
+];
+
+fn bits(values: &[f32]) -> Vec<u32> {
+    values.iter().map(|value| value.to_bits()).collect()
+}
+
+/// The field, block by block.
+fn by_block(simulation: &Simulation, field: Field) -> Vec<f32> {
+    let now = simulation.snapshot();
+    let textured = &now.model.surface.textured;
+    (0..textured.len())
+        .map(|b| field.value(&now.block(b), textured[b]) as f32)
+        .collect()
+}
+
+pub(crate) fn assert_fields_match_blocks(simulation: &Simulation) {
+    let now = simulation.snapshot();
+    let mut values = vec![0.0; now.model.lattice.n_blocks()];
+    for field in FIELDS {
+        now.read_field(field, &mut values);
+        let expected = by_block(simulation, field);
+        assert_eq!(bits(&values), bits(&expected), "{field:?} at step {}", now.step);
+    }
+}
+
+/// Rows of one and of several strips, tiles and bands; blocks that stick and slide; every kind of springs. A simulation that
+/// has just been resumed is read before its first step.
+#[rstest]
+fn all_blocks_have_the_same_bits_as_single_ones(
+    #[values([1, 1], [7, 1], [1, 9], [25, 25], [120, 3], [250, 6], [30, 90])] blocks: [usize; 2],
+    #[values(
+        [Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Free, Edges::Periodic],
+        [Edges::Periodic, Edges::Periodic]
+    )]
+    edges: [Edges; 2],
+    #[values(1e-6, 1e-2)] epsilon: f64,
+    #[values(None, Some(groove(Orientation::Along, 1.0)), Some(cavity([25, 25], 5.0, 1, 0.3, true)))] texture: Option<
+        Texture,
+    >,
+    #[values(
+        FUSED, Execution { threads: 3, ..FUSED }, Execution { skips: true, ..FUSED }, REFERENCE
+    )]
+    execution: Execution,
+) {
+    let slider = Slider {
+        blocks,
+        edges,
+        epsilon,
+        textures: texture.into_iter().collect(),
+        degrees: 25.0,
+        v_star: 0.1,
+        ..Slider::default()
+    };
+    let covers_all = blocks[1] == 1 && !slider.textures.is_empty();
+    if !has_room(blocks, edges) || covers_all {
+        return;
+    }
+    let model = slider.model();
+    let state = thrown(slider.lattice().n_blocks(), 0.3, 5);
+    let mut simulation = Simulation::with_execution(model.clone(), 0.1, Some(state), execution);
+    assert_fields_match_blocks(&simulation);
+    for _ in 0..3 {
+        for _ in 0..40 {
+            simulation.step();
+        }
+        assert_fields_match_blocks(&simulation);
+        simulation = stopped_and_resumed(&simulation, &model, 0.1, execution);
+        assert_fields_match_blocks(&simulation);
+    }
+}
+
+/// Laws whose friction does not follow from the velocity: the reference kernel keeps it.
+#[rstest]
+fn every_friction_law(#[values(FrictionLaw::Reversal, FrictionLaw::Literal)] law: FrictionLaw) {
+    let slider = Slider {
+        law,
+        v_star: 0.1,
+        ..Slider::default()
+    };
+    let mut simulation = Simulation::with_execution(slider.model(), 0.1, None, REFERENCE);
+    for _ in 0..slider.steps(4.0) {
+        simulation.step();
+    }
+    assert_fields_match_blocks(&simulation);
+}
+
+/// Frames keep every n-th block along each axis, in the order of the lattice.
+#[rstest]
+fn frames_keep_every_nth_block(
+    #[values([1, 1], [25, 25], [130, 7], [250, 6])] blocks: [usize; 2],
+    #[values(1, 2, 3, 7, 64, 121)] stride: usize,
+) {
+    let slider = Slider {
+        blocks,
+        v_star: 0.1,
+        ..Slider::default()
+    };
+    let state = thrown(slider.lattice().n_blocks(), 0.3, 5);
+    let mut simulation = Simulation::with_execution(slider.model(), 0.1, Some(state), FUSED);
+    let mut frames = Frames::new(Selection {
+        fields: FIELDS.to_vec(),
+        stride,
+    });
+    let mut observers = [Scheduled::new(Schedule::At(vec![50]), &mut frames)];
+    simulation.run(Stop::at_step(50), &mut observers).unwrap();
+    for (field, values) in FIELDS.into_iter().zip(&frames.frames[0].values) {
+        let all = by_block(&simulation, field);
+        let rows = all.chunks(blocks[0]).step_by(stride);
+        let kept: Vec<f32> = rows.flat_map(|row| row.iter().step_by(stride).copied()).collect();
+        assert_eq!(bits(values), bits(&kept), "{field:?}");
+    }
+}
