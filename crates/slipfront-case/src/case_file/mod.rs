@@ -4,6 +4,7 @@
 //! needs nothing but the file. What remains, from units to the lattice, is done when a case is built from it.
 
 mod check;
+mod choice;
 mod depth;
 mod diagnose;
 mod error;

@@ -7,6 +7,7 @@ use slipfront::FrictionLaw;
 use std::ops::Bound::Included;
 
 use super::check::Check;
+use super::choice::{default_table, keys_with_choice};
 use super::error::CaseError;
 use super::key_table::MAX_R_STAR;
 use super::values::word;
@@ -39,7 +40,7 @@ impl Load {
 
 /// `[drive]`: how the slider is pulled.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "DriveKeys", into = "DriveKeys")]
+#[serde(try_from = "DriveKeys", into = "DriveKeys")]
 pub struct Drive {
     /// Speed of the drive: `v_star` or `speed`.
     pub speed: DriveSpeed,
@@ -56,15 +57,6 @@ pub enum DriveSpeed {
     Speed(Speed),
 }
 
-impl Default for Drive {
-    fn default() -> Self {
-        Self {
-            speed: DriveSpeed::VStar(0.03),
-            direction: 0.0,
-        }
-    }
-}
-
 impl Drive {
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
         match &self.speed {
@@ -75,55 +67,20 @@ impl Drive {
     }
 }
 
-/// The keys of `[drive]` as they stand in the file.
-#[derive(Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub(super) struct DriveKeys {
-    v_star: Option<f64>,
-    speed: Option<Speed>,
-    direction: f64,
-}
-
-impl Default for DriveKeys {
-    fn default() -> Self {
-        // No speed here: either key replaces the default.
-        let mut keys = Self::from(Drive::default());
-        keys.v_star = None;
-        keys
-    }
-}
-
-impl From<DriveKeys> for Drive {
-    fn from(keys: DriveKeys) -> Self {
-        let speed = match (keys.speed, keys.v_star) {
-            (Some(speed), _) => DriveSpeed::Speed(speed),
-            (None, Some(v_star)) => DriveSpeed::VStar(v_star),
-            (None, None) => Self::default().speed,
-        };
-        Self {
-            speed,
-            direction: keys.direction,
-        }
-    }
-}
-
-impl From<Drive> for DriveKeys {
-    fn from(drive: Drive) -> Self {
-        let (v_star, speed) = match drive.speed {
-            DriveSpeed::VStar(v_star) => (Some(v_star), None),
-            DriveSpeed::Speed(speed) => (None, Some(speed)),
-        };
-        Self {
-            v_star,
-            speed,
-            direction: drive.direction,
-        }
+keys_with_choice! {
+    Drive: DriveKeys {
+        (speed: DriveSpeed {
+            v_star: f64 => VStar,
+            speed: Speed => Speed,
+            _ => Ok(DriveSpeed::VStar(0.03))
+        }),
+        direction: f64 = 0.0,
     }
 }
 
 /// `[friction]`: the law and the local coefficients (Eqs. 1 and 4).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "FrictionKeys", into = "FrictionKeys")]
+#[serde(try_from = "FrictionKeys", into = "FrictionKeys")]
 pub struct Friction {
     /// Which reading of Eq. 4 is integrated.
     pub law: FrictionLaw,
@@ -152,21 +109,6 @@ pub enum KineticFriction {
     MuKinetic(f64),
 }
 
-impl Default for Friction {
-    fn default() -> Self {
-        Self {
-            law: FrictionLaw::Projection,
-            mu_static: 1.0,
-            kinetic: KineticFriction::RStar(0.5),
-            sigma_static_star: 0.05,
-            sigma_kinetic_star: 0.05,
-            seed: 1,
-            mu_static_field: None,
-            mu_kinetic_field: None,
-        }
-    }
-}
-
 impl Friction {
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
         check.number("mu_static", self.mu_static)?;
@@ -193,67 +135,20 @@ impl Friction {
     }
 }
 
-/// The keys of `[friction]` as they stand in the file.
-#[derive(Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub(super) struct FrictionKeys {
-    #[serde(deserialize_with = "word")]
-    law: FrictionLaw,
-    mu_static: f64,
-    r_star: Option<f64>,
-    mu_kinetic: Option<f64>,
-    sigma_static_star: f64,
-    sigma_kinetic_star: f64,
-    seed: u64,
-    mu_static_field: Option<String>,
-    mu_kinetic_field: Option<String>,
-}
-
-impl Default for FrictionKeys {
-    fn default() -> Self {
-        // No kinetic coefficient here: either key replaces the default.
-        let mut keys = Self::from(Friction::default());
-        keys.r_star = None;
-        keys
-    }
-}
-
-impl From<FrictionKeys> for Friction {
-    fn from(keys: FrictionKeys) -> Self {
-        let kinetic = match (keys.mu_kinetic, keys.r_star) {
-            (Some(mu_kinetic), _) => KineticFriction::MuKinetic(mu_kinetic),
-            (None, Some(r_star)) => KineticFriction::RStar(r_star),
-            (None, None) => Self::default().kinetic,
-        };
-        Self {
-            law: keys.law,
-            mu_static: keys.mu_static,
-            kinetic,
-            sigma_static_star: keys.sigma_static_star,
-            sigma_kinetic_star: keys.sigma_kinetic_star,
-            seed: keys.seed,
-            mu_static_field: keys.mu_static_field,
-            mu_kinetic_field: keys.mu_kinetic_field,
-        }
-    }
-}
-
-impl From<Friction> for FrictionKeys {
-    fn from(friction: Friction) -> Self {
-        let (r_star, mu_kinetic) = match friction.kinetic {
-            KineticFriction::RStar(r_star) => (Some(r_star), None),
-            KineticFriction::MuKinetic(mu_kinetic) => (None, Some(mu_kinetic)),
-        };
-        Self {
-            law: friction.law,
-            mu_static: friction.mu_static,
-            r_star,
-            mu_kinetic,
-            sigma_static_star: friction.sigma_static_star,
-            sigma_kinetic_star: friction.sigma_kinetic_star,
-            seed: friction.seed,
-            mu_static_field: friction.mu_static_field,
-            mu_kinetic_field: friction.mu_kinetic_field,
-        }
+keys_with_choice! {
+    Friction: FrictionKeys {
+        #[serde(deserialize_with = "word")]
+        law: FrictionLaw = FrictionLaw::Projection,
+        mu_static: f64 = 1.0,
+        (kinetic: KineticFriction {
+            r_star: f64 => RStar,
+            mu_kinetic: f64 => MuKinetic,
+            _ => Ok(KineticFriction::RStar(0.5))
+        }),
+        sigma_static_star: f64 = 0.05,
+        sigma_kinetic_star: f64 = 0.05,
+        seed: u64 = 1,
+        mu_static_field: Option<String> = None,
+        mu_kinetic_field: Option<String> = None,
     }
 }

@@ -5,13 +5,14 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use slipfront::Edges;
 
 use super::check::Check;
+use super::choice::{default_table, keys_with_choice};
 use super::error::CaseError;
 use super::values::{Pair, pair};
 use crate::quantity::{Density, Length, Pressure, Rate};
 
 /// `[slider]`: the blocks, their material, the damping and the edges.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "SliderKeys", into = "SliderKeys")]
+#[serde(try_from = "SliderKeys", into = "SliderKeys")]
 pub struct Slider {
     /// Blocks along x and along y (`N_x`, `N_y`): 1 to 100 000 each, at least 3 along a periodic axis.
     pub blocks: [u32; 2],
@@ -34,19 +35,6 @@ pub enum Damping {
     OmegaStar(f64),
     /// `damping_rate`: Omega of Eq. 5, 1/s.
     Rate(Rate),
-}
-
-impl Default for Slider {
-    fn default() -> Self {
-        Self {
-            blocks: [25, 25],
-            block_size: Length::from_text("1 um", 1e-6),
-            young_modulus: Pressure::from_text("100 GPa", 1e11),
-            density: Density::from_text("10 g/cm^3", 1e4),
-            damping: Damping::OmegaStar(0.1),
-            edges: [Edges::Free; 2],
-        }
-    }
 }
 
 /// Most blocks altogether.
@@ -88,63 +76,20 @@ impl Slider {
     }
 }
 
-/// The keys of `[slider]` as they stand in the file.
-#[derive(Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub(super) struct SliderKeys {
-    #[serde(deserialize_with = "pair")]
-    blocks: [u32; 2],
-    block_size: Length,
-    young_modulus: Pressure,
-    density: Density,
-    omega_star: Option<f64>,
-    damping_rate: Option<Rate>,
-    #[serde(serialize_with = "write_edges", deserialize_with = "read_edges")]
-    edges: [Edges; 2],
-}
-
-impl Default for SliderKeys {
-    fn default() -> Self {
-        // No damping here: either key replaces the default.
-        let mut keys = Self::from(Slider::default());
-        keys.omega_star = None;
-        keys
-    }
-}
-
-impl From<SliderKeys> for Slider {
-    fn from(keys: SliderKeys) -> Self {
-        let damping = match (keys.damping_rate, keys.omega_star) {
-            (Some(rate), _) => Damping::Rate(rate),
-            (None, Some(omega_star)) => Damping::OmegaStar(omega_star),
-            (None, None) => Self::default().damping,
-        };
-        Self {
-            blocks: keys.blocks,
-            block_size: keys.block_size,
-            young_modulus: keys.young_modulus,
-            density: keys.density,
-            damping,
-            edges: keys.edges,
-        }
-    }
-}
-
-impl From<Slider> for SliderKeys {
-    fn from(slider: Slider) -> Self {
-        let (omega_star, damping_rate) = match slider.damping {
-            Damping::OmegaStar(omega_star) => (Some(omega_star), None),
-            Damping::Rate(rate) => (None, Some(rate)),
-        };
-        Self {
-            blocks: slider.blocks,
-            block_size: slider.block_size,
-            young_modulus: slider.young_modulus,
-            density: slider.density,
-            omega_star,
-            damping_rate,
-            edges: slider.edges,
-        }
+keys_with_choice! {
+    Slider: SliderKeys {
+        #[serde(deserialize_with = "pair")]
+        blocks: [u32; 2] = [25, 25],
+        block_size: Length = Length::from_text("1 um", 1e-6),
+        young_modulus: Pressure = Pressure::from_text("100 GPa", 1e11),
+        density: Density = Density::from_text("10 g/cm^3", 1e4),
+        (damping: Damping {
+            omega_star: f64 => OmegaStar,
+            damping_rate: Rate => Rate,
+            _ => Ok(Damping::OmegaStar(0.1))
+        }),
+        #[serde(serialize_with = "write_edges", deserialize_with = "read_edges")]
+        edges: [Edges; 2] = [Edges::Free; 2],
     }
 }
 

@@ -10,6 +10,7 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use super::check::Check;
+use super::choice::{default_table, keys_with_choice};
 use super::error::CaseError;
 use super::key_table::COORDINATES;
 use super::keys::{texture_header, unknown_shape};
@@ -183,135 +184,33 @@ impl Cavity {
     }
 }
 
-/// The keys of a cavity as they stand in the file.
-#[derive(Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub(super) struct CavityKeys {
-    s: u32,
-    w: f64,
-    coverage: Option<f64>,
-    lambda: Option<Length>,
-    across: bool,
-    center: Center,
-    rotate: f64,
-    #[serde(deserialize_with = "pair")]
-    array: [u32; 2],
-}
-
-impl Default for CavityKeys {
-    fn default() -> Self {
-        Self {
-            s: 1,
-            w: 0.0,
-            coverage: None,
-            lambda: None,
-            across: false,
-            center: Center::Middle,
-            rotate: 0.0,
-            array: [1, 1],
-        }
+keys_with_choice! {
+    Cavity: CavityKeys {
+        s: u32 = 1,
+        w: f64 = 0.0,
+        (size: CavitySize {
+            coverage: f64 => Coverage,
+            lambda: Length => Lambda,
+            _ => Err("a cavity needs a size: `coverage = 10` (percent of the area) or `lambda = \"8 um\"`")
+        }),
+        across: bool = false,
+        center: Center = Center::Middle,
+        rotate: f64 = 0.0,
+        #[serde(deserialize_with = "pair")]
+        array: [u32; 2] = [1, 1],
     }
 }
 
-impl TryFrom<CavityKeys> for Cavity {
-    type Error = &'static str;
-
-    fn try_from(keys: CavityKeys) -> Result<Self, Self::Error> {
-        let size = match (keys.lambda, keys.coverage) {
-            (Some(lambda), _) => CavitySize::Lambda(lambda),
-            (None, Some(coverage)) => CavitySize::Coverage(coverage),
-            (None, None) => {
-                return Err(
-                    "a cavity needs a size: `coverage = 10` (percent of the area) or `lambda = \"8 um\"`",
-                );
-            }
-        };
-        Ok(Self {
-            s: keys.s,
-            w: keys.w,
-            size,
-            across: keys.across,
-            center: keys.center,
-            rotate: keys.rotate,
-            array: keys.array,
-        })
-    }
-}
-
-impl From<Cavity> for CavityKeys {
-    fn from(cavity: Cavity) -> Self {
-        let (coverage, lambda) = match cavity.size {
-            CavitySize::Coverage(coverage) => (Some(coverage), None),
-            CavitySize::Lambda(lambda) => (None, Some(lambda)),
-        };
-        Self {
-            s: cavity.s,
-            w: cavity.w,
-            coverage,
-            lambda,
-            across: cavity.across,
-            center: cavity.center,
-            rotate: cavity.rotate,
-            array: cavity.array,
-        }
-    }
-}
-
-/// The keys of a groove as they stand in the file.
-#[derive(Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub(super) struct GrooveKeys {
-    #[serde(deserialize_with = "word")]
-    orientation: Orientation,
-    coverage: Option<f64>,
-    width: Option<Length>,
-    offset: Length,
-}
-
-impl Default for GrooveKeys {
-    fn default() -> Self {
-        Self {
-            orientation: Orientation::Across,
-            coverage: None,
-            width: None,
-            offset: Length::from_text("0 um", 0.0),
-        }
-    }
-}
-
-impl TryFrom<GrooveKeys> for Groove {
-    type Error = &'static str;
-
-    fn try_from(keys: GrooveKeys) -> Result<Self, Self::Error> {
-        let size = match (keys.width, keys.coverage) {
-            (Some(width), _) => GrooveSize::Width(width),
-            (None, Some(coverage)) => GrooveSize::Coverage(coverage),
-            (None, None) => {
-                return Err(
-                    "a groove needs a size: `coverage = 10` (percent of the area) or `width = \"5 um\"`",
-                );
-            }
-        };
-        Ok(Self {
-            orientation: keys.orientation,
-            size,
-            offset: keys.offset,
-        })
-    }
-}
-
-impl From<Groove> for GrooveKeys {
-    fn from(groove: Groove) -> Self {
-        let (coverage, width) = match groove.size {
-            GrooveSize::Coverage(coverage) => (Some(coverage), None),
-            GrooveSize::Width(width) => (None, Some(width)),
-        };
-        Self {
-            orientation: groove.orientation,
-            coverage,
-            width,
-            offset: groove.offset,
-        }
+keys_with_choice! {
+    Groove: GrooveKeys {
+        #[serde(deserialize_with = "word")]
+        orientation: Orientation = Orientation::Across,
+        (size: GrooveSize {
+            coverage: f64 => Coverage,
+            width: Length => Width,
+            _ => Err("a groove needs a size: `coverage = 10` (percent of the area) or `width = \"5 um\"`")
+        }),
+        offset: Length = Length::from_text("0 um", 0.0),
     }
 }
 
