@@ -1,4 +1,4 @@
-//! Text and files in, a case out: everything between what a user writes and the physics of [`slipfront`].
+//! Reads what a user writes and makes cases of it that the physics crate [`slipfront`] can run.
 //!
 //! ```text
 //! text -> CaseFile -> Case (valid by construction)

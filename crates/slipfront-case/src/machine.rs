@@ -1,9 +1,9 @@
-//! What this machine has left: memory and disk.
+//! Memory and disk space that this machine has left.
 
 use std::path::Path;
 
-/// Memory that this process may still take, in bytes: what the machine has left without swapping, or its control
-/// group if that is less. None if the system does not say.
+/// Memory that this process may still take, in bytes: what the machine can give without swapping, or what is left to its
+/// control group if that is less. `None` if the system does not say.
 pub fn available_memory() -> Option<f64> {
     use sysinfo::{ProcessRefreshKind, ProcessesToUpdate, System};
     let mut system = System::new().ok()?;
@@ -23,7 +23,7 @@ pub fn available_memory() -> Option<f64> {
     least.map(|bytes| bytes as f64)
 }
 
-/// How much of so many bytes the system gives at once, to a ten-thousandth.
+/// The largest part of `bytes` that the system allocates at once, to one part in ten thousand.
 pub fn most_at_once(bytes: f64) -> f64 {
     if can_be_had(bytes) {
         return bytes;
@@ -40,7 +40,7 @@ pub fn most_at_once(bytes: f64) -> f64 {
     given
 }
 
-/// Asks the system for so many bytes at once, and gives them back untouched.
+/// Whether the system allocates so many bytes at once; they are freed again without being used.
 pub fn can_be_had(bytes: f64) -> bool {
     let mut all = Vec::<u8>::new();
     let reserved = all.try_reserve_exact(bytes as usize);
@@ -49,7 +49,7 @@ pub fn can_be_had(bytes: f64) -> bool {
     reserved.is_ok()
 }
 
-/// Bytes free in a folder, or where it will be made. None if the system does not say.
+/// Bytes that are free on the disk of a folder, which need not exist yet. `None` if the system does not say.
 pub fn free_disk(folder: &Path) -> Option<f64> {
     let whole = std::path::absolute(folder).ok()?;
     let there = whole.ancestors().find(|path| path.is_dir())?;

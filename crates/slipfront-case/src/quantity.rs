@@ -114,7 +114,7 @@ impl fmt::Display for Dimension {
     }
 }
 
-/// Why a text is not the quantity that is wanted.
+/// Why a text is not a quantity of the wanted dimension.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
@@ -212,9 +212,9 @@ pub type Duration = Quantity<kind::Duration>;
 /// A rate, read into 1/s.
 pub type Rate = Quantity<kind::Rate>;
 
-/// A quantity that remembers how it was written.
+/// A quantity, with the text it was written as.
 ///
-/// Two quantities are equal when text and value are. The sign and the size are not judged here.
+/// Two quantities are equal when text and value are. Its bounds are those of the key it belongs to, and checked there.
 ///
 /// ```
 /// use slipfront_case::quantity::{Density, Length};

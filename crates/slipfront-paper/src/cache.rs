@@ -117,7 +117,7 @@ mod tests {
         }
         std::fs::File::create(&path).unwrap().set_len(1 << 40).unwrap();
         assert!(cache.load("fig99", StepRule::Auto).is_none());
-        // What a kill left is removed.
+        // Unfinished files of a killed process are removed.
         std::fs::write(folder.path().join("found/.slipfront123456"), "half of").unwrap();
         FigureCache::open(folder.path(), true).unwrap();
         assert_eq!(std::fs::read_dir(folder.path().join("found")).unwrap().count(), 1);

@@ -27,7 +27,7 @@ pub struct Panel {
     pub name: String,
     /// Its caption.
     pub caption: String,
-    /// What is drawn.
+    /// Its contents.
     pub drawing: Drawing,
 }
 

@@ -1,4 +1,4 @@
-//! What the measurement of a figure is given: its cases and studies, run with the chosen step rule.
+//! Runs the cases and studies of a figure with a step rule.
 
 use std::path::Path;
 use std::sync::Arc;

@@ -48,7 +48,7 @@ pub use friction::friction;
 pub use friction_curve::{FrictionCurve, Instant, Kinetic};
 pub use heat_map::{HeatAxis, HeatMap, heat_map};
 pub use picture::{Picture, PictureError};
-pub use quantity_labels::{symbol, title};
+pub use quantity_labels::{QuantityLabel, has_glyphs};
 pub use response::{Response, Responses, response};
 pub use shapes::{Shape, shapes};
 pub use stress::{StressMap, StressMaps, stress};

@@ -34,7 +34,8 @@ impl Target {
         files_of(&own_folder("findings", self.name), "")
     }
 
-    /// The text of its dictionary, as libFuzzer reads it; those of case and study files have the keys of a case as well.
+    /// The text of its dictionary in the format of libFuzzer, for case and study files with the keys of a case; empty without
+    /// one.
     pub fn words(&self) -> String {
         let Some(name) = self.dictionary else {
             return String::new();

@@ -15,7 +15,7 @@ use crate::disk::write_atomic;
 
 /// More pixels than any lattice has blocks.
 const PIXELS_MAX: u64 = 1 << 28;
-/// A byte for each of these is more than any picture of dark and bright takes.
+/// An image file of more bytes than this is refused.
 pub(super) const FILE_MAX_BYTES: u64 = PIXELS_MAX;
 /// Deflate cannot pack more than about 1030 bytes into one.
 const DEFLATE_MAX_RATIO: u64 = 1040;
@@ -28,8 +28,8 @@ const DEFLATE_MAX_RATIO: u64 = 1040;
 /// 0.2126 R + 0.7152 G + 0.0722 B
 /// ```
 ///
-/// (Rec. 709) of the stored values, whatever gamma or colour profile the file names; a transparent pixel is seen
-/// on white.
+/// (Rec. 709) of the stored values, whatever gamma or colour profile the file names; a transparent pixel is laid
+/// over white.
 ///
 /// # Errors
 ///

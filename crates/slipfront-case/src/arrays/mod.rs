@@ -1,8 +1,8 @@
-//! Arrays and images that a user hands over: friction coefficients block by block, and texture masks.
+//! Arrays and images that a case reads: friction coefficients block by block, and texture masks.
 //!
-//! The files come from strangers, so every parser compares what the header announces with the length of the
-//! file before it reserves memory, no file is read that is longer than its lattice can need, and the answer is an
-//! [`ArrayError`] whatever the bytes are. Arrays are (ny, nx) and row-major, row j = 0 (the smallest y) first.
+//! The files may hold anything, so every parser compares the sizes in a header with the length of the file before it
+//! allocates memory, files longer than their lattice can need are refused, and any invalid contents give an
+//! [`ArrayError`]. Arrays are (ny, nx) and row-major, row j = 0 (the smallest y) first.
 
 mod mask;
 mod npy;
@@ -87,12 +87,12 @@ pub enum ArrayError {
     Write { path: PathBuf, source: io::Error },
 }
 
-/// Reads the bytes of a file that is meant for a lattice of `nx` x `ny` blocks: what is made of them and what is kept of
-/// them are then the same, whatever becomes of the file.
+/// Reads the bytes of a file for a lattice of `nx` x `ny` blocks. They are read once, so that the copy in the run folder
+/// holds what the case was made of even if the file changes.
 ///
 /// # Errors
 ///
-/// [`ArrayError`] if the file is missing, not a regular file, or longer than it can be meant to be.
+/// [`ArrayError`] if the file is missing, not a regular file, or longer than that lattice can need.
 pub fn read_file(path: &Path, nx: usize, ny: usize) -> Result<Vec<u8>, ArrayError> {
     let read_error = |source| ArrayError::Read {
         path: path.to_owned(),
@@ -151,10 +151,10 @@ pub fn field(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<f64>
     }
 }
 
-/// The longest file that can be meant for a lattice of `nx` x `ny` blocks, in bytes.
+/// The longest file that a lattice of `nx` x `ny` blocks can need, in bytes.
 ///
-/// A `.npy` holds a header and 64 bits per block, a line of a `.csv` numbers and what is written beside them, an image
-/// no more than it may have pixels.
+/// A `.npy` holds a header and 64 bits per block, a `.csv` numbers, separators and comments, an image at most one byte for
+/// each pixel that it may have.
 fn longest(path: &Path, nx: usize, ny: usize) -> u64 {
     let blocks = (nx as u64).saturating_mul(ny as u64);
     match extension(path).as_str() {

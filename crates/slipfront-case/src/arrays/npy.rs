@@ -9,7 +9,7 @@ use crate::text::truncated;
 
 /// Numpy itself refuses longer headers.
 pub(super) const HEADER_MAX_BYTES: usize = 10_000;
-/// A dict that holds a list of tuples that hold a shape: nothing that numpy writes for numbers nests deeper.
+/// Deepest nesting of brackets in a header: a dict of a list of tuples with a shape. numpy nests no deeper for numbers.
 const HEADER_MAX_NESTING: usize = 4;
 /// All numbers of a header together: their product then fits into 64 bits, whatever the radix they are written in.
 const HEADER_MAX_DIGITS: usize = 18;
@@ -22,7 +22,7 @@ const HEADER_MAX_DIGITS: usize = 18;
 /// # Errors
 ///
 /// [`ArrayError`] if the bytes are not those of a `.npy` file, of another shape, or have another value:
-/// a picture or a height map has no one reading as a mask.
+/// a picture or a height map says nothing unambiguous about what is textured.
 pub fn mask_npy(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<bool>, ArrayError> {
     let values = values(path, bytes, nx, ny)?;
     match values.iter().position(|value| ![0.0, 1.0].contains(value)) {
@@ -137,7 +137,7 @@ fn digits(text: &[u8]) -> usize {
         .sum()
 }
 
-/// The first line of a message: the parser of the header draws a picture below it.
+/// The first line of a message of the header's parser, which adds an excerpt below it.
 fn one_line(message: &str) -> &str {
     message
         .lines()

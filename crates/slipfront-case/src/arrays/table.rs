@@ -6,7 +6,7 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 
 use super::ArrayError;
 
-/// Comment lines longer than this in total are not looked through for the separator.
+/// Comment lines are searched for the separator up to this total length.
 pub(super) const PREAMBLE_MAX_BYTES: u64 = 1 << 20;
 /// A number with its separator and blanks, and its share of comments: numpy's longest takes 25.
 pub(super) const NUMBER_MAX_BYTES: u64 = 64;
@@ -76,7 +76,7 @@ pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<
 
 /// What separates the numbers of the first line that is no comment: a semicolon, a tab, a comma or a blank.
 ///
-/// The semicolon comes before the comma, so that a decimal comma is told as such and not as a wrong shape.
+/// The semicolon comes before the comma, so that a decimal comma is reported as such and not as a wrong shape.
 fn separator(bytes: &[u8]) -> u8 {
     let preamble = &bytes[..bytes.len().min(PREAMBLE_MAX_BYTES as usize)];
     let mut lines = preamble.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
@@ -97,7 +97,7 @@ fn wrong_shape(path: &Path, found: String, nx: usize, ny: usize) -> ArrayError {
     }
 }
 
-/// A field as it is shown in a message.
+/// The beginning of a field, for a message.
 fn excerpt(field: &str) -> String {
     const SHOWN: usize = 40;
     if field.chars().count() <= SHOWN {

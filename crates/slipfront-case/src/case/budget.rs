@@ -1,6 +1,7 @@
-//! What a run needs, before it begins: memory, and room for its files, held against what there is.
+//! Memory and disk space that a run needs, estimated before it begins and compared with what the machine has.
 //!
-//! Memory is counted where it is largest, in one of four phases. Per block of the lattice, in bytes:
+//! Memory is that of the largest of four phases: a case is made, run, its results written, its pictures drawn. Per block
+//! of the lattice, in bytes:
 //!
 //! | | made | run | written | drawn |
 //! |---|---|---|---|---|
@@ -71,10 +72,10 @@ const HEAP: f64 = 1.05;
 /// The program itself.
 pub const PROGRAM: f64 = 8.0 * 1024.0 * 1024.0;
 
-/// What is not worth looking at the machine for: the pictures of the smallest run take more.
+/// Cases that need less are not compared with the machine: the pictures of the smallest run take more.
 const SMALL: f64 = PICTURE;
 
-/// What a run needs; see the [module](self) for what is counted.
+/// Memory and disk space that a run needs; the [module](self) says what is counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     blocks: f64,
@@ -93,14 +94,14 @@ pub struct Budget {
     masks: f64,
 }
 
-/// Bytes, by what they are for.
+/// Bytes by their purpose.
 #[derive(Clone, Copy, Debug, Default)]
 struct Bytes {
     blocks: f64,
     snapshots: f64,
     series: f64,
     inputs: f64,
-    /// What no key of a case changes.
+    /// Bytes that no key of a case changes.
     fixed: f64,
 }
 
@@ -110,7 +111,7 @@ impl Bytes {
     }
 }
 
-/// What memory is needed for.
+/// The task that memory is needed for.
 #[derive(Clone, Copy, Debug)]
 enum Needs {
     /// To make the case.
@@ -121,17 +122,17 @@ enum Needs {
     Resumed,
 }
 
-/// A need that exceeds what there is.
+/// More memory or disk space needed than there is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BudgetExceeded {
     /// The key of the case that most of it is due to.
     pub key: &'static str,
-    /// Both figures, what it is due to, and what to do.
+    /// A sentence with both figures, the cause and the remedy.
     pub sentence: String,
 }
 
 impl Budget {
-    /// Counts a run from the numbers of its case, before anything of it is made.
+    /// The budget of a run, from the parameters of its case alone.
     pub fn new(lattice: &Lattice, law: FrictionLaw, time_plan: &TimePlan, output: &Output) -> Self {
         let kept = |blocks: usize| blocks.div_ceil(output.stride) as f64;
         let last_step = time_plan.last_step;
@@ -247,7 +248,7 @@ impl Budget {
         self.making().total()
     }
 
-    /// The same run when it goes on from a checkpoint, which is in memory until the kernel has taken it over.
+    /// The budget of the run when it resumes from a checkpoint, which is in memory until the kernel has taken it over.
     pub fn resumed(self) -> Self {
         Self {
             kernel: self.kernel + ROOM_TO_READ * SAVED,
@@ -260,7 +261,7 @@ impl Budget {
         self.files().total()
     }
 
-    /// The same for the snapshots alone.
+    /// Disk space for the snapshots alone, in bytes.
     pub fn disk_of_snapshots(&self) -> f64 {
         self.files().snapshots
     }
@@ -406,7 +407,7 @@ impl Budget {
     }
 }
 
-/// A need that exceeds what there is, as an error at the key that it is due to.
+/// An exceeded budget as an error at the key that causes it.
 pub(super) fn within_budget(file: &CaseFile, checked: Result<(), BudgetExceeded>) -> Result<(), CaseError> {
     checked.map_err(|excess| file.source.error(excess.key, excess.sentence))
 }

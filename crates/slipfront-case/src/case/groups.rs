@@ -8,21 +8,21 @@ use crate::case_file::{CaseError, CaseFile};
 /// The dimensionless groups on which the model depends (Eq. 11).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Groups {
-    /// V*.
+    /// V*, the speed of the drive.
     pub v_star: f64,
-    /// R*.
+    /// R*, the mean kinetic over the mean static coefficient.
     pub r_star: f64,
-    /// Omega*.
+    /// Omega*, the damping.
     pub omega_star: f64,
-    /// sigma_s*.
+    /// sigma_s*, the spread of the static coefficients.
     pub sigma_static_star: f64,
-    /// sigma_k*.
+    /// sigma_k*, the spread of the kinetic coefficients.
     pub sigma_kinetic_star: f64,
-    /// eps = P mu_s/E.
+    /// eps = P mu_s/E, the strain of the load.
     pub epsilon: f64,
 }
 
-/// Largest strain of the load: beyond it the springs of this model mean nothing.
+/// Largest strain of the load; the model assumes small deformations.
 const MAX_EPSILON: f64 = 0.5;
 const MIN_V_STAR: f64 = 1e-9;
 const MAX_V_STAR: f64 = 10.0;
@@ -32,7 +32,7 @@ impl Groups {
     /// The groups of a case file.
     ///
     /// # Errors
-    /// When one lies where the model means nothing.
+    /// When a group is out of the range in which the model is valid.
     pub(super) fn of(file: &CaseFile, scales: &Scales) -> Result<Self, CaseError> {
         let epsilon = scales.epsilon();
         if epsilon > MAX_EPSILON {

@@ -11,21 +11,50 @@ use crate::case_file::{CaseError, CaseFile};
 /// A file that a case reads, kept so that the run folder can hold a copy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
-    /// Path in the run folder.
+    /// Path of its copy in the run folder.
     pub name: String,
-    /// Where it was read.
+    /// Path that it was read from.
     pub original: PathBuf,
-    /// Its bytes.
+    /// Its contents.
     pub bytes: Vec<u8>,
 }
 
-/// A file that was read.
+/// The name of a copy of a file in the folder `inputs/`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum CopyName {
+    /// A copy of this name has the same contents already.
+    Known(String),
+    /// No copy has this name yet.
+    New(String),
+}
+
+/// Names the copy of a file after its plain name; files of one name and different contents are numbered.
+///
+/// `describe` gives the name of a copy made before, and whether its contents are those of the file.
+pub fn name_of_copy<'c, C>(
+    plain: &str,
+    copies: &'c [C],
+    describe: impl Fn(&'c C) -> (&'c str, bool),
+) -> CopyName {
+    let mut name = format!("inputs/{plain}");
+    let mut number = 1;
+    while let Some((_, is_same)) = copies.iter().map(&describe).find(|(other, _)| *other == name) {
+        if is_same {
+            return CopyName::Known(name);
+        }
+        number += 1;
+        name = format!("inputs/{number}-{plain}");
+    }
+    CopyName::New(name)
+}
+
+/// A file that was read, and its contents.
 pub(super) struct InputBytes {
     pub(super) path: PathBuf,
     pub(super) bytes: Vec<u8>,
 }
 
-/// Files kept so far, and what the case needs with them.
+/// Files read so far, and the budget of the case with them.
 pub(super) struct Inputs {
     folder: PathBuf,
     pub(super) kept: Vec<Input>,
@@ -41,7 +70,7 @@ impl Inputs {
         }
     }
 
-    /// Reads a file that the case names, once: what is made of it is what its copy holds.
+    /// Reads a file that the case names. It is read once, so that its copy holds what the case was made of.
     pub(super) fn read(
         &self,
         file: &CaseFile,
@@ -55,22 +84,16 @@ impl Inputs {
         Ok(InputBytes { path, bytes })
     }
 
-    /// Notes a file that something was made of; gives the path of its copy in the run folder.
+    /// Keeps the contents of a file that the case uses; gives the path of its copy in the run folder.
     pub(super) fn keep(&mut self, file: &CaseFile, given: InputBytes) -> Result<String, CaseError> {
         let InputBytes { path, bytes } = given;
         let plain = path
             .file_name()
             .map_or_else(|| "input".into(), |name| name.to_string_lossy().into_owned());
-        let mut name = format!("inputs/{plain}");
-        let mut copies = 1;
-        // Two files of one name from different folders stay two files.
-        while let Some(other) = self.kept.iter().find(|input| input.name == name) {
-            if other.bytes == bytes {
-                return Ok(name);
-            }
-            copies += 1;
-            name = format!("inputs/{copies}-{plain}");
-        }
+        let name = match name_of_copy(&plain, &self.kept, |kept| (&kept.name, kept.bytes == bytes)) {
+            CopyName::Known(name) => return Ok(name),
+            CopyName::New(name) => name,
+        };
         self.budget.add_input(bytes.len());
         self.kept.push(Input {
             name: name.clone(),

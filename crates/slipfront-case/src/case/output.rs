@@ -1,16 +1,16 @@
-//! What a case writes, and when.
+//! Which results a case writes, and at which steps.
 
 use super::time_plan::TimePlan;
 use crate::case_file;
 use crate::case_file::{AutoOr, CaseError, CaseFile};
 use slipfront::observe::Field;
 
-/// What is written.
+/// Which results are written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
-    /// When fields are kept.
+    /// The instants at which fields are recorded.
     pub snapshots: Snapshots,
-    /// Which fields.
+    /// The fields that are recorded.
     pub fields: Vec<Field>,
     /// Every n-th block of each axis in the fields file.
     pub stride: usize,
@@ -18,7 +18,7 @@ pub struct Output {
     pub series_stride: u64,
 }
 
-/// When fields are kept.
+/// The instants at which fields are recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Snapshots {
     /// At the instants A-F.
@@ -32,17 +32,17 @@ pub enum Snapshots {
 /// Most maps in the picture of the stress: of more snapshots, six spread over the run are shown.
 pub const MAX_MAPS: usize = 6;
 
-/// The largest variable (or record of one) that every reader of 64-bit offset files takes.
+/// Largest size of a variable of `fields.nc`, or of one record of it, in bytes: the limit of 64-bit offset files.
 pub const VARIABLE_MAX_BYTES: usize = i32::MAX as usize - 3;
 
-/// Longest series that is written unless a spacing is asked for.
+/// Most rows of the series unless the case sets a spacing.
 const SERIES_ROWS: u64 = 20_000;
 
 impl Output {
-    /// What a case file asks for.
+    /// The output that a case file asks for.
     ///
     /// # Errors
-    /// When the run has no such steps.
+    /// When a time lies behind the end of the run, or a spacing is shorter than a step.
     pub(super) fn of(file: &CaseFile, time_plan: &TimePlan) -> Result<Self, CaseError> {
         let TimePlan {
             dt_star, last_step, ..
@@ -87,7 +87,7 @@ impl Output {
     }
 }
 
-/// The smallest stride from `stride` on with which one variable holds a lattice of `nx` x `ny` blocks.
+/// The smallest stride, not below `stride`, with which a field of `nx` x `ny` blocks fits into one variable.
 pub fn smallest_stride(nx: usize, ny: usize, stride: usize) -> usize {
     let enough = (stride..).find(|stride| fits(nx.div_ceil(*stride), ny.div_ceil(*stride)));
     enough.unwrap_or(usize::MAX)

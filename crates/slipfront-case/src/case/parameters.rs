@@ -1,4 +1,4 @@
-//! All that a case file says without the files it names.
+//! The parameters of a case that follow from the case file alone, without the files that it names.
 
 use slipfront::{Lattice, Scales};
 
@@ -8,7 +8,7 @@ use super::output::{Output, smallest_stride};
 use super::time_plan::TimePlan;
 use crate::case_file::{CaseError, CaseFile};
 
-/// All that a case file says without its files, before any array of the lattice is made.
+/// The parameters of a case, computed before any array of the lattice is allocated.
 pub(super) struct Parameters {
     pub(super) scales: Scales,
     pub(super) groups: Groups,
@@ -37,7 +37,7 @@ impl Parameters {
     }
 }
 
-/// Refuses fields that their file could not hold when the run is over.
+/// Refuses a case whose fields are too large for their file.
 pub fn check_fields(file: &CaseFile, lattice: &Lattice, output: &Output) -> Result<(), CaseError> {
     let Lattice { nx, ny, .. } = lattice;
     let needed = smallest_stride(*nx, *ny, output.stride);

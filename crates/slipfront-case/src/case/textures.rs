@@ -13,11 +13,11 @@ use crate::{arrays, case_file};
 /// The shapes of all textures.
 pub(super) struct Textures {
     pub(super) shapes: Vec<surface::Texture>,
-    /// See [`TextureReport`](super::TextureReport).
+    /// See [`TextureReport`](super::runnable::TextureReport).
     pub(super) asked_percent: Option<f64>,
 }
 
-/// Reads the masks among them, too.
+/// The shapes of all textures of a case file; masks are read.
 pub(super) fn textures(
     file: &mut CaseFile,
     scales: &Scales,
@@ -67,8 +67,8 @@ pub(super) fn textures(
     })
 }
 
-/// How far a texture may reach, in slider lengths: farther off it is a slip of the pen, and where edges wrap, its place
-/// is lost to rounding.
+/// How far a texture may reach, in slider lengths. Farther away it is a typing error, and on a periodic axis its position
+/// would be lost to rounding.
 const REACH: f64 = 100.0;
 
 fn within_reach(shape: &surface::Texture, lattice: &Lattice) -> Result<(), String> {

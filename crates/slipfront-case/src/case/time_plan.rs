@@ -1,4 +1,4 @@
-//! Time of a case, and its steps.
+//! Duration and time step of a case.
 
 use slipfront::lattice::dt_star_limit;
 use slipfront::observe::KineticStart;
@@ -8,16 +8,16 @@ use super::groups::Groups;
 use crate::case_file;
 use crate::case_file::{AutoOr, CaseError, CaseFile};
 
-/// Time and its steps.
+/// Duration and time step of a run, its end and the window of the kinetic friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimePlan {
-    /// dt*.
+    /// The time step dt*.
     pub dt_star: f64,
     /// Number of steps.
     pub last_step: u64,
-    /// When the run ends.
+    /// The condition that ends the run.
     pub stop: Stop,
-    /// Where the kinetic window begins.
+    /// Start of the window that kinetic friction is averaged over.
     pub kinetic: KineticStart,
 }
 
@@ -28,7 +28,7 @@ impl TimePlan {
     /// The time plan of a case file.
     ///
     /// # Errors
-    /// When it is not stable, too long, or leaves no kinetic window.
+    /// When the step is unstable, the run too long, or the kinetic window empty.
     pub(super) fn of(file: &CaseFile, scales: &Scales, groups: &Groups) -> Result<Self, CaseError> {
         let time = &file.time;
         let dt_star = match time.step {

@@ -1,18 +1,18 @@
-//! What deserves a word before a case is run.
+//! Warnings before a case is run.
 
 use std::path::Path;
 
 use slipfront::FrictionLaw;
 
-use super::Case;
+use super::runnable::Case;
 use super::textures::is_array;
 use crate::case_file::{DEFAULT_THRESHOLD, Texture};
 
-/// Difference between the texture as asked and as meshed, relative to what was asked, that deserves a word.
+/// Difference between the texture as asked and as meshed, relative to what was asked, above which there is a warning.
 const LARGE_MISFIT: f64 = 0.25;
-/// Relative difference between `mu_static` and the mean of given coefficients that deserves a word.
+/// Relative difference between `mu_static` and the mean of given coefficients above which there is a warning.
 const LARGE_MISMATCH: f64 = 0.1;
-/// Strain of the load from which the springs' bending of geometry shows in the third digit.
+/// Strain of the load above which geometric nonlinearity of the springs shows in the third digit.
 const LARGE_EPSILON: f64 = 1e-2;
 /// Speed above which loading is faster than the slip front.
 const LARGE_V_STAR: f64 = 0.2;
@@ -20,7 +20,7 @@ const LARGE_V_STAR: f64 = 0.2;
 const FEW_BLOCKS: usize = 625;
 
 impl Case {
-    /// Where the case leaves what the model is good for, or what was asked, before it is run.
+    /// Warnings about a case outside the range in which the model is valid, or that differs from what was asked.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         let mut warn = |wrong: bool, sentence: String| {
@@ -28,7 +28,13 @@ impl Case {
                 warnings.push(sentence);
             }
         };
-        let groups = &self.groups;
+        self.warn_of_texture(&mut warn);
+        self.warn_of_coefficients(&mut warn);
+        self.warn_of_model(&mut warn);
+        warnings
+    }
+
+    fn warn_of_texture(&self, warn: &mut impl FnMut(bool, String)) {
         for texture in &self.texture.clipped {
             warn(
                 true,
@@ -61,6 +67,9 @@ impl Case {
             ),
             None => warn(meshed == 0.0, "the texture covers no block".to_owned()),
         }
+    }
+
+    fn warn_of_coefficients(&self, warn: &mut impl FnMut(bool, String)) {
         warn(
             self.negative_draws > 0,
             format!(
@@ -79,6 +88,10 @@ impl Case {
                 self.scales.mu_static_mean
             ),
         );
+    }
+
+    fn warn_of_model(&self, warn: &mut impl FnMut(bool, String)) {
+        let groups = &self.groups;
         warn(
             groups.epsilon > LARGE_EPSILON,
             format!(
@@ -111,6 +124,5 @@ impl Case {
                 self.model.lattice.n_blocks()
             ),
         );
-        warnings
     }
 }

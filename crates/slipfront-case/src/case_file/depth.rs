@@ -1,4 +1,4 @@
-//! How deep brackets are nested, looked at before a text is parsed.
+//! Limits the nesting of brackets before a text is parsed.
 //!
 //! `toml` itself refuses what is nested more than 80 deep. But it also counts brackets that close nothing, as in
 //! `{ [], a = { [], a = `, so that a text of such mistakes takes it as deep as it is long, and overflows the stack.
@@ -6,10 +6,11 @@
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
 
-/// Brackets within each other that are parsed: more than `toml` takes, so that its error is the one that is told.
+/// Deepest nesting that is passed on: more than `toml` accepts, so that the error is its own.
 const MOST: usize = 200;
 
-/// The text up to the place where it is nested too deep: its brackets are open there, so that it is not valid TOML either.
+/// The text up to the bracket that is nested too deep. Brackets are still open there, so that what is left is no valid
+/// TOML and the parser refuses it.
 pub fn limit_nesting(text: &str) -> &str {
     let mut open = Vec::new();
     for token in Source::new(text).lex() {
@@ -20,7 +21,7 @@ pub fn limit_nesting(text: &str) -> &str {
                 }
                 open.push(kind);
             }
-            // One that does not fit closes nothing.
+            // A bracket of the other kind closes nothing.
             TokenKind::RightSquareBracket => {
                 open.pop_if(|kind| *kind == TokenKind::LeftSquareBracket);
             }

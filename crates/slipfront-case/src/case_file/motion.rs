@@ -86,7 +86,7 @@ pub(super) struct DriveKeys {
 
 impl Default for DriveKeys {
     fn default() -> Self {
-        // No speed here: either key displaces the default.
+        // No speed here: either key replaces the default.
         let mut keys = Self::from(Drive::default());
         keys.v_star = None;
         keys
@@ -211,7 +211,7 @@ pub(super) struct FrictionKeys {
 
 impl Default for FrictionKeys {
     fn default() -> Self {
-        // No kinetic coefficient here: either key displaces the default.
+        // No kinetic coefficient here: either key replaces the default.
         let mut keys = Self::from(Friction::default());
         keys.r_star = None;
         keys

@@ -105,7 +105,7 @@ pub(super) struct SliderKeys {
 
 impl Default for SliderKeys {
     fn default() -> Self {
-        // No damping here: either key displaces the default.
+        // No damping here: either key replaces the default.
         let mut keys = Self::from(Slider::default());
         keys.omega_star = None;
         keys

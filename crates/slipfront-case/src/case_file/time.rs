@@ -109,7 +109,7 @@ pub(super) struct TimeKeys {
 
 impl Default for TimeKeys {
     fn default() -> Self {
-        // No duration here: either key displaces the default.
+        // No duration here: either key replaces the default.
         let mut keys = Self::from(Time::default());
         keys.duration_star = None;
         keys

@@ -103,7 +103,7 @@ pub(super) enum WordOrNumber {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "WordOrNumber", into = "WordOrNumber")]
 pub enum AutoOr {
-    /// `"auto"`: see the key for what that is.
+    /// `"auto"`: the program chooses, as the documentation of the key says.
     Auto,
     /// The user's number.
     Number(f64),

@@ -75,7 +75,7 @@ fn slope(x: &[f64], y: &[Number]) -> f64 {
     products.sum::<f64>() / x.iter().map(|x| (x - center_x).powi(2)).sum::<f64>()
 }
 
-/// What changing one quantity of the material does to the onset, in seconds.
+/// The effect of each quantity of the material on the onset time.
 fn material(sweep: &Sweep, data: &mut FigureData) {
     let names = sweep.names(0);
     let factor_of = |quantity: &str, k: usize| {

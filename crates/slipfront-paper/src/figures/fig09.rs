@@ -43,7 +43,7 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
     Ok(data)
 }
 
-/// What damping does to static and kinetic friction, to the number of sliding blocks and to the fluctuation of friction.
+/// The effect of damping on static and kinetic friction, on the number of sliding blocks and on the fluctuation of friction.
 fn friction(sweep: &Sweep, runs: &[Run], data: &mut FigureData) -> Result<(), PaperError> {
     let dampings = sweep.axis(0);
     let means = |quantity: &str| -> Vec<f64> {

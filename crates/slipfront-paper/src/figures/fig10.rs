@@ -53,7 +53,7 @@ fn excess_of_lowest(
     let excess = |mu: Vec<f64>| -> Vec<f64> { mu.iter().map(|mu| mu - ratio).collect() };
     let usual = sweep.values(&[0], "kinetic_friction_star");
     data.values("fig10.excess_of_lowest", &excess(usual));
-    // The first swing after the onset, which a reader of the figure sees first.
+    // The first swing of friction after the onset, which dominates the figure.
     let first_swing = |run: &Run| {
         let onset = run.record.summary.onset_time_star;
         mean(&run.friction_between(onset, onset + 2.5 / run.case.groups.v_star))

@@ -28,7 +28,7 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
         .filter(|&k| places[..k].contains(&places[k]))
         .count();
     data.value("fig11.repeated_first_places", repeated as f64);
-    // The same draw with another spread: the place of the first slip stays, its time moves.
+    // The same random numbers with another spread: the first slip is expected at the same block, at another time.
     let mut times = Vec::new();
     let mut moved = 0;
     for sigma in ["0.025", "0.05", "0.1"] {

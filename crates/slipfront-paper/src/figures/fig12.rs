@@ -55,7 +55,7 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
     Ok(data)
 }
 
-/// The largest distance from the mean.
+/// The largest distance of a value from the mean.
 fn farthest(values: &[f64]) -> f64 {
     let center = mean(values);
     largest(values.iter().map(|value| (value - center).abs()))
@@ -75,7 +75,7 @@ fn surfaces(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), Pape
     Ok(())
 }
 
-/// What sigma_k* does.
+/// The effect of sigma_k* on friction, on the onset and on the fluctuation of kinetic friction.
 fn kinetic(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig12_kinetic")?;
     let levels = sweep.axis(0).len();

@@ -28,7 +28,7 @@ use crate::runner::FigureRunner;
 pub struct Figure {
     /// Its name, such as `fig12`.
     pub name: &'static str,
-    /// What it shows.
+    /// Its title.
     pub title: &'static str,
     /// Runs its cases and measures its data.
     pub(crate) measure: fn(&mut FigureRunner) -> Result<FigureData, PaperError>,

@@ -13,13 +13,13 @@ pub fn summary(paper: &Paper) -> String {
             .deviation
             .as_ref()
             .map_or(String::new(), |deviation| format!(" ({deviation})"));
-        let odd = if result.as_expected() {
+        let note = if result.as_expected() {
             ""
         } else {
             "  <- not as expected"
         };
         text += &format!(
-            "{:>3}  {:<22}  {:<18}  {}{deviation}{odd}\n",
+            "{:>3}  {:<22}  {:<18}  {}{deviation}{note}\n",
             claim.number,
             verdict.words(),
             result.measured(),

@@ -24,7 +24,7 @@ pub struct Axis {
 /// One level of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
-    /// What stands in its columns.
+    /// Its cells in the columns of the axis.
     pub labels: Vec<String>,
     /// Its number, if it is one.
     pub number: Option<f64>,
@@ -347,7 +347,7 @@ fn flatten(key: &str, value: &Value, list: &mut Vec<Override>) {
     }
 }
 
-/// Whether setting `key` leaves nothing of what `earlier` has set: it is the same key, or a table or list around it.
+/// Whether setting `key` replaces what `earlier` has set: it is that key, its partner, or a table or list around it.
 pub(super) fn replaces_key(key: &str, earlier: &str) -> bool {
     earlier
         .strip_prefix(key)
@@ -355,13 +355,13 @@ pub(super) fn replaces_key(key: &str, earlier: &str) -> bool {
         || exclude_each_other(key, earlier)
 }
 
-/// The first of the `other` keys of which setting `key` leaves nothing, or which leaves nothing of it.
+/// The first of the `other` keys that `key` replaces, or that replaces it.
 fn conflict<'k>(key: &str, other: &BTreeSet<&'k str>) -> Option<&'k str> {
     let around = || other.iter().copied().find(|other| replaces_key(other, key));
     replaced_key(key, other).or_else(around)
 }
 
-/// The first of `earlier` keys of which setting `key` leaves nothing.
+/// The first of the `earlier` keys that setting `key` replaces.
 pub(super) fn replaced_key<'k>(key: &str, earlier: &BTreeSet<&'k str>) -> Option<&'k str> {
     let below = format!("{key}.");
     let partners = partners_of(key);
@@ -395,7 +395,7 @@ fn spaced(from: f64, to: f64, count: usize, between: fn(f64, f64, f64) -> f64) -
     Ok((0..count).map(|k| whole_or_not(value(k))).collect())
 }
 
-/// Legible in the tables, and the same on every machine.
+/// A value rounded to twelve digits: short in the tables, and independent of the machine's last digit.
 fn twelve_digits(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }

@@ -201,7 +201,7 @@ mod tests {
         assert_eq!((found.runs.len(), recorded), (6, 6));
     }
 
-    /// Nobody would record what else is run.
+    /// Without a scheduler, further runs would not be recorded.
     #[test]
     fn a_fault_of_the_manager_ends_the_workers() {
         let plan = plan("base.slider.blocks = [2, 2]\nstudy.replicates = 100");

@@ -87,7 +87,7 @@ impl StudyFolder {
         &self.path
     }
 
-    /// Writes a file, whole or not at all.
+    /// Writes a file atomically.
     ///
     /// # Errors
     /// When it cannot be written.
@@ -186,7 +186,7 @@ impl StudyFolder {
     }
 }
 
-/// Whether a study has used the folder.
+/// Whether the folder is the results folder of a study.
 pub fn is_study(folder: &Path) -> bool {
     folder.join(STUDY).exists()
 }
@@ -197,7 +197,7 @@ pub fn is_study(folder: &Path) -> bool {
 /// As for any study file.
 pub fn study_of(folder: &Path) -> Result<StudyFile, StudyError> {
     let path = folder.join(STUDY);
-    // A study file given by the user may be a pipe; in a results folder, reading a pipe would wait for ever.
+    // A study file given by the user may be a pipe; in a results folder, opening a pipe would block without end.
     open_limited(&path, TEXT_MAX_BYTES).map_err(|source| FolderError::Read {
         path: path.clone(),
         source,

@@ -7,6 +7,7 @@ use std::path::{Component, Path, PathBuf};
 use toml::{Table, Value};
 
 use crate::run_folder::error::FolderError;
+use slipfront_case::case::{CopyName, name_of_copy};
 use slipfront_case::case_file::names_a_file;
 
 /// Folder of the copies.
@@ -94,24 +95,18 @@ impl Copies<'_> {
                 return;
             }
         };
-        let plain = plain_name(name);
-        let mut copy = format!("{FOLDER}/{plain}");
-        let mut copies = 1;
-        // Two files of one name from different folders stay two files.
-        while let Some(made) = self.made.iter().find(|made| made.name == copy) {
-            if made.hash == hash {
-                *name = copy;
-                return;
+        let copies = &self.made;
+        match name_of_copy(&plain_name(name), copies, |made| (&made.name, made.hash == hash)) {
+            CopyName::Known(copy) => *name = copy,
+            CopyName::New(copy) => {
+                name.clone_from(&copy);
+                self.made.push(Copy {
+                    name: copy,
+                    original,
+                    hash,
+                });
             }
-            copies += 1;
-            copy = format!("{FOLDER}/{copies}-{plain}");
         }
-        name.clone_from(&copy);
-        self.made.push(Copy {
-            name: copy,
-            original,
-            hash,
-        });
     }
 }
 

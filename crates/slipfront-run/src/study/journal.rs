@@ -165,7 +165,7 @@ fn open_locked(path: &Path, folder: &Path) -> Result<File, StudyError> {
 /// The longest line of a record file: hundreds of times what a run takes.
 const LINE_MAX_BYTES: u64 = 1 << 20;
 
-/// What a record file holds.
+/// The contents of a record file.
 #[derive(Default)]
 struct Lines {
     records: Vec<Record>,

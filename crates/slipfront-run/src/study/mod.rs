@@ -14,6 +14,8 @@ mod execute;
 mod folder;
 mod input_copies;
 mod journal;
+#[cfg(feature = "plot")]
+mod labels;
 mod output;
 mod picture_plan;
 #[cfg(feature = "plot")]

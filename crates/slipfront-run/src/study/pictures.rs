@@ -6,12 +6,13 @@ use rayon::prelude::*;
 
 use super::axis::{Axis, Spacing};
 use super::error::StudyError;
+use super::labels::{symbol, title};
 use super::picture_plan::{PictureKind, PlannedPicture, QUANTITIES, combinations, planned};
 use super::plan::Plan;
 use super::point_statistics::sample;
 use super::study_results::StudyResults;
 use slipfront_plot::{
-    Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Response, Responses, symbol, title,
+    Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Response, Responses,
 };
 
 /// Draws the pictures of a study, each with the name of its files.

@@ -24,7 +24,7 @@ pub struct Plan {
     pub name: String,
     /// Repetition, reference and what is kept.
     pub settings: Settings,
-    /// What varies.
+    /// The axes of the study.
     pub axes: Vec<Axis>,
     /// Every combination of levels, the last axis fastest.
     pub points: Vec<Point>,
@@ -39,7 +39,7 @@ pub struct Point {
     pub index: usize,
     /// Level of each axis.
     pub levels: Vec<usize>,
-    /// What its runs are, for each role.
+    /// What is known of its runs, one for each role.
     specs: Vec<RunSpec>,
 }
 
@@ -54,14 +54,14 @@ struct RunSpec {
     block_steps: f64,
     n_blocks: usize,
     budget: Budget,
-    /// What deserves a word before a run of it.
+    /// Warnings about its case.
     warnings: Vec<String>,
 }
 
 /// A warning about points of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
-    /// What is the matter.
+    /// The warning.
     pub sentence: String,
     /// Number of points.
     pub points: usize,
@@ -69,18 +69,18 @@ pub struct Warning {
     pub first: usize,
 }
 
-/// Lattices of more blocks are tried one at a time: of one for each thread at once no machine may have room.
+/// Cases of more blocks are made one at a time while planning: one for each thread might not fit into memory.
 const LARGE: u64 = 250_000;
 
 /// A line of the records and a row of the tables.
 const RECORD_BYTES: f64 = 4096.0;
 
-/// What a run of a point is for.
+/// The purpose of a run of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Role {
     /// The point itself.
     Point,
-    /// What its reduction is measured against.
+    /// The reference that its reduction is measured against.
     Reference,
 }
 
@@ -91,12 +91,12 @@ pub struct RunKey {
     pub point: usize,
     /// Replicate, from 0.
     pub replicate: usize,
-    /// What it is for.
+    /// Its purpose.
     pub role: Role,
 }
 
 impl Plan {
-    /// Multiplies the axes out and tries every point: the first that is no valid case is named.
+    /// Makes the points of all combinations of levels and the case of each; the first invalid one is named.
     ///
     /// # Errors
     /// [`StudyError::Point`], [`StudyError::TooLarge`].
@@ -130,7 +130,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Tries every point, and tells what its runs are.
+    /// Makes the cases of every point once, and collects what is known of their runs.
     ///
     /// # Errors
     /// What is wrong with the first point that is no valid case, and its position.
@@ -149,7 +149,7 @@ impl Plan {
             .collect()
     }
 
-    /// What runs a point has: itself, and its reference if the study has one.
+    /// The roles of the runs of a point: the point itself, and its reference if the study has one.
     pub fn roles(&self) -> impl Iterator<Item = Role> + use<> {
         [Role::Point]
             .into_iter()
@@ -177,7 +177,7 @@ impl Plan {
         }
     }
 
-    /// Makes the case of a point, and tells what its runs are.
+    /// Makes the case of a point, and collects what is known of its runs.
     fn spec(
         &self,
         base: &ParsedCase,
@@ -199,7 +199,7 @@ impl Plan {
         })
     }
 
-    /// What deserves a word before the study is run: the first warning of each kind about its cases.
+    /// Warnings about the cases of the study, the first of each kind.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings: Vec<Warning> = Vec::new();
         // Sentences of one kind differ in their figures.
@@ -226,7 +226,7 @@ impl Plan {
     /// The case of a run, ready to run.
     ///
     /// # Errors
-    /// When a file that it reads is no longer what it was.
+    /// When a file that it reads has changed since the plan was made.
     pub fn case(&self, run: RunKey) -> Result<Case, CaseError> {
         let mut file = self.case_file(&self.base.parse()?, &self.points[run.point], run.role)?;
         file.friction.seed = self.seed(run);
@@ -260,14 +260,14 @@ impl Plan {
         }
     }
 
-    /// A case that writes no more than the study keeps.
+    /// A case that records no more than the study keeps.
     fn trimmed(&self, mut file: CaseFile, name: &str) -> Result<Case, CaseError> {
         if self.settings.keep == RetainRuns::All {
             let case = Case::new(file, name, &self.base.folder)?;
             check_fields(&case.file, &case.model.lattice, &case.output)?;
             return Ok(case);
         }
-        // Nobody will look at fields or curves, and the numbers do not depend on them.
+        // Fields and curves are not kept, and the numbers do not depend on them.
         file.output.snapshots = Snapshots::At(Vec::new());
         file.output.series = AutoOr::Auto;
         let mut case = Case::new(file, name, &self.base.folder)?;
@@ -279,12 +279,12 @@ impl Plan {
         &self.points[run.point].specs[usize::from(run.role == Role::Reference)]
     }
 
-    /// Seed of a run. It alone tells replicates apart, so that all points meet the same surfaces.
+    /// Seed of a run. Replicates differ by their seed alone, so that replicate r has one surface at all points.
     pub fn seed(&self, run: RunKey) -> u64 {
         self.spec_of(run).seed.wrapping_add(run.replicate as u64) & i64::MAX as u64
     }
 
-    /// What tells a run from all others. Points share a run that is the same, such as their reference.
+    /// Identifies a run by its physics and seed. Points share runs of one identity, such as their reference.
     pub fn identity(&self, run: RunKey) -> String {
         let mut hasher = blake3::Hasher::new();
         hasher.update(self.spec_of(run).physics.as_bytes());
@@ -298,7 +298,7 @@ impl Plan {
         self.identity(run)[..12].to_owned()
     }
 
-    /// Steps times blocks of a run, at most, and its blocks: what it will cost.
+    /// Most steps times blocks of a run, and its blocks: the measure of its cost.
     pub fn cost(&self, run: RunKey) -> (f64, usize) {
         let spec = self.spec_of(run);
         (spec.block_steps, spec.n_blocks)
@@ -384,7 +384,7 @@ impl Plan {
         }
     }
 
-    /// Columns of the axes, and what stands in them at a point.
+    /// Columns of the axes, and their cells at a point.
     pub fn columns(&self, point: &Point) -> Vec<(&str, &str)> {
         let mut columns = Vec::new();
         for (axis, &level) in self.axes.iter().zip(&point.levels) {
@@ -409,8 +409,8 @@ impl Plan {
     }
 }
 
-/// Hash of what tells runs apart, but for the seed: the physics of a case, the contents of its files and the program; not
-/// names of files, nor what is written.
+/// Hash of all that decides the numbers of a run but its seed: the physics of the case, the contents of its files and the
+/// program; not the names of files, nor the output.
 fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
     let mut file = case.file.clone();
     file.friction.seed = 0;

@@ -50,7 +50,7 @@ impl Quantity {
 pub struct SummaryValues {
     values: Box<[Option<f64>]>,
     static_friction_star: f64,
-    /// Whether its static friction is that of a transition.
+    /// Whether the run had a transition from static to kinetic friction.
     pub(super) transition: bool,
 }
 

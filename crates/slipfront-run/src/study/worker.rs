@@ -54,7 +54,7 @@ pub(super) fn work(
         let outcome = if is_stopped() {
             Ok(None)
         } else {
-            // A panic is recorded as a failed run, so that the scheduler does not wait for the run for ever.
+            // A panic is recorded as a failed run, so that the scheduler does not wait for it without end.
             catch_unwind(AssertUnwindSafe(|| run_case(run, is_stopped)))
                 .unwrap_or_else(|panic| Ok(Some(Outcome::Failed(panicked(panic.as_ref())))))
         };

@@ -1,0 +1,191 @@
+//! A case that can be run.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use slipfront::scales::damping;
+use slipfront::surface::{Load, mesh};
+use slipfront::{Drive, Model, Scales, Surface};
+
+use super::budget::{Budget, within_budget};
+use super::coefficients::coefficients;
+use super::groups::Groups;
+use super::inputs::{Input, Inputs};
+use super::output::Output;
+use super::parameters::{Parameters, check_fields};
+use super::textures::textures;
+use super::time_plan::TimePlan;
+use crate::case_file::{CaseError, CaseFile};
+
+/// A case that can be run. It is valid by construction.
+#[derive(Debug)]
+pub struct Case {
+    /// Name of the case and of its results.
+    pub name: String,
+    /// The case file with every default filled in and its input files in `inputs/`, as the run folder holds it.
+    pub file: CaseFile,
+    /// Files that the case reads.
+    pub inputs: Vec<Input>,
+    /// Units of the dimensionless quantities.
+    pub scales: Scales,
+    /// Dimensionless groups.
+    pub groups: Groups,
+    /// The slider and its surface.
+    pub model: Arc<Model>,
+    /// Texture as asked and as meshed.
+    pub texture: TextureReport,
+    /// Negative draws of the coefficients that were set to 0.
+    pub negative_draws: usize,
+    /// Duration and steps.
+    pub time_plan: TimePlan,
+    /// Which results are written.
+    pub output: Output,
+    /// Memory and disk space that the run needs.
+    pub budget: Budget,
+}
+
+/// The texture as asked and as meshed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextureReport {
+    /// A* as asked for, %; none if there is a mask or polygon, whose area is known only after meshing.
+    pub asked_percent: Option<f64>,
+    /// A* as meshed, % (Eq. 15).
+    pub meshed_percent: f64,
+    /// Positions in the case file, from 0, of the textures that a free edge clips.
+    pub clipped: Vec<usize>,
+}
+
+impl Case {
+    /// Loads a case file and the files it names, which stand relative to it. A run that needs more
+    /// memory than there is gets refused before any array is allocated.
+    ///
+    /// # Errors
+    /// A sentence that names place, value, bound and remedy.
+    pub fn load(path: &Path, overrides: &[String]) -> Result<Self, CaseError> {
+        let file = CaseFile::load(path, overrides)?;
+        let name = path
+            .file_stem()
+            .map_or_else(|| "case".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::to_run(file, &name, folder)
+    }
+
+    /// Makes a case of text, as [`load`](Self::load) does; the files it names stand in the working directory.
+    ///
+    /// # Errors
+    /// A sentence that names place, value, bound and remedy.
+    pub fn parse(text: &str, name: &str, overrides: &[String]) -> Result<Self, CaseError> {
+        Self::parse_in(text, name, Path::new(""), overrides)
+    }
+
+    /// Makes a case of text, as [`load`](Self::load) does; the files it names stand relative to `folder`.
+    ///
+    /// # Errors
+    /// A sentence that names place, value, bound and remedy.
+    pub fn parse_in(text: &str, name: &str, folder: &Path, overrides: &[String]) -> Result<Self, CaseError> {
+        Self::to_run(CaseFile::parse(text, name, overrides)?, name, folder)
+    }
+
+    /// Makes a case of a case file that was read already, to be run; the files it names stand relative to `folder`.
+    ///
+    /// # Errors
+    /// As for [`load`](Self::load).
+    pub fn to_run(file: CaseFile, name: &str, folder: &Path) -> Result<Self, CaseError> {
+        let Parameters {
+            lattice,
+            output,
+            budget,
+            ..
+        } = Parameters::of(&file)?;
+        within_budget(&file, budget.check_memory(false))?;
+        check_fields(&file, &lattice, &output)?;
+        let case = Self::new(file, name, folder)?;
+        // Once more, with the files that it reads.
+        within_budget(&case.file, case.budget.check_memory(true))?;
+        Ok(case)
+    }
+
+    /// Makes a case of a case file; the files it names stand relative to `folder`. The memory for a run of it is not
+    /// checked.
+    ///
+    /// # Errors
+    /// A sentence that names place, value, bound and remedy.
+    pub fn new(mut file: CaseFile, name: &str, folder: &Path) -> Result<Self, CaseError> {
+        let Parameters {
+            scales,
+            groups,
+            lattice,
+            time_plan,
+            output,
+            budget,
+        } = Parameters::of(&file)?;
+        within_budget(&file, budget.check_making())?;
+        let mut inputs = Inputs::new(folder, budget);
+        let textures = textures(&mut file, &scales, &lattice, &mut inputs)?;
+        let meshed = mesh(&lattice, &textures.shapes);
+        let coefficients = coefficients(&mut file, &groups, &lattice, &mut inputs)?;
+        let negative_draws = coefficients.negative_draws;
+        let load = if file.load.redistribute {
+            Load::Redistributed
+        } else {
+            Load::Kept
+        };
+        let surface = Surface::new(coefficients, meshed.textured, load, scales.mu_static_mean)
+            .map_err(|error| file.source.error("texture", error.to_string()))?;
+        let texture = TextureReport {
+            asked_percent: textures.asked_percent,
+            meshed_percent: surface.texture_percent(),
+            clipped: meshed.clipped,
+        };
+        let drive = Drive::at_angle(groups.v_star, file.drive.direction);
+        let model = Model::new(
+            lattice,
+            surface,
+            drive,
+            damping(groups.omega_star),
+            groups.epsilon,
+            file.friction.law,
+        );
+        Ok(Self {
+            name: name.to_owned(),
+            file,
+            budget: inputs.budget,
+            inputs: inputs.kept,
+            scales,
+            groups,
+            model: Arc::new(model),
+            texture,
+            negative_draws,
+            time_plan,
+            output,
+        })
+    }
+
+    /// Refuses a run whose files, and checkpoints if it saves any, need more disk space than `folder` has after `replaced`
+    /// bytes there were removed.
+    ///
+    /// # Errors
+    /// With the figures, and which key to change.
+    pub fn check_disk(&self, folder: &Path, replaced: u64, checkpoints: bool) -> Result<(), CaseError> {
+        within_budget(&self.file, self.budget.check_disk(folder, replaced, checkpoints))
+    }
+
+    /// Refuses to resume from a checkpoint if that needs more memory than there is.
+    ///
+    /// # Errors
+    /// With the figures.
+    pub fn check_memory_resumed(&self) -> Result<(), CaseError> {
+        within_budget(&self.file, self.budget.check_memory_resumed())
+    }
+
+    /// Steps times blocks, the measure of what the run costs.
+    pub fn block_steps(&self) -> f64 {
+        self.time_plan.last_step as f64 * self.model.lattice.n_blocks() as f64
+    }
+
+    /// Steps of a running case between two checks of its progress and of reasons to stop: some milliseconds.
+    pub fn steps_per_poll(&self) -> u64 {
+        const BLOCK_STEPS: u64 = 200_000;
+        (BLOCK_STEPS / self.model.lattice.n_blocks() as u64).max(1)
+    }
+}

@@ -1,0 +1,116 @@
+//! Titles of axes and legends for the keys of a case file and of a summary.
+
+use slipfront_case::case_file::title_of;
+use slipfront_plot::QuantityLabel;
+
+/// Keys of a summary: key, words, symbol, unit.
+#[rustfmt::skip]
+const SUMMARY: [(&str, &str, &str, &str); 26] = [
+    ("static_friction_star", "static friction", "\u{3bc}\u{209b}*", ""),
+    ("static_friction", "static friction coefficient", "\u{3bc}\u{209b}", ""),
+    ("static_reduction_percent", "reduction of \u{3bc}\u{209b}*", "", "%"),
+    ("kinetic_friction_star", "kinetic friction", "\u{3bc}\u{2096}*", ""),
+    ("kinetic_friction_star_uncertainty", "standard error of \u{3bc}\u{2096}*", "", ""),
+    ("kinetic_friction", "kinetic friction coefficient", "\u{3bc}\u{2096}", ""),
+    ("onset_time_star", "onset time", "t\u{209b}*", ""),
+    ("onset_time_s", "onset time", "t\u{209b}", "s"),
+    ("first_slip_time_star", "time of first slip", "t*", ""),
+    ("first_slip_time_s", "time of first slip", "t", "s"),
+    ("sliding_percent_kinetic", "mean sliding in kinetic friction", "N*", "%"),
+    ("sliding_percent_max", "largest sliding", "N*", "%"),
+    ("mu_star_max", "largest friction", "\u{3bc}*", ""),
+    ("v_star", "drive speed", "V*", ""),
+    ("r_star", "friction ratio", "R*", ""),
+    ("omega_star", "damping", "\u{3a9}*", ""),
+    ("sigma_static_star", "spread of static coefficients", "\u{3c3}\u{209b}*", ""),
+    ("sigma_kinetic_star", "spread of kinetic coefficients", "\u{3c3}\u{2096}*", ""),
+    ("seed", "seed", "", ""),
+    ("epsilon", "load", "\u{3b5}", ""),
+    ("n_blocks", "number of blocks", "N", ""),
+    ("texture_percent", "texture coverage", "A*", "%"),
+    ("texture_percent_asked", "texture coverage asked for", "A*", "%"),
+    ("dt_star", "time step", "\u{394}t*", ""),
+    ("steps", "steps", "", ""),
+    ("energy_error", "relative error of energy", "", ""),
+];
+
+/// The title of an axis for a key of a case file or a summary. Quantities that a case file writes with a unit are taken
+/// to be in SI units. The second and further textures are numbered. A key without a title is shown as it is.
+pub(super) fn title(key: &str) -> String {
+    label(key).map_or_else(|| key.to_owned(), |label| label.title())
+}
+
+/// The title of a legend for a key.
+pub(super) fn symbol(key: &str) -> String {
+    label(key).map_or_else(|| key.to_owned(), |label| label.legend())
+}
+
+fn label(key: &str) -> Option<QuantityLabel<'_>> {
+    if let Some((title, texture)) = title_of(key) {
+        return Some(QuantityLabel {
+            words: title.words,
+            symbol: title.symbol,
+            unit: title.unit,
+            texture: texture
+                .filter(|&index| index > 0)
+                .map(|index| index.saturating_add(1)),
+        });
+    }
+    let &(_, words, symbol, unit) = SUMMARY.iter().find(|row| row.0 == key)?;
+    Some(QuantityLabel {
+        words,
+        symbol,
+        unit,
+        texture: None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use slipfront_case::case_file::SECTIONS;
+    use slipfront_plot::has_glyphs;
+
+    use super::*;
+
+    #[test]
+    fn every_key_has_one_title_that_the_font_can_write() {
+        for (index, row) in SUMMARY.iter().enumerate() {
+            assert!(SUMMARY[..index].iter().all(|other| other.0 != row.0), "{}", row.0);
+            assert!(has_glyphs(&title(row.0)), "{}", title(row.0));
+        }
+        for section in &SECTIONS {
+            for (index, key) in section.keys.iter().enumerate() {
+                assert!(section.keys[..index].iter().all(|other| other.name != key.name));
+                let key = format!("{}.{}", section.table(), key.name);
+                assert!(has_glyphs(&title(&key)), "{}", title(&key));
+            }
+        }
+    }
+
+    #[test]
+    fn textures_after_the_first_are_numbered() {
+        assert_eq!(title("drive.v_star"), "drive speed V*");
+        assert_eq!(title("texture.0.coverage"), "texture coverage A* (%)");
+        assert_eq!(title("my_own_axis"), "my_own_axis");
+        assert_eq!(title("texture.0.w"), "cavity shape w");
+        assert_eq!(
+            title("texture.1.coverage"),
+            "texture coverage A* of texture 2 (%)"
+        );
+        assert_eq!(symbol("texture.1.w"), "cavity shape w of texture 2");
+        assert_eq!(title("texture.0.unknown"), "texture.0.unknown");
+        assert_eq!(
+            title("texture.18446744073709551615.w"),
+            "cavity shape w of texture 18446744073709551615"
+        );
+    }
+
+    #[test]
+    fn a_legend_shows_the_symbol() {
+        assert_eq!(symbol("friction.sigma_static_star"), "\u{3c3}\u{209b}*");
+        assert_eq!(symbol("slider.blocks"), "blocks along a side");
+        assert_eq!(symbol("slider.omega_star"), "\u{3a9}*");
+        assert_eq!(symbol("texture.0.coverage"), "A* (%)");
+        assert_eq!(symbol("shape"), "shape");
+    }
+}
