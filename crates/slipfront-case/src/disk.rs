@@ -1,6 +1,6 @@
 //! Files that are written atomically and read up to a limit, and folders.
 
-use std::fs::{DirEntry, File};
+use std::fs::File;
 use std::io::{ErrorKind, Read, Take, Write};
 use std::path::Path;
 
@@ -65,47 +65,20 @@ pub fn sync_folder(folder: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Temporary files that a killed program left in `folder`, or in its subfolder `inside` such as `inputs/`.
-pub fn unfinished(folder: &Path, inside: &str) -> Vec<String> {
-    let entries = std::fs::read_dir(folder.join(inside))
-        .into_iter()
-        .flatten()
-        .flatten();
-    let names = entries.filter(is_unfinished_file).map(|entry| entry.file_name());
-    names
-        .map(|name| format!("{inside}{}", name.to_string_lossy()))
-        .collect()
-}
-
-fn is_unfinished_file(entry: &DirEntry) -> bool {
-    let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
-    is_file && entry.file_name().to_str().is_some_and(is_unfinished)
-}
-
 /// Whether a file is named like a temporary file: [`UNFINISHED`] and six letters or digits.
 pub fn is_unfinished(name: &str) -> bool {
     let random = name.strip_prefix(UNFINISHED).unwrap_or_default();
     random.len() == 6 && random.bytes().all(|byte| byte.is_ascii_alphanumeric())
 }
 
-/// Whether a folder holds nothing but temporary files that a killed program left.
-///
-/// # Errors
-/// When it cannot be read.
-pub fn holds_only_unfinished(folder: &Path) -> std::io::Result<bool> {
-    for entry in std::fs::read_dir(folder)? {
-        if !is_unfinished_file(&entry?) {
-            return Ok(false);
-        }
-    }
-    Ok(true)
-}
-
 /// Removes the temporary files that a killed program left, in a folder that no other process writes to. Errors are
 /// ignored: such a file does no harm.
 pub fn remove_unfinished(folder: &Path) {
-    for name in unfinished(folder, "") {
-        let _ = std::fs::remove_file(folder.join(name));
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if is_file && entry.file_name().to_str().is_some_and(is_unfinished) {
+            let _ = std::fs::remove_file(entry.path());
+        }
     }
 }
 

@@ -46,14 +46,20 @@ pub(super) fn managed_files(
         names.extend(unfinished.files());
     }
     // A case that another version wrote may not be a resolved one today.
-    let is_listed = |listed: &[ManifestFile]| {
-        let now = ManifestFile::of(folder, CASE);
-        now.is_ok_and(|now| listed.contains(&now))
-    };
-    if case.is_some() || listed.is_some_and(is_listed) {
+    if case.is_some() || listed.is_some_and(|listed| is_listed(folder, CASE, listed)) {
         names.push(CASE.to_owned());
     }
     names
+}
+
+/// Whether a file is as a manifest lists it. One of another length is not read: it may be huge.
+fn is_listed(folder: &Path, name: &str, listed: &[ManifestFile]) -> bool {
+    let bytes = std::fs::metadata(folder.join(name)).map(|file| file.len());
+    let mut listed = listed.iter().filter(|file| file.name == name);
+    listed.any(|file| {
+        bytes.as_ref().is_ok_and(|bytes| *bytes == file.bytes)
+            && ManifestFile::of(folder, name).is_ok_and(|now| now == *file)
+    })
 }
 
 /// The copies in `inputs/` that manifest and case name.

@@ -55,6 +55,14 @@ impl Inspection {
     /// # Errors
     /// When the folder cannot be listed.
     pub fn of(folder: &Path) -> std::io::Result<Self> {
+        if is_unused(folder)? {
+            return Ok(Self {
+                path: folder.to_owned(),
+                contents: Contents::Empty,
+                case: Err(CaseDefect::Unreadable(ErrorKind::NotFound.into())),
+                managed_files: managed_files(folder, None, None),
+            });
+        }
         let case = read_case(folder);
         let manifest = Manifest::read(folder);
         let listed = match &manifest {
@@ -65,7 +73,6 @@ impl Inspection {
         let managed_files = managed_files(folder, listed, case.as_ref().ok());
         let contents = match manifest {
             Err(ManifestError::Missing { .. }) if case.is_ok() => Contents::Interrupted,
-            Err(ManifestError::Missing { .. }) if is_unused(folder)? => Contents::Empty,
             Err(ManifestError::Missing { .. }) => Contents::Foreign,
             manifest => Contents::Complete(manifest),
         };
@@ -138,11 +145,13 @@ fn read_case(folder: &Path) -> Result<CaseFile, CaseDefect> {
     }
 }
 
-/// Whether a folder does not exist, or holds nothing but a hidden subfolder of slipfront without a checkpoint.
+/// Whether there is no folder, or it holds nothing but a hidden subfolder of slipfront without a checkpoint.
 fn is_unused(folder: &Path) -> std::io::Result<bool> {
     let entries = match std::fs::read_dir(folder) {
         Ok(entries) => entries,
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(true),
+        Err(error) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&error.kind()) => {
+            return Ok(true);
+        }
         Err(error) => return Err(error),
     };
     let unfinished = Unfinished::of(folder);

@@ -1,17 +1,14 @@
 //! The hidden subfolder of a run folder, which holds everything that belongs to a run which is not complete: temporary
 //! files that are being written, and checkpoints. It is removed when the run is complete.
 
-use std::fs::{File, OpenOptions};
-use std::io::{ErrorKind, Read, Write};
+use std::fs::File;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use slipfront_case::disk::{is_empty, is_folder, open_regular, remove_if_there, write_temp};
+use slipfront_case::disk::{is_empty, is_folder, remove_if_there, write_temp};
 
 use super::error::FolderError;
 use crate::names::{CHECKPOINT, JOURNAL, PREVIOUS, TEMPORARY, UNFINISHED};
-
-/// The first line of the journal. A kill may have come before the whole of it was written.
-const SIGNATURE: &[u8] = b"{\"slipfront_run\":1}\n";
 
 /// The hidden subfolder of a run folder, whether it exists or not.
 #[derive(Clone, Debug)]
@@ -37,16 +34,11 @@ impl Unfinished {
         self.path.join(TEMPORARY)
     }
 
-    /// Whether slipfront made the subfolder: it has a journal, or nothing yet. A link is never slipfront's.
+    /// Whether slipfront made the subfolder: it holds a journal, or nothing yet. A link is never slipfront's.
     pub fn is_managed(&self) -> bool {
-        is_folder(&self.path) && (self.has_journal() || is_empty(&self.path).unwrap_or(false))
-    }
-
-    fn has_journal(&self) -> bool {
-        let mut beginning = Vec::new();
-        let file = open_regular(&self.path.join(JOURNAL));
-        let read = file.and_then(|file| file.take(SIGNATURE.len() as u64).read_to_end(&mut beginning));
-        read.is_ok() && SIGNATURE.starts_with(&beginning)
+        let journal = self.path.join(JOURNAL).symlink_metadata();
+        let has_journal = journal.is_ok_and(|journal| journal.is_file());
+        is_folder(&self.path) && (has_journal || is_empty(&self.path).unwrap_or(false))
     }
 
     /// Whether a checkpoint was saved.
@@ -63,8 +55,7 @@ impl Unfinished {
         let run = self.path.parent().unwrap_or(&self.path);
         make_folder(&self.path, run)?;
         let path = self.path.join(JOURNAL);
-        let journal = OpenOptions::new().write(true).create_new(true).open(&path);
-        match journal.and_then(|mut journal| journal.write_all(SIGNATURE)) {
+        match File::create_new(&path) {
             Err(source) if source.kind() != ErrorKind::AlreadyExists => {
                 return Err(FolderError::Write { path, source });
             }
