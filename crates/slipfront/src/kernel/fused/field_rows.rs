@@ -262,7 +262,12 @@ impl<S: Simd, M: Motion> Strip<'_, S, M> {
         let simd = self.simd;
         let mut friction = [[0.0; READ]; 2];
         let mut kinetic = [0.0; READ];
-        if velocities.as_flattened().iter().any(|&v| v != 0.0) {
+        // Without an early exit, so that the loop is vectorised.
+        let slides = velocities
+            .as_flattened()
+            .iter()
+            .fold(false, |slides, &v| slides | (v != 0.0));
+        if slides {
             let first = self.model.lattice.block(self.first, row);
             self.model
                 .surface
