@@ -35,7 +35,7 @@ pub enum Contents {
     /// That of a run which is not complete: it has a resolved case, and no manifest.
     Interrupted,
     /// That of a run which was completed: it has a manifest.
-    Complete(Result<Manifest, ManifestError>),
+    Complete(Result<Box<Manifest>, ManifestError>),
 }
 
 /// Why the case in a folder is not one that a run has written.
@@ -74,7 +74,7 @@ impl Inspection {
         let contents = match manifest {
             Err(ManifestError::Missing { .. }) if case.is_ok() => Contents::Interrupted,
             Err(ManifestError::Missing { .. }) => Contents::Foreign,
-            manifest => Contents::Complete(manifest),
+            manifest => Contents::Complete(manifest.map(Box::new)),
         };
         Ok(Self {
             path: folder.to_owned(),
@@ -90,7 +90,7 @@ impl Inspection {
     /// When there is none, or it is not as it was written.
     pub fn manifest(&self) -> Result<&Manifest, ManifestError> {
         match &self.contents {
-            Contents::Complete(manifest) => manifest.as_ref().map_err(Clone::clone),
+            Contents::Complete(manifest) => manifest.as_deref().map_err(Clone::clone),
             Contents::Empty | Contents::Foreign | Contents::Interrupted => Err(ManifestError::Missing {
                 path: self.path.clone(),
             }),
