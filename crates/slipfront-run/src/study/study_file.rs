@@ -1,4 +1,4 @@
-//! The study file: a base case, what varies in it, and how often it is repeated.
+//! The study file: a base case, the axes that vary it, and the number of replicates.
 
 use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
@@ -20,9 +20,9 @@ use slipfront_case::case_file::{
 /// A study file.
 #[derive(Clone, Debug)]
 pub struct StudyFile {
-    /// Name of the study: what its results are called.
+    /// Name of the study and of its results.
     pub name: String,
-    /// The case that everything varies.
+    /// The case that the axes vary.
     pub base: Base,
     /// `[study]`.
     pub settings: Settings,
@@ -139,57 +139,65 @@ impl Settings {
     }
 
     fn check(&self, source: &Source) -> Result<(), CaseError> {
-        let refuse = |key: &str, sentence: String| Err(source.error(key, sentence));
-        if !(1..=MAX_REPLICATES).contains(&self.replicates) {
-            let sentence = format!(
+        let refuse_if = |is_wrong: bool, key: &str, sentence: String| match is_wrong {
+            true => Err(source.error(key, sentence)),
+            false => Ok(()),
+        };
+        refuse_if(
+            !(1..=MAX_REPLICATES).contains(&self.replicates),
+            "study.replicates",
+            format!(
                 "`replicates` = {} must lie between 1 and {MAX_REPLICATES}",
                 self.replicates
-            );
-            return refuse("study.replicates", sentence);
-        }
+            ),
+        )?;
         let mut reference = self.reference.iter().flat_map(axis::overrides);
-        if reference.any(|set| set.key() == "friction.seed") {
-            let sentence =
-                "a reduction is that against the same surface: leave `friction.seed` out of the reference";
-            return refuse("study.reference", sentence.to_owned());
-        }
+        refuse_if(
+            reference.any(|set| set.key() == "friction.seed"),
+            "study.reference",
+            "a reduction is that against the same surface: leave `friction.seed` out of the reference"
+                .to_owned(),
+        )?;
         let Some(until) = &self.until else { return Ok(()) };
-        if source.has("study.replicates") {
-            return refuse(
-                "study.replicates",
-                "`replicates` and `until` exclude each other: keep one".to_owned(),
-            );
-        }
-        if !(until.half_width > 0.0 && until.half_width.is_finite()) {
-            let sentence = format!("`half_width` = {} must be more than 0", until.half_width);
-            return refuse("study.until.half_width", sentence);
-        }
-        if !(until.confidence > 0.0 && until.confidence < 1.0) {
-            let sentence = format!(
+        refuse_if(
+            source.has("study.replicates"),
+            "study.replicates",
+            "`replicates` and `until` exclude each other: keep one".to_owned(),
+        )?;
+        refuse_if(
+            !(until.half_width > 0.0 && until.half_width.is_finite()),
+            "study.until.half_width",
+            format!("`half_width` = {} must be more than 0", until.half_width),
+        )?;
+        refuse_if(
+            !(until.confidence > 0.0 && until.confidence < 1.0),
+            "study.until.confidence",
+            format!(
                 "`confidence` = {} must lie between 0 and 1, such as 0.95",
                 until.confidence
-            );
-            return refuse("study.until.confidence", sentence);
-        }
-        if !(2..=until.max).contains(&until.min) || until.max > MAX_REPLICATES {
-            let sentence = format!(
+            ),
+        )?;
+        refuse_if(
+            !(2..=until.max).contains(&until.min) || until.max > MAX_REPLICATES,
+            "study.until.min",
+            format!(
                 "`min` = {} and `max` = {} must rise from 2 to at most {MAX_REPLICATES}: one run has no interval",
                 until.min, until.max
-            );
-            return refuse("study.until.min", sentence);
-        }
-        if until.key == REDUCTION && self.reference.is_none() {
-            let sentence = format!("`{}` needs a `reference` to be reduced from", until.key);
-            return refuse("study.until.key", sentence);
-        }
-        if !summary_values::known().contains(&until.key) {
-            let sentence = format!(
+            ),
+        )?;
+        refuse_if(
+            until.key == REDUCTION && self.reference.is_none(),
+            "study.until.key",
+            format!("`{}` needs a `reference` to be reduced from", until.key),
+        )?;
+        refuse_if(
+            !summary_values::known().contains(&until.key),
+            "study.until.key",
+            format!(
                 "`{}` is no number of a summary: take one such as static_friction_star, kinetic_friction_star or {}",
                 until.key, REDUCTION
-            );
-            return refuse("study.until.key", sentence);
-        }
-        Ok(())
+            ),
+        )
     }
 }
 
@@ -197,7 +205,7 @@ impl StudyFile {
     /// The study with its base case inside and its files beside it, for the results folder.
     ///
     /// # Errors
-    /// When it is too odd for TOML, and when a file cannot be read.
+    /// When it cannot be written as TOML, and when a file cannot be read.
     pub(super) fn portable(&self) -> Result<(String, Vec<Copy>), StudyError> {
         let mut table = toml::Table::new();
         let base: toml::Table =
@@ -270,23 +278,7 @@ impl StudyFile {
         let settings: Settings = tables.read("study")?;
         settings.check(&source)?;
         let axes = read_axes(&mut tables)?;
-        if let Some(key) = tables.root.keys().min_by_key(|key| key.span().start) {
-            let sentence = if keys_of::<Settings>().contains(&key.get_ref().as_ref()) {
-                format!(
-                    "`{}` stands outside its table: it belongs in [study]",
-                    key.get_ref()
-                )
-            } else if CASE_TABLES.contains(&key.get_ref().as_ref()) {
-                let [key, below] = ["", "base."].map(|above| header_below(above, key.get_ref()));
-                format!(
-                    "{key} belongs in a case file, which `slipfront run` runs: in a study file, write {below}, or name the \
-                     case file with `base`"
-                )
-            } else {
-                unknown_key(key.get_ref(), "a study file", &STUDY_TABLES)
-            };
-            Err(source.error_at(key.span(), sentence))?;
-        }
+        refuse_rest(&tables)?;
         refuse_conflicts(&axes, &source)?;
         // The text has been read as TOML once, so that it is a table.
         let table = text.parse().map_err(|error| syntax_error(&source, 0, &error))?;
@@ -298,6 +290,26 @@ impl StudyFile {
             table,
         })
     }
+}
+
+/// Refuses the first table or key of the file that a study has no use for.
+fn refuse_rest(tables: &Tables) -> Result<(), CaseError> {
+    let Some(key) = tables.root.keys().min_by_key(|key| key.span().start) else {
+        return Ok(());
+    };
+    let name = key.get_ref().as_ref();
+    let sentence = if keys_of::<Settings>().contains(&name) {
+        format!("`{name}` stands outside its table: it belongs in [study]")
+    } else if CASE_TABLES.contains(&name) {
+        let [key, below] = ["", "base."].map(|above| header_below(above, name));
+        format!(
+            "{key} belongs in a case file, which `slipfront run` runs: in a study file, write {below}, or name the case \
+             file with `base`"
+        )
+    } else {
+        unknown_key(name, "a study file", &STUDY_TABLES)
+    };
+    Err(tables.source.error_at(key.span(), sentence))
 }
 
 /// The text of a study. What stands in an axis or under `[study]` keeps its order, which is that of columns and points: a
@@ -389,7 +401,7 @@ fn count_points(axes: &[Axis]) -> Result<usize, StudyError> {
         .ok_or(StudyError::TooLarge { limit: MAX_POINTS })
 }
 
-/// Axes that overwrite each other, or whose columns could not be told from others in the tables.
+/// Refuses axes that overwrite each other, and columns that another column of the tables has the name of.
 fn refuse_conflicts(axes: &[Axis], source: &Source) -> Result<(), CaseError> {
     let (mut columns, mut keys) = (HashSet::new(), BTreeSet::new());
     for (k, axis) in axes.iter().enumerate() {
