@@ -160,7 +160,8 @@ fn data_of(
             });
         },
     };
-    let data = (figure.measure)(&mut runner)?;
+    let mut data = FigureData::default();
+    (figure.measure)(&mut runner, &mut data)?;
     cache.save(figure.name, step, &data)?;
     Ok(data)
 }
@@ -169,7 +170,7 @@ fn data_of(
 fn judge(figures: &[(Figure, FigureData)], reduced: bool) -> Result<Vec<ClaimResult>, PaperError> {
     let numbers: BTreeMap<String, Number> = figures
         .iter()
-        .flat_map(|(_, data)| data.numbers.iter().map(|(name, number)| (name.clone(), *number)))
+        .flat_map(|(figure, data)| data.named_numbers(figure.name))
         .collect();
     let about = |claim: &Claim| figures.iter().any(|(figure, _)| figure.name == claim.figure());
     claims()?
