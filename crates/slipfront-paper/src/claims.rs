@@ -123,7 +123,24 @@ impl Claim {
 
     /// The criterion, in words.
     pub fn criterion(&self) -> String {
-        bounds(self.within, &self.unit)
+        let [low, high] = self.within;
+        let unit = match self.unit.as_str() {
+            "" => String::new(),
+            unit => format!(" {unit}"),
+        };
+        match (low.is_finite(), high.is_finite()) {
+            (true, true) if low == high => format!("{low}{unit}"),
+            (true, true) => format!("{low} to {high}{unit}"),
+            (true, false) => format!("at least {low}{unit}"),
+            (false, true) => format!("at most {high}{unit}"),
+            (false, false) => "any".to_owned(),
+        }
+    }
+
+    /// The deviation that explains the verdict, such as ` (D3)`; empty without one.
+    pub(super) fn deviation_in_brackets(&self) -> String {
+        let deviation = self.deviation.as_ref();
+        deviation.map_or(String::new(), |deviation| format!(" ({deviation})"))
     }
 
     /// Judges it by the measured numbers.
@@ -132,18 +149,15 @@ impl Claim {
     /// [`PaperError::Unmeasured`] when its number is not among them.
     pub fn judge(self, numbers: &BTreeMap<String, Number>) -> Result<ClaimResult, PaperError> {
         let measured = |quantity: &String| {
-            numbers
-                .get(quantity)
-                .copied()
-                .ok_or_else(|| PaperError::Unmeasured {
-                    number: self.number,
-                    quantity: quantity.clone(),
-                })
+            let number = numbers.get(quantity).copied();
+            number.ok_or_else(|| PaperError::Unmeasured {
+                number: self.number,
+                quantity: quantity.clone(),
+            })
         };
         let number = measured(&self.quantity)?;
-        let condition = self
-            .condition
-            .as_ref()
+        let condition = self.condition.as_ref();
+        let condition = condition
             .map(|condition| measured(&condition.quantity))
             .transpose()?;
         let inside = |number: &Number, [low, high]: [f64; 2]| (low..=high).contains(&number.value);
@@ -171,6 +185,18 @@ impl ClaimResult {
         self.verdict == self.claim.expected
     }
 
+    /// The verdict in words, with the condition and the deviation that explain it.
+    pub(super) fn verdict_in_full(&self) -> String {
+        let words = self.verdict.words();
+        let deviation = self.claim.deviation_in_brackets();
+        match (self.verdict, &self.claim.condition) {
+            (Verdict::HoldsWithCondition, Some(condition)) => {
+                format!("{words}: {}{deviation}", condition.only)
+            }
+            _ => format!("{words}{deviation}"),
+        }
+    }
+
     /// The measured number with its interval and unit.
     pub fn measured(&self) -> String {
         let number = self.number.shown(self.claim.digits);
@@ -185,22 +211,6 @@ impl ClaimResult {
 pub(super) fn count_verdicts(results: &[ClaimResult]) -> [usize; 3] {
     [Verdict::Holds, Verdict::HoldsWithCondition, Verdict::DoesNotHold]
         .map(|verdict| results.iter().filter(|result| result.verdict == verdict).count())
-}
-
-/// Bounds in words.
-fn bounds([low, high]: [f64; 2], unit: &str) -> String {
-    let unit = if unit.is_empty() {
-        String::new()
-    } else {
-        format!(" {unit}")
-    };
-    match (low.is_finite(), high.is_finite()) {
-        (true, true) if low == high => format!("{low}{unit}"),
-        (true, true) => format!("{low} to {high}{unit}"),
-        (true, false) => format!("at least {low}{unit}"),
-        (false, true) => format!("at most {high}{unit}"),
-        (false, false) => "any".to_owned(),
-    }
 }
 
 #[cfg(test)]

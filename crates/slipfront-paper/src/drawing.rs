@@ -5,7 +5,9 @@ use serde::{Deserialize, Serialize};
 use crate::error::PaperError;
 use crate::number::Number;
 
-use slipfront_plot::{BarChart, FieldMaps, FrictionCurve, Picture, PictureError, Response, Responses, Shape};
+use slipfront_plot::{
+    BarChart, FieldMap, FieldMaps, FrictionCurve, Picture, PictureError, Response, Responses, Shape,
+};
 
 /// The contents of a picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -88,10 +90,14 @@ impl Drawing {
                 }
             }
         }
-        table
-            .into_inner()
-            .map_err(|error| csv::Error::from(error.into_error()).into())
+        finish(table)
     }
+}
+
+/// The bytes of a finished table.
+pub(super) fn finish(table: csv::Writer<Vec<u8>>) -> Result<Vec<u8>, PaperError> {
+    let bytes = table.into_inner();
+    bytes.map_err(|error| csv::Error::from(error.into_error()).into())
 }
 
 /// An empty cell for NaN.
@@ -126,11 +132,21 @@ pub(super) fn formula(label: &str, x: &[f64], value: impl Fn(f64) -> f64) -> Res
 }
 
 /// Maps of tau_c*, from 0 to its maximum in the run.
-pub(super) fn stress_maps(maps: Vec<slipfront_plot::FieldMap>, columns: usize) -> Drawing {
+pub(super) fn stress_maps(maps: Vec<FieldMap>, columns: usize) -> Drawing {
     Drawing::Maps(FieldMaps {
         value_title: "\u{3c4}_c*".to_owned(),
         range: [0.0, 1.0],
         columns,
+        maps,
+    })
+}
+
+/// Maps of local coefficients over their mean, to three standard deviations to both sides.
+pub(super) fn coefficient_maps(value_title: &str, sigma: f64, maps: Vec<FieldMap>) -> Drawing {
+    Drawing::Maps(FieldMaps {
+        value_title: value_title.to_owned(),
+        range: [1.0 - 3.0 * sigma, 1.0 + 3.0 * sigma],
+        columns: maps.len(),
         maps,
     })
 }

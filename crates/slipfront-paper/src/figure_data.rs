@@ -34,7 +34,7 @@ pub struct Panel {
 /// All data of a figure.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct FigureData {
-    /// Measured numbers by name; claims are judged by them.
+    /// Measured numbers by their names within the figure; claims are judged by them.
     pub numbers: BTreeMap<String, Number>,
     /// Pictures.
     pub panels: Vec<Panel>,
@@ -43,6 +43,12 @@ pub struct FigureData {
 }
 
 impl FigureData {
+    /// The numbers with the name of their figure before their own: `fig12.largest_rise`.
+    pub(super) fn named_numbers(&self, figure: &str) -> impl Iterator<Item = (String, Number)> {
+        let numbers = self.numbers.iter();
+        numbers.map(move |(name, number)| (format!("{figure}.{name}"), *number))
+    }
+
     /// Adds a number.
     pub(super) fn number(&mut self, name: &str, number: Number) {
         self.numbers.insert(name.to_owned(), number);

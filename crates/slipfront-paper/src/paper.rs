@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use slipfront_run::study::{self, Records};
 
 use crate::cache::FigureCache;
-use crate::claims::{Claim, ClaimResult, claims};
+use crate::claims::{Claim, ClaimResult, claims, count_verdicts};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::figures::{FIGURES, Figure};
@@ -26,16 +26,6 @@ pub struct Options<'a> {
     pub reduced: bool,
     /// Folder of the results. A figure whose data this program has stored there is not run again.
     pub folder: &'a Path,
-}
-
-impl Options<'_> {
-    /// The step rules under which figures are run.
-    fn step_rules(&self) -> &'static [StepRule] {
-        match self.reduced {
-            true => &[StepRule::Auto],
-            false => &[StepRule::Auto, StepRule::Paper],
-        }
-    }
 }
 
 /// How many figures are done, and which one is being run.
@@ -74,11 +64,18 @@ impl Paper {
             (StepRule::Paper, &self.results_by_paper_step),
         ];
         both.into_iter().flat_map(|(rule, results)| {
-            results
-                .iter()
-                .filter(|result| !result.as_expected())
-                .map(move |result| (rule, result))
+            let unexpected = results.iter().filter(|result| !result.as_expected());
+            unexpected.map(move |result| (rule, result))
         })
+    }
+
+    /// How many claims have each verdict, as a sentence.
+    pub(super) fn tally(&self) -> String {
+        let [holds, conditioned, fails] = count_verdicts(&self.results);
+        format!(
+            "{} claims: {holds} hold, {conditioned} hold with a condition, {fails} do not hold",
+            self.results.len()
+        )
     }
 }
 
@@ -93,7 +90,10 @@ pub fn run(
     options: &Options,
     watch: &mut dyn FnMut(&Stage),
 ) -> Result<Paper, PaperError> {
-    let rules = options.step_rules();
+    let rules: &[StepRule] = match options.reduced {
+        true => &[StepRule::Auto],
+        false => &[StepRule::Auto, StepRule::Paper],
+    };
     let cache = FigureCache::open(options.folder, options.reduced)?;
     let figures = with_finished(figures, &cache, rules);
     let mut data_by_rule = Vec::new();
@@ -112,14 +112,13 @@ pub fn run(
         }
         data_by_rule.push(data);
     }
-    let mut results = Vec::new();
-    for data in &data_by_rule {
-        results.push(judge(data, options.reduced)?);
-    }
-    let mut results = results.into_iter();
+    let judged = |rule: usize| {
+        let data = data_by_rule.get(rule);
+        data.map_or(Ok(Vec::new()), |data| judge(data, options.reduced))
+    };
     Ok(Paper {
-        results: results.next().unwrap_or_default(),
-        results_by_paper_step: results.next().unwrap_or_default(),
+        results: judged(0)?,
+        results_by_paper_step: judged(1)?,
         figures: data_by_rule.swap_remove(0),
         reduced: options.reduced,
     })
@@ -160,7 +159,8 @@ fn data_of(
             });
         },
     };
-    let data = (figure.measure)(&mut runner)?;
+    let mut data = FigureData::default();
+    (figure.measure)(&mut runner, &mut data)?;
     cache.save(figure.name, step, &data)?;
     Ok(data)
 }
@@ -169,7 +169,7 @@ fn data_of(
 fn judge(figures: &[(Figure, FigureData)], reduced: bool) -> Result<Vec<ClaimResult>, PaperError> {
     let numbers: BTreeMap<String, Number> = figures
         .iter()
-        .flat_map(|(_, data)| data.numbers.iter().map(|(name, number)| (name.clone(), *number)))
+        .flat_map(|(figure, data)| data.named_numbers(figure.name))
         .collect();
     let about = |claim: &Claim| figures.iter().any(|(figure, _)| figure.name == claim.figure());
     claims()?

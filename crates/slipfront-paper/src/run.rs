@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use slipfront::observe::{CurvePoint, Frame};
 
+use crate::drawing::Drawing;
 use crate::error::PaperError;
-use crate::statistics::deviation;
+use crate::statistics::{deviation, largest};
 use slipfront::observe::Field;
 use slipfront_case::case::{Case, Snapshots};
 use slipfront_plot::{FieldMap, FrictionCurve};
@@ -21,12 +22,38 @@ pub(super) fn seen_at(mut case: Case, times_star: &[f64]) -> Case {
     case
 }
 
+/// A map of the lattice of a case without values.
+pub(super) fn blank_map(case: &Case, label: &str) -> FieldMap {
+    let lattice = &case.model.lattice;
+    FieldMap {
+        label: label.to_owned(),
+        nx: lattice.nx,
+        ny: lattice.ny,
+        textured: case.model.surface.textured.clone(),
+        ..FieldMap::default()
+    }
+}
+
 /// Maps of contact stress at the peaks of several runs.
 pub(super) fn peak_maps(runs: &[Run], labels: &[String]) -> Result<Vec<FieldMap>, PaperError> {
     let labelled = runs.iter().zip(labels);
     labelled
         .map(|(run, label)| run.stress_map(run.instant('C')?, label))
         .collect()
+}
+
+/// Friction and sliding blocks of several runs.
+pub(super) fn curves(runs: &[Run], label: impl Fn(usize) -> String) -> Drawing {
+    let curves = runs.iter().enumerate();
+    Drawing::Curves(curves.map(|(index, run)| run.curve(&label(index))).collect())
+}
+
+/// What is measured on each of several runs.
+pub(super) fn on_each<T>(
+    runs: &[Run],
+    measure: impl Fn(&Run) -> Result<T, PaperError>,
+) -> Result<Vec<T>, PaperError> {
+    runs.iter().map(measure).collect()
 }
 
 /// A case and the record of its run.
@@ -38,14 +65,10 @@ pub(super) struct Run {
 impl Run {
     /// The frame of one of the instants A-F.
     pub(super) fn instant(&self, letter: char) -> Result<&Frame, PaperError> {
-        let found = self
-            .record
-            .frames
-            .iter()
-            .find(|(letters, _)| letters.contains(letter));
-        found
-            .map(|(_, frame)| frame)
-            .ok_or_else(|| self.lacks(&format!("instant {letter}")))
+        let mut frames = self.record.frames.iter();
+        let found = frames.find(|(letters, _)| letters.contains(letter));
+        let frame = found.map(|(_, frame)| frame);
+        frame.ok_or_else(|| self.lacks(&format!("instant {letter}")))
     }
 
     /// The values of a field in a frame of this run.
@@ -61,28 +84,13 @@ impl Run {
         let values = self.field(frame, Field::ContactStress)?;
         let textured = &self.case.model.surface.textured;
         let scaled = values.iter().zip(textured);
+        let scaled = scaled.map(|(value, &textured)| if textured { f32::NAN } else { value / largest });
+        let (time, mu) = (frame.time_star, frame.point.mu_star);
         Ok(FieldMap {
-            note: format!(
-                "t* = {:.1}, \u{3bc}* = {:.3}",
-                frame.time_star, frame.point.mu_star
-            ),
-            values: scaled
-                .map(|(value, &textured)| if textured { f32::NAN } else { value / largest })
-                .collect(),
-            ..self.blank_map(label)
+            note: format!("t* = {time:.1}, \u{3bc}* = {mu:.3}"),
+            values: scaled.collect(),
+            ..blank_map(&self.case, label)
         })
-    }
-
-    /// A map of this lattice without values.
-    pub(super) fn blank_map(&self, label: &str) -> FieldMap {
-        let lattice = &self.case.model.lattice;
-        FieldMap {
-            label: label.to_owned(),
-            nx: lattice.nx,
-            ny: lattice.ny,
-            textured: self.case.model.surface.textured.clone(),
-            ..FieldMap::default()
-        }
     }
 
     /// The curve with its peak, its kinetic window and the letters of its instants.
@@ -133,6 +141,16 @@ impl Run {
             .fold(0.0, f64::max)
     }
 
+    /// The largest difference of a quantity from that of any of these runs in a window of time.
+    pub(super) fn largest_difference_of(
+        &self,
+        runs: &[Run],
+        window: [f64; 2],
+        value: fn(&CurvePoint) -> f64,
+    ) -> f64 {
+        largest(runs.iter().map(|run| self.largest_difference(run, window, value)))
+    }
+
     /// mu* in each row of a window of time.
     pub(super) fn friction_between(&self, from: f64, until: f64) -> Vec<f64> {
         let rows = self.record.rows.iter();
@@ -169,13 +187,18 @@ impl Run {
 
     /// t* at which this share of the blocks in contact has slipped.
     pub(super) fn time_of_share(&self, share: f64) -> Result<f64, PaperError> {
-        let times = self.slip_times();
         let contact = self.case.model.surface.n_contact() as f64;
         let index = ((share * contact).ceil() as usize).saturating_sub(1);
-        times
-            .get(index)
-            .copied()
-            .ok_or_else(|| self.lacks(&format!("slip of {share} of all blocks")))
+        let time = self.slip_times().get(index).copied();
+        time.ok_or_else(|| self.lacks(&format!("slip of {share} of all blocks")))
+    }
+
+    /// The block that slips first.
+    pub(super) fn first_block(&self) -> Result<usize, PaperError> {
+        let earliest = self.first_slip()?;
+        let times = &self.record.first_slip_time_star;
+        let first = times.iter().position(|&time| time == earliest);
+        first.ok_or_else(|| self.lacks("slip"))
     }
 
     fn lacks(&self, what: &str) -> PaperError {

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::embedded_cases::FILES;
 use crate::error::PaperError;
-use crate::run::Run;
+use crate::run::{Run, seen_at};
 use crate::step_rule::StepRule;
 use crate::sweep::Sweep;
 use slipfront_case::case::Case;
@@ -57,6 +57,17 @@ impl FigureRunner<'_> {
     /// Runs one case.
     pub(super) fn run_one(&self, case: Case) -> Result<Run, PaperError> {
         run_case(case, self.stop)
+    }
+
+    /// Runs a case again that `run` is of, with its fields at the times at which these shares of its blocks have slipped.
+    pub(super) fn run_seen_at_shares(
+        &self,
+        case: Case,
+        run: &Run,
+        shares: &[f64],
+    ) -> Result<Run, PaperError> {
+        let times = shares.iter().map(|&share| run.time_of_share(share));
+        self.run_one(seen_at(case, &times.collect::<Result<Vec<_>, _>>()?))
     }
 
     /// A study of this crate, of which nothing is run.

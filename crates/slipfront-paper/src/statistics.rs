@@ -15,6 +15,16 @@ pub(super) fn range(values: &[f64]) -> f64 {
     largest(values.iter().copied()) - smallest(values.iter().copied())
 }
 
+/// The largest distance of a value from a center.
+pub(super) fn farthest(values: &[f64], center: f64) -> f64 {
+    largest(values.iter().map(|value| (value - center).abs()))
+}
+
+/// Distances between two lists, pair by pair.
+pub(super) fn distances(one: &[f64], other: &[f64]) -> Vec<f64> {
+    one.iter().zip(other).map(|(a, b)| (a - b).abs()).collect()
+}
+
 /// The arithmetic mean.
 pub(super) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64

@@ -8,3 +8,13 @@ pub enum StepRule {
     /// The paper's, `dt* = (2/3) V*` (Eq. 13).
     Paper,
 }
+
+impl StepRule {
+    /// The time step as a formula.
+    pub fn formula(self) -> &'static str {
+        match self {
+            Self::Auto => "dt* = 0.1",
+            Self::Paper => "dt* = (2/3) V*",
+        }
+    }
+}

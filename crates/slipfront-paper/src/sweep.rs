@@ -3,7 +3,7 @@
 use slipfront::Stop;
 
 use crate::error::PaperError;
-use crate::number::Number;
+use crate::number::{Number, values};
 use slipfront_case::case::Case;
 use slipfront_run::study::{Plan, Quantity, RetainRuns, Role, RunKey, StudyResults};
 
@@ -30,23 +30,16 @@ impl Sweep {
 
     /// Position of the point with these levels.
     pub(super) fn point(&self, levels: &[usize]) -> usize {
-        self.plan
-            .axes
-            .iter()
-            .zip(levels)
-            .fold(0, |index, (axis, level)| index * axis.levels.len() + level)
+        let axes = self.plan.axes.iter().zip(levels);
+        axes.fold(0, |index, (axis, level)| index * axis.levels.len() + level)
     }
 
     /// A quantity at the point with these levels: one value for each surface.
     pub(super) fn values(&self, levels: &[usize], quantity: &str) -> Vec<f64> {
-        let point = self.point(levels);
-        let (replicates, quantity) = (
-            0..self.results.points[point].replicates,
-            Quantity::named(quantity),
-        );
-        replicates
-            .filter_map(|replicate| self.results.value(point, replicate, quantity?))
-            .collect()
+        let (point, quantity) = (self.point(levels), Quantity::named(quantity));
+        let replicates = 0..self.results.points[point].replicates;
+        let values = replicates.map(|replicate| self.results.value(point, replicate, quantity?));
+        values.flatten().collect()
     }
 
     /// Mean and interval of a quantity over the surfaces of a point.
@@ -59,6 +52,19 @@ impl Sweep {
         (0..self.plan.axes[0].levels.len())
             .map(|level| self.number(&[&[level], others].concat(), quantity))
             .collect()
+    }
+
+    /// Means of a quantity along the first axis, at these levels of the other axes.
+    pub(super) fn means(&self, others: &[usize], quantity: &str) -> Vec<f64> {
+        values(&self.numbers(others, quantity))
+    }
+
+    /// The level of the first axis with this number; the first if none has it.
+    pub(super) fn level(&self, number: f64) -> usize {
+        self.axis(0)
+            .iter()
+            .position(|&other| other == number)
+            .unwrap_or(0)
     }
 
     /// The case of a run of a point, to be run to its end with its curve and fields.

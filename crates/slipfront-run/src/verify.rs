@@ -15,7 +15,7 @@ use crate::run_folder::error::FolderError;
 use crate::run_folder::inspection::{CaseDefect, Inspection};
 use crate::run_folder::unfinished::Unfinished;
 use crate::study;
-use crate::study::{Plan, Records, RetainRuns, RunResult, StudyError, StudyFolder, StudyResults};
+use crate::study::{Plan, Records, RetainRuns, StudyError, StudyFolder, StudyResults};
 use slipfront_case::disk::is_unfinished;
 use slipfront_case::text::{single_line, truncated};
 
@@ -314,11 +314,11 @@ fn verify_kept(
         Err(error) if error.kind() == ErrorKind::NotFound => None,
         Err(error) => return Err(unreadable(error)),
     };
-    let done = results.runs.iter().filter(|(_, result)| match result.as_ref() {
-        RunResult::Done(_) => true,
-        // Of a run that failed the case alone is kept.
-        RunResult::Failed(_) => false,
-    });
+    // Of a run that failed the case alone is kept.
+    let done = results
+        .runs
+        .iter()
+        .filter(|(_, result)| result.failure().is_none());
     let done: HashSet<String> = done.map(|(run, _)| plan.folder_name(*run)).collect();
     let (mut kept, mut missing) = (0, done.clone());
     for entry in entries.into_iter().flatten() {

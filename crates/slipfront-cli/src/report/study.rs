@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use slipfront_case::number_format::{byte_size, with_uncertainty};
-use slipfront_run::study::{self, Plan, RunKey, RunResult, StudyResults};
+use slipfront_run::study::{Plan, RunKey, StudyResults};
 
 use super::times::duration;
 
@@ -91,7 +91,7 @@ fn case_warnings(plan: &Plan) -> String {
 pub(crate) fn study(plan: &Plan, results: &StudyResults, folder: &Path) -> String {
     format!(
         "{}\n{}{}runs.csv, points.csv and pictures in {}\n",
-        study::main_quantity(plan),
+        plan.main_quantity(),
         points(plan, results),
         notes(plan, results),
         folder.display()
@@ -120,13 +120,8 @@ fn points(plan: &Plan, results: &StudyResults) -> String {
 /// The main quantity at a point with its interval, and what a reader must know of it.
 fn point_value(plan: &Plan, results: &StudyResults, point: usize) -> String {
     let is_here = |run: &RunKey| run.point == point;
-    let has_failed = || {
-        results
-            .runs
-            .iter()
-            .any(|(run, result)| is_here(run) && matches!(**result, RunResult::Failed(_)))
-    };
-    let mut text = match study::sample(plan, results, point, study::main_quantity(plan)) {
+    let has_failed = || results.failures().any(|(run, _)| is_here(&run));
+    let mut text = match results.sample(plan, point, plan.main_quantity()) {
         Some(sample) => {
             let mean = with_uncertainty(sample.mean, sample.half_width);
             format!("{mean}   n = {}", sample.n)

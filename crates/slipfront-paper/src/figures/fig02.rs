@@ -2,53 +2,49 @@
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use crate::drawing::{Drawing, formula};
+use crate::drawing::{Drawing, coefficient_maps, formula};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
+use crate::run::blank_map;
 use crate::runner::FigureRunner;
 use crate::statistics::largest;
 use slipfront_case::case::Case;
-use slipfront_plot::{FieldMap, FieldMaps, Response, Responses};
+use slipfront_plot::{FieldMap, Response, Responses};
 
-pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
+pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let case = runner.case("fig02", &[])?;
-    let (lattice, surface, groups) = (&case.model.lattice, &case.model.surface, &case.groups);
+    let (surface, groups) = (&case.model.surface, &case.groups);
     let scaled = |mu: &[f64], mean: f64| -> Vec<f64> { mu.iter().map(|mu| mu / mean).collect() };
     let mean = case.scales.mu_static_mean;
     let mu_static = scaled(&surface.mu_static, mean);
     let mu_kinetic = scaled(&surface.mu_kinetic, mean * groups.r_star);
     let map = |label: &str, values: &[f64]| FieldMap {
-        label: label.to_owned(),
-        nx: lattice.nx,
-        ny: lattice.ny,
         values: values.iter().map(|&value| value as f32).collect(),
-        textured: surface.textured.clone(),
-        ..FieldMap::default()
+        ..blank_map(&case, label)
     };
-    let mut data = FigureData::default();
-    let reach = 3.0 * groups.sigma_static_star;
     data.panel(
         "fig02",
         "Local static and kinetic friction coefficients of one random surface, over their means.",
-        Drawing::Maps(FieldMaps {
-            value_title: "\u{3bc}_i/\u{27e8}\u{3bc}\u{27e9}".to_owned(),
-            range: [1.0 - reach, 1.0 + reach],
-            columns: 2,
-            maps: vec![
+        coefficient_maps(
+            "\u{3bc}_i/\u{27e8}\u{3bc}\u{27e9}",
+            groups.sigma_static_star,
+            vec![
                 map("static, \u{3bc}\u{209b}\u{1d62}", &mu_static),
                 map("kinetic, \u{3bc}\u{2096}\u{1d62}", &mu_kinetic),
             ],
-        }),
+        ),
     );
-    distribution(groups.sigma_static_star, &mu_static, &mu_kinetic, &mut data);
+    distribution(groups.sigma_static_star, &mu_static, &mu_kinetic, data);
     let scores = scores(&runner.case_on_surfaces("fig02")?);
-    data.value("fig02.distance_to_gaussian", distance_to_normal(scores));
-    Ok(data)
+    data.value("distance_to_gaussian", distance_to_normal(scores));
+    Ok(())
 }
 
 /// Histograms of both coefficients over their means, beside the Gaussian density.
 fn distribution(sigma: f64, mu_static: &[f64], mu_kinetic: &[f64], data: &mut FigureData) {
-    let bins = bins(1.0, sigma);
+    // Bins of half a standard deviation, to three to both sides.
+    let edge = |k: i32| 1.0 + 0.5 * sigma * f64::from(k);
+    let bins: Vec<[f64; 2]> = (-6..6).map(|k| [edge(k), edge(k + 1)]).collect();
     let density =
         |x: f64| libm::exp(-0.5 * ((x - 1.0) / sigma).powi(2)) / (sigma * std::f64::consts::TAU.sqrt());
     let fine: Vec<f64> = (-60..=60).map(|k| 1.0 + 0.05 * sigma * f64::from(k)).collect();
@@ -72,40 +68,25 @@ fn distribution(sigma: f64, mu_static: &[f64], mu_kinetic: &[f64], data: &mut Fi
 fn scores(cases: &[Case]) -> Vec<f64> {
     let mut scores = Vec::new();
     for case in cases {
-        let mean = case.scales.mu_static_mean;
         let (surface, groups) = (&case.model.surface, &case.groups);
-        let score = |mu: f64, mean: f64, sigma: f64| (mu / mean - 1.0) / sigma;
-        scores.extend(
-            surface
-                .mu_static
-                .iter()
-                .map(|&mu| score(mu, mean, groups.sigma_static_star)),
-        );
-        let mean = groups.r_star * mean;
-        scores.extend(
-            surface
-                .mu_kinetic
-                .iter()
-                .map(|&mu| score(mu, mean, groups.sigma_kinetic_star)),
+        let mut add = |mu: &[f64], mean: f64, sigma: f64| {
+            scores.extend(mu.iter().map(|mu| (mu / mean - 1.0) / sigma));
+        };
+        let mean = case.scales.mu_static_mean;
+        add(&surface.mu_static, mean, groups.sigma_static_star);
+        add(
+            &surface.mu_kinetic,
+            groups.r_star * mean,
+            groups.sigma_kinetic_star,
         );
     }
     scores
 }
 
-/// Bins of half a standard deviation, to three to both sides.
-fn bins(mean: f64, sigma: f64) -> Vec<[f64; 2]> {
-    (-6..6)
-        .map(|k| [f64::from(k), f64::from(k + 1)].map(|edge| mean + 0.5 * sigma * edge))
-        .collect()
-}
-
 fn histogram(label: &str, bins: &[[f64; 2]], values: &[f64]) -> Response {
     let share = |&[low, high]: &[f64; 2]| {
-        let inside = values
-            .iter()
-            .filter(|&&value| value >= low && value < high)
-            .count();
-        inside as f64 / values.len() as f64 / (high - low)
+        let inside = values.iter().filter(|&value| (low..high).contains(value));
+        inside.count() as f64 / values.len() as f64 / (high - low)
     };
     let blank = vec![f64::NAN; bins.len()];
     Response {

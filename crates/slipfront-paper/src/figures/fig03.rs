@@ -5,42 +5,33 @@ use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::run::{Run, mu_star, sliding_percent};
 use crate::runner::FigureRunner;
-use crate::statistics::{largest, range};
+use crate::statistics::range;
 
 /// The cases whose printed speed does not make V* = 0.03.
 const CORRECTED: [u32; 3] = [3, 6, 7];
 /// V* of Table 1.
 const V_STAR: f64 = 0.03;
 
-fn files(corrected: bool) -> Vec<String> {
-    let suffix = |case: u32| {
-        if corrected && CORRECTED.contains(&case) {
-            "_corrected"
-        } else {
-            ""
-        }
-    };
-    (1..=8)
-        .map(|case| format!("table1/case{case}{}", suffix(case)))
-        .collect()
+fn files(corrected: bool) -> impl Iterator<Item = String> {
+    (1..=8).map(move |case| match corrected && CORRECTED.contains(&case) {
+        true => format!("table1/case{case}_corrected"),
+        false => format!("table1/case{case}"),
+    })
 }
 
 /// Table 1: what its parameters make of V*.
-pub(super) fn measure_table(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
-    let mut data = FigureData::default();
+pub(super) fn measure_table(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let mut rows = Vec::new();
     let (mut printed_error, mut corrected_error) = (0.0_f64, 0.0_f64);
-    for (printed, corrected) in files(false).iter().zip(files(true)) {
-        let (printed, corrected) = (runner.case(printed, &[])?, runner.case(&corrected, &[])?);
+    for (printed, corrected) in files(false).zip(files(true)) {
+        let (printed, corrected) = (runner.case(&printed, &[])?, runner.case(&corrected, &[])?);
         let error = |v_star: f64| 100.0 * (v_star / V_STAR - 1.0).abs();
         printed_error = printed_error.max(error(printed.groups.v_star));
         corrected_error = corrected_error.max(error(corrected.groups.v_star));
         let speed = |v_star: f64| format!("{:.4}", v_star * printed.scales.speed() * 1e3);
         let number = |value: f64| {
-            format!("{value:.4}")
-                .trim_end_matches('0')
-                .trim_end_matches('.')
-                .to_owned()
+            let digits = format!("{value:.4}");
+            digits.trim_end_matches('0').trim_end_matches('.').to_owned()
         };
         rows.push([
             (rows.len() + 1).to_string(),
@@ -71,44 +62,34 @@ pub(super) fn measure_table(runner: &mut FigureRunner) -> Result<FigureData, Pap
         header,
         rows,
     );
-    data.value("table1.v_star_error_percent", printed_error);
-    data.value("table1.v_star_error_corrected_percent", corrected_error);
-    Ok(data)
+    data.value("v_star_error_percent", printed_error);
+    data.value("v_star_error_corrected_percent", corrected_error);
+    Ok(())
 }
 
 /// Fig. 3: the curves of the eight cases over each other.
-pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
-    let mut data = FigureData::default();
+pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let corrected = runs(runner, true)?;
     let printed = runs(runner, false)?;
     // Case 8 is the one that every other figure varies.
     let [.., main] = &corrected[..] else {
-        return Ok(data);
+        return Ok(());
     };
     let until = main.instant('E')?.time_star;
     for (name, runs) in [("corrected", &corrected), ("printed", &printed)] {
-        let spread = |value| {
-            let differences = runs
-                .iter()
-                .map(|run| main.largest_difference(run, [0.0, until], value));
-            largest(differences)
-        };
-        data.value(&format!("fig03.spread_{name}"), spread(mu_star));
-        data.value(
-            &format!("fig03.sliding_spread_{name}_percent"),
-            spread(sliding_percent),
-        );
+        let spread = |value| main.largest_difference_of(runs, [0.0, until], value);
+        data.value(&format!("spread_{name}"), spread(mu_star));
+        data.value(&format!("sliding_spread_{name}_percent"), spread(sliding_percent));
     }
     let window = main.kinetic_window()?;
-    let pointwise = corrected
+    data.value(
+        "kinetic_spread",
+        main.largest_difference_of(&corrected, window, mu_star),
+    );
+    let means = corrected
         .iter()
-        .map(|run| main.largest_difference(run, window, mu_star));
-    data.value("fig03.kinetic_spread", largest(pointwise));
-    let means: Vec<f64> = corrected
-        .iter()
-        .filter_map(|run| run.record.summary.kinetic_friction_star)
-        .collect();
-    data.value("fig03.kinetic_mean_spread", range(&means));
+        .filter_map(|run| run.record.summary.kinetic_friction_star);
+    data.value("kinetic_mean_spread", range(&means.collect::<Vec<_>>()));
     let curves = |runs: &[Run]| {
         let label = |index: usize| format!("case {}", index + 1);
         let curves = runs.iter().enumerate().map(|(index, run)| match index {
@@ -128,13 +109,10 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
         "The same with the speeds as printed: cases 3, 6 and 7 have V* = 0.015, 0.010 and 0.015, and fall out of line.",
         curves(&printed),
     );
-    Ok(data)
+    Ok(())
 }
 
 fn runs(runner: &FigureRunner, corrected: bool) -> Result<Vec<Run>, PaperError> {
-    let cases = files(corrected)
-        .iter()
-        .map(|file| runner.case(file, &[]))
-        .collect::<Result<_, _>>()?;
-    runner.run(cases)
+    let cases = files(corrected).map(|file| runner.case(&file, &[]));
+    runner.run(cases.collect::<Result<_, _>>()?)
 }

@@ -1,19 +1,17 @@
 //! Fig. 4: contact stress at the instants A-F, and what the paper reads from it.
 
-use slipfront::observe::Frame;
+use slipfront::observe::{Field, Frame};
 
 use crate::drawing::stress_maps;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
-use crate::run::{Run, seen_at};
+use crate::run::{Run, on_each, seen_at};
 use crate::runner::FigureRunner;
-use crate::statistics::{largest, mean, smallest};
-use slipfront::observe::Field;
+use crate::statistics::{largest, smallest};
 
-pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
-    let mut data = FigureData::default();
+pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let runs = runner.run(runner.case_on_surfaces("fig04")?)?;
-    let [main, ..] = &runs[..] else { return Ok(data) };
+    let [main, ..] = &runs[..] else { return Ok(()) };
     let maps = ['A', 'B', 'C', 'D', 'E', 'F']
         .map(|letter| main.stress_map(main.instant(letter)?, &letter.to_string()));
     data.panel(
@@ -22,39 +20,38 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
          kinetic phase.",
         stress_maps(maps.into_iter().collect::<Result<_, _>>()?, 3),
     );
-    before_slip(runner, main, &mut data)?;
-    let over = |value: &dyn Fn(&Run) -> Result<f64, PaperError>| -> Result<Vec<f64>, PaperError> {
-        runs.iter().map(value).collect()
-    };
-    let ranks = over(&first_slip_rank)?;
-    data.value("fig04.worst_rank_of_first_slip", largest(ranks));
-    data.values(
-        "fig04.stress_left_after_slip_percent",
-        &over(&|run| stress_left(runner, run))?,
-    );
-    data.values("fig04.slipped_at_peak_percent", &over(&slipped_at_peak)?);
-    data.values("fig04.rest_slips_within_percent", &over(&rest_slips_within)?);
-    data.values(
-        "fig04.sliding_jump_percent",
-        &over(&|run| Ok(run.instant('D')?.point.sliding_percent))?,
+    before_slip(runner, main, data)?;
+    data.value(
+        "worst_rank_of_first_slip",
+        largest(on_each(&runs, first_slip_rank)?),
     );
     data.values(
-        "fig04.stress_falls_from_d_to_e_percent",
-        &over(&falls_from_d_to_e)?,
+        "stress_left_after_slip_percent",
+        &on_each(&runs, |run| stress_left(runner, run))?,
+    );
+    data.values("slipped_at_peak_percent", &on_each(&runs, slipped_at_peak)?);
+    data.values("rest_slips_within_percent", &on_each(&runs, rest_slips_within)?);
+    data.values(
+        "sliding_jump_percent",
+        &on_each(&runs, |run| Ok(run.instant('D')?.point.sliding_percent))?,
     );
     data.values(
-        "fig04.kinetic_minimum_over_e",
-        &over(&|run| {
+        "stress_falls_from_d_to_e_percent",
+        &on_each(&runs, falls_from_d_to_e)?,
+    );
+    data.values(
+        "kinetic_minimum_over_e",
+        &on_each(&runs, |run| {
             let [from, until] = run.kinetic_window()?;
             Ok(smallest(run.friction_between(from, until)) - run.instant('E')?.point.mu_star)
         })?,
     );
     let sliding = |run: &Run| run.record.summary.sliding_percent_kinetic;
     data.values(
-        "fig04.kinetic_sliding_percent",
+        "kinetic_sliding_percent",
         &runs.iter().filter_map(sliding).collect::<Vec<_>>(),
     );
-    Ok(data)
+    Ok(())
 }
 
 /// Until the first slip: is the stress the same everywhere, does it grow as k_s V* t*, does nothing move?
@@ -76,32 +73,21 @@ fn before_slip(runner: &FigureRunner, main: &Run, data: &mut FigureData) -> Resu
             }
         }
     }
-    data.value("fig04.stress_before_slip_error", error);
-    data.value("fig04.motion_before_slip", motion);
+    data.value("stress_before_slip_error", error);
+    data.value("motion_before_slip", motion);
     Ok(())
 }
 
 /// The block that slips first: its place among all, ordered by mu_si from the lowest.
-pub(super) fn first_slip_rank(run: &Run) -> Result<f64, PaperError> {
-    let first = first_block(run)?;
+fn first_slip_rank(run: &Run) -> Result<f64, PaperError> {
+    let first = run.first_block()?;
     let mu_static = &run.case.model.surface.mu_static;
     Ok(1.0 + mu_static.iter().filter(|&&mu| mu < mu_static[first]).count() as f64)
 }
 
-/// The block that slips first.
-pub(super) fn first_block(run: &Run) -> Result<usize, PaperError> {
-    let earliest = run.first_slip()?;
-    let times = &run.record.first_slip_time_star;
-    let first = times.iter().position(|&time| time == earliest);
-    first.ok_or_else(|| PaperError::Lacks {
-        file: run.case.name.clone(),
-        what: "slip".to_owned(),
-    })
-}
-
 /// How much of the contact stress of the first block to slip is left soon after, %.
 fn stress_left(runner: &FigureRunner, run: &Run) -> Result<f64, PaperError> {
-    let (first, block) = (run.first_slip()?, first_block(run)?);
+    let (first, block) = (run.first_slip()?, run.first_block()?);
     let dt_star = run.case.time_plan.dt_star;
     // Just before the slip, and in steps of 0.5 after it for ten times the travel of a wave over a block.
     let mut times = vec![first - dt_star];
@@ -111,12 +97,8 @@ fn stress_left(runner: &FigureRunner, run: &Run) -> Result<f64, PaperError> {
     let stress = |(_, frame): &(String, Frame)| -> Result<f64, PaperError> {
         Ok(f64::from(again.field(frame, Field::ContactStress)?[block]))
     };
-    let stresses = again
-        .record
-        .frames
-        .iter()
-        .map(stress)
-        .collect::<Result<Vec<f64>, _>>()?;
+    let stresses = again.record.frames.iter().map(stress);
+    let stresses = stresses.collect::<Result<Vec<f64>, _>>()?;
     let [before, after @ ..] = &stresses[..] else {
         return Ok(f64::NAN);
     };
@@ -141,10 +123,6 @@ fn rest_slips_within(run: &Run) -> Result<f64, PaperError> {
 fn falls_from_d_to_e(run: &Run) -> Result<f64, PaperError> {
     let stress = |letter| run.field(run.instant(letter)?, Field::ContactStress);
     let (before, after) = (stress('D')?, stress('E')?);
-    let lower: Vec<f64> = before
-        .iter()
-        .zip(after)
-        .map(|(before, after)| f64::from(u8::from(after < before)))
-        .collect();
-    Ok(100.0 * mean(&lower))
+    let lower = before.iter().zip(after).filter(|(before, after)| after < before);
+    Ok(100.0 * (lower.count() as f64 / before.len() as f64))
 }

@@ -1,22 +1,21 @@
 //! Fig. 5: the same material in three sizes.
 
-use crate::drawing::{Drawing, stress_maps};
+use crate::drawing::stress_maps;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
+use crate::run::curves;
 use crate::runner::FigureRunner;
 use crate::statistics::mean;
 
-pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
-    let mut data = FigureData::default();
+pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig05")?;
     let runs = runner.run(sweep.first_cases()?)?;
     let sides = sweep.axis(0);
     let name = |size: usize| format!("{0} \u{d7} {0} blocks", sides[size]);
-    let curves = runs.iter().enumerate().map(|(size, run)| run.curve(&name(size)));
     data.panel(
         "fig05",
         "Friction and sliding blocks of sliders of 5 x 5, 25 x 25 and 75 x 75 blocks.",
-        Drawing::Curves(curves.collect()),
+        curves(&runs, name),
     );
     let mut maps = Vec::new();
     for (size, run) in runs.iter().enumerate() {
@@ -39,12 +38,9 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
             values.iter().map(|value| (value - largest_size).abs()).collect()
         };
         let (small, middle) = (errors(0), errors(1));
-        data.values(&format!("fig05.{quantity}_error_5"), &small);
-        data.values(&format!("fig05.{quantity}_error_25"), &middle);
-        data.value(
-            &format!("fig05.{quantity}_error_ratio"),
-            mean(&middle) / mean(&small),
-        );
+        data.values(&format!("{quantity}_error_5"), &small);
+        data.values(&format!("{quantity}_error_25"), &middle);
+        data.value(&format!("{quantity}_error_ratio"), mean(&middle) / mean(&small));
     }
-    Ok(data)
+    Ok(())
 }

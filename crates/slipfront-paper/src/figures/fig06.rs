@@ -9,8 +9,7 @@ use crate::statistics::{largest, mean, ratios, smallest};
 use crate::sweep::Sweep;
 use slipfront_plot::Responses;
 
-pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
-    let mut data = FigureData::default();
+pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig06")?;
     let speeds = sweep.axis(0);
     let onsets = sweep.numbers(&[], "onset_time_star");
@@ -47,24 +46,16 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
         }),
     );
     let errors = |numbers: &[Number], fit: fn(f64) -> f64| {
-        let errors = numbers
-            .iter()
-            .zip(&speeds)
-            .map(|(number, &v)| 100.0 * (number.value / fit(v) - 1.0).abs());
-        largest(errors)
+        let pairs = numbers.iter().zip(&speeds);
+        largest(pairs.map(|(number, &v)| 100.0 * (number.value / fit(v) - 1.0).abs()))
     };
-    data.value("fig06.onset_error_percent", errors(&onsets, |v| 2.5 / v));
-    data.value("fig06.steps_error_percent", errors(&steps, |v| 3.75 / (v * v)));
-    data.value("fig06.slope", slope(&speeds, &onsets));
-    let at = |v: f64| {
-        speeds
-            .iter()
-            .position(|&speed| speed == v)
-            .map_or(f64::NAN, |k| steps[k].value)
-    };
-    data.value("fig06.steps_ratio", at(0.01) / at(0.05));
-    material(&runner.study("fig06_material")?, &mut data);
-    Ok(data)
+    data.value("onset_error_percent", errors(&onsets, |v| 2.5 / v));
+    data.value("steps_error_percent", errors(&steps, |v| 3.75 / (v * v)));
+    data.value("slope", slope(&speeds, &onsets));
+    let at = |v: f64| steps[sweep.level(v)].value;
+    data.value("steps_ratio", at(0.01) / at(0.05));
+    material(&runner.study("fig06_material")?, data);
+    Ok(())
 }
 
 /// Exponent of a power law through the means, by least squares of logarithms.
@@ -79,26 +70,24 @@ fn slope(x: &[f64], y: &[Number]) -> f64 {
 fn material(sweep: &Sweep, data: &mut FigureData) {
     let names = sweep.names(0);
     let factor_of = |quantity: &str, k: usize| {
-        Number::of(&ratios(
-            &sweep.values(&[k], quantity),
-            &sweep.values(&[0], quantity),
-        ))
+        let [changed, unchanged] = [k, 0].map(|k| sweep.values(&[k], quantity));
+        Number::of(&ratios(&changed, &unchanged))
     };
     let factor = |quantity: &str, name: &str| {
         let place = names.iter().position(|other| other == name);
         place.map_or(Number::exact(f64::NAN), |k| factor_of(quantity, k))
     };
     let named = |name: &str| factor("onset_time_s", name);
-    data.number("fig06.factor_of_young_modulus", named("E x 4"));
-    data.number("fig06.factor_of_density", named("rho x 4"));
+    data.number("factor_of_young_modulus", named("E x 4"));
+    data.number("factor_of_density", named("rho x 4"));
     let star = |name: &str| factor("onset_time_star", name);
-    data.number("fig06.onset_star_factor_of_young_modulus", star("E x 4"));
-    data.number("fig06.onset_star_factor_of_low_density", star("rho / 4"));
+    data.number("onset_star_factor_of_young_modulus", star("E x 4"));
+    data.number("onset_star_factor_of_low_density", star("rho / 4"));
     let load = [named("P x 2"), named("mu_s x 2")].map(|number| number.value);
-    data.value("fig06.least_factor_of_load", smallest(load));
-    data.number("fig06.factor_of_speed", named("V x 2"));
+    data.value("least_factor_of_load", smallest(load));
+    data.number("factor_of_speed", named("V x 2"));
     // t* as printed has no l in it (D4): the same slider made of larger blocks would begin to slide later in it.
-    data.number("fig06.factor_of_block_size", named("l x 2"));
+    data.number("factor_of_block_size", named("l x 2"));
     let rows = names.iter().enumerate().map(|(k, name)| {
         [
             name.clone(),

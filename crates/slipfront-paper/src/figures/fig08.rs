@@ -9,8 +9,7 @@ use crate::runner::FigureRunner;
 use crate::statistics::{rises, smallest};
 use slipfront_plot::Responses;
 
-pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
-    let mut data = FigureData::default();
+pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig08")?;
     let speeds = sweep.axis(0);
     let numbers = sweep.numbers(&[], "static_friction_star");
@@ -32,8 +31,8 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
         stress_maps(peak_maps(&runs, &labels)?, 3),
     );
     let means = values(&numbers);
-    data.value("fig08.least_rise", smallest(rises(&means)));
-    data.number("fig08.at_the_fastest", numbers[numbers.len() - 1]);
-    data.value("fig08.whole_rise", means[means.len() - 1] - means[0]);
-    Ok(data)
+    data.value("least_rise", smallest(rises(&means)));
+    data.number("at_the_fastest", numbers[numbers.len() - 1]);
+    data.value("whole_rise", means[means.len() - 1] - means[0]);
+    Ok(())
 }

@@ -2,72 +2,62 @@
 
 use slipfront::Lattice;
 
-use crate::drawing::{Drawing, stress_maps};
+use crate::drawing::{coefficient_maps, stress_maps};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
-use crate::figures::fig04::first_block;
-use crate::run::{Run, seen_at};
+use crate::run::{Run, blank_map, on_each};
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, rises};
-use slipfront_plot::{FieldMap, FieldMaps};
+use slipfront_plot::FieldMap;
 
 /// Minima of mu_si that are marked.
 const MARKED: usize = 6;
 /// Shares of the slider that have slipped in the panels b-d.
 const SHARES: [f64; 3] = [0.03, 0.2, 0.6];
 
-pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
-    let mut data = FigureData::default();
+pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let runs = runner.run(runner.case_on_surfaces("fig11")?)?;
-    let [main, ..] = &runs[..] else { return Ok(data) };
-    draw(runner, main, &mut data)?;
+    let [main, ..] = &runs[..] else { return Ok(()) };
+    draw(runner, main, data)?;
     let shares: Vec<f64> = runs.iter().map(nucleations_at_minima).collect();
-    data.values("fig11.nucleations_at_minima_percent", &shares);
-    let places = runs.iter().map(first_block).collect::<Result<Vec<usize>, _>>()?;
-    let repeated = (0..places.len())
-        .filter(|&k| places[..k].contains(&places[k]))
-        .count();
-    data.value("fig11.repeated_first_places", repeated as f64);
+    data.values("nucleations_at_minima_percent", &shares);
+    let places = on_each(&runs, Run::first_block)?;
+    let repeated = (0..places.len()).filter(|&k| places[..k].contains(&places[k]));
+    data.value("repeated_first_places", repeated.count() as f64);
     // The same random numbers with another spread: the first slip is expected at the same block, at another time.
     let mut times = Vec::new();
     let mut moved = 0;
     for sigma in ["0.025", "0.05", "0.1"] {
         let run = runner.run_one(runner.case("fig11", &[&format!("friction.sigma_static_star={sigma}")])?)?;
-        moved += usize::from(first_block(&run)? != places[0]);
+        moved += usize::from(run.first_block()? != places[0]);
         times.push(run.first_slip()?);
     }
-    data.value("fig11.first_places_moved_by_sigma", moved as f64);
-    data.value("fig11.largest_rise_of_first_slip", largest(rises(&times)));
-    Ok(data)
+    data.value("first_places_moved_by_sigma", moved as f64);
+    data.value("largest_rise_of_first_slip", largest(rises(&times)));
+    Ok(())
 }
 
 fn draw(runner: &FigureRunner, main: &Run, data: &mut FigureData) -> Result<(), PaperError> {
     let (lattice, surface) = (&main.case.model.lattice, &main.case.model.surface);
     let mut minima = minima(lattice, &surface.mu_static);
     minima.truncate(MARKED);
-    let marks: Vec<[usize; 2]> = minima
-        .iter()
-        .map(|&block| lattice.column_row(block).into())
-        .collect();
-    let reach = 3.0 * main.case.groups.sigma_static_star;
+    let marks = minima.iter().map(|&block| lattice.column_row(block).into());
+    let marks: Vec<[usize; 2]> = marks.collect();
     let mean = main.case.scales.mu_static_mean;
     data.panel(
         "fig11a",
         "Local static friction coefficients; circles around the six lowest of their local minima.",
-        Drawing::Maps(FieldMaps {
-            value_title: "\u{3bc}_s/\u{27e8}\u{3bc}_s\u{27e9}".to_owned(),
-            range: [1.0 - reach, 1.0 + reach],
-            columns: 1,
-            maps: vec![FieldMap {
+        coefficient_maps(
+            "\u{3bc}_s/\u{27e8}\u{3bc}_s\u{27e9}",
+            main.case.groups.sigma_static_star,
+            vec![FieldMap {
                 values: surface.mu_static.iter().map(|mu| (mu / mean) as f32).collect(),
                 marks: marks.clone(),
-                ..main.blank_map("a")
+                ..blank_map(&main.case, "a")
             }],
-        }),
+        ),
     );
-    let times = SHARES.map(|share| main.time_of_share(share));
-    let times = times.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let run = runner.run_one(seen_at(runner.case("fig11", &[])?, &times))?;
+    let run = runner.run_seen_at_shares(runner.case("fig11", &[])?, main, &SHARES)?;
     let mut maps = Vec::new();
     for ((_, frame), label) in run.record.frames.iter().zip(["b", "c", "d"]) {
         maps.push(FieldMap {

@@ -4,9 +4,9 @@ use crate::drawing::{Drawing, measured};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::number::values;
-use crate::run::Run;
+use crate::run::{Run, on_each};
 use crate::runner::FigureRunner;
-use crate::statistics::{deviation, largest, mean, range, ratios, rises};
+use crate::statistics::{deviation, distances, farthest, largest, mean, range, ratios, rises};
 use slipfront_plot::Responses;
 
 /// Surfaces from which the paper takes each mean.
@@ -14,8 +14,7 @@ const SURFACES: usize = 5;
 /// The largest deviation from such a mean that the paper has seen.
 const DEVIATION: f64 = 0.015;
 
-pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
-    let mut data = FigureData::default();
+pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig12")?;
     let (spreads, speeds) = (sweep.axis(0), sweep.axis(1));
     let mut curves = Vec::new();
@@ -23,7 +22,8 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
     for (v, speed) in speeds.iter().enumerate() {
         let numbers = sweep.numbers(&[v], "static_friction_star");
         for k in 0..spreads.len() {
-            deviations.push(farthest(&sweep.values(&[k, v], "static_friction_star")));
+            let statics = sweep.values(&[k, v], "static_friction_star");
+            deviations.push(farthest(&statics, mean(&statics)));
         }
         let means = values(&numbers);
         steps.extend(rises(&means));
@@ -42,23 +42,14 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
             ..Responses::default()
         }),
     );
-    data.value("fig12.largest_deviation", largest(deviations));
-    data.value("fig12.largest_rise", largest(steps));
-    data.value("fig12.distance_of_limit", largest(limits));
+    data.value("largest_deviation", largest(deviations));
+    data.value("largest_rise", largest(steps));
+    data.value("distance_of_limit", largest(limits));
     // On a smooth surface no block slips before the others.
-    let smooth = spreads.iter().position(|&spread| spread == 0.0).unwrap_or(0);
-    let run = runner.run_one(sweep.case(&[smooth, 0], 0)?)?;
-    let times = run.slip_times();
-    data.value("fig12.slip_times_apart", range(&times));
-    surfaces(runner, &mut data)?;
-    kinetic(runner, &mut data)?;
-    Ok(data)
-}
-
-/// The largest distance of a value from the mean.
-fn farthest(values: &[f64]) -> f64 {
-    let center = mean(values);
-    largest(values.iter().map(|value| (value - center).abs()))
+    let run = runner.run_one(sweep.case(&[sweep.level(0.0), 0], 0)?)?;
+    data.value("slip_times_apart", range(&run.slip_times()));
+    surfaces(runner, data)?;
+    kinetic(runner, data)
 }
 
 /// How often five surfaces are as close together as the paper's.
@@ -66,12 +57,11 @@ fn surfaces(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), Pape
     let statics = runner
         .study("fig12_surfaces")?
         .values(&[], "static_friction_star");
-    let close: Vec<f64> = statics
-        .chunks_exact(SURFACES)
-        .map(|five| f64::from(u8::from(farthest(five) < DEVIATION)))
-        .collect();
-    data.value("fig12.fives_within_percent", 100.0 * mean(&close));
-    data.value("fig12.standard_deviation", deviation(&statics));
+    let fives = statics.chunks_exact(SURFACES);
+    let count = fives.len() as f64;
+    let close = fives.filter(|five| farthest(five, mean(five)) < DEVIATION);
+    data.value("fives_within_percent", 100.0 * (close.count() as f64 / count));
+    data.value("standard_deviation", deviation(&statics));
     Ok(())
 }
 
@@ -82,38 +72,22 @@ fn kinetic(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), Paper
     // Surface by surface, against no spread at all.
     let change = |quantity: &str| {
         let none = sweep.values(&[0], quantity);
-        let changes = (1..levels).flat_map(|k| {
-            let values = sweep.values(&[k], quantity);
-            let pairs: Vec<f64> = values
-                .iter()
-                .zip(&none)
-                .map(|(value, none)| (value - none).abs())
-                .collect();
-            pairs
-        });
-        largest(changes)
+        largest((1..levels).flat_map(|k| distances(&sweep.values(&[k], quantity), &none)))
     };
-    data.value(
-        "fig12.static_friction_moved_by_sigma_k",
-        change("static_friction_star"),
-    );
+    data.value("static_friction_moved_by_sigma_k", change("static_friction_star"));
     let onset = mean(&sweep.values(&[0], "onset_time_star"));
     data.value(
-        "fig12.onset_moved_by_sigma_k_percent",
+        "onset_moved_by_sigma_k_percent",
         100.0 * change("onset_time_star") / onset,
     );
-    data.value(
-        "fig12.first_slip_moved_by_sigma_k",
-        change("first_slip_time_star"),
-    );
+    data.value("first_slip_moved_by_sigma_k", change("first_slip_time_star"));
     let long = runner.plan("fig12_fluctuations")?;
     let mut means = Vec::new();
     for k in 0..long.axis(0).len() {
         let runs = runner.run(long.cases(&[k])?)?;
-        let fluctuations = runs.iter().map(Run::kinetic_fluctuation);
-        means.push(fluctuations.collect::<Result<Vec<f64>, _>>()?);
+        means.push(on_each(&runs, Run::kinetic_fluctuation)?);
     }
     let [none, most] = &means[..] else { return Ok(()) };
-    data.values("fig12.fluctuation_factor_of_sigma_k", &ratios(most, none));
+    data.values("fluctuation_factor_of_sigma_k", &ratios(most, none));
     Ok(())
 }

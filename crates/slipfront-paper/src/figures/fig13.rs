@@ -14,8 +14,7 @@ use slipfront_plot::Shape;
 /// Corners of a drawn outline.
 const CORNERS: usize = 360;
 
-pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
-    let mut data = FigureData::default();
+pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.plan("fig13")?;
     let mut shapes = Vec::new();
     let (mut misses, mut printed, mut vertices) = (Vec::new(), Vec::new(), Vec::new());
@@ -46,10 +45,10 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
          (s = 4), round (w = 1/(5 s)) and sharp (w = 1/s).",
         Drawing::Shapes(shapes),
     );
-    data.value("fig13.worst_coverage_miss_percent", largest(misses));
-    data.value("fig13.area_as_printed_percent", largest(printed));
-    data.value("fig13.vertices_missed", largest(vertices));
-    Ok(data)
+    data.value("worst_coverage_miss_percent", largest(misses));
+    data.value("area_as_printed_percent", largest(printed));
+    data.value("vertices_missed", largest(vertices));
+    Ok(())
 }
 
 /// Eq. 17 at the area of a circle of radius 1.

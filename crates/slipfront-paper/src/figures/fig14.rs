@@ -4,35 +4,32 @@ use crate::drawing::stress_maps;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::figures::fig11::neighbours;
-use crate::run::{Run, seen_at};
+use crate::run::Run;
 use crate::runner::FigureRunner;
-use crate::statistics::mean;
+use crate::statistics::{mean, range};
 
 /// Shares of the blocks in contact that have slipped, from the left to the right of a panel.
 const SHARES: [f64; 5] = [0.02, 0.1, 0.3, 0.5, 0.8];
 
-pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
-    let mut data = FigureData::default();
+pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.plan("fig14")?;
     let names = sweep.names(0);
     let mut maps = Vec::new();
     for (k, name) in names.iter().enumerate() {
         let run = runner.run_one(sweep.case(&[k], 0)?)?;
-        let times = SHARES.map(|share| run.time_of_share(share));
-        let times = times.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let again = runner.run_one(seen_at(sweep.case(&[k], 0)?, &times))?;
+        let again = runner.run_seen_at_shares(sweep.case(&[k], 0)?, &run, &SHARES)?;
         for ((_, frame), share) in again.record.frames.iter().zip(SHARES) {
             let slipped = 100.0 * share;
             maps.push(again.stress_map(frame, &format!("{name}: {slipped:.0} % slipped"))?);
         }
         match name.as_str() {
-            "a" => data.value("fig14.nearness_of_first_slips", nearness(&run, 0.05)),
+            "a" => data.value("nearness_of_first_slips", nearness(&run, 0.05)),
             "b" => {
-                data.value("fig14.first_slips_at_the_rim_percent", first_at_rim(&run));
-                data.value("fig14.asymmetry_percent", asymmetry(&run));
-                data.value("fig14.elongation", elongation(&run, 0.3)?);
+                data.value("first_slips_at_the_rim_percent", first_at_rim(&run));
+                data.value("asymmetry_percent", asymmetry(&run));
+                data.value("elongation", elongation(&run, 0.3)?);
             }
-            _ => data.value("fig14.elongation_at_45_degrees", elongation(&run, 0.3)?),
+            _ => data.value("elongation_at_45_degrees", elongation(&run, 0.3)?),
         }
     }
     data.panel(
@@ -41,7 +38,7 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
          on a smooth one, driven to the right; c: the same, driven to the upper right.",
         stress_maps(maps, SHARES.len()),
     );
-    Ok(data)
+    Ok(())
 }
 
 /// Distance of a block from the middle of the slider, along the drive and across it.
@@ -69,16 +66,9 @@ fn nearness(run: &Run, share: f64) -> f64 {
         let [x, y] = place(run, block);
         (libm::hypot(x, y) - radius).max(0.0)
     };
-    let all: Vec<f64> = (0..textured.len())
-        .filter(|&block| !textured[block])
-        .map(distance)
-        .collect();
-    let first: Vec<f64> = slipped(run, share)
-        .unwrap_or_default()
-        .into_iter()
-        .map(distance)
-        .collect();
-    mean(&first) / mean(&all)
+    let mean_distance = |blocks: Vec<usize>| mean(&blocks.into_iter().map(distance).collect::<Vec<f64>>());
+    let all = (0..textured.len()).filter(|&block| !textured[block]).collect();
+    mean_distance(slipped(run, share).unwrap_or_default()) / mean_distance(all)
 }
 
 /// Of the blocks that slip at the very first, the share that touch the cavity, %.
@@ -86,9 +76,8 @@ fn first_at_rim(run: &Run) -> f64 {
     let (lattice, textured) = (&run.case.model.lattice, &run.case.model.surface.textured);
     let times = &run.record.first_slip_time_star;
     let earliest = run.record.summary.first_slip_time_star;
-    let first: Vec<usize> = (0..times.len())
-        .filter(|&block| Some(times[block]) == earliest)
-        .collect();
+    let first = (0..times.len()).filter(|&block| Some(times[block]) == earliest);
+    let first: Vec<usize> = first.collect();
     let touches = |&&block: &&usize| neighbours(lattice, block).any(|other| textured[other]);
     100.0 * first.iter().filter(touches).count() as f64 / first.len() as f64
 }
@@ -105,12 +94,7 @@ fn asymmetry(run: &Run) -> f64 {
         .map(|block| (times[block] - mirrored(block)).abs())
         .filter(|difference| !difference.is_nan())
         .collect();
-    let range = run.slip_times();
-    let span = range
-        .last()
-        .zip(range.first())
-        .map_or(f64::NAN, |(last, first)| last - first);
-    100.0 * mean(&differences) / span
+    100.0 * mean(&differences) / range(&run.slip_times())
 }
 
 /// Extent of the slipped area along the drive over that across it, as root mean squares about the cavity.

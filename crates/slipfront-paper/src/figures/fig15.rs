@@ -9,8 +9,7 @@ use crate::statistics::{largest, rises, smallest};
 use slipfront_plot::Responses;
 use slipfront_run::study::REDUCTION;
 
-pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
-    let mut data = FigureData::default();
+pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig15")?;
     let (areas, spreads) = (sweep.axis(0), sweep.axis(1));
     let numbers: Vec<Vec<Number>> = (0..spreads.len())
@@ -33,28 +32,27 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
         }),
     );
     let means: Vec<Vec<f64>> = numbers.iter().map(|numbers| values(numbers)).collect();
-    let place = |area: f64| areas.iter().position(|&other| other == area).unwrap_or(0);
-    let (one, ten, last) = (place(1.0), place(10.0), areas.len() - 1);
-    data.number("fig15.one_percent", numbers[0][one]);
-    data.value("fig15.least_rise_with_area", smallest(rises(&means[0])));
+    let (one, ten, last) = (sweep.level(1.0), sweep.level(10.0), areas.len() - 1);
+    data.number("one_percent", numbers[0][one]);
+    data.value("least_rise_with_area", smallest(rises(&means[0])));
     // Percent of friction for each percent of area, from nothing to 10 % and from there on.
     let first = means[0][ten] / areas[ten];
     let beyond = (means[0][last] - means[0][ten]) / (areas[last] - areas[ten]);
-    data.value("fig15.slope_beyond_ten_over_before", beyond / first);
+    data.value("slope_beyond_ten_over_before", beyond / first);
     let from_one_to_ten = (means[0][ten] - means[0][one]) / (areas[ten] - areas[one]);
     data.value(
-        "fig15.slope_to_ten_over_to_one",
+        "slope_to_ten_over_to_one",
         from_one_to_ten / (means[0][one] / areas[one]),
     );
-    data.value("fig15.largest_reduction", largest(means[0].iter().copied()));
+    data.value("largest_reduction", largest(means[0].iter().copied()));
     let with_roughness = (0..areas.len()).flat_map(|area| {
         let over_spread: Vec<f64> = means.iter().map(|means| means[area]).collect();
         rises(&over_spread)
     });
-    data.value("fig15.largest_rise_with_roughness", largest(with_roughness));
+    data.value("largest_rise_with_roughness", largest(with_roughness));
     data.value(
-        "fig15.roughest_over_smooth",
+        "roughest_over_smooth",
         means[spreads.len() - 1][ten] / means[0][ten],
     );
-    Ok(data)
+    Ok(())
 }

@@ -5,7 +5,7 @@ use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::number::values;
 use crate::runner::FigureRunner;
-use crate::statistics::{largest, mean, rises, smallest};
+use crate::statistics::{farthest, largest, mean, rises, smallest};
 use crate::sweep::Sweep;
 use slipfront_plot::Responses;
 use slipfront_run::study::REDUCTION;
@@ -14,8 +14,7 @@ use slipfront_run::study::REDUCTION;
 const ACROSS: usize = 0;
 const ALONG: usize = 1;
 
-pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
-    let mut data = FigureData::default();
+pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig16")?;
     let elongations = sweep.axis(0);
     let [across, along] = [ACROSS, ALONG].map(|direction| sweep.numbers(&[direction], REDUCTION));
@@ -39,31 +38,29 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
         }),
     );
     let circle = across[0];
-    data.number("fig16.circle_percent", circle);
-    data.number("fig16.groove_across_percent", grooves[ACROSS]);
-    data.value("fig16.least_rise_across", smallest(rises(&values(&across))));
-    data.value("fig16.gain_across", largest(values(&across)) - circle.value);
-    let losses: Vec<f64> = values(&along)[1..]
+    data.number("circle_percent", circle);
+    data.number("groove_across_percent", grooves[ACROSS]);
+    data.value("least_rise_across", smallest(rises(&values(&across))));
+    data.value("gain_across", largest(values(&across)) - circle.value);
+    let losses: Vec<f64> = along[1..]
         .iter()
-        .map(|reduction| circle.value - reduction)
+        .map(|number| circle.value - number.value)
         .collect();
-    data.value("fig16.mean_loss_along", mean(&losses));
-    data.value("fig16.largest_loss_along", largest(losses));
+    data.value("mean_loss_along", mean(&losses));
+    data.value("largest_loss_along", largest(losses));
     data.value(
-        "fig16.groove_along_beside_circle",
+        "groove_along_beside_circle",
         (grooves[ALONG].value - circle.value).abs(),
     );
-    generality(&runner.study("fig16_generality")?, &mut data);
-    Ok(data)
+    generality(&runner.study("fig16_generality")?, data);
+    Ok(())
 }
 
 /// How the reduction by a circular cavity depends on the size and the speed of the slider.
 fn generality(sweep: &Sweep, data: &mut FigureData) {
     let reductions = sweep.numbers(&[], REDUCTION);
-    let others = reductions
-        .iter()
-        .map(|number| (number.value - reductions[0].value).abs());
-    data.value("fig16.circle_moved_by_size_and_speed", largest(others));
+    let moved = farthest(&values(&reductions), reductions[0].value);
+    data.value("circle_moved_by_size_and_speed", moved);
     let rows = sweep.names(0).into_iter().zip(&reductions);
     data.table(
         "fig16_generality",

@@ -6,8 +6,7 @@ use crate::figure_data::FigureData;
 use crate::run::peak_maps;
 use crate::runner::FigureRunner;
 
-pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
-    let mut data = FigureData::default();
+pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.plan("fig17")?;
     let runs = runner.run(sweep.first_cases()?)?;
     data.panel(
@@ -16,5 +15,5 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
          direction; b, along it; c, a groove across; d, along.",
         stress_maps(peak_maps(&runs, &sweep.names(0))?, 4),
     );
-    Ok(data)
+    Ok(())
 }

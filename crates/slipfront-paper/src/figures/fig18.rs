@@ -6,19 +6,19 @@ use crate::figure_data::FigureData;
 use crate::number::{Number, values};
 use crate::run::peak_maps;
 use crate::runner::FigureRunner;
-use crate::statistics::{largest, range};
+use crate::statistics::{farthest, largest, range};
 use slipfront_plot::{Bar, BarChart, BarGroup};
 use slipfront_run::study::REDUCTION;
 
-pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
-    let mut data = FigureData::default();
+pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig18")?;
     let names = sweep.names(0);
     let reductions = sweep.numbers(&[], REDUCTION);
     let bar = |(name, number): (&String, &Number)| {
         let [mean, low, high] = number.ends();
+        let label = name.clone();
         Bar {
-            label: name.clone(),
+            label,
             mean,
             low,
             high,
@@ -44,13 +44,10 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
         stress_maps(peak_maps(&runs, &names[1..])?, 3),
     );
     let means = values(&reductions);
-    data.value("fig18.spread_percent", range(&means[1..]));
-    data.value(
-        "fig18.farthest_from_circle_percent",
-        largest(means.iter().map(|mean| (mean - means[0]).abs())),
-    );
+    data.value("spread_percent", range(&means[1..]));
+    data.value("farthest_from_circle_percent", farthest(&means, means[0]));
     // Round and sharp stand in pairs after the circle.
     let pairs = means[1..].chunks_exact(2).map(|pair| (pair[1] - pair[0]).abs());
-    data.value("fig18.sharpness_percent", largest(pairs));
-    Ok(data)
+    data.value("sharpness_percent", largest(pairs));
+    Ok(())
 }

@@ -30,8 +30,8 @@ pub struct Figure {
     pub name: &'static str,
     /// Its title.
     pub title: &'static str,
-    /// Runs its cases and measures its data.
-    pub(crate) measure: fn(&mut FigureRunner) -> Result<FigureData, PaperError>,
+    /// Runs its cases and adds what it measures to its data.
+    pub(crate) measure: fn(&mut FigureRunner, &mut FigureData) -> Result<(), PaperError>,
 }
 
 /// All figures and tables except the schematic of Fig. 1, and an appendix on what the paper leaves open.

@@ -4,11 +4,10 @@ use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::number::Number;
 use crate::runner::FigureRunner;
-use crate::statistics::{largest, mean};
+use crate::statistics::{distances, largest};
 use slipfront_run::study::REDUCTION;
 
-pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperError> {
-    let mut data = FigureData::default();
+pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let baseline = runner.study("sensitivity")?;
     let texture = runner.study("sensitivity_texture")?;
     let (names, textured) = (baseline.names(0), texture.names(0));
@@ -44,21 +43,18 @@ pub(super) fn measure(runner: &mut FigureRunner) -> Result<FigureData, PaperErro
         |names: &[String], start: &str| names.iter().position(|name| name.starts_with(start)).unwrap_or(0);
     let literal = place(&names, "friction: literal (Eq. 4 as printed), dt* = 0.02");
     let kinetic = |k: usize| baseline.values(&[k], "kinetic_friction_star");
-    data.values("sensitivity.literal_kinetic_friction", &kinetic(literal));
+    data.values("literal_kinetic_friction", &kinetic(literal));
     let reversal = place(&names, "friction: reversal");
     let statics = |k: usize| baseline.values(&[k], "static_friction_star");
-    let apart = statics(0)
-        .into_iter()
-        .zip(statics(reversal))
-        .map(|(one, other)| (one - other).abs());
-    data.value("sensitivity.reversal_moves_static_friction", largest(apart));
-    let reduction = |k: usize| mean(&texture.values(&[k], REDUCTION));
+    let moved = distances(&statics(0), &statics(reversal));
+    data.value("reversal_moves_static_friction", largest(moved));
+    let reductions = texture.means(&[], REDUCTION);
     let shifted = (0..textured.len()).filter(|&k| textured[k].starts_with("centre"));
     data.value(
-        "sensitivity.shift_moves_reduction",
-        largest(shifted.map(|k| (reduction(k) - reduction(0)).abs())),
+        "shift_moves_reduction",
+        largest(shifted.map(|k| (reductions[k] - reductions[0]).abs())),
     );
     let kept = place(&textured, "load: not");
-    data.value("sensitivity.kept_load_reduction_percent", reduction(kept));
-    Ok(data)
+    data.value("kept_load_reduction_percent", reductions[kept]);
+    Ok(())
 }

@@ -4,18 +4,18 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD as BASE64;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::drawn::Drawn;
-use super::words::{greek, step_name};
+use super::symbols::greek;
 use crate::claims::{ClaimResult, Verdict, count_verdicts};
-use crate::figure_data::{FigureData, Table};
+use crate::figure_data::{FigureData, Panel, Table};
 use crate::figures::Figure;
 use crate::paper::Paper;
 use crate::step_rule::StepRule;
+use slipfront_plot::Picture;
 
 const STYLE: &str = include_str!("style.css");
 
 /// The whole page; `drawn` holds the pictures of each figure.
-pub(super) fn page(paper: &Paper, drawn: &[Vec<Drawn>]) -> String {
+pub(super) fn page(paper: &Paper, drawn: &[Vec<Picture>]) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -34,8 +34,8 @@ pub(super) fn page(paper: &Paper, drawn: &[Vec<Drawn>]) -> String {
                             "Intervals are 95 % confidence intervals of the mean over random surfaces. Numbers D1 to D12 are \
                              the deviations from the paper's print that the documentation of the model explains."
                             @if !paper.results_by_paper_step.is_empty() {
-                                " Each claim was measured twice: with " (text(step_name(StepRule::Auto)))
-                                ", and with the paper's " (text(step_name(StepRule::Paper))) " (Eq. 13)."
+                                " Each claim was measured twice: with " (text(StepRule::Auto.formula()))
+                                ", and with the paper's " (text(StepRule::Paper.formula())) " (Eq. 13)."
                             }
                         }
                         (claims_table(paper))
@@ -102,11 +102,7 @@ fn claim_row(result: &ClaimResult, other: Option<&ClaimResult>) -> Markup {
                 @if !claim.remark.is_empty() { p.remark { (text(&claim.remark)) } }
             }
             td class=(class(result.verdict)) {
-                (result.verdict.words())
-                @if let (Verdict::HoldsWithCondition, Some(condition)) = (result.verdict, &claim.condition) {
-                    ": " (text(&condition.only))
-                }
-                @if let Some(deviation) = &claim.deviation { " (" (deviation) ")" }
+                (text(&result.verdict_in_full()))
                 @if !result.as_expected() { strong { " not as expected" } }
             }
             td data-label="measured" { span.value { (result.measured()) } " " span.what { (text(&claim.measured)) } }
@@ -144,11 +140,11 @@ fn class(verdict: Verdict) -> &'static str {
     }
 }
 
-fn section(paper: &Paper, figure: &Figure, data: &FigureData, pictures: &[Drawn]) -> Markup {
+fn section(paper: &Paper, figure: &Figure, data: &FigureData, pictures: &[Picture]) -> Markup {
     html! {
         section id=(figure.name) {
             h2 { (figure.title) }
-            @for Drawn { name, caption, picture } in pictures {
+            @for (Panel { name, caption, .. }, picture) in data.panels.iter().zip(pictures) {
                 figure {
                     img src={ "data:image/png;base64," (BASE64.encode(&picture.png)) } alt=(caption) style=(width(&picture.svg));
                     figcaption { (caption) " Numbers: " (name) ".csv." }
@@ -168,9 +164,8 @@ fn section(paper: &Paper, figure: &Figure, data: &FigureData, pictures: &[Drawn]
 
 /// The physical width that the picture is made for.
 fn width(svg: &str) -> String {
-    let width = svg
-        .split_once("width=\"")
-        .and_then(|(_, rest)| rest.split_once('"'));
+    let begin = svg.split_once("width=\"");
+    let width = begin.and_then(|(_, rest)| rest.split_once('"'));
     width.map_or(String::new(), |(width, _)| format!("width:{width}"))
 }
 

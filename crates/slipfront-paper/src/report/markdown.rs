@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::words::{greek, step_name};
-use crate::claims::{ClaimResult, Verdict, count_verdicts};
+use super::symbols::greek;
+use crate::claims::ClaimResult;
+use crate::figure_data::Panel;
 use crate::paper::Paper;
 use crate::step_rule::StepRule;
 
@@ -17,7 +18,6 @@ pub(super) const TITLE: &str = "# The paper, claim by claim\n";
 
 /// The text of `paper.md`.
 pub fn page(paper: &Paper) -> String {
-    let [holds, conditioned, fails] = count_verdicts(&paper.results);
     let mut text = format!(
         "{TITLE}\n\
          What becomes of every claim of the paper's text when its figures are run again:\n\n\
@@ -26,31 +26,20 @@ pub fn page(paper: &Paper) -> String {
          the [deviations from the paper's print](../model.md#deviations-from-the-papers-print). Intervals are 95 % confidence\n\
          intervals of the mean over five random surfaces. Measured with {}; the last column holds what the paper's own step,\n\
          {}, gives in its place; {}.\n\n\
-         {} claims: {holds} hold, {conditioned} hold with a condition, {fails} do not hold.\n\n\
+         {}.\n\n\
          | | claim | place | measured | holds if | verdict | paper's step |\n\
          |---:|---|---|---|---|---|---|\n",
-        greek(step_name(StepRule::Auto)),
-        greek(step_name(StepRule::Paper)),
+        greek(StepRule::Auto.formula()),
+        greek(StepRule::Paper.formula()),
         other_verdicts(paper),
-        paper.results.len()
+        paper.tally()
     );
     for (k, result) in paper.results.iter().enumerate() {
         let claim = &result.claim;
-        let mut verdict = result.verdict.words().to_owned();
-        if let (Verdict::HoldsWithCondition, Some(condition)) = (result.verdict, &claim.condition) {
-            let _ = write!(verdict, ": {}", condition.only);
-        }
-        if let Some(deviation) = &claim.deviation {
-            let _ = write!(verdict, " ({deviation})");
-        }
-        let other = paper
-            .results_by_paper_step
-            .get(k)
-            .map_or(String::new(), ClaimResult::measured);
-        let remark = if claim.remark.is_empty() {
-            String::new()
-        } else {
-            format!(" *{}*", claim.remark)
+        let other = paper.results_by_paper_step.get(k);
+        let remark = match claim.remark.as_str() {
+            "" => String::new(),
+            remark => format!(" *{remark}*"),
         };
         let cells = [
             claim.number.to_string(),
@@ -58,14 +47,11 @@ pub fn page(paper: &Paper) -> String {
             claim.place.clone(),
             format!("{}: {}", claim.measured, result.measured()),
             claim.criterion(),
-            verdict,
-            other,
+            result.verdict_in_full(),
+            other.map_or(String::new(), ClaimResult::measured),
         ];
-        let _ = writeln!(
-            text,
-            "| {} |",
-            cells.map(|cell| greek(&cell).replace('|', "\\|")).join(" | ")
-        );
+        let cells = cells.map(|cell| greek(&cell).replace('|', "\\|"));
+        let _ = writeln!(text, "| {} |", cells.join(" | "));
     }
     write_figures(paper, &mut text);
     text
@@ -84,19 +70,17 @@ fn other_verdicts(paper: &Paper) -> String {
 /// Some of the pictures, and all tables.
 fn write_figures(paper: &Paper, text: &mut String) {
     for (figure, data) in &paper.figures {
-        for panel in data
-            .panels
-            .iter()
-            .filter(|panel| SHOWN.contains(&panel.name.as_str()))
-        {
-            let _ = write!(
-                text,
-                "\n## {}\n\n{}\n\n![{}](images/paper-{}.png)\n",
-                figure.title, panel.caption, figure.title, panel.name
-            );
+        let title = figure.title;
+        for Panel { name, caption, .. } in &data.panels {
+            if SHOWN.contains(&name.as_str()) {
+                let _ = write!(
+                    text,
+                    "\n## {title}\n\n{caption}\n\n![{title}](images/paper-{name}.png)\n"
+                );
+            }
         }
         for table in &data.tables {
-            let _ = write!(text, "\n## {}\n\n{}\n\n", figure.title, greek(&table.caption));
+            let _ = write!(text, "\n## {title}\n\n{}\n\n", greek(&table.caption));
             let _ = writeln!(text, "| {} |", greek(&table.header.join(" | ")));
             let _ = writeln!(text, "|{}", "---|".repeat(table.header.len()));
             for row in &table.rows {

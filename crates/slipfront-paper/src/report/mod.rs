@@ -1,11 +1,10 @@
 //! The output of `slipfront paper`: pictures, tables, `claims.csv`, `report.html`, and the page of `docs/validation`.
 
-mod drawn;
 mod html;
 mod markdown;
 mod summary;
+mod symbols;
 mod tables;
-mod words;
 mod write;
 
 pub use markdown::page as docs_page;

@@ -1,6 +1,7 @@
 //! Tables of claims and numbers as CSV.
 
 use crate::claims::ClaimResult;
+use crate::drawing::finish;
 use crate::error::PaperError;
 use crate::paper::Paper;
 
@@ -10,9 +11,7 @@ pub(super) fn csv<'a>(rows: impl Iterator<Item = &'a Vec<String>>) -> Result<Vec
     for row in rows {
         table.write_record(row)?;
     }
-    table
-        .into_inner()
-        .map_err(|error| csv::Error::from(error.into_error()).into())
+    finish(table)
 }
 
 /// `claims.csv`: a row for each claim.
@@ -65,22 +64,20 @@ pub(super) fn claims_csv(paper: &Paper) -> Result<Vec<u8>, PaperError> {
 /// Every number that was measured, those of claims among them.
 pub(super) fn numbers_csv(paper: &Paper) -> Result<Vec<u8>, PaperError> {
     let mut rows = vec![["quantity", "value", "low", "high"].map(str::to_owned).to_vec()];
-    for (name, number) in paper.figures.iter().flat_map(|(_, data)| &data.numbers) {
-        let [_, low, high] = number.ends();
-        let interval = [low, high].map(|end| {
-            if end.is_nan() {
+    for (name, number) in paper
+        .figures
+        .iter()
+        .flat_map(|(figure, data)| data.named_numbers(figure.name))
+    {
+        let cell = |value: f64| {
+            if value.is_nan() {
                 String::new()
             } else {
-                format!("{end:?}")
+                format!("{value:?}")
             }
-        });
-        rows.push(
-            [
-                vec![name.clone(), format!("{:?}", number.value)],
-                interval.to_vec(),
-            ]
-            .concat(),
-        );
+        };
+        let [_, low, high] = number.ends().map(cell);
+        rows.push(vec![name, format!("{:?}", number.value), low, high]);
     }
     csv(rows.iter())
 }

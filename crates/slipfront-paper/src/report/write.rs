@@ -2,13 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use super::drawn::{Drawn, draw};
+use rayon::prelude::*;
+
 use super::markdown::page;
 use super::tables::{claims_csv, csv, numbers_csv};
 use super::{html, markdown};
 use crate::error::PaperError;
+use crate::figure_data::{FigureData, Panel};
 use crate::paper::Paper;
 use slipfront_case::disk::{begins_with, write_atomic};
+use slipfront_plot::Picture;
 use slipfront_run::run_folder::error::FolderError;
 
 /// Writes pictures, tables and the report to a folder.
@@ -19,10 +22,10 @@ pub fn write(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
     let mut drawn = Vec::new();
     for (_, data) in &paper.figures {
         let pictures = draw(data)?;
-        for (panel, Drawn { name, picture, .. }) in data.panels.iter().zip(&pictures) {
+        for (Panel { name, drawing, .. }, picture) in data.panels.iter().zip(&pictures) {
             write_file(folder, &format!("{name}.svg"), picture.svg.as_bytes())?;
             write_file(folder, &format!("{name}.png"), &picture.png)?;
-            write_file(folder, &format!("{name}.csv"), &panel.drawing.csv()?)?;
+            write_file(folder, &format!("{name}.csv"), &drawing.csv()?)?;
         }
         for table in &data.tables {
             let rows = [&table.header].into_iter().chain(&table.rows);
@@ -35,6 +38,17 @@ pub fn write(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
     write_file(folder, "report.html", html::page(paper, &drawn).as_bytes())
 }
 
+/// Draws the pictures of a figure.
+fn draw(data: &FigureData) -> Result<Vec<Picture>, PaperError> {
+    let panels = data.panels.par_iter().map(|Panel { name, drawing, .. }| {
+        let name = name.clone();
+        drawing
+            .draw()
+            .map_err(|source| PaperError::Picture { name, source })
+    });
+    panels.collect()
+}
+
 /// The first file of others that [`write_docs`] would replace in a folder.
 pub fn foreign_docs(folder: &Path) -> Option<PathBuf> {
     let page = folder.join(PAGE);
@@ -42,10 +56,8 @@ pub fn foreign_docs(folder: &Path) -> Option<PathBuf> {
         return None;
     }
     let pictures = markdown::SHOWN.iter().map(|name| folder.join(docs_picture(name)));
-    [page]
-        .into_iter()
-        .chain(pictures)
-        .find(|path| path.symlink_metadata().is_ok())
+    let mut files = [page].into_iter().chain(pictures);
+    files.find(|path| path.symlink_metadata().is_ok())
 }
 
 /// The page of the claims.
@@ -64,9 +76,9 @@ pub fn write_docs(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
     // First, since it tells that the pictures are of an earlier call.
     write_file(folder, PAGE, page(paper).as_bytes())?;
     for (_, data) in &paper.figures {
-        for Drawn { name, picture, .. } in draw(data)? {
-            if markdown::SHOWN.contains(&name.as_str()) {
-                write_file(folder, &docs_picture(&name), &picture.png)?;
+        for (panel, picture) in data.panels.iter().zip(draw(data)?) {
+            if markdown::SHOWN.contains(&panel.name.as_str()) {
+                write_file(folder, &docs_picture(&panel.name), &picture.png)?;
             }
         }
     }

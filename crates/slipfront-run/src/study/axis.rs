@@ -99,29 +99,43 @@ impl Axis {
             name,
             variants,
         } = keys;
+        let has_values = list.is_some() || linspace.is_some() || logspace.is_some();
         match (key, zip, name, variants) {
             (Some(key), None, None, None) => {
                 let (values, spacing) = values_of(&key, list, linspace, logspace)?;
-                let levels = values.iter().map(|value| level(&[&key], &[value])).collect();
-                Ok(Self {
-                    columns: vec![key],
-                    levels,
-                    spacing,
-                })
+                Ok(Self::of_lists(&[(key, values)], spacing))
             }
-            (None, Some(zip), None, None) if list.is_none() && linspace.is_none() && logspace.is_none() => {
-                zipped(&zip)
+            (None, Some(zip), None, None) if !has_values => {
+                Ok(Self::of_lists(&zipped_lists(zip)?, Spacing::Linear))
             }
-            (None, None, Some(name), Some(variants))
-                if list.is_none() && linspace.is_none() && logspace.is_none() =>
-            {
-                named(name, &variants)
-            }
+            (None, None, Some(name), Some(variants)) if !has_values => Ok(Self {
+                columns: vec![name],
+                levels: variants.into_iter().map(variant).collect::<Result<_, _>>()?,
+                spacing: Spacing::Named,
+            }),
             _ => Err(
                 "an axis has `key` with `list`, `linspace` or `logspace`; or `zip`; or `name` with \
                  `variants`: nothing else together"
                     .to_owned(),
             ),
+        }
+    }
+
+    /// The axis of keys that change together, each with the list of its values. All lists are equally long.
+    fn of_lists(lists: &[(String, Vec<Value>)], spacing: Spacing) -> Self {
+        let level = |k: usize| Level {
+            labels: lists.iter().map(|(key, values)| label(key, &values[k])).collect(),
+            number: lists.first().and_then(|(_, values)| number(&values[k])),
+            overrides: lists
+                .iter()
+                .map(|(key, values)| Override::new(key, &values[k]))
+                .collect(),
+        };
+        let count = lists.first().map_or(0, |(_, values)| values.len());
+        Self {
+            columns: lists.iter().map(|(key, _)| key.clone()).collect(),
+            levels: (0..count).map(level).collect(),
+            spacing,
         }
     }
 
@@ -217,12 +231,17 @@ fn values_of(
 ) -> Result<(Vec<Value>, Spacing), String> {
     match (list, linspace, logspace) {
         (Some(list), None, None) => Ok((list, Spacing::Linear)),
-        (None, Some((from, to, count)), None) => Ok((spaced(from, to, count, linear)?, Spacing::Linear)),
+        (None, Some((from, to, count)), None) => {
+            // Symmetric, so that a spacing from -1 to 1 meets 0.
+            let value = |share: f64| from * (1.0 - share) + to * share;
+            Ok((spaced(from, to, count, value)?, Spacing::Linear))
+        }
         (None, None, Some((from, to, count))) => {
             if !(from > 0.0 && to > 0.0) {
                 return Err(format!("`logspace` from {from} to {to} must lie above 0"));
             }
-            Ok((spaced(from, to, count, logarithmic)?, Spacing::Logarithmic))
+            let value = |share: f64| from * libm::pow(to / from, share);
+            Ok((spaced(from, to, count, value)?, Spacing::Logarithmic))
         }
         _ => Err(format!(
             "the axis of `{key}` needs one of `list`, `linspace` and `logspace`"
@@ -230,72 +249,38 @@ fn values_of(
     }
 }
 
-/// Values of several keys that change together.
-fn zipped(zip: &toml::Table) -> Result<Axis, String> {
-    let mut lists = Vec::new();
+/// The keys of `zip` and the lists of their values.
+fn zipped_lists(zip: toml::Table) -> Result<Vec<(String, Vec<Value>)>, String> {
+    let mut lists: Vec<(String, Vec<Value>)> = Vec::new();
     for (key, values) in zip {
         let Value::Array(values) = values else {
             return Err(format!(
                 "`{key}` in `zip` must be a list; keys with a dot stand in quotes: \"drive.v_star\""
             ));
         };
-        lists.push((key.as_str(), values));
+        lists.push((key, values));
     }
     let count = lists.first().map_or(0, |(_, values)| values.len());
-    if let Some((key, values)) = lists.iter().find(|(_, values)| values.len() != count) {
-        return Err(format!(
+    match lists.iter().find(|(_, values)| values.len() != count) {
+        Some((key, values)) => Err(format!(
             "the lists of `zip` must be equally long: `{key}` has {}, not {count}",
             values.len()
-        ));
+        )),
+        None => Ok(lists),
     }
-    let keys: Vec<&str> = lists.iter().map(|(key, _)| *key).collect();
-    let levels = (0..count)
-        .map(|k| {
-            level(
-                &keys,
-                &lists.iter().map(|(_, values)| &values[k]).collect::<Vec<_>>(),
-            )
-        })
-        .collect();
-    Ok(Axis {
-        columns: keys.into_iter().map(str::to_owned).collect(),
-        levels,
-        spacing: Spacing::Linear,
-    })
 }
 
-fn named(name: String, variants: &toml::Table) -> Result<Axis, String> {
-    let level = |(variant, keys): (&String, &Value)| match keys {
+/// The level of a named variant and its keys.
+fn variant((variant, keys): (String, Value)) -> Result<Level, String> {
+    match keys {
         Value::Table(keys) => Ok(Level {
-            labels: vec![variant.clone()],
+            labels: vec![variant],
             number: None,
-            overrides: overrides(keys),
+            overrides: overrides(&keys),
         }),
         _ => Err(format!(
             "the variant `{variant}` must be a set of keys, such as {{ drive.v_star = 0.05 }}"
         )),
-    };
-    let levels = variants.iter().map(level).collect::<Result<_, _>>()?;
-    Ok(Axis {
-        columns: vec![name],
-        levels,
-        spacing: Spacing::Named,
-    })
-}
-
-fn level(keys: &[&str], values: &[&Value]) -> Level {
-    Level {
-        labels: keys
-            .iter()
-            .zip(values)
-            .map(|(key, value)| label(key, value))
-            .collect(),
-        number: values.first().and_then(|value| number(value)),
-        overrides: keys
-            .iter()
-            .zip(values)
-            .map(|(key, value)| Override::new(key, value))
-            .collect(),
     }
 }
 
@@ -377,8 +362,8 @@ pub(super) fn replaced_key<'k>(key: &str, earlier: &BTreeSet<&'k str>) -> Option
     same.or_else(inside).copied()
 }
 
-/// `count` values from `from` to `to`, both exactly.
-fn spaced(from: f64, to: f64, count: usize, between: fn(f64, f64, f64) -> f64) -> Result<Vec<Value>, String> {
+/// `count` values from `from` to `to`, both exactly; `between` gives the value at a share of the way.
+fn spaced(from: f64, to: f64, count: usize, between: impl Fn(f64) -> f64) -> Result<Vec<Value>, String> {
     if !(2..=MAX_LEVELS).contains(&count) {
         return Err(format!(
             "a spacing of {count} values cannot be: give 2 to {MAX_LEVELS}"
@@ -390,7 +375,7 @@ fn spaced(from: f64, to: f64, count: usize, between: fn(f64, f64, f64) -> f64) -
     let value = |k: usize| match k {
         0 => from,
         k if k == count - 1 => to,
-        k => twelve_digits(between(from, to, k as f64 / (count - 1) as f64)),
+        k => twelve_digits(between(k as f64 / (count - 1) as f64)),
     };
     Ok((0..count).map(|k| whole_or_not(value(k))).collect())
 }
@@ -408,16 +393,6 @@ fn whole_or_not(value: f64) -> Value {
     } else {
         Value::Float(value)
     }
-}
-
-fn linear(from: f64, to: f64, share: f64) -> f64 {
-    // Symmetric, so that a spacing from -1 to 1 meets 0.
-    from * (1.0 - share) + to * share
-}
-
-/// Equal ratios.
-fn logarithmic(from: f64, to: f64, share: f64) -> f64 {
-    from * libm::pow(to / from, share)
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use super::journal::Records;
 use super::plan::{Plan, RunKey};
 use super::scheduler::Scheduler;
 use super::study_results::{Progress, StudyResults};
-use super::worker::{Finished, IsStopped, RunCase, Task, run_one, work};
+use super::worker::{Ended, IsStopped, RunCase, Task, run_one, work};
 use crate::names::RUNS;
 
 /// Runs everything that the plan needs and the records lack.
@@ -60,7 +60,7 @@ fn execute_with(
     watch: &mut dyn FnMut(&Progress),
 ) -> Result<StudyResults, StudyError> {
     let (to_workers, tasks) = mpsc::channel::<Task>();
-    let (to_scheduler, finished) = mpsc::channel::<Finished>();
+    let (to_scheduler, finished) = mpsc::channel::<Ended>();
     let tasks = Mutex::new(tasks);
     let abandon = AtomicBool::new(false);
     let is_stopped = || stop.load(Ordering::Relaxed) || abandon.load(Ordering::Relaxed);

@@ -8,7 +8,6 @@ use super::input_copies::Copy;
 use super::journal::Records;
 use super::picture_plan;
 use super::plan::{Plan, RunKey};
-use super::record::RunResult;
 use super::study_file::StudyFile;
 use super::study_results::StudyResults;
 use crate::manifest::Manifest;
@@ -76,7 +75,14 @@ impl StudyFolder {
         };
         folder.copy(&copies)?;
         if let Some(before) = before {
-            folder.remove_tables_and_pictures(parse(&String::from_utf8_lossy(&before)).ok().as_ref());
+            // Its tables and pictures do not belong to this study, and can be made from the records again. If its file cannot
+            // be read, the names of its pictures are not known, and they stay.
+            if let Ok(before) = parse(&String::from_utf8_lossy(&before)) {
+                folder.remove_pictures(picture_plan::names(&before.axes));
+            }
+            for table in TABLES {
+                let _ = remove_if_there(&folder.path.join(table));
+            }
         }
         folder.write(STUDY, text.as_bytes())?;
         Ok(folder)
@@ -120,9 +126,8 @@ impl StudyFolder {
         }
         for (file, path) in staged {
             std::fs::create_dir_all(path.parent().unwrap_or(&self.path)).map_err(failed(&path))?;
-            file.persist(&path)
-                .map_err(|error| error.error)
-                .map_err(failed(&path))?;
+            let persisted = file.persist(&path).map_err(|error| error.error);
+            persisted.map_err(failed(&path))?;
         }
         Ok(())
     }
@@ -134,16 +139,15 @@ impl StudyFolder {
     pub fn take_kept(&self, plan: &Plan, results: &StudyResults, shard: &Path) -> Result<(), StudyError> {
         for (run, result) in &results.runs {
             let name = plan.folder_name(*run);
-            let is_whole = |folder: &Path| match result.as_ref() {
+            let is_whole = |folder: &Path| match result.failure() {
                 // The run folder may be incomplete if the process was killed.
-                RunResult::Done(_) => Manifest::read(folder).is_ok(),
-                RunResult::Failed(_) => folder.join(CASE).is_file(),
+                None => Manifest::read(folder).is_ok(),
+                Some(_) => folder.join(CASE).is_file(),
             };
             let (from, to) = (shard.join(RUNS).join(&name), self.path.join(RUNS).join(&name));
-            if !is_whole(&from) || is_whole(&to) {
-                continue;
+            if is_whole(&from) && !is_whole(&to) {
+                copy_run(&from, &to)?;
             }
-            copy_run(&from, &to)?;
         }
         Ok(())
     }
@@ -162,17 +166,6 @@ impl StudyFolder {
                 path: self.path.clone(),
             }),
             _ => Ok(()),
-        }
-    }
-
-    /// Removes the tables and pictures of the study that the folder had before: they do not belong to the new study, and can be
-    /// made from the records again. If its file could not be read, the names of its pictures are not known, and they stay.
-    fn remove_tables_and_pictures(&self, before: Option<&StudyFile>) {
-        if let Some(before) = before {
-            self.remove_pictures(picture_plan::names(&before.axes));
-        }
-        for table in TABLES {
-            let _ = remove_if_there(&self.path.join(table));
         }
     }
 
@@ -218,16 +211,14 @@ pub fn refuse_foreign(folders: &[PathBuf]) -> Result<(), StudyError> {
         let path = folder.join(STUDY);
         read_limited(&path, TEXT_MAX_BYTES).map_err(|source| FolderError::Read { path, source })
     };
-    let Some((first, others)) = folders.split_first() else {
+    let [first, others @ ..] = folders else {
         return Ok(());
     };
     let text = read(first)?;
     for other in others {
         if read(other)? != text {
-            return Err(StudyError::Foreign {
-                first: first.clone(),
-                other: other.clone(),
-            });
+            let (first, other) = (first.clone(), other.clone());
+            return Err(StudyError::Foreign { first, other });
         }
     }
     Ok(())

@@ -84,10 +84,8 @@ impl Records {
             return Ok(());
         }
         let lines: Vec<u8> = records.iter().flat_map(to_line).collect();
-        let before = self
-            .file
-            .stream_position()
-            .map_err(failed("write to", &self.path))?;
+        let before = self.file.stream_position();
+        let before = before.map_err(failed("write to", &self.path))?;
         let written = self.file.write_all(&lines).and_then(|()| self.file.sync_data());
         written.map_err(|source| {
             // Whole lines stay. If a part of a line cannot be cut off, the next start does it.
@@ -96,10 +94,8 @@ impl Records {
                 .metadata()
                 .map_or(0, |file| file.len().saturating_sub(before));
             let there = &lines[..lines.len().min(there as usize)];
-            let whole = there
-                .iter()
-                .rposition(|&byte| byte == b'\n')
-                .map_or(0, |end| end + 1);
+            let last_break = there.iter().rposition(|&byte| byte == b'\n');
+            let whole = last_break.map_or(0, |end| end + 1);
             let _ = self.file.set_len(before + whole as u64);
             failed("write to", &self.path)(source)
         })?;
@@ -176,19 +172,10 @@ struct Lines {
     /// Whether a line is longer than any record.
     too_long: bool,
     bytes: u64,
-    end: End,
-}
-
-/// How a record file ends.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-enum End {
-    /// With a line break, or it is empty.
-    #[default]
-    Whole,
-    /// With a record that lacks its line break.
-    NoBreak,
-    /// With a part of a line, after so many bytes.
-    Cut { whole_bytes: u64 },
+    /// Whether the last line is a record without a line break.
+    lacks_break: bool,
+    /// Where the last line begins, if it is a part of a line.
+    cut_at: Option<u64>,
 }
 
 impl Lines {
@@ -203,24 +190,20 @@ impl Lines {
             if read == 0 {
                 break;
             }
-            let whole_bytes = lines.bytes;
+            let begin = lines.bytes;
             lines.bytes += read;
             let broken = line.pop_if(|last| *last == b'\n').is_some();
             lines.too_long = !broken && read == LINE_MAX_BYTES;
             if line.is_empty() {
                 continue;
             }
-            let record = parse_line(&line);
-            if !broken {
-                lines.end = match record {
-                    Some(_) => End::NoBreak,
-                    None => End::Cut { whole_bytes },
-                };
-            }
             lines.ours |= looks_like_ours(&line) || (!broken && may_begin_ours(&line));
-            match record {
-                Some(record) => lines.records.push(record),
-                None => lines.damaged += 1,
+            if let Some(record) = parse_line(&line) {
+                lines.records.push(record);
+                lines.lacks_break = !broken;
+            } else {
+                lines.damaged += 1;
+                lines.cut_at = (!broken).then_some(begin);
             }
         }
         Ok(lines)
@@ -229,10 +212,10 @@ impl Lines {
     /// Makes the file end with a line break, so that the next record begins a line: a record that lacks its line break gets
     /// one, and a part of a record is cut off.
     fn repair_end(&self, file: &mut File) -> std::io::Result<()> {
-        match self.end {
-            End::Whole => Ok(()),
-            End::NoBreak => file.write_all(b"\n").and_then(|()| file.sync_data()),
-            End::Cut { whole_bytes } => file.set_len(whole_bytes),
+        match self.cut_at {
+            Some(begin) => file.set_len(begin),
+            None if self.lacks_break => file.write_all(b"\n").and_then(|()| file.sync_data()),
+            None => Ok(()),
         }
     }
 

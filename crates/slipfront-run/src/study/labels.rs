@@ -1,40 +1,22 @@
-//! Titles of axes and legends for the keys of a case file and of a summary.
+//! Titles of axes and legends for the keys of a case file and the quantities that are drawn.
 
+use super::summary_values::REDUCTION;
 use slipfront_case::case_file::title_of;
 use slipfront_plot::QuantityLabel;
 
-/// Keys of a summary: key, words, symbol, unit.
-#[rustfmt::skip]
-const SUMMARY: [(&str, &str, &str, &str); 26] = [
+/// Titles of the quantities that are drawn: key, words, symbol, unit.
+const QUANTITIES: [(&str, &str, &str, &str); 3] = [
     ("static_friction_star", "static friction", "\u{3bc}\u{209b}*", ""),
-    ("static_friction", "static friction coefficient", "\u{3bc}\u{209b}", ""),
-    ("static_reduction_percent", "reduction of \u{3bc}\u{209b}*", "", "%"),
-    ("kinetic_friction_star", "kinetic friction", "\u{3bc}\u{2096}*", ""),
-    ("kinetic_friction_star_uncertainty", "standard error of \u{3bc}\u{2096}*", "", ""),
-    ("kinetic_friction", "kinetic friction coefficient", "\u{3bc}\u{2096}", ""),
-    ("onset_time_star", "onset time", "t\u{209b}*", ""),
-    ("onset_time_s", "onset time", "t\u{209b}", "s"),
-    ("first_slip_time_star", "time of first slip", "t*", ""),
-    ("first_slip_time_s", "time of first slip", "t", "s"),
-    ("sliding_percent_kinetic", "mean sliding in kinetic friction", "N*", "%"),
-    ("sliding_percent_max", "largest sliding", "N*", "%"),
-    ("mu_star_max", "largest friction", "\u{3bc}*", ""),
-    ("v_star", "drive speed", "V*", ""),
-    ("r_star", "friction ratio", "R*", ""),
-    ("omega_star", "damping", "\u{3a9}*", ""),
-    ("sigma_static_star", "spread of static coefficients", "\u{3c3}\u{209b}*", ""),
-    ("sigma_kinetic_star", "spread of kinetic coefficients", "\u{3c3}\u{2096}*", ""),
-    ("seed", "seed", "", ""),
-    ("epsilon", "load", "\u{3b5}", ""),
-    ("n_blocks", "number of blocks", "N", ""),
-    ("texture_percent", "texture coverage", "A*", "%"),
-    ("texture_percent_asked", "texture coverage asked for", "A*", "%"),
-    ("dt_star", "time step", "\u{394}t*", ""),
-    ("steps", "steps", "", ""),
-    ("energy_error", "relative error of energy", "", ""),
+    (
+        "kinetic_friction_star",
+        "kinetic friction",
+        "\u{3bc}\u{2096}*",
+        "",
+    ),
+    (REDUCTION, "reduction of \u{3bc}\u{209b}*", "", "%"),
 ];
 
-/// The title of an axis for a key of a case file or a summary. Quantities that a case file writes with a unit are taken
+/// The title of an axis for a key of a case file or a quantity. Quantities that a case file writes with a unit are taken
 /// to be in SI units. The second and further textures are numbered. A key without a title is shown as it is.
 pub(super) fn title(key: &str) -> String {
     label(key).map_or_else(|| key.to_owned(), |label| label.title())
@@ -56,7 +38,7 @@ fn label(key: &str) -> Option<QuantityLabel<'_>> {
                 .map(|index| index.saturating_add(1)),
         });
     }
-    let &(_, words, symbol, unit) = SUMMARY.iter().find(|row| row.0 == key)?;
+    let &(_, words, symbol, unit) = QUANTITIES.iter().find(|row| row.0 == key)?;
     Some(QuantityLabel {
         words,
         symbol,
@@ -74,8 +56,12 @@ mod tests {
 
     #[test]
     fn every_key_has_one_title_that_the_font_can_write() {
-        for (index, row) in SUMMARY.iter().enumerate() {
-            assert!(SUMMARY[..index].iter().all(|other| other.0 != row.0), "{}", row.0);
+        for (index, row) in QUANTITIES.iter().enumerate() {
+            assert!(
+                QUANTITIES[..index].iter().all(|other| other.0 != row.0),
+                "{}",
+                row.0
+            );
             assert!(has_glyphs(&title(row.0)), "{}", title(row.0));
         }
         for section in &SECTIONS {

@@ -21,7 +21,6 @@ mod picture_plan;
 #[cfg(feature = "plot")]
 mod pictures;
 mod plan;
-mod point_statistics;
 mod record;
 mod scheduler;
 mod shard;
@@ -41,7 +40,6 @@ pub use folder::{StudyFolder, is_study, refuse_foreign, study_of};
 pub use journal::Records;
 pub use output::write;
 pub use plan::{Plan, Point, Role, RunKey, Warning};
-pub use point_statistics::{main_quantity, sample};
 pub use record::{Outcome, Record, RunResult};
 pub use shard::Shard;
 pub use statistics::Sample;

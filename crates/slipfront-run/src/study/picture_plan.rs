@@ -94,7 +94,10 @@ fn planned_curves(axes: &[Axis], x: usize, quantity: &str) -> Vec<PlannedPicture
             .iter()
             .flat_map(|&(axis, level)| &axes[axis].levels[level].labels);
         let letters = labels.flat_map(|label| ['-'].into_iter().chain(label.chars()));
-        let suffix: String = letters.map(for_file).take(MOST_OF_LEVELS).collect();
+        // Some file systems allow no other letters in names.
+        let is_allowed = |letter: char| letter.is_ascii_alphanumeric() || "._-".contains(letter);
+        let letters = letters.map(|letter| if is_allowed(letter) { letter } else { '_' });
+        let suffix: String = letters.take(MOST_OF_LEVELS).collect();
         PlannedPicture {
             name: format!("{quantity}{suffix}"),
             kind: PictureKind::Curves {
@@ -130,15 +133,6 @@ pub(super) fn combinations(axes: &[Axis], of: &[usize]) -> Vec<Levels> {
         all.sort();
         all
     })
-}
-
-/// A character, replaced by `_` if some file system does not allow it in names.
-fn for_file(letter: char) -> char {
-    if letter.is_ascii_alphanumeric() || "._-".contains(letter) {
-        letter
-    } else {
-        '_'
-    }
 }
 
 #[cfg(test)]

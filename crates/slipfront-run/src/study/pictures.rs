@@ -9,7 +9,6 @@ use super::error::StudyError;
 use super::labels::{symbol, title};
 use super::picture_plan::{PictureKind, PlannedPicture, QUANTITIES, combinations, planned};
 use super::plan::Plan;
-use super::point_statistics::sample;
 use super::study_results::StudyResults;
 use slipfront_plot::{
     Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Response, Responses,
@@ -20,111 +19,164 @@ use slipfront_plot::{
 /// # Errors
 /// When one cannot be drawn.
 pub(super) fn draw(plan: &Plan, results: &StudyResults) -> Result<Vec<(String, Picture)>, StudyError> {
-    let axes = &plan.axes;
-    let of_quantity = |quantity: &&str| -> Result<Vec<(String, Picture)>, StudyError> {
-        let values = Values::of(plan, results, quantity);
-        // Runs that stop at the onset have no kinetic friction, and a study without a reference has no reduction.
-        if values.0.values().all(|[mean, ..]| mean.is_nan()) {
-            return Ok(Vec::new());
-        }
-        let drawn = planned(axes, quantity)
-            .into_iter()
-            .map(|PlannedPicture { name, kind }| {
-                let picture = match &kind {
-                    PictureKind::Bars => bars(axes, quantity, &values),
-                    PictureKind::Curves { x, fixed, varied } => {
-                        curves(axes, *x, fixed, varied, quantity, &values)
-                    }
-                    PictureKind::Map { x, y } => map(axes, *x, *y, quantity, &values),
-                };
-                match picture {
-                    Ok(picture) => Ok((name, picture)),
-                    Err(source) => Err(StudyError::Picture { name, source }),
-                }
-            });
-        drawn.collect()
-    };
+    let of_quantity = |quantity: &&'static str| Measured::of(plan, results, quantity).draw();
     let drawn: Vec<_> = QUANTITIES.par_iter().map(of_quantity).collect();
     let drawn: Result<Vec<_>, StudyError> = drawn.into_iter().collect();
     Ok(drawn?.into_iter().flatten().collect())
 }
 
-/// Mean of a quantity and the ends of its interval, by the levels of a point; NaN where there is none.
-struct Values<'a>(HashMap<&'a [usize], [f64; 3]>);
+/// A quantity at every point of a study.
+struct Measured<'a> {
+    axes: &'a [Axis],
+    quantity: &'static str,
+    /// Mean and the ends of its interval, by the levels of a point; NaN where there is none.
+    values: HashMap<&'a [usize], [f64; 3]>,
+}
 
-impl<'a> Values<'a> {
-    fn of(plan: &'a Plan, results: &StudyResults, quantity: &str) -> Self {
-        let value = |position| match sample(plan, results, position, quantity) {
-            Some(sample) => {
-                let [low, high] = sample.interval().unwrap_or([f64::NAN; 2]);
-                [sample.mean, low, high]
-            }
-            None => [f64::NAN; 3],
+impl<'a> Measured<'a> {
+    fn of(plan: &'a Plan, results: &StudyResults, quantity: &'static str) -> Self {
+        let value = |position| {
+            let sample = results.sample(plan, position, quantity);
+            let interval = sample.and_then(|sample| sample.interval());
+            let [low, high] = interval.unwrap_or([f64::NAN; 2]);
+            [sample.map_or(f64::NAN, |sample| sample.mean), low, high]
         };
         let points = plan.points.iter().enumerate();
-        Self(
-            points
-                .map(|(position, point)| (point.levels.as_slice(), value(position)))
-                .collect(),
-        )
+        let values = points.map(|(position, point)| (point.levels.as_slice(), value(position)));
+        Self {
+            axes: &plan.axes,
+            quantity,
+            values: values.collect(),
+        }
+    }
+
+    fn draw(&self) -> Result<Vec<(String, Picture)>, StudyError> {
+        // Runs that stop at the onset have no kinetic friction, and a study without a reference has no reduction.
+        if self.values.values().all(|[mean, ..]| mean.is_nan()) {
+            return Ok(Vec::new());
+        }
+        let draw = |PlannedPicture { name, kind }| {
+            let picture = match &kind {
+                PictureKind::Bars => self.bars(),
+                PictureKind::Curves { x, fixed, varied } => self.curves(*x, fixed, varied),
+                PictureKind::Map { x, y } => self.map(*x, *y),
+            };
+            match picture {
+                Ok(picture) => Ok((name, picture)),
+                Err(source) => Err(StudyError::Picture { name, source }),
+            }
+        };
+        planned(self.axes, self.quantity).into_iter().map(draw).collect()
     }
 
     /// The values at the point with these levels; NaN if the point is part of another shard.
     fn at(&self, levels: &[usize]) -> [f64; 3] {
-        self.0.get(levels).copied().unwrap_or([f64::NAN; 3])
+        self.values.get(levels).copied().unwrap_or([f64::NAN; 3])
     }
-}
 
-fn curves(
-    axes: &[Axis],
-    x: usize,
-    fixed: &[(usize, usize)],
-    varied: &[usize],
-    quantity: &str,
-    values: &Values,
-) -> Result<Picture, PictureError> {
-    let curves = combinations(axes, varied)
-        .into_iter()
-        .map(|at| curve(axes, x, &[fixed, &at].concat(), varied, values))
-        .collect();
-    slipfront_plot::response(&Responses {
-        x_title: title(axes[x].title()),
-        log_x: axes[x].spacing == Spacing::Logarithmic,
-        log_y: false,
-        y_title: title(quantity),
-        legend_title: match varied {
-            [axis] => symbol(axes[*axis].title()),
-            _ => String::new(),
-        },
-        curves,
-    })
-}
-
-fn curve(axes: &[Axis], x: usize, fixed: &[(usize, usize)], labelled: &[usize], values: &Values) -> Response {
-    let label: Vec<String> = fixed
-        .iter()
-        .filter(|(axis, _)| labelled.contains(axis))
-        .map(|&(axis, level)| axes[axis].levels[level].shown())
-        .collect();
-    let mut response = Response {
-        label: label.join(", "),
-        x: vec![],
-        mean: vec![],
-        low: vec![],
-        high: vec![],
-        line: false,
-    };
-    for (at, level) in by_number(&axes[x]) {
-        let mut place = vec![0; axes.len()];
-        place[x] = level;
-        fixed.iter().for_each(|&(axis, level)| place[axis] = level);
-        let [mean, low, high] = values.at(&place);
-        response.x.push(at);
-        response.mean.push(mean);
-        response.low.push(low);
-        response.high.push(high);
+    /// The name of a level in legends and under bars.
+    fn shown(&self, axis: usize, level: usize) -> String {
+        self.axes[axis].levels[level].shown()
     }
-    response
+
+    fn curves(&self, x: usize, fixed: &[(usize, usize)], varied: &[usize]) -> Result<Picture, PictureError> {
+        let curves = combinations(self.axes, varied).into_iter();
+        slipfront_plot::response(&Responses {
+            x_title: title(self.axes[x].title()),
+            log_x: self.axes[x].spacing == Spacing::Logarithmic,
+            log_y: false,
+            y_title: title(self.quantity),
+            legend_title: match varied {
+                [axis] => symbol(self.axes[*axis].title()),
+                _ => String::new(),
+            },
+            curves: curves.map(|varied| self.curve(x, fixed, &varied)).collect(),
+        })
+    }
+
+    /// A curve over axis `x` at these levels of the others; those of the `varied` axes name it.
+    fn curve(&self, x: usize, fixed: &[(usize, usize)], varied: &[(usize, usize)]) -> Response {
+        let label: Vec<String> = varied
+            .iter()
+            .map(|&(axis, level)| self.shown(axis, level))
+            .collect();
+        let mut response = Response {
+            label: label.join(", "),
+            ..Response::default()
+        };
+        let mut levels = vec![0; self.axes.len()];
+        for &(axis, level) in fixed.iter().chain(varied) {
+            levels[axis] = level;
+        }
+        for (number, level) in by_number(&self.axes[x]) {
+            levels[x] = level;
+            let [mean, low, high] = self.at(&levels);
+            response.x.push(number);
+            response.mean.push(mean);
+            response.low.push(low);
+            response.high.push(high);
+        }
+        response
+    }
+
+    fn map(&self, x: usize, y: usize) -> Result<Picture, PictureError> {
+        let (columns, rows) = (by_number(&self.axes[x]), by_number(&self.axes[y]));
+        let mut means = Vec::new();
+        // A map is drawn for two axes alone.
+        let mut levels = [0; 2];
+        for &(_, row) in &rows {
+            for &(_, column) in &columns {
+                (levels[x], levels[y]) = (column, row);
+                means.push(self.at(&levels)[0]);
+            }
+        }
+        let heat_axis = |axis: usize, numbers: &[(f64, usize)]| HeatAxis {
+            title: title(self.axes[axis].title()),
+            values: numbers.iter().map(|(number, _)| *number).collect(),
+            log: self.axes[axis].spacing == Spacing::Logarithmic,
+        };
+        slipfront_plot::heat_map(&HeatMap {
+            x: heat_axis(x, &columns),
+            y: heat_axis(y, &rows),
+            value_title: title(self.quantity),
+            values: means,
+        })
+    }
+
+    /// Bars for the names of one axis, or in groups for two.
+    fn bars(&self) -> Result<Picture, PictureError> {
+        let bar = |axis: usize, levels: &[usize]| {
+            let [mean, low, high] = self.at(levels);
+            let label = self.shown(axis, levels[axis]);
+            Bar {
+                label,
+                mean,
+                low,
+                high,
+            }
+        };
+        let levels = |axis: usize| 0..self.axes[axis].levels.len();
+        let groups = if self.axes.len() == 1 {
+            let bars = levels(0).map(|level| bar(0, &[level])).collect();
+            let label = String::new();
+            vec![BarGroup { label, bars }]
+        } else {
+            let group = |one: usize| BarGroup {
+                label: self.shown(0, one),
+                bars: levels(1).map(|other| bar(1, &[one, other])).collect(),
+            };
+            levels(0).map(group).collect()
+        };
+        slipfront_plot::bars(&BarChart {
+            y_title: title(self.quantity),
+            x_title: title(self.axes[0].title()),
+            legend_title: self
+                .axes
+                .get(1)
+                .map_or(String::new(), |axis| symbol(axis.title())),
+            groups,
+        })
+    }
 }
 
 /// Numbers of an axis in rising order, each with its level.
@@ -135,64 +187,4 @@ fn by_number(axis: &Axis) -> Vec<(f64, usize)> {
         .collect();
     numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
     numbers
-}
-
-fn map(axes: &[Axis], x: usize, y: usize, quantity: &str, values: &Values) -> Result<Picture, PictureError> {
-    let (columns, rows) = (by_number(&axes[x]), by_number(&axes[y]));
-    let mut means = Vec::new();
-    for &(_, row) in &rows {
-        for &(_, column) in &columns {
-            let mut place = vec![0; axes.len()];
-            (place[x], place[y]) = (column, row);
-            means.push(values.at(&place)[0]);
-        }
-    }
-    let heat_axis = |axis: usize, levels: &[(f64, usize)]| HeatAxis {
-        title: title(axes[axis].title()),
-        values: levels.iter().map(|(at, _)| *at).collect(),
-        log: axes[axis].spacing == Spacing::Logarithmic,
-    };
-    slipfront_plot::heat_map(&HeatMap {
-        x: heat_axis(x, &columns),
-        y: heat_axis(y, &rows),
-        value_title: title(quantity),
-        values: means,
-    })
-}
-
-/// Bars for the names of one axis, or in groups for two.
-fn bars(axes: &[Axis], quantity: &str, values: &Values) -> Result<Picture, PictureError> {
-    let bar = |label: &str, levels: &[usize]| {
-        let [mean, low, high] = values.at(levels);
-        Bar {
-            label: label.to_owned(),
-            mean,
-            low,
-            high,
-        }
-    };
-    let name = |axis: usize, level: usize| axes[axis].levels[level].shown();
-    let levels = |axis: usize| 0..axes[axis].levels.len();
-    let groups = if axes.len() == 1 {
-        let bars = levels(0).map(|level| bar(&name(0, level), &[level])).collect();
-        vec![BarGroup {
-            label: String::new(),
-            bars,
-        }]
-    } else {
-        let group = |one: usize| BarGroup {
-            label: name(0, one),
-            bars: levels(1)
-                .map(|other| bar(&name(1, other), &[one, other]))
-                .collect(),
-        };
-        levels(0).map(group).collect()
-    };
-    let legend_title = axes.get(1).map_or(String::new(), |axis| symbol(axis.title()));
-    slipfront_plot::bars(&BarChart {
-        y_title: title(quantity),
-        x_title: title(axes[0].title()),
-        legend_title,
-        groups,
-    })
 }

@@ -1,6 +1,7 @@
 //! The plan of a study: its points, and what each run of a point is.
 
 use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
 use std::sync::Mutex;
 
 use rayon::prelude::*;
@@ -9,11 +10,11 @@ use super::axis::{self, Axis};
 use super::error::StudyError;
 use super::shard::Shard;
 use super::study_file::{Base, RetainRuns, Settings, StudyFile};
+use super::summary_values::REDUCTION;
 use crate::program;
 use slipfront_case::case::{Budget, Case, PROGRAM, check_fields};
 use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Output, Override, ParsedCase, Snapshots};
-use slipfront_case::machine;
-use slipfront_case::machine::available_memory;
+use slipfront_case::machine::{available_memory, most_at_once};
 use slipfront_case::number_format::byte_size;
 use slipfront_case::text::display_path;
 
@@ -101,7 +102,7 @@ impl Plan {
     /// # Errors
     /// [`StudyError::Point`], [`StudyError::TooLarge`].
     pub fn new(file: &StudyFile, shard: Option<Shard>) -> Result<Self, StudyError> {
-        let points = (0..file.count_points()?)
+        let mut points: Vec<Point> = (0..file.count_points()?)
             .filter(|&index| shard.is_none_or(|shard| shard.holds(index)))
             .map(|index| Point {
                 index,
@@ -113,52 +114,51 @@ impl Plan {
             name: file.name.clone(),
             settings: file.settings.clone(),
             axes: file.axes.clone(),
-            points,
+            points: Vec::new(),
             base: file.base.clone(),
             reference: file.settings.reference.as_ref().map(axis::overrides),
         };
-        let specs = plan.specs().map_err(|(point, source)| StudyError::Point {
-            point: plan
-                .points
-                .get(point)
-                .map_or_else(String::new, |point| plan.describe(point)),
-            source,
-        })?;
-        for (point, specs) in plan.points.iter_mut().zip(specs) {
-            point.specs = specs;
-        }
-        Ok(plan)
-    }
-
-    /// Makes the cases of every point once, and collects what is known of their runs.
-    ///
-    /// # Errors
-    /// What is wrong with the first point that is no valid case, and its position.
-    fn specs(&self) -> Result<Vec<Vec<RunSpec>>, (usize, CaseError)> {
-        let base = self.base.parse().map_err(|error| (0, error))?;
-        let alone = Mutex::new(());
-        let specs = |point| {
-            self.roles()
-                .map(|role| self.spec(&base, point, role, &alone))
+        let invalid = |point: Option<&Point>, source| {
+            let point = point.map_or_else(String::new, |point| plan.describe(point));
+            StudyError::Point { point, source }
+        };
+        let base = plan
+            .base
+            .parse()
+            .map_err(|error| invalid(points.first(), error))?;
+        let large = Mutex::new(());
+        let spec = |point| {
+            plan.roles()
+                .map(|role| plan.spec(&base, point, role, &large))
                 .collect()
         };
-        let tried: Vec<Result<Vec<RunSpec>, CaseError>> = self.points.par_iter().map(specs).collect();
-        let numbered = tried.into_iter().enumerate();
-        numbered
-            .map(|(position, specs)| specs.map_err(|error| (position, error)))
-            .collect()
+        let specs: Vec<Result<Vec<RunSpec>, CaseError>> = points.par_iter().map(spec).collect();
+        // In order, so that the first invalid point is named.
+        for (point, specs) in points.iter_mut().zip(specs) {
+            point.specs = specs.map_err(|error| invalid(Some(point), error))?;
+        }
+        plan.points = points;
+        Ok(plan)
     }
 
     /// The roles of the runs of a point: the point itself, and its reference if the study has one.
     pub fn roles(&self) -> impl Iterator<Item = Role> + use<> {
-        [Role::Point]
-            .into_iter()
-            .chain(self.reference.as_ref().map(|_| Role::Reference))
+        let reference = self.reference.as_ref().map(|_| Role::Reference);
+        [Role::Point].into_iter().chain(reference)
     }
 
     /// Whether reductions are measured.
     pub fn has_reference(&self) -> bool {
         self.reference.is_some()
+    }
+
+    /// The main quantity: the one that decides on replicates, else the reduction if there is a reference, else mu_s*.
+    pub fn main_quantity(&self) -> &str {
+        match &self.settings.until {
+            Some(until) => &until.key,
+            None if self.has_reference() => REDUCTION,
+            None => "static_friction_star",
+        }
     }
 
     /// The case file of replicate 0: the base with the overrides of the point's levels, and of the reference.
@@ -183,11 +183,11 @@ impl Plan {
         base: &ParsedCase,
         point: &Point,
         role: Role,
-        alone: &Mutex<()>,
+        large: &Mutex<()>,
     ) -> Result<RunSpec, CaseError> {
         let file = self.case_file(base, point, role)?;
         let blocks: u64 = file.slider.blocks.into_iter().map(u64::from).product();
-        let _alone = (blocks > LARGE).then(|| alone.lock());
+        let _one_at_a_time = (blocks > LARGE).then(|| large.lock());
         let case = self.trimmed(file, "point")?;
         Ok(RunSpec {
             seed: case.file.friction.seed,
@@ -233,11 +233,8 @@ impl Plan {
         let case = self.trimmed(file, &self.folder_name(run))?;
         // Only files can have become others.
         if !case.inputs.is_empty() && physics(&case)? != self.spec_of(run).physics {
-            let names: Vec<String> = case
-                .inputs
-                .iter()
-                .map(|input| display_path(&input.original))
-                .collect();
+            let originals = case.inputs.iter().map(|input| display_path(&input.original));
+            let names: Vec<String> = originals.collect();
             let sentence = format!(
                 "a file that a run reads is no longer what it was when the study began: run the study again, and leave {} as it \
                  is meanwhile",
@@ -332,7 +329,7 @@ impl Plan {
     pub fn check_memory(&self, threads: usize) -> Result<(), StudyError> {
         let available = available_memory().unwrap_or(f64::INFINITY);
         // A process may be given less than the machine has.
-        let given = machine::most_at_once(self.memory(threads).min(available));
+        let given = most_at_once(self.memory(threads).min(available));
         self.compare_memory(threads, given)
     }
 
@@ -372,40 +369,37 @@ impl Plan {
 
     /// The levels of a point, as a reader would name it.
     pub fn describe(&self, point: &Point) -> String {
-        let levels: Vec<String> = self
-            .columns(point)
-            .into_iter()
-            .map(|(name, value)| format!("{name} = {value}"))
-            .collect();
-        if levels.is_empty() {
-            "of the base case".to_owned()
-        } else {
-            levels.join(", ")
+        let columns = self.columns(point).into_iter();
+        let levels: Vec<String> = columns.map(|(name, value)| format!("{name} = {value}")).collect();
+        match levels.is_empty() {
+            true => "of the base case".to_owned(),
+            false => levels.join(", "),
         }
     }
 
     /// Columns of the axes, and their cells at a point.
     pub fn columns(&self, point: &Point) -> Vec<(&str, &str)> {
-        let mut columns = Vec::new();
-        for (axis, &level) in self.axes.iter().zip(&point.levels) {
-            let names = axis.columns.iter().map(String::as_str);
-            columns.extend(names.zip(axis.levels[level].labels.iter().map(String::as_str)));
-        }
+        let levels = self.axes.iter().zip(&point.levels);
+        let columns = levels.flat_map(|(axis, &level)| axis.columns.iter().zip(&axis.levels[level].labels));
         columns
+            .map(|(name, value)| (name.as_str(), value.as_str()))
+            .collect()
     }
 
     /// Every run of `replicates` replicates; references that points share are counted for each.
     pub fn runs(&self, replicates: usize) -> impl Iterator<Item = RunKey> {
-        let of_point = move |point| {
-            (0..replicates).flat_map(move |replicate| {
-                self.roles().map(move |role| RunKey {
-                    point,
-                    replicate,
-                    role,
-                })
+        (0..self.points.len()).flat_map(move |point| self.runs_of(point, 0..replicates))
+    }
+
+    /// The runs of some replicates of a point.
+    pub(super) fn runs_of(&self, point: usize, replicates: Range<usize>) -> impl Iterator<Item = RunKey> {
+        replicates.flat_map(move |replicate| {
+            self.roles().map(move |role| RunKey {
+                point,
+                replicate,
+                role,
             })
-        };
-        (0..self.points.len()).flat_map(of_point)
+        })
     }
 }
 
@@ -416,11 +410,8 @@ fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
     file.friction.seed = 0;
     file.output = Output::default();
     for (_, name) in file.files_mut() {
-        let hash = case
-            .inputs
-            .iter()
-            .find(|input| input.name == *name)
-            .map(|input| blake3::hash(&input.bytes).to_hex());
+        let input = case.inputs.iter().find(|input| input.name == *name);
+        let hash = input.map(|input| blake3::hash(&input.bytes).to_hex());
         let ending = name.rsplit('.').next().unwrap_or_default();
         *name = format!("{}.{ending}", hash.unwrap_or_default());
     }
@@ -432,16 +423,11 @@ fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
 
 /// Levels of point `index`, the last axis fastest.
 fn levels(axes: &[Axis], mut index: usize) -> Vec<usize> {
-    let mut levels: Vec<usize> = axes
-        .iter()
-        .rev()
-        .map(|axis| {
-            let level = index % axis.levels.len();
-            index /= axis.levels.len();
-            level
-        })
-        .collect();
-    levels.reverse();
+    let mut levels = vec![0; axes.len()];
+    for (level, axis) in levels.iter_mut().zip(axes).rev() {
+        *level = index % axis.levels.len();
+        index /= axis.levels.len();
+    }
     levels
 }
 

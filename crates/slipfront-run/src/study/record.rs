@@ -8,43 +8,51 @@ use crate::summary::Summary;
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Outcome {
+pub enum Outcome<Numbers = Box<Summary>> {
     /// Its numbers.
-    Done(Box<Summary>),
+    Done(Numbers),
     /// Why it failed.
     Failed(String),
+}
+
+/// The part of an outcome that tables and statistics need.
+pub type RunResult = Outcome<SummaryValues>;
+
+impl RunResult {
+    /// The numbers of a run that did not fail.
+    pub fn values(&self) -> Option<&SummaryValues> {
+        match self {
+            Self::Done(values) => Some(values),
+            Self::Failed(_) => None,
+        }
+    }
+
+    /// Why the run failed, if it did.
+    pub fn failure(&self) -> Option<&str> {
+        match self {
+            Self::Done(_) => None,
+            Self::Failed(reason) => Some(reason),
+        }
+    }
 }
 
 impl Outcome {
     /// The part of it that tables and statistics need.
     pub(super) fn result(&self) -> RunResult {
         match self {
-            Self::Done(summary) => RunResult::Done(SummaryValues::of(summary)),
-            Self::Failed(reason) => RunResult::Failed(reason.clone()),
+            Self::Done(summary) => Outcome::Done(SummaryValues::of(summary)),
+            Self::Failed(reason) => Outcome::Failed(reason.clone()),
         }
     }
 
     /// The outcome, or a failure if a number of it is not finite: JSON has no such numbers.
     pub(super) fn or_not_finite(self) -> Self {
-        let read_back = |outcome: &Self| {
-            let json = serde_json::to_string(outcome).ok()?;
-            serde_json::from_str::<Self>(&json).ok()
-        };
-        if read_back(&self).as_ref() == Some(&self) {
-            self
-        } else {
-            Self::Failed("a number of its summary is not finite".to_owned())
+        let json = serde_json::to_string(&self).unwrap_or_default();
+        match serde_json::from_str::<Self>(&json) {
+            Ok(read_back) if read_back == self => self,
+            _ => Self::Failed("a number of its summary is not finite".to_owned()),
         }
     }
-}
-
-/// The part of an outcome that tables and statistics need.
-#[derive(Clone, Debug, PartialEq)]
-pub enum RunResult {
-    /// Its numbers.
-    Done(SummaryValues),
-    /// Why it failed.
-    Failed(String),
 }
 
 /// A finished run: one line of the journal.

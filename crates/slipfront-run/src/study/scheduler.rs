@@ -12,11 +12,11 @@ use std::time::Duration;
 use super::error::StudyError;
 use super::journal::Records;
 use super::plan::{Plan, RunKey};
-use super::record::{Record, RunResult};
+use super::record::RunResult;
 use super::statistics::Sample;
 use super::study_results::{PointResult, Progress, StudyResults};
 use super::summary_values::Quantity;
-use super::worker::{Finished, Task};
+use super::worker::{Ended, Task};
 
 /// Requests runs from the workers and decides on the number of replicates.
 pub(super) struct Scheduler<'a> {
@@ -71,7 +71,7 @@ impl<'a> Scheduler<'a> {
     /// Records finished runs and requests more, until no run is missing.
     pub(super) fn run(
         &mut self,
-        finished: &Receiver<Finished>,
+        finished: &Receiver<Ended>,
         stop: &AtomicBool,
         watch: &mut dyn FnMut(&Progress),
     ) -> Result<(), StudyError> {
@@ -108,22 +108,12 @@ impl<'a> Scheduler<'a> {
     }
 
     /// Writes finished runs to the journal, then ingests them.
-    fn record(&mut self, finished: impl Iterator<Item = Finished>) -> Result<(), StudyError> {
+    fn record(&mut self, finished: impl Iterator<Item = Ended>) -> Result<(), StudyError> {
         let mut records = Vec::new();
         let mut failure = None;
-        for Finished {
-            id,
-            wall_time_s,
-            outcome,
-        } in finished
-        {
-            match outcome {
-                Ok(Some(outcome)) => records.push(Record {
-                    id,
-                    wall_time_s,
-                    outcome,
-                }),
-                Ok(None) => {}
+        for ended in finished {
+            match ended {
+                Ok(record) => records.extend(record),
                 Err(error) => failure = Some(error),
             }
         }
@@ -138,29 +128,20 @@ impl<'a> Scheduler<'a> {
     /// Requests the replicates of a point up to the number `requested`: recorded runs are taken as they are, the others are
     /// sent to the workers.
     fn request(&mut self, point: usize, requested: usize) {
-        for replicate in self.points[point].requested..requested {
-            for role in self.plan.roles() {
-                let run = RunKey {
-                    point,
-                    replicate,
-                    role,
-                };
-                let id = self.plan.identity(run);
-                match self.records.get(&id).cloned() {
-                    Some(result) => self.add_recorded(run, id, result),
-                    None => self.send(run, id),
-                }
+        let plan = self.plan;
+        for run in plan.runs_of(point, self.points[point].requested..requested) {
+            let id = plan.identity(run);
+            let Some(result) = self.records.get(&id).cloned() else {
+                self.send(run, id);
+                continue;
+            };
+            if !self.belonging.contains(&id) {
+                self.progress.total += 1;
+                self.count(id, &result);
             }
+            self.results.runs.insert(run, result);
         }
         self.points[point].requested = requested;
-    }
-
-    fn add_recorded(&mut self, run: RunKey, id: String, result: Arc<RunResult>) {
-        if !self.belonging.contains(&id) {
-            self.progress.total += 1;
-            self.count(id, &result);
-        }
-        self.results.runs.insert(run, result);
     }
 
     fn send(&mut self, run: RunKey, id: String) {
@@ -200,14 +181,12 @@ impl<'a> Scheduler<'a> {
     /// are not enough.
     fn decide(&mut self, point: usize) {
         while self.points[point].missing == 0 && self.points[point].result.is_none() {
-            self.evaluate_stopping(point);
-            let PointState {
-                requested, result, ..
-            } = self.points[point];
-            if result.is_none() {
+            self.points[point].result = self.evaluate_stopping(point);
+            if self.points[point].result.is_none() {
                 // More than one at a time only for threads that would have nothing to do.
                 let idle = self.threads.saturating_sub(self.waiting.len());
-                let more = (requested + idle.max(1)).min(self.plan.settings.max_replicates());
+                let more = self.points[point].requested + idle.max(1);
+                let more = more.min(self.plan.settings.max_replicates());
                 self.request(point, more);
             }
         }
@@ -215,45 +194,32 @@ impl<'a> Scheduler<'a> {
 
     /// Evaluates the stopping rule with the first replicates of a point, one more at a time: the smallest number that fulfils
     /// it is the number of replicates.
-    fn evaluate_stopping(&mut self, point: usize) {
+    fn evaluate_stopping(&mut self, point: usize) -> Option<PointResult> {
         let settings = &self.plan.settings;
-        let PointState {
-            requested, evaluated, ..
-        } = self.points[point];
+        let state = &mut self.points[point];
+        let decided = |replicates, narrow| Some(PointResult { replicates, narrow });
         let (Some(until), Some(decisive)) = (&settings.until, self.decisive) else {
-            self.points[point].result = Some(PointResult {
-                replicates: requested,
-                narrow: None,
-            });
-            return;
+            return decided(state.requested, None);
         };
-        let values: Vec<Option<f64>> = (0..requested)
+        let values: Vec<Option<f64>> = (0..state.requested)
             .map(|replicate| self.results.value(point, replicate, decisive))
             .collect();
-        let state = &mut self.points[point];
-        let decided = |replicates, narrow| {
-            Some(PointResult {
-                replicates,
-                narrow: Some(narrow),
-            })
-        };
-        for replicates in settings.min_replicates().max(evaluated + 1)..=requested {
+        for replicates in settings.min_replicates().max(state.evaluated + 1)..=state.requested {
             let values: Vec<f64> = values[..replicates].iter().filter_map(|value| *value).collect();
             state.half_width = Sample::of(&values, until.confidence).and_then(|sample| sample.half_width);
             state.evaluated = replicates;
             // Some runs may lack the quantity, and the interval of very few values can be narrow by chance.
             let enough = values.len() >= settings.min_replicates();
             if enough && state.half_width.is_some_and(|half| half <= until.half_width) {
-                state.result = decided(replicates, true);
-                return;
+                return decided(replicates, Some(true));
             }
             if values.is_empty() {
-                state.result = decided(replicates, false);
-                return;
+                return decided(replicates, Some(false));
             }
         }
-        if requested >= settings.max_replicates() {
-            state.result = decided(requested, false);
+        match state.requested < settings.max_replicates() {
+            true => None,
+            false => decided(state.requested, Some(false)),
         }
     }
 
@@ -269,11 +235,8 @@ impl<'a> Scheduler<'a> {
         let orphaned_runs = self.orphaned_runs();
         let points: Vec<PointResult> = self.points.into_iter().filter_map(|point| point.result).collect();
         let mut runs = self.results.runs;
-        runs.retain(|run, _| {
-            points
-                .get(run.point)
-                .is_some_and(|point| run.replicate < point.replicates)
-        });
+        let replicates = |point: usize| points.get(point).map_or(0, |point| point.replicates);
+        runs.retain(|run, _| run.replicate < replicates(run.point));
         StudyResults {
             runs,
             points,

@@ -22,15 +22,10 @@ impl Shard {
     /// The shard of a task of a Slurm array, from its environment.
     fn of_slurm(given: &str) -> Result<Self, StudyError> {
         let read = |name: &str| -> Result<usize, StudyError> {
-            let refuse = |why: String| StudyError::Shard {
-                given: truncated(given),
-                why,
-            };
             let value = std::env::var(name)
-                .map_err(|_| refuse(format!("{name} is not set: this is no array task")))?;
-            value
-                .parse()
-                .map_err(|_| refuse(format!("{name} = {value} is no number")))
+                .map_err(|_| refused(given, format!("{name} is not set: this is no array task")))?;
+            let number = value.parse();
+            number.map_err(|_| refused(given, format!("{name} = {value} is no number")))
         };
         // The first index of an array may be any number.
         let first = read("SLURM_ARRAY_TASK_MIN").unwrap_or(1);
@@ -41,15 +36,16 @@ impl Shard {
     }
 
     fn new(number: usize, count: usize, given: &str) -> Result<Self, StudyError> {
-        if (1..=count).contains(&number) {
-            return Ok(Self { number, count });
+        match (1..=count).contains(&number) {
+            true => Ok(Self { number, count }),
+            false => Err(refused(given, format!("there is no part {number} of {count}"))),
         }
-        let why = format!("there is no part {number} of {count}");
-        Err(StudyError::Shard {
-            given: truncated(given),
-            why,
-        })
     }
+}
+
+fn refused(given: &str, why: String) -> StudyError {
+    let given = truncated(given);
+    StudyError::Shard { given, why }
 }
 
 impl FromStr for Shard {
@@ -59,12 +55,9 @@ impl FromStr for Shard {
         if given == "slurm" {
             return Self::of_slurm(given);
         }
-        let refuse = || StudyError::Shard {
-            given: truncated(given),
-            why: "it is not two numbers".to_owned(),
-        };
-        let (number, count) = given.split_once('/').ok_or_else(refuse)?;
-        let read = |text: &str| text.trim().parse::<usize>().map_err(|_| refuse());
+        let no_numbers = || refused(given, "it is not two numbers".to_owned());
+        let (number, count) = given.split_once('/').ok_or_else(no_numbers)?;
+        let read = |text: &str| text.trim().parse().map_err(|_| no_numbers());
         Self::new(read(number)?, read(count)?, given)
     }
 }

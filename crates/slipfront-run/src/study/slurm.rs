@@ -19,18 +19,9 @@ pub struct Batch {
 
 /// The text of a batch script.
 pub fn script(batch: &Batch) -> String {
-    let Batch {
-        name,
-        command,
-        study,
-        out,
-        tasks,
-    } = batch;
-    let [command, study, out] = [command, study, out].map(|word| shell_quoted(word));
-    let name: String = name
-        .chars()
-        .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
-        .collect();
+    let [command, study, out] = [&batch.command, &batch.study, &batch.out].map(|word| shell_quoted(word));
+    let name = batch.name.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
+    let tasks = batch.tasks;
     format!(
         r#"#!/bin/bash
 # {tasks} tasks, each a part of the points of the study on a node of its own. Submit this file with `sbatch`, and

@@ -14,7 +14,7 @@ use super::input_copies::{self, Copy};
 use super::summary_values::{self, REDUCTION};
 use slipfront_case::case_file::{
     CASE_TABLES, CaseError, ParsedCase, STUDY_TABLES, Source, Tables, header_below, keys_of, limit_nesting,
-    syntax_error, unknown_key,
+    read_text, syntax_error, unknown_key,
 };
 
 /// A study file.
@@ -139,65 +139,67 @@ impl Settings {
     }
 
     fn check(&self, source: &Source) -> Result<(), CaseError> {
-        let refuse = |key: &str, sentence: String| Err(source.error(key, sentence));
-        if !(1..=MAX_REPLICATES).contains(&self.replicates) {
-            let sentence = format!(
-                "`replicates` = {} must lie between 1 and {MAX_REPLICATES}",
-                self.replicates
-            );
-            return refuse("study.replicates", sentence);
+        match self.problem(source) {
+            Some((key, sentence)) => Err(source.error(&format!("study.{key}"), sentence)),
+            None => Ok(()),
+        }
+    }
+
+    /// The first key with a value that it cannot have, and a sentence that says so.
+    fn problem(&self, source: &Source) -> Option<(&'static str, String)> {
+        let replicates = self.replicates;
+        if !(1..=MAX_REPLICATES).contains(&replicates) {
+            let sentence = format!("`replicates` = {replicates} must lie between 1 and {MAX_REPLICATES}");
+            return Some(("replicates", sentence));
         }
         let mut reference = self.reference.iter().flat_map(axis::overrides);
         if reference.any(|set| set.key() == "friction.seed") {
             let sentence =
                 "a reduction is that against the same surface: leave `friction.seed` out of the reference";
-            return refuse("study.reference", sentence.to_owned());
+            return Some(("reference", sentence.to_owned()));
         }
-        let Some(until) = &self.until else { return Ok(()) };
+        let until = self.until.as_ref()?;
         if source.has("study.replicates") {
-            return refuse(
-                "study.replicates",
-                "`replicates` and `until` exclude each other: keep one".to_owned(),
-            );
+            let sentence = "`replicates` and `until` exclude each other: keep one";
+            return Some(("replicates", sentence.to_owned()));
         }
-        until.check(source)?;
-        if until.key == REDUCTION && self.reference.is_none() {
-            let sentence = format!("`{}` needs a `reference` to be reduced from", until.key);
-            return refuse("study.until.key", sentence);
-        }
-        if !summary_values::known().contains(&until.key) {
-            let sentence = format!(
-                "`{}` is no number of a summary: take one such as static_friction_star, kinetic_friction_star or {}",
-                until.key, REDUCTION
-            );
-            return refuse("study.until.key", sentence);
-        }
-        Ok(())
+        until.problem(self.reference.is_some())
     }
 }
 
 impl StoppingRule {
-    fn check(&self, source: &Source) -> Result<(), CaseError> {
-        let refuse = |key: &str, sentence: String| Err(source.error(key, sentence));
-        if !(self.half_width > 0.0 && self.half_width.is_finite()) {
-            let sentence = format!("`half_width` = {} must be more than 0", self.half_width);
-            return refuse("study.until.half_width", sentence);
-        }
-        if !(self.confidence > 0.0 && self.confidence < 1.0) {
+    fn problem(&self, has_reference: bool) -> Option<(&'static str, String)> {
+        let Self {
+            key,
+            half_width,
+            confidence,
+            min,
+            max,
+        } = self;
+        Some(if !(*half_width > 0.0 && half_width.is_finite()) {
+            let sentence = format!("`half_width` = {half_width} must be more than 0");
+            ("until.half_width", sentence)
+        } else if !(*confidence > 0.0 && *confidence < 1.0) {
+            let sentence = format!("`confidence` = {confidence} must lie between 0 and 1, such as 0.95");
+            ("until.confidence", sentence)
+        } else if !(2..=*max).contains(min) || *max > MAX_REPLICATES {
             let sentence = format!(
-                "`confidence` = {} must lie between 0 and 1, such as 0.95",
-                self.confidence
+                "`min` = {min} and `max` = {max} must rise from 2 to at most {MAX_REPLICATES}: one run has no interval"
             );
-            return refuse("study.until.confidence", sentence);
-        }
-        if !(2..=self.max).contains(&self.min) || self.max > MAX_REPLICATES {
+            ("until.min", sentence)
+        } else if key == REDUCTION && !has_reference {
+            (
+                "until.key",
+                format!("`{key}` needs a `reference` to be reduced from"),
+            )
+        } else if !summary_values::known().contains(key) {
             let sentence = format!(
-                "`min` = {} and `max` = {} must rise from 2 to at most {MAX_REPLICATES}: one run has no interval",
-                self.min, self.max
+                "`{key}` is no number of a summary: take one such as static_friction_star, kinetic_friction_star or {REDUCTION}"
             );
-            return refuse("study.until.min", sentence);
-        }
-        Ok(())
+            ("until.key", sentence)
+        } else {
+            return None;
+        })
     }
 }
 
@@ -207,20 +209,11 @@ impl StudyFile {
     /// # Errors
     /// When it cannot be written as TOML, and when a file cannot be read.
     pub(super) fn portable(&self) -> Result<(String, Vec<Copy>), StudyError> {
-        let mut table = toml::Table::new();
-        let base: toml::Table =
-            limit_nesting(&self.base.text)
-                .parse()
-                .map_err(|error: toml::de::Error| {
-                    syntax_error(&Source::new(&self.base.name, &self.base.text), 0, &error)
-                })?;
-        table.insert("base".to_owned(), base.into());
-        table.extend(
-            self.table
-                .iter()
-                .filter(|(key, _)| *key != "base")
-                .map(|(key, value)| (key.clone(), value.clone())),
-        );
+        let source = Source::new(&self.base.name, &self.base.text);
+        let base: Result<toml::Table, _> = limit_nesting(&self.base.text).parse();
+        let base = base.map_err(|error| syntax_error(&source, 0, &error))?;
+        let mut table = toml::Table::from_iter([("base".to_owned(), base.into())]);
+        table.extend(self.table.clone().into_iter().filter(|(key, _)| key != "base"));
         let copies = input_copies::copy(&mut table, &self.base.folder)?;
         Ok((portable_text(table)?, copies))
     }
@@ -252,10 +245,9 @@ impl StudyFile {
     /// # Errors
     /// A sentence that names place, value, bound and remedy.
     pub fn load(path: &Path) -> Result<Self, StudyError> {
-        let text = slipfront_case::case_file::read_text(path)?;
-        let name = path
-            .file_stem()
-            .map_or_else(|| "study".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let text = read_text(path)?;
+        let stem = path.file_stem();
+        let name = stem.map_or_else(|| "study".into(), |stem| stem.to_string_lossy());
         let folder = path.parent().unwrap_or(Path::new(""));
         Self::parse(&text, &path.display().to_string(), &name, folder)
     }
@@ -335,35 +327,27 @@ fn portable_text(mut study: toml::Table) -> Result<String, CaseError> {
 }
 
 fn read_base(tables: &mut Tables, file: &str, folder: &Path) -> Result<Base, StudyError> {
+    let base = |text: String, name: String, folder: &Path| Base {
+        text,
+        name,
+        folder: folder.to_owned(),
+    };
     let Some(value) = tables.root.remove("base") else {
         // Without a base the baseline is varied.
-        return Ok(Base {
-            text: String::new(),
-            name: format!("{file} [base]"),
-            folder: folder.to_owned(),
-        });
+        return Ok(base(String::new(), format!("{file} [base]"), folder));
     };
     let span = value.span();
     match value.into_inner() {
         DeValue::String(path) => {
             let path = folder.join(path.as_ref());
-            let text = slipfront_case::case_file::read_text(&path)
-                .map_err(|error| tables.source.error_at(span, error.to_string()))?;
-            let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-            Ok(Base {
-                text,
-                name: path.display().to_string(),
-                folder,
-            })
+            let text = read_text(&path).map_err(|error| tables.source.error_at(span, error.to_string()))?;
+            let folder = path.parent().unwrap_or(Path::new(""));
+            Ok(base(text, path.display().to_string(), folder))
         }
         table @ DeValue::Table(_) => {
             let table: toml::Table = tables.read_table(Spanned::new(span, table), "[base]", &[])?;
             let text = toml::to_string(&table).map_err(CaseError::from)?;
-            Ok(Base {
-                text,
-                name: format!("[base] of {file}"),
-                folder: folder.to_owned(),
-            })
+            Ok(base(text, format!("[base] of {file}"), folder))
         }
         _ => {
             let sentence = "`base` must be the path of a case file, or a table [base] that holds its keys";
@@ -395,10 +379,10 @@ fn read_axes(tables: &mut Tables) -> Result<Vec<Axis>, StudyError> {
 
 /// The product of the axes.
 fn count_points(axes: &[Axis]) -> Result<usize, StudyError> {
-    axes.iter()
-        .try_fold(1usize, |product, axis| product.checked_mul(axis.levels.len()))
-        .filter(|&count| count <= MAX_POINTS)
-        .ok_or(StudyError::TooLarge { limit: MAX_POINTS })
+    let mut counts = axes.iter().map(|axis| axis.levels.len());
+    let product = counts.try_fold(1usize, usize::checked_mul);
+    let product = product.filter(|&count| count <= MAX_POINTS);
+    product.ok_or(StudyError::TooLarge { limit: MAX_POINTS })
 }
 
 /// Refuses axes that overwrite each other, and columns that another column of the tables has the name of.

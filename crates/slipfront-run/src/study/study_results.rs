@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::plan::{Role, RunKey};
+use super::plan::{Plan, Role, RunKey};
 use super::record::RunResult;
-use super::summary_values::{Quantity, SummaryValues, reduction_percent};
+use super::statistics::Sample;
+use super::summary_values::{Quantity, reduction_percent};
 
 /// How many runs of a study are done.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -46,11 +47,12 @@ impl StudyResults {
     /// A quantity of a replicate of a point. A reduction is against the reference of the same seed.
     pub fn value(&self, point: usize, replicate: usize, quantity: Quantity) -> Option<f64> {
         let values = |role| {
-            self.summary_values(RunKey {
+            let run = RunKey {
                 point,
                 replicate,
                 role,
-            })
+            };
+            self.runs.get(&run)?.values()
         };
         match quantity {
             Quantity::Number(position) => values(Role::Point)?.get(position),
@@ -58,29 +60,27 @@ impl StudyResults {
         }
     }
 
-    /// The values of a run that did not fail.
-    fn summary_values(&self, run: RunKey) -> Option<&SummaryValues> {
-        match self.runs.get(&run)?.as_ref() {
-            RunResult::Done(values) => Some(values),
-            RunResult::Failed(_) => None,
-        }
+    /// Statistics of a quantity at the point at `position` of the plan; none if no run has a value.
+    pub fn sample(&self, plan: &Plan, position: usize, name: &str) -> Option<Sample> {
+        let quantity = Quantity::named(name)?;
+        let replicates = 0..self.points.get(position)?.replicates;
+        let values: Vec<f64> = replicates
+            .filter_map(|replicate| self.value(position, replicate, quantity))
+            .collect();
+        Sample::of(&values, plan.settings.confidence())
     }
 
     /// Runs without a transition: their static friction is only the largest mu* of the run.
     pub fn without_transition(&self) -> impl Iterator<Item = RunKey> {
+        let is_without = |result: &RunResult| result.values().is_some_and(|values| !values.transition);
         let runs = self.runs.iter();
-        runs.filter_map(|(run, result)| match result.as_ref() {
-            RunResult::Done(values) => (!values.transition).then_some(*run),
-            RunResult::Failed(_) => None,
-        })
+        runs.filter(move |(_, result)| is_without(result))
+            .map(|(run, _)| *run)
     }
 
     /// Failed runs and the reasons.
     pub fn failures(&self) -> impl Iterator<Item = (RunKey, &str)> {
         let runs = self.runs.iter();
-        runs.filter_map(|(run, result)| match result.as_ref() {
-            RunResult::Failed(reason) => Some((*run, reason.as_str())),
-            RunResult::Done(_) => None,
-        })
+        runs.filter_map(|(run, result)| Some((*run, result.failure()?)))
     }
 }

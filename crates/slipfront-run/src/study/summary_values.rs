@@ -13,12 +13,8 @@ pub const REDUCTION: &str = "static_reduction_percent";
 const NOT_QUANTITIES: [&str; 5] = ["kinetic_window_star", "instants", "warnings", "version", "seed"];
 
 static KNOWN: LazyLock<Vec<String>> = LazyLock::new(|| {
-    let mut names: Vec<String> = named(&Summary::default())
-        .into_iter()
-        .map(|(name, _)| name)
-        .collect();
-    names.push(REDUCTION.to_owned());
-    names
+    let names = named(&Summary::default()).into_iter().map(|(name, _)| name);
+    names.chain([REDUCTION.to_owned()]).collect()
 });
 
 /// Names of all numbers, in the order of the summary; the reduction comes last.
@@ -78,9 +74,8 @@ fn named(summary: &Summary) -> Vec<(String, Option<f64>)> {
         Value::Bool(yes) => Some(f64::from(u8::from(yes))),
         value => value.as_f64(),
     };
-    let kept = fields
-        .into_iter()
-        .filter(|(name, _)| !NOT_QUANTITIES.contains(&name.as_str()));
+    let fields = fields.into_iter();
+    let kept = fields.filter(|(name, _)| !NOT_QUANTITIES.contains(&name.as_str()));
     kept.map(|(name, value)| (name, number(value))).collect()
 }
 

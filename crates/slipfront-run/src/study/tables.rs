@@ -3,19 +3,8 @@
 use super::columns::{AFTER_AXES, BEFORE_AXES, STATISTICS};
 use super::error::StudyError;
 use super::plan::{Plan, Role};
-use super::point_statistics::sample;
-use super::record::RunResult;
-use super::statistics::Sample;
 use super::study_results::StudyResults;
 use super::summary_values::{Quantity, REDUCTION, known};
-
-/// Columns of all axes.
-fn axis_columns(plan: &Plan) -> impl Iterator<Item = &str> {
-    plan.axes
-        .iter()
-        .flat_map(|axis| &axis.columns)
-        .map(String::as_str)
-}
 
 /// `runs.csv`: for each run, references included, the levels of its point, the seed, whether it failed and why, and every
 /// number of its summary.
@@ -25,36 +14,33 @@ fn axis_columns(plan: &Plan) -> impl Iterator<Item = &str> {
 pub(super) fn runs(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, StudyError> {
     let mut table = csv::Writer::from_writer(Vec::new());
     let quantities = quantities(plan);
-    table.write_record(
-        BEFORE_AXES
-            .into_iter()
-            .chain(axis_columns(plan))
-            .chain(AFTER_AXES)
-            .chain(quantities.iter().map(|(name, _)| *name)),
-    )?;
+    let names = quantities.iter().map(|(name, _)| *name);
+    let before = BEFORE_AXES.into_iter().chain(axis_columns(plan));
+    table.write_record(before.chain(AFTER_AXES).chain(names))?;
     // Sorted by point, replicate and role.
     for (&run, result) in &results.runs {
         let point = &plan.points[run.point];
+        let role = match run.role {
+            Role::Point => "point",
+            Role::Reference => "reference",
+        };
         let mut row = vec![
             point.index.to_string(),
             run.replicate.to_string(),
-            role_name(run.role).to_owned(),
+            role.to_owned(),
         ];
         row.extend(plan.columns(point).into_iter().map(|(_, value)| value.to_owned()));
-        row.extend([plan.seed(run).to_string(), plan.folder_name(run)]);
-        let values = match result.as_ref() {
-            RunResult::Done(values) => {
-                row.extend(["done".to_owned(), String::new()]);
-                Some(values)
-            }
-            RunResult::Failed(reason) => {
-                row.extend(["failed".to_owned(), reason.clone()]);
-                None
-            }
+        let status = if result.failure().is_none() {
+            "done"
+        } else {
+            "failed"
         };
+        let reason = result.failure().unwrap_or_default();
+        row.extend([plan.seed(run).to_string(), plan.folder_name(run)]);
+        row.extend([status, reason].map(str::to_owned));
         for &(_, quantity) in &quantities {
             let value = match (quantity, run.role) {
-                (Quantity::Number(position), _) => values.and_then(|values| values.get(position)),
+                (Quantity::Number(position), _) => result.values().and_then(|values| values.get(position)),
                 (Quantity::Reduction, Role::Point) => results.value(run.point, run.replicate, quantity),
                 (Quantity::Reduction, Role::Reference) => None,
             };
@@ -85,7 +71,7 @@ pub(super) fn points(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, Stu
     let quantities = quantities(plan);
     for (position, point) in plan.points.iter().enumerate() {
         for &(name, _) in &quantities {
-            let sample = sample(plan, results, position, name);
+            let sample = results.sample(plan, position, name);
             let until = plan.settings.until.as_ref();
             let decides = until.is_some_and(|until| until.key == name);
             // A decisive quantity that no run has gets a row without numbers.
@@ -95,13 +81,18 @@ pub(super) fn points(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, Stu
             let mut row = vec![point.index.to_string()];
             row.extend(plan.columns(point).into_iter().map(|(_, value)| value.to_owned()));
             row.extend([name.to_owned(), sample.map_or(0, |sample| sample.n).to_string()]);
-            let number = |of: fn(Sample) -> Option<f64>| cell(sample.and_then(of));
-            row.push(number(|sample| Some(sample.mean)));
-            row.push(number(|sample| sample.deviation));
-            row.push(number(|sample| sample.interval().map(|[low, _]| low)));
-            row.push(number(|sample| sample.interval().map(|[_, high]| high)));
-            row.push(number(|sample| Some(sample.min)));
-            row.push(number(|sample| Some(sample.max)));
+            let numbers = sample.map(|sample| {
+                let [low, high] = sample.interval().map_or([None; 2], |ends| ends.map(Some));
+                [
+                    Some(sample.mean),
+                    sample.deviation,
+                    low,
+                    high,
+                    Some(sample.min),
+                    Some(sample.max),
+                ]
+            });
+            row.extend(numbers.unwrap_or_default().map(cell));
             let narrow = results.points[position].narrow.filter(|_| decides);
             row.push(narrow.map_or(String::new(), |narrow| narrow.to_string()));
             table.write_record(row)?;
@@ -110,20 +101,15 @@ pub(super) fn points(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, Stu
     finish(table)
 }
 
-fn role_name(role: Role) -> &'static str {
-    match role {
-        Role::Point => "point",
-        Role::Reference => "reference",
-    }
-}
-
-fn cell(value: Option<f64>) -> String {
-    value.map_or(String::new(), number_cell)
+/// Columns of all axes.
+fn axis_columns(plan: &Plan) -> impl Iterator<Item = &str> {
+    let columns = plan.axes.iter().flat_map(|axis| &axis.columns);
+    columns.map(String::as_str)
 }
 
 /// As few digits as are needed to read back the same bits.
-fn number_cell(value: f64) -> String {
-    format!("{value:?}")
+fn cell(value: Option<f64>) -> String {
+    value.map_or(String::new(), |value| format!("{value:?}"))
 }
 
 fn finish(table: csv::Writer<Vec<u8>>) -> Result<Vec<u8>, StudyError> {

@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use super::error::StudyError;
 use super::plan::{Plan, RunKey};
-use super::record::Outcome;
+use super::record::{Outcome, Record};
 use super::study_file::RetainRuns;
 use crate::error::ResultsError;
 use crate::run_folder::RunFolder;
@@ -29,19 +29,14 @@ pub(super) struct Task {
     pub(super) id: String,
 }
 
-/// A run that has ended.
-pub(super) struct Finished {
-    pub(super) id: String,
-    pub(super) wall_time_s: f64,
-    /// None if the run was given up.
-    pub(super) outcome: Result<Option<Outcome>, StudyError>,
-}
+/// The record of a run that has ended; none if it was given up.
+pub(super) type Ended = Result<Option<Record>, StudyError>;
 
 /// Runs tasks until there are no more.
 pub(super) fn work(
     run_case: &RunCase,
     tasks: &Mutex<Receiver<Task>>,
-    finished: &Sender<Finished>,
+    finished: &Sender<Ended>,
     is_stopped: &IsStopped,
 ) {
     loop {
@@ -58,11 +53,12 @@ pub(super) fn work(
             catch_unwind(AssertUnwindSafe(|| run_case(run, is_stopped)))
                 .unwrap_or_else(|panic| Ok(Some(Outcome::Failed(panicked(panic.as_ref())))))
         };
-        let ended = Finished {
+        let record = |outcome| Record {
             id,
             wall_time_s: began.elapsed().as_secs_f64(),
             outcome,
         };
+        let ended = outcome.map(|outcome| outcome.map(record));
         if finished.send(ended).is_err() {
             return;
         }

@@ -1,16 +1,6 @@
-//! Words of the report: Greek letters, and names of the step rules.
+//! Symbols for the words in the texts of figures and claims.
 
-use crate::step_rule::StepRule;
-
-/// A step rule in words.
-pub(super) fn step_name(rule: StepRule) -> &'static str {
-    match rule {
-        StepRule::Auto => "dt* = 0.1",
-        StepRule::Paper => "dt* = (2/3) V*",
-    }
-}
-
-/// Words in the texts of figures and claims, and the symbols that the report shows in their place.
+/// Words, and the symbols that the report shows in their place.
 const SYMBOLS: [(&str, &str); 11] = [
     ("sqrt(", "\u{221a}("),
     ("square root of ", "\u{221a}"),
