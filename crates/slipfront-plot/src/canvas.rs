@@ -3,7 +3,7 @@
 use crate::color_image::Image;
 use crate::geometry::{Align, Area, Point};
 use crate::style::{BLACK, Rgb, TICK_LENGTH, WHITE, WIDTH_FRAME};
-use crate::text::{Run, Text};
+use crate::text::{Text, width};
 
 /// A picture being drawn.
 pub(crate) struct Canvas {
@@ -58,11 +58,6 @@ impl Canvas {
         }
     }
 
-    /// Adds an image.
-    pub(crate) fn image(&mut self, image: Image) {
-        self.images.push(image);
-    }
-
     fn add(&mut self, primitive: Primitive, colour: Rgb, opacity: f64) {
         self.elements.push(Element {
             primitive,
@@ -103,14 +98,14 @@ impl Canvas {
     /// Draws the edge of a rectangle.
     pub(crate) fn frame(&mut self, area: Area) {
         let (left, right, top, bottom) = (area.x, area.right(), area.y, area.bottom());
-        let corners = vec![
+        let corners = [
             (left, top),
             (right, top),
             (right, bottom),
             (left, bottom),
             (left, top),
         ];
-        self.polyline(corners, WIDTH_FRAME, BLACK);
+        self.polyline(corners.to_vec(), WIDTH_FRAME, BLACK);
     }
 
     /// Adds a disc with a thin white rim, which parts it from the curve below.
@@ -122,16 +117,14 @@ impl Canvas {
 
     /// Adds a text on the baseline through `at`.
     pub(crate) fn text(&mut self, text: &Text, at: Point, align: Align, colour: Rgb) {
-        self.runs(text, align, colour, false, |along, drop| {
-            (at.0 + along, at.1 + drop)
-        });
+        let place = |along, drop| (at.0 + along, at.1 + drop);
+        self.runs(text, align, colour, false, place);
     }
 
     /// Adds a text that reads upwards, its baseline the vertical through `at`.
     pub(crate) fn text_upwards(&mut self, text: &Text, at: Point, align: Align, colour: Rgb) {
-        self.runs(text, align, colour, true, |along, drop| {
-            (at.0 + drop, at.1 - along)
-        });
+        let place = |along, drop| (at.0 + drop, at.1 - along);
+        self.runs(text, align, colour, true, place);
     }
 
     /// Adds the runs of a text. `place` is the point at a distance along the baseline and one below it.
@@ -146,21 +139,18 @@ impl Canvas {
         let mut along = -align.offset(text.width());
         for run in &text.runs {
             // SVG drops the spaces that a text starts with, so they are stepped over.
-            let trimmed = run.text.trim_start();
-            let spaces = Run {
-                text: run.text[..run.text.len() - trimmed.len()].to_string(),
-                ..run.clone()
-            };
+            let text = run.text.trim_start();
+            let (spaces, _) = run.text.split_at(run.text.len() - text.len());
             let letters = Primitive::Letters {
-                text: trimmed.to_string(),
+                text: text.to_string(),
                 size: run.size,
-                at: place(along + spaces.width(), run.drop),
+                at: place(along + width(spaces, run.size), run.drop),
                 upwards,
             };
-            if !trimmed.is_empty() {
+            if !text.is_empty() {
                 self.add(letters, colour, 1.0);
             }
-            along += run.width();
+            along += width(&run.text, run.size);
         }
     }
 

@@ -104,12 +104,7 @@ pub(crate) fn around(point: Point, (width, height): (f64, f64), dots: &[Point]) 
                 point.0 + cos * (gap + 0.5 * width),
                 point.1 + sin * (gap + 0.5 * height),
             );
-            let area = Area {
-                x: centre.0 - 0.5 * width,
-                y: centre.1 - 0.5 * height,
-                width,
-                height,
-            };
+            let area = Area::new(centre.0 - 0.5 * width, centre.1 - 0.5 * height, width, height);
             let to_label = |dot: Point| {
                 (
                     dot.0.clamp(area.x - 3.0, area.right() + 3.0) - dot.0,
@@ -139,12 +134,12 @@ pub(crate) fn around(point: Point, (width, height): (f64, f64), dots: &[Point]) 
 }
 
 fn grown(area: Area, by: f64) -> Area {
-    Area {
-        x: area.x - by,
-        y: area.y - by,
-        width: area.width + 2.0 * by,
-        height: area.height + 2.0 * by,
-    }
+    Area::new(
+        area.x - by,
+        area.y - by,
+        area.width + 2.0 * by,
+        area.height + 2.0 * by,
+    )
 }
 
 /// True when two areas share more than an edge.

@@ -2,8 +2,8 @@
 
 use skrifa::outline::OutlinePen;
 use tiny_skia::{
-    Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Rect, Shader, Stroke,
-    Transform,
+    Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PremultipliedColorU8,
+    Rect, Stroke, Transform,
 };
 
 use crate::canvas::{Canvas, Element, Primitive};
@@ -22,43 +22,22 @@ pub(crate) fn rgb(canvas: &Canvas) -> Option<Vec<u8>> {
     for element in &canvas.elements {
         draw(&mut pixmap, element);
     }
-    let pixels = pixmap.pixels().iter();
-    Some(
-        pixels
-            .flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()])
-            .collect(),
-    )
+    let channels = |pixel: &PremultipliedColorU8| [pixel.red(), pixel.green(), pixel.blue()];
+    Some(pixmap.pixels().iter().flat_map(channels).collect())
 }
 
 /// Draws an element; one without extent leaves no trace.
-fn draw(
-    pixmap: &mut Pixmap,
-    Element {
-        primitive,
-        colour,
-        opacity,
-    }: &Element,
-) {
-    let [red, green, blue] = *colour;
-    let paint = Paint {
-        shader: Shader::SolidColor(Color::from_rgba8(
-            red,
-            green,
-            blue,
-            (opacity * 255.0).round() as u8,
-        )),
-        ..Paint::default()
-    };
-    let path = match primitive {
+fn draw(pixmap: &mut Pixmap, element: &Element) {
+    let [red, green, blue] = element.colour;
+    let mut paint = Paint::default();
+    paint.set_color_rgba8(red, green, blue, (element.opacity * 255.0).round() as u8);
+    let path = match &element.primitive {
         Primitive::Line { points, closed, .. } => path(points, *closed),
         Primitive::Polygon(points) => path(points, true),
-        Primitive::Rectangle(area) => Rect::from_xywh(
-            area.x as f32,
-            area.y as f32,
-            area.width as f32,
-            area.height as f32,
-        )
-        .map(PathBuilder::from_rect),
+        Primitive::Rectangle(area) => {
+            let [x, y, width, height] = [area.x, area.y, area.width, area.height].map(|length| length as f32);
+            Rect::from_xywh(x, y, width, height).map(PathBuilder::from_rect)
+        }
         Primitive::Disc { centre, radius } => {
             PathBuilder::from_circle(centre.0 as f32, centre.1 as f32, *radius as f32)
         }
@@ -70,7 +49,7 @@ fn draw(
         } => letters(text, f64::from(*size), *at, *upwards),
     };
     let Some(path) = path else { return };
-    if let Primitive::Line { width, .. } = primitive {
+    if let Primitive::Line { width, .. } = &element.primitive {
         let stroke = Stroke {
             width: *width as f32,
             line_cap: LineCap::Butt,
@@ -109,12 +88,10 @@ fn letters(text: &str, size: f64, at: Point, upwards: bool) -> Option<Path> {
     };
     let mut along = 0.0;
     for character in text.chars() {
-        let (x, y) = if upwards {
-            (at.0, at.1 - along)
-        } else {
-            (at.0 + along, at.1)
+        pen.origin = match upwards {
+            true => (at.0 as f32, (at.1 - along) as f32),
+            false => ((at.0 + along) as f32, at.1 as f32),
         };
-        pen.origin = (x as f32, y as f32);
         font::draw(character, &mut pen);
         along += font::advance(character) * size;
     }
@@ -171,11 +148,13 @@ const SAMPLES: usize = 4;
 
 /// Draws an image onto whole pixels. Where cells meet within a pixel, their colours are mixed.
 fn draw_image(pixmap: &mut Pixmap, image: &Image) {
-    let (left, top) = (image.area.x.round() as usize, image.area.y.round() as usize);
-    let (right, bottom) = (
-        image.area.right().round() as usize,
-        image.area.bottom().round() as usize,
-    );
+    let sides = [
+        image.area.x,
+        image.area.y,
+        image.area.right(),
+        image.area.bottom(),
+    ];
+    let [left, top, right, bottom] = sides.map(|side| side.round() as usize);
     let pitch = pixmap.width() as usize;
     let (width, height) = (
         right.min(pitch) - left,
@@ -190,12 +169,8 @@ fn draw_image(pixmap: &mut Pixmap, image: &Image) {
         let mut sums = vec![[0; 3]; width];
         for &row in rows {
             if summed != Some(row) {
-                sum_row(
-                    &mut row_sums,
-                    &image.levels[row * image.columns..],
-                    &columns,
-                    &colours,
-                );
+                let levels = &image.levels[row * image.columns..];
+                sum_row(&mut row_sums, levels, &columns, &colours);
                 summed = Some(row);
             }
             for (sum, row_sum) in sums.iter_mut().zip(&row_sums) {
@@ -326,7 +301,7 @@ mod tests {
     #[test]
     fn cells_that_meet_within_a_pixel_are_mixed() {
         let image = |canvas: &mut Canvas| {
-            canvas.image(Image {
+            canvas.images.push(Image {
                 area: Area { width: 3.0, ..AREA },
                 columns: 2,
                 levels: vec![0, 254],

@@ -1,8 +1,9 @@
-//! A series of values as lines on a panel.
+//! What a series of values is drawn of: lines with gaps, markers and error bars.
 
-use crate::axis::Axis;
+use crate::axis::{Axis, drawable};
+use crate::canvas::Canvas;
 use crate::geometry::Point;
-use crate::range::drawable;
+use crate::style::{Rgb, WHITE, WIDTH_MARK};
 
 /// Longer curves are thinned.
 const MAX_POINTS: usize = 4000;
@@ -14,8 +15,12 @@ pub(crate) fn segments(xs: &[f64], ys: &[f64], x: &Axis, y: &Axis) -> Vec<Vec<Po
         .split(|&(at, value)| !drawable(at) || !drawable(value))
         .filter(|segment| !segment.is_empty())
         .map(|segment| {
-            let place = |&(at, value): &Point| (x.at(at), y.clamped(value));
-            let pixels: Vec<Point> = segment.iter().map(place).collect();
+            segment
+                .iter()
+                .map(|&(at, value)| (x.at(at), y.clamped(value)))
+                .collect()
+        })
+        .map(|pixels: Vec<Point>| {
             if xs.len() > MAX_POINTS {
                 thinned(&pixels)
             } else {
@@ -38,6 +43,44 @@ fn thinned(points: &[Point]) -> Vec<Point> {
         kept.extend(chosen.into_iter().map(|index| column[index]));
     }
     kept
+}
+
+/// The corners of the markers after the disc, for a size of 1; all look equally large.
+const MARKERS: [&[Point]; 4] = [
+    &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)],
+    &[(0.0, -1.3), (1.2, 0.8), (-1.2, 0.8)],
+    &[(0.0, -1.3), (1.3, 0.0), (0.0, 1.3), (-1.3, 0.0)],
+    &[(0.0, 1.3), (-1.2, -0.8), (1.2, -0.8)],
+];
+
+/// Draws the marker of curve `index`, in a shape of its own because colours do not survive a copier, with a thin white rim
+/// that parts it from the curves below.
+pub(crate) fn marker(canvas: &mut Canvas, index: usize, (x, y): Point, radius: f64, colour: Rgb) {
+    let Some(shape) = (index % (MARKERS.len() + 1)).checked_sub(1) else {
+        return canvas.dot((x, y), radius, colour);
+    };
+    for (size, colour) in [(radius + 1.5, WHITE), (radius, colour)] {
+        let corners = MARKERS[shape]
+            .iter()
+            .map(|corner| (x + size * corner.0, y + size * corner.1));
+        canvas.polygon(corners.collect(), colour, 1.0);
+    }
+}
+
+/// The lower and upper end of the confidence interval around a mean, if all three are numbers.
+pub(crate) fn interval(mean: f64, low: f64, high: f64) -> Option<(f64, f64)> {
+    let is_known = [mean, low, high].into_iter().all(drawable);
+    is_known.then(|| (low.min(high), low.max(high)))
+}
+
+/// Draws an error bar from one pixel of y to another.
+pub(crate) fn error_bar(canvas: &mut Canvas, x: f64, low: f64, high: f64, colour: Rgb) {
+    /// How far the lines across the ends reach to both sides.
+    const CAP: f64 = 9.0;
+    canvas.line((x, low), (x, high), WIDTH_MARK, colour);
+    for y in [low, high] {
+        canvas.line((x - CAP, y), (x + CAP, y), WIDTH_MARK, colour);
+    }
 }
 
 #[cfg(test)]
