@@ -5,7 +5,6 @@ use crate::geometry::{Align, Area, Point};
 use crate::style::{BLACK, Rgb, TICK_LENGTH, WHITE, WIDTH_FRAME};
 use crate::text::{Text, width};
 
-/// A picture being drawn.
 pub(crate) struct Canvas {
     pub(crate) width: f64,
     pub(crate) height: f64,
@@ -15,7 +14,6 @@ pub(crate) struct Canvas {
 }
 
 /// Something drawn in one colour.
-#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Element {
     pub(crate) primitive: Primitive,
     pub(crate) colour: Rgb,
@@ -23,21 +21,20 @@ pub(crate) struct Element {
     pub(crate) opacity: f64,
 }
 
-/// What can be drawn. An SVG and a PNG are made of nothing else.
-#[derive(Clone, Debug, PartialEq)]
+/// What can be drawn; areas are filled. An SVG and a PNG are made of nothing else.
 pub(crate) enum Primitive {
-    /// A line of this width through points, and back to the first one if it is closed.
+    /// A line through points, and back to the first one if it is closed.
     Line {
         points: Vec<Point>,
         width: f64,
         closed: bool,
     },
-    /// A filled polygon.
     Polygon(Vec<Point>),
-    /// A filled rectangle.
     Rectangle(Area),
-    /// A disc.
-    Disc { centre: Point, radius: f64 },
+    Disc {
+        centre: Point,
+        radius: f64,
+    },
     /// Letters on a baseline that starts at `at`, turned to read upwards or not.
     Letters {
         text: String,
@@ -48,7 +45,6 @@ pub(crate) enum Primitive {
 }
 
 impl Canvas {
-    /// An empty canvas, `width` by `height` pixels.
     pub(crate) fn new(width: f64, height: f64) -> Self {
         Self {
             width: width.round(),
@@ -66,7 +62,6 @@ impl Canvas {
         });
     }
 
-    /// Adds a straight line.
     pub(crate) fn line(&mut self, from: Point, to: Point, width: f64, colour: Rgb) {
         self.polyline(vec![from, to], width, colour);
     }
@@ -85,12 +80,10 @@ impl Canvas {
         self.add(line, colour, 1.0);
     }
 
-    /// Fills a rectangle.
     pub(crate) fn fill(&mut self, area: Area, colour: Rgb, opacity: f64) {
         self.add(Primitive::Rectangle(area), colour, opacity);
     }
 
-    /// Fills a polygon.
     pub(crate) fn polygon(&mut self, points: Vec<Point>, colour: Rgb, opacity: f64) {
         self.add(Primitive::Polygon(points), colour, opacity);
     }
@@ -117,34 +110,28 @@ impl Canvas {
 
     /// Adds a text on the baseline through `at`.
     pub(crate) fn text(&mut self, text: &Text, at: Point, align: Align, colour: Rgb) {
-        let place = |along, drop| (at.0 + along, at.1 + drop);
-        self.runs(text, align, colour, false, place);
+        self.runs(text, at, align, colour, false);
     }
 
     /// Adds a text that reads upwards, its baseline the vertical through `at`.
     pub(crate) fn text_upwards(&mut self, text: &Text, at: Point, align: Align, colour: Rgb) {
-        let place = |along, drop| (at.0 + drop, at.1 - along);
-        self.runs(text, align, colour, true, place);
+        self.runs(text, at, align, colour, true);
     }
 
-    /// Adds the runs of a text. `place` is the point at a distance along the baseline and one below it.
-    fn runs(
-        &mut self,
-        text: &Text,
-        align: Align,
-        colour: Rgb,
-        upwards: bool,
-        place: impl Fn(f64, f64) -> Point,
-    ) {
+    fn runs(&mut self, text: &Text, (x, y): Point, align: Align, colour: Rgb, upwards: bool) {
         let mut along = -align.offset(text.width());
         for run in &text.runs {
             // SVG drops the spaces that a text starts with, so they are stepped over.
             let text = run.text.trim_start();
             let (spaces, _) = run.text.split_at(run.text.len() - text.len());
+            let start = along + width(spaces, run.size);
             let letters = Primitive::Letters {
                 text: text.to_string(),
                 size: run.size,
-                at: place(along + width(spaces, run.size), run.drop),
+                at: match upwards {
+                    true => (x + run.drop, y - start),
+                    false => (x + start, y + run.drop),
+                },
                 upwards,
             };
             if !text.is_empty() {

@@ -38,13 +38,8 @@ pub fn friction(curves: &[FrictionCurve]) -> Result<Picture, PictureError> {
         check_columns(&curve.label, ("times", curve.time_star.len()), &columns)?;
     }
     let panels = Panels::of(curves);
-    let mut names: Vec<_> = curves
-        .iter()
-        .map(|curve| (curve.label.as_str(), Sample::Line))
-        .collect();
-    if let [_] = names[..] {
-        names.clear();
-    }
+    let named = curves.iter().filter(|_| curves.len() > 1);
+    let names: Vec<_> = named.map(|curve| (curve.label.as_str(), Sample::Line)).collect();
     let legend = Legend::of("", &names, panels.time.start, panels.time.end);
     let panels = panels.lowered(legend.height);
     let mut drawing = Drawing {

@@ -2,7 +2,7 @@
 
 pub(crate) type Point = (f64, f64);
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Area {
     pub(crate) x: f64,
     pub(crate) y: f64,
@@ -13,6 +13,11 @@ pub(crate) struct Area {
 impl Area {
     pub(crate) const fn new(x: f64, y: f64, width: f64, height: f64) -> Self {
         Self { x, y, width, height }
+    }
+
+    /// x, y, width, height.
+    pub(crate) fn sides(&self) -> [f64; 4] {
+        [self.x, self.y, self.width, self.height]
     }
 
     /// The area between two values of x and two of y.

@@ -38,7 +38,7 @@ pub struct HeatMap {
 /// An axis of a map.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HeatAxis {
-    /// What the axis is; see [`title`](crate::title).
+    /// What the axis is; see [`title`](crate::QuantityLabel::title).
     pub title: String,
     /// Where its cells are, in any order, all different.
     pub values: Vec<f64>,
@@ -66,30 +66,24 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
             values,
         });
     }
-    let at = |row: usize, column: usize| map.values[y.order[row] * columns + x.order[column]];
-    let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
-    let values = cells.map(|(row, column)| at(row, column));
-    let values: Vec<f64> = values
-        .map(|value| if drawable(value) { value } else { f64::NAN })
-        .collect();
+    let value = |cell: usize| {
+        let value = map.values[y.order[cell / columns] * columns + x.order[cell % columns]];
+        if drawable(value) { value } else { f64::NAN }
+    };
+    let values: Vec<f64> = (0..map.values.len()).map(value).collect();
     let range: [f64; 2] = range(values.iter().copied()).into();
 
-    let (top, bottom) = (TOP, TOP + HEIGHT);
-    y.axis = y.axis.placed(bottom, top);
+    y.axis = y.axis.placed(TOP + HEIGHT, TOP);
     let (y_ticks, y_short) = y.ticks(Direction::Y);
     let left = left_room(&y_ticks);
     let bar_room = bar_room(range, MAX_STEPS, HEIGHT) + 14.0 + f64::from(SIZE_LABEL) + MARGIN;
     let width = (COLUMN_WIDTH - left - GAP - bar_room).max(100.0).round();
-    let area = Area::new(left, top, width, HEIGHT);
+    let area = Area::new(left, TOP, width, HEIGHT);
     x.axis = x.axis.placed(area.x, area.right());
     let (x_ticks, x_short) = x.ticks(Direction::X);
-    let bar = Area {
-        x: area.right() + GAP,
-        width: BAR_WIDTH,
-        ..area
-    };
+    let bar = Area::new(area.right() + GAP, TOP, BAR_WIDTH, HEIGHT);
 
-    let mut canvas = Canvas::new(COLUMN_WIDTH, bottom + LOWER_ROOM);
+    let mut canvas = Canvas::new(COLUMN_WIDTH, area.bottom() + LOWER_ROOM);
     canvas.images.push(image(area, &x, &y, &values, range));
     draw_numbers(&mut canvas, &x, &y, &values, range);
     canvas.frame(area);
@@ -256,8 +250,13 @@ fn draw_numbers(canvas: &mut Canvas, x: &Cells, y: &Cells, values: &[f64], range
     let height = Text::plain("0", SIZE_TICK).height();
     // Two digits or so of the range, or one less.
     let decimals = libm::log10(50.0 / (hi - lo)).ceil().clamp(0.0, 9.0) as usize;
+    let text = |value: f64, decimals| match value.is_nan() {
+        true => Text::default(),
+        false => Text::plain(&number(value, decimals), SIZE_TICK),
+    };
+    let texts = |decimals| values.iter().map(move |&value| text(value, decimals));
     let mut choices = [decimals, decimals.saturating_sub(1)]
-        .map(|decimals| written(values, decimals))
+        .map(|decimals| texts(decimals).collect())
         .into_iter();
     let has_room = |texts: &Vec<Text>| texts.iter().all(|text| text.width() <= room_x) && height <= room_y;
     let Some(texts) = choices.find(has_room) else {
@@ -265,21 +264,11 @@ fn draw_numbers(canvas: &mut Canvas, x: &Cells, y: &Cells, values: &[f64], range
     };
     for (index, (text, &value)) in texts.iter().zip(values).enumerate() {
         let (row, column) = (index / x.values.len(), index % x.values.len());
-        let middle = (
-            0.5 * (edges_x[column] + edges_x[column + 1]),
-            0.5 * (edges_y[row] + edges_y[row + 1] + height),
-        );
+        let middle = 0.5 * (edges_x[column] + edges_x[column + 1]);
+        let baseline = 0.5 * (edges_y[row] + edges_y[row + 1] + height);
         let colour = readable_on(level_colour(level(value, range)));
-        canvas.text(text, middle, Align::Middle, colour);
+        canvas.text(text, (middle, baseline), Align::Middle, colour);
     }
-}
-
-fn written(values: &[f64], decimals: usize) -> Vec<Text> {
-    let text = |value: &f64| match value.is_nan() {
-        true => Text::default(),
-        false => Text::plain(&number(*value, decimals), SIZE_TICK),
-    };
-    values.iter().map(text).collect()
 }
 
 /// Black or white, whichever stands out more.

@@ -40,8 +40,8 @@ pub(crate) struct Cells {
     ny: usize,
     columns: usize,
     rows: usize,
-    /// The lines around the textured cells, as fractions of the lattice's sides.
-    outlines: Vec<Vec<Point>>,
+    /// The corners of the lines around the textured cells.
+    outlines: Vec<Vec<(usize, usize)>>,
 }
 
 impl Cells {
@@ -56,12 +56,7 @@ impl Cells {
         };
         let share = cells.means(|block| if textured[block] { 1.0 } else { 0.0 });
         let textured: Vec<bool> = share.into_iter().map(|share| share > 0.5).collect();
-        let (columns, rows) = (cells.columns, cells.rows);
-        let corner = |(x, y): (usize, usize)| (x as f64 / columns as f64, y as f64 / rows as f64);
-        let outlines = outline(&textured, columns, rows).into_iter();
-        cells.outlines = outlines
-            .map(|line| line.into_iter().map(corner).collect())
-            .collect();
+        cells.outlines = outline(&textured, cells.columns, cells.rows);
         cells
     }
 
@@ -95,9 +90,10 @@ impl Cells {
             columns: self.columns,
             levels: cells.map(|&mean| level(f64::from(mean), range)).collect(),
         });
+        let (columns, rows) = (self.columns as f64, self.rows as f64);
+        let corner = |&(x, y): &(usize, usize)| place(area, (x as f64 / columns, y as f64 / rows));
         for line in &self.outlines {
-            let points = line.iter().map(|&at| place(area, at)).collect();
-            rimmed_line(canvas, points, BLACK);
+            rimmed_line(canvas, line.iter().map(corner).collect(), BLACK);
         }
     }
 }

@@ -28,7 +28,8 @@ pub(crate) enum Sample {
 
 struct Entry {
     sample: Sample,
-    at: Point,
+    x: f64,
+    y: f64,
     text: Text,
     colour: Rgb,
 }
@@ -63,10 +64,8 @@ impl Legend {
         let middle = |row: usize| MARGIN + ROW * (row as f64 + 0.5);
         let entry = |(index, text): (usize, Text)| Entry {
             sample: names[index].1,
-            at: (
-                left + (index % columns) as f64 * widest,
-                middle(first + index / columns),
-            ),
+            x: left + (index % columns) as f64 * widest,
+            y: middle(first + index / columns),
             text,
             colour: curve_colour(index, names.len()),
         };
@@ -80,35 +79,20 @@ impl Legend {
 
     pub(crate) fn draw(&self, canvas: &mut Canvas) {
         canvas.text(&self.title, self.title_at, Align::Start, BLACK);
-        for (
-            index,
-            Entry {
-                sample,
-                at: (x, y),
-                text,
-                colour,
-            },
-        ) in self.entries.iter().enumerate()
-        {
+        for (index, entry) in self.entries.iter().enumerate() {
+            let (x, y, colour) = (entry.x, entry.y, entry.colour);
             let (middle, end) = (x + 0.5 * SAMPLE_WIDTH, x + SAMPLE_WIDTH);
-            if *sample == Sample::Patch {
-                canvas.fill(
-                    Area::new(middle - 14.0, y - 12.0, 28.0, 24.0),
-                    *colour,
-                    OPACITY_BAR,
-                );
+            if entry.sample == Sample::Patch {
+                let patch = Area::new(middle - 14.0, y - 12.0, 28.0, 24.0);
+                canvas.fill(patch, colour, OPACITY_BAR);
             } else {
-                canvas.line((*x, *y), (end, *y), WIDTH_CURVE, *colour);
+                canvas.line((x, y), (end, y), WIDTH_CURVE, colour);
             }
-            if *sample == Sample::Marker {
-                marker(canvas, index, (middle, *y), RADIUS_MARKER, *colour);
+            if entry.sample == Sample::Marker {
+                marker(canvas, index, (middle, y), RADIUS_MARKER, colour);
             }
-            canvas.text(
-                text,
-                (end + NAME_GAP, y + 0.5 * text.height()),
-                Align::Start,
-                BLACK,
-            );
+            let at = (end + NAME_GAP, y + 0.5 * entry.text.height());
+            canvas.text(&entry.text, at, Align::Start, BLACK);
         }
     }
 }

@@ -4,8 +4,6 @@
 //! Every picture is drawn once, on a canvas, and comes out as SVG and as PNG of the same physical size: a
 //! journal's column for curves, heat maps and bars, its text width for maps of stress. Bytes depend on the arguments only: no date, no
 //! random identifier.
-//!
-//! Read by the run folder writer and by `slipfront plot`.
 
 mod axis;
 mod bars;

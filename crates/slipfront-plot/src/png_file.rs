@@ -11,7 +11,6 @@ pub(crate) fn encode(
     bytes: &[u8],
     palette: Option<Vec<u8>>,
 ) -> Result<Vec<u8>, PictureError> {
-    let failed = |error: png::EncodingError| PictureError::Png(error.to_string());
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width as u32, height as u32);
     encoder.set_depth(png::BitDepth::Eight);
@@ -34,6 +33,6 @@ pub(crate) fn encode(
     encoder
         .write_header()
         .and_then(|mut writer| writer.write_image_data(bytes))
-        .map_err(failed)?;
+        .map_err(|error| PictureError::Png(error.to_string()))?;
     Ok(file)
 }

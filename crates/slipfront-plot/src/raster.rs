@@ -35,7 +35,7 @@ fn draw(pixmap: &mut Pixmap, element: &Element) {
         Primitive::Line { points, closed, .. } => path(points, *closed),
         Primitive::Polygon(points) => path(points, true),
         Primitive::Rectangle(area) => {
-            let [x, y, width, height] = [area.x, area.y, area.width, area.height].map(|length| length as f32);
+            let [x, y, width, height] = area.sides().map(|length| length as f32);
             Rect::from_xywh(x, y, width, height).map(PathBuilder::from_rect)
         }
         Primitive::Disc { centre, radius } => {
@@ -109,10 +109,9 @@ struct Pen {
 impl Pen {
     fn place(&self, x: f32, y: f32) -> (f32, f32) {
         let (along, above) = (self.size * x, self.size * y);
-        if self.upwards {
-            (self.origin.0 - above, self.origin.1 - along)
-        } else {
-            (self.origin.0 + along, self.origin.1 - above)
+        match self.upwards {
+            true => (self.origin.0 - above, self.origin.1 - along),
+            false => (self.origin.0 + along, self.origin.1 - above),
         }
     }
 }
@@ -148,18 +147,11 @@ const SAMPLES: usize = 4;
 
 /// Draws an image onto whole pixels. Where cells meet within a pixel, their colours are mixed.
 fn draw_image(pixmap: &mut Pixmap, image: &Image) {
-    let sides = [
-        image.area.x,
-        image.area.y,
-        image.area.right(),
-        image.area.bottom(),
-    ];
-    let [left, top, right, bottom] = sides.map(|side| side.round() as usize);
+    let area = image.area;
+    let [left, top] = [area.x, area.y].map(|side| side.round() as usize);
     let pitch = pixmap.width() as usize;
-    let (width, height) = (
-        right.min(pitch) - left,
-        bottom.min(pixmap.height() as usize) - top,
-    );
+    let width = pitch.min(area.right().round() as usize) - left;
+    let height = (pixmap.height() as usize).min(area.bottom().round() as usize) - top;
     let colours = palette();
     let columns = cells(image.columns, width);
     let rows = cells(image.rows(), height);
@@ -191,9 +183,8 @@ fn draw_image(pixmap: &mut Pixmap, image: &Image) {
 /// The cell at every sample along a side.
 fn cells(count: usize, pixels: usize) -> Vec<usize> {
     let samples = pixels * SAMPLES;
-    (0..samples)
-        .map(|sample| (2 * sample + 1) * count / (2 * samples))
-        .collect()
+    let cell = |sample| (2 * sample + 1) * count / (2 * samples);
+    (0..samples).map(cell).collect()
 }
 
 /// Adds up the colours of the samples of every pixel of a row.

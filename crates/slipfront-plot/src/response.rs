@@ -82,13 +82,8 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
     let x_ticks = x.placed(left, right).ticks(Direction::X, MAX_STEPS);
     let right = right_end(&x_ticks, left, right, COLUMN_WIDTH);
     let sample = |curve: &Response| if curve.line { Sample::Line } else { Sample::Marker };
-    let mut names: Vec<_> = curves
-        .iter()
-        .map(|curve| (curve.label.as_str(), sample(curve)))
-        .collect();
-    if let [_] = names[..] {
-        names.clear();
-    }
+    let named = curves.iter().filter(|_| curves.len() > 1);
+    let names: Vec<_> = named.map(|curve| (curve.label.as_str(), sample(curve))).collect();
     let legend = Legend::of(&responses.legend_title, &names, left, right);
     let area = Area::new(left, MARGIN + legend.height, right - left, HEIGHT);
     let (x, y) = (x.placed(left, right), y.placed(area.bottom(), area.y));
@@ -103,9 +98,8 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
 
 /// A curve whose points run along x, with an interval that is whole or NaN.
 fn sorted(curve: &Response) -> Response {
-    let mut order: Vec<usize> = (0..curve.x.len())
-        .filter(|&index| drawable(curve.x[index]))
-        .collect();
+    let mut order: Vec<usize> = (0..curve.x.len()).collect();
+    order.retain(|&index| drawable(curve.x[index]));
     order.sort_by(|&a, &b| curve.x[a].total_cmp(&curve.x[b]));
     let ends = |&index: &usize| {
         interval(curve.mean[index], curve.low[index], curve.high[index]).unwrap_or((f64::NAN, f64::NAN))

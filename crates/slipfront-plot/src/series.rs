@@ -11,22 +11,16 @@ const MAX_POINTS: usize = 4000;
 /// A curve in pixels: one segment for every stretch without a gap.
 pub(crate) fn segments(xs: &[f64], ys: &[f64], x: &Axis, y: &Axis) -> Vec<Vec<Point>> {
     let points: Vec<Point> = xs.iter().copied().zip(ys.iter().copied()).collect();
-    points
-        .split(|&(at, value)| !drawable(at) || !drawable(value))
+    let pixel = |&(at, value): &Point| (x.at(at), y.clamped(value));
+    let pixels = |segment: &[Point]| {
+        let pixels: Vec<Point> = segment.iter().map(pixel).collect();
+        let is_long = xs.len() > MAX_POINTS;
+        if is_long { thinned(&pixels) } else { pixels }
+    };
+    let segments = points.split(|&(at, value)| !drawable(at) || !drawable(value));
+    segments
         .filter(|segment| !segment.is_empty())
-        .map(|segment| {
-            segment
-                .iter()
-                .map(|&(at, value)| (x.at(at), y.clamped(value)))
-                .collect()
-        })
-        .map(|pixels: Vec<Point>| {
-            if xs.len() > MAX_POINTS {
-                thinned(&pixels)
-            } else {
-                pixels
-            }
-        })
+        .map(pixels)
         .collect()
 }
 
@@ -60,10 +54,8 @@ pub(crate) fn marker(canvas: &mut Canvas, index: usize, (x, y): Point, radius: f
         return canvas.dot((x, y), radius, colour);
     };
     for (size, colour) in [(radius + 1.5, WHITE), (radius, colour)] {
-        let corners = MARKERS[shape]
-            .iter()
-            .map(|corner| (x + size * corner.0, y + size * corner.1));
-        canvas.polygon(corners.collect(), colour, 1.0);
+        let corner = |&(across, down): &Point| (x + size * across, y + size * down);
+        canvas.polygon(MARKERS[shape].iter().map(corner).collect(), colour, 1.0);
     }
 }
 

@@ -71,18 +71,21 @@ pub fn stress(maps: &StressMaps) -> Result<Picture, PictureError> {
     let layout = Layout::of(maps);
     let mut canvas = Canvas::new(layout.width, layout.height);
     let cells = Cells::of(maps.nx, maps.ny, &maps.textured);
-    for (index, map) in maps.maps.iter().enumerate() {
-        let area = layout.map(index);
+    for (map, &area) in maps.maps.iter().zip(&layout.areas) {
         cells.draw(&mut canvas, area, &map.values, RANGE);
         canvas.frame(area);
         let mut label = title(map);
-        if label.width() > layout.pitch_x - 0.5 * GAP {
-            label = Text::shortened(&map.label, SIZE_LABEL, layout.pitch_x - 0.5 * GAP);
+        let room = layout.pitch_x - 0.5 * GAP;
+        if label.width() > room {
+            label = Text::shortened(&map.label, SIZE_LABEL, room);
         }
         draw_titles(&mut canvas, area, &label, &friction(map));
     }
-    layout.draw_axes(&mut canvas, maps.maps.len());
-    layout.draw_bar(&mut canvas);
+    layout.draw_axes(&mut canvas);
+    // As tall as all rows.
+    colour_bar(&mut canvas, layout.bar, RANGE, BAR_STEPS);
+    let title = Text::math("\u{3c4}_c*", SIZE_LABEL);
+    canvas.text(&title, (layout.bar.centre().0, TOP - 22.0), Align::Middle, BLACK);
     canvas.finish()
 }
 
@@ -106,12 +109,10 @@ struct Layout {
     height: f64,
     /// Maps in a row.
     columns: usize,
-    rows: usize,
-    map_width: f64,
-    map_height: f64,
     left: f64,
     pitch_x: f64,
-    pitch_y: f64,
+    areas: Vec<Area>,
+    bar: Area,
     /// The slider's sides along x and y, in `unit`.
     sides: [Axis; 2],
     unit: &'static str,
@@ -136,50 +137,40 @@ impl Layout {
         let map_height = (map_width * ratio).round();
         // A narrow map may have a wider title.
         let titles = maps.maps.iter().map(|map| title(map).width());
-        let titles = titles.fold(map_width, f64::max);
-        let pitch_x = (titles + GAP).min(room).max(map_width + GAP).round();
+        let widest = titles.fold(map_width, f64::max);
+        let pitch_x = (widest + GAP).min(room).max(map_width + GAP).round();
         let pitch_y = map_height + LOWER_ROOM + TITLE_ROOM;
-        let lowest = (rows - 1) as f64 * pitch_y + map_height + LOWER_ROOM;
+        let lowest = (rows - 1) as f64 * pitch_y + map_height;
+        let slack = pitch_x - GAP - map_width;
+        let area = |index: usize| {
+            let x = (left + (index % columns) as f64 * pitch_x + 0.5 * slack).round();
+            Area::new(x, TOP + (index / columns) as f64 * pitch_y, map_width, map_height)
+        };
+        let bar_x = left + columns as f64 * pitch_x;
         Self {
-            width: left + columns as f64 * pitch_x - GAP + right,
-            height: TOP + lowest.max(BAR_MIN_HEIGHT + 2.0 * MARGIN),
+            width: bar_x - GAP + right,
+            height: TOP + (lowest + LOWER_ROOM).max(BAR_MIN_HEIGHT + 2.0 * MARGIN),
             columns,
-            rows,
-            map_width,
-            map_height,
             left,
             pitch_x,
-            pitch_y,
+            areas: (0..maps.maps.len()).map(area).collect(),
+            bar: Area::new(bar_x, TOP, BAR_WIDTH, lowest.max(BAR_MIN_HEIGHT)),
             sides,
             unit,
         }
     }
 
-    /// The area of a map.
-    fn map(&self, index: usize) -> Area {
-        let (column, row) = (index % self.columns, index / self.columns);
-        let slack = self.pitch_x - GAP - self.map_width;
-        let x = (self.left + column as f64 * self.pitch_x + 0.5 * slack).round();
-        Area::new(
-            x,
-            TOP + row as f64 * self.pitch_y,
-            self.map_width,
-            self.map_height,
-        )
-    }
-
     /// Numbers below the lowest map of every column and left of every row.
-    fn draw_axes(&self, canvas: &mut Canvas, count: usize) {
+    fn draw_axes(&self, canvas: &mut Canvas) {
         let most = |side: f64| if side < SHORT_SIDE { 2 } else { 4 };
-        for index in 0..count {
-            let area = self.map(index);
+        for (index, &area) in self.areas.iter().enumerate() {
             if index % self.columns == 0 {
                 let axis = self.sides[1].placed(area.bottom(), area.y);
                 let ticks = axis.ticks(Direction::Y, most(area.height));
                 let title = Text::plain(&format!("y ({})", self.unit), SIZE_LABEL);
                 left_side(canvas, area, area.x - self.left, &ticks, &title);
             }
-            if index + self.columns >= count {
+            if index + self.columns >= self.areas.len() {
                 let axis = self.sides[0].placed(area.x, area.right());
                 let mut ticks = axis.ticks(Direction::X, most(area.width));
                 // No number may touch the first one of the next map.
@@ -193,20 +184,6 @@ impl Layout {
                 lower_side(canvas, area, &ticks, &title);
             }
         }
-    }
-
-    /// The colour bar, as tall as all rows.
-    fn draw_bar(&self, canvas: &mut Canvas) {
-        let height = ((self.rows - 1) as f64 * self.pitch_y + self.map_height).max(BAR_MIN_HEIGHT);
-        let area = Area::new(
-            self.left + self.columns as f64 * self.pitch_x,
-            TOP,
-            BAR_WIDTH,
-            height,
-        );
-        colour_bar(canvas, area, RANGE, BAR_STEPS);
-        let title = Text::math("\u{3c4}_c*", SIZE_LABEL);
-        canvas.text(&title, (area.centre().0, area.y - 22.0), Align::Middle, BLACK);
     }
 }
 
@@ -284,7 +261,7 @@ mod tests {
             let maps = maps(nx, ny, count);
             let layout = Layout::of(&maps);
             assert!(layout.width <= TEXT_WIDTH + 6.0, "{nx} x {ny}: {}", layout.width);
-            let last = layout.map(count - 1);
+            let last = layout.areas[count - 1];
             assert!(last.bottom() < layout.height && last.width >= 40.0 && last.height >= 40.0);
             stress(&maps).unwrap();
         }

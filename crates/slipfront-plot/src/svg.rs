@@ -116,7 +116,7 @@ fn path_data(points: &[Point]) -> String {
 }
 
 fn sides(area: &Area) -> String {
-    let [x, y, width, height] = [area.x, area.y, area.width, area.height].map(length);
+    let [x, y, width, height] = area.sides().map(length);
     format!("x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"")
 }
 

@@ -64,17 +64,9 @@ impl Axis {
         let (lo, hi) = (value(self.lo), value(self.hi));
         let (step, values) = round_values(lo, hi, most);
         let power = power_of(lo.abs().max(hi.abs()));
-        let tick = |value| {
-            (
-                self.at(value),
-                Text::number(&written(value, step, power), SIZE_TICK),
-            )
-        };
-        values
-            .into_iter()
-            .map(tick)
-            .filter(|(at, _)| at.is_finite())
-            .collect()
+        let text = |value| Text::number(&written(value, step, power), SIZE_TICK);
+        let ticks = values.into_iter().map(|value| (self.at(value), text(value)));
+        ticks.filter(|(at, _)| at.is_finite()).collect()
     }
 
     fn logarithmic_ticks(&self, digits: &[f64], every: i32) -> Vec<Tick> {
@@ -128,9 +120,8 @@ fn round_values(lo: f64, hi: f64, most: usize) -> (f64, Vec<f64>) {
 /// The smallest of 1, 2, 5, 10, ... that is at least `step`.
 fn round_step(step: f64) -> f64 {
     let power = libm::exp10(power_of(step));
-    let digit = [1.0, 2.0, 5.0]
-        .into_iter()
-        .find(|digit| digit * power >= step * (1.0 - 1e-9));
+    let mut digits = [1.0, 2.0, 5.0].into_iter();
+    let digit = digits.find(|digit| digit * power >= step * (1.0 - 1e-9));
     digit.unwrap_or(10.0) * power
 }
 
