@@ -1,8 +1,5 @@
-//! A linear or logarithmic axis: values to pixels.
+//! A linear or logarithmic axis: values to pixels, and which values it can show.
 
-use crate::range::{drawable, range, widened};
-
-/// An axis of values, or of their logarithms.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Axis {
     /// The ends, as the axis measures them: values, or their decimal logarithms.
@@ -20,7 +17,7 @@ impl Axis {
     /// It is logarithmic if `log` says so and every value that can be drawn is positive.
     pub(crate) fn around(values: &[f64], log: bool, pad: f64) -> Self {
         let log = log && values.iter().filter(|v| drawable(**v)).all(|&value| value > 0.0);
-        let (lo, hi) = widened(range(values.iter().map(|&value| measured(value, log))));
+        let (lo, hi) = range(values.iter().map(|&value| measured(value, log)));
         let pad = pad * (hi - lo);
         Self::between(lo - pad, hi + pad, log)
     }
@@ -76,6 +73,35 @@ fn measured(value: f64, log: bool) -> f64 {
     if log { libm::log10(value) } else { value }
 }
 
+/// Larger values are taken as blank: their differences might not be finite.
+const MAX_VALUE: f64 = 1e100;
+
+/// Smaller differences are taken as none: their parts might be zero.
+const MIN_DIFFERENCE: f64 = 1e-290;
+
+/// True when a value can be placed on an axis.
+pub(crate) fn drawable(value: f64) -> bool {
+    value.abs() < MAX_VALUE
+}
+
+/// The smallest and largest drawable value, [`widened`]; 0 and 1 when there is none.
+pub(crate) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let empty = (f64::INFINITY, f64::NEG_INFINITY);
+    let values = values.filter(|&value| drawable(value));
+    let (lo, hi) = values.fold(empty, |(lo, hi), value| (lo.min(value), hi.max(value)));
+    widened(if lo <= hi { (lo, hi) } else { (0.0, 1.0) })
+}
+
+/// A range, or one around it when it is too narrow to be an axis.
+pub(crate) fn widened((lo, hi): (f64, f64)) -> (f64, f64) {
+    let size = lo.abs().max(hi.abs());
+    if hi - lo > 1e-9 * size && hi - lo > MIN_DIFFERENCE {
+        return (lo, hi);
+    }
+    let margin = if size > MIN_DIFFERENCE { 0.1 * size } else { 0.5 };
+    (lo - margin, hi + margin)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -91,5 +117,13 @@ mod tests {
         let axis = Axis::around(&[1.0, 100.0], true, 0.0).placed(10.0, 30.0);
         assert_eq!([1.0, 10.0, 100.0].map(|value| axis.at(value)), [10.0, 20.0, 30.0]);
         assert!(axis.contains(50.0) && !axis.contains(101.0) && axis.clamped(1e9) == 30.0);
+    }
+
+    #[test]
+    fn odd_ranges_still_make_an_axis() {
+        assert_eq!(range([f64::NAN, f64::INFINITY].into_iter()), (0.0, 1.0));
+        assert_eq!(widened((0.0, 0.0)), (-0.5, 0.5));
+        let (lo, hi) = widened((1e16, 1e16));
+        assert!(lo < 1e16 && hi > 1e16);
     }
 }

@@ -2,16 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::axis::Axis;
+use crate::axis::{Axis, drawable};
 use crate::canvas::Canvas;
-use crate::category_axis::CategoryAxis;
-use crate::error_bar::{Interval, error_bar};
+use crate::category_axis::{CategoryAxis, MIN_SLOT};
 use crate::frame::{left_room, left_side};
 use crate::geometry::Area;
 use crate::legend::{Legend, Sample};
 use crate::picture::{Picture, PictureError};
-use crate::range::drawable;
-use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, OPACITY_BAR, Rgb, WIDTH_FRAME, WIDTH_MARK, curve_colour};
+use crate::series::{error_bar, interval};
+use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, OPACITY_BAR, Rgb, WIDTH_FRAME, curve_colour};
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
 
@@ -76,23 +75,11 @@ pub fn bars(chart: &BarChart) -> Result<Picture, PictureError> {
     let y = value_axis(&places.bars);
     let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Direction::Y, MAX_STEPS));
     let room = COLUMN_WIDTH.round() - MARGIN - left;
-    let width = room.max(places.narrowest() * places.names.len() as f64).round();
-    let mut legend = Legend::default();
-    if !places.legend.is_empty() {
-        legend = Legend::titled(
-            &chart.legend_title,
-            &places.legend,
-            Sample::Patch,
-            left,
-            left + width,
-        );
-    }
-    let area = Area {
-        x: left,
-        y: MARGIN + legend.height,
-        width,
-        height: HEIGHT,
-    };
+    let narrowest = MIN_SLOT.max(MIN_BAR_WIDTH * places.legend.len() as f64 / SHARE_GROUP);
+    let width = room.max(narrowest * places.names.len() as f64).round();
+    let legend_names: Vec<_> = places.legend.iter().map(|&name| (name, Sample::Patch)).collect();
+    let legend = Legend::of(&chart.legend_title, &legend_names, left, left + width);
+    let area = Area::new(left, MARGIN + legend.height, width, HEIGHT);
     let y = y.placed(area.bottom(), area.y);
     let names = CategoryAxis::of(&places.names, &chart.x_title, area);
 
@@ -103,59 +90,44 @@ pub fn bars(chart: &BarChart) -> Result<Picture, PictureError> {
     names.draw(&mut canvas);
     let slot = area.width / places.names.len() as f64;
     let bar_width = places.bar_width(slot);
-    for Placed {
-        bar,
-        name,
-        step,
-        colour,
-    } in &places.bars
-    {
-        let middle = area.x + slot * (*name as f64 + 0.5) + bar_width * step;
-        draw_bar(&mut canvas, &y, bar, (middle, bar_width), *colour);
+    for placed in &places.bars {
+        let middle = area.x + slot * (placed.name as f64 + 0.5) + bar_width * placed.step;
+        draw_bar(&mut canvas, &y, placed, middle, bar_width);
     }
     canvas.line((area.x, y.at(0.0)), (area.right(), y.at(0.0)), WIDTH_FRAME, BLACK);
     canvas.frame(area);
     canvas.finish()
 }
 
-fn draw_bar(canvas: &mut Canvas, y: &Axis, bar: &Bar, (middle, width): (f64, f64), colour: Rgb) {
+fn draw_bar(canvas: &mut Canvas, y: &Axis, Placed { bar, colour, .. }: &Placed, middle: f64, width: f64) {
     if !drawable(bar.mean) {
         return;
     }
     let (foot, head) = (y.at(0.0), y.at(bar.mean));
-    let area = Area {
-        // Bars of a group do not touch.
-        x: middle - 0.5 * width + 1.0,
-        y: foot.min(head),
-        width: width - 2.0,
-        height: (foot - head).abs(),
-    };
-    canvas.fill(area, colour, OPACITY_BAR);
-    if let Some(Interval { low, high }) = Interval::of(bar.mean, bar.low, bar.high) {
-        error_bar(canvas, middle, (y.at(low), y.at(high)), WIDTH_MARK, BLACK);
+    // Bars of a group do not touch.
+    let left = middle - 0.5 * width + 1.0;
+    let area = Area::new(left, foot.min(head), width - 2.0, (foot - head).abs());
+    canvas.fill(area, *colour, OPACITY_BAR);
+    if let Some((low, high)) = interval(bar.mean, bar.low, bar.high) {
+        error_bar(canvas, middle, y.at(low), y.at(high), BLACK);
     }
 }
 
 /// y from zero, with all bars and error bars.
 fn value_axis(bars: &[Placed]) -> Axis {
-    let values: Vec<f64> = bars
-        .iter()
-        .flat_map(|Placed { bar, .. }| {
-            let interval = Interval::of(bar.mean, bar.low, bar.high);
-            let ends = interval.map_or([bar.mean; 2], |interval| [interval.low, interval.high]);
-            [0.0, bar.mean, ends[0], ends[1]]
-        })
-        .collect();
+    let extent = |Placed { bar, .. }: &Placed| {
+        let (low, high) = interval(bar.mean, bar.low, bar.high).unwrap_or((bar.mean, bar.mean));
+        [0.0, bar.mean, low, high]
+    };
+    let values: Vec<f64> = bars.iter().flat_map(extent).collect();
     let whole = Axis::around(&values, false, 0.06);
     // Beyond zero no margin, unless bars lie on that side.
-    let (mut lo, mut hi) = (whole.lo, whole.hi);
     let beyond = |side: f64| values.iter().any(|&value| drawable(value) && value * side > 0.0);
     match (beyond(-1.0), beyond(1.0)) {
-        (false, true) => lo = 0.0,
-        (true, false) => hi = 0.0,
-        _ => {}
+        (false, true) => Axis::linear(0.0, whole.hi),
+        (true, false) => Axis::linear(whole.lo, 0.0),
+        _ => whole,
     }
-    Axis::linear(lo, hi)
 }
 
 /// Which bar stands where.
@@ -212,12 +184,6 @@ impl<'a> Places<'a> {
             legend,
             bars,
         }
-    }
-
-    /// How narrow the place of a name may be.
-    fn narrowest(&self) -> f64 {
-        let bars = MIN_BAR_WIDTH * self.legend.len() as f64 / SHARE_GROUP;
-        bars.max(CategoryAxis::MIN_SLOT)
     }
 
     fn bar_width(&self, slot: f64) -> f64 {
@@ -332,6 +298,6 @@ mod tests {
             .split_once("viewBox=\"0 0 ")
             .and_then(|(_, rest)| rest.split_once(' '));
         let width: f64 = width.and_then(|(width, _)| width.parse().ok()).unwrap();
-        assert!(width > 60.0 * CategoryAxis::MIN_SLOT);
+        assert!(width > 60.0 * MIN_SLOT);
     }
 }

@@ -3,9 +3,8 @@
 use crate::color_image::Image;
 use crate::geometry::{Align, Area, Point};
 use crate::style::{BLACK, Rgb, TICK_LENGTH, WHITE, WIDTH_FRAME};
-use crate::text::{Run, Text};
+use crate::text::{Text, width};
 
-/// A picture being drawn.
 pub(crate) struct Canvas {
     pub(crate) width: f64,
     pub(crate) height: f64,
@@ -15,7 +14,6 @@ pub(crate) struct Canvas {
 }
 
 /// Something drawn in one colour.
-#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Element {
     pub(crate) primitive: Primitive,
     pub(crate) colour: Rgb,
@@ -23,21 +21,20 @@ pub(crate) struct Element {
     pub(crate) opacity: f64,
 }
 
-/// What can be drawn. An SVG and a PNG are made of nothing else.
-#[derive(Clone, Debug, PartialEq)]
+/// What can be drawn; areas are filled. An SVG and a PNG are made of nothing else.
 pub(crate) enum Primitive {
-    /// A line of this width through points, and back to the first one if it is closed.
+    /// A line through points, and back to the first one if it is closed.
     Line {
         points: Vec<Point>,
         width: f64,
         closed: bool,
     },
-    /// A filled polygon.
     Polygon(Vec<Point>),
-    /// A filled rectangle.
     Rectangle(Area),
-    /// A disc.
-    Disc { centre: Point, radius: f64 },
+    Disc {
+        centre: Point,
+        radius: f64,
+    },
     /// Letters on a baseline that starts at `at`, turned to read upwards or not.
     Letters {
         text: String,
@@ -48,7 +45,6 @@ pub(crate) enum Primitive {
 }
 
 impl Canvas {
-    /// An empty canvas, `width` by `height` pixels.
     pub(crate) fn new(width: f64, height: f64) -> Self {
         Self {
             width: width.round(),
@@ -56,11 +52,6 @@ impl Canvas {
             images: Vec::new(),
             elements: Vec::new(),
         }
-    }
-
-    /// Adds an image.
-    pub(crate) fn image(&mut self, image: Image) {
-        self.images.push(image);
     }
 
     fn add(&mut self, primitive: Primitive, colour: Rgb, opacity: f64) {
@@ -71,7 +62,6 @@ impl Canvas {
         });
     }
 
-    /// Adds a straight line.
     pub(crate) fn line(&mut self, from: Point, to: Point, width: f64, colour: Rgb) {
         self.polyline(vec![from, to], width, colour);
     }
@@ -90,12 +80,10 @@ impl Canvas {
         self.add(line, colour, 1.0);
     }
 
-    /// Fills a rectangle.
     pub(crate) fn fill(&mut self, area: Area, colour: Rgb, opacity: f64) {
         self.add(Primitive::Rectangle(area), colour, opacity);
     }
 
-    /// Fills a polygon.
     pub(crate) fn polygon(&mut self, points: Vec<Point>, colour: Rgb, opacity: f64) {
         self.add(Primitive::Polygon(points), colour, opacity);
     }
@@ -103,14 +91,14 @@ impl Canvas {
     /// Draws the edge of a rectangle.
     pub(crate) fn frame(&mut self, area: Area) {
         let (left, right, top, bottom) = (area.x, area.right(), area.y, area.bottom());
-        let corners = vec![
+        let corners = [
             (left, top),
             (right, top),
             (right, bottom),
             (left, bottom),
             (left, top),
         ];
-        self.polyline(corners, WIDTH_FRAME, BLACK);
+        self.polyline(corners.to_vec(), WIDTH_FRAME, BLACK);
     }
 
     /// Adds a disc with a thin white rim, which parts it from the curve below.
@@ -122,45 +110,34 @@ impl Canvas {
 
     /// Adds a text on the baseline through `at`.
     pub(crate) fn text(&mut self, text: &Text, at: Point, align: Align, colour: Rgb) {
-        self.runs(text, align, colour, false, |along, drop| {
-            (at.0 + along, at.1 + drop)
-        });
+        self.runs(text, at, align, colour, false);
     }
 
     /// Adds a text that reads upwards, its baseline the vertical through `at`.
     pub(crate) fn text_upwards(&mut self, text: &Text, at: Point, align: Align, colour: Rgb) {
-        self.runs(text, align, colour, true, |along, drop| {
-            (at.0 + drop, at.1 - along)
-        });
+        self.runs(text, at, align, colour, true);
     }
 
-    /// Adds the runs of a text. `place` is the point at a distance along the baseline and one below it.
-    fn runs(
-        &mut self,
-        text: &Text,
-        align: Align,
-        colour: Rgb,
-        upwards: bool,
-        place: impl Fn(f64, f64) -> Point,
-    ) {
+    fn runs(&mut self, text: &Text, (x, y): Point, align: Align, colour: Rgb, upwards: bool) {
         let mut along = -align.offset(text.width());
         for run in &text.runs {
             // SVG drops the spaces that a text starts with, so they are stepped over.
-            let trimmed = run.text.trim_start();
-            let spaces = Run {
-                text: run.text[..run.text.len() - trimmed.len()].to_string(),
-                ..run.clone()
-            };
+            let text = run.text.trim_start();
+            let (spaces, _) = run.text.split_at(run.text.len() - text.len());
+            let start = along + width(spaces, run.size);
             let letters = Primitive::Letters {
-                text: trimmed.to_string(),
+                text: text.to_string(),
                 size: run.size,
-                at: place(along + spaces.width(), run.drop),
+                at: match upwards {
+                    true => (x + run.drop, y - start),
+                    false => (x + start, y + run.drop),
+                },
                 upwards,
             };
-            if !trimmed.is_empty() {
+            if !text.is_empty() {
                 self.add(letters, colour, 1.0);
             }
-            along += run.width();
+            along += width(&run.text, run.size);
         }
     }
 

@@ -20,20 +20,19 @@ impl Image {
 /// The level of a blank pixel.
 const LEVEL_BLANK: u8 = 255;
 
-/// The level of a value from 0 to 1; NaN is blank.
-pub(crate) fn level(value: f32) -> u8 {
-    if value.is_nan() {
-        LEVEL_BLANK
-    } else {
-        (value.clamp(0.0, 1.0) * f32::from(LEVEL_BLANK - 1)).round() as u8
+/// The level of a value in this range, or of the end that it lies beyond; NaN is blank.
+pub(crate) fn level(value: f64, [lo, hi]: [f64; 2]) -> u8 {
+    let share = ((value - lo) / (hi - lo)) as f32;
+    match share.is_nan() {
+        true => LEVEL_BLANK,
+        false => (share.clamp(0.0, 1.0) * f32::from(LEVEL_BLANK - 1)).round() as u8,
     }
 }
 
 pub(crate) fn level_colour(level: u8) -> Rgb {
-    if level == LEVEL_BLANK {
-        BLANK
-    } else {
-        ramp(f64::from(level) / f64::from(LEVEL_BLANK - 1))
+    match level {
+        LEVEL_BLANK => BLANK,
+        _ => ramp(f64::from(level) / f64::from(LEVEL_BLANK - 1)),
     }
 }
 
@@ -49,7 +48,7 @@ mod tests {
     #[test]
     fn levels_span_the_ramp_and_leave_one_for_blank() {
         assert_eq!(
-            [0.0, 1.0, 2.0, -1.0, f32::NAN, f32::INFINITY].map(level),
+            [0.0, 1.0, 2.0, -1.0, f64::NAN, f64::INFINITY].map(|value| level(value, [0.0, 1.0])),
             [0, 254, 254, 0, 255, 254]
         );
         assert_eq!(level_colour(0), [0x44, 0x01, 0x54]);

@@ -2,7 +2,7 @@
 
 use crate::canvas::Canvas;
 use crate::picture::{Picture, PictureError};
-use crate::png_file::{self, Pixels};
+use crate::png_file;
 use crate::raster;
 use crate::svg;
 
@@ -12,14 +12,12 @@ const MAX_PIXELS: f64 = 1e8;
 impl Canvas {
     /// Makes both files.
     pub(crate) fn finish(&self) -> Result<Picture, PictureError> {
-        if self.width * self.height > MAX_PIXELS {
-            return Err(PictureError::Png("it would be too large".to_string()));
-        }
-        let pixels =
-            raster::rgb(self).ok_or_else(|| PictureError::Png("it would be too large".to_string()))?;
+        let pixels = Some(self).filter(|canvas| canvas.width * canvas.height <= MAX_PIXELS);
+        let pixels = pixels.and_then(raster::rgb);
+        let pixels = pixels.ok_or_else(|| PictureError::Png("it would be too large".to_string()))?;
         Ok(Picture {
             svg: svg::svg(self)?,
-            png: png_file::encode(self.width as usize, self.height as usize, &pixels, Pixels::Rgb)?,
+            png: png_file::encode(self.width as usize, self.height as usize, &pixels, None)?,
         })
     }
 }
@@ -45,7 +43,7 @@ mod tests {
         // through.
         let mut canvas = Canvas::new(60.0, 60.0);
         let levels = (0..49).map(|index| (index % 2) as u8).collect();
-        canvas.image(Image {
+        canvas.images.push(Image {
             area: Area {
                 x: 5.0,
                 y: 5.0,

@@ -2,19 +2,19 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::axis::Axis;
 use crate::canvas::Canvas;
-use crate::color_bar::{BAR_MIN_HEIGHT, BAR_WIDTH, bar_room, colour_bar};
+use crate::frame::{BAR_MIN_HEIGHT, BAR_WIDTH, bar_room, colour_bar};
 use crate::geometry::{Align, Area, Point};
 use crate::lattice_map::{Cells, TITLE_ROOM, block_count, check_length, draw_titles, place, rimmed_line};
 use crate::picture::{Picture, PictureError};
 use crate::style::{BLACK, MARGIN, RADIUS_MARKER, Rgb, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH};
 use crate::text::Text;
-use crate::ticks::Direction;
 
 const GAP: f64 = 26.0;
 /// A map is no wider than this: 44 mm.
 const MAX_WIDTH: f64 = 520.0;
+/// The colour bar is numbered in at most so many steps.
+const BAR_STEPS: usize = 5;
 /// The edge of a mark is drawn with so many corners.
 const MARK_CORNERS: usize = 24;
 const MARK: Rgb = [0xd5, 0x2b, 0x1e];
@@ -62,34 +62,36 @@ pub fn field_maps(maps: &FieldMaps) -> Result<Picture, PictureError> {
     let Some(first) = maps.maps.first() else {
         return Err(PictureError::Nothing("map"));
     };
-    let [lo, hi] = maps.range;
-    let bar_ticks = |start: f64, end: f64| Axis::linear(lo, hi).placed(start, end).ticks(Direction::Y, 5);
-    let bar_width = bar_room(&bar_ticks(MAX_WIDTH, 0.0));
+    let bar_width = bar_room(maps.range, BAR_STEPS, MAX_WIDTH);
     let columns = maps.columns.clamp(1, maps.maps.len());
     let rows = maps.maps.len().div_ceil(columns);
     let room = (TEXT_WIDTH - 2.0 * MARGIN - bar_width) / columns as f64;
     let width = (room - GAP).min(MAX_WIDTH).round();
     let height = (width * (first.ny as f64 / first.nx as f64).clamp(0.2, 5.0)).round();
-    let area = |index: usize| Area {
-        x: MARGIN + (index % columns) as f64 * (width + GAP),
-        y: MARGIN + TITLE_ROOM + (index / columns) as f64 * (height + TITLE_ROOM + GAP),
-        width,
-        height,
+    let top = MARGIN + TITLE_ROOM;
+    let area = |index: usize| {
+        let (column, row) = ((index % columns) as f64, (index / columns) as f64);
+        let (x, y) = (
+            MARGIN + column * (width + GAP),
+            top + row * (height + TITLE_ROOM + GAP),
+        );
+        Area::new(x, y, width, height)
     };
     let lowest = area((rows - 1) * columns).bottom();
-    let bar = Area {
-        x: area(columns - 1).right() + GAP,
-        y: MARGIN + TITLE_ROOM,
-        width: BAR_WIDTH,
-        height: (lowest - MARGIN - TITLE_ROOM).max(BAR_MIN_HEIGHT),
-    };
+    let bar_x = area(columns - 1).right() + GAP;
+    let bar = Area::new(
+        bar_x,
+        top,
+        BAR_WIDTH,
+        (lowest - MARGIN - TITLE_ROOM).max(BAR_MIN_HEIGHT),
+    );
     let title = Text::math(&maps.value_title, SIZE_LABEL);
     let right = bar.x + bar_width.max(title.width());
     let mut canvas = Canvas::new(right + MARGIN, lowest.max(bar.bottom()) + MARGIN);
     for (index, map) in maps.maps.iter().enumerate() {
         draw_map(&mut canvas, map, area(index), maps.range);
     }
-    colour_bar(&mut canvas, bar, &bar_ticks(bar.bottom(), bar.y));
+    colour_bar(&mut canvas, bar, maps.range, BAR_STEPS);
     // Over the bar, on the line of the maps' names.
     canvas.text(&title, (bar.x, bar.y - 18.0), Align::Start, BLACK);
     canvas.finish()
@@ -111,12 +113,8 @@ fn draw_map(canvas: &mut Canvas, map: &FieldMap, area: Area, range: [f64; 2]) {
     }
     canvas.frame(area);
     let fitted = |text: &str, size| Text::shortened(text, size, area.width + 0.6 * GAP);
-    draw_titles(
-        canvas,
-        area,
-        &fitted(&map.label, SIZE_LABEL),
-        &fitted(&map.note, SIZE_TICK),
-    );
+    let (label, note) = (fitted(&map.label, SIZE_LABEL), fitted(&map.note, SIZE_TICK));
+    draw_titles(canvas, area, &label, &note);
 }
 
 /// A circle with a pale rim, seen on every colour of the ramp.

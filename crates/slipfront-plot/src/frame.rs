@@ -1,13 +1,21 @@
-//! The numbered sides of a panel: ticks, their numbers, a title.
+//! The numbered sides of panels and colour bars: ticks, their numbers, titles.
 
+use crate::axis::Axis;
 use crate::canvas::Canvas;
+use crate::color_image::Image;
 use crate::geometry::{Align, Area};
 use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TICK_LENGTH, WIDTH_FRAME};
 use crate::text::Text;
 use crate::ticks::{Direction, Tick};
 
-/// How wide the widest number is.
-pub(crate) fn widest(ticks: &[Tick]) -> f64 {
+/// The room below a panel for numbers and a title.
+pub(crate) const LOWER_ROOM: f64 = TICK_LENGTH + 7.0 + SIZE_TICK as f64 + SIZE_LABEL as f64 + MARGIN;
+/// How wide a colour bar is.
+pub(crate) const BAR_WIDTH: f64 = 30.0;
+/// A colour bar is drawn no shorter than this.
+pub(crate) const BAR_MIN_HEIGHT: f64 = 180.0;
+
+fn widest(ticks: &[Tick]) -> f64 {
     ticks.iter().map(|(_, text)| text.width()).fold(0.0, f64::max)
 }
 
@@ -22,17 +30,11 @@ pub(crate) fn right_end(ticks: &[Tick], left: f64, right: f64, width: f64) -> f6
     let end = |(x, text): &Tick| {
         let share = (x - left) / (right - left);
         let room = width - EDGE - 0.5 * text.width() - left;
-        if share * (right - left) > room {
-            left + room / share
-        } else {
-            right
-        }
+        let is_cut = share * (right - left) > room;
+        if is_cut { left + room / share } else { right }
     };
     ticks.iter().map(end).fold(right, f64::min).floor()
 }
-
-/// The room below a panel for numbers and a title.
-pub(crate) const LOWER_ROOM: f64 = TICK_LENGTH + 7.0 + SIZE_TICK as f64 + SIZE_LABEL as f64 + MARGIN;
 
 /// Draws the left side of `area`, its title along `edge`, where the room left of it begins.
 pub(crate) fn left_side(canvas: &mut Canvas, area: Area, edge: f64, ticks: &[Tick], title: &Text) {
@@ -61,10 +63,34 @@ pub(crate) fn lower_title(canvas: &mut Canvas, area: Area, title: &Text) {
 pub(crate) fn short_ticks(canvas: &mut Canvas, area: Area, direction: Direction, ticks: &[f64]) {
     let length = 0.5 * TICK_LENGTH;
     for &at in ticks {
-        let ends = match direction {
-            Direction::X => [(at, area.bottom()), (at, area.bottom() + length)],
-            Direction::Y => [(area.x, at), (area.x - length, at)],
+        let (from, to) = match direction {
+            Direction::X => ((at, area.bottom()), (at, area.bottom() + length)),
+            Direction::Y => ((area.x, at), (area.x - length, at)),
         };
-        canvas.line(ends[0], ends[1], WIDTH_FRAME, BLACK);
+        canvas.line(from, to, WIDTH_FRAME, BLACK);
+    }
+}
+
+/// The numbers beside a colour bar over this range: round ones, in at most `most` steps.
+fn bar_ticks([lo, hi]: [f64; 2], most: usize, bottom: f64, top: f64) -> Vec<Tick> {
+    Axis::linear(lo, hi).placed(bottom, top).ticks(Direction::Y, most)
+}
+
+/// How wide a colour bar of this height is with the numbers beside it.
+pub(crate) fn bar_room(range: [f64; 2], most: usize, height: f64) -> f64 {
+    BAR_WIDTH + TICK_LENGTH + 7.0 + widest(&bar_ticks(range, most, height, 0.0))
+}
+
+/// Draws a bar of all colours, dark at its foot.
+pub(crate) fn colour_bar(canvas: &mut Canvas, area: Area, range: [f64; 2], most: usize) {
+    let levels = (0..=254).rev().collect();
+    canvas.images.push(Image {
+        area,
+        columns: 1,
+        levels,
+    });
+    canvas.frame(area);
+    for (y, text) in bar_ticks(range, most, area.bottom(), area.y) {
+        canvas.tick_right((area.right(), y), &text);
     }
 }

@@ -1,14 +1,14 @@
 //! Friction and the share of sliding blocks against time.
 
+use crate::axis::drawable;
 use crate::canvas::Canvas;
 use crate::friction_curve::{FrictionCurve, Kinetic};
-use crate::friction_layout::{Panels, between};
+use crate::friction_layout::Panels;
 use crate::geometry::{Align, Area, Point};
 use crate::label_placement::{Candidate, Placer, around};
-use crate::legend::Legend;
-use crate::picture::{Picture, PictureError};
-use crate::polyline::segments;
-use crate::range::drawable;
+use crate::legend::{Legend, Sample};
+use crate::picture::{Picture, PictureError, check_columns};
+use crate::series::segments;
 use crate::style::{
     BLACK, COLUMN_WIDTH, CURVES, GREY, MARGIN, Rgb, SIZE_LABEL, WIDTH_CURVE, WIDTH_LEADER, WIDTH_MARK,
     curve_colour,
@@ -35,235 +35,200 @@ pub fn friction(curves: &[FrictionCurve]) -> Result<Picture, PictureError> {
     }
     for curve in curves {
         let columns = [("mu*", curve.mu_star.len()), ("N*", curve.sliding_percent.len())];
-        if let Some(&(column, values)) = columns
-            .iter()
-            .find(|(_, values)| *values != curve.time_star.len())
-        {
-            let (label, times) = (curve.label.clone(), curve.time_star.len());
-            return Err(PictureError::Columns {
-                label,
-                times,
-                column,
-                values,
-            });
-        }
+        check_columns(&curve.label, ("times", curve.time_star.len()), &columns)?;
     }
-    let mut panels = Panels::of(curves);
-    let mut legend = Legend::default();
-    if curves.len() > 1 {
-        let labels: Vec<&str> = curves.iter().map(|curve| curve.label.as_str()).collect();
-        legend = Legend::of(&labels, panels.time.start, panels.time.end);
-        panels = panels.lowered(legend.height);
-    }
-    let mut canvas = Canvas::new(COLUMN_WIDTH, panels.bottom());
-    panels.draw_axes(&mut canvas);
-    legend.draw(&mut canvas);
+    let panels = Panels::of(curves);
+    let named = curves.iter().filter(|_| curves.len() > 1);
+    let names: Vec<_> = named.map(|curve| (curve.label.as_str(), Sample::Line)).collect();
+    let legend = Legend::of("", &names, panels.time.start, panels.time.end);
+    let panels = panels.lowered(legend.height);
+    let mut drawing = Drawing {
+        canvas: Canvas::new(COLUMN_WIDTH, panels.bottom()),
+        panels,
+        placer: Placer::new(panels.area(&panels.mu)),
+    };
+    panels.draw_axes(&mut drawing.canvas);
+    legend.draw(&mut drawing.canvas);
     match curves {
-        [curve] => draw_one(&mut canvas, &panels, curve),
-        _ => draw_many(&mut canvas, &panels, curves),
+        [curve] => drawing.draw_one(curve),
+        _ => drawing.draw_many(curves),
     }
-    canvas.finish()
+    panels.draw_frames(&mut drawing.canvas);
+    drawing.canvas.finish()
 }
 
-/// One curve with its marks.
-fn draw_one(canvas: &mut Canvas, panels: &Panels, curve: &FrictionCurve) {
-    let Panels { time, mu, sliding } = panels;
-    let mut placer = Placer::new(panels.friction());
-    let window = curve
-        .kinetic
-        .filter(|window| drawable(window.mean) && window.from < window.to);
-    if let Some(window) = &window {
-        shade_window(canvas, panels, window);
+struct Drawing {
+    canvas: Canvas,
+    panels: Panels,
+    /// Places the labels in the panel of friction.
+    placer: Placer,
+}
+
+impl Drawing {
+    /// One curve with its marks.
+    fn draw_one(&mut self, curve: &FrictionCurve) {
+        let Panels { time, mu, sliding } = self.panels;
+        let is_window = |window: &Kinetic| drawable(window.mean) && window.from < window.to;
+        let window = curve.kinetic.filter(is_window);
+        if let Some(window) = &window {
+            self.shade_window(window);
+        }
+        let first_slip = curve.first_slip_time_star.filter(|&slip| time.contains(slip));
+        let first_slip = first_slip.map(|slip| time.at(slip));
+        if let Some(x) = first_slip {
+            for axis in [mu, sliding] {
+                self.canvas
+                    .line((x, axis.start), (x, axis.end), WIDTH_LEADER, GREY);
+            }
+            self.placer.avoid(&[(x, mu.start), (x, mu.end)]);
+        }
+        self.draw_curve(curve, CURVES[0]);
+        if let Some(window) = &window {
+            // Over the curve, which would hide it.
+            let ends = [window.from, window.to].map(|t| (time.clamped(t), mu.clamped(window.mean)));
+            self.canvas.line(ends[0], ends[1], WIDTH_MARK, CURVES[1]);
+            self.placer.avoid(&ends);
+        }
+        let marks = Marks::of(&self.panels, curve, curve.peak);
+        self.keep_free(&marks.dots);
+        // Labels that can go in fewest places come first.
+        if let Some(window) = &window {
+            let text = Text::math(&format!("\u{3bc}_k* = {}", with_uncertainty(window)), SIZE_LABEL);
+            self.write(&text, along_window(&self.panels, &text, window), CURVES[1]);
+        }
+        self.label_points(&marks.peak, &marks.dots);
+        if let Some(x) = first_slip {
+            let text = Text::plain("first slip", SIZE_LABEL);
+            self.write(&text, beside_line(&self.panels, &text, x), GREY);
+        }
+        self.label_points(&marks.instants, &marks.dots);
+        self.draw_dots(&marks.dots);
     }
-    let first_slip = curve.first_slip_time_star.filter(|&slip| time.contains(slip));
-    if let Some(x) = first_slip.map(|slip| time.at(slip)) {
+
+    /// Several curves, with their peaks.
+    fn draw_many(&mut self, curves: &[FrictionCurve]) {
+        let colour = |index| curve_colour(index, curves.len());
+        for (index, curve) in curves.iter().enumerate() {
+            self.draw_curve(curve, colour(index));
+        }
+        // Peaks last: no curve may hide one.
+        for (index, curve) in curves.iter().enumerate() {
+            if let Some(peak) = curve.peak.and_then(|peak| self.panels.point(peak)) {
+                self.canvas.dot(peak, DOT, colour(index));
+            }
+        }
+        // Letters of two curves could not be told apart.
+        let mut lettered = curves.iter().filter(|curve| !curve.instants.is_empty());
+        if let (Some(curve), None) = (lettered.next(), lettered.next()) {
+            let marks = Marks::of(&self.panels, curve, None);
+            self.keep_free(&marks.dots);
+            self.label_points(&marks.instants, &marks.dots);
+            self.draw_dots(&marks.dots);
+        }
+    }
+
+    /// Shades the window of kinetic friction in both panels, and the uncertainty of its mean.
+    fn shade_window(&mut self, window: &Kinetic) {
+        let Panels { time, mu, sliding } = self.panels;
+        let (from, to) = (time.clamped(window.from), time.clamped(window.to));
         for axis in [mu, sliding] {
-            canvas.line((x, axis.start), (x, axis.end), WIDTH_LEADER, GREY);
+            self.canvas
+                .fill(Area::between(from, to, axis.start, axis.end), SHADE, 0.25);
         }
-        placer.avoid(&[(x, mu.start), (x, mu.end)]);
-    }
-    draw_curve(canvas, panels, &mut placer, curve, CURVES[0]);
-    if let Some(window) = &window {
-        // Over the curve, which would hide it.
-        let y = mu.clamped(window.mean);
-        let ends = [(time.clamped(window.from), y), (time.clamped(window.to), y)];
-        canvas.line(ends[0], ends[1], WIDTH_MARK, CURVES[1]);
-        placer.avoid(&ends);
-    }
-    let marks = Marks::of(panels, curve, curve.peak);
-    marks.keep_free(&mut placer);
-    // Labels that can go in fewest places come first.
-    if let Some(window) = &window {
-        let text = Text::math(&format!("\u{3bc}_k* = {}", with_uncertainty(window)), SIZE_LABEL);
-        write(
-            canvas,
-            &mut placer,
-            &text,
-            along_window(panels, &text, window),
-            CURVES[1],
-        );
-    }
-    marks.label_peak(canvas, &mut placer);
-    if let Some(slip) = first_slip {
-        let text = Text::plain("first slip", SIZE_LABEL);
-        write(
-            canvas,
-            &mut placer,
-            &text,
-            beside_line(panels, &text, time.at(slip)),
-            GREY,
-        );
-    }
-    marks.label_instants(canvas, &mut placer);
-    marks.draw_dots(canvas);
-    panels.draw_frames(canvas);
-}
-
-/// Shades the window of kinetic friction in both panels, and the uncertainty of its mean.
-fn shade_window(canvas: &mut Canvas, Panels { time, mu, sliding }: &Panels, window: &Kinetic) {
-    let (from, to) = (time.clamped(window.from), time.clamped(window.to));
-    for axis in [mu, sliding] {
-        canvas.fill(between(from, to, axis.start, axis.end), SHADE, 0.25);
-    }
-    if let Some(uncertainty) = window.uncertainty.filter(|&u| drawable(u)) {
-        let [lo, hi] = [window.mean - uncertainty, window.mean + uncertainty].map(|value| mu.clamped(value));
-        canvas.fill(between(from, to, lo, hi), CURVES[1], 0.25);
-    }
-}
-
-/// Draws mu* and N*; labels keep off the former.
-fn draw_curve(canvas: &mut Canvas, panels: &Panels, placer: &mut Placer, curve: &FrictionCurve, colour: Rgb) {
-    let Panels { time, mu, sliding } = panels;
-    for segment in segments(&curve.time_star, &curve.mu_star, time, mu) {
-        placer.avoid(&segment);
-        stroke(canvas, segment, colour);
-    }
-    for segment in segments(&curve.time_star, &curve.sliding_percent, time, sliding) {
-        stroke(canvas, segment, colour);
-    }
-}
-
-/// Several curves, with their peaks.
-fn draw_many(canvas: &mut Canvas, panels: &Panels, curves: &[FrictionCurve]) {
-    let Panels { time, mu, .. } = panels;
-    let mut placer = Placer::new(panels.friction());
-    for (index, curve) in curves.iter().enumerate() {
-        let colour = curve_colour(index, curves.len());
-        draw_curve(canvas, panels, &mut placer, curve, colour);
-    }
-    // Peaks last: no curve may hide one.
-    for (index, curve) in curves.iter().enumerate() {
-        if let Some((t, value)) = curve
-            .peak
-            .filter(|&(t, value)| time.contains(t) && mu.contains(value))
-        {
-            canvas.dot((time.at(t), mu.at(value)), DOT, curve_colour(index, curves.len()));
+        if let Some(uncertainty) = window.uncertainty.filter(|&u| drawable(u)) {
+            let [lo, hi] =
+                [window.mean - uncertainty, window.mean + uncertainty].map(|value| mu.clamped(value));
+            self.canvas.fill(Area::between(from, to, lo, hi), CURVES[1], 0.25);
         }
     }
-    // Letters of two curves could not be told apart.
-    let mut lettered = curves.iter().filter(|curve| !curve.instants.is_empty());
-    if let (Some(curve), None) = (lettered.next(), lettered.next()) {
-        let marks = Marks::of(panels, curve, None);
-        marks.keep_free(&mut placer);
-        marks.label_instants(canvas, &mut placer);
-        marks.draw_dots(canvas);
-    }
-    panels.draw_frames(canvas);
-}
 
-/// The points of a curve that are marked by dots.
-struct Marks {
-    /// The peak and its value.
-    peak: Option<(Point, f64)>,
-    /// Instants and their letters; those at the peak share its label, because several labels of one point would take its
-    /// neighbours' places.
-    instants: Vec<(Point, char)>,
-    at_peak: Vec<char>,
-    /// All of these points.
-    dots: Vec<Point>,
-}
-
-impl Marks {
-    /// The instants of a curve that lie in the panel, and its peak if one is given.
-    fn of(Panels { time, mu, .. }: &Panels, curve: &FrictionCurve, peak: Option<(f64, f64)>) -> Self {
-        let point =
-            |t: f64, value: f64| (time.contains(t) && mu.contains(value)).then(|| (time.at(t), mu.at(value)));
-        let peak = peak.and_then(|(t, value)| Some((point(t, value)?, value)));
-        let instants = curve
-            .instants
-            .iter()
-            .filter_map(|instant| Some((point(instant.time_star, instant.mu_star)?, instant.letter)));
-        let instants: Vec<(Point, char)> = instants.collect();
-        let mut dots: Vec<Point> = instants.iter().map(|(at, _)| *at).collect();
-        dots.extend(peak.map(|(at, _)| at));
-        let is_at_peak = |&(at, letter): &(Point, char)| {
-            let near = |(peak, _): (Point, f64)| libm::hypot(at.0 - peak.0, at.1 - peak.1) < 2.0;
-            peak.is_some_and(near) && letter.is_alphanumeric()
-        };
-        let (at_peak, instants): (Vec<_>, Vec<_>) = instants.into_iter().partition(is_at_peak);
-        Self {
-            peak,
-            instants,
-            at_peak: at_peak.into_iter().map(|(_, letter)| letter).collect(),
-            dots,
+    /// Draws mu* and N*; labels keep off the former.
+    fn draw_curve(&mut self, curve: &FrictionCurve, colour: Rgb) {
+        let Panels { time, mu, sliding } = &self.panels;
+        let friction = segments(&curve.time_star, &curve.mu_star, time, mu);
+        friction.iter().for_each(|segment| self.placer.avoid(segment));
+        let sliding = segments(&curve.time_star, &curve.sliding_percent, time, sliding);
+        for segment in friction.into_iter().chain(sliding) {
+            match segment[..] {
+                [point] => self.canvas.dot(point, 0.6 * DOT, colour),
+                _ => self.canvas.polyline(segment, WIDTH_CURVE, colour),
+            }
         }
     }
 
     /// Keeps labels off the dots.
-    fn keep_free(&self, placer: &mut Placer) {
-        for (x, y) in &self.dots {
-            placer.take(Area {
-                x: x - DOT,
-                y: y - DOT,
-                width: 2.0 * DOT,
-                height: 2.0 * DOT,
-            });
+    fn keep_free(&mut self, dots: &[Point]) {
+        for (x, y) in dots {
+            self.placer
+                .take(Area::new(x - DOT, y - DOT, 2.0 * DOT, 2.0 * DOT));
         }
     }
 
-    fn label_peak(&self, canvas: &mut Canvas, placer: &mut Placer) {
-        let Some((peak, value)) = self.peak else { return };
-        let letters: Vec<String> = self.at_peak.iter().map(char::to_string).collect();
-        let letters = match letters[..] {
-            [] => String::new(),
-            _ => letters.join(", ") + ": ",
+    fn draw_dots(&mut self, dots: &[Point]) {
+        for &dot in dots {
+            self.canvas.dot(dot, DOT, BLACK);
+        }
+    }
+
+    /// Writes the label of each of these points, which are among the `dots`.
+    fn label_points(&mut self, points: &[(Point, Text)], dots: &[Point]) {
+        for (at, text) in points {
+            self.write(text, around(*at, box_of(text), dots), BLACK);
+        }
+    }
+
+    /// Writes a text at the best of the places, with its leader.
+    fn write(&mut self, text: &Text, candidates: Vec<Candidate>, colour: Rgb) {
+        let Some(Candidate { area, leader, .. }) = self.placer.place(candidates) else {
+            return;
         };
-        let text = Text::math(&format!("{letters}\u{3bc}_s* = {}", number(value, 3)), SIZE_LABEL);
-        let places = around(peak, box_of(&text), &self.dots);
-        write(canvas, placer, &text, places, BLACK);
-    }
-
-    fn label_instants(&self, canvas: &mut Canvas, placer: &mut Placer) {
-        for &(at, letter) in &self.instants {
-            let text = Text::plain(&letter.to_string(), SIZE_LABEL);
-            let places = around(at, box_of(&text), &self.dots);
-            write(canvas, placer, &text, places, BLACK);
+        if let Some([from, to]) = leader {
+            self.canvas.line(from, to, WIDTH_LEADER, GREY);
         }
-    }
-
-    fn draw_dots(&self, canvas: &mut Canvas) {
-        for &dot in &self.dots {
-            canvas.dot(dot, DOT, BLACK);
-        }
+        let at = (area.x, area.bottom() - text.depth());
+        self.canvas.text(text, at, Align::Start, colour);
     }
 }
 
-/// Writes a text at the best of the places, with its leader.
-fn write(canvas: &mut Canvas, placer: &mut Placer, text: &Text, candidates: Vec<Candidate>, colour: Rgb) {
-    let Some(Candidate { area, leader, .. }) = placer.place(candidates) else {
-        return;
-    };
-    if let Some([from, to]) = leader {
-        canvas.line(from, to, WIDTH_LEADER, GREY);
-    }
-    canvas.text(text, (area.x, area.bottom() - text.depth()), Align::Start, colour);
+/// The points of a curve that are marked by dots, and their labels.
+struct Marks {
+    dots: Vec<Point>,
+    /// The peak, if it is marked, with its value and the letters of the instants there: several labels of one point would
+    /// take its neighbours' places.
+    peak: Vec<(Point, Text)>,
+    /// The other instants with their letters.
+    instants: Vec<(Point, Text)>,
 }
 
-/// Draws a segment of a curve; one of a single point is a dot.
-fn stroke(canvas: &mut Canvas, segment: Vec<Point>, colour: Rgb) {
-    match segment[..] {
-        [point] => canvas.dot(point, 0.6 * DOT, colour),
-        _ => canvas.polyline(segment, WIDTH_CURVE, colour),
+impl Marks {
+    /// The instants of a curve that lie in the panel, and its peak if one is given.
+    fn of(panels: &Panels, curve: &FrictionCurve, peak: Option<Point>) -> Self {
+        let peak = peak.and_then(|(t, value)| Some((panels.point((t, value))?, value)));
+        let (mut dots, mut instants, mut at_peak) = (Vec::new(), Vec::new(), Vec::new());
+        for instant in &curve.instants {
+            let Some(at) = panels.point((instant.time_star, instant.mu_star)) else {
+                continue;
+            };
+            dots.push(at);
+            let letter = instant.letter.to_string();
+            let is_near = peak.is_some_and(|(peak, _)| libm::hypot(at.0 - peak.0, at.1 - peak.1) < 2.0);
+            if is_near && instant.letter.is_alphanumeric() {
+                at_peak.push(letter);
+            } else {
+                instants.push((at, Text::plain(&letter, SIZE_LABEL)));
+            }
+        }
+        dots.extend(peak.map(|(at, _)| at));
+        let colon = if at_peak.is_empty() { "" } else { ": " };
+        let label = |(at, value): (Point, f64)| {
+            let label = format!("{}{colon}\u{3bc}_s* = {}", at_peak.join(", "), number(value, 3));
+            (at, Text::math(&label, SIZE_LABEL))
+        };
+        Self {
+            dots,
+            peak: peak.map(label).into_iter().collect(),
+            instants,
+        }
     }
 }
 
@@ -274,63 +239,48 @@ fn box_of(text: &Text) -> (f64, f64) {
 
 /// Places for a label of the window: within it if it is wide enough, rather above the mean than below.
 fn along_window(panels: &Panels, text: &Text, window: &Kinetic) -> Vec<Candidate> {
-    let panel = panels.friction();
+    let panel = panels.area(&panels.mu);
     let (from, to) = (panels.time.clamped(window.from), panels.time.clamped(window.to));
     let mean = panels.mu.clamped(window.mean);
     let (width, height) = box_of(text);
     let room = (panel.x + MARGIN, panel.right() - MARGIN - width);
     let x = (0.5 * (from + to - width)).min(room.1).max(room.0);
-    let steps = (panel.height / 8.0) as usize;
-    (0..steps)
-        .map(|step| {
-            let area = Area {
-                x,
-                y: panel.y + MARGIN + 8.0 * step as f64,
-                width,
-                height,
-            };
-            let distance = mean - area.bottom();
-            Candidate {
-                area,
-                penalty: if distance > 0.0 { distance } else { 80.0 - distance },
-                leader: None,
-            }
-        })
-        .collect()
+    let candidate = |step: usize| {
+        let area = Area::new(x, panel.y + MARGIN + 8.0 * step as f64, width, height);
+        let above = mean - area.bottom();
+        Candidate {
+            area,
+            penalty: if above > 0.0 { above } else { 80.0 - above },
+            leader: None,
+        }
+    };
+    (0..(panel.height / 8.0) as usize).map(candidate).collect()
 }
 
 /// Places for a label of a vertical line: beside its upper end, or further down.
 fn beside_line(panels: &Panels, text: &Text, x: f64) -> Vec<Candidate> {
-    let panel = panels.friction();
+    let panel = panels.area(&panels.mu);
     let (width, height) = box_of(text);
-    let steps = (panel.height / 10.0) as usize;
-    let sides = [x - MARGIN - width, x + MARGIN];
-    (0..steps)
-        .flat_map(|step| {
-            let down = 10.0 * step as f64;
-            let y = panel.y + MARGIN + down;
-            sides.map(|x| Candidate {
-                area: Area { x, y, width, height },
-                penalty: down,
-                leader: None,
-            })
+    let candidates = |step: usize| {
+        let down = 10.0 * step as f64;
+        [x - MARGIN - width, x + MARGIN].map(|x| Candidate {
+            area: Area::new(x, panel.y + MARGIN + down, width, height),
+            penalty: down,
+            leader: None,
         })
-        .collect()
+    };
+    (0..(panel.height / 10.0) as usize).flat_map(candidates).collect()
 }
 
 /// The mean and, if known, its uncertainty, with as many digits as that deserves.
 fn with_uncertainty(window: &Kinetic) -> String {
-    match window.uncertainty.filter(|&u| u > 0.0 && drawable(u)) {
-        Some(uncertainty) => {
-            let decimals = (-libm::log10(uncertainty).floor()).clamp(1.0, 5.0) as usize;
-            format!(
-                "{} \u{b1} {}",
-                number(window.mean, decimals),
-                number(uncertainty, decimals)
-            )
-        }
-        None => number(window.mean, 3),
-    }
+    let Some(uncertainty) = window.uncertainty.filter(|&u| u > 0.0 && drawable(u)) else {
+        return number(window.mean, 3);
+    };
+    let decimals = (-libm::log10(uncertainty).floor()).clamp(1.0, 5.0) as usize;
+    [window.mean, uncertainty]
+        .map(|value| number(value, decimals))
+        .join(" \u{b1} ")
 }
 
 #[cfg(test)]

@@ -1,11 +1,10 @@
 //! The two panels of a friction picture: mu* above, N* below, on one time axis.
 
-use crate::axis::Axis;
+use crate::axis::{Axis, range};
 use crate::canvas::Canvas;
 use crate::frame::{LOWER_ROOM, left_room, left_side, lower_title, right_end};
 use crate::friction_curve::FrictionCurve;
-use crate::geometry::Area;
-use crate::range::{range, widened};
+use crate::geometry::{Area, Point};
 use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, SIZE_LABEL, TICK_LENGTH, WIDTH_LEADER};
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS, Tick};
@@ -14,7 +13,7 @@ const HEIGHT_FRICTION: f64 = 500.0;
 const HEIGHT_SLIDING: f64 = 230.0;
 const GAP: f64 = 34.0;
 
-/// The two panels.
+#[derive(Clone, Copy)]
 pub(crate) struct Panels {
     pub(crate) time: Axis,
     pub(crate) mu: Axis,
@@ -24,28 +23,23 @@ pub(crate) struct Panels {
 impl Panels {
     /// Panels that hold all curves and their marks, at the top of the picture.
     pub(crate) fn of(curves: &[FrictionCurve]) -> Self {
-        let (from, to) = widened(range(
-            curves.iter().flat_map(|curve| curve.time_star.iter().copied()),
-        ));
-        let marks = |curve: &FrictionCurve| {
-            let mean = curve.kinetic.map(|window| window.mean);
-            mean.into_iter()
-                .chain(curve.peak.map(|(_, value)| value))
-                .collect::<Vec<_>>()
-        };
-        let values = curves
-            .iter()
-            .flat_map(|curve| curve.mu_star.iter().copied().chain(marks(curve)));
-        let (mut lo, hi) = widened(range(values));
+        let (from, to) = range(curves.iter().flat_map(|curve| curve.time_star.iter().copied()));
+        let values = curves.iter().flat_map(|curve| {
+            let marks = [
+                curve.kinetic.map(|window| window.mean),
+                curve.peak.map(|(_, mu)| mu),
+            ];
+            curve.mu_star.iter().copied().chain(marks.into_iter().flatten())
+        });
+        let (mut lo, hi) = range(values);
         // Friction is read against zero, unless that would flatten it.
         if lo > 0.0 && lo < 0.9 * hi {
             lo = 0.0;
         }
         let room = 0.1 * (hi - lo);
-        let mu_top = MARGIN;
-        let mu_bottom = mu_top + HEIGHT_FRICTION;
+        let mu_bottom = MARGIN + HEIGHT_FRICTION;
         let sliding_top = mu_bottom + GAP;
-        let mu = Axis::linear(if lo == 0.0 { lo } else { lo - room }, hi + room).placed(mu_bottom, mu_top);
+        let mu = Axis::linear(if lo == 0.0 { lo } else { lo - room }, hi + room).placed(mu_bottom, MARGIN);
         let sliding = Axis::linear(0.0, 100.0).placed(sliding_top + HEIGHT_SLIDING, sliding_top);
         let left = left_room(&[mu_ticks(&mu), sliding_ticks(&sliding)].concat());
         // The last number on the time axis may stand half beyond its end.
@@ -56,21 +50,24 @@ impl Panels {
     }
 
     /// These panels, further down.
-    pub(crate) fn lowered(mut self, by: f64) -> Self {
-        for axis in [&mut self.mu, &mut self.sliding] {
-            axis.start += by;
-            axis.end += by;
+    pub(crate) fn lowered(self, by: f64) -> Self {
+        let lowered = |axis: Axis| axis.placed(axis.start + by, axis.end + by);
+        Self {
+            mu: lowered(self.mu),
+            sliding: lowered(self.sliding),
+            ..self
         }
-        self
     }
 
-    /// The panel of friction.
-    pub(crate) fn friction(&self) -> Area {
-        self.of_axis(&self.mu)
+    /// The panel of friction or of sliding.
+    pub(crate) fn area(&self, axis: &Axis) -> Area {
+        Area::between(self.time.start, self.time.end, axis.start, axis.end)
     }
 
-    fn of_axis(&self, axis: &Axis) -> Area {
-        between(self.time.start, self.time.end, axis.start, axis.end)
+    /// The pixel of a time and a friction that both lie in the panel.
+    pub(crate) fn point(&self, (t, mu): Point) -> Option<Point> {
+        let is_inside = self.time.contains(t) && self.mu.contains(mu);
+        is_inside.then(|| (self.time.at(t), self.mu.at(mu)))
     }
 
     /// Where the picture ends.
@@ -80,31 +77,32 @@ impl Panels {
 
     /// Ticks, numbers and titles.
     pub(crate) fn draw_axes(&self, canvas: &mut Canvas) {
-        let sides = [
-            (
-                &self.mu,
-                mu_ticks(&self.mu),
-                "friction \u{3bc}* = \u{3bc}/\u{27e8}\u{3bc}_s\u{27e9}",
-            ),
-            (&self.sliding, sliding_ticks(&self.sliding), "sliding N* (%)"),
-        ];
-        for (axis, ticks, title) in sides {
-            let title = Text::math(title, SIZE_LABEL);
-            left_side(canvas, self.of_axis(axis), 0.0, &ticks, &title);
-        }
+        let title = Text::math(
+            "friction \u{3bc}* = \u{3bc}/\u{27e8}\u{3bc}_s\u{27e9}",
+            SIZE_LABEL,
+        );
+        left_side(canvas, self.area(&self.mu), 0.0, &mu_ticks(&self.mu), &title);
+        let title = Text::plain("sliding N* (%)", SIZE_LABEL);
+        left_side(
+            canvas,
+            self.area(&self.sliding),
+            0.0,
+            &sliding_ticks(&self.sliding),
+            &title,
+        );
+        let foot = self.mu.start;
         for (x, text) in time_ticks(&self.time) {
             canvas.tick_below((x, self.sliding.start), &text);
-            let foot = self.mu.start;
             canvas.line((x, foot), (x, foot + TICK_LENGTH), WIDTH_LEADER, BLACK);
         }
         let title = Text::plain("dimensionless time t*", SIZE_LABEL);
-        lower_title(canvas, self.of_axis(&self.sliding), &title);
+        lower_title(canvas, self.area(&self.sliding), &title);
     }
 
     /// The panels' edges, over everything that ends on them.
     pub(crate) fn draw_frames(&self, canvas: &mut Canvas) {
         for axis in [&self.mu, &self.sliding] {
-            canvas.frame(self.of_axis(axis));
+            canvas.frame(self.area(axis));
         }
     }
 }
@@ -119,16 +117,6 @@ fn mu_ticks(mu: &Axis) -> Vec<Tick> {
 
 fn sliding_ticks(sliding: &Axis) -> Vec<Tick> {
     sliding.ticks(Direction::Y, 2)
-}
-
-/// The area between two values of x and two of y.
-pub(crate) fn between(from: f64, to: f64, start: f64, end: f64) -> Area {
-    Area {
-        x: from,
-        y: start.min(end),
-        width: to - from,
-        height: (end - start).abs(),
-    }
 }
 
 #[cfg(test)]

@@ -1,10 +1,8 @@
-//! Points and rectangles of a picture, in pixels, y downwards.
+//! Points (x, y) and rectangles of a picture, in pixels, y downwards.
 
-/// A point: x, y.
 pub(crate) type Point = (f64, f64);
 
-/// A rectangle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Area {
     pub(crate) x: f64,
     pub(crate) y: f64,
@@ -13,6 +11,20 @@ pub(crate) struct Area {
 }
 
 impl Area {
+    pub(crate) const fn new(x: f64, y: f64, width: f64, height: f64) -> Self {
+        Self { x, y, width, height }
+    }
+
+    /// x, y, width, height.
+    pub(crate) fn sides(&self) -> [f64; 4] {
+        [self.x, self.y, self.width, self.height]
+    }
+
+    /// The area between two values of x and two of y.
+    pub(crate) fn between(from: f64, to: f64, start: f64, end: f64) -> Self {
+        Self::new(from, start.min(end), to - from, (end - start).abs())
+    }
+
     pub(crate) fn right(&self) -> f64 {
         self.x + self.width
     }
@@ -27,7 +39,7 @@ impl Area {
 }
 
 /// Where a text lies relative to its point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(crate) enum Align {
     Start,
     Middle,

@@ -1,13 +1,13 @@
 //! A quantity over two axes of a parametric study.
 
-use crate::axis::Axis;
+use crate::axis::{Axis, drawable, range, widened};
 use crate::canvas::Canvas;
-use crate::color_bar::{BAR_WIDTH, bar_room, colour_bar};
 use crate::color_image::{Image, level, level_colour};
-use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side, short_ticks};
+use crate::frame::{
+    BAR_WIDTH, LOWER_ROOM, bar_room, colour_bar, left_room, left_side, lower_side, short_ticks,
+};
 use crate::geometry::{Align, Area};
 use crate::picture::{Picture, PictureError};
-use crate::range::{drawable, range, widened};
 use crate::style::{BLACK, BLANK, COLUMN_WIDTH, MARGIN, Rgb, SIZE_LABEL, SIZE_TICK, WHITE};
 use crate::text::{MINUS, Text, number};
 use crate::ticks::{Direction, MAX_STEPS, Tick, apart};
@@ -38,7 +38,7 @@ pub struct HeatMap {
 /// An axis of a map.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HeatAxis {
-    /// What the axis is; see [`title`](crate::title).
+    /// What the axis is; see [`title`](crate::QuantityLabel::title).
     pub title: String,
     /// Where its cells are, in any order, all different.
     pub values: Vec<f64>,
@@ -66,32 +66,26 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
             values,
         });
     }
-    let at = |row: usize, column: usize| map.values[y.order[row] * columns + x.order[column]];
-    let values = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
-    let values: Vec<f64> = values
-        .map(|(row, column)| at(row, column))
-        .map(|value| if drawable(value) { value } else { f64::NAN })
-        .collect();
-    let colours = Colours::of(&values);
-
-    let (top, bottom) = (TOP, TOP + HEIGHT);
-    y.place(bottom, top);
-    let (y_ticks, y_short) = y.ticks(Direction::Y);
-    let bar_ticks = colours.axis.placed(bottom, top).ticks(Direction::Y, MAX_STEPS);
-    let left = left_room(&y_ticks);
-    let bar_room = bar_room(&bar_ticks) + 14.0 + f64::from(SIZE_LABEL) + MARGIN;
-    let area = Area {
-        x: left,
-        y: top,
-        width: (COLUMN_WIDTH - left - GAP - bar_room).max(100.0).round(),
-        height: HEIGHT,
+    let value = |cell: usize| {
+        let value = map.values[y.order[cell / columns] * columns + x.order[cell % columns]];
+        if drawable(value) { value } else { f64::NAN }
     };
-    x.place(area.x, area.right());
-    let (x_ticks, x_short) = x.ticks(Direction::X);
+    let values: Vec<f64> = (0..map.values.len()).map(value).collect();
+    let range: [f64; 2] = range(values.iter().copied()).into();
 
-    let mut canvas = Canvas::new(COLUMN_WIDTH, bottom + LOWER_ROOM);
-    canvas.image(image(area, &x, &y, &values, &colours));
-    draw_numbers(&mut canvas, &x, &y, &values, &colours);
+    y.axis = y.axis.placed(TOP + HEIGHT, TOP);
+    let (y_ticks, y_short) = y.ticks(Direction::Y);
+    let left = left_room(&y_ticks);
+    let bar_room = bar_room(range, MAX_STEPS, HEIGHT) + 14.0 + f64::from(SIZE_LABEL) + MARGIN;
+    let width = (COLUMN_WIDTH - left - GAP - bar_room).max(100.0).round();
+    let area = Area::new(left, TOP, width, HEIGHT);
+    x.axis = x.axis.placed(area.x, area.right());
+    let (x_ticks, x_short) = x.ticks(Direction::X);
+    let bar = Area::new(area.right() + GAP, TOP, BAR_WIDTH, HEIGHT);
+
+    let mut canvas = Canvas::new(COLUMN_WIDTH, area.bottom() + LOWER_ROOM);
+    canvas.images.push(image(area, &x, &y, &values, range));
+    draw_numbers(&mut canvas, &x, &y, &values, range);
     canvas.frame(area);
     short_ticks(&mut canvas, area, Direction::Y, &y_short);
     let title = Text::fitted(&map.y.title, area.height);
@@ -99,46 +93,14 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
     short_ticks(&mut canvas, area, Direction::X, &x_short);
     let title = Text::fitted(&map.x.title, area.width);
     lower_side(&mut canvas, area, &x_ticks, &title);
-    draw_bar(&mut canvas, area, &bar_ticks, &map.value_title);
+    colour_bar(&mut canvas, bar, range, MAX_STEPS);
+    let baseline = COLUMN_WIDTH - MARGIN - 0.24 * f64::from(SIZE_LABEL);
+    let title = Text::fitted(&map.value_title, area.height);
+    canvas.text_upwards(&title, (baseline, area.centre().1), Align::Middle, BLACK);
     if values.iter().any(|value| value.is_nan()) {
-        draw_blank(&mut canvas, area);
+        draw_blank(&mut canvas, bar);
     }
     canvas.finish()
-}
-
-/// Draws the colour bar of a map, and the title of its values.
-fn draw_bar(canvas: &mut Canvas, map: Area, ticks: &[Tick], title: &str) {
-    colour_bar(canvas, bar_area(map), ticks);
-    let baseline = COLUMN_WIDTH - MARGIN - 0.24 * f64::from(SIZE_LABEL);
-    let title = Text::fitted(title, map.height);
-    canvas.text_upwards(&title, (baseline, map.centre().1), Align::Middle, BLACK);
-}
-
-/// Where the colour bar of a map is.
-fn bar_area(map: Area) -> Area {
-    Area {
-        x: map.right() + GAP,
-        width: BAR_WIDTH,
-        ..map
-    }
-}
-
-/// From values to colours.
-struct Colours {
-    axis: Axis,
-}
-
-impl Colours {
-    fn of(values: &[f64]) -> Self {
-        let (lo, hi) = widened(range(values.iter().copied()));
-        Self {
-            axis: Axis::linear(lo, hi),
-        }
-    }
-
-    fn level(&self, value: f64) -> u8 {
-        level(((value - self.axis.lo) / (self.axis.hi - self.axis.lo)) as f32)
-    }
 }
 
 /// The cells along an axis, in rising order.
@@ -171,8 +133,8 @@ impl Cells {
         if measured.windows(2).any(|pair| pair[0] >= pair[1]) {
             return Err(error("two values are the same"));
         }
-        let middles = measured.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
         let (first, last) = (measured[0], measured[measured.len() - 1]);
+        let middles = measured.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
         let mut edges: Vec<f64> = middles.collect();
         // The outermost cells reach as far out as in.
         let (lo, hi) = match edges[..] {
@@ -181,26 +143,18 @@ impl Cells {
         };
         edges.insert(0, lo);
         edges.push(hi);
-        let axis = Axis::between(lo, hi, whole.is_log);
         Ok(Self {
-            axis,
+            axis: Axis::between(lo, hi, whole.is_log),
             order,
             values,
             edges,
         })
     }
 
-    /// Places the axis between two pixels.
-    fn place(&mut self, start: f64, end: f64) {
-        self.axis = self.axis.placed(start, end);
-    }
-
     /// The pixels where the cells meet, in rising order of value.
     fn edges(&self) -> Vec<f64> {
-        self.edges
-            .iter()
-            .map(|&edge| self.axis.at_measured(edge).round())
-            .collect()
+        let pixel = |&edge: &f64| self.axis.at_measured(edge).round();
+        self.edges.iter().map(pixel).collect()
     }
 
     /// Numbered and short ticks: the values themselves if they are few and have room, else round ones.
@@ -241,8 +195,7 @@ fn short(value: f64, digits: usize) -> Option<String> {
 }
 
 /// Tells below the colour bar what grey is.
-fn draw_blank(canvas: &mut Canvas, map: Area) {
-    let bar = bar_area(map);
+fn draw_blank(canvas: &mut Canvas, bar: Area) {
     let text = Text::plain("none", SIZE_TICK);
     // Beside the axis' title: a number may reach as far as the bar.
     let baseline = bar.bottom() + LOWER_ROOM - MARGIN - 4.0;
@@ -257,7 +210,7 @@ fn draw_blank(canvas: &mut Canvas, map: Area) {
 }
 
 /// The cells as an image with a pixel for every pixel of the picture: an image's own columns are all alike.
-fn image(area: Area, x: &Cells, y: &Cells, values: &[f64], colours: &Colours) -> Image {
+fn image(area: Area, x: &Cells, y: &Cells, values: &[f64], range: [f64; 2]) -> Image {
     let (columns, rows) = (area.width as usize, area.height as usize);
     let (edges_x, edges_y) = (x.edges(), y.edges());
     // The cell is the last one that starts before the pixel's middle.
@@ -272,7 +225,7 @@ fn image(area: Area, x: &Cells, y: &Cells, values: &[f64], colours: &Colours) ->
     let cells_x: Vec<usize> = (0..columns).map(cell_x).collect();
     let levels = (0..rows).map(cell_y).flat_map(|row| {
         let values = &values[row * x.values.len()..];
-        cells_x.iter().map(move |&column| colours.level(values[column]))
+        cells_x.iter().map(move |&column| level(values[column], range))
     });
     Image {
         area,
@@ -282,13 +235,10 @@ fn image(area: Area, x: &Cells, y: &Cells, values: &[f64], colours: &Colours) ->
 }
 
 /// Writes every value into its cell, if all have room.
-fn draw_numbers(canvas: &mut Canvas, x: &Cells, y: &Cells, values: &[f64], colours: &Colours) {
-    if x.values.len().max(y.values.len()) > MAX_NUMBERED {
-        return;
-    }
-    let (lo, hi) = (colours.axis.lo, colours.axis.hi);
+fn draw_numbers(canvas: &mut Canvas, x: &Cells, y: &Cells, values: &[f64], range: [f64; 2]) {
+    let [lo, hi] = range;
     let size = lo.abs().max(hi.abs());
-    if !(1e-4..1e6).contains(&size) {
+    if x.values.len().max(y.values.len()) > MAX_NUMBERED || !(1e-4..1e6).contains(&size) {
         return;
     }
     let smallest = |edges: &[f64]| {
@@ -300,33 +250,25 @@ fn draw_numbers(canvas: &mut Canvas, x: &Cells, y: &Cells, values: &[f64], colou
     let height = Text::plain("0", SIZE_TICK).height();
     // Two digits or so of the range, or one less.
     let decimals = libm::log10(50.0 / (hi - lo)).ceil().clamp(0.0, 9.0) as usize;
-    let texts = [decimals, decimals.saturating_sub(1)]
-        .map(|decimals| written(values, decimals))
-        .into_iter()
-        .find(|texts| texts.iter().all(|text| text.width() <= room_x) && height <= room_y);
-    let Some(texts) = texts else {
+    let text = |value: f64, decimals| match value.is_nan() {
+        true => Text::default(),
+        false => Text::plain(&number(value, decimals), SIZE_TICK),
+    };
+    let texts = |decimals| values.iter().map(move |&value| text(value, decimals));
+    let mut choices = [decimals, decimals.saturating_sub(1)]
+        .map(|decimals| texts(decimals).collect())
+        .into_iter();
+    let has_room = |texts: &Vec<Text>| texts.iter().all(|text| text.width() <= room_x) && height <= room_y;
+    let Some(texts) = choices.find(has_room) else {
         return;
     };
     for (index, (text, &value)) in texts.iter().zip(values).enumerate() {
         let (row, column) = (index / x.values.len(), index % x.values.len());
-        let middle = (
-            0.5 * (edges_x[column] + edges_x[column + 1]),
-            0.5 * (edges_y[row] + edges_y[row + 1] + height),
-        );
-        let colour = readable_on(level_colour(colours.level(value)));
-        canvas.text(text, middle, Align::Middle, colour);
+        let middle = 0.5 * (edges_x[column] + edges_x[column + 1]);
+        let baseline = 0.5 * (edges_y[row] + edges_y[row + 1] + height);
+        let colour = readable_on(level_colour(level(value, range)));
+        canvas.text(text, (middle, baseline), Align::Middle, colour);
     }
-}
-
-fn written(values: &[f64], decimals: usize) -> Vec<Text> {
-    let text = |value: &f64| match value.is_nan() {
-        true => String::new(),
-        false => number(*value, decimals),
-    };
-    values
-        .iter()
-        .map(|value| Text::plain(&text(value), SIZE_TICK))
-        .collect()
 }
 
 /// Black or white, whichever stands out more.
@@ -334,11 +276,8 @@ fn readable_on(ground: Rgb) -> Rgb {
     let [red, green, blue] = ground.map(|channel| libm::pow(f64::from(channel) / 255.0, 2.2));
     let luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
     // Contrast with white against contrast with black (WCAG 2).
-    if 1.05 / (luminance + 0.05) > (luminance + 0.05) / 0.05 {
-        WHITE
-    } else {
-        BLACK
-    }
+    let is_dark = 1.05 / (luminance + 0.05) > (luminance + 0.05) / 0.05;
+    if is_dark { WHITE } else { BLACK }
 }
 
 #[cfg(test)]

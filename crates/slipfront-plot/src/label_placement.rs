@@ -6,6 +6,7 @@ use crate::geometry::{Area, Point};
 const CLEARANCE: f64 = 5.0;
 
 /// Where labels may go, and what is there already.
+#[derive(Default)]
 pub(crate) struct Placer {
     bounds: Area,
     taken: Vec<Area>,
@@ -21,12 +22,10 @@ pub(crate) struct Candidate {
 }
 
 impl Placer {
-    /// An empty space.
     pub(crate) fn new(bounds: Area) -> Self {
         Self {
             bounds,
-            taken: Vec::new(),
-            lines: Vec::new(),
+            ..Self::default()
         }
     }
 
@@ -37,8 +36,8 @@ impl Placer {
 
     /// Asks labels to keep off the line through these points.
     pub(crate) fn avoid(&mut self, points: &[Point]) {
-        self.lines
-            .extend(points.windows(2).map(|pair| [pair[0], pair[1]]));
+        let segments = points.windows(2).map(|pair| [pair[0], pair[1]]);
+        self.lines.extend(segments);
     }
 
     /// The best of the candidates, now taken; none if there is no candidate.
@@ -53,9 +52,7 @@ impl Placer {
         }
         let (_, candidate) = best?;
         self.taken.push(candidate.area);
-        if let Some(leader) = candidate.leader {
-            self.lines.push(leader);
-        }
+        self.lines.extend(candidate.leader);
         Some(candidate)
     }
 
@@ -100,21 +97,13 @@ pub(crate) fn around(point: Point, (width, height): (f64, f64), dots: &[Point]) 
             let turn = f64::from((step + 1) / 2) * if step % 2 == 0 { 1.0 } else { -1.0 };
             let (sin, cos) = libm::sincos((-0.25 + turn / 12.0) * std::f64::consts::PI);
             // The label's edge, not its centre, stays `gap` away from the point.
-            let centre = (
-                point.0 + cos * (gap + 0.5 * width),
-                point.1 + sin * (gap + 0.5 * height),
-            );
-            let area = Area {
-                x: centre.0 - 0.5 * width,
-                y: centre.1 - 0.5 * height,
-                width,
-                height,
-            };
+            let x = point.0 + cos * (gap + 0.5 * width) - 0.5 * width;
+            let y = point.1 + sin * (gap + 0.5 * height) - 0.5 * height;
+            let area = Area::new(x, y, width, height);
+            let (right, bottom) = (area.right() + 3.0, area.bottom() + 3.0);
             let to_label = |dot: Point| {
-                (
-                    dot.0.clamp(area.x - 3.0, area.right() + 3.0) - dot.0,
-                    dot.1.clamp(area.y - 3.0, area.bottom() + 3.0) - dot.1,
-                )
+                let nearest = (dot.0.clamp(x - 3.0, right), dot.1.clamp(y - 3.0, bottom));
+                (nearest.0 - dot.0, nearest.1 - dot.1)
             };
             let (dx, dy) = to_label(point);
             let distance = libm::hypot(dx, dy);
@@ -139,12 +128,12 @@ pub(crate) fn around(point: Point, (width, height): (f64, f64), dots: &[Point]) 
 }
 
 fn grown(area: Area, by: f64) -> Area {
-    Area {
-        x: area.x - by,
-        y: area.y - by,
-        width: area.width + 2.0 * by,
-        height: area.height + 2.0 * by,
-    }
+    Area::new(
+        area.x - by,
+        area.y - by,
+        area.width + 2.0 * by,
+        area.height + 2.0 * by,
+    )
 }
 
 /// True when two areas share more than an edge.

@@ -40,8 +40,8 @@ pub(crate) struct Cells {
     ny: usize,
     columns: usize,
     rows: usize,
-    /// The lines around the textured cells, as fractions of the lattice's sides.
-    outlines: Vec<Vec<Point>>,
+    /// The corners of the lines around the textured cells.
+    outlines: Vec<Vec<(usize, usize)>>,
 }
 
 impl Cells {
@@ -56,19 +56,13 @@ impl Cells {
         };
         let share = cells.means(|block| if textured[block] { 1.0 } else { 0.0 });
         let textured: Vec<bool> = share.into_iter().map(|share| share > 0.5).collect();
-        let (columns, rows) = (cells.columns, cells.rows);
-        let corner = |(x, y): (usize, usize)| (x as f64 / columns as f64, y as f64 / rows as f64);
-        cells.outlines = outline(&textured, columns, rows)
-            .into_iter()
-            .map(|line| line.into_iter().map(corner).collect())
-            .collect();
+        cells.outlines = outline(&textured, cells.columns, cells.rows);
         cells
     }
 
     /// The mean of every cell over its blocks that are not NaN.
     fn means(&self, value: impl Fn(usize) -> f32) -> Vec<f32> {
-        let blocks =
-            |cell: usize, cells: usize, blocks: usize| cell * blocks / cells..(cell + 1) * blocks / cells;
+        let blocks = |cell: usize, cells, blocks| cell * blocks / cells..(cell + 1) * blocks / cells;
         let mean = |row: usize, column: usize| {
             let (mut sum, mut count) = (0.0f64, 0u32);
             for y in blocks(row, self.rows, self.ny) {
@@ -87,24 +81,19 @@ impl Cells {
     }
 
     /// Draws the values of all blocks, the ends of the colours being those of `range`, and the outline of the texture.
-    pub(crate) fn draw(&self, canvas: &mut Canvas, area: Area, values: &[f32], [lo, hi]: [f64; 2]) {
-        let share = |&value: &f32| level(((f64::from(value) - lo) / (hi - lo)) as f32);
+    pub(crate) fn draw(&self, canvas: &mut Canvas, area: Area, values: &[f32], range: [f64; 2]) {
         let means = self.means(|block| values[block]);
         // The image's first row is the uppermost.
-        let levels = means
-            .chunks_exact(self.columns)
-            .rev()
-            .flatten()
-            .map(share)
-            .collect();
-        canvas.image(Image {
+        let cells = means.chunks_exact(self.columns).rev().flatten();
+        canvas.images.push(Image {
             area,
             columns: self.columns,
-            levels,
+            levels: cells.map(|&mean| level(f64::from(mean), range)).collect(),
         });
+        let (columns, rows) = (self.columns as f64, self.rows as f64);
+        let corner = |&(x, y): &(usize, usize)| place(area, (x as f64 / columns, y as f64 / rows));
         for line in &self.outlines {
-            let points = line.iter().map(|&at| place(area, at)).collect();
-            rimmed_line(canvas, points, BLACK);
+            rimmed_line(canvas, line.iter().map(corner).collect(), BLACK);
         }
     }
 }
@@ -123,11 +112,8 @@ pub(crate) fn rimmed_line(canvas: &mut Canvas, points: Vec<Point>, colour: [u8; 
 /// Writes two lines over a map.
 pub(crate) fn draw_titles(canvas: &mut Canvas, area: Area, label: &Text, note: &Text) {
     let (middle, _) = area.centre();
-    let label_above = if note.width() > 0.0 {
-        LABEL_ABOVE
-    } else {
-        NOTE_ABOVE
-    };
+    let has_note = note.width() > 0.0;
+    let label_above = if has_note { LABEL_ABOVE } else { NOTE_ABOVE };
     canvas.text(label, (middle, area.y - label_above), Align::Middle, BLACK);
     canvas.text(note, (middle, area.y - NOTE_ABOVE), Align::Middle, BLACK);
 }

@@ -1,27 +1,24 @@
 //! The legend above a panel with several curves or bars.
 
 use crate::canvas::Canvas;
-use crate::geometry::{Align, Area};
-use crate::markers::marker;
+use crate::geometry::{Align, Area, Point};
+use crate::series::marker;
 use crate::style::{BLACK, MARGIN, OPACITY_BAR, RADIUS_MARKER, Rgb, SIZE_TICK, WIDTH_CURVE, curve_colour};
 use crate::text::Text;
 
-/// The names of several curves or bars.
+/// The names of several curves or bars, and before them what they are values of.
 #[derive(Default)]
 pub(crate) struct Legend {
     /// How much room it takes above the panels.
     pub(crate) height: f64,
-    sample: Sample,
-    /// What the names are values of, and where it stands.
-    title: Option<(Text, (f64, f64))>,
+    title: Text,
+    title_at: Point,
     entries: Vec<Entry>,
 }
 
 /// What stands before a name.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Sample {
-    /// A line.
-    #[default]
     Line,
     /// A line with the curve's marker.
     Marker,
@@ -30,103 +27,72 @@ pub(crate) enum Sample {
 }
 
 struct Entry {
+    sample: Sample,
     x: f64,
     y: f64,
     text: Text,
     colour: Rgb,
-    /// A line alone, whatever the samples of the others are.
-    line: bool,
 }
 
+const SAMPLE_WIDTH: f64 = 44.0;
+const ROW: f64 = 44.0;
+/// Between a sample and its name.
+const NAME_GAP: f64 = 10.0;
+/// Between a name and the next sample.
+const COLUMN_GAP: f64 = 30.0;
+
 impl Legend {
-    const SAMPLE: f64 = 44.0;
-    const ROW: f64 = 44.0;
-
-    /// Places the labels in rows between `left` and `right`, from the top of the picture down.
-    pub(crate) fn of(labels: &[&str], left: f64, right: f64) -> Self {
-        Self::titled("", labels, Sample::Line, left, right)
-    }
-
-    /// Places the labels with a title before them, or above them if it is long.
-    pub(crate) fn titled(title: &str, labels: &[&str], sample: Sample, left: f64, right: f64) -> Self {
+    /// Places the names in rows between `left` and `right`, from the top of the picture down, with the title before
+    /// them, or above them if it is long. Without a name there is no legend.
+    pub(crate) fn of(title: &str, names: &[(&str, Sample)], left: f64, right: f64) -> Self {
+        if names.is_empty() {
+            return Self::default();
+        }
         let title = Text::shortened(title, SIZE_TICK, right - left);
-        let width = title.width();
-        let (left, first) = match width {
+        let title_x = left;
+        let (left, first) = match title.width() {
             0.0 => (left, 0),
-            ..150.0 => (left + width + 30.0, 0),
+            width @ ..150.0 => (left + width + COLUMN_GAP, 0),
             _ => (left, 1),
         };
-        let room = right - left - Self::SAMPLE - 10.0;
-        let texts: Vec<Text> = labels
-            .iter()
-            .map(|label| Text::shortened(label, SIZE_TICK, room))
-            .collect();
-        // Equal columns, so that labels stand under each other.
-        let widest = texts.iter().map(Text::width).fold(0.0, f64::max) + Self::SAMPLE + 10.0 + 30.0;
-        let columns = ((right - left + 30.0) / widest).floor().max(1.0) as usize;
-        let rows = first + labels.len().div_ceil(columns);
-        let middle = |row: usize| MARGIN + Self::ROW * (row as f64 + 0.5);
-        let entries = texts.into_iter().enumerate().map(|(index, text)| Entry {
+        let room = right - left - SAMPLE_WIDTH - NAME_GAP;
+        let fitted = |&(name, _): &(&str, Sample)| Text::shortened(name, SIZE_TICK, room);
+        let texts: Vec<Text> = names.iter().map(fitted).collect();
+        // Equal columns, so that names stand under each other.
+        let widest = texts.iter().map(Text::width).fold(0.0, f64::max) + SAMPLE_WIDTH + NAME_GAP + COLUMN_GAP;
+        let columns = ((right - left + COLUMN_GAP) / widest).floor().max(1.0) as usize;
+        let middle = |row: usize| MARGIN + ROW * (row as f64 + 0.5);
+        let entry = |(index, text): (usize, Text)| Entry {
+            sample: names[index].1,
             x: left + (index % columns) as f64 * widest,
             y: middle(first + index / columns),
             text,
-            colour: curve_colour(index, labels.len()),
-            line: false,
-        });
-        let title_x = if first == 0 { left - width - 30.0 } else { left };
+            colour: curve_colour(index, names.len()),
+        };
         Self {
-            height: Self::ROW * rows as f64 + 6.0,
-            sample,
-            entries: entries.collect(),
-            title: (width > 0.0).then_some((title, (title_x, middle(0)))),
+            height: ROW * (first + names.len().div_ceil(columns)) as f64 + 6.0,
+            title_at: (title_x, middle(0) + 0.5 * title.height()),
+            title,
+            entries: texts.into_iter().enumerate().map(entry).collect(),
         }
     }
 
-    /// Lets some of the names have a line alone before them.
-    pub(crate) fn with_lines(mut self, lines: &[bool]) -> Self {
-        for (entry, &line) in self.entries.iter_mut().zip(lines) {
-            entry.line = line;
-        }
-        self
-    }
-
-    /// Draws it.
     pub(crate) fn draw(&self, canvas: &mut Canvas) {
-        if let Some((title, (x, y))) = &self.title {
-            canvas.text(title, (*x, y + 0.5 * title.height()), Align::Start, BLACK);
-        }
+        canvas.text(&self.title, self.title_at, Align::Start, BLACK);
         for (index, entry) in self.entries.iter().enumerate() {
-            let Entry {
-                x,
-                y,
-                text,
-                colour,
-                line,
-            } = entry;
-            let middle = x + 0.5 * Self::SAMPLE;
-            match self.sample {
-                Sample::Line | Sample::Marker => {
-                    canvas.line((*x, *y), (x + Self::SAMPLE, *y), WIDTH_CURVE, *colour);
-                }
-                Sample::Patch => {
-                    let area = Area {
-                        x: middle - 14.0,
-                        y: y - 12.0,
-                        width: 28.0,
-                        height: 24.0,
-                    };
-                    canvas.fill(area, *colour, OPACITY_BAR);
-                }
+            let (x, y, colour) = (entry.x, entry.y, entry.colour);
+            let (middle, end) = (x + 0.5 * SAMPLE_WIDTH, x + SAMPLE_WIDTH);
+            if entry.sample == Sample::Patch {
+                let patch = Area::new(middle - 14.0, y - 12.0, 28.0, 24.0);
+                canvas.fill(patch, colour, OPACITY_BAR);
+            } else {
+                canvas.line((x, y), (end, y), WIDTH_CURVE, colour);
             }
-            if let (Sample::Marker, false) = (self.sample, line) {
-                marker(canvas, index, (middle, *y), RADIUS_MARKER, *colour);
+            if entry.sample == Sample::Marker {
+                marker(canvas, index, (middle, y), RADIUS_MARKER, colour);
             }
-            canvas.text(
-                text,
-                (x + Self::SAMPLE + 10.0, y + 0.5 * text.height()),
-                Align::Start,
-                BLACK,
-            );
+            let at = (end + NAME_GAP, y + 0.5 * entry.text.height());
+            canvas.text(&entry.text, at, Align::Start, BLACK);
         }
     }
 }

@@ -4,16 +4,12 @@
 //! Every picture is drawn once, on a canvas, and comes out as SVG and as PNG of the same physical size: a
 //! journal's column for curves, heat maps and bars, its text width for maps of stress. Bytes depend on the arguments only: no date, no
 //! random identifier.
-//!
-//! Read by the run folder writer and by `slipfront plot`.
 
 mod axis;
 mod bars;
 mod canvas;
 mod category_axis;
-mod color_bar;
 mod color_image;
-mod error_bar;
 mod export;
 mod field_maps;
 mod font;
@@ -26,15 +22,13 @@ mod heat_map;
 mod label_placement;
 mod lattice_map;
 mod legend;
-mod markers;
 mod mask_outline;
 mod picture;
 mod png_file;
-mod polyline;
 mod quantity_labels;
-mod range;
 mod raster;
 mod response;
+mod series;
 mod shapes;
 mod stress;
 mod style;

@@ -1,101 +1,69 @@
 //! The outline of a textured area, along the edges of its blocks.
 
+use std::collections::BTreeSet;
+
+/// An edge between a textured block, on its left, and another one: y and x of the corner where it starts, and the
+/// index of its direction.
+type Edge = (usize, usize, usize);
+
+/// The directions from a corner: right, up, left, down.
+const DIRECTIONS: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
+
 /// The lines between textured and other blocks, in blocks: each a chain of corners joined by straight lines,
 /// as long as possible. A closed chain ends where it starts; one that meets the lattice's edge is open.
 ///
 /// `textured` holds `nx` times `ny` blocks, row 0 at y = 0.
 pub(crate) fn outline(textured: &[bool], nx: usize, ny: usize) -> Vec<Vec<(usize, usize)>> {
-    let mut edges = Edges::of(textured, nx, ny);
-    let mut chains = Vec::new();
+    let mut edges = edges(textured, nx, ny);
     // Open chains first: they must be entered at an end. A closed one is then entered at its first corner in
     // this order, which is never in the middle of a straight line.
-    for open in [true, false] {
-        for y in 0..=ny {
-            for x in 0..=nx {
-                let starts = |edges: &Edges| (0..4).find(|&direction| edges.has((x, y), direction));
-                while let Some(direction) =
-                    starts(&edges).filter(|_| !open || x == 0 || y == 0 || x == nx || y == ny)
-                {
-                    chains.push(edges.follow((x, y), direction));
-                }
-            }
+    let is_at_border = |&(y, x, _): &Edge| x == 0 || y == 0 || x == nx || y == ny;
+    let (border, inside): (Vec<Edge>, Vec<Edge>) = edges.iter().partition(|edge| is_at_border(edge));
+    let mut chains = Vec::new();
+    for edge in border.into_iter().chain(inside) {
+        if edges.contains(&edge) {
+            chains.push(follow(&mut edges, edge));
         }
     }
     chains
 }
 
-/// The directions from a corner: right, up, left, down.
-const DIRECTIONS: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
-
-/// Which directions out of every corner are edges not yet drawn, each with the textured block on its left.
-struct Edges {
-    corners_x: usize,
-    directions: Vec<u8>,
-}
-
-impl Edges {
-    fn of(textured: &[bool], nx: usize, ny: usize) -> Self {
-        let mut edges = Self {
-            corners_x: nx + 1,
-            directions: vec![0; (nx + 1) * (ny + 1)],
-        };
-        let at = |x: usize, y: usize| textured[y * nx + x];
-        for y in 0..ny {
-            for x in 0..nx {
-                if x + 1 < nx {
-                    match (at(x, y), at(x + 1, y)) {
-                        (true, false) => edges.add((x + 1, y), 1),
-                        (false, true) => edges.add((x + 1, y + 1), 3),
-                        _ => {}
-                    }
-                }
-                if y + 1 < ny {
-                    match (at(x, y), at(x, y + 1)) {
-                        (true, false) => edges.add((x + 1, y + 1), 2),
-                        (false, true) => edges.add((x, y + 1), 0),
-                        _ => {}
-                    }
-                }
+fn edges(textured: &[bool], nx: usize, ny: usize) -> BTreeSet<Edge> {
+    let mut edges = BTreeSet::new();
+    for block in (0..textured.len()).filter(|&block| textured[block]) {
+        let (x, y) = (block % nx, block / nx);
+        let neighbours = [
+            ((x + 1 < nx).then(|| block + 1), (y, x + 1, 1)),
+            ((y + 1 < ny).then(|| block + nx), (y + 1, x + 1, 2)),
+            ((x > 0).then(|| block - 1), (y + 1, x, 3)),
+            ((y > 0).then(|| block - nx), (y, x, 0)),
+        ];
+        for (neighbour, edge) in neighbours {
+            if neighbour.is_some_and(|neighbour| !textured[neighbour]) {
+                edges.insert(edge);
             }
         }
-        edges
     }
+    edges
+}
 
-    fn add(&mut self, (x, y): (usize, usize), direction: usize) {
-        self.directions[y * self.corners_x + x] |= 1 << direction;
-    }
-
-    fn has(&self, (x, y): (usize, usize), direction: usize) -> bool {
-        self.directions[y * self.corners_x + x] & 1 << direction != 0
-    }
-
-    fn remove(&mut self, (x, y): (usize, usize), direction: usize) {
-        self.directions[y * self.corners_x + x] &= !(1 << direction);
-    }
-
-    /// The chain that starts at a corner in this direction; its edges are removed.
-    fn follow(&mut self, start: (usize, usize), direction: usize) -> Vec<(usize, usize)> {
-        let mut chain = vec![start];
-        let (mut corner, mut direction) = (start, direction);
-        loop {
-            self.remove(corner, direction);
-            corner = (
-                corner.0.wrapping_add_signed(DIRECTIONS[direction].0),
-                corner.1.wrapping_add_signed(DIRECTIONS[direction].1),
-            );
-            // Left before straight before right: two textured blocks that meet at a corner only stay two
-            // areas.
-            let next = [1, 0, 3]
-                .into_iter()
-                .map(|turn| (direction + turn) % 4)
-                .find(|&next| self.has(corner, next));
-            if next != Some(direction) || corner == start {
-                chain.push(corner);
-            }
-            match next {
-                Some(next) if corner != start => direction = next,
-                _ => return chain,
-            }
+/// The corners of the chain that starts with this edge; its edges are removed.
+fn follow(edges: &mut BTreeSet<Edge>, (mut y, mut x, mut direction): Edge) -> Vec<(usize, usize)> {
+    let mut chain = vec![(x, y)];
+    loop {
+        edges.remove(&(y, x, direction));
+        x = x.wrapping_add_signed(DIRECTIONS[direction].0);
+        y = y.wrapping_add_signed(DIRECTIONS[direction].1);
+        // Left before straight before right: two textured blocks that meet at a corner only stay two areas.
+        let mut turns = [1, 0, 3].into_iter().map(|turn| (direction + turn) % 4);
+        let next = turns.find(|&next| edges.contains(&(y, x, next)));
+        let is_closed = chain[0] == (x, y);
+        if next != Some(direction) || is_closed {
+            chain.push((x, y));
+        }
+        match next {
+            Some(next) if !is_closed => direction = next,
+            _ => return chain,
         }
     }
 }

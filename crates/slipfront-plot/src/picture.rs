@@ -15,19 +15,13 @@ pub struct Picture {
 pub enum PictureError {
     #[error("there is no {0} to draw")]
     Nothing(&'static str),
-    #[error("curve `{label}` has {times} times but {values} values of {column}")]
+    #[error("curve `{label}` has {count} {counted} but {values} values of {column}")]
     Columns {
         label: String,
-        times: usize,
-        column: &'static str,
+        count: usize,
+        counted: &'static str,
         values: usize,
-    },
-    #[error("curve `{label}` has {points} points but {values} values of its {column}")]
-    Points {
-        label: String,
-        points: usize,
         column: &'static str,
-        values: usize,
     },
     #[error("a map of {columns} x {rows} cells has {values} values")]
     Cells {
@@ -49,4 +43,22 @@ pub enum PictureError {
     },
     #[error("the PNG could not be written: {0}")]
     Png(String),
+}
+
+/// Refuses a curve of which a column has not one value for each of its points, which are named by what is `counted`.
+pub(crate) fn check_columns(
+    label: &str,
+    (counted, count): (&'static str, usize),
+    columns: &[(&'static str, usize)],
+) -> Result<(), PictureError> {
+    let Some(&(column, values)) = columns.iter().find(|(_, values)| *values != count) else {
+        return Ok(());
+    };
+    Err(PictureError::Columns {
+        label: label.to_string(),
+        count,
+        counted,
+        values,
+        column,
+    })
 }

@@ -3,32 +3,24 @@
 use crate::picture::PictureError;
 use crate::style::DPI;
 
-/// What the bytes of an image are.
-pub(crate) enum Pixels {
-    /// Red, green and blue of every pixel, printed at [`DPI`].
-    Rgb,
-    /// An index into this palette for every pixel.
-    Indexed(Vec<u8>),
-}
-
-/// A PNG file of an image.
+/// A PNG file of an image: its bytes are red, green and blue of every pixel, printed at [`DPI`], or an index into the palette
+/// for every pixel if there is one.
 pub(crate) fn encode(
     width: usize,
     height: usize,
     bytes: &[u8],
-    pixels: Pixels,
+    palette: Option<Vec<u8>>,
 ) -> Result<Vec<u8>, PictureError> {
-    let failed = |error: png::EncodingError| PictureError::Png(error.to_string());
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width as u32, height as u32);
     encoder.set_depth(png::BitDepth::Eight);
-    match pixels {
-        Pixels::Indexed(palette) => {
+    match palette {
+        Some(palette) => {
             encoder.set_color(png::ColorType::Indexed);
             encoder.set_palette(palette);
             encoder.set_filter(png::Filter::Up);
         }
-        Pixels::Rgb => {
+        None => {
             let per_metre = (DPI / 0.0254).round() as u32;
             encoder.set_color(png::ColorType::Rgb);
             encoder.set_pixel_dims(Some(png::PixelDimensions {
@@ -41,6 +33,6 @@ pub(crate) fn encode(
     encoder
         .write_header()
         .and_then(|mut writer| writer.write_image_data(bytes))
-        .map_err(failed)?;
+        .map_err(|error| PictureError::Png(error.to_string()))?;
     Ok(file)
 }

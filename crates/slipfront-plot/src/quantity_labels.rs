@@ -26,17 +26,13 @@ impl QuantityLabel<'_> {
     /// assert_eq!(coverage.title(), "texture coverage A* of texture 2 (%)");
     /// ```
     pub fn title(&self) -> String {
-        let mut title = self.words.to_owned();
-        if !self.symbol.is_empty() {
-            title = format!("{title} {}", self.symbol);
-        }
-        if let Some(texture) = self.texture {
-            title = format!("{title} of texture {texture}");
-        }
-        if !self.unit.is_empty() {
-            title = format!("{title} ({})", self.unit);
-        }
-        title
+        let texture = self.texture.map(|texture| format!("of texture {texture}"));
+        let texture = texture.unwrap_or_default();
+        let unit = format!("({})", self.unit);
+        let unit = if self.unit.is_empty() { "" } else { &unit };
+        let mut parts = vec![self.words, self.symbol, &texture, unit];
+        parts.retain(|part| !part.is_empty());
+        parts.join(" ")
     }
 
     /// The title of a legend: the symbol and unit of a quantity that has a symbol and belongs to no numbered texture, else
@@ -50,12 +46,10 @@ impl QuantityLabel<'_> {
     /// ```
     pub fn legend(&self) -> String {
         if self.symbol.is_empty() || self.texture.is_some() {
-            self.title()
-        } else if self.unit.is_empty() {
-            self.symbol.to_owned()
-        } else {
-            format!("{} ({})", self.symbol, self.unit)
+            return self.title();
         }
+        let short = QuantityLabel { words: "", ..*self };
+        short.title()
     }
 }
 

@@ -2,8 +2,8 @@
 
 use skrifa::outline::OutlinePen;
 use tiny_skia::{
-    Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Rect, Shader, Stroke,
-    Transform,
+    Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PremultipliedColorU8,
+    Rect, Stroke, Transform,
 };
 
 use crate::canvas::{Canvas, Element, Primitive};
@@ -22,43 +22,22 @@ pub(crate) fn rgb(canvas: &Canvas) -> Option<Vec<u8>> {
     for element in &canvas.elements {
         draw(&mut pixmap, element);
     }
-    let pixels = pixmap.pixels().iter();
-    Some(
-        pixels
-            .flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()])
-            .collect(),
-    )
+    let channels = |pixel: &PremultipliedColorU8| [pixel.red(), pixel.green(), pixel.blue()];
+    Some(pixmap.pixels().iter().flat_map(channels).collect())
 }
 
 /// Draws an element; one without extent leaves no trace.
-fn draw(
-    pixmap: &mut Pixmap,
-    Element {
-        primitive,
-        colour,
-        opacity,
-    }: &Element,
-) {
-    let [red, green, blue] = *colour;
-    let paint = Paint {
-        shader: Shader::SolidColor(Color::from_rgba8(
-            red,
-            green,
-            blue,
-            (opacity * 255.0).round() as u8,
-        )),
-        ..Paint::default()
-    };
-    let path = match primitive {
+fn draw(pixmap: &mut Pixmap, element: &Element) {
+    let [red, green, blue] = element.colour;
+    let mut paint = Paint::default();
+    paint.set_color_rgba8(red, green, blue, (element.opacity * 255.0).round() as u8);
+    let path = match &element.primitive {
         Primitive::Line { points, closed, .. } => path(points, *closed),
         Primitive::Polygon(points) => path(points, true),
-        Primitive::Rectangle(area) => Rect::from_xywh(
-            area.x as f32,
-            area.y as f32,
-            area.width as f32,
-            area.height as f32,
-        )
-        .map(PathBuilder::from_rect),
+        Primitive::Rectangle(area) => {
+            let [x, y, width, height] = area.sides().map(|length| length as f32);
+            Rect::from_xywh(x, y, width, height).map(PathBuilder::from_rect)
+        }
         Primitive::Disc { centre, radius } => {
             PathBuilder::from_circle(centre.0 as f32, centre.1 as f32, *radius as f32)
         }
@@ -70,7 +49,7 @@ fn draw(
         } => letters(text, f64::from(*size), *at, *upwards),
     };
     let Some(path) = path else { return };
-    if let Primitive::Line { width, .. } = primitive {
+    if let Primitive::Line { width, .. } = &element.primitive {
         let stroke = Stroke {
             width: *width as f32,
             line_cap: LineCap::Butt,
@@ -109,12 +88,10 @@ fn letters(text: &str, size: f64, at: Point, upwards: bool) -> Option<Path> {
     };
     let mut along = 0.0;
     for character in text.chars() {
-        let (x, y) = if upwards {
-            (at.0, at.1 - along)
-        } else {
-            (at.0 + along, at.1)
+        pen.origin = match upwards {
+            true => (at.0 as f32, (at.1 - along) as f32),
+            false => ((at.0 + along) as f32, at.1 as f32),
         };
-        pen.origin = (x as f32, y as f32);
         font::draw(character, &mut pen);
         along += font::advance(character) * size;
     }
@@ -132,10 +109,9 @@ struct Pen {
 impl Pen {
     fn place(&self, x: f32, y: f32) -> (f32, f32) {
         let (along, above) = (self.size * x, self.size * y);
-        if self.upwards {
-            (self.origin.0 - above, self.origin.1 - along)
-        } else {
-            (self.origin.0 + along, self.origin.1 - above)
+        match self.upwards {
+            true => (self.origin.0 - above, self.origin.1 - along),
+            false => (self.origin.0 + along, self.origin.1 - above),
         }
     }
 }
@@ -171,16 +147,11 @@ const SAMPLES: usize = 4;
 
 /// Draws an image onto whole pixels. Where cells meet within a pixel, their colours are mixed.
 fn draw_image(pixmap: &mut Pixmap, image: &Image) {
-    let (left, top) = (image.area.x.round() as usize, image.area.y.round() as usize);
-    let (right, bottom) = (
-        image.area.right().round() as usize,
-        image.area.bottom().round() as usize,
-    );
+    let area = image.area;
+    let [left, top] = [area.x, area.y].map(|side| side.round() as usize);
     let pitch = pixmap.width() as usize;
-    let (width, height) = (
-        right.min(pitch) - left,
-        bottom.min(pixmap.height() as usize) - top,
-    );
+    let width = pitch.min(area.right().round() as usize) - left;
+    let height = (pixmap.height() as usize).min(area.bottom().round() as usize) - top;
     let colours = palette();
     let columns = cells(image.columns, width);
     let rows = cells(image.rows(), height);
@@ -190,12 +161,8 @@ fn draw_image(pixmap: &mut Pixmap, image: &Image) {
         let mut sums = vec![[0; 3]; width];
         for &row in rows {
             if summed != Some(row) {
-                sum_row(
-                    &mut row_sums,
-                    &image.levels[row * image.columns..],
-                    &columns,
-                    &colours,
-                );
+                let levels = &image.levels[row * image.columns..];
+                sum_row(&mut row_sums, levels, &columns, &colours);
                 summed = Some(row);
             }
             for (sum, row_sum) in sums.iter_mut().zip(&row_sums) {
@@ -216,9 +183,8 @@ fn draw_image(pixmap: &mut Pixmap, image: &Image) {
 /// The cell at every sample along a side.
 fn cells(count: usize, pixels: usize) -> Vec<usize> {
     let samples = pixels * SAMPLES;
-    (0..samples)
-        .map(|sample| (2 * sample + 1) * count / (2 * samples))
-        .collect()
+    let cell = |sample| (2 * sample + 1) * count / (2 * samples);
+    (0..samples).map(cell).collect()
 }
 
 /// Adds up the colours of the samples of every pixel of a row.
@@ -326,7 +292,7 @@ mod tests {
     #[test]
     fn cells_that_meet_within_a_pixel_are_mixed() {
         let image = |canvas: &mut Canvas| {
-            canvas.image(Image {
+            canvas.images.push(Image {
                 area: Area { width: 3.0, ..AREA },
                 columns: 2,
                 levels: vec![0, 254],

@@ -2,19 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::axis::Axis;
+use crate::axis::{Axis, drawable};
 use crate::canvas::Canvas;
-use crate::error_bar::{Interval, error_bar};
 use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side, right_end, short_ticks};
 use crate::geometry::Area;
 use crate::legend::{Legend, Sample};
-use crate::markers::marker;
-use crate::picture::{Picture, PictureError};
-use crate::polyline::segments;
-use crate::range::drawable;
-use crate::style::{
-    COLUMN_WIDTH, GREY, MARGIN, RADIUS_MARKER, Rgb, WIDTH_CURVE, WIDTH_LEADER, WIDTH_MARK, curve_colour,
-};
+use crate::picture::{Picture, PictureError, check_columns};
+use crate::series::{error_bar, interval, marker, segments};
+use crate::style::{COLUMN_WIDTH, GREY, MARGIN, RADIUS_MARKER, WIDTH_CURVE, WIDTH_LEADER, curve_colour};
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
 
@@ -25,7 +20,7 @@ const RIGHT: f64 = 34.0;
 /// Response curves over one axis.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Responses {
-    /// What x is; see [`title`](crate::title).
+    /// What x is; see [`title`](crate::QuantityLabel::title).
     pub x_title: String,
     /// Whether x is logarithmic; without effect if an x is not positive.
     pub log_x: bool,
@@ -33,7 +28,7 @@ pub struct Responses {
     pub log_y: bool,
     /// What the curves show.
     pub y_title: String,
-    /// What the curves' labels are values of, for the legend; see [`symbol`](crate::symbol).
+    /// What the curves' labels are values of, for the legend; see [`legend`](crate::QuantityLabel::legend).
     pub legend_title: String,
     /// The curves.
     pub curves: Vec<Response>,
@@ -68,158 +63,105 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
     if responses.curves.is_empty() {
         return Err(PictureError::Nothing("curve"));
     }
-    responses.curves.iter().try_for_each(check)?;
-    let curves: Vec<Curve> = responses.curves.iter().map(Curve::of).collect();
-    let (panel, legend) = Panel::of(responses, &curves);
-    let mut canvas = Canvas::new(COLUMN_WIDTH, panel.area.bottom() + LOWER_ROOM);
-    panel.draw_sides(&mut canvas, responses);
+    for curve in &responses.curves {
+        let columns = [
+            ("its mean", curve.mean.len()),
+            ("its low", curve.low.len()),
+            ("its high", curve.high.len()),
+        ];
+        check_columns(&curve.label, ("points", curve.x.len()), &columns)?;
+    }
+    let curves: Vec<Response> = responses.curves.iter().map(sorted).collect();
+    let xs: Vec<f64> = curves.iter().flat_map(|curve| curve.x.clone()).collect();
+    let x = Axis::around(&xs, responses.log_x, 0.04);
+    let ys: Vec<f64> = curves.iter().flat_map(values).collect();
+    let y = Axis::around(&ys, responses.log_y, 0.06);
+
+    let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Direction::Y, MAX_STEPS));
+    let right = COLUMN_WIDTH.round() - RIGHT;
+    let x_ticks = x.placed(left, right).ticks(Direction::X, MAX_STEPS);
+    let right = right_end(&x_ticks, left, right, COLUMN_WIDTH);
+    let sample = |curve: &Response| if curve.line { Sample::Line } else { Sample::Marker };
+    let named = curves.iter().filter(|_| curves.len() > 1);
+    let names: Vec<_> = named.map(|curve| (curve.label.as_str(), sample(curve))).collect();
+    let legend = Legend::of(&responses.legend_title, &names, left, right);
+    let area = Area::new(left, MARGIN + legend.height, right - left, HEIGHT);
+    let (x, y) = (x.placed(left, right), y.placed(area.bottom(), area.y));
+
+    let mut canvas = Canvas::new(COLUMN_WIDTH, area.bottom() + LOWER_ROOM);
+    draw_sides(&mut canvas, area, &x, &y, responses);
     legend.draw(&mut canvas);
-    panel.draw_curves(&mut canvas, &curves);
-    canvas.frame(panel.area);
+    draw_curves(&mut canvas, &x, &y, &curves);
+    canvas.frame(area);
     canvas.finish()
 }
 
-/// Where the curves are drawn.
-struct Panel {
-    area: Area,
-    x: Axis,
-    y: Axis,
-}
-
-impl Panel {
-    /// A panel that holds all curves, and the legend above it.
-    fn of(responses: &Responses, curves: &[Curve]) -> (Self, Legend) {
-        let xs: Vec<f64> = curves.iter().flat_map(|curve| curve.x.clone()).collect();
-        let x = Axis::around(&xs, responses.log_x, 0.04);
-        let ys: Vec<f64> = curves.iter().flat_map(Curve::values).collect();
-        let y = Axis::around(&ys, responses.log_y, 0.06);
-        let left = left_room(&y.placed(HEIGHT, 0.0).ticks(Direction::Y, MAX_STEPS));
-        let right = COLUMN_WIDTH.round() - RIGHT;
-        let x_ticks = x.placed(left, right).ticks(Direction::X, MAX_STEPS);
-        let right = right_end(&x_ticks, left, right, COLUMN_WIDTH);
-        let mut legend = Legend::default();
-        if curves.len() > 1 {
-            let labels: Vec<&str> = responses.curves.iter().map(|c| c.label.as_str()).collect();
-            let lines: Vec<bool> = curves.iter().map(|curve| curve.line).collect();
-            let title = &responses.legend_title;
-            legend = Legend::titled(title, &labels, Sample::Marker, left, right).with_lines(&lines);
-        }
-        let area = Area {
-            x: left,
-            y: MARGIN + legend.height,
-            width: right - left,
-            height: HEIGHT,
-        };
-        let panel = Self {
-            area,
-            x: x.placed(left, right),
-            y: y.placed(area.bottom(), area.y),
-        };
-        (panel, legend)
-    }
-
-    /// Draws ticks, numbers and titles, and a line at zero.
-    fn draw_sides(&self, canvas: &mut Canvas, responses: &Responses) {
-        let Self { area, x, y } = self;
-        let title = Text::fitted(&responses.y_title, area.height);
-        left_side(canvas, *area, 0.0, &y.ticks(Direction::Y, MAX_STEPS), &title);
-        short_ticks(canvas, *area, Direction::Y, &y.short_ticks());
-        short_ticks(canvas, *area, Direction::X, &x.short_ticks());
-        let title = Text::fitted(&responses.x_title, area.width);
-        lower_side(canvas, *area, &x.ticks(Direction::X, MAX_STEPS), &title);
-        if !y.is_log && y.lo < 0.0 && y.hi > 0.0 {
-            canvas.line((area.x, y.at(0.0)), (area.right(), y.at(0.0)), WIDTH_LEADER, GREY);
-        }
-    }
-
-    /// Draws all bands, then all curves, then all points: nothing hides a point.
-    fn draw_curves(&self, canvas: &mut Canvas, curves: &[Curve]) {
-        let Self { x, y, .. } = self;
-        let opacity = if curves.len() > 4 { 0.13 } else { 0.2 };
-        let colour = |index: usize| curve_colour(index, curves.len());
-        for (index, curve) in curves.iter().enumerate() {
-            curve.draw_band(canvas, x, y, colour(index), opacity);
-        }
-        for (index, curve) in curves.iter().enumerate() {
-            for segment in segments(&curve.x, &curve.mean, x, y) {
-                if segment.len() > 1 {
-                    canvas.polyline(segment, WIDTH_CURVE, colour(index));
-                }
-            }
-        }
-        for (index, curve) in curves.iter().enumerate().filter(|(_, curve)| !curve.line) {
-            for point in segments(&curve.x, &curve.mean, x, y).concat() {
-                marker(canvas, index, point, RADIUS_MARKER, colour(index));
-            }
-        }
+/// A curve whose points run along x, with an interval that is whole or NaN.
+fn sorted(curve: &Response) -> Response {
+    let mut order: Vec<usize> = (0..curve.x.len()).collect();
+    order.retain(|&index| drawable(curve.x[index]));
+    order.sort_by(|&a, &b| curve.x[a].total_cmp(&curve.x[b]));
+    let ends = |&index: &usize| {
+        interval(curve.mean[index], curve.low[index], curve.high[index]).unwrap_or((f64::NAN, f64::NAN))
+    };
+    let (low, high) = order.iter().map(ends).unzip();
+    Response {
+        label: curve.label.clone(),
+        x: order.iter().map(|&index| curve.x[index]).collect(),
+        mean: order.iter().map(|&index| curve.mean[index]).collect(),
+        low,
+        high,
+        line: curve.line,
     }
 }
 
-fn check(curve: &Response) -> Result<(), PictureError> {
-    let columns = [
-        ("mean", curve.mean.len()),
-        ("low", curve.low.len()),
-        ("high", curve.high.len()),
-    ];
-    let points = curve.x.len();
-    match columns.into_iter().find(|(_, values)| *values != points) {
-        Some((column, values)) => Err(PictureError::Points {
-            label: curve.label.clone(),
-            points,
-            column,
-            values,
-        }),
-        None => Ok(()),
+/// Everything that y must hold.
+fn values(curve: &Response) -> impl Iterator<Item = f64> {
+    [&curve.mean, &curve.low, &curve.high]
+        .into_iter()
+        .flatten()
+        .copied()
+}
+
+/// Draws ticks, numbers and titles, and a line at zero.
+fn draw_sides(canvas: &mut Canvas, area: Area, x: &Axis, y: &Axis, responses: &Responses) {
+    let title = Text::fitted(&responses.y_title, area.height);
+    left_side(canvas, area, 0.0, &y.ticks(Direction::Y, MAX_STEPS), &title);
+    short_ticks(canvas, area, Direction::Y, &y.short_ticks());
+    short_ticks(canvas, area, Direction::X, &x.short_ticks());
+    let title = Text::fitted(&responses.x_title, area.width);
+    lower_side(canvas, area, &x.ticks(Direction::X, MAX_STEPS), &title);
+    if !y.is_log && y.lo < 0.0 && y.hi > 0.0 {
+        canvas.line((area.x, y.at(0.0)), (area.right(), y.at(0.0)), WIDTH_LEADER, GREY);
     }
 }
 
-/// A curve whose points run along x; an interval is whole or NaN.
-struct Curve {
-    x: Vec<f64>,
-    mean: Vec<f64>,
-    low: Vec<f64>,
-    high: Vec<f64>,
-    line: bool,
-}
-
-impl Curve {
-    fn of(response: &Response) -> Self {
-        let mut order: Vec<usize> = (0..response.x.len())
-            .filter(|&index| drawable(response.x[index]))
-            .collect();
-        order.sort_by(|&a, &b| response.x[a].total_cmp(&response.x[b]));
-        let interval = |&index: &usize| {
-            let (low, high) = (response.low[index], response.high[index]);
-            match Interval::of(response.mean[index], low, high) {
-                Some(interval) => (interval.low, interval.high),
-                None => (f64::NAN, f64::NAN),
-            }
-        };
-        let (low, high) = order.iter().map(interval).unzip();
-        Self {
-            x: order.iter().map(|&index| response.x[index]).collect(),
-            mean: order.iter().map(|&index| response.mean[index]).collect(),
-            low,
-            high,
-            line: response.line,
-        }
-    }
-
-    /// Everything that y must hold.
-    fn values(&self) -> impl Iterator<Item = f64> {
-        [&self.mean, &self.low, &self.high].into_iter().flatten().copied()
-    }
-
-    fn draw_band(&self, canvas: &mut Canvas, x: &Axis, y: &Axis, colour: Rgb, opacity: f64) {
-        let lows = segments(&self.x, &self.low, x, y);
-        let highs = segments(&self.x, &self.high, x, y);
+/// Draws all bands, then all curves, then all points: nothing hides a point.
+fn draw_curves(canvas: &mut Canvas, x: &Axis, y: &Axis, curves: &[Response]) {
+    let opacity = if curves.len() > 4 { 0.13 } else { 0.2 };
+    let colour = |index: usize| curve_colour(index, curves.len());
+    for (index, curve) in curves.iter().enumerate() {
+        let lows = segments(&curve.x, &curve.low, x, y);
+        let highs = segments(&curve.x, &curve.high, x, y);
         for (low, high) in lows.into_iter().zip(highs) {
             if let ([low], [high]) = (&low[..], &high[..]) {
-                error_bar(canvas, low.0, (low.1, high.1), WIDTH_MARK, colour);
-                continue;
+                error_bar(canvas, low.0, low.1, high.1, colour(index));
+            } else {
+                let edge = low.into_iter().chain(high.into_iter().rev()).collect();
+                canvas.polygon(edge, colour(index), opacity);
             }
-            let edge = low.into_iter().chain(high.into_iter().rev()).collect();
-            canvas.polygon(edge, colour, opacity);
+        }
+    }
+    for (index, curve) in curves.iter().enumerate() {
+        for segment in segments(&curve.x, &curve.mean, x, y) {
+            if segment.len() > 1 {
+                canvas.polyline(segment, WIDTH_CURVE, colour(index));
+            }
+        }
+    }
+    for (index, curve) in curves.iter().enumerate().filter(|(_, curve)| !curve.line) {
+        for point in segments(&curve.x, &curve.mean, x, y).concat() {
+            marker(canvas, index, point, RADIUS_MARKER, colour(index));
         }
     }
 }
@@ -318,8 +260,8 @@ mod tests {
     fn an_interval_is_held_whole() {
         let mut wide = curve("", &[(1.0, 0.5)]);
         (wide.low[0], wide.high[0]) = (-3.0, 7.0);
-        let curve = Curve::of(&wide);
-        assert!(curve.values().any(|v| v == -3.0) && curve.values().any(|v| v == 7.0));
+        let curve = sorted(&wide);
+        assert!(values(&curve).any(|v| v == -3.0) && values(&curve).any(|v| v == 7.0));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::canvas::Canvas;
-use crate::geometry::{Align, Area};
+use crate::geometry::{Align, Point};
 use crate::picture::{Picture, PictureError};
 use crate::style::{BLACK, COLUMN_WIDTH, CURVES, MARGIN, SIZE_TICK, WIDTH_MARK};
 use crate::text::Text;
@@ -46,30 +46,24 @@ pub fn shapes(shapes: &[Shape]) -> Result<Picture, PictureError> {
         .collect();
     let height = rows.iter().map(|row| row + label_room).sum::<f64>();
     let mut canvas = Canvas::new(COLUMN_WIDTH, 2.0 * MARGIN + height);
-    for (index, shape) in shapes.iter().enumerate() {
-        let row = index / COLUMNS;
-        let area = Area {
-            x: MARGIN + (index % COLUMNS) as f64 * (room + GAP),
-            y: MARGIN + rows[..row].iter().map(|above| above + label_room).sum::<f64>(),
-            width: room,
-            height: rows[row],
-        };
-        let (x, y) = (area.x + 0.5 * room, area.y + 0.5 * area.height);
-        let mut points: Vec<(f64, f64)> = shape
-            .points
-            .iter()
-            .map(|[px, py]| (x + scale * px, y - scale * py))
-            .collect();
-        canvas.polygon(points.clone(), CURVES[0], 0.25);
-        points.extend(points.first().copied());
-        canvas.polyline(points, WIDTH_MARK, CURVES[0]);
-        let label = Text::shortened(&shape.label, SIZE_TICK, room + GAP);
-        canvas.text(
-            &label,
-            (x, area.bottom() + f64::from(SIZE_TICK)),
-            Align::Middle,
-            BLACK,
-        );
+    let mut top = MARGIN;
+    for (row, height) in shapes.chunks(COLUMNS).zip(rows) {
+        for (column, shape) in row.iter().enumerate() {
+            let x = MARGIN + column as f64 * (room + GAP) + 0.5 * room;
+            let y = top + 0.5 * height;
+            let points = shape
+                .points
+                .iter()
+                .map(|[px, py]| (x + scale * px, y - scale * py));
+            let mut points: Vec<Point> = points.collect();
+            canvas.polygon(points.clone(), CURVES[0], 0.25);
+            points.extend(points.first().copied());
+            canvas.polyline(points, WIDTH_MARK, CURVES[0]);
+            let label = Text::shortened(&shape.label, SIZE_TICK, room + GAP);
+            let baseline = top + height + f64::from(SIZE_TICK);
+            canvas.text(&label, (x, baseline), Align::Middle, BLACK);
+        }
+        top += height + label_room;
     }
     canvas.finish()
 }

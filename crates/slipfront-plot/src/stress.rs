@@ -2,14 +2,15 @@
 
 use crate::axis::Axis;
 use crate::canvas::Canvas;
-use crate::color_bar::{BAR_MIN_HEIGHT, BAR_WIDTH, bar_room, colour_bar};
-use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side};
+use crate::frame::{
+    BAR_MIN_HEIGHT, BAR_WIDTH, LOWER_ROOM, bar_room, colour_bar, left_room, left_side, lower_side,
+};
 use crate::geometry::{Align, Area};
 use crate::lattice_map::{Cells, TITLE_ROOM, block_count, check_length, draw_titles};
 use crate::picture::{Picture, PictureError};
 use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH};
 use crate::text::{Text, number};
-use crate::ticks::{Direction, Tick};
+use crate::ticks::Direction;
 
 /// Maps in a row.
 const MAX_COLUMNS: usize = 6;
@@ -23,6 +24,8 @@ const MIN_RATIO: f64 = 1.0 / 6.0;
 const SHORT_SIDE: f64 = 130.0;
 /// The ends of the colour scale.
 const RANGE: [f64; 2] = [0.0, 1.0];
+/// It is numbered in at most so many steps.
+const BAR_STEPS: usize = 5;
 
 /// One map of the contact stress.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,18 +71,21 @@ pub fn stress(maps: &StressMaps) -> Result<Picture, PictureError> {
     let layout = Layout::of(maps);
     let mut canvas = Canvas::new(layout.width, layout.height);
     let cells = Cells::of(maps.nx, maps.ny, &maps.textured);
-    for (index, map) in maps.maps.iter().enumerate() {
-        let area = layout.map(index);
+    for (map, &area) in maps.maps.iter().zip(&layout.areas) {
         cells.draw(&mut canvas, area, &map.values, RANGE);
         canvas.frame(area);
         let mut label = title(map);
-        if label.width() > layout.pitch_x - 0.5 * GAP {
-            label = Text::shortened(&map.label, SIZE_LABEL, layout.pitch_x - 0.5 * GAP);
+        let room = layout.pitch_x - 0.5 * GAP;
+        if label.width() > room {
+            label = Text::shortened(&map.label, SIZE_LABEL, room);
         }
         draw_titles(&mut canvas, area, &label, &friction(map));
     }
-    layout.draw_axes(&mut canvas, maps.maps.len());
-    layout.draw_bar(&mut canvas);
+    layout.draw_axes(&mut canvas);
+    // As tall as all rows.
+    colour_bar(&mut canvas, layout.bar, RANGE, BAR_STEPS);
+    let title = Text::math("\u{3c4}_c*", SIZE_LABEL);
+    canvas.text(&title, (layout.bar.centre().0, TOP - 22.0), Align::Middle, BLACK);
     canvas.finish()
 }
 
@@ -103,14 +109,12 @@ struct Layout {
     height: f64,
     /// Maps in a row.
     columns: usize,
-    rows: usize,
-    map_width: f64,
-    map_height: f64,
     left: f64,
     pitch_x: f64,
-    pitch_y: f64,
+    areas: Vec<Area>,
+    bar: Area,
     /// The slider's sides along x and y, in `unit`.
-    sides: (Axis, Axis),
+    sides: [Axis; 2],
     unit: &'static str,
 }
 
@@ -121,71 +125,59 @@ impl Layout {
     fn of(maps: &StressMaps) -> Self {
         let (length_x, length_y) = (maps.nx as f64 * maps.block_size, maps.ny as f64 * maps.block_size);
         let (unit, factor) = unit_of(length_x.max(length_y));
-        let sides = (
-            Axis::linear(0.0, length_x * factor),
-            Axis::linear(0.0, length_y * factor),
-        );
+        let sides = [length_x, length_y].map(|length| Axis::linear(0.0, length * factor));
         let columns = maps.maps.len().min(MAX_COLUMNS);
         let rows = maps.maps.len().div_ceil(MAX_COLUMNS);
         let ratio = (length_y / length_x).clamp(MIN_RATIO, 1.0 / MIN_RATIO);
 
-        let left = left_room(&sides.1.placed(MAX_HEIGHT, 0.0).ticks(Direction::Y, 4));
-        let right = GAP + bar_room(&bar_ticks(MAX_HEIGHT, 0.0)) + MARGIN;
+        let left = left_room(&sides[1].placed(MAX_HEIGHT, 0.0).ticks(Direction::Y, 4));
+        let right = GAP + bar_room(RANGE, BAR_STEPS, MAX_HEIGHT) + MARGIN;
         let room = (TEXT_WIDTH - left - right + GAP) / columns as f64;
         let map_width = (room - GAP).min(MAX_WIDTH).min(MAX_HEIGHT / ratio).round();
         let map_height = (map_width * ratio).round();
         // A narrow map may have a wider title.
         let titles = maps.maps.iter().map(|map| title(map).width());
-        let titles = titles.fold(map_width, f64::max);
-        let pitch_x = (titles + GAP).min(room).max(map_width + GAP).round();
+        let widest = titles.fold(map_width, f64::max);
+        let pitch_x = (widest + GAP).min(room).max(map_width + GAP).round();
         let pitch_y = map_height + LOWER_ROOM + TITLE_ROOM;
-        let lowest = (rows - 1) as f64 * pitch_y + map_height + LOWER_ROOM;
+        let lowest = (rows - 1) as f64 * pitch_y + map_height;
+        let slack = pitch_x - GAP - map_width;
+        let area = |index: usize| {
+            let x = (left + (index % columns) as f64 * pitch_x + 0.5 * slack).round();
+            Area::new(x, TOP + (index / columns) as f64 * pitch_y, map_width, map_height)
+        };
+        let bar_x = left + columns as f64 * pitch_x;
         Self {
-            width: left + columns as f64 * pitch_x - GAP + right,
-            height: TOP + lowest.max(BAR_MIN_HEIGHT + 2.0 * MARGIN),
+            width: bar_x - GAP + right,
+            height: TOP + (lowest + LOWER_ROOM).max(BAR_MIN_HEIGHT + 2.0 * MARGIN),
             columns,
-            rows,
-            map_width,
-            map_height,
             left,
             pitch_x,
-            pitch_y,
+            areas: (0..maps.maps.len()).map(area).collect(),
+            bar: Area::new(bar_x, TOP, BAR_WIDTH, lowest.max(BAR_MIN_HEIGHT)),
             sides,
             unit,
         }
     }
 
-    /// The area of a map.
-    fn map(&self, index: usize) -> Area {
-        let (column, row) = (index % self.columns, index / self.columns);
-        let slack = self.pitch_x - GAP - self.map_width;
-        Area {
-            x: (self.left + column as f64 * self.pitch_x + 0.5 * slack).round(),
-            y: TOP + row as f64 * self.pitch_y,
-            width: self.map_width,
-            height: self.map_height,
-        }
-    }
-
     /// Numbers below the lowest map of every column and left of every row.
-    fn draw_axes(&self, canvas: &mut Canvas, count: usize) {
+    fn draw_axes(&self, canvas: &mut Canvas) {
         let most = |side: f64| if side < SHORT_SIDE { 2 } else { 4 };
-        for index in 0..count {
-            let area = self.map(index);
+        for (index, &area) in self.areas.iter().enumerate() {
             if index % self.columns == 0 {
-                let axis = self.sides.1.placed(area.bottom(), area.y);
+                let axis = self.sides[1].placed(area.bottom(), area.y);
                 let ticks = axis.ticks(Direction::Y, most(area.height));
                 let title = Text::plain(&format!("y ({})", self.unit), SIZE_LABEL);
                 left_side(canvas, area, area.x - self.left, &ticks, &title);
             }
-            if index + self.columns >= count {
-                let axis = self.sides.0.placed(area.x, area.right());
+            if index + self.columns >= self.areas.len() {
+                let axis = self.sides[0].placed(area.x, area.right());
                 let mut ticks = axis.ticks(Direction::X, most(area.width));
                 // No number may touch the first one of the next map.
                 let end = area.x + 0.5 * (area.width + self.pitch_x) - 4.0;
                 for (at, text) in &mut ticks {
                     if *at + 0.5 * text.width() > end {
-                        *text = Text::plain("", SIZE_TICK);
+                        *text = Text::default();
                     }
                 }
                 let title = Text::plain(&format!("x ({})", self.unit), SIZE_LABEL);
@@ -193,44 +185,26 @@ impl Layout {
             }
         }
     }
-
-    /// The colour bar, as tall as all rows.
-    fn draw_bar(&self, canvas: &mut Canvas) {
-        let height = ((self.rows - 1) as f64 * self.pitch_y + self.map_height).max(BAR_MIN_HEIGHT);
-        let area = Area {
-            x: self.left + self.columns as f64 * self.pitch_x,
-            y: TOP,
-            width: BAR_WIDTH,
-            height,
-        };
-        colour_bar(canvas, area, &bar_ticks(area.bottom(), area.y));
-        let title = Text::math("\u{3c4}_c*", SIZE_LABEL);
-        canvas.text(&title, (area.centre().0, area.y - 22.0), Align::Middle, BLACK);
-    }
-}
-
-/// The numbers of a colour bar between two pixels.
-fn bar_ticks(start: f64, end: f64) -> Vec<Tick> {
-    let [lo, hi] = RANGE;
-    Axis::linear(lo, hi).placed(start, end).ticks(Direction::Y, 5)
 }
 
 /// The first line over a map.
 fn title(map: &StressMap) -> Text {
     let time = format!("t* = {}", number(map.time_star, 1));
-    // A map may be named after its time.
-    if map.label.is_empty() || map.label.starts_with("t*") {
-        return Text::plain(if map.label.is_empty() { &time } else { &map.label }, SIZE_LABEL);
-    }
-    Text::plain(&format!("{}: {time}", map.label), SIZE_LABEL)
+    let title = match map.label.as_str() {
+        "" => time,
+        // A map may be named after its time.
+        label if label.starts_with("t*") => label.to_string(),
+        label => format!("{label}: {time}"),
+    };
+    Text::plain(&title, SIZE_LABEL)
 }
 
 /// The second line over a map; empty if the friction is not known.
 fn friction(map: &StressMap) -> Text {
-    if !map.mu_star.is_finite() {
-        return Text::plain("", SIZE_TICK);
+    match map.mu_star.is_finite() {
+        true => Text::plain(&format!("\u{3bc}* = {}", number(map.mu_star, 3)), SIZE_TICK),
+        false => Text::default(),
     }
-    Text::plain(&format!("\u{3bc}* = {}", number(map.mu_star, 3)), SIZE_TICK)
 }
 
 /// The unit in which a length reads well, and how many of it make a metre.
@@ -287,7 +261,7 @@ mod tests {
             let maps = maps(nx, ny, count);
             let layout = Layout::of(&maps);
             assert!(layout.width <= TEXT_WIDTH + 6.0, "{nx} x {ny}: {}", layout.width);
-            let last = layout.map(count - 1);
+            let last = layout.areas[count - 1];
             assert!(last.bottom() < layout.height && last.width >= 40.0 && last.height >= 40.0);
             stress(&maps).unwrap();
         }

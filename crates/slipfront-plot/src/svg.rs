@@ -10,7 +10,7 @@ use crate::color_image::{Image, palette};
 use crate::font::WOFF2;
 use crate::geometry::{Area, Point};
 use crate::picture::PictureError;
-use crate::png_file::{self, Pixels};
+use crate::png_file;
 use crate::style::{DPI, Rgb};
 
 /// The canvas as an SVG document with a physical size, its font and its images.
@@ -55,12 +55,10 @@ fn tag(element: &Element) -> String {
         }
         Primitive::Polygon(points) => format!("<path d=\"{}Z\" {fill}/>\n", path_data(points)),
         Primitive::Rectangle(area) => format!("<rect {} {fill}/>\n", sides(area)),
-        Primitive::Disc { centre, radius } => format!(
-            "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" {fill}/>\n",
-            length(centre.0),
-            length(centre.1),
-            length(*radius),
-        ),
+        Primitive::Disc { centre, radius } => {
+            let [x, y, radius] = [centre.0, centre.1, *radius].map(length);
+            format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {fill}/>\n")
+        }
         Primitive::Letters {
             text,
             size,
@@ -68,10 +66,9 @@ fn tag(element: &Element) -> String {
             upwards,
         } => {
             let (x, y) = (length(at.0), length(at.1));
-            let turn = if *upwards {
-                format!(" transform=\"rotate(-90 {x} {y})\"")
-            } else {
-                String::new()
+            let turn = match upwards {
+                true => format!(" transform=\"rotate(-90 {x} {y})\""),
+                false => String::new(),
             };
             let text = escaped(text);
             format!("<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\"{turn} {fill}>{text}</text>\n")
@@ -104,13 +101,8 @@ fn image_png(image: &Image) -> Result<Vec<u8>, PictureError> {
             pixels.extend_from_within(start..start + image.columns * repeat);
         }
     }
-    let palette = palette().concat();
-    png_file::encode(
-        image.columns * repeat,
-        rows * repeat,
-        &pixels,
-        Pixels::Indexed(palette),
-    )
+    let palette = Some(palette().concat());
+    png_file::encode(image.columns * repeat, rows * repeat, &pixels, palette)
 }
 
 /// The data of a path through points: after the first pair of coordinates, each is the end of a line.
@@ -124,13 +116,8 @@ fn path_data(points: &[Point]) -> String {
 }
 
 fn sides(area: &Area) -> String {
-    format!(
-        "x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"",
-        length(area.x),
-        length(area.y),
-        length(area.width),
-        length(area.height),
-    )
+    let [x, y, width, height] = area.sides().map(length);
+    format!("x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"")
 }
 
 /// A length in hundredths of a pixel, which is less than a micrometre on paper.
@@ -235,7 +222,7 @@ mod tests {
     #[test]
     fn an_image_fills_its_area() {
         let svg = drawn(|canvas| {
-            canvas.image(Image {
+            canvas.images.push(Image {
                 area: AREA,
                 columns: 2,
                 levels: vec![0, 254],

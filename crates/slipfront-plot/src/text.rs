@@ -10,7 +10,7 @@ pub(crate) const CAP_HEIGHT: f64 = 0.729;
 pub(crate) const MINUS: &str = "\u{2212}";
 
 /// A line of text.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Text {
     pub(crate) runs: Vec<Run>,
     pub(crate) size: u32,
@@ -29,24 +29,10 @@ impl Text {
     /// A text taken as it is, for what a user wrote: control characters and doubled spaces, which SVG does
     /// not keep, are dropped. Unicode's subscript letters, which the font lacks, become small letters.
     pub(crate) fn plain(text: &str, size: u32) -> Self {
-        let words: Vec<&str> = text
-            .split(|c: char| c.is_whitespace() || c.is_control())
-            .collect();
-        let text = words
-            .into_iter()
-            .filter(|word| !word.is_empty())
-            .collect::<Vec<_>>()
-            .join(" ");
+        let words = text.split(|c: char| c.is_whitespace() || c.is_control());
+        let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
         let letter = |c| subscript(c).map_or((c, Height::Line), |letter| (letter, Height::Below));
-        let mut set = Self::set(text.chars().map(letter), size);
-        if set.runs.is_empty() {
-            set.runs.push(Run {
-                text,
-                size,
-                drop: 0.0,
-            });
-        }
-        set
+        Self::set(words.join(" ").chars().map(letter), size)
     }
 
     /// A text in which the character after an underscore is a subscript: `mu_s*`.
@@ -67,13 +53,11 @@ impl Text {
         let Some((digits, power)) = written.split_once('e') else {
             return Self::plain(written, size);
         };
-        let base = match digits {
-            "1" => "10".to_string(),
-            _ => format!("{digits}\u{d7}10"),
-        };
-        let line = base.chars().map(|c| (c, Height::Line)).collect::<Vec<_>>();
+        let base = format!("{digits}\u{d7}10");
+        let base = if digits == "1" { "10" } else { &base };
+        let line = base.chars().map(|c| (c, Height::Line));
         let above = power.chars().map(|c| (c, Height::Above));
-        Self::set(line.into_iter().chain(above), size)
+        Self::set(line.chain(above), size)
     }
 
     /// Gathers neighbouring letters of one height into runs.
@@ -100,32 +84,29 @@ impl Text {
     /// A text no wider than `room`: as a label, else in the size of numbers, else cut.
     pub(crate) fn fitted(text: &str, room: f64) -> Self {
         let label = Self::plain(text, SIZE_LABEL);
-        if label.width() <= room {
-            return label;
+        match label.width() <= room {
+            true => label,
+            false => Self::shortened(text, SIZE_TICK, room),
         }
-        Self::shortened(text, SIZE_TICK, room)
     }
 
     /// The words of a text in at most `most` lines no wider than `room`, if they fit.
     pub(crate) fn wrapped(text: &str, size: u32, room: f64, most: usize) -> Option<Vec<Self>> {
         let mut lines: Vec<String> = Vec::new();
         for word in text.split_whitespace() {
-            let longer = lines.last().map(|line| format!("{line} {word}"));
-            match longer.filter(|longer| Self::plain(longer, size).width() <= room) {
-                Some(longer) => {
-                    lines.pop();
-                    lines.push(longer);
+            match lines.last_mut() {
+                Some(line) if Self::plain(&format!("{line} {word}"), size).width() <= room => {
+                    *line += &format!(" {word}");
                 }
-                None => lines.push(word.to_string()),
+                _ => lines.push(word.to_string()),
             }
         }
         let lines: Vec<Self> = lines.iter().map(|line| Self::plain(line, size)).collect();
         (lines.len() <= most && lines.iter().all(|line| line.width() <= room)).then_some(lines)
     }
 
-    /// How wide the text is.
     pub(crate) fn width(&self) -> f64 {
-        self.runs.iter().map(Run::width).sum()
+        self.runs.iter().map(|run| width(&run.text, run.size)).sum()
     }
 
     /// How high its capitals are.
@@ -136,9 +117,8 @@ impl Text {
     /// How far its lowest letter reaches below the line.
     pub(crate) fn depth(&self) -> f64 {
         let reach = |run: &Run| {
-            let descends = run
-                .text
-                .contains(['g', 'j', 'p', 'q', 'y', '\u{3bc}', '(', ')', ',']);
+            let letters = ['g', 'j', 'p', 'q', 'y', '\u{3bc}', '(', ')', ','];
+            let descends = run.text.contains(letters);
             run.drop + if descends { 0.24 * f64::from(run.size) } else { 0.0 }
         };
         self.runs.iter().map(reach).fold(0.0, f64::max)
@@ -150,12 +130,10 @@ impl Text {
         if whole.width() <= width {
             return whole;
         }
-        let mut kept: Vec<char> = text.chars().collect();
-        while kept.pop().is_some() {
-            let cut = Self::plain(
-                &(kept.iter().collect::<String>().trim_end().to_string() + "\u{2026}"),
-                size,
-            );
+        let mut kept = text;
+        while let Some((last, _)) = kept.char_indices().next_back() {
+            kept = &kept[..last];
+            let cut = Self::plain(&format!("{}\u{2026}", kept.trim_end()), size);
             if cut.width() <= width {
                 return cut;
             }
@@ -172,35 +150,24 @@ enum Height {
     Above,
 }
 
-/// The letter of one of Unicode's subscript letters.
+/// Unicode's subscript letters, and the letters that they are.
+const SUBSCRIPTS: [&str; 2] = [
+    "\u{2090}\u{2091}\u{2092}\u{2093}\u{2095}\u{2096}\u{2097}\u{2098}\u{2099}\u{209a}\u{209b}\u{209c}\
+     \u{1d62}\u{1d63}\u{1d64}\u{1d65}",
+    "aeoxhklmnpstiruv",
+];
+
 fn subscript(character: char) -> Option<char> {
-    let letter = match character {
-        '\u{2090}' => 'a',
-        '\u{2091}' => 'e',
-        '\u{2092}' => 'o',
-        '\u{2093}' => 'x',
-        '\u{2095}' => 'h',
-        '\u{2096}' => 'k',
-        '\u{2097}' => 'l',
-        '\u{2098}' => 'm',
-        '\u{2099}' => 'n',
-        '\u{209a}' => 'p',
-        '\u{209b}' => 's',
-        '\u{209c}' => 't',
-        '\u{1d62}' => 'i',
-        '\u{1d63}' => 'r',
-        '\u{1d64}' => 'u',
-        '\u{1d65}' => 'v',
-        _ => return None,
-    };
-    Some(letter)
+    let [small, letters] = SUBSCRIPTS.map(str::chars);
+    small
+        .zip(letters)
+        .find(|(small, _)| *small == character)
+        .map(|(_, letter)| letter)
 }
 
-impl Run {
-    /// How wide the run is.
-    pub(crate) fn width(&self) -> f64 {
-        self.text.chars().map(advance).sum::<f64>() * f64::from(self.size)
-    }
+/// How wide letters of this size are.
+pub(crate) fn width(letters: &str, size: u32) -> f64 {
+    letters.chars().map(advance).sum::<f64>() * f64::from(size)
 }
 
 /// `value` with `decimals` digits after the point and a true minus sign; never a negative zero.
@@ -279,7 +246,7 @@ mod tests {
         let text = Text::shortened("a rather long label of a curve", 30, 200.0);
         assert!(text.width() <= 200.0 && text.runs[0].text.ends_with('\u{2026}'));
         assert_eq!(Text::shortened("short", 30, 200.0).runs[0].text, "short");
-        assert!(Text::shortened("no room", 30, 1.0).runs[0].text.is_empty());
+        assert!(Text::shortened("no room", 30, 1.0).runs.is_empty());
     }
 
     #[test]

@@ -60,39 +60,26 @@ impl Axis {
 
     /// Round values in at most `most` steps (but at least two).
     fn linear_ticks(&self, most: usize) -> Vec<Tick> {
-        let (lo, hi) = if self.is_log {
-            (libm::exp10(self.lo), libm::exp10(self.hi))
-        } else {
-            (self.lo, self.hi)
-        };
+        let value = |end: f64| if self.is_log { libm::exp10(end) } else { end };
+        let (lo, hi) = (value(self.lo), value(self.hi));
         let (step, values) = round_values(lo, hi, most);
         let power = power_of(lo.abs().max(hi.abs()));
-        values
-            .into_iter()
-            .map(|value| {
-                (
-                    self.at(value),
-                    Text::number(&written(value, step, power), SIZE_TICK),
-                )
-            })
-            .filter(|(at, _)| at.is_finite())
-            .collect()
+        let text = |value| Text::number(&written(value, step, power), SIZE_TICK);
+        let ticks = values.into_iter().map(|value| (self.at(value), text(value)));
+        ticks.filter(|(at, _)| at.is_finite()).collect()
     }
 
     fn logarithmic_ticks(&self, digits: &[f64], every: i32) -> Vec<Tick> {
         let ticks = self.round_logarithms(digits, every);
         let plain = ticks.iter().all(|(_, power, _)| (-4..5).contains(power));
-        let written = |digit: f64, power: i32| {
-            if plain {
-                number(digit * libm::exp10(f64::from(power)), (-power).max(0) as usize)
-            } else {
-                format!("{digit}e{power}").replace('-', MINUS)
-            }
+        let tick = |&(digit, power, at): &(f64, i32, f64)| {
+            let written = match plain {
+                true => number(digit * libm::exp10(f64::from(power)), (-power).max(0) as usize),
+                false => format!("{digit}e{power}").replace('-', MINUS),
+            };
+            (at, Text::number(&written, SIZE_TICK))
         };
-        ticks
-            .iter()
-            .map(|&(digit, power, at)| (at, Text::number(&written(digit, power), SIZE_TICK)))
-            .collect()
+        ticks.iter().map(tick).collect()
     }
 
     /// Digits times powers of ten on the axis, of which only multiples of `every`, and their pixels.
@@ -133,9 +120,8 @@ fn round_values(lo: f64, hi: f64, most: usize) -> (f64, Vec<f64>) {
 /// The smallest of 1, 2, 5, 10, ... that is at least `step`.
 fn round_step(step: f64) -> f64 {
     let power = libm::exp10(power_of(step));
-    let digit = [1.0, 2.0, 5.0]
-        .into_iter()
-        .find(|digit| digit * power >= step * (1.0 - 1e-9));
+    let mut digits = [1.0, 2.0, 5.0].into_iter();
+    let digit = digits.find(|digit| digit * power >= step * (1.0 - 1e-9));
     digit.unwrap_or(10.0) * power
 }
 
