@@ -24,8 +24,8 @@ pub struct FieldFrame {
     pub label: String,
     /// Number of the time step.
     pub step: u64,
-    /// One array per name in [`FieldsFile::names`], in the unit of [`FieldInfo::unit`], thinned by [`thin`] and
-    /// row-major.
+    /// One array per name in [`FieldsFile::names`], in the unit of [`FieldInfo::unit`](slipfront_case::field_info::FieldInfo::unit),
+    /// thinned by [`thin`] and row-major.
     pub values: Vec<Vec<f32>>,
 }
 
