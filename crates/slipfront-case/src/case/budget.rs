@@ -1,18 +1,10 @@
 //! Memory and disk space that a run needs, estimated before it begins and compared with what the machine has.
 //!
-//! Memory is that of the largest of four phases: a case is made, run, its results written, its pictures drawn. Per block
-//! of the lattice, in bytes:
-//!
-//! | | made | run | written | drawn |
-//! |---|---|---|---|---|
-//! | surface: textured, mu_s, mu_k | 17 | 17 | 17 | 17 |
-//! | fused kernel: displacement, velocity, thresholds, first slip, masks and tiles | | 58 | | |
-//! | instead, reference kernel: state, forces, springs, thresholds, first slip | | 185 | | |
-//! | first slip, and the copy that is written | | 8 | 16 | 8 |
-//!
-//! and per block that is kept of a field (one in `stride` along each axis) 4 for every snapshot and field, of which
-//! drawing keeps the contact stress of six snapshots only. A row of the series takes 104, in arrays that double as
-//! they grow, and three times that when it is drawn; pictures take their canvas, which is the most of a small run.
+//! Memory is that of the largest of three phases: a case is made, run and its results written, its pictures drawn. Per block of the
+//! lattice, the surface (textured, mu_s, mu_k) takes 17 bytes; the fused kernel (displacement, velocity, thresholds, first slip, masks
+//! and tiles) 58, the reference kernel 185. Of a field, 4 bytes are kept per snapshot and per block (one in `stride` along each axis);
+//! drawing keeps the contact stress of six snapshots only. A row of the series takes 104 bytes and its text, in arrays that double as
+//! they grow. Pictures take the same for every lattice.
 
 use std::path::Path;
 
@@ -42,9 +34,6 @@ const REFERENCE: f64 = 23.0 * NUMBER + CONTACT;
 const SAVED: f64 = 5.0 * NUMBER;
 /// Room for what is read of it, which grows by an eighth at a time.
 const ROOM_TO_READ: f64 = 1.125;
-/// [`slipfront::observe::FirstSlip`].
-const FIRST_SLIP: f64 = NUMBER;
-
 /// A value of a field.
 const VALUE: f64 = size_of::<f32>() as f64;
 /// The texture read back, and a field while it is decoded by way of doubles.
@@ -54,16 +43,14 @@ const STATICS_ON_DISK: f64 = 2.0 + 3.0 * NUMBER;
 
 /// A row of `series.csv`: 13 columns of at most 24 characters and what separates them.
 const ROW_TEXT: f64 = 13.0 * 25.0;
-/// A row of `series.csv` in memory, which a test of slipfront-run compares with the type.
-pub const SERIES_ROW: usize = 13 * size_of::<f64>();
 /// Stretches of the history of mu* and their copies while an uncertainty is sought.
 const HISTORY: f64 = 1024.0 * 1024.0;
 
-/// Canvas, fonts and pixels of the picture of the friction, and of the one of the stress. They do not depend on the
-/// lattice: more than 256 cells along a side are averaged (measured: 63 and 65 MB).
-const PICTURE: f64 = 64.0 * 1024.0 * 1024.0;
-/// Both pictures as SVG and PNG, the summary and the manifest (measured: at most 1.3 MB).
-const PICTURE_FILES: f64 = 2.0 * 1024.0 * 1024.0;
+/// Pixels, shapes and text of one of two pictures (measured: 10 MB for the friction, 17 MB for both). They do not depend on the
+/// lattice: more than 256 cells along a side are averaged.
+const PICTURE: f64 = 8.0 * 1024.0 * 1024.0;
+/// Both pictures as SVG and PNG, the summary and the manifest (measured: at most 1.2 MB).
+const PICTURE_FILES: f64 = 1.5 * 1024.0 * 1024.0;
 
 /// What the allocator holds of memory that has been given back, or cannot use between pieces that have not: resident
 /// memory was up to 4 % above what was allocated.
@@ -72,8 +59,8 @@ const HEAP: f64 = 1.05;
 /// The program itself.
 pub const PROGRAM: f64 = 8.0 * 1024.0 * 1024.0;
 
-/// Cases that need less are not compared with the machine: the pictures of the smallest run take more.
-const SMALL: f64 = PICTURE;
+/// Cases that need less are not compared with the machine, which takes some milliseconds.
+const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
 
 /// Memory and disk space that a run needs; the [module](self) says what is counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -175,25 +162,14 @@ impl Budget {
         }
     }
 
-    /// While it runs.
+    /// From the first step until the files are written.
     fn running(&self) -> Bytes {
         Bytes {
             blocks: self.blocks * (SURFACE + self.kernel),
             snapshots: self.snapshots(),
-            series: grown(self.rows) * size_of::<CurveRow>() as f64,
+            series: self.series(),
             inputs: self.inputs,
             fixed: HISTORY,
-        }
-    }
-
-    /// While its files are written.
-    fn writing(&self) -> Bytes {
-        Bytes {
-            blocks: self.blocks * (SURFACE + 2.0 * FIRST_SLIP) + self.cells * NUMBER,
-            snapshots: self.snapshots(),
-            series: grown(self.rows) * size_of::<CurveRow>() as f64 + grown(self.rows * ROW_TEXT),
-            inputs: self.inputs,
-            fixed: 0.0,
         }
     }
 
@@ -204,14 +180,18 @@ impl Budget {
         } else {
             0.0
         };
-        let row = size_of::<CurveRow>() + 2 * SERIES_ROW + 3 * size_of::<f64>();
         Bytes {
-            blocks: self.blocks * (SURFACE + FIRST_SLIP) + self.cells * DECODED,
+            blocks: self.blocks * (SURFACE + NUMBER) + self.cells * DECODED,
             snapshots: maps * self.cells * VALUE,
-            series: grown(self.rows) * row as f64,
+            series: self.series(),
             inputs: self.inputs,
             fixed: if maps > 0.0 { 2.0 * PICTURE } else { PICTURE },
         }
+    }
+
+    /// The rows of the series, and their text or what is drawn of it.
+    fn series(&self) -> f64 {
+        grown(self.rows) * size_of::<CurveRow>() as f64 + grown(self.rows * ROW_TEXT)
     }
 
     /// All snapshots in memory.
@@ -220,27 +200,22 @@ impl Budget {
         self.frames * self.fields * self.cells * VALUE + grown(self.frames) * frame
     }
 
-    /// The phase that takes the most.
-    fn largest(&self) -> Bytes {
-        [self.making(), self.running(), self.writing(), self.drawing()]
-            .into_iter()
-            .max_by(|a, b| a.total().total_cmp(&b.total()))
-            .unwrap_or_default()
+    /// The phase that takes the most, of a run that `writes` its files or keeps its numbers alone.
+    fn largest(&self, writes: bool) -> Bytes {
+        let drawing = if writes { self.drawing() } else { Bytes::default() };
+        let phases = [self.making(), self.running(), drawing].into_iter();
+        let largest = phases.max_by(|a, b| a.total().total_cmp(&b.total()));
+        largest.unwrap_or_default()
     }
 
     /// Memory of a run with its files and pictures, in bytes.
     pub fn memory(&self) -> f64 {
-        PROGRAM + HEAP * self.largest().total()
+        PROGRAM + HEAP * self.largest(true).total()
     }
 
     /// Memory of one of several runs at once, in bytes; of one that writes no files if not `writes`.
     pub fn memory_beside_others(&self, writes: bool) -> f64 {
-        let phases = if writes {
-            self.largest().total()
-        } else {
-            self.making().total().max(self.running().total())
-        };
-        HEAP * phases
+        HEAP * self.largest(writes).total()
     }
 
     /// Memory of a case that is made and not run, in bytes.
@@ -294,13 +269,13 @@ impl Budget {
     /// Refuses a run that needs more memory than there is; what a case takes is there already if it is `made`.
     pub fn check_memory(&self, made: bool) -> Result<(), BudgetExceeded> {
         let made = if made { self.making().total() } else { 0.0 };
-        self.compare_memory(Needs::Run, &self.largest(), made, available_memory())
+        self.compare_memory(Needs::Run, &self.largest(true), made, available_memory())
     }
 
     /// Refuses to go on from a checkpoint with a case that is made, where there is less memory than that needs.
     pub fn check_memory_resumed(&self) -> Result<(), BudgetExceeded> {
         let (resumed, made) = (self.resumed(), self.making().total());
-        resumed.compare_memory(Needs::Resumed, &resumed.largest(), made, available_memory())
+        resumed.compare_memory(Needs::Resumed, &resumed.largest(true), made, available_memory())
     }
 
     /// `had` is what has been taken of `bytes` already, `available` what there is beside it.
@@ -448,7 +423,7 @@ mod tests {
         ] {
             let budget = budget(&sets);
             let refused = budget
-                .compare_memory(Needs::Run, &budget.largest(), 0.0, Some(2e8))
+                .compare_memory(Needs::Run, &budget.largest(true), 0.0, Some(2e8))
                 .unwrap_err();
             assert_eq!(refused.key, key);
             for word in ["where 190.7 MiB are available"].iter().chain(&words) {
@@ -461,7 +436,7 @@ mod tests {
     #[test]
     fn what_has_been_taken_already_counts_as_available() {
         let budget = budget(&["slider.blocks=[2000,1000]", "output.snapshots=[]"]);
-        let (run, made) = (budget.largest(), budget.making().total());
+        let (run, made) = (budget.largest(true), budget.making().total());
         let enough = budget.memory() - made;
         assert!(
             budget
