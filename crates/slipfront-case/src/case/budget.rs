@@ -1,18 +1,18 @@
 //! Memory and disk space that a run needs, estimated before it begins and compared with what the machine has.
 //!
-//! Memory is that of the largest of four phases: a case is made, run, its results written, its pictures drawn. Per block
-//! of the lattice, in bytes:
+//! Memory is that of the largest of three phases: a case is made, it is run and its results are written, its pictures are
+//! drawn. Per block of the lattice, in bytes:
 //!
-//! | | made | run | written | drawn |
-//! |---|---|---|---|---|
-//! | surface: textured, mu_s, mu_k | 17 | 17 | 17 | 17 |
-//! | fused kernel: displacement, velocity, thresholds, first slip, masks and tiles | | 58 | | |
-//! | instead, reference kernel: state, forces, springs, thresholds, first slip | | 185 | | |
-//! | first slip, and the copy that is written | | 8 | 16 | 8 |
+//! | | made | run | drawn |
+//! |---|---|---|---|
+//! | surface: textured, mu_s, mu_k | 17 | 17 | 17 |
+//! | fused kernel: displacement, velocity, thresholds, first slip, masks and tiles | | 58 | |
+//! | instead, reference kernel: state, forces, springs, thresholds, first slip | | 185 | |
+//! | first slip | | | 8 |
 //!
 //! and per block that is kept of a field (one in `stride` along each axis) 4 for every snapshot and field, of which
-//! drawing keeps the contact stress of six snapshots only. A row of the series takes 104, in arrays that double as
-//! they grow, and three times that when it is drawn; pictures take their canvas, which is the most of a small run.
+//! drawing keeps the contact stress of six snapshots only. A row of the series takes 104 and its text, in arrays that
+//! double as they grow, and three times 104 when it is drawn; pictures take their primitives and pixels.
 
 use std::path::Path;
 
@@ -59,11 +59,11 @@ pub const SERIES_ROW: usize = 13 * size_of::<f64>();
 /// Stretches of the history of mu* and their copies while an uncertainty is sought.
 const HISTORY: f64 = 1024.0 * 1024.0;
 
-/// Canvas, fonts and pixels of the picture of the friction, and of the one of the stress. They do not depend on the
-/// lattice: more than 256 cells along a side are averaged (measured: 63 and 65 MB).
-const PICTURE: f64 = 64.0 * 1024.0 * 1024.0;
-/// Both pictures as SVG and PNG, the summary and the manifest (measured: at most 1.3 MB).
-const PICTURE_FILES: f64 = 2.0 * 1024.0 * 1024.0;
+/// Primitives and pixels of the picture of the friction, and of the one of the stress. They do not depend on the
+/// lattice: more than 256 cells along a side are averaged (measured: 6.8 and 6.6 MB).
+const PICTURE: f64 = 7.0 * 1024.0 * 1024.0;
+/// Both pictures as SVG and PNG, the summary and the manifest (measured: at most 0.7 MB).
+const PICTURE_FILES: f64 = 1.5 * 1024.0 * 1024.0;
 
 /// What the allocator holds of memory that has been given back, or cannot use between pieces that have not: resident
 /// memory was up to 4 % above what was allocated.
@@ -72,8 +72,8 @@ const HEAP: f64 = 1.05;
 /// The program itself.
 pub const PROGRAM: f64 = 8.0 * 1024.0 * 1024.0;
 
-/// Cases that need less are not compared with the machine: the pictures of the smallest run take more.
-const SMALL: f64 = PICTURE;
+/// Cases whose making takes less are not compared with the machine.
+const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
 
 /// Memory and disk space that a run needs; the [module](self) says what is counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -175,25 +175,14 @@ impl Budget {
         }
     }
 
-    /// While it runs.
+    /// While it runs and its files are written: what writing takes for the blocks is less than the kernel's share.
     fn running(&self) -> Bytes {
         Bytes {
             blocks: self.blocks * (SURFACE + self.kernel),
             snapshots: self.snapshots(),
-            series: grown(self.rows) * size_of::<CurveRow>() as f64,
-            inputs: self.inputs,
-            fixed: HISTORY,
-        }
-    }
-
-    /// While its files are written.
-    fn writing(&self) -> Bytes {
-        Bytes {
-            blocks: self.blocks * (SURFACE + 2.0 * FIRST_SLIP) + self.cells * NUMBER,
-            snapshots: self.snapshots(),
             series: grown(self.rows) * size_of::<CurveRow>() as f64 + grown(self.rows * ROW_TEXT),
             inputs: self.inputs,
-            fixed: 0.0,
+            fixed: HISTORY,
         }
     }
 
@@ -222,7 +211,7 @@ impl Budget {
 
     /// The phase that takes the most.
     fn largest(&self) -> Bytes {
-        [self.making(), self.running(), self.writing(), self.drawing()]
+        [self.making(), self.running(), self.drawing()]
             .into_iter()
             .max_by(|a, b| a.total().total_cmp(&b.total()))
             .unwrap_or_default()
