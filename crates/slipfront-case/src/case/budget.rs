@@ -1,10 +1,18 @@
 //! Memory and disk space that a run needs, estimated before it begins and compared with what the machine has.
 //!
-//! Memory is that of the largest of three phases: a case is made, run and its results written, its pictures drawn. Per block of the
-//! lattice, the surface (textured, mu_s, mu_k) takes 17 bytes; the fused kernel (displacement, velocity, thresholds, first slip, masks
-//! and tiles) 58, the reference kernel 185. Of a field, 4 bytes are kept per snapshot and per block (one in `stride` along each axis);
-//! drawing keeps the contact stress of six snapshots only. A row of the series takes 104 bytes and its text, in arrays that double as
-//! they grow. Pictures take the same for every lattice.
+//! Memory is that of the largest of three phases: a case is made, it is run and its results are written, its pictures are
+//! drawn. Per block of the lattice, in bytes:
+//!
+//! | | made | run | drawn |
+//! |---|---|---|---|
+//! | surface: textured, mu_s, mu_k | 17 | 17 | 17 |
+//! | fused kernel: displacement, velocity, thresholds, first slip, masks and tiles | | 58 | |
+//! | instead, reference kernel: state, forces, springs, thresholds, first slip | | 185 | |
+//! | first slip | | | 8 |
+//!
+//! and per block that is kept of a field (one in `stride` along each axis) 4 for every snapshot and field, of which
+//! drawing keeps the contact stress of six snapshots only. A row of the series takes 104 and its text, in arrays that
+//! double as they grow, and three times 104 when it is drawn; pictures take their primitives and pixels.
 
 use std::path::Path;
 
@@ -34,6 +42,9 @@ const REFERENCE: f64 = 23.0 * NUMBER + CONTACT;
 const SAVED: f64 = 5.0 * NUMBER;
 /// Room for what is read of it, which grows by an eighth at a time.
 const ROOM_TO_READ: f64 = 1.125;
+/// [`slipfront::observe::FirstSlip`].
+const FIRST_SLIP: f64 = NUMBER;
+
 /// A value of a field.
 const VALUE: f64 = size_of::<f32>() as f64;
 /// The texture read back, and a field while it is decoded by way of doubles.
@@ -43,13 +54,15 @@ const STATICS_ON_DISK: f64 = 2.0 + 3.0 * NUMBER;
 
 /// A row of `series.csv`: 13 columns of at most 24 characters and what separates them.
 const ROW_TEXT: f64 = 13.0 * 25.0;
+/// A row of `series.csv` in memory, which a test of slipfront-run compares with the type.
+pub const SERIES_ROW: usize = 13 * size_of::<f64>();
 /// Stretches of the history of mu* and their copies while an uncertainty is sought.
 const HISTORY: f64 = 1024.0 * 1024.0;
 
-/// Pixels, shapes and text of one of two pictures (measured: 10 MB for the friction, 17 MB for both). They do not depend on the
-/// lattice: more than 256 cells along a side are averaged.
-const PICTURE: f64 = 8.0 * 1024.0 * 1024.0;
-/// Both pictures as SVG and PNG, the summary and the manifest (measured: at most 1.2 MB).
+/// Primitives and pixels of the picture of the friction, and of the one of the stress. They do not depend on the
+/// lattice: more than 256 cells along a side are averaged (measured: 6.8 and 6.6 MB).
+const PICTURE: f64 = 7.0 * 1024.0 * 1024.0;
+/// Both pictures as SVG and PNG, the summary and the manifest (measured: at most 0.7 MB).
 const PICTURE_FILES: f64 = 1.5 * 1024.0 * 1024.0;
 
 /// What the allocator holds of memory that has been given back, or cannot use between pieces that have not: resident
@@ -59,7 +72,7 @@ const HEAP: f64 = 1.05;
 /// The program itself.
 pub const PROGRAM: f64 = 8.0 * 1024.0 * 1024.0;
 
-/// Cases that need less are not compared with the machine, which takes some milliseconds.
+/// Cases whose making takes less are not compared with the machine.
 const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
 
 /// Memory and disk space that a run needs; the [module](self) says what is counted.
@@ -162,12 +175,12 @@ impl Budget {
         }
     }
 
-    /// From the first step until the files are written.
+    /// While it runs and its files are written: what writing takes for the blocks is less than the kernel's share.
     fn running(&self) -> Bytes {
         Bytes {
             blocks: self.blocks * (SURFACE + self.kernel),
             snapshots: self.snapshots(),
-            series: self.series(),
+            series: grown(self.rows) * size_of::<CurveRow>() as f64 + grown(self.rows * ROW_TEXT),
             inputs: self.inputs,
             fixed: HISTORY,
         }
@@ -180,18 +193,14 @@ impl Budget {
         } else {
             0.0
         };
+        let row = size_of::<CurveRow>() + 2 * SERIES_ROW + 3 * size_of::<f64>();
         Bytes {
-            blocks: self.blocks * (SURFACE + NUMBER) + self.cells * DECODED,
+            blocks: self.blocks * (SURFACE + FIRST_SLIP) + self.cells * DECODED,
             snapshots: maps * self.cells * VALUE,
-            series: self.series(),
+            series: grown(self.rows) * row as f64,
             inputs: self.inputs,
             fixed: if maps > 0.0 { 2.0 * PICTURE } else { PICTURE },
         }
-    }
-
-    /// The rows of the series, and their text or what is drawn of it.
-    fn series(&self) -> f64 {
-        grown(self.rows) * size_of::<CurveRow>() as f64 + grown(self.rows * ROW_TEXT)
     }
 
     /// All snapshots in memory.
@@ -200,22 +209,27 @@ impl Budget {
         self.frames * self.fields * self.cells * VALUE + grown(self.frames) * frame
     }
 
-    /// The phase that takes the most, of a run that `writes` its files or keeps its numbers alone.
-    fn largest(&self, writes: bool) -> Bytes {
-        let drawing = if writes { self.drawing() } else { Bytes::default() };
-        let phases = [self.making(), self.running(), drawing].into_iter();
-        let largest = phases.max_by(|a, b| a.total().total_cmp(&b.total()));
-        largest.unwrap_or_default()
+    /// The phase that takes the most.
+    fn largest(&self) -> Bytes {
+        [self.making(), self.running(), self.drawing()]
+            .into_iter()
+            .max_by(|a, b| a.total().total_cmp(&b.total()))
+            .unwrap_or_default()
     }
 
     /// Memory of a run with its files and pictures, in bytes.
     pub fn memory(&self) -> f64 {
-        PROGRAM + HEAP * self.largest(true).total()
+        PROGRAM + HEAP * self.largest().total()
     }
 
     /// Memory of one of several runs at once, in bytes; of one that writes no files if not `writes`.
     pub fn memory_beside_others(&self, writes: bool) -> f64 {
-        HEAP * self.largest(writes).total()
+        let phases = if writes {
+            self.largest().total()
+        } else {
+            self.making().total().max(self.running().total())
+        };
+        HEAP * phases
     }
 
     /// Memory of a case that is made and not run, in bytes.
@@ -269,13 +283,13 @@ impl Budget {
     /// Refuses a run that needs more memory than there is; what a case takes is there already if it is `made`.
     pub fn check_memory(&self, made: bool) -> Result<(), BudgetExceeded> {
         let made = if made { self.making().total() } else { 0.0 };
-        self.compare_memory(Needs::Run, &self.largest(true), made, available_memory())
+        self.compare_memory(Needs::Run, &self.largest(), made, available_memory())
     }
 
     /// Refuses to go on from a checkpoint with a case that is made, where there is less memory than that needs.
     pub fn check_memory_resumed(&self) -> Result<(), BudgetExceeded> {
         let (resumed, made) = (self.resumed(), self.making().total());
-        resumed.compare_memory(Needs::Resumed, &resumed.largest(true), made, available_memory())
+        resumed.compare_memory(Needs::Resumed, &resumed.largest(), made, available_memory())
     }
 
     /// `had` is what has been taken of `bytes` already, `available` what there is beside it.
@@ -423,7 +437,7 @@ mod tests {
         ] {
             let budget = budget(&sets);
             let refused = budget
-                .compare_memory(Needs::Run, &budget.largest(true), 0.0, Some(2e8))
+                .compare_memory(Needs::Run, &budget.largest(), 0.0, Some(2e8))
                 .unwrap_err();
             assert_eq!(refused.key, key);
             for word in ["where 190.7 MiB are available"].iter().chain(&words) {
@@ -436,7 +450,7 @@ mod tests {
     #[test]
     fn what_has_been_taken_already_counts_as_available() {
         let budget = budget(&["slider.blocks=[2000,1000]", "output.snapshots=[]"]);
-        let (run, made) = (budget.largest(true), budget.making().total());
+        let (run, made) = (budget.largest(), budget.making().total());
         let enough = budget.memory() - made;
         assert!(
             budget
