@@ -75,7 +75,7 @@ pub const PROGRAM: f64 = 8.0 * 1024.0 * 1024.0;
 /// Cases whose making takes less are not compared with the machine.
 const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
 
-/// Memory and disk space that a run needs; the [module](self) says what is counted.
+/// Memory and disk space that a run needs; the head of its file says what is counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     blocks: f64,
