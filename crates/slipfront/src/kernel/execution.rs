@@ -30,7 +30,7 @@ impl Kernel {
     pub fn for_law(self, law: FrictionLaw) -> Self {
         match law {
             FrictionLaw::Projection => self,
-            FrictionLaw::Reversal | FrictionLaw::Literal => Self::Reference,
+            _ => Self::Reference,
         }
     }
 
