@@ -105,7 +105,6 @@ fn known(value: f64) -> Option<f64> {
     (!value.is_nan()).then_some(value)
 }
 
-/// A curve of measured numbers.
 pub(super) fn measured(label: &str, x: &[f64], numbers: &[Number]) -> Response {
     let column = |which: usize| numbers.iter().map(|number| number.ends()[which]).collect();
     Response {
@@ -118,7 +117,6 @@ pub(super) fn measured(label: &str, x: &[f64], numbers: &[Number]) -> Response {
     }
 }
 
-/// A curve of a formula.
 pub(super) fn formula(label: &str, x: &[f64], value: impl Fn(f64) -> f64) -> Response {
     let blank = vec![f64::NAN; x.len()];
     Response {

@@ -49,12 +49,10 @@ impl FigureData {
         numbers.map(move |(name, number)| (format!("{figure}.{name}"), *number))
     }
 
-    /// Adds a number.
     pub(super) fn number(&mut self, name: &str, number: Number) {
         self.numbers.insert(name.to_owned(), number);
     }
 
-    /// Adds a single value.
     pub(super) fn value(&mut self, name: &str, value: f64) {
         self.number(name, Number::exact(value));
     }
@@ -64,7 +62,6 @@ impl FigureData {
         self.number(name, Number::of(values));
     }
 
-    /// Adds a picture.
     pub(super) fn panel(&mut self, name: &str, caption: &str, drawing: Drawing) {
         self.panels.push(Panel {
             name: name.to_owned(),
@@ -73,7 +70,6 @@ impl FigureData {
         });
     }
 
-    /// Adds a table.
     pub(super) fn table<const COLUMNS: usize>(
         &mut self,
         name: &str,

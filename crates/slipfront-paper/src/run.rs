@@ -71,7 +71,6 @@ impl Run {
         frame.ok_or_else(|| self.lacks(&format!("instant {letter}")))
     }
 
-    /// The values of a field in a frame of this run.
     pub(super) fn field<'f>(&self, frame: &'f Frame, field: Field) -> Result<&'f [f32], PaperError> {
         let index = self.case.output.fields.iter().position(|&name| name == field);
         let values = index.and_then(|index| frame.values.get(index));
@@ -159,7 +158,6 @@ impl Run {
             .collect()
     }
 
-    /// The window of kinetic friction.
     pub(super) fn kinetic_window(&self) -> Result<[f64; 2], PaperError> {
         let window = self.record.summary.kinetic_window_star;
         window.ok_or_else(|| self.lacks("kinetic window"))
@@ -209,12 +207,10 @@ impl Run {
     }
 }
 
-/// mu* of a point of a curve.
 pub(super) fn mu_star(point: &CurvePoint) -> f64 {
     point.mu_star
 }
 
-/// N* of a point of a curve.
 pub(super) fn sliding_percent(point: &CurvePoint) -> f64 {
     point.sliding_percent
 }

@@ -24,7 +24,6 @@ pub(super) struct FigureRunner<'a> {
     pub(super) threads: usize,
     /// Set by a signal: all runs end.
     pub(super) stop: &'a AtomicBool,
-    /// The time step.
     pub(super) step: StepRule,
     /// Two surfaces in place of five.
     pub(super) reduced: bool,
@@ -54,7 +53,6 @@ impl FigureRunner<'_> {
         cases.into_par_iter().map(|case| run_case(case, stop)).collect()
     }
 
-    /// Runs one case.
     pub(super) fn run_one(&self, case: Case) -> Result<Run, PaperError> {
         run_case(case, self.stop)
     }

@@ -7,7 +7,6 @@ use crate::number::{Number, values};
 use slipfront_case::case::Case;
 use slipfront_run::study::{Plan, Quantity, RetainRuns, Role, RunKey, StudyResults};
 
-/// A study and its results.
 pub(super) struct Sweep {
     pub(super) plan: Plan,
     pub(super) results: StudyResults,
@@ -91,7 +90,6 @@ impl Sweep {
             .collect()
     }
 
-    /// Cases of all surfaces of a point.
     pub(super) fn cases(&self, levels: &[usize]) -> Result<Vec<Case>, PaperError> {
         (0..self.plan.settings.max_replicates())
             .map(|replicate| self.case(levels, replicate))

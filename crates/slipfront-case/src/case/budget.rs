@@ -54,8 +54,8 @@ const STATICS_ON_DISK: f64 = 2.0 + 3.0 * NUMBER;
 
 /// A row of `series.csv`: 13 columns of at most 24 characters and what separates them.
 const ROW_TEXT: f64 = 13.0 * 25.0;
-/// A row of `series.csv` in memory, which a test of slipfront-run compares with the type.
-pub const SERIES_ROW: usize = 13 * size_of::<f64>();
+/// A row of `series.csv` in memory: 13 numbers.
+const SERIES_ROW: usize = 13 * size_of::<f64>();
 /// Stretches of the history of mu* and their copies while an uncertainty is sought.
 const HISTORY: f64 = 1024.0 * 1024.0;
 

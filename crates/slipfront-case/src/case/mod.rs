@@ -11,7 +11,7 @@ mod textures;
 mod time_plan;
 mod warnings;
 
-pub use self::budget::{Budget, PROGRAM, SERIES_ROW};
+pub use self::budget::{Budget, PROGRAM};
 pub use self::groups::Groups;
 pub use self::inputs::{CopyName, Input, name_of_copy};
 pub use self::output::{MAX_MAPS, Output, Snapshots, VARIABLE_MAX_BYTES, smallest_stride};

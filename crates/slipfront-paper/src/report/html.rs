@@ -118,7 +118,6 @@ fn claim_row(result: &ClaimResult, other: Option<&ClaimResult>) -> Markup {
     }
 }
 
-/// A text with its Greek letters and subscripts.
 fn text(text: &str) -> Markup {
     let text = greek(text);
     let mut parts = text.split('_');

@@ -38,7 +38,6 @@ pub fn write(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
     write_file(folder, "report.html", html::page(paper, &drawn).as_bytes())
 }
 
-/// Draws the pictures of a figure.
 fn draw(data: &FigureData) -> Result<Vec<Picture>, PaperError> {
     let panels = data.panels.par_iter().map(|Panel { name, drawing, .. }| {
         let name = name.clone();
@@ -60,10 +59,8 @@ pub fn foreign_docs(folder: &Path) -> Option<PathBuf> {
     files.find(|path| path.symlink_metadata().is_ok())
 }
 
-/// The page of the claims.
 const PAGE: &str = "paper.md";
 
-/// The path of a picture of that page.
 fn docs_picture(name: &str) -> String {
     format!("images/paper-{name}.png")
 }
