@@ -63,7 +63,7 @@ const HISTORY: f64 = 1024.0 * 1024.0;
 /// lattice: more than 256 cells along a side are averaged (measured: 6.8 and 6.6 MB).
 const PICTURE: f64 = 7.0 * 1024.0 * 1024.0;
 /// Both pictures as SVG and PNG, the summary and the manifest (measured: at most 0.7 MB).
-const PICTURE_FILES: f64 = 1.5 * 1024.0 * 1024.0;
+const PICTURE_FILES: f64 = 2e6;
 
 /// What the allocator holds of memory that has been given back, or cannot use between pieces that have not: resident
 /// memory was up to 4 % above what was allocated.
