@@ -9,16 +9,6 @@ use slipfront::{Edges, Execution, FrictionLaw, Simulation, Stop};
 use crate::common::{Slider, cavity, groove, thrown};
 use crate::{FUSED, REFERENCE, has_room, stopped_and_resumed};
 
-const FIELDS: [Field; 7] = [
-    Field::ContactStress,
-    Field::Traction,
-    Field::DisplacementX,
-    Field::DisplacementY,
-    Field::VelocityX,
-    Field::VelocityY,
-    Field::Sliding,
-];
-
 fn bits(values: &[f32]) -> Vec<u32> {
     values.iter().map(|value| value.to_bits()).collect()
 }
@@ -35,7 +25,7 @@ fn by_block(simulation: &Simulation, field: Field) -> Vec<f32> {
 pub(crate) fn assert_fields_match_blocks(simulation: &Simulation) {
     let now = simulation.snapshot();
     let mut values = vec![0.0; now.model.lattice.n_blocks()];
-    for field in FIELDS {
+    for field in Field::ALL {
         now.read_field(field, &mut values);
         let expected = by_block(simulation, field);
         assert_eq!(bits(&values), bits(&expected), "{field:?} at step {}", now.step);
@@ -117,12 +107,12 @@ fn frames_keep_every_nth_block(
     let state = thrown(slider.lattice().n_blocks(), 0.3, 5);
     let mut simulation = Simulation::with_execution(slider.model(), 0.1, Some(state), FUSED);
     let mut frames = Frames::new(Selection {
-        fields: FIELDS.to_vec(),
+        fields: Field::ALL.to_vec(),
         stride,
     });
     let mut observers = [Scheduled::new(Schedule::At(vec![50]), &mut frames)];
     simulation.run(Stop::at_step(50), &mut observers).unwrap();
-    for (field, values) in FIELDS.into_iter().zip(&frames.frames[0].values) {
+    for (field, values) in Field::ALL.into_iter().zip(&frames.frames[0].values) {
         let all = by_block(&simulation, field);
         let rows = all.chunks(blocks[0]).step_by(stride);
         let kept: Vec<f32> = rows.flat_map(|row| row.iter().step_by(stride).copied()).collect();
