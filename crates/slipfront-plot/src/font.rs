@@ -1,59 +1,71 @@
 //! The font of all pictures, a part of `DejaVu` Sans: widths and outlines of its letters. `font/README.md` says how its
 //! files were made.
 
+use std::collections::HashMap;
 use std::sync::LazyLock;
 
-use skrifa::charmap::Charmap;
-use skrifa::instance::{LocationRef, Size};
-use skrifa::metrics::GlyphMetrics;
-use skrifa::outline::{DrawSettings, OutlineGlyphCollection, OutlinePen};
-use skrifa::{FontRef, MetadataProvider};
+use tiny_skia::PathBuilder;
 
 /// What an SVG embeds.
 pub(crate) const WOFF2: &[u8] = include_bytes!("font/DejaVuSans-subset.woff2");
-/// What text is measured and drawn with.
-const TTF: &[u8] = include_bytes!("font/DejaVuSans-subset.ttf");
+/// What text is measured and drawn with: in each line a character's code, its width and its outline.
+const OUTLINES: &str = include_str!("font/outlines.txt");
 /// The font's unit of length: the font size divided by this.
-const UNITS_PER_EM: f64 = 2048.0;
+const UNITS_PER_EM: f32 = 2048.0;
 
-struct Font {
-    characters: Charmap<'static>,
-    metrics: GlyphMetrics<'static>,
-    outlines: OutlineGlyphCollection<'static>,
+struct Glyph {
+    width: f32,
+    outline: &'static str,
 }
 
-#[allow(clippy::expect_used)]
-static FONT: LazyLock<Font> = LazyLock::new(|| {
-    let font = FontRef::new(TTF).expect("the embedded font is a TrueType file");
-    Font {
-        characters: font.charmap(),
-        metrics: font.glyph_metrics(Size::unscaled(), LocationRef::default()),
-        outlines: font.outline_glyphs(),
-    }
+/// The glyphs by the code of their character, and under `missing` what stands for any other.
+static GLYPHS: LazyLock<HashMap<&str, Glyph>> = LazyLock::new(|| {
+    let glyph = |line: &'static str| {
+        let mut parts = line.splitn(3, ' ');
+        let (code, width) = (parts.next()?, parts.next()?.parse().ok()?);
+        let outline = parts.next().unwrap_or_default();
+        Some((code, Glyph { width, outline }))
+    };
+    OUTLINES.lines().filter_map(glyph).collect()
 });
+
+fn glyph(character: char) -> Option<&'static Glyph> {
+    GLYPHS.get(format!("{:x}", u32::from(character)).as_str())
+}
 
 /// How far `character` moves the pen, over the font size. One that the font lacks, which a viewer of the SVG takes from another
 /// font, is given an em: wide enough for nearly everything, so that nothing collides.
 pub(crate) fn advance(character: char) -> f64 {
-    let glyph = FONT.characters.map(character);
-    let units = glyph.and_then(|glyph| FONT.metrics.advance_width(glyph));
-    units.map_or(1.0, |units| f64::from(units) / UNITS_PER_EM)
+    f64::from(glyph(character).map_or(1.0, |glyph| glyph.width / UNITS_PER_EM))
 }
 
-/// Draws the outline of `character` with its origin at (0, 0) for a font size of 1, y upwards; a box if the font lacks it.
-pub(crate) fn draw(character: char, pen: &mut impl OutlinePen) {
-    let glyph = FONT.characters.map(character).unwrap_or_default();
-    if let Some(outline) = FONT.outlines.get(glyph) {
-        let settings = DrawSettings::unhinted(Size::new(1.0), LocationRef::default());
-        // An outline of the embedded font, which a test draws whole, cannot be damaged.
-        let _ = outline.draw(settings, pen);
+/// Adds the outline of `character` to a path; a box if the font lacks it. `place` takes a point of the outline, x from the pen and
+/// y above the baseline, over the font size, to its place in the picture.
+pub(crate) fn draw(character: char, path: &mut PathBuilder, place: impl Fn(f32, f32) -> (f32, f32)) {
+    let outline = glyph(character)
+        .or_else(|| GLYPHS.get("missing"))
+        .map_or("", |glyph| glyph.outline);
+    for command in outline.split(' ') {
+        let coordinate = |number: &str| number.parse::<f32>().ok().map(|units| units / UNITS_PER_EM);
+        let coordinates: Vec<f32> = command
+            .split(&['M', 'L', 'Q', ','])
+            .filter_map(coordinate)
+            .collect();
+        let points: Vec<_> = coordinates
+            .chunks_exact(2)
+            .map(|point| place(point[0], point[1]))
+            .collect();
+        match points[..] {
+            [(x, y)] if command.starts_with('M') => path.move_to(x, y),
+            [(x, y)] => path.line_to(x, y),
+            [(cx, cy), (x, y)] => path.quad_to(cx, cy, x, y),
+            _ => path.close(),
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use skrifa::outline::pen::NullPen;
-
     use super::*;
 
     #[test]
@@ -67,21 +79,28 @@ mod tests {
     }
 
     #[test]
-    fn every_glyph_can_be_drawn() {
-        let font = FontRef::new(TTF).unwrap();
-        assert_eq!(
-            f64::from(
-                font.metrics(Size::unscaled(), LocationRef::default())
-                    .units_per_em
-            ),
-            UNITS_PER_EM
-        );
-        let mut count = 0;
-        for (_, outline) in font.outline_glyphs().iter() {
-            let settings = DrawSettings::unhinted(Size::new(1.0), LocationRef::default());
-            outline.draw(settings, &mut NullPen).unwrap();
-            count += 1;
+    fn every_line_of_the_file_is_a_glyph_of_known_commands() {
+        assert_eq!(GLYPHS.len(), OUTLINES.lines().count());
+        assert!(GLYPHS.len() > 590, "{}", GLYPHS.len());
+        assert!(GLYPHS.contains_key("missing"));
+        for (code, glyph) in &*GLYPHS {
+            assert_eq!(
+                glyph.outline.matches('M').count(),
+                glyph.outline.matches('Z').count(),
+                "{code}"
+            );
+            for command in glyph.outline.split(' ').filter(|command| !command.is_empty()) {
+                let expected = match command.split_at(1).0 {
+                    "Z" => 0,
+                    "M" | "L" => 2,
+                    "Q" => 4,
+                    other => panic!("{code}: {other}"),
+                };
+                let numbers = command
+                    .split(&['M', 'L', 'Q', ','])
+                    .filter(|word| word.parse::<f32>().is_ok());
+                assert_eq!(numbers.count(), expected, "{code}: {command}");
+            }
         }
-        assert!(count > 600, "{count}");
     }
 }

@@ -1,6 +1,5 @@
 //! A canvas as pixels, drawn by `tiny-skia`. Its features `simd` and `std` are off, so that every machine computes the same bits.
 
-use skrifa::outline::OutlinePen;
 use tiny_skia::{
     Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PremultipliedColorU8,
     Rect, Stroke, Transform,
@@ -80,66 +79,27 @@ fn path(points: &[Point], closed: bool) -> Option<Path> {
 
 /// The outlines of letters on a baseline.
 fn letters(text: &str, size: f64, at: Point, upwards: bool) -> Option<Path> {
-    let mut pen = Pen {
-        outline: PathBuilder::new(),
-        size: size as f32,
-        origin: (0.0, 0.0),
-        upwards,
-    };
-    let mut along = 0.0;
+    let mut path = PathBuilder::new();
+    let scale = size as f32;
+    let mut pen = 0.0;
     for character in text.chars() {
-        pen.origin = match upwards {
-            true => (at.0 as f32, (at.1 - along) as f32),
-            false => ((at.0 + along) as f32, at.1 as f32),
-        };
-        font::draw(character, &mut pen);
-        along += font::advance(character) * size;
-    }
-    pen.outline.finish()
-}
-
-/// Puts the outline of a letter, y upwards and for a font size of 1, into a path.
-struct Pen {
-    outline: PathBuilder,
-    size: f32,
-    origin: (f32, f32),
-    upwards: bool,
-}
-
-impl Pen {
-    fn place(&self, x: f32, y: f32) -> (f32, f32) {
-        let (along, above) = (self.size * x, self.size * y);
-        match self.upwards {
-            true => (self.origin.0 - above, self.origin.1 - along),
-            false => (self.origin.0 + along, self.origin.1 - above),
+        match upwards {
+            true => {
+                let (x, y) = (at.0 as f32, (at.1 - pen) as f32);
+                font::draw(character, &mut path, |along, above| {
+                    (x - scale * above, y - scale * along)
+                });
+            }
+            false => {
+                let (x, y) = ((at.0 + pen) as f32, at.1 as f32);
+                font::draw(character, &mut path, |along, above| {
+                    (x + scale * along, y - scale * above)
+                });
+            }
         }
+        pen += font::advance(character) * size;
     }
-}
-
-impl OutlinePen for Pen {
-    fn move_to(&mut self, x: f32, y: f32) {
-        let (x, y) = self.place(x, y);
-        self.outline.move_to(x, y);
-    }
-
-    fn line_to(&mut self, x: f32, y: f32) {
-        let (x, y) = self.place(x, y);
-        self.outline.line_to(x, y);
-    }
-
-    fn quad_to(&mut self, cx: f32, cy: f32, x: f32, y: f32) {
-        let ((cx, cy), (x, y)) = (self.place(cx, cy), self.place(x, y));
-        self.outline.quad_to(cx, cy, x, y);
-    }
-
-    fn curve_to(&mut self, ax: f32, ay: f32, bx: f32, by: f32, x: f32, y: f32) {
-        let ((ax, ay), (bx, by), (x, y)) = (self.place(ax, ay), self.place(bx, by), self.place(x, y));
-        self.outline.cubic_to(ax, ay, bx, by, x, y);
-    }
-
-    fn close(&mut self) {
-        self.outline.close();
-    }
+    path.finish()
 }
 
 /// A pixel of an image takes the mean of so many points along each side.

@@ -158,12 +158,12 @@ fn every_kind_of_picture_has_its_bytes() {
 }
 
 const EXPECTED: &str = "
-friction: ef6d50c92d97b621 e569e4e2f40f8dd2
-frictions: a801ec10e573e7f0 ad58ad9da0a50dda
-stress: 29fa383c29e2d9d5 ff8ce7ab956b00c0
-fields: 7e4b1ffba21a31b0 842c86a43f85bbe9
-response: ba4e4a0d0d72a45c fdb7df3e8496e780
-bars: ec38e49d1f4e2ea0 ae053ce9b5007d18
-heat map: e7651fdc77e95e94 ea8a063496b66975
-shapes: 60442453361eadd4 1d817f13f4c4d253
+friction: ef6d50c92d97b621 b385da91bf07669b
+frictions: a801ec10e573e7f0 97c7a99eb06c1316
+stress: 29fa383c29e2d9d5 7b108ede5ec717d3
+fields: 7e4b1ffba21a31b0 d2535dc1ef0e5d72
+response: ba4e4a0d0d72a45c 5991bde13763647d
+bars: ec38e49d1f4e2ea0 d41a227e5256f7f8
+heat map: e7651fdc77e95e94 60663cb68376f6d5
+shapes: 60442453361eadd4 df42d00a6f846272
 ";
