@@ -6,6 +6,7 @@ use std::sync::Arc;
 use clap::Args;
 use jiff::Timestamp;
 use slipfront_case::case::Case;
+use slipfront_case::text::truncated;
 use slipfront_run::manifest::Manifest;
 use slipfront_run::program;
 use slipfront_run::results;
@@ -143,8 +144,11 @@ impl Verify {
             verdict
                 .differences
                 .extend(no_longer_written(before, &now, folder));
-            if before.program() != program::this_program() {
-                let programs = (before.program(), program::this_program());
+            if before.build != program::this_build() {
+                let mut programs = (before.program(), program::this_program());
+                if programs.0 == programs.1 {
+                    programs = (truncated(&before.build), program::this_build().to_owned());
+                }
                 verdict.notes.push(format!(
                     "{} was written by {}, and repeated by {}",
                     folder.display(),

@@ -205,6 +205,7 @@ fn a_manifest_of_another_version_is_understood() {
     // Another version may write other keys, and less.
     reseal(&workspace, |manifest| {
         manifest["version"] = "9.9.9".into();
+        manifest["build"] = "slipfront 9.9.9, sources 00".into();
         manifest["weather"] = "fine".into();
         let keys = manifest.as_object_mut().unwrap();
         keys.remove("random");
@@ -222,6 +223,15 @@ fn a_manifest_of_another_version_is_understood() {
     assert!(
         said.contains("note: a was written by slipfront 9.9.9")
             && said.contains("repeated by slipfront 0.1.0"),
+        "{said}"
+    );
+    // Programs of one version and commit may be built from other sources.
+    reseal(&workspace, |manifest| manifest["version"] = "0.1.0".into());
+    let (_, said, _) = verified(&workspace, "a --rerun");
+    assert!(
+        said.contains(
+            "note: a was written by slipfront 9.9.9, sources 00, and repeated by slipfront 0.1.0, "
+        ),
         "{said}"
     );
     // What an early version wrote has no seal.
