@@ -7,7 +7,9 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum FieldsError {
-    #[error("cannot write `{}`: {what} has {found} values where {wanted} are wanted; hand over matching arrays", path.display())]
+    #[error(
+        "cannot write `{path}`: {what} has {found} values where {wanted} are wanted; hand over matching arrays"
+    )]
     Shape {
         path: PathBuf,
         what: String,
@@ -15,9 +17,8 @@ pub enum FieldsError {
         wanted: usize,
     },
     #[error(
-        "cannot write `{}`: one field of {columns} x {rows} values takes more than the 2 GiB that the format holds; \
-         set `output.stride` to {stride} or more",
-        path.display()
+        "cannot write `{path}`: one field of {columns} x {rows} values takes more than the 2 GiB that the format holds; \
+         set `output.stride` to {stride} or more"
     )]
     TooLarge {
         path: PathBuf,
@@ -25,10 +26,10 @@ pub enum FieldsError {
         rows: usize,
         stride: usize,
     },
-    #[error("cannot write `{}`: {source}; check that the folder exists, is writable and has room", path.display())]
+    #[error("cannot write `{path}`: {source}; check that the folder exists, is writable and has room")]
     Write { path: PathBuf, source: io::Error },
-    #[error("cannot read `{}`: {source}; check the path and its permissions", path.display())]
+    #[error("cannot read `{path}`: {source}; check the path and its permissions")]
     Read { path: PathBuf, source: io::Error },
-    #[error("`{}` is not a fields file of slipfront: {detail}; run the case again", path.display())]
+    #[error("`{path}` is not a fields file of slipfront: {detail}; run the case again")]
     Broken { path: PathBuf, detail: String },
 }

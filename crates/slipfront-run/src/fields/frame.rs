@@ -1,6 +1,24 @@
-//! What a fields file holds.
+//! What a fields file holds, and the names of it there.
 
-use slipfront::observe::Field;
+use slipfront::Scales;
+use slipfront::observe::{Field, Frame};
+
+// Dimensions, variables and attributes.
+pub(super) const TIME: &str = "time";
+pub(super) const X: &str = "x";
+pub(super) const Y: &str = "y";
+pub(super) const LABEL_LENGTH: &str = "instant_length";
+pub(super) const TIME_STAR: &str = "time_star";
+pub(super) const STEP: &str = "step";
+pub(super) const LABEL: &str = "instant";
+pub(super) const TEXTURED: &str = "textured";
+pub(super) const MU_STATIC: &str = "mu_static";
+pub(super) const MU_KINETIC: &str = "mu_kinetic";
+pub(super) const FIRST_SLIP: &str = "first_slip_time_star";
+pub(super) const BLOCKS: &str = "blocks";
+pub(super) const STRIDE: &str = "stride";
+pub(super) const BLOCK_SIZE: &str = "block_size_m";
+pub(super) const TIME_UNIT: &str = "time_unit_s";
 
 /// What never changes in a run, block by block: `nx * ny` values each, row-major, row j = 0 first, not thinned.
 #[derive(Debug, Clone, Copy)]
@@ -29,6 +47,40 @@ pub struct FieldFrame {
     pub values: Vec<Vec<f32>>,
 }
 
+impl FieldFrame {
+    /// A dimensionless frame of these fields in the units of [`FieldInfo::unit`](slipfront_case::field_info::FieldInfo::unit).
+    /// The contact stress becomes tau_c*: it is divided by `contact_stress_max`, its largest value so far (see
+    /// [`Simulation::contact_stress_max`](slipfront::Simulation::contact_stress_max)).
+    pub fn in_si_units(
+        frame: Frame,
+        label: String,
+        names: &[Field],
+        scales: &Scales,
+        contact_stress_max: f64,
+    ) -> Self {
+        let mut values = frame.values;
+        for (field, values) in names.iter().zip(&mut values) {
+            let unit = match field {
+                // A run in which no block was ever loaded has no largest stress to divide by.
+                Field::ContactStress if contact_stress_max > 0.0 => 1.0 / contact_stress_max,
+                Field::ContactStress | Field::Sliding => 1.0,
+                Field::Traction => scales.stress(),
+                Field::DisplacementX | Field::DisplacementY => scales.displacement(),
+                Field::VelocityX | Field::VelocityY => scales.speed(),
+            };
+            for value in values {
+                *value = (f64::from(*value) * unit) as f32;
+            }
+        }
+        Self {
+            time_star: frame.time_star,
+            label,
+            step: frame.step,
+            values,
+        }
+    }
+}
+
 /// All that goes into `fields.nc`.
 #[derive(Debug, Clone, Copy)]
 pub struct FieldsFile<'a> {
@@ -51,7 +103,7 @@ pub struct FieldsFile<'a> {
 }
 
 /// The contents of a `fields.nc`; every array is thinned to `columns() * rows()` values and row-major.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Default, Clone, PartialEq)]
 pub struct FieldsData {
     /// Number of blocks along x, before thinning.
     pub nx: usize,

@@ -9,15 +9,12 @@ mod error;
 mod frame;
 mod netcdf3_reader;
 mod read;
-mod si_units;
-mod variables;
 mod write;
 
 pub use error::FieldsError;
 pub use frame::{FieldFrame, FieldsData, FieldsFile, StaticFields, thin};
 pub use read::{read_fields, read_maps};
-pub use si_units::in_si_units;
-pub use write::{write_fields, write_fields_via};
+pub use write::write_fields;
 
 #[cfg(test)]
 mod tests;

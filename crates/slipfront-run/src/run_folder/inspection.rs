@@ -50,14 +50,12 @@ pub enum CaseDefect {
 }
 
 impl Inspection {
-    /// Reads the case and the manifest of a folder.
-    ///
-    /// # Errors
-    /// When the folder cannot be listed.
+    /// Reads the case and the manifest of a folder that can be listed.
     pub fn of(folder: &Path) -> std::io::Result<Self> {
+        let path = folder.to_owned();
         if is_unused(folder)? {
             return Ok(Self {
-                path: folder.to_owned(),
+                path,
                 contents: Contents::Empty,
                 case: Err(CaseDefect::Unreadable(ErrorKind::NotFound.into())),
                 managed_files: managed_files(folder, None, None),
@@ -77,17 +75,14 @@ impl Inspection {
             manifest => Contents::Complete(manifest.map(Box::new)),
         };
         Ok(Self {
-            path: folder.to_owned(),
+            path,
             contents,
             case,
             managed_files,
         })
     }
 
-    /// The manifest of a run that is complete.
-    ///
-    /// # Errors
-    /// When there is none, or it is not as it was written.
+    /// The manifest of a run that is complete, if it is as it was written.
     pub fn manifest(&self) -> Result<&Manifest, ManifestError> {
         match &self.contents {
             Contents::Complete(manifest) => manifest.as_deref().map_err(Clone::clone),
@@ -98,9 +93,6 @@ impl Inspection {
     }
 
     /// The case of a run that can be resumed, or is complete.
-    ///
-    /// # Errors
-    /// When there is no such run.
     pub fn case_to_resume(&self) -> Result<&CaseFile, FolderError> {
         let path = self.path.clone();
         let why = match &self.case {

@@ -54,12 +54,11 @@ pub(super) fn planned(axes: &[Axis], quantity: &str) -> Vec<PlannedPicture> {
         .filter(|&axis| axes[axis].spacing != Spacing::Named)
         .collect();
     match (numeric.first(), axes.len()) {
-        (_, 0) => Vec::new(),
         (None, 1 | 2) => vec![PlannedPicture {
             name: quantity.to_owned(),
             kind: PictureKind::Bars,
         }],
-        // No picture for names on three axes or more: the tables serve better.
+        // There is nothing to draw, or there are names on three axes or more: the tables serve better.
         (None, _) => Vec::new(),
         (Some(&x), _) => {
             let mut pictures = planned_curves(axes, x, quantity);
