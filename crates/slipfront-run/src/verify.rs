@@ -188,10 +188,8 @@ fn unlisted_files(folder: &Path, listed: &BTreeSet<&str>, is_left: impl Fn(&str)
         entries.map(|entry| entry.file_name().to_string_lossy().into_owned())
     };
     let inputs = names(&folder.join("inputs")).map(|name| format!("inputs/{name}"));
-    let mut found: Vec<String> = names(folder)
-        .filter(|name| name != "inputs")
-        .chain(inputs)
-        .collect();
+    let own = names(folder).filter(|name| name != "inputs");
+    let mut found: Vec<String> = own.chain(inputs).collect();
     found.retain(|name| !listed.contains(name.as_str()));
     found.sort();
     let in_words = |name: String| {

@@ -5,14 +5,12 @@
 //! smallest y. The file carries no date: equal input gives equal bytes. [`write_fields`] ends a run,
 //! [`read_maps`] serves the pictures, [`read_fields`] whoever wants it all.
 
-mod error;
 mod frame;
 mod netcdf3_reader;
 mod read;
 mod write;
 
-pub use error::FieldsError;
-pub use frame::{FieldFrame, FieldsData, FieldsFile, StaticFields, thin};
+pub use frame::{FieldFrame, FieldsData, FieldsError, FieldsFile, StaticFields, thin};
 pub use read::{read_fields, read_maps};
 pub use write::write_fields;
 

@@ -34,7 +34,8 @@ pub(super) struct NetCdf3Reader {
     pub(super) records: usize,
     record_bytes: u64,
     dimensions: Vec<Dimension>,
-    attributes: Vec<Attribute>,
+    /// Text counts as numbers too, one per byte.
+    attributes: Vec<(String, Vec<f64>)>,
     variables: Vec<Variable>,
 }
 
@@ -42,12 +43,6 @@ pub(super) struct NetCdf3Reader {
 struct Dimension {
     name: String,
     length: usize,
-}
-
-/// Text counts as numbers too, one per byte.
-struct Attribute {
-    name: String,
-    values: Vec<f64>,
 }
 
 struct Variable {
@@ -123,10 +118,8 @@ impl NetCdf3Reader {
             attributes,
             variables,
         };
-        let mut with_records = reader
-            .variables
-            .iter()
-            .filter(|variable| reader.has_records(variable));
+        let has_records = |variable: &&Variable| reader.has_records(variable);
+        let mut with_records = reader.variables.iter().filter(has_records);
         let record_bytes = with_records.try_fold(0, |total: u64, variable| {
             total.checked_add(reader.bytes_at_once(variable)?.checked_next_multiple_of(4)?)
         });
@@ -143,17 +136,15 @@ impl NetCdf3Reader {
 
     /// The names of the variables that have exactly these dimensions.
     pub(super) fn variables_over<'a>(&'a self, dimensions: &'a [&str]) -> impl Iterator<Item = &'a str> {
-        let over = self
-            .variables
-            .iter()
-            .filter(|variable| self.is_over(variable, dimensions));
+        let is_over = |variable: &&Variable| self.is_over(variable, dimensions);
+        let over = self.variables.iter().filter(is_over);
         over.map(|variable| variable.name.as_str())
     }
 
     /// The numbers of a global attribute.
     pub(super) fn attribute(&self, name: &str) -> Result<&[f64], NetCdfError> {
-        match self.attributes.iter().find(|attribute| attribute.name == name) {
-            Some(attribute) => Ok(&attribute.values),
+        match self.attributes.iter().find(|(known, _)| known == name) {
+            Some((_, values)) => Ok(values),
             None => broken(format!("it has no attribute `{name}`")),
         }
     }
@@ -200,10 +191,8 @@ impl NetCdf3Reader {
     }
 
     fn is_over(&self, variable: &Variable, dimensions: &[&str]) -> bool {
-        let names = variable
-            .dimensions
-            .iter()
-            .map(|id| self.dimensions[*id].name.as_str());
+        let ids = variable.dimensions.iter();
+        let names = ids.map(|id| self.dimensions[*id].name.as_str());
         names.eq(dimensions.iter().copied())
     }
 
@@ -292,14 +281,12 @@ impl<'a> Header<'a> {
         })
     }
 
-    fn attribute(&mut self) -> Result<Attribute, NetCdfError> {
+    fn attribute(&mut self) -> Result<(String, Vec<f64>), NetCdfError> {
         let name = self.name()?;
         let kind = self.kind()?;
         let count = self.number()? as usize;
-        Ok(Attribute {
-            name,
-            values: kind.decode(self.padded(count.saturating_mul(kind.bytes()))?),
-        })
+        let values = kind.decode(self.padded(count.saturating_mul(kind.bytes()))?);
+        Ok((name, values))
     }
 
     fn variable(&mut self, dimensions_known: usize) -> Result<Variable, NetCdfError> {

@@ -6,7 +6,6 @@ use slipfront::observe::Field;
 use slipfront_case::field_info::{field_info, field_named};
 use slipfront_case::text;
 
-use super::error::FieldsError;
 use super::frame::*;
 use super::netcdf3_reader::{NetCdf3Reader, NetCdfError, broken};
 

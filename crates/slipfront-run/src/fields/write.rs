@@ -13,7 +13,6 @@ use slipfront_case::case::smallest_stride;
 use slipfront_case::disk::write_temp;
 use slipfront_case::field_info::field_info;
 
-use super::error::FieldsError;
 use super::frame::*;
 
 /// Writes `fields.nc`, with its temporary file in a folder on the same file system.
@@ -149,10 +148,8 @@ fn write_variables(
 
 /// The centres of the blocks that are kept along one axis, in m.
 fn centers(blocks: usize, file: &FieldsFile) -> Vec<f64> {
-    (0..blocks)
-        .step_by(file.stride)
-        .map(|block| (block as f64 + 0.5) * file.block_size)
-        .collect()
+    let kept = (0..blocks).step_by(file.stride);
+    kept.map(|block| (block as f64 + 0.5) * file.block_size).collect()
 }
 
 /// Every dimension, attribute and variable, without the numbers.
@@ -199,18 +196,14 @@ fn define_statics(set: &mut DataSet, file: &FieldsFile) -> Result<(), InvalidDat
 fn define_frames(set: &mut DataSet, file: &FieldsFile) -> Result<(), InvalidDataSet> {
     set.set_unlimited_dim(TIME, file.frames.len())?;
     set.add_fixed_dim(LABEL_LENGTH, file.label_length())?;
-    let start = "time since the start of the drive";
-    define_variable(set, TIME, &[TIME], DataType::F64, start, "s")?;
+    for (name, long_name, units) in [
+        (TIME, "time since the start of the drive", "s"),
+        (TIME_STAR, "dimensionless time t*", "1"),
+        (STEP, "number of the time step", "1"),
+    ] {
+        define_variable(set, name, &[TIME], DataType::F64, long_name, units)?;
+    }
     set.add_var_attr_string(TIME, "axis", "T")?;
-    define_variable(
-        set,
-        TIME_STAR,
-        &[TIME],
-        DataType::F64,
-        "dimensionless time t*",
-        "1",
-    )?;
-    define_variable(set, STEP, &[TIME], DataType::F64, "number of the time step", "1")?;
     set.add_var_u8(LABEL, &[TIME, LABEL_LENGTH])?;
     set.add_var_attr_string(LABEL, "long_name", "name of the instant")?;
     for field in file.names {

@@ -19,9 +19,8 @@ pub struct Unfinished {
 impl Unfinished {
     /// That of a run folder.
     pub fn of(run: &Path) -> Self {
-        Self {
-            path: run.join(UNFINISHED),
-        }
+        let path = run.join(UNFINISHED);
+        Self { path }
     }
 
     /// The subfolder.

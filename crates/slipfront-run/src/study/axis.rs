@@ -326,10 +326,8 @@ fn flatten(key: &str, value: &Value, list: &mut Vec<Override>) {
 
 /// Whether setting `key` replaces what `earlier` has set: it is that key, its partner, or a table or list around it.
 pub(super) fn replaces_key(key: &str, earlier: &str) -> bool {
-    earlier
-        .strip_prefix(key)
-        .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-        || exclude_each_other(key, earlier)
+    let rest = earlier.strip_prefix(key);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.')) || exclude_each_other(key, earlier)
 }
 
 /// The first of the `other` keys that `key` replaces, or that replaces it.

@@ -99,10 +99,8 @@ fn work(run_case: &RunCase, tasks: &Mutex<Receiver<Task>>, finished: &Sender<End
 
 /// The reason of a run that failed by a panic.
 fn panicked(panic: &(dyn std::any::Any + Send)) -> String {
-    let message = panic
-        .downcast_ref::<String>()
-        .map(String::as_str)
-        .or_else(|| panic.downcast_ref::<&str>().copied());
+    let message = panic.downcast_ref::<String>().map(String::as_str);
+    let message = message.or_else(|| panic.downcast_ref::<&str>().copied());
     format!("a fault of the program: {}", message.unwrap_or("unknown"))
 }
 

@@ -19,10 +19,10 @@ const MOST_OF_LEVELS: usize = 100;
 
 /// Names of all pictures that a study of these axes may get.
 pub(super) fn names(axes: &[Axis]) -> impl Iterator<Item = String> {
-    QUANTITIES
+    let pictures = QUANTITIES
         .into_iter()
-        .flat_map(|quantity| planned(axes, quantity))
-        .map(|picture| picture.name)
+        .flat_map(|quantity| planned(axes, quantity));
+    pictures.map(|picture| picture.name)
 }
 
 /// A picture to be drawn.
@@ -122,16 +122,16 @@ pub(super) type Levels = Vec<(usize, usize)>;
 
 /// Every combination of levels of these axes, the last fastest.
 pub(super) fn combinations(axes: &[Axis], of: &[usize]) -> Vec<Levels> {
-    of.iter().fold(vec![Vec::new()], |combinations, &axis| {
-        let with = |level| {
-            combinations
-                .iter()
-                .map(move |levels| [levels.as_slice(), &[(axis, level)]].concat())
+    let mut all = vec![Levels::new()];
+    for &axis in of {
+        let levels = 0..axes[axis].levels.len();
+        let with_each = |earlier: Levels| {
+            let with = move |level| [earlier.as_slice(), &[(axis, level)]].concat();
+            levels.clone().map(with)
         };
-        let mut all: Vec<Levels> = (0..axes[axis].levels.len()).flat_map(with).collect();
-        all.sort();
-        all
-    })
+        all = all.into_iter().flat_map(with_each).collect();
+    }
+    all
 }
 
 #[cfg(test)]

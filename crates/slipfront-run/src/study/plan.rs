@@ -120,10 +120,8 @@ impl Plan {
             let point = point.map_or_else(String::new, |point| plan.describe(point));
             StudyError::Point { point, source }
         };
-        let base = plan
-            .base
-            .parse()
-            .map_err(|error| invalid(points.first(), error))?;
+        let base = plan.base.parse();
+        let base = base.map_err(|error| invalid(points.first(), error))?;
         let spec = |point, role| plan.spec(&base, point, role);
         let specs = points
             .par_iter()

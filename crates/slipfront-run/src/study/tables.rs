@@ -62,11 +62,8 @@ pub(super) fn points(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, Stu
     for (position, point) in plan.points.iter().enumerate() {
         for &(name, _) in &quantities {
             let sample = results.sample(plan, position, name);
-            let decides = plan
-                .settings
-                .until
-                .as_ref()
-                .is_some_and(|until| until.key == name);
+            let until = plan.settings.until.as_ref();
+            let decides = until.is_some_and(|until| until.key == name);
             // A decisive quantity that no run has gets a row without numbers.
             if sample.is_none() && !decides {
                 continue;
