@@ -27,7 +27,7 @@ pub struct RunPicture {
 }
 
 /// Every picture of a run: a new one is a line here, and its drawing.
-pub static RUN_PICTURES: [RunPicture; 2] = [
+pub static RUN_PICTURES: &[RunPicture] = &[
     RunPicture {
         name: "friction",
         shows: "friction and sliding blocks against time",

@@ -52,15 +52,7 @@ pub enum CaseDefect {
 impl Inspection {
     /// Reads the case and the manifest of a folder that can be listed.
     pub fn of(folder: &Path) -> std::io::Result<Self> {
-        let path = folder.to_owned();
-        if is_unused(folder)? {
-            return Ok(Self {
-                path,
-                contents: Contents::Empty,
-                case: Err(CaseDefect::Unreadable(ErrorKind::NotFound.into())),
-                managed_files: managed_files(folder, None, None),
-            });
-        }
+        let is_unused = is_unused(folder)?;
         let case = read_case(folder);
         let manifest = Manifest::read(folder);
         let listed = match &manifest {
@@ -70,12 +62,13 @@ impl Inspection {
         };
         let managed_files = managed_files(folder, listed, case.as_ref().ok());
         let contents = match manifest {
+            _ if is_unused => Contents::Empty,
             Err(ManifestError::Missing { .. }) if case.is_ok() => Contents::Interrupted,
             Err(ManifestError::Missing { .. }) => Contents::Foreign,
             manifest => Contents::Complete(manifest.map(Box::new)),
         };
         Ok(Self {
-            path,
+            path: folder.to_owned(),
             contents,
             case,
             managed_files,

@@ -43,14 +43,14 @@ impl Records {
         if lines.bytes == 0 {
             sync_folder(folder).map_err(failed("write to", &path))?;
         }
-        let mut records = Self {
+        // Each record is dropped before the next is looked at.
+        let results = lines.records.into_iter().map(|record| entry(&record));
+        Ok(Self {
             path,
             file,
-            results: HashMap::new(),
+            results: results.collect(),
             damaged: lines.damaged,
-        };
-        records.add(&lines.records);
-        Ok(records)
+        })
     }
 
     /// The result of the run with this identity, if it is recorded.
@@ -87,15 +87,8 @@ impl Records {
             let _ = self.file.set_len(before + whole as u64);
             failed("write to", &self.path)(source)
         })?;
-        self.add(records);
+        self.results.extend(records.iter().map(entry));
         Ok(())
-    }
-
-    fn add(&mut self, records: &[Record]) {
-        let results = records
-            .iter()
-            .map(|record| (record.id.clone(), record.outcome.result()));
-        self.results.extend(results);
     }
 
     /// Appends the records of another folder that are not here yet, and returns their number.
@@ -112,6 +105,11 @@ impl Records {
         self.append(&records)?;
         Ok(records.len())
     }
+}
+
+/// What is kept in memory of a record.
+fn entry(record: &Record) -> (String, RunResult) {
+    (record.id.clone(), record.outcome.result())
 }
 
 /// The error of an action on a record file that the system refused.
