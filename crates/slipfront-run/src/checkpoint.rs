@@ -59,25 +59,23 @@ pub struct LoadedCheckpoint {
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum CheckpointError {
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {path}: {source}")]
     Unreadable { path: PathBuf, source: std::io::Error },
-    #[error("{} is damaged: {why}", path.display())]
+    #[error("{path} is damaged: {why}")]
     Damaged { path: PathBuf, why: &'static str },
     #[error(
-        "{} has layout {found}, and this version reads layout {LAYOUT}: resume with the version that wrote it",
-        path.display()
+        "{path} has layout {found}, and this version reads layout {LAYOUT}: resume with the version that wrote it"
     )]
     Layout { path: PathBuf, found: u32 },
     #[error(
-        "{} was written by {found}, and this is {here}, which may not give the same bits: resume with that version",
-        path.display()
+        "{path} was written by {found}, and this is {here}, which may not give the same bits: resume with that version"
     )]
     Program {
         path: PathBuf,
         found: String,
         here: &'static str,
     },
-    #[error("{} belongs to another case than the case.toml and inputs beside it", path.display())]
+    #[error("{path} belongs to another case than the case.toml and inputs beside it")]
     Case { path: PathBuf },
 }
 
@@ -85,7 +83,6 @@ pub enum CheckpointError {
 #[derive(Debug)]
 pub struct Checkpoints {
     folder: Unfinished,
-    program: &'static str,
     case_blake3: String,
     started: Timestamp,
     /// Whether the latest checkpoint there is known to be whole.
@@ -99,7 +96,6 @@ impl Checkpoints {
     pub fn new(folder: &Path, case: &Case, started: Timestamp) -> Self {
         Self {
             folder: Unfinished::of(folder),
-            program: program::this_build(),
             case_blake3: hash_of(case),
             started,
             latest_is_whole: false,
@@ -128,13 +124,10 @@ impl Checkpoints {
 
     /// Saves the state of the run. The checkpoint that was the latest is kept as the one before, unless it is damaged;
     /// whatever happens, one of the two is whole.
-    ///
-    /// # Errors
-    /// What the system says. A checkpoint that was there is still there, under one of the two names.
     pub fn save(&mut self, running: &Running) -> std::io::Result<()> {
         let header = Header {
             slipfront_checkpoint: LAYOUT,
-            program: self.program.to_owned(),
+            program: program::this_build().to_owned(),
             case_blake3: self.case_blake3.clone(),
             step: running.snapshot().step,
             started: self.started,
@@ -155,25 +148,17 @@ impl Checkpoints {
 
     /// Reads the latest checkpoint of a run folder, or the one before it; none if there is none. Where a kill has left
     /// only the one before, that is the latest.
-    ///
-    /// # Errors
-    /// When it cannot be read, is damaged, or is that of another program or case.
     pub fn load(
         folder: &Path,
         case: &Case,
         previous: bool,
     ) -> Result<Option<LoadedCheckpoint>, CheckpointError> {
-        let names: &[&str] = if previous {
-            &[PREVIOUS]
-        } else {
-            &[CHECKPOINT, PREVIOUS]
-        };
-        for name in names {
+        for name in [CHECKPOINT, PREVIOUS].into_iter().skip(usize::from(previous)) {
             let path = Unfinished::of(folder).path().join(name);
             // A link with nothing at its end must be refused, and not taken for no checkpoint.
             if path.symlink_metadata().is_ok() {
                 let mut saved = read(&path, case)?;
-                saved.latest = *name == CHECKPOINT;
+                saved.latest = name == CHECKPOINT;
                 return Ok(Some(saved));
             }
         }
@@ -206,14 +191,12 @@ fn write(file: &mut File, header: &Header, running: &Running) -> std::io::Result
 }
 
 fn read(path: &Path, case: &Case) -> Result<LoadedCheckpoint, CheckpointError> {
+    let owned = || path.to_owned();
     let unreadable = |source| CheckpointError::Unreadable {
-        path: path.to_owned(),
+        path: owned(),
         source,
     };
-    let damaged = |why| CheckpointError::Damaged {
-        path: path.to_owned(),
-        why,
-    };
+    let damaged = |why| CheckpointError::Damaged { path: owned(), why };
     let file = open_regular(path).map_err(unreadable)?;
     let mut reader = BufReader::with_capacity(1 << 20, file);
     let mut line = Vec::new();
@@ -222,10 +205,8 @@ fn read(path: &Path, case: &Case) -> Result<LoadedCheckpoint, CheckpointError> {
     let unknown = || damaged("its first line is not that of a checkpoint");
     let Layout { slipfront_checkpoint } = serde_json::from_slice(&line).map_err(|_| unknown())?;
     if slipfront_checkpoint != LAYOUT {
-        return Err(CheckpointError::Layout {
-            path: path.to_owned(),
-            found: slipfront_checkpoint,
-        });
+        let (path, found) = (owned(), slipfront_checkpoint);
+        return Err(CheckpointError::Layout { path, found });
     }
     let header: Header = serde_json::from_slice(&line).map_err(|_| unknown())?;
     // Nothing is made of bytes before they are known to be those that were written.
@@ -235,16 +216,11 @@ fn read(path: &Path, case: &Case) -> Result<LoadedCheckpoint, CheckpointError> {
     let end = end.ok_or_else(|| damaged("its checksum does not fit"))?;
     let here = program::this_build();
     if header.program != here {
-        return Err(CheckpointError::Program {
-            path: path.to_owned(),
-            found: truncated(&header.program),
-            here,
-        });
+        let (path, found) = (owned(), truncated(&header.program));
+        return Err(CheckpointError::Program { path, found, here });
     }
     if header.case_blake3 != hash_of(case) {
-        return Err(CheckpointError::Case {
-            path: path.to_owned(),
-        });
+        return Err(CheckpointError::Case { path: owned() });
     }
     let begin = line.len() as u64;
     reader.seek(SeekFrom::Start(begin)).map_err(unreadable)?;
@@ -252,13 +228,11 @@ fn read(path: &Path, case: &Case) -> Result<LoadedCheckpoint, CheckpointError> {
     // Room for one number at a time.
     let mut number = [0; 16];
     let state = postcard::from_io((&mut body, &mut number)).map(|(state, _)| state);
-    match state {
-        Ok(state) if body.limit() == 0 => Ok(LoadedCheckpoint {
-            state,
-            step: header.step,
-            started: header.started,
-            latest: false,
-        }),
-        _ => Err(damaged("it holds no state of a run")),
-    }
+    let state = state.ok().filter(|_| body.limit() == 0);
+    Ok(LoadedCheckpoint {
+        state: state.ok_or_else(|| damaged("it holds no state of a run"))?,
+        step: header.step,
+        started: header.started,
+        latest: false,
+    })
 }

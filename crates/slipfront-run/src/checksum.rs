@@ -22,9 +22,6 @@ impl<W: Write> HashingWriter<W> {
     }
 
     /// Writes the checksum of all that was written.
-    ///
-    /// # Errors
-    /// Any error of the inner writer.
     pub fn finish(mut self) -> std::io::Result<()> {
         self.inner.write_all(self.hasher.finalize().as_bytes())
     }
@@ -44,9 +41,6 @@ impl<W: Write> Write for HashingWriter<W> {
 
 /// The number of bytes before the checksum of a file of `length` bytes, read from its start; none if the checksum does
 /// not fit.
-///
-/// # Errors
-/// Any error of the reader.
 pub fn verify_reader(mut reader: impl Read, length: u64) -> std::io::Result<Option<u64>> {
     let Some(contents) = length.checked_sub(OUT_LEN as u64) else {
         return Ok(None);

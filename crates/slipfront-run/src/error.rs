@@ -26,7 +26,7 @@ pub enum ResultsError {
     Series(#[from] SeriesError),
     #[error("cannot write series.csv: {0}")]
     Csv(#[from] csv::Error),
-    #[error("{} is not the summary of a slipfront run: {}", path.display(), text::single_line(&source.to_string()))]
+    #[error("{path} is not the summary of a slipfront run: {}", text::single_line(&source.to_string()))]
     Summary {
         path: PathBuf,
         source: serde_json::Error,

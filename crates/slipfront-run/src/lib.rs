@@ -12,7 +12,6 @@ pub mod error;
 pub mod fields;
 pub mod manifest;
 pub mod names;
-#[cfg(feature = "plot")]
 pub mod pictures;
 pub mod program;
 pub mod results;

@@ -7,17 +7,15 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use slipfront::surface::STREAMS;
-use slipfront::{Kernel, Model, simd_width};
+use slipfront::{Kernel, simd_width};
 use thiserror::Error;
 
-use crate::names::MANIFEST;
+use crate::names::{CASE, MANIFEST};
 use crate::program;
-
-use crate::run_folder::error::FolderError;
-use crate::run_folder::resume_command::resume_command;
+use crate::run_folder::error::{FolderError, resume_command};
+use slipfront_case::case::Case;
 use slipfront_case::disk::{TEXT_MAX_BYTES, json, open_regular, read_limited};
-use slipfront_case::text;
-use slipfront_case::text::truncated;
+use slipfront_case::text::{single_line, truncated};
 
 /// The last key of a manifest in its file. The checksum, its value, is the hash of all bytes before it.
 const CHECKSUM_KEY: &[u8] = b"\"seal\"";
@@ -75,16 +73,6 @@ pub struct Random {
     pub streams: BTreeMap<String, u64>,
 }
 
-impl Random {
-    fn of_seed(seed: u64) -> Self {
-        Self {
-            generator: "ChaCha8".to_owned(),
-            seed,
-            streams: STREAMS.map(|(name, number)| (name.to_owned(), number)).into(),
-        }
-    }
-}
-
 /// A file and its checksum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ManifestFile {
@@ -101,12 +89,11 @@ pub struct ManifestFile {
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum ManifestError {
     #[error(
-        "{} holds no manifest.json: it is no run folder, or its run did not end; if it did not, `{}` goes on with it",
-        path.display(),
+        "{path} holds no manifest.json: it is no run folder, or its run did not end; if it did not, `{}` goes on with it",
         resume_command(path)
     )]
     Missing { path: PathBuf },
-    #[error("{} is damaged: {why}", path.display())]
+    #[error("{path} is damaged: {why}")]
     Damaged {
         path: PathBuf,
         why: String,
@@ -117,31 +104,23 @@ pub enum ManifestError {
 
 impl Manifest {
     /// Takes stock of the files of a run that ends now.
-    ///
-    /// # Errors
-    /// When a file cannot be read back.
     pub(crate) fn of(
         folder: &Path,
         names: &[&str],
+        case: &Case,
         started: jiff::Timestamp,
         threads: usize,
-        model: &Model,
-        seed: u64,
     ) -> Result<Self, FolderError> {
-        let files: Vec<ManifestFile> = names
-            .iter()
-            .map(|&name| {
-                let path = folder.join(name);
-                ManifestFile::of(folder, name).map_err(|source| FolderError::Read { path, source })
-            })
-            .collect::<Result<_, _>>()?;
-        let case = files.iter().find(|file| file.name == "case.toml");
+        let file =
+            |name: &&str| ManifestFile::of(folder, name).map_err(FolderError::read(&folder.join(name)));
+        let files: Vec<ManifestFile> = names.iter().map(file).collect::<Result<_, _>>()?;
+        let case_file = files.iter().find(|file| file.name == CASE);
         let finished = jiff::Timestamp::now();
         Ok(Self {
             version: program::VERSION.to_owned(),
             revision: program::REVISION.map(str::to_owned),
             build: program::this_build().to_owned(),
-            kernel: Kernel::Fused.for_law(model.law).name().to_owned(),
+            kernel: Kernel::Fused.for_law(case.model.law).name().to_owned(),
             simd_width: simd_width().to_owned(),
             threads,
             host: gethostname::gethostname().to_string_lossy().into_owned(),
@@ -149,8 +128,12 @@ impl Manifest {
             started: started.to_string(),
             finished: finished.to_string(),
             wall_time_s: finished.duration_since(started).as_secs_f64(),
-            case_blake3: case.map_or(String::new(), |case| case.blake3.clone()),
-            random: Random::of_seed(seed),
+            case_blake3: case_file.map_or(String::new(), |file| file.blake3.clone()),
+            random: Random {
+                generator: "ChaCha8".to_owned(),
+                seed: case.file.friction.seed,
+                streams: STREAMS.map(|(name, number)| (name.to_owned(), number)).into(),
+            },
             files,
             checksum: String::new(),
         })
@@ -164,43 +147,31 @@ impl Manifest {
         (self, bytes)
     }
 
-    /// Reads the manifest of a run folder.
-    ///
-    /// # Errors
-    /// When there is none, or it is not as it was written.
+    /// Reads the manifest of a run folder, if it is as it was written.
     pub fn read(folder: &Path) -> Result<Self, ManifestError> {
         let path = folder.join(MANIFEST);
-        let bytes = match read_limited(&path, TEXT_MAX_BYTES) {
-            Ok(bytes) => bytes,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-                let path = folder.to_owned();
-                return Err(ManifestError::Missing { path });
-            }
-            Err(error) => {
-                return Err(ManifestError::Damaged {
-                    path,
-                    why: error.to_string(),
-                    unverified: None,
-                });
-            }
+        let damaged = |why, unverified| ManifestError::Damaged {
+            path: path.clone(),
+            why,
+            unverified,
         };
-        let manifest = serde_json::from_slice::<Self>(&bytes);
-        let why = match &manifest {
-            Ok(manifest) if checksum_of(&bytes).as_ref() == Some(&manifest.checksum) => None,
-            Ok(manifest) if manifest.checksum.is_empty() => {
-                Some("it has no seal, by which changes of it are seen".to_owned())
-            }
-            Ok(_) => Some("its seal does not fit, so that it was changed after the run".to_owned()),
-            Err(error) => Some(text::single_line(&error.to_string())),
-        };
-        match (manifest, why) {
-            (Ok(manifest), None) => Ok(manifest),
-            (manifest, why) => Err(ManifestError::Damaged {
-                path,
-                why: why.unwrap_or_default(),
-                unverified: manifest.ok().map(Box::new),
-            }),
+        let bytes = read_limited(&path, TEXT_MAX_BYTES).map_err(|error| match error.kind() {
+            std::io::ErrorKind::NotFound => ManifestError::Missing {
+                path: folder.to_owned(),
+            },
+            _ => damaged(error.to_string(), None),
+        })?;
+        let manifest: Self =
+            serde_json::from_slice(&bytes).map_err(|error| damaged(single_line(&error.to_string()), None))?;
+        if checksum_of(&bytes).as_ref() == Some(&manifest.checksum) {
+            return Ok(manifest);
         }
+        let why = if manifest.checksum.is_empty() {
+            "it has no seal, by which changes of it are seen"
+        } else {
+            "its seal does not fit, so that it was changed after the run"
+        };
+        Err(damaged(why.to_owned(), Some(Box::new(manifest))))
     }
 
     /// The program that wrote it, in words.

@@ -1,46 +1,82 @@
-//! Pictures of a run, drawn from its files, so that those of a run and those of `slipfront plot` are equal.
+//! The pictures of a run, drawn from its files, so that those of a run and those of `slipfront plot` are equal.
 
-use std::path::{Path, PathBuf};
+#[cfg(feature = "plot")]
+use {
+    crate::error::ResultsError,
+    crate::fields::{self, FieldFrame},
+    crate::series,
+    crate::summary::{Summary, read_summary},
+    rayon::prelude::*,
+    slipfront::observe::Field,
+    slipfront_case::case::MAX_MAPS,
+    slipfront_plot::{self as plot, FrictionCurve, Instant, Kinetic, Picture, StressMap, StressMaps},
+    std::path::{Path, PathBuf},
+};
 
-use slipfront::observe::Field;
-use slipfront_case::case::MAX_MAPS;
-use slipfront_plot::{self as plot, FrictionCurve, Instant, Kinetic, Picture, StressMap, StressMaps};
-
-use crate::error::ResultsError;
-use crate::fields::{self, FieldFrame};
 use crate::names::{FIELDS, SERIES, SUMMARY};
-use crate::series;
-use crate::summary::{Summary, read_summary};
+
+/// A picture of a run.
+pub struct RunPicture {
+    /// Name of its files.
+    pub name: &'static str,
+    /// What it shows, in words.
+    pub shows: &'static str,
+    /// Draws it from the files of a run folder; none if the run has kept nothing that it could show.
+    #[cfg(feature = "plot")]
+    draw: fn(&Path) -> Result<Option<Picture>, ResultsError>,
+}
+
+/// Every picture of a run: a new one is a line here, and its drawing.
+pub static RUN_PICTURES: &[RunPicture] = &[
+    RunPicture {
+        name: "friction",
+        shows: "friction and sliding blocks against time",
+        #[cfg(feature = "plot")]
+        draw: |folder| draw_friction(&[folder.to_owned()]).map(Some),
+    },
+    RunPicture {
+        name: "stress",
+        shows: "maps of the contact stress",
+        #[cfg(feature = "plot")]
+        draw: draw_stress,
+    },
+];
 
 /// The files that pictures are drawn from.
 pub const DRAWN_FROM: [&str; 3] = [SUMMARY, SERIES, FIELDS];
 
-/// Draws the pictures of a run folder from its files.
-///
-/// # Errors
-/// When a file is missing or damaged.
+impl RunPicture {
+    /// Names of its files.
+    pub fn files(&self) -> [String; 2] {
+        ["svg", "png"].map(|ending| format!("{}.{ending}", self.name))
+    }
+}
+
+/// Draws the pictures of a run folder from its files, which must be there and undamaged.
+#[cfg(feature = "plot")]
 pub fn draw(folder: &Path) -> Result<Vec<(&'static str, Picture)>, ResultsError> {
-    let (friction, stress) = rayon::join(|| draw_friction(&[folder.to_owned()]), || draw_stress(folder));
-    let mut drawn = vec![("friction", friction?)];
-    drawn.extend(stress?.map(|picture| ("stress", picture)));
-    Ok(drawn)
+    let mut pictures = Vec::new();
+    // The budget of a case has room for two at once.
+    for two in RUN_PICTURES.chunks(2) {
+        let drawn: Vec<_> = two.par_iter().map(|picture| (picture.draw)(folder)).collect();
+        for (picture, drawn) in two.iter().zip(drawn) {
+            pictures.extend(drawn?.map(|drawn| (picture.name, drawn)));
+        }
+    }
+    Ok(pictures)
 }
 
 /// Draws the friction curves of several run folders over each other.
-///
-/// # Errors
-/// When a file is missing or damaged.
+#[cfg(feature = "plot")]
 pub fn draw_friction(folders: &[PathBuf]) -> Result<Picture, ResultsError> {
-    let curves = folders
-        .iter()
-        .map(|folder| friction_curve(folder))
-        .collect::<Result<Vec<_>, _>>()?;
-    plot::friction(&curves).map_err(|source| ResultsError::Picture {
+    let curves: Result<Vec<_>, _> = folders.iter().map(|folder| friction_curve(folder)).collect();
+    plot::friction(&curves?).map_err(|source| ResultsError::Picture {
         name: "friction",
         source,
     })
 }
 
+#[cfg(feature = "plot")]
 fn friction_curve(folder: &Path) -> Result<FrictionCurve, ResultsError> {
     let summary = read_summary(folder)?;
     let rows = series::read_csv(&folder.join(SERIES))?;
@@ -53,6 +89,7 @@ fn friction_curve(folder: &Path) -> Result<FrictionCurve, ResultsError> {
 }
 
 /// All that a summary knows of a curve, without its points.
+#[cfg(feature = "plot")]
 pub fn marked_curve(label: String, summary: &Summary) -> FrictionCurve {
     let kinetic = summary.kinetic_window_star.zip(summary.kinetic_friction_star);
     let peak = (summary.onset_time_star, summary.static_friction_star);
@@ -77,6 +114,7 @@ pub fn marked_curve(label: String, summary: &Summary) -> FrictionCurve {
 }
 
 /// Draws the stress maps of a run; none if it kept no contact stress.
+#[cfg(feature = "plot")]
 fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
     let fields = fields::read_maps(&folder.join(FIELDS), Field::ContactStress, MAX_MAPS)?;
     if fields.names.is_empty() || fields.frames.is_empty() {
@@ -86,40 +124,31 @@ fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
     let instants = read_summary(folder)?.instants;
     // A snapshot between the rows of a thinned series has no mu* of its own, unless it is an instant.
     let mu_star = |frame: &FieldFrame| {
-        let instant = instants
+        let mut of_instants = instants
             .iter()
-            .find(|instant| instant.time_star == frame.time_star);
-        let row = || {
-            rows.iter()
-                .find(|row| row.step == frame.step)
-                .map(|row| row.mu_star)
-        };
-        instant
-            .map(|instant| instant.mu_star)
-            .or_else(row)
-            .unwrap_or(f64::NAN)
+            .filter(|instant| instant.time_star == frame.time_star);
+        let mut of_rows = rows.iter().filter(|row| row.step == frame.step);
+        let instant = of_instants.next().map(|instant| instant.mu_star);
+        let found = instant.or_else(|| of_rows.next().map(|row| row.mu_star));
+        found.unwrap_or(f64::NAN)
     };
     let (nx, ny) = (fields.columns(), fields.rows());
-    let maps = fields
-        .frames
-        .into_iter()
-        .map(|frame| StressMap {
-            mu_star: mu_star(&frame),
-            label: frame.label,
-            time_star: frame.time_star,
-            values: frame.values.into_iter().next().unwrap_or_default(),
-        })
-        .collect();
+    let maps = fields.frames.into_iter().map(|frame| StressMap {
+        mu_star: mu_star(&frame),
+        label: frame.label,
+        time_star: frame.time_star,
+        values: frame.values.into_iter().next().unwrap_or_default(),
+    });
     let maps = StressMaps {
         nx,
         ny,
         block_size: fields.block_size * fields.stride as f64,
         textured: fields.textured,
-        maps,
+        maps: maps.collect(),
     };
-    let picture = plot::stress(&maps).map_err(|source| ResultsError::Picture {
+    let drawn = plot::stress(&maps).map(Some);
+    drawn.map_err(|source| ResultsError::Picture {
         name: "stress",
         source,
-    })?;
-    Ok(Some(picture))
+    })
 }

@@ -8,7 +8,7 @@ use slipfront_case::case::Case;
 use slipfront_case::disk;
 
 use crate::error::ResultsError;
-use crate::fields::{self, FieldFrame, FieldsError, FieldsFile, StaticFields, in_si_units};
+use crate::fields::{self, FieldFrame, FieldsError, FieldsFile, StaticFields};
 use crate::manifest::Manifest;
 use crate::names::{CASE, FIELDS, SERIES, SUMMARY};
 #[cfg(feature = "plot")]
@@ -19,10 +19,7 @@ use crate::series::{self, SeriesRow};
 
 /// Writes the results of a run to its folder, where the case stands already, and the manifest, which completes it; with
 /// the feature `plot` the pictures as well. The fields are moved out of the record, which frees their memory before the
-/// pictures are drawn.
-///
-/// # Errors
-/// When a file cannot be written: the folder is then left without a manifest.
+/// pictures are drawn. After an error the folder is left without a manifest.
 pub fn write(
     case: &Case,
     record: &mut Record,
@@ -40,13 +37,10 @@ pub fn write(
         folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
         folder.write(&format!("{name}.png"), &picture.png)?;
     }
-    Ok(folder.complete(started, threads, &case.model, case.file.friction.seed)?)
+    Ok(folder.complete(case, started, threads)?)
 }
 
 /// Writes the case and copies of the files that it reads: enough to run it again.
-///
-/// # Errors
-/// When a file cannot be written.
 pub fn write_case(case: &Case, folder: &mut RunFolder) -> Result<(), ResultsError> {
     folder.write(CASE, case.file.to_toml()?.as_bytes())?;
     for input in &case.inputs {
@@ -61,25 +55,22 @@ fn write_fields(case: &Case, record: &mut Record, temporary: &Path, path: &Path)
     let scale = record.contact_stress_max;
     let frames: Vec<FieldFrame> = std::mem::take(&mut record.frames)
         .into_iter()
-        .map(|(label, frame)| in_si_units(frame, label, names, &case.scales, scale))
+        .map(|(label, frame)| FieldFrame::in_si_units(frame, label, names, &case.scales, scale))
         .collect();
-    fields::write_fields_via(
-        temporary,
-        path,
-        &FieldsFile {
-            nx: case.model.lattice.nx,
-            ny: case.model.lattice.ny,
-            stride: case.output.stride,
-            block_size: case.scales.block_size,
-            time_unit_s: case.scales.time(),
-            names,
-            statics: StaticFields {
-                textured: &surface.textured,
-                mu_static: &surface.mu_static,
-                mu_kinetic: &surface.mu_kinetic,
-                first_slip_time_star: &record.first_slip_time_star,
-            },
-            frames: &frames,
+    let file = FieldsFile {
+        nx: case.model.lattice.nx,
+        ny: case.model.lattice.ny,
+        stride: case.output.stride,
+        block_size: case.scales.block_size,
+        time_unit_s: case.scales.time(),
+        names,
+        statics: StaticFields {
+            textured: &surface.textured,
+            mu_static: &surface.mu_static,
+            mu_kinetic: &surface.mu_kinetic,
+            first_slip_time_star: &record.first_slip_time_star,
         },
-    )
+        frames: &frames,
+    };
+    fields::write_fields(temporary, path, &file)
 }

@@ -10,7 +10,7 @@ use slipfront::observe::{
 };
 use slipfront::{Checkpoint, Execution, RunError, Simulation, Snapshot, Stop, StopReason};
 
-use crate::fields::{FieldFrame, in_si_units};
+use crate::fields::FieldFrame;
 use crate::summary::{Observed, Summary};
 use slipfront_case::case::{Case, Output, Snapshots};
 
@@ -32,10 +32,7 @@ pub struct Record {
 /// Fewest blocks for which a thread is worth its share in keeping step with the others.
 const BLOCKS_PER_THREAD: usize = 1 << 16;
 
-/// Runs a case to its end, on at most `threads` threads.
-///
-/// # Errors
-/// [`RunError`] when the run diverges.
+/// Runs a case to its end, on at most `threads` threads, unless the run diverges.
 pub fn run(case: &Arc<Case>, threads: usize) -> Result<Record, RunError> {
     let mut running = Running::start(case, threads);
     loop {
@@ -76,6 +73,13 @@ pub struct RunState<N = BlockNumbers, O = Observers> {
     observers: O,
 }
 
+fn execution(case: &Case, threads: usize) -> Execution {
+    Execution {
+        threads: (case.model.lattice.n_blocks() / BLOCKS_PER_THREAD).clamp(1, threads),
+        ..Execution::default()
+    }
+}
+
 /// The fields of the output of a case, as the observers select them.
 fn selection(output: &Output) -> Selection {
     Selection {
@@ -89,17 +93,17 @@ impl Observers {
     fn new(case: &Case, last_step: u64) -> Self {
         let (time_plan, output) = (&case.time_plan, &case.output);
         let selection = selection(output);
+        let fields = match output.snapshots {
+            Snapshots::Instants => {
+                let instants = Instants::new(selection, time_plan.kinetic, time_plan.end_star());
+                Fields::Instants(Box::new(instants))
+            }
+            Snapshots::At(_) | Snapshots::Every(_) => Fields::Frames(Frames::new(selection)),
+        };
         Self {
             curve: Curve::every(output.series_stride),
             history: KineticHistory::new(last_step),
-            fields: match output.snapshots {
-                Snapshots::Instants => Fields::Instants(Box::new(Instants::new(
-                    selection,
-                    time_plan.kinetic,
-                    time_plan.end_star(),
-                ))),
-                Snapshots::At(_) | Snapshots::Every(_) => Fields::Frames(Frames::new(selection)),
-            },
+            fields,
         }
     }
 
@@ -135,13 +139,6 @@ impl Observers {
 }
 
 impl Running {
-    fn execution(case: &Case, threads: usize) -> Execution {
-        Execution {
-            threads: (case.model.lattice.n_blocks() / BLOCKS_PER_THREAD).clamp(1, threads),
-            ..Execution::default()
-        }
-    }
-
     /// Begins a run on at most `threads` threads.
     pub fn start(case: &Arc<Case>, threads: usize) -> Self {
         Self::begin(case, threads, case.time_plan.stop, case.time_plan.last_step)
@@ -155,39 +152,30 @@ impl Running {
 
     fn begin(case: &Arc<Case>, threads: usize, stop: Stop, last_step: u64) -> Self {
         let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
-        let execution = Self::execution(case, threads);
         Self {
             case: Arc::clone(case),
             stop,
-            simulation: Simulation::with_execution(model, dt_star, None, execution),
+            simulation: Simulation::with_execution(model, dt_star, None, execution(case, threads)),
             observers: Observers::new(case, last_step),
         }
     }
 
     /// Goes on with a run where its state was written down; none if the state is not one of this case.
     pub fn resume(case: &Arc<Case>, threads: usize, state: RunState) -> Option<Self> {
-        let RunState {
-            simulation,
-            observers,
-        } = state;
-        let step = simulation.step;
+        let (step, observers) = (state.simulation.step, state.observers);
         if step > case.time_plan.last_step || !observers.belong_to(case, step) {
             return None;
         }
         let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
-        let execution = Self::execution(case, threads);
         Some(Self {
             case: Arc::clone(case),
             stop: case.time_plan.stop,
-            simulation: Simulation::resume(model, dt_star, simulation, execution)?,
+            simulation: Simulation::resume(model, dt_star, state.simulation, execution(case, threads))?,
             observers,
         })
     }
 
-    /// At most `steps` steps; why the run ended, if it did.
-    ///
-    /// # Errors
-    /// [`RunError`] when the run diverges.
+    /// At most `steps` steps; why the run ended, if it did. An error says that it diverges.
     pub fn advance(&mut self, steps: u64) -> Result<Option<StopReason>, RunError> {
         let mut observers = self.observers.scheduled(&self.case.output.snapshots);
         self.simulation.advance(self.stop, steps, &mut observers)
@@ -202,14 +190,8 @@ impl Running {
     pub fn fields(&self) -> FieldFrame {
         let output = &self.case.output;
         let frame = selection(output).capture(&self.snapshot());
-        let contact_stress_max = self.simulation.contact_stress_max();
-        in_si_units(
-            frame,
-            String::new(),
-            &output.fields,
-            &self.case.scales,
-            contact_stress_max,
-        )
+        let scale = self.simulation.contact_stress_max();
+        FieldFrame::in_si_units(frame, String::new(), &output.fields, &self.case.scales, scale)
     }
 
     /// The case that is run.
@@ -227,20 +209,11 @@ impl Running {
 
     /// What the run leaves behind, once it has ended.
     pub fn record(self, reason: StopReason) -> Record {
-        let Self {
-            case,
-            simulation,
-            observers,
-            ..
-        } = self;
-        let Observers {
-            curve,
-            history,
-            fields,
-        } = observers;
+        let (case, simulation) = (self.case, self.simulation);
+        let (curve, history) = (self.observers.curve, self.observers.history);
         let time_plan = &case.time_plan;
         let first_slip = FirstSlip::of(&simulation.snapshot());
-        let (instants, frames) = match fields {
+        let (instants, frames) = match self.observers.fields {
             Fields::Instants(instants) => (instants.found(), Vec::new()),
             Fields::Frames(frames) => (Vec::new(), frames.frames),
         };
@@ -253,11 +226,8 @@ impl Running {
             StopReason::End => history.kinetic(kinetic_from, time_plan.dt_star),
             StopReason::Onset => None,
         };
-        let (steps, energies) = curve
-            .rows
-            .last()
-            .map(|row| (row.step, row.energies))
-            .unwrap_or_default();
+        let last = curve.rows.last().map(|row| (row.step, row.energies));
+        let (steps, energies) = last.unwrap_or_default();
         let found = Observed {
             reason,
             steps,
@@ -271,11 +241,7 @@ impl Running {
         Record {
             summary: Summary::new(&case, &found),
             rows: curve.rows,
-            frames: if instants.is_empty() {
-                unlettered(frames)
-            } else {
-                merged(instants)
-            },
+            frames: lettered(instants, frames),
             first_slip_time_star: first_slip.time_star,
             contact_stress_max: simulation.contact_stress_max(),
         }
@@ -283,9 +249,6 @@ impl Running {
 }
 
 /// Runs a case on one thread as long as `ends` does not say otherwise; none if it was given up.
-///
-/// # Errors
-/// [`RunError`] when the run diverges.
 pub fn run_unless(case: &Arc<Case>, ends: &dyn Fn() -> bool) -> Option<Result<Record, RunError>> {
     let mut running = Running::start(case, 1);
     while !ends() {
@@ -298,14 +261,12 @@ pub fn run_unless(case: &Arc<Case>, ends: &dyn Fn() -> bool) -> Option<Result<Re
     None
 }
 
-fn unlettered(frames: Vec<Frame>) -> Vec<(String, Frame)> {
-    frames.into_iter().map(|frame| (String::new(), frame)).collect()
-}
-
-/// Instants that coincide, as on a uniform lattice, are one frame with several letters: times of a file must rise.
-fn merged(mut instants: Vec<(char, Frame)>) -> Vec<(String, Frame)> {
+/// Frames without letters, and instants with theirs. Instants that coincide, as on a uniform lattice, are one frame with
+/// several letters: times of a file must rise.
+fn lettered(mut instants: Vec<(char, Frame)>, frames: Vec<Frame>) -> Vec<(String, Frame)> {
+    let frames = frames.into_iter().map(|frame| (String::new(), frame));
+    let mut frames: Vec<(String, Frame)> = frames.collect();
     instants.sort_by_key(|(letter, frame)| (frame.step, *letter));
-    let mut frames: Vec<(String, Frame)> = Vec::new();
     for (letter, frame) in instants {
         match frames.last_mut() {
             Some((letters, last)) if last.step == frame.step => letters.push(letter),

@@ -44,7 +44,10 @@ pub struct SeriesRow {
 
 /// A series that cannot be read.
 #[derive(Debug, Error)]
-#[error("cannot read {}: {}; it should be the series.csv of a slipfront run", path.display(), text::single_line(&source.to_string()))]
+#[error(
+    "cannot read {path}: {}; it should be the series.csv of a slipfront run",
+    text::single_line(&source.to_string())
+)]
 pub struct SeriesError {
     path: PathBuf,
     source: csv::Error,
@@ -78,13 +81,15 @@ pub fn to_csv(rows: impl Iterator<Item = SeriesRow>) -> Result<Vec<u8>, csv::Err
     for row in rows {
         writer.serialize(row)?;
     }
-    writer.into_inner().map_err(|error| error.into_error().into())
+    finish(writer)
+}
+
+/// The bytes of a table.
+pub(crate) fn finish(table: csv::Writer<Vec<u8>>) -> Result<Vec<u8>, csv::Error> {
+    table.into_inner().map_err(|error| error.into_error().into())
 }
 
 /// Reads a series back.
-///
-/// # Errors
-/// When the file is missing or is no series.
 pub fn read_csv(path: &Path) -> Result<Vec<SeriesRow>, SeriesError> {
     let read = || rows_of(open_limited(path, u64::MAX)?);
     read().map_err(|source| SeriesError {
@@ -94,7 +99,7 @@ pub fn read_csv(path: &Path) -> Result<Vec<SeriesRow>, SeriesError> {
 }
 
 fn rows_of(file: impl Read) -> Result<Vec<SeriesRow>, csv::Error> {
-    let mut reader = csv::Reader::from_reader(BoundedLines::new(file));
+    let mut reader = csv::Reader::from_reader(BoundedLines { file, line_bytes: 0 });
     // The crate's own iterator takes names that cannot be read for none, and goes on with what follows them.
     let names = reader.headers()?.clone();
     let rows = reader.records().map(|row| row?.deserialize(Some(&names)));
@@ -109,12 +114,6 @@ struct BoundedLines<R> {
     file: R,
     /// Bytes since the last line break.
     line_bytes: usize,
-}
-
-impl<R> BoundedLines<R> {
-    fn new(file: R) -> Self {
-        Self { file, line_bytes: 0 }
-    }
 }
 
 impl<R: Read> Read for BoundedLines<R> {
@@ -174,7 +173,12 @@ mod tests {
     #[test]
     fn a_line_without_end_is_refused() {
         let text = |line: usize| ["a".repeat(line), "b".repeat(line)].join("\n").into_bytes();
-        let read = |bytes: &[u8]| std::io::read_to_string(BoundedLines::new(bytes));
+        let read = |bytes: &[u8]| {
+            std::io::read_to_string(BoundedLines {
+                file: bytes,
+                line_bytes: 0,
+            })
+        };
         let longest = text(LINE_MAX_BYTES);
         assert_eq!(read(&longest).unwrap().into_bytes(), longest);
         let error = read(&text(2 * LINE_MAX_BYTES + 1)).unwrap_err();

@@ -8,6 +8,7 @@ use slipfront::observe::{Energies, Frame, Kinetic, NoUncertainty, Peak};
 
 use crate::error::ResultsError;
 use crate::names::SUMMARY;
+use crate::program::VERSION;
 use crate::run_folder::error::FolderError;
 use slipfront_case::case::Case;
 use slipfront_case::disk::{TEXT_MAX_BYTES, json, read_limited};
@@ -114,32 +115,22 @@ pub(crate) struct Observed<'a> {
 
 impl Summary {
     pub(crate) fn new(case: &Case, found: &Observed) -> Self {
-        let Observed {
-            peak,
-            kinetic,
-            first_slip,
-            energies,
-            ..
-        } = found;
+        let (peak, kinetic, energies) = (&found.peak, &found.kinetic, &found.energies);
         let (mean, time) = (case.scales.mu_static_mean, case.scales.time());
         let energy = case.scales.energy();
-        let instants = found
-            .instants
-            .iter()
-            .map(|(letter, frame)| InstantSummary {
-                instant: *letter,
-                time_star: frame.time_star,
-                mu_star: frame.point.mu_star,
-                sliding_percent: frame.point.sliding_percent,
-            })
-            .collect();
+        let instants = found.instants.iter().map(|(letter, frame)| InstantSummary {
+            instant: *letter,
+            time_star: frame.time_star,
+            mu_star: frame.point.mu_star,
+            sliding_percent: frame.point.sliding_percent,
+        });
         Self {
             static_friction_star: peak.mu_star,
             static_friction: peak.mu_star * mean,
             onset_time_star: peak.time_star,
             onset_time_s: peak.time_star * time,
-            first_slip_time_star: *first_slip,
-            first_slip_time_s: first_slip.map(|star| star * time),
+            first_slip_time_star: found.first_slip,
+            first_slip_time_s: found.first_slip.map(|star| star * time),
             kinetic_friction_star: kinetic.map(|k| k.mu_star),
             kinetic_friction_star_uncertainty: kinetic.and_then(|k| k.uncertainty.ok()),
             kinetic_friction: kinetic.map(|k| k.mu_star * mean),
@@ -148,7 +139,7 @@ impl Summary {
             sliding_percent_max: found.sliding_percent_max,
             mu_star_max: peak.mu_star_max,
             transition: peak.ended,
-            instants,
+            instants: instants.collect(),
             v_star: case.groups.v_star,
             r_star: case.groups.r_star,
             omega_star: case.groups.omega_star,
@@ -167,21 +158,15 @@ impl Summary {
             friction_loss_j: energies.friction_loss * energy,
             damping_loss_j: energies.damping_loss * energy,
             warnings: [case.warnings(), after_run(found)].concat(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
+            version: VERSION.to_owned(),
         }
     }
 }
 
 /// Reads `summary.json` of a run folder.
-///
-/// # Errors
-/// When it is missing or no summary.
 pub fn read_summary(run: &Path) -> Result<Summary, ResultsError> {
     let path = run.join(SUMMARY);
-    let bytes = read_limited(&path, TEXT_MAX_BYTES).map_err(|source| FolderError::Read {
-        path: path.clone(),
-        source,
-    })?;
+    let bytes = read_limited(&path, TEXT_MAX_BYTES).map_err(FolderError::read(&path))?;
     serde_json::from_slice(&bytes).map_err(|source| ResultsError::Summary { path, source })
 }
 

@@ -34,19 +34,17 @@ pub struct Verdict {
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum VerifyError {
-    #[error("{} is no folder: name the folder of a run or a study", path.display())]
+    #[error("{path} is no folder: name the folder of a run or a study")]
     NotAFolder { path: PathBuf },
     #[error(transparent)]
     Manifest(#[from] ManifestError),
     #[error(
-        "{difference}: pictures of it would not show what was run; run its case again, or remove {} to draw the files \
-        as they are",
-        manifest.display()
+        "{difference}: pictures of it would not show what was run; run its case again, or remove {manifest} to draw the files \
+        as they are"
     )]
     Changed { difference: String, manifest: PathBuf },
     #[error(
-        "the study in {} lacks {runs} runs{}: finish it, or merge it with its other shards, and verify it then",
-        path.display(),
+        "the study in {path} lacks {runs} runs{}: finish it, or merge it with its other shards, and verify it then",
         study::of_others(*others)
     )]
     Unfinished {
@@ -62,10 +60,7 @@ pub enum VerifyError {
     Temporary(std::io::Error),
 }
 
-/// Verifies the folder of a run or of a study.
-///
-/// # Errors
-/// When it is neither, or was not finished.
+/// Verifies the folder of a run or of a study that was finished.
 pub fn verify(folder: &Path) -> Result<Verdict, VerifyError> {
     if is_study(folder) {
         verify_study(folder)
@@ -80,9 +75,6 @@ pub fn is_study(folder: &Path) -> bool {
 }
 
 /// Refuses files `which` of a complete run that are not as they were written; without a manifest nothing is known of them.
-///
-/// # Errors
-/// When one differs, or the manifest is damaged.
 pub fn expect_as_written(run: &Inspection, which: impl Fn(&str) -> bool) -> Result<(), VerifyError> {
     let manifest = match run.manifest() {
         Ok(manifest) => manifest,
@@ -92,67 +84,50 @@ pub fn expect_as_written(run: &Inspection, which: impl Fn(&str) -> bool) -> Resu
     let files = manifest.files.iter().filter(|file| which(&file.name));
     match differences(files, &run.path, "were written").into_iter().next() {
         None => Ok(()),
-        Some(difference) => Err(VerifyError::Changed {
-            difference,
-            manifest: run.path.join(MANIFEST),
-        }),
+        Some(difference) => {
+            let manifest = run.path.join(MANIFEST);
+            Err(VerifyError::Changed { difference, manifest })
+        }
     }
 }
 
-/// Compares the files of a run with its manifest.
-///
-/// # Errors
-/// When the folder is not that of a complete run.
+/// Compares the files of a complete run with its manifest.
 pub fn verify_run(run: &Inspection) -> Result<Verdict, VerifyError> {
+    let mut verdict = Verdict::default();
     let manifest = match run.manifest() {
         Ok(manifest) => manifest,
         Err(error @ ManifestError::Missing { .. }) => return Err(error.into()),
         // It is a run folder, of which nothing else can be said.
         Err(error @ ManifestError::Damaged { .. }) => {
-            return Ok(Verdict {
-                differences: vec![error.to_string()],
-                ..Verdict::default()
-            });
+            verdict.differences.push(error.to_string());
+            return Ok(verdict);
         }
     };
-    let mut differences = differences(&manifest.files, &run.path, "were written");
-    differences.extend(unresolved(run));
+    verdict.what = format!(
+        "{} files as {} wrote them, finished {}",
+        manifest.files.len(),
+        manifest.program(),
+        truncated(&manifest.finished)
+    );
+    verdict.differences = differences(&manifest.files, &run.path, "were written");
+    verdict.differences.extend(unresolved(run));
     let listed = manifest.files.iter().map(|file| file.name.as_str());
     // A picture that `slipfront plot` was writing has a temporary file beside it.
     let is_left = |name: &str| match name {
         UNFINISHED => Unfinished::of(&run.path).is_managed(),
         name => is_unfinished(name),
     };
-    Ok(Verdict {
-        what: format!(
-            "{} files as {} wrote them, finished {}",
-            manifest.files.len(),
-            manifest.program(),
-            truncated(&manifest.finished)
-        ),
-        differences,
-        notes: unlisted_files(
-            &run.path,
-            &listed.chain([MANIFEST]).collect(),
-            &["inputs"],
-            is_left,
-        ),
-    })
+    verdict.notes = unlisted_files(&run.path, &listed.chain([MANIFEST]).collect(), is_left);
+    Ok(verdict)
 }
 
-/// Inspects the folder of a run.
-///
-/// # Errors
-/// When it is no folder, or cannot be listed.
+/// Inspects the folder of a run, which must be a folder that can be listed.
 pub fn inspect(folder: &Path) -> Result<Inspection, VerifyError> {
     if !folder.is_dir() {
         let path = folder.to_owned();
         return Err(VerifyError::NotAFolder { path });
     }
-    Inspection::of(folder).map_err(|source| {
-        let path = folder.to_owned();
-        VerifyError::Folder(FolderError::Read { path, source })
-    })
+    Ok(Inspection::of(folder).map_err(FolderError::read(folder))?)
 }
 
 /// Where the files of a folder differ from those listed, which for example `were written`: a sentence for each.
@@ -165,10 +140,8 @@ pub fn differences<'f>(
         let path = folder.join(&file.name);
         let inside = |part| matches!(part, Component::Normal(_));
         if !Path::new(&file.name).components().all(inside) {
-            return Some(single_line(&format!(
-                "{} lies outside of its folder",
-                path.display()
-            )));
+            let outside = format!("{} lies outside of its folder", path.display());
+            return Some(single_line(&outside));
         }
         // A file of another length need not be read.
         let found = match std::fs::metadata(&path) {
@@ -198,33 +171,25 @@ fn unresolved(run: &Inspection) -> Option<String> {
             Some(format!("{} is not the resolved case that it was", path.display()))
         }
         Err(CaseDefect::Invalid(error)) => {
-            let message = error.to_string();
-            let line = message.lines().next().unwrap_or_default();
+            let line = first_line(error);
             Some(format!("{} is no case for this version: {line}", path.display()))
         }
     }
 }
 
-/// A note on each entry of a folder, and of those of its `folders` that slipfront makes, that is not among the `listed`.
-fn unlisted_files(
-    folder: &Path,
-    listed: &BTreeSet<&str>,
-    folders: &[&str],
-    is_left: impl Fn(&str) -> bool,
-) -> Vec<String> {
-    let names = |folder: &Path| -> Vec<String> {
+fn first_line(error: &impl ToString) -> String {
+    error.to_string().lines().next().unwrap_or_default().to_owned()
+}
+
+/// A note on each entry of a folder and of its `inputs/` that is not among the `listed`.
+fn unlisted_files(folder: &Path, listed: &BTreeSet<&str>, is_left: impl Fn(&str) -> bool) -> Vec<String> {
+    let names = |folder: &Path| {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-        entries
-            .map(|entry| entry.file_name().to_string_lossy().into_owned())
-            .collect()
+        entries.map(|entry| entry.file_name().to_string_lossy().into_owned())
     };
-    let inside = |own: &&str| -> Vec<String> {
-        let files = names(&folder.join(own)).into_iter();
-        files.map(|name| format!("{own}/{name}")).collect()
-    };
-    let mut found: Vec<String> = names(folder);
-    found.retain(|name| !folders.contains(&name.as_str()));
-    found.extend(folders.iter().flat_map(inside));
+    let inputs = names(&folder.join("inputs")).map(|name| format!("inputs/{name}"));
+    let own = names(folder).filter(|name| name != "inputs");
+    let mut found: Vec<String> = own.chain(inputs).collect();
     found.retain(|name| !listed.contains(name.as_str()));
     found.sort();
     let in_words = |name: String| {
@@ -246,12 +211,9 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
     let (plan, file) = match made {
         Ok(made) => made,
         Err(error) => {
-            let message = error.to_string();
-            let line = message.lines().next().unwrap_or_default();
-            verdict.differences.push(format!(
-                "{} is no study for this version: {line}",
-                folder.join("study.toml").display()
-            ));
+            let (path, line) = (folder.join("study.toml"), first_line(&error));
+            let difference = format!("{} is no study for this version: {line}", path.display());
+            verdict.differences.push(difference);
             return Ok(verdict);
         }
     };
@@ -277,13 +239,12 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
     study::write(&plan, &results, &again)?;
     let mut files = files_below(temporary.path(), "").map_err(VerifyError::Temporary)?;
     files.retain(|file| file.name != Records::FILE);
-    verdict
-        .differences
-        .extend(differences(&files, folder, "follow from the records"));
+    let differ = differences(&files, folder, "follow from the records");
+    verdict.differences.extend(differ);
     let is_left = |name: &str| name.rsplit('/').next().is_some_and(is_unfinished);
     let known = files.iter().map(|file| file.name.as_str());
     let known = known.chain([Records::FILE, RUNS]).collect();
-    verdict.notes = unlisted_files(folder, &known, &["inputs"], is_left);
+    verdict.notes = unlisted_files(folder, &known, is_left);
     if damaged > 0 {
         let damage =
             format!("{records} has {damaged} damaged lines, whose runs are recorded once more or not needed");
@@ -305,24 +266,18 @@ fn verify_kept(
     verdict: &mut Verdict,
 ) -> Result<usize, VerifyError> {
     let runs = folder.join(RUNS);
-    let unreadable = |source| {
-        let path = runs.clone();
-        VerifyError::Study(FolderError::Read { path, source }.into())
-    };
+    let unreadable = FolderError::read(&runs);
     let entries = match std::fs::read_dir(&runs) {
         Ok(entries) => Some(entries),
         Err(error) if error.kind() == ErrorKind::NotFound => None,
-        Err(error) => return Err(unreadable(error)),
+        Err(error) => return Err(unreadable(error).into()),
     };
     // Of a run that failed the case alone is kept.
-    let done = results
-        .runs
-        .iter()
-        .filter(|(_, result)| result.failure().is_none());
+    let done = results.runs.iter().filter(|(_, result)| result.is_ok());
     let done: HashSet<String> = done.map(|(run, _)| plan.folder_name(*run)).collect();
     let (mut kept, mut missing) = (0, done.clone());
     for entry in entries.into_iter().flatten() {
-        let entry = entry.map_err(unreadable)?;
+        let entry = entry.map_err(&unreadable)?;
         let is_done = missing.remove(&*entry.file_name().to_string_lossy());
         if !is_done && !entry.path().is_dir() {
             continue;
@@ -354,10 +309,8 @@ fn files_below(folder: &Path, prefix: &str) -> std::io::Result<Vec<ManifestFile>
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder.join(prefix))? {
         let entry = entry?;
-        let name = Path::new(prefix)
-            .join(entry.file_name())
-            .to_string_lossy()
-            .into_owned();
+        let name = Path::new(prefix).join(entry.file_name());
+        let name = name.to_string_lossy().into_owned();
         if entry.file_type()?.is_dir() {
             files.extend(files_below(folder, &name)?);
         } else {

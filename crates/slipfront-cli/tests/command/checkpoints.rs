@@ -9,7 +9,7 @@ use std::time::Duration;
 use rstest::rstest;
 
 use crate::broken::DIVERGING;
-use crate::support::process::{program, send, stderr, try_send, wait_for, wait_for_signal_handlers};
+use crate::support::process::{program, send, stderr, try_send, wait_for_signal_handlers};
 use crate::support::workspace::Workspace;
 
 /// Around a second: long enough to be stopped several times.
@@ -122,7 +122,7 @@ fn what_cannot_be_said_is_no_failure() {
     let status = |line: &str, signal: Option<&str>| {
         let mut child = start(line);
         if let Some(signal) = signal {
-            wait_for("case", || workspace.exists("mute/case.toml"));
+            workspace.wait_for("mute/case.toml");
             wait_for_signal_handlers(&child);
             send(&child, signal);
         }
@@ -139,7 +139,7 @@ fn a_signal_saves_and_the_run_goes_on() {
     let workspace = slow_workspace();
     workspace.succeed("run slow.toml -o whole");
     let child = workspace.start("run slow.toml -o saved");
-    wait_for("case.toml", || workspace.exists("saved/case.toml"));
+    workspace.wait_for("saved/case.toml");
     send(&child, "-USR1");
     let output = child.wait_with_output().unwrap();
     assert!(output.status.success());
@@ -157,14 +157,12 @@ fn by_the_clock_it_saves_now_and_then() {
     let workspace = slow_workspace();
     let mut child =
         workspace.start("run slow.toml -o clocked --checkpoint 10ms --set time.duration_star=20000");
-    wait_for("two checkpoints", || {
-        workspace.exists("clocked/.slipfront/checkpoint-previous.bin")
-    });
+    workspace.wait_for("clocked/.slipfront/checkpoint-previous.bin");
     child.kill().unwrap();
     child.wait().unwrap();
     // Without them, a signal has nothing to save.
     let mut child = workspace.start("run slow.toml -o off --checkpoint off --set time.duration_star=20000");
-    wait_for("case.toml", || workspace.exists("off/case.toml"));
+    workspace.wait_for("off/case.toml");
     send(&child, "-USR1");
     let mut lines = BufReader::new(child.stderr.take().unwrap())
         .lines()
@@ -258,7 +256,7 @@ fn an_interrupted_run_is_not_begun_again_by_mistake() {
 fn one_process_at_a_time_goes_on_with_a_run() {
     let workspace = slow_workspace();
     let mut child = workspace.start("run slow.toml -o busy");
-    wait_for("case.toml", || workspace.exists("busy/case.toml"));
+    workspace.wait_for("busy/case.toml");
     for line in [
         "run --quiet --resume busy",
         "run slow.toml --quiet -o busy --force",
@@ -389,7 +387,7 @@ fn a_case_that_is_changed_during_the_run_is_not_called_its_own() {
     for file in ["case.toml", "inputs/spot.png"] {
         let child = workspace.start("run slow.toml --quiet -o edited");
         wait_for_signal_handlers(&child);
-        wait_for("case", || workspace.exists("edited/inputs/spot.png"));
+        workspace.wait_for("edited/inputs/spot.png");
         let path = format!("edited/{file}");
         let before = workspace.read(&path);
         workspace.write(&path, [&before[..], b"\n# more"].concat());
@@ -413,7 +411,7 @@ fn a_terminal_that_closes_loses_nothing() {
     workspace.succeed("run slow.toml -o whole");
     let child = workspace.start("run slow.toml --quiet -o halted");
     wait_for_signal_handlers(&child);
-    wait_for("case", || workspace.exists("halted/inputs/spot.png"));
+    workspace.wait_for("halted/inputs/spot.png");
     send(&child, "-HUP");
     let output = child.wait_with_output().unwrap();
     // Whoever started these tests under `nohup` has told the runs in them as well.
@@ -437,7 +435,7 @@ fn a_terminal_that_closes_loses_nothing() {
         .spawn()
         .unwrap();
     wait_for_signal_handlers(&child);
-    wait_for("case", || workspace.exists("ignored/inputs/spot.png"));
+    workspace.wait_for("ignored/inputs/spot.png");
     send(&child, "-HUP");
     let output = child.wait_with_output().unwrap();
     assert!(output.status.success(), "{}", stderr(&output));
@@ -450,7 +448,7 @@ fn a_stop_that_saves_nothing_is_a_failure() {
     let workspace = slow_workspace();
     let child = workspace.start("run slow.toml --quiet -o gone");
     wait_for_signal_handlers(&child);
-    wait_for("case", || workspace.exists("gone/inputs/spot.png"));
+    workspace.wait_for("gone/inputs/spot.png");
     std::fs::remove_dir_all(workspace.path("gone")).unwrap();
     send(&child, "-TERM");
     let output = child.wait_with_output().unwrap();

@@ -7,7 +7,7 @@ use std::process::{Child, Output, Stdio};
 use assert_cmd::Command;
 use tempfile::TempDir;
 
-use super::process::{program, stderr, stdout};
+use super::process::{program, stderr, stdout, wait_for};
 
 /// Files by their names, with their bytes.
 pub(crate) type Files = BTreeMap<String, Vec<u8>>;
@@ -50,6 +50,11 @@ impl Workspace {
 
     pub(crate) fn exists(&self, name: &str) -> bool {
         self.path(name).exists()
+    }
+
+    /// Waits until a file or folder is there.
+    pub(crate) fn wait_for(&self, name: &str) {
+        wait_for(name, || self.exists(name));
     }
 
     /// Removes a file, link or folder, if it is there.

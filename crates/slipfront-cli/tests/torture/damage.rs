@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 use crate::bounded::Ended;
 use crate::jobs::{JOBS, Job, expect_all, workspace};
-use crate::support::process::try_send;
+use crate::support::process::{try_send, wait_for};
 use crate::support::workspace::{Files, Workspace};
 use crate::tally::{Chance, Tally, cases, long};
 
@@ -500,15 +500,14 @@ fn of_a_paper() {
 
 /// A run that was stopped after it had saved two checkpoints.
 fn stopped(workspace: &Workspace) -> Files {
-    let both = || workspace.path("out/.slipfront/checkpoint-previous.bin").exists();
     let mut child = workspace.start_silent(JOBS[3].line);
-    while !both() {
+    wait_for("two checkpoints", || {
         assert!(child.try_wait().unwrap().is_none(), "no checkpoints were saved");
-        if workspace.path("out/case.toml").exists() {
+        if workspace.exists("out/case.toml") {
             try_send(&child, "-USR1");
         }
-        std::thread::sleep(std::time::Duration::from_millis(2));
-    }
+        workspace.exists("out/.slipfront/checkpoint-previous.bin")
+    });
     child.kill().unwrap();
     child.wait().unwrap();
     workspace.files_if_any("out")

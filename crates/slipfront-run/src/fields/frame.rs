@@ -1,6 +1,27 @@
-//! What a fields file holds.
+//! What a fields file holds, the names of it there, and why it cannot be written or read.
 
-use slipfront::observe::Field;
+use std::io;
+use std::path::PathBuf;
+
+use slipfront::Scales;
+use slipfront::observe::{Field, Frame};
+
+// Dimensions, variables and attributes.
+pub(super) const TIME: &str = "time";
+pub(super) const X: &str = "x";
+pub(super) const Y: &str = "y";
+pub(super) const LABEL_LENGTH: &str = "instant_length";
+pub(super) const TIME_STAR: &str = "time_star";
+pub(super) const STEP: &str = "step";
+pub(super) const LABEL: &str = "instant";
+pub(super) const TEXTURED: &str = "textured";
+pub(super) const MU_STATIC: &str = "mu_static";
+pub(super) const MU_KINETIC: &str = "mu_kinetic";
+pub(super) const FIRST_SLIP: &str = "first_slip_time_star";
+pub(super) const BLOCKS: &str = "blocks";
+pub(super) const STRIDE: &str = "stride";
+pub(super) const BLOCK_SIZE: &str = "block_size_m";
+pub(super) const TIME_UNIT: &str = "time_unit_s";
 
 /// What never changes in a run, block by block: `nx * ny` values each, row-major, row j = 0 first, not thinned.
 #[derive(Debug, Clone, Copy)]
@@ -29,6 +50,40 @@ pub struct FieldFrame {
     pub values: Vec<Vec<f32>>,
 }
 
+impl FieldFrame {
+    /// A dimensionless frame of these fields in the units of [`FieldInfo::unit`](slipfront_case::field_info::FieldInfo::unit).
+    /// The contact stress becomes tau_c*: it is divided by `contact_stress_max`, its largest value so far (see
+    /// [`Simulation::contact_stress_max`](slipfront::Simulation::contact_stress_max)).
+    pub fn in_si_units(
+        frame: Frame,
+        label: String,
+        names: &[Field],
+        scales: &Scales,
+        contact_stress_max: f64,
+    ) -> Self {
+        let mut values = frame.values;
+        for (field, values) in names.iter().zip(&mut values) {
+            let unit = match field {
+                // A run in which no block was ever loaded has no largest stress to divide by.
+                Field::ContactStress if contact_stress_max > 0.0 => 1.0 / contact_stress_max,
+                Field::ContactStress | Field::Sliding => 1.0,
+                Field::Traction => scales.stress(),
+                Field::DisplacementX | Field::DisplacementY => scales.displacement(),
+                Field::VelocityX | Field::VelocityY => scales.speed(),
+            };
+            for value in values {
+                *value = (f64::from(*value) * unit) as f32;
+            }
+        }
+        Self {
+            time_star: frame.time_star,
+            label,
+            step: frame.step,
+            values,
+        }
+    }
+}
+
 /// All that goes into `fields.nc`.
 #[derive(Debug, Clone, Copy)]
 pub struct FieldsFile<'a> {
@@ -51,7 +106,7 @@ pub struct FieldsFile<'a> {
 }
 
 /// The contents of a `fields.nc`; every array is thinned to `columns() * rows()` values and row-major.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Default, Clone, PartialEq)]
 pub struct FieldsData {
     /// Number of blocks along x, before thinning.
     pub nx: usize,
@@ -102,4 +157,35 @@ pub fn thin<T: Copy>(values: &[T], nx: usize, stride: usize) -> Vec<T> {
     let stride = stride.max(1);
     let rows = values.chunks(nx.max(1)).step_by(stride);
     rows.flat_map(|row| row.iter().step_by(stride)).copied().collect()
+}
+
+/// Why `fields.nc` cannot be written or read: one sentence that ends with the remedy.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum FieldsError {
+    #[error(
+        "cannot write `{path}`: {what} has {found} values where {wanted} are wanted; hand over matching arrays"
+    )]
+    Shape {
+        path: PathBuf,
+        what: String,
+        found: usize,
+        wanted: usize,
+    },
+    #[error(
+        "cannot write `{path}`: one field of {columns} x {rows} values takes more than the 2 GiB that the format holds; \
+         set `output.stride` to {stride} or more"
+    )]
+    TooLarge {
+        path: PathBuf,
+        columns: usize,
+        rows: usize,
+        stride: usize,
+    },
+    #[error("cannot write `{path}`: {source}; check that the folder exists, is writable and has room")]
+    Write { path: PathBuf, source: io::Error },
+    #[error("cannot read `{path}`: {source}; check the path and its permissions")]
+    Read { path: PathBuf, source: io::Error },
+    #[error("`{path}` is not a fields file of slipfront: {detail}; run the case again")]
+    Broken { path: PathBuf, detail: String },
 }

@@ -5,19 +5,14 @@
 //! smallest y. The file carries no date: equal input gives equal bytes. [`write_fields`] ends a run,
 //! [`read_maps`] serves the pictures, [`read_fields`] whoever wants it all.
 
-mod error;
 mod frame;
 mod netcdf3_reader;
 mod read;
-mod si_units;
-mod variables;
 mod write;
 
-pub use error::FieldsError;
-pub use frame::{FieldFrame, FieldsData, FieldsFile, StaticFields, thin};
+pub use frame::{FieldFrame, FieldsData, FieldsError, FieldsFile, StaticFields, thin};
 pub use read::{read_fields, read_maps};
-pub use si_units::in_si_units;
-pub use write::{write_fields, write_fields_via};
+pub use write::write_fields;
 
 #[cfg(test)]
 mod tests;

@@ -14,25 +14,28 @@ use slipfront_case::disk::open_regular;
 const HEADER_MAX_BYTES: u64 = 1 << 20;
 
 /// What is wrong with a file.
+#[derive(Debug, thiserror::Error)]
 pub(super) enum NetCdfError {
-    Io(io::Error),
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    #[error("{0}")]
     Broken(String),
 }
 
-impl From<io::Error> for NetCdfError {
-    fn from(source: io::Error) -> NetCdfError {
-        NetCdfError::Io(source)
-    }
+pub(super) fn broken<T>(detail: impl Into<String>) -> Result<T, NetCdfError> {
+    Err(NetCdfError::Broken(detail.into()))
 }
 
 /// An open file and what its header says.
 pub(super) struct NetCdf3Reader {
     file: File,
     file_bytes: u64,
-    records: usize,
+    /// Number of records, that is of instants.
+    pub(super) records: usize,
     record_bytes: u64,
     dimensions: Vec<Dimension>,
-    attributes: Vec<Attribute>,
+    /// Text counts as numbers too, one per byte.
+    attributes: Vec<(String, Vec<f64>)>,
     variables: Vec<Variable>,
 }
 
@@ -40,12 +43,6 @@ pub(super) struct NetCdf3Reader {
 struct Dimension {
     name: String,
     length: usize,
-}
-
-/// Text counts as numbers too, one per byte.
-struct Attribute {
-    name: String,
-    values: Vec<f64>,
 }
 
 struct Variable {
@@ -68,19 +65,6 @@ enum Kind {
 }
 
 impl Kind {
-    fn of(code: u32) -> Option<Kind> {
-        [
-            Kind::Byte,
-            Kind::Char,
-            Kind::Short,
-            Kind::Int,
-            Kind::Float,
-            Kind::Double,
-        ]
-        .get((code as usize).checked_sub(1)?)
-        .copied()
-    }
-
     fn bytes(self) -> usize {
         match self {
             Kind::Byte | Kind::Char => 1,
@@ -91,19 +75,15 @@ impl Kind {
     }
 
     fn decode(self, bytes: &[u8]) -> Vec<f64> {
-        bytes
-            .chunks_exact(self.bytes())
-            .map(|number| match (self, number) {
-                (Kind::Byte, [a]) => f64::from(i8::from_be_bytes([*a])),
-                (Kind::Short, [a, b]) => f64::from(i16::from_be_bytes([*a, *b])),
-                (Kind::Int, [a, b, c, d]) => f64::from(i32::from_be_bytes([*a, *b, *c, *d])),
-                (Kind::Float, [a, b, c, d]) => f64::from(f32::from_be_bytes([*a, *b, *c, *d])),
-                (Kind::Double, [a, b, c, d, e, f, g, h]) => {
-                    f64::from_be_bytes([*a, *b, *c, *d, *e, *f, *g, *h])
-                }
-                (_, number) => number.first().copied().map_or(0.0, f64::from),
-            })
-            .collect()
+        let number = |bytes: &[u8]| match (self, bytes) {
+            (Kind::Byte, [a]) => f64::from(i8::from_be_bytes([*a])),
+            (Kind::Short, [a, b]) => f64::from(i16::from_be_bytes([*a, *b])),
+            (Kind::Int, [a, b, c, d]) => f64::from(i32::from_be_bytes([*a, *b, *c, *d])),
+            (Kind::Float, [a, b, c, d]) => f64::from(f32::from_be_bytes([*a, *b, *c, *d])),
+            (Kind::Double, [a, b, c, d, e, f, g, h]) => f64::from_be_bytes([*a, *b, *c, *d, *e, *f, *g, *h]),
+            (_, bytes) => bytes.first().copied().map_or(0.0, f64::from),
+        };
+        bytes.chunks_exact(self.bytes()).map(number).collect()
     }
 }
 
@@ -113,15 +93,10 @@ impl NetCdf3Reader {
         let mut file = open_regular(path)?;
         let file_bytes = file.metadata()?.len();
         let mut bytes = Vec::new();
-        Read::by_ref(&mut file)
-            .take(HEADER_MAX_BYTES)
-            .read_to_end(&mut bytes)?;
+        file.by_ref().take(HEADER_MAX_BYTES).read_to_end(&mut bytes)?;
         let mut header = Header { rest: &bytes };
-
         if header.take(4)? != b"CDF\x02" {
-            return Err(NetCdfError::Broken(
-                "it does not begin like NetCDF-3 with 64-bit offsets".to_owned(),
-            ));
+            return broken("it does not begin like NetCDF-3 with 64-bit offsets");
         }
         let records = header.number()? as usize;
         let dimensions = header.list(0x0a, 8, |header| {
@@ -132,11 +107,9 @@ impl NetCdf3Reader {
         })?;
         let attributes = header.list(0x0c, 12, Header::attribute)?;
         let variables = header.list(0x0b, 28, |header| header.variable(dimensions.len()))?;
-
         each_once(dimensions.iter().map(|dimension| &dimension.name))?;
         each_once(variables.iter().map(|variable| &variable.name))?;
-
-        let mut classic = NetCdf3Reader {
+        let mut reader = NetCdf3Reader {
             file,
             file_bytes,
             records,
@@ -145,50 +118,34 @@ impl NetCdf3Reader {
             attributes,
             variables,
         };
-        let with_records = classic
-            .variables
-            .iter()
-            .filter(|variable| classic.has_records(variable));
-        let record_bytes = with_records
-            .map(|variable| classic.bytes_at_once(variable))
-            .try_fold(0, |total: u64, bytes| {
-                total.checked_add(bytes?.checked_next_multiple_of(4)?)
-            });
-        classic.record_bytes = record_bytes.ok_or_else(|| absurd("one record"))?;
-        classic.check_records()?;
-        Ok(classic)
-    }
-
-    /// Number of records, that is of instants.
-    pub(super) fn records(&self) -> usize {
-        self.records
-    }
-
-    /// The number of records stands in the header alone: it counts only as far as the file holds their bytes.
-    fn check_records(&self) -> Result<(), NetCdfError> {
-        let held = self.file_bytes.checked_div(self.record_bytes).unwrap_or(0);
-        if self.records as u64 <= held {
-            return Ok(());
+        let has_records = |variable: &&Variable| reader.has_records(variable);
+        let mut with_records = reader.variables.iter().filter(has_records);
+        let record_bytes = with_records.try_fold(0, |total: u64, variable| {
+            total.checked_add(reader.bytes_at_once(variable)?.checked_next_multiple_of(4)?)
+        });
+        reader.record_bytes = record_bytes.ok_or_else(|| absurd("one record"))?;
+        // The number of records stands in the header alone: it counts only as far as the file holds their bytes.
+        let held = file_bytes.checked_div(reader.record_bytes).unwrap_or(0);
+        if records as u64 > held {
+            return broken(format!(
+                "its header promises {records} instants where {file_bytes} bytes hold at most {held}"
+            ));
         }
-        Err(NetCdfError::Broken(format!(
-            "its header promises {} instants where {} bytes hold at most {held}",
-            self.records, self.file_bytes
-        )))
+        Ok(reader)
     }
 
     /// The names of the variables that have exactly these dimensions.
     pub(super) fn variables_over<'a>(&'a self, dimensions: &'a [&str]) -> impl Iterator<Item = &'a str> {
-        self.variables
-            .iter()
-            .filter(|variable| self.is_over(variable, dimensions))
-            .map(|variable| variable.name.as_str())
+        let is_over = |variable: &&Variable| self.is_over(variable, dimensions);
+        let over = self.variables.iter().filter(is_over);
+        over.map(|variable| variable.name.as_str())
     }
 
     /// The numbers of a global attribute.
     pub(super) fn attribute(&self, name: &str) -> Result<&[f64], NetCdfError> {
-        match self.attributes.iter().find(|attribute| attribute.name == name) {
-            Some(attribute) => Ok(&attribute.values),
-            None => Err(NetCdfError::Broken(format!("it has no attribute `{name}`"))),
+        match self.attributes.iter().find(|(known, _)| known == name) {
+            Some((_, values)) => Ok(values),
+            None => broken(format!("it has no attribute `{name}`")),
         }
     }
 
@@ -196,7 +153,7 @@ impl NetCdf3Reader {
     pub(super) fn dimension(&self, name: &str) -> Result<usize, NetCdfError> {
         match self.dimensions.iter().find(|dimension| dimension.name == name) {
             Some(dimension) => Ok(dimension.length),
-            None => Err(NetCdfError::Broken(format!("it has no dimension `{name}`"))),
+            None => broken(format!("it has no dimension `{name}`")),
         }
     }
 
@@ -208,13 +165,10 @@ impl NetCdf3Reader {
         dimensions: &[&str],
         record: usize,
     ) -> Result<Vec<f64>, NetCdfError> {
-        let variable = self
-            .variables
-            .iter()
-            .find(|variable| variable.name == name && self.is_over(variable, dimensions))
-            .ok_or_else(|| {
-                NetCdfError::Broken(format!("it has no variable `{name}({})`", dimensions.join(", ")))
-            })?;
+        let is_meant = |variable: &&Variable| variable.name == name && self.is_over(variable, dimensions);
+        let Some(variable) = self.variables.iter().find(is_meant) else {
+            return broken(format!("it has no variable `{name}({})`", dimensions.join(", ")));
+        };
         let bytes = self.bytes_at_once(variable).ok_or_else(|| absurd(name))?;
         let skipped = if self.has_records(variable) {
             self.record_bytes.checked_mul(record as u64)
@@ -227,11 +181,8 @@ impl NetCdf3Reader {
             return Err(absurd(name));
         };
         if end > self.file_bytes {
-            let detail = format!(
-                "it has {} bytes where `{name}` ends at byte {end}",
-                self.file_bytes
-            );
-            return Err(NetCdfError::Broken(detail));
+            let there = self.file_bytes;
+            return broken(format!("it has {there} bytes where `{name}` ends at byte {end}"));
         }
         let mut data = vec![0; bytes as usize];
         self.file.seek(SeekFrom::Start(start))?;
@@ -240,29 +191,21 @@ impl NetCdf3Reader {
     }
 
     fn is_over(&self, variable: &Variable, dimensions: &[&str]) -> bool {
-        variable.dimensions.len() == dimensions.len()
-            && variable
-                .dimensions
-                .iter()
-                .zip(dimensions)
-                .all(|(id, name)| self.dimensions[*id].name == *name)
+        let ids = variable.dimensions.iter();
+        let names = ids.map(|id| self.dimensions[*id].name.as_str());
+        names.eq(dimensions.iter().copied())
     }
 
     fn has_records(&self, variable: &Variable) -> bool {
-        variable
-            .dimensions
-            .first()
-            .is_some_and(|id| self.dimensions[*id].length == 0)
+        let first = variable.dimensions.first();
+        first.is_some_and(|id| self.dimensions[*id].length == 0)
     }
 
     /// The bytes of a whole variable or of one record of it, without padding.
     fn bytes_at_once(&self, variable: &Variable) -> Option<u64> {
         let skipped = usize::from(self.has_records(variable));
-        let mut lengths = variable
-            .dimensions
-            .iter()
-            .skip(skipped)
-            .map(|id| self.dimensions[*id].length as u64);
+        let dimensions = variable.dimensions.iter().skip(skipped);
+        let mut lengths = dimensions.map(|id| self.dimensions[*id].length as u64);
         lengths.try_fold(variable.kind.bytes() as u64, u64::checked_mul)
     }
 }
@@ -270,9 +213,10 @@ impl NetCdf3Reader {
 /// Names that stand twice would be read twice, however long their arrays are.
 fn each_once<'a>(mut names: impl Iterator<Item = &'a String>) -> Result<(), NetCdfError> {
     let mut seen = HashSet::new();
-    names.find(|name| !seen.insert(*name)).map_or(Ok(()), |twice| {
-        Err(NetCdfError::Broken(format!("its header defines `{twice}` twice")))
-    })
+    match names.find(|name| !seen.insert(*name)) {
+        Some(twice) => broken(format!("its header defines `{twice}` twice")),
+        None => Ok(()),
+    }
 }
 
 fn absurd(variable: &str) -> NetCdfError {
@@ -286,10 +230,9 @@ struct Header<'a> {
 
 impl<'a> Header<'a> {
     fn take(&mut self, bytes: usize) -> Result<&'a [u8], NetCdfError> {
-        let (taken, rest) = self
-            .rest
-            .split_at_checked(bytes)
-            .ok_or_else(|| NetCdfError::Broken("its header is corrupt or cut short".to_owned()))?;
+        let Some((taken, rest)) = self.rest.split_at_checked(bytes) else {
+            return broken("its header is corrupt or cut short");
+        };
         self.rest = rest;
         Ok(taken)
     }
@@ -302,10 +245,8 @@ impl<'a> Header<'a> {
     }
 
     fn number(&mut self) -> Result<u32, NetCdfError> {
-        let bytes = self.take(4)?;
-        Ok(bytes
-            .iter()
-            .fold(0, |number, byte| number << 8 | u32::from(*byte)))
+        let bytes = self.take(4)?.iter();
+        Ok(bytes.fold(0, |number, byte| number << 8 | u32::from(*byte)))
     }
 
     fn name(&mut self) -> Result<String, NetCdfError> {
@@ -323,43 +264,44 @@ impl<'a> Header<'a> {
         let (found, count) = (self.number()?, self.number()? as usize);
         let known = found == tag || (found == 0 && count == 0);
         if !known || count > self.rest.len() / element_bytes {
-            return Err(NetCdfError::Broken(
-                "its header is corrupt or cut short".to_owned(),
-            ));
+            return broken("its header is corrupt or cut short");
         }
         (0..count).map(|_| element(self)).collect()
     }
 
     fn kind(&mut self) -> Result<Kind, NetCdfError> {
-        let code = self.number()?;
-        Kind::of(code).ok_or_else(|| NetCdfError::Broken(format!("its header names the unknown type {code}")))
+        Ok(match self.number()? {
+            1 => Kind::Byte,
+            2 => Kind::Char,
+            3 => Kind::Short,
+            4 => Kind::Int,
+            5 => Kind::Float,
+            6 => Kind::Double,
+            code => return broken(format!("its header names the unknown type {code}")),
+        })
     }
 
-    fn attribute(&mut self) -> Result<Attribute, NetCdfError> {
+    fn attribute(&mut self) -> Result<(String, Vec<f64>), NetCdfError> {
         let name = self.name()?;
         let kind = self.kind()?;
         let count = self.number()? as usize;
-        Ok(Attribute {
-            name,
-            values: kind.decode(self.padded(count.saturating_mul(kind.bytes()))?),
-        })
+        let values = kind.decode(self.padded(count.saturating_mul(kind.bytes()))?);
+        Ok((name, values))
     }
 
     fn variable(&mut self, dimensions_known: usize) -> Result<Variable, NetCdfError> {
         let name = self.name()?;
         let count = self.number()? as usize;
         if count > dimensions_known {
-            return Err(NetCdfError::Broken(format!(
+            return broken(format!(
                 "`{name}` has {count} dimensions where {dimensions_known} are known"
-            )));
+            ));
         }
         let mut dimensions = Vec::new();
         for _ in 0..count {
             let id = self.number()? as usize;
             if id >= dimensions_known {
-                return Err(NetCdfError::Broken(format!(
-                    "`{name}` has a dimension that is not known"
-                )));
+                return broken(format!("`{name}` has a dimension that is not known"));
             }
             dimensions.push(id);
         }

@@ -2,29 +2,19 @@
 
 use std::path::Path;
 
-use super::netcdf3_reader::{NetCdf3Reader, NetCdfError};
-use super::variables::{
-    BLOCK_SIZE, BLOCKS, FIRST_SLIP, LABEL, LABEL_LENGTH, MU_KINETIC, MU_STATIC, STEP, STRIDE, TEXTURED, TIME,
-    TIME_STAR, TIME_UNIT, X, Y,
-};
 use slipfront::observe::Field;
-
-use super::error::FieldsError;
-use super::frame::{FieldFrame, FieldsData};
 use slipfront_case::field_info::{field_info, field_named};
 use slipfront_case::text;
 
-/// Reads a `fields.nc` that [`write_fields`](super::write_fields) has written.
-///
-/// Variables that slipfront does not know are skipped.
-///
-/// # Errors
-///
-/// [`FieldsError`] if the file is missing, cut short, damaged, or not a fields file.
+use super::frame::*;
+use super::netcdf3_reader::{NetCdf3Reader, NetCdfError, broken};
+
+/// Reads a `fields.nc` that [`write_fields`](super::write_fields) has written. Variables that slipfront does not know are
+/// skipped.
 pub fn read_fields(path: &Path) -> Result<FieldsData, FieldsError> {
     let read = || {
         let mut file = NetCdf3Reader::open(path)?;
-        let all: Vec<usize> = (0..file.records()).collect();
+        let all: Vec<usize> = (0..file.records).collect();
         let data = read_chosen(&mut file, |_| true, &all)?;
         Ok(FieldsData {
             mu_static: file.values(MU_STATIC, &[Y, X], 0)?,
@@ -38,18 +28,13 @@ pub fn read_fields(path: &Path) -> Result<FieldsData, FieldsError> {
 
 /// Reads what a picture of one field takes, however long the file is: this field alone, at no more than `most`
 /// instants spread over the run, and of what never changes the texture alone.
-///
-/// # Errors
-///
-/// As for [`read_fields`].
 pub fn read_maps(path: &Path, field: Field, most: usize) -> Result<FieldsData, FieldsError> {
     let read = || {
         let mut file = NetCdf3Reader::open(path)?;
-        let records = file.records();
+        let records = file.records;
         let shown = records.min(most);
-        let spread: Vec<usize> = (0..shown)
-            .map(|k| k * (records - 1) / (shown - 1).max(1))
-            .collect();
+        let spread = (0..shown).map(|k| k * (records - 1) / (shown - 1).max(1));
+        let spread: Vec<usize> = spread.collect();
         read_chosen(&mut file, |name| name == field, &spread)
     };
     read().map_err(|error| in_words(error, path))
@@ -79,14 +64,14 @@ fn read_chosen(
     for (name, blocks) in [(X, nx), (Y, ny)] {
         let (found, wanted) = (file.dimension(name)?, blocks.div_ceil(stride));
         if found != wanted {
-            return Err(NetCdfError::Broken(format!(
+            return broken(format!(
                 "`{name}` has the length {found} where {wanted} is wanted"
-            )));
+            ));
         }
     }
     // The instants are records: otherwise the whole of an array would be read for each of them.
     if !records.is_empty() && file.dimension(TIME)? != 0 {
-        return Err(NetCdfError::Broken(format!("`{TIME}` has a fixed length")));
+        return broken(format!("`{TIME}` has a fixed length"));
     }
     // A file without instants has no fields, even if it defines some.
     let names: Vec<Field> = file
@@ -94,10 +79,9 @@ fn read_chosen(
         .filter_map(field_named)
         .filter(|name| chosen(*name) && !records.is_empty())
         .collect();
-    let frames = records
-        .iter()
-        .map(|&record| read_frame(file, &names, record))
-        .collect::<Result<_, _>>()?;
+    let frames = records.iter().map(|&record| read_frame(file, &names, record));
+    let frames = frames.collect::<Result<_, _>>()?;
+    let textured = file.values(TEXTURED, &[Y, X], 0)?;
     Ok(FieldsData {
         nx,
         ny,
@@ -105,15 +89,9 @@ fn read_chosen(
         block_size,
         time_unit_s,
         names,
-        textured: file
-            .values(TEXTURED, &[Y, X], 0)?
-            .iter()
-            .map(|value| *value != 0.0)
-            .collect(),
-        mu_static: Vec::new(),
-        mu_kinetic: Vec::new(),
-        first_slip_time_star: Vec::new(),
+        textured: textured.iter().map(|value| *value != 0.0).collect(),
         frames,
+        ..FieldsData::default()
     })
 }
 
@@ -121,11 +99,8 @@ fn read_frame(file: &mut NetCdf3Reader, names: &[Field], record: usize) -> Resul
     let time_star = only(TIME_STAR, &file.values(TIME_STAR, &[TIME], record)?)?;
     let step = only(STEP, &file.values(STEP, &[TIME], record)?)? as u64;
     let label = file.values(LABEL, &[TIME, LABEL_LENGTH], record)?;
-    let label: Vec<u8> = label
-        .iter()
-        .map(|byte| *byte as u8)
-        .take_while(|byte| *byte != 0)
-        .collect();
+    let label = label.iter().map(|byte| *byte as u8);
+    let label: Vec<u8> = label.take_while(|byte| *byte != 0).collect();
     let mut values = Vec::with_capacity(names.len());
     for name in names {
         let field = file.values(field_info(*name).name, &[TIME, Y, X], record)?;
@@ -143,9 +118,9 @@ fn read_frame(file: &mut NetCdf3Reader, names: &[Field], record: usize) -> Resul
 fn numbers<const N: usize>(file: &NetCdf3Reader, name: &str) -> Result<[f64; N], NetCdfError> {
     match <[f64; N]>::try_from(file.attribute(name)?) {
         Ok(values) if values.iter().all(|value| value.is_finite() && *value > 0.0) => Ok(values),
-        _ => Err(NetCdfError::Broken(format!(
+        _ => broken(format!(
             "the attribute `{name}` does not hold positive numbers, {N} in all"
-        ))),
+        )),
     }
 }
 
@@ -153,7 +128,7 @@ fn numbers<const N: usize>(file: &NetCdf3Reader, name: &str) -> Result<[f64; N],
 fn counts<const N: usize>(file: &NetCdf3Reader, name: &str) -> Result<[usize; N], NetCdfError> {
     let values = numbers::<N>(file, name)?.map(|value| value as usize);
     if values.contains(&0) {
-        return Err(NetCdfError::Broken(format!("the attribute `{name}` is below 1")));
+        return broken(format!("the attribute `{name}` is below 1"));
     }
     Ok(values)
 }
@@ -161,6 +136,5 @@ fn counts<const N: usize>(file: &NetCdf3Reader, name: &str) -> Result<[usize; N]
 fn only(name: &str, values: &[f64]) -> Result<f64, NetCdfError> {
     values
         .first()
-        .copied()
-        .ok_or_else(|| NetCdfError::Broken(format!("`{name}` is empty")))
+        .map_or_else(|| broken(format!("`{name}` is empty")), |first| Ok(*first))
 }

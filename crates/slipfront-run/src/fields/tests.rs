@@ -10,6 +10,11 @@ use slipfront::observe::Field;
 use super::*;
 use slipfront_case::field_info::{field_info, field_named};
 
+/// Writes a file by way of a temporary one beside it.
+fn write(path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
+    write_fields(path.parent().unwrap(), path, file)
+}
+
 const NX: usize = 5;
 const NY: usize = 3;
 
@@ -125,7 +130,7 @@ fn what_is_written_is_read() {
         let frames = frames(&Field::ALL, stride);
         let file = lattice.file(stride, &Field::ALL, &frames);
         let (_folder, path) = folder();
-        write_fields(&path, &file).unwrap();
+        write(&path, &file).unwrap();
         let data = read_fields(&path).unwrap();
         assert_eq!((data.nx, data.ny, data.stride), (NX, NY, stride));
         assert_eq!((data.block_size, data.time_unit_s), (1e-6, 3.162e-10));
@@ -148,7 +153,7 @@ fn maps_are_one_field_at_a_few_instants() {
     let (_folder, path) = folder();
     let names = [Field::Sliding, Field::Traction];
     let frames = frames(&names, 1);
-    write_fields(&path, &lattice.file(1, &names, &frames)).unwrap();
+    write(&path, &lattice.file(1, &names, &frames)).unwrap();
     for (most, instants) in [
         (1, vec![0]),
         (2, vec![0, 2]),
@@ -181,13 +186,13 @@ fn thinning_starts_at_block_0() {
 fn a_run_without_instants_or_fields_still_has_its_surface() {
     let lattice = lattice();
     let (_folder, path) = folder();
-    write_fields(&path, &lattice.file(1, &Field::ALL, &[])).unwrap();
+    write(&path, &lattice.file(1, &Field::ALL, &[])).unwrap();
     let data = read_fields(&path).unwrap();
     assert!(data.frames.is_empty() && data.names.is_empty());
     assert_eq!(data.mu_static, lattice.mu_static);
 
     let frames = frames(&[], 1);
-    write_fields(&path, &lattice.file(1, &[], &frames)).unwrap();
+    write(&path, &lattice.file(1, &[], &frames)).unwrap();
     assert_eq!(read_fields(&path).unwrap().frames, frames);
 }
 
@@ -198,7 +203,7 @@ fn equal_input_gives_equal_bytes() {
     let (_folder, path) = folder();
     let mut bytes_with = |nan: f32| {
         frames[1].values[0][7] = nan;
-        write_fields(&path, &lattice.file(1, &[Field::Traction], &frames)).unwrap();
+        write(&path, &lattice.file(1, &[Field::Traction], &frames)).unwrap();
         fs::read(&path).unwrap()
     };
     let first = bytes_with(f32::NAN);
@@ -216,7 +221,7 @@ fn equal_input_gives_equal_bytes() {
 fn the_header_is_netcdf_3() {
     let lattice = lattice();
     let (_folder, path) = folder();
-    write_fields(&path, &lattice.file(1, &Field::ALL, &frames(&Field::ALL, 1))).unwrap();
+    write(&path, &lattice.file(1, &Field::ALL, &frames(&Field::ALL, 1))).unwrap();
     let bytes = fs::read(&path).unwrap();
     let dimensions =
         b"CDF\x02\0\0\0\x03\0\0\0\x0a\0\0\0\x04\0\0\0\x01y\0\0\0\0\0\0\x03\0\0\0\x01x\0\0\0\0\0\0\x05\0\0\0\x04time\0\0\0\0";
@@ -231,7 +236,7 @@ fn arrays_of_another_length_are_refused() {
     let good = frames(&names, 1);
     let (_folder, path) = folder();
     let refused = |file: &FieldsFile, wanted: &str| {
-        let text = write_fields(&path, file).unwrap_err().to_string();
+        let text = write(&path, file).unwrap_err().to_string();
         assert!(text.contains(wanted), "{text}");
         assert!(!path.exists());
     };
@@ -356,7 +361,7 @@ fn folders_that_take_no_file_are_reported() {
     let lattice = lattice();
     let (folder, _) = folder();
     let nowhere = folder.path().join("missing").join("fields.nc");
-    let text = write_fields(&nowhere, &lattice.file(1, &[], &[]))
+    let text = write(&nowhere, &lattice.file(1, &[], &[]))
         .unwrap_err()
         .to_string();
     assert!(
@@ -368,7 +373,7 @@ fn folders_that_take_no_file_are_reported() {
     fs::create_dir(&occupied).unwrap();
     fs::write(occupied.join("file"), "").unwrap();
     assert!(matches!(
-        write_fields(&occupied, &lattice.file(1, &[], &[])),
+        write(&occupied, &lattice.file(1, &[], &[])),
         Err(FieldsError::Write { .. })
     ));
     assert_eq!(
@@ -387,7 +392,7 @@ fn the_file_is_as_readable_as_any_other_and_replaces_an_older_one() {
     fs::write(&path, "older").unwrap();
     let other = folder.path().join("other");
     fs::write(&other, "").unwrap();
-    write_fields(&path, &lattice.file(1, &[], &[])).unwrap();
+    write(&path, &lattice.file(1, &[], &[])).unwrap();
     let mode = |path| fs::metadata(path).unwrap().permissions().mode();
     assert_eq!(mode(&path), mode(&other));
     assert!(read_fields(&path).is_ok());
@@ -420,7 +425,7 @@ fn files_of_another_kind_are_refused() {
         message(&path)
     );
 
-    write_fields(&path, &lattice.file(1, &Field::ALL, &frames(&Field::ALL, 1))).unwrap();
+    write(&path, &lattice.file(1, &Field::ALL, &frames(&Field::ALL, 1))).unwrap();
     let whole = fs::read(&path).unwrap();
     for length in 0..whole.len() {
         replace(&path, &whole[..length]);
@@ -438,7 +443,7 @@ fn instants_that_the_file_does_not_hold_are_refused() {
     let lattice = lattice();
     let (_folder, path) = folder();
     let names = [Field::Traction];
-    write_fields(&path, &lattice.file(1, &names, &frames(&names, 1))).unwrap();
+    write(&path, &lattice.file(1, &names, &frames(&names, 1))).unwrap();
     let whole = fs::read(&path).unwrap();
     let time = whole
         .windows(8)
@@ -470,7 +475,7 @@ fn instants_that_are_no_records_are_refused() {
     let lattice = lattice();
     let (_folder, path) = folder();
     let names = [Field::Traction];
-    write_fields(&path, &lattice.file(1, &names, &frames(&names, 1))).unwrap();
+    write(&path, &lattice.file(1, &names, &frames(&names, 1))).unwrap();
     let whole = fs::read(&path).unwrap();
     let end_of =
         |mark: &[u8]| whole.windows(mark.len()).position(|bytes| bytes == mark).unwrap() + mark.len();
@@ -498,7 +503,7 @@ fn an_array_that_stands_twice_is_refused() {
     let lattice = lattice();
     let (_folder, path) = folder();
     let names = [Field::VelocityX, Field::VelocityY];
-    write_fields(&path, &lattice.file(1, &names, &frames(&names, 1))).unwrap();
+    write(&path, &lattice.file(1, &names, &frames(&names, 1))).unwrap();
     let mut bytes = fs::read(&path).unwrap();
     let second = bytes
         .windows(10)
@@ -516,7 +521,7 @@ fn damaged_files_are_refused_or_read() {
     let lattice = lattice();
     let (_folder, path) = folder();
     let names = [Field::Traction, Field::Sliding];
-    write_fields(&path, &lattice.file(2, &names, &frames(&names, 2))).unwrap();
+    write(&path, &lattice.file(2, &names, &frames(&names, 2))).unwrap();
     let whole = fs::read(&path).unwrap();
     // A linear congruential generator (Knuth's constants): the same damage on every run.
     let mut state: u64 = 1;

@@ -7,41 +7,24 @@ use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::rc::Rc;
 
-use netcdf3::{DataSet, FileWriter, InvalidDataSet, Version};
-
-use super::variables::{
-    BLOCK_SIZE, BLOCKS, FIRST_SLIP, LABEL, LABEL_LENGTH, MU_KINETIC, MU_STATIC, STEP, STRIDE, TEXTURED, TIME,
-    TIME_STAR, TIME_UNIT, X, Y,
-};
+use netcdf3::{DataSet, DataType, FileWriter, InvalidDataSet, Version};
 use slipfront::observe::Field;
 use slipfront_case::case::smallest_stride;
-
-use super::error::FieldsError;
-use super::frame::{FieldsFile, thin};
 use slipfront_case::disk::write_temp;
 use slipfront_case::field_info::field_info;
 
-/// Writes `fields.nc`.
+use super::frame::*;
+
+/// Writes `fields.nc`, with its temporary file in a folder on the same file system.
 ///
-/// The file appears under its name only when it is complete: it is written beside it, flushed to the disk and
-/// renamed. Coordinates are the block centres in m and the time in s; fields are float32, what never changes is
-/// float64.
+/// The file appears under its name only when it is complete: flushed to the disk and renamed. Coordinates are the block
+/// centres in m and the time in s; fields are float32, what never changes is float64.
 ///
 /// # Errors
 ///
 /// [`FieldsError`] if an array does not have the length that `nx`, `ny` and `stride` ask for, one field takes more
 /// than 2 GiB, or the file cannot be written in full.
-pub fn write_fields(path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    write_fields_via(folder.unwrap_or(Path::new(".")), path, file)
-}
-
-/// Writes `fields.nc` as [`write_fields`] does, with its temporary file in a folder on the same file system.
-///
-/// # Errors
-///
-/// As for [`write_fields`].
-pub fn write_fields_via(temporary: &Path, path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
+pub fn write_fields(temporary: &Path, path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
     check(path, file)?;
     let fill = |output: &mut File| write_to(output.try_clone()?, file).map(drop);
     let written = write_temp(temporary, fill).and_then(|written| Ok(written.persist(path)?));
@@ -52,42 +35,29 @@ pub fn write_fields_via(temporary: &Path, path: &Path, file: &FieldsFile) -> Res
 }
 
 fn check(path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
-    let wrong = |what: &str, found, wanted| {
-        Err(FieldsError::Shape {
+    let expect = |what: &str, found: usize, wanted: usize| match found == wanted {
+        true => Ok(()),
+        false => Err(FieldsError::Shape {
             path: path.to_owned(),
             what: what.to_owned(),
             found,
             wanted,
-        })
+        }),
     };
     for (what, size) in [("x", file.nx), ("y", file.ny), ("`output.stride`", file.stride)] {
         // The header stores them with 32 bits.
-        let bound = size.clamp(1, i32::MAX as usize);
-        if size != bound {
-            return wrong(what, size, bound);
-        }
+        expect(what, size, size.clamp(1, i32::MAX as usize))?;
     }
     check_size(path, file.nx, file.ny, file.stride)?;
-    let statics = &file.statics;
-    for (what, found) in [
-        (TEXTURED, statics.textured.len()),
-        (MU_STATIC, statics.mu_static.len()),
-        (MU_KINETIC, statics.mu_kinetic.len()),
-        (FIRST_SLIP, statics.first_slip_time_star.len()),
-    ] {
-        if found != file.nx * file.ny {
-            return wrong(what, found, file.nx * file.ny);
-        }
-    }
-    let (columns, rows) = (file.columns(), file.rows());
+    let (statics, blocks) = (&file.statics, file.nx * file.ny);
+    expect(TEXTURED, statics.textured.len(), blocks)?;
+    expect(MU_STATIC, statics.mu_static.len(), blocks)?;
+    expect(MU_KINETIC, statics.mu_kinetic.len(), blocks)?;
+    expect(FIRST_SLIP, statics.first_slip_time_star.len(), blocks)?;
     for frame in file.frames {
-        if frame.values.len() != file.names.len() {
-            return wrong("a frame", frame.values.len(), file.names.len());
-        }
+        expect("a frame", frame.values.len(), file.names.len())?;
         for (name, values) in file.names.iter().zip(&frame.values) {
-            if values.len() != columns * rows {
-                return wrong(field_info(*name).name, values.len(), columns * rows);
-            }
+            expect(field_info(*name).name, values.len(), file.columns() * file.rows())?;
         }
     }
     Ok(())
@@ -115,14 +85,28 @@ impl FieldsFile<'_> {
     fn rows(&self) -> usize {
         self.ny.div_ceil(self.stride)
     }
+
+    /// NetCDF has no length 0, so that empty labels take one byte.
+    fn label_length(&self) -> usize {
+        let lengths = self.frames.iter().map(|frame| frame.label.len());
+        lengths.max().unwrap_or(0).max(1)
+    }
 }
 
 /// Writes the whole file and gives the output back, with nothing left in a buffer.
 pub(super) fn write_to<W: Write + Seek + 'static>(output: W, file: &FieldsFile) -> io::Result<W> {
-    let sink = Sink::new(output);
     let definition = define(file).map_err(internal)?;
-    let written = write_variables(sink.clone(), &definition, file);
-    sink.finish(written)
+    let output = BufWriter::new(output);
+    let state = Rc::new(RefCell::new(SinkState { output, error: None }));
+    let written = write_variables(Sink(Rc::clone(&state)), &definition, file);
+    let Some(state) = Rc::into_inner(state) else {
+        return Err(io::Error::other("the output is still in use"));
+    };
+    let SinkState { mut output, error } = state.into_inner();
+    error.map_or(Ok(()), Err)?;
+    written.map_err(internal)?;
+    output.flush()?;
+    output.into_inner().map_err(io::IntoInnerError::into_error)
 }
 
 fn write_variables(
@@ -136,35 +120,26 @@ fn write_variables(
     writer.write_var_f64(X, &centers(file.nx, file))?;
     writer.write_var_f64(Y, &centers(file.ny, file))?;
     let statics = &file.statics;
-    let textured: Vec<i16> = statics
-        .textured
-        .iter()
-        .map(|textured| i16::from(*textured))
-        .collect();
+    let textured: Vec<i16> = statics.textured.iter().copied().map(i16::from).collect();
     writer.write_var_i16(TEXTURED, &thin(&textured, file.nx, file.stride))?;
     writer.write_var_f64(MU_STATIC, &thin(statics.mu_static, file.nx, file.stride))?;
     writer.write_var_f64(MU_KINETIC, &thin(statics.mu_kinetic, file.nx, file.stride))?;
-    let first_slip = statics
-        .first_slip_time_star
-        .iter()
-        .map(|time| if time.is_nan() { f64::NAN } else { *time });
-    let first_slip: Vec<f64> = first_slip.collect();
-    writer.write_var_f64(FIRST_SLIP, &thin(&first_slip, file.nx, file.stride))?;
+    // One NaN only: its sign and payload depend on the machine.
+    let mut first_slip = thin(statics.first_slip_time_star, file.nx, file.stride);
+    let nans = first_slip.iter_mut().filter(|time| time.is_nan());
+    nans.for_each(|time| *time = f64::NAN);
+    writer.write_var_f64(FIRST_SLIP, &first_slip)?;
 
-    let label_length = label_length(file);
     for (record, frame) in file.frames.iter().enumerate() {
         writer.write_record_f64(TIME, record, &[frame.time_star * file.time_unit_s])?;
         writer.write_record_f64(TIME_STAR, record, &[frame.time_star])?;
         writer.write_record_f64(STEP, record, &[frame.step as f64])?;
         let mut label = frame.label.clone().into_bytes();
-        label.resize(label_length, 0);
+        label.resize(file.label_length(), 0);
         writer.write_record_u8(LABEL, record, &label)?;
         for (name, values) in file.names.iter().zip(&frame.values) {
-            // One NaN only: its sign and payload depend on the machine.
-            let values: Vec<f32> = values
-                .iter()
-                .map(|value| if value.is_nan() { f32::NAN } else { *value })
-                .collect();
+            let one_nan = |value: &f32| if value.is_nan() { f32::NAN } else { *value };
+            let values: Vec<f32> = values.iter().map(one_nan).collect();
             writer.write_record_f32(field_info(*name).name, record, &values)?;
         }
     }
@@ -173,20 +148,8 @@ fn write_variables(
 
 /// The centres of the blocks that are kept along one axis, in m.
 fn centers(blocks: usize, file: &FieldsFile) -> Vec<f64> {
-    (0..blocks)
-        .step_by(file.stride)
-        .map(|block| (block as f64 + 0.5) * file.block_size)
-        .collect()
-}
-
-/// NetCDF has no length 0, so that empty labels take one byte.
-fn label_length(file: &FieldsFile) -> usize {
-    file.frames
-        .iter()
-        .map(|frame| frame.label.len())
-        .max()
-        .unwrap_or(0)
-        .max(1)
+    let kept = (0..blocks).step_by(file.stride);
+    kept.map(|block| (block as f64 + 0.5) * file.block_size).collect()
 }
 
 /// Every dimension, attribute and variable, without the numbers.
@@ -214,47 +177,45 @@ fn define(file: &FieldsFile) -> Result<DataSet, InvalidDataSet> {
 fn define_statics(set: &mut DataSet, file: &FieldsFile) -> Result<(), InvalidDataSet> {
     set.add_fixed_dim(Y, file.rows())?;
     set.add_fixed_dim(X, file.columns())?;
-    set.add_var_f64(Y, &[Y])?;
-    describe(set, Y, "y of the block centre", "m")?;
-    set.add_var_f64(X, &[X])?;
-    describe(set, X, "x of the block centre", "m")?;
+    define_variable(set, Y, &[Y], DataType::F64, "y of the block centre", "m")?;
+    define_variable(set, X, &[X], DataType::F64, "x of the block centre", "m")?;
     // 16 bits, because the padding after a pair of bytes is not zero as the format wants it.
-    set.add_var_i16(TEXTURED, &[Y, X])?;
-    describe(set, TEXTURED, "texture", "1")?;
+    define_variable(set, TEXTURED, &[Y, X], DataType::I16, "texture", "1")?;
     set.add_var_attr_i16(TEXTURED, "flag_values", vec![0, 1])?;
     set.add_var_attr_string(TEXTURED, "flag_meanings", "contact cavity")?;
-    set.add_var_f64(MU_STATIC, &[Y, X])?;
-    describe(set, MU_STATIC, "static friction coefficient", "1")?;
-    set.add_var_f64(MU_KINETIC, &[Y, X])?;
-    describe(set, MU_KINETIC, "kinetic friction coefficient", "1")?;
-    set.add_var_f64(FIRST_SLIP, &[Y, X])?;
-    describe(set, FIRST_SLIP, "time t* of the first slip", "1")?;
+    for (name, long_name) in [
+        (MU_STATIC, "static friction coefficient"),
+        (MU_KINETIC, "kinetic friction coefficient"),
+        (FIRST_SLIP, "time t* of the first slip"),
+    ] {
+        define_variable(set, name, &[Y, X], DataType::F64, long_name, "1")?;
+    }
     set.add_var_attr_string(FIRST_SLIP, "comment", "NaN where a block never slips")
 }
 
 fn define_frames(set: &mut DataSet, file: &FieldsFile) -> Result<(), InvalidDataSet> {
     set.set_unlimited_dim(TIME, file.frames.len())?;
-    set.add_fixed_dim(LABEL_LENGTH, label_length(file))?;
-    set.add_var_f64(TIME, &[TIME])?;
-    describe(set, TIME, "time since the start of the drive", "s")?;
+    set.add_fixed_dim(LABEL_LENGTH, file.label_length())?;
+    for (name, long_name, units) in [
+        (TIME, "time since the start of the drive", "s"),
+        (TIME_STAR, "dimensionless time t*", "1"),
+        (STEP, "number of the time step", "1"),
+    ] {
+        define_variable(set, name, &[TIME], DataType::F64, long_name, units)?;
+    }
     set.add_var_attr_string(TIME, "axis", "T")?;
-    set.add_var_f64(TIME_STAR, &[TIME])?;
-    describe(set, TIME_STAR, "dimensionless time t*", "1")?;
-    set.add_var_f64(STEP, &[TIME])?;
-    describe(set, STEP, "number of the time step", "1")?;
     set.add_var_u8(LABEL, &[TIME, LABEL_LENGTH])?;
     set.add_var_attr_string(LABEL, "long_name", "name of the instant")?;
-    for name in file.names {
-        let info = field_info(*name);
-        let text = info.name;
-        set.add_var_f32(text, &[TIME, Y, X])?;
-        describe(set, text, info.long_name, info.unit)?;
-        set.add_var_attr_string(text, "coordinates", "time_star instant")?;
-        match name {
-            Field::Traction => set.add_var_attr_string(text, "comment", "NaN in cavities")?,
+    for field in file.names {
+        let info = field_info(*field);
+        let name = info.name;
+        define_variable(set, name, &[TIME, Y, X], DataType::F32, info.long_name, info.unit)?;
+        set.add_var_attr_string(name, "coordinates", "time_star instant")?;
+        match field {
+            Field::Traction => set.add_var_attr_string(name, "comment", "NaN in cavities")?,
             Field::Sliding => {
-                set.add_var_attr_f32(text, "flag_values", vec![0.0, 1.0])?;
-                set.add_var_attr_string(text, "flag_meanings", "stuck sliding")?;
+                set.add_var_attr_f32(name, "flag_values", vec![0.0, 1.0])?;
+                set.add_var_attr_string(name, "flag_meanings", "stuck sliding")?;
             }
             _ => {}
         }
@@ -262,9 +223,17 @@ fn define_frames(set: &mut DataSet, file: &FieldsFile) -> Result<(), InvalidData
     Ok(())
 }
 
-fn describe(set: &mut DataSet, variable: &str, long_name: &str, units: &str) -> Result<(), InvalidDataSet> {
-    set.add_var_attr_string(variable, "long_name", long_name)?;
-    set.add_var_attr_string(variable, "units", units)
+fn define_variable(
+    set: &mut DataSet,
+    name: &str,
+    dimensions: &[&str],
+    data_type: DataType,
+    long_name: &str,
+    units: &str,
+) -> Result<(), InvalidDataSet> {
+    set.add_var(name, dimensions, data_type)?;
+    set.add_var_attr_string(name, "long_name", long_name)?;
+    set.add_var_attr_string(name, "units", units)
 }
 
 /// The errors of `netcdf3` have no `Display`.
@@ -284,33 +253,6 @@ struct SinkState<W: Write> {
 }
 
 impl<W: Write + Seek> Sink<W> {
-    fn new(output: W) -> Sink<W> {
-        Sink(Rc::new(RefCell::new(SinkState {
-            output: BufWriter::new(output),
-            error: None,
-        })))
-    }
-
-    fn clone(&self) -> Sink<W> {
-        Sink(Rc::clone(&self.0))
-    }
-
-    /// Gives the output back if all went well, and the first error if not.
-    fn finish(self, written: Result<(), netcdf3::WriteError>) -> io::Result<W> {
-        let Some(state) = Rc::into_inner(self.0) else {
-            return Err(io::Error::other("the output is still in use"));
-        };
-        let SinkState { mut output, error } = state.into_inner();
-        match (error, written) {
-            (Some(error), _) => Err(error),
-            (None, Err(error)) => Err(internal(error)),
-            (None, Ok(())) => {
-                output.flush()?;
-                output.into_inner().map_err(io::IntoInnerError::into_error)
-            }
-        }
-    }
-
     fn keep_error<T>(&self, action: impl FnOnce(&mut BufWriter<W>) -> io::Result<T>) -> io::Result<T> {
         let mut state = self.0.borrow_mut();
         action(&mut state.output).map_err(|error| {

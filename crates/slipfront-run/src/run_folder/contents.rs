@@ -1,27 +1,24 @@
-//! Which files of a run folder are slipfront's own: those that may be replaced.
+//! Which files of a run folder are slipfront's own: those that may be replaced; and copies of them all.
 
 use std::path::{Component, Path};
 
 use slipfront_case::case::Input;
 use slipfront_case::case_file::CaseFile;
-use slipfront_case::disk::{is_folder, remove_if_there};
+use slipfront_case::disk::{is_folder, open_regular, remove_if_there, sync_folder};
 
 use super::error::FolderError;
 use super::unfinished::Unfinished;
 use crate::manifest::{Manifest, ManifestFile};
 use crate::names::{CASE, CHECKPOINT, FIELDS, MANIFEST, PREVIOUS, SERIES, SUMMARY, UNFINISHED};
+use crate::pictures::{RUN_PICTURES, RunPicture};
 
 /// The files that a run leaves beside its case and the copies in `inputs/`, the manifest first.
-pub(super) const RESULTS: [&str; 8] = [
-    MANIFEST,
-    SUMMARY,
-    SERIES,
-    FIELDS,
-    "friction.svg",
-    "friction.png",
-    "stress.svg",
-    "stress.png",
-];
+pub(super) fn result_files() -> impl Iterator<Item = String> {
+    let files = [MANIFEST, SUMMARY, SERIES, FIELDS].map(str::to_owned);
+    files
+        .into_iter()
+        .chain(RUN_PICTURES.iter().flat_map(RunPicture::files))
+}
 
 /// The files of an earlier run in a folder, complete or not, in the order in which they may be removed: the manifest
 /// first, so that the folder does not look complete; the case last, since it lists the copies of a run that was
@@ -32,12 +29,12 @@ pub(super) fn managed_files(
     case: Option<&CaseFile>,
 ) -> Vec<String> {
     let listed = manifest.map(|manifest| manifest.files.as_slice());
-    let is_result = |name: &&str| match listed {
-        Some(listed) => *name == MANIFEST || listed.iter().any(|file| file.name == *name),
+    let is_result = |name: &String| match listed {
+        Some(listed) => name == MANIFEST || listed.iter().any(|file| file.name == *name),
         // The run is not complete: any of them may have been written.
         None => case.is_some(),
     };
-    let mut names: Vec<String> = RESULTS.into_iter().filter(is_result).map(str::to_owned).collect();
+    let mut names: Vec<String> = result_files().filter(is_result).collect();
     if is_folder(&folder.join("inputs")) {
         names.extend(copies(listed, case));
     }
@@ -87,26 +84,23 @@ fn is_plain(name: &str) -> bool {
 /// Refuses files that stand where those of a run will be written, with copies of these `inputs`, and are not `managed`.
 pub(super) fn refuse_foreign(folder: &Path, managed: &[String], inputs: &[Input]) -> Result<(), FolderError> {
     let checkpoints = [CHECKPOINT, PREVIOUS].map(|name| format!("{UNFINISHED}/{name}"));
-    let names = [CASE].into_iter().chain(checkpoints.iter().map(String::as_str));
-    let names = RESULTS
-        .into_iter()
-        .chain(names)
-        .chain(inputs.iter().map(|input| input.name.as_str()));
-    for name in names.filter(|name| !managed.iter().any(|managed| managed == name)) {
+    let inputs = inputs.iter().map(|input| input.name.clone());
+    let mut names: Vec<String> = result_files().collect();
+    names.extend([CASE.to_owned()].into_iter().chain(checkpoints).chain(inputs));
+    // A link counts even if nothing is at its end.
+    let exists = |path: &Path| path.symlink_metadata().is_ok();
+    for name in names.iter().filter(|name| !managed.contains(name)) {
         let file = folder.join(name);
-        let parent = file.parent().filter(|parent| *parent != folder);
-        if let Some(parent) = parent.filter(|parent| parent.symlink_metadata().is_ok() && !is_folder(parent))
-        {
-            let path = parent.to_owned();
+        let above = file.parent().filter(|parent| *parent != folder && exists(parent));
+        if let Some(path) = above.filter(|parent| !is_folder(parent)).map(Path::to_owned) {
             return Err(FolderError::Foreign { path });
         }
-        // A link counts even if nothing is at its end.
-        if file.symlink_metadata().is_ok() {
+        if exists(&file) {
             return Err(FolderError::Foreign { path: file });
         }
     }
     let unfinished = Unfinished::of(folder);
-    if unfinished.path().symlink_metadata().is_ok() && !unfinished.is_managed() {
+    if exists(unfinished.path()) && !unfinished.is_managed() {
         let path = unfinished.path().to_owned();
         return Err(FolderError::Foreign { path });
     }
@@ -114,17 +108,57 @@ pub(super) fn refuse_foreign(folder: &Path, managed: &[String], inputs: &[Input]
 }
 
 /// Removes these files of a run from a folder, where they exist, and `inputs/` if it is empty then.
-pub(super) fn remove_files<'n>(
+pub(super) fn remove_files(
     folder: &Path,
-    names: impl IntoIterator<Item = &'n str>,
+    names: impl IntoIterator<Item = impl AsRef<Path>>,
 ) -> Result<(), FolderError> {
     for name in names {
-        remove_if_there(&folder.join(name)).map_err(|source| FolderError::Unwritable {
-            path: folder.to_owned(),
-            source,
-        })?;
+        remove_if_there(&folder.join(name)).map_err(FolderError::unwritable(folder))?;
     }
     // A file of somebody else keeps it.
     let _ = std::fs::remove_dir(folder.join("inputs"));
     Ok(())
+}
+
+/// Copies the files of a run folder. Its case and its manifest come last: without them, the copy is not taken for whole.
+pub(crate) fn copy_run(from: &Path, to: &Path) -> Result<(), FolderError> {
+    let failed = |source| FolderError::Copy {
+        from: from.to_owned(),
+        to: to.to_owned(),
+        source,
+    };
+    std::fs::create_dir_all(to).map_err(failed)?;
+    let unfinished = Unfinished::of(to);
+    unfinished.create()?;
+    unfinished
+        .clear_temporary()
+        .and_then(|()| copy_files(from, to, &unfinished))
+        .and_then(|()| unfinished.remove())
+        .map_err(failed)
+}
+
+fn copy_files(from: &Path, to: &Path, unfinished: &Unfinished) -> std::io::Result<()> {
+    let last = [CASE, MANIFEST];
+    for entry in std::fs::read_dir(from)? {
+        let entry = entry?;
+        let (from, to, name) = (entry.path(), to.join(entry.file_name()), entry.file_name());
+        if !entry.file_type()?.is_dir() {
+            if !last.iter().any(|last| name == *last) {
+                copy_file(&from, &to, unfinished)?;
+            }
+        } else if name != UNFINISHED {
+            std::fs::create_dir_all(&to)?;
+            copy_files(&from, &to, unfinished)?;
+        }
+    }
+    sync_folder(to)?;
+    for name in last.into_iter().filter(|name| from.join(name).exists()) {
+        copy_file(&from.join(name), &to.join(name), unfinished)?;
+    }
+    Ok(())
+}
+
+fn copy_file(from: &Path, to: &Path, unfinished: &Unfinished) -> std::io::Result<()> {
+    let mut from = open_regular(from)?;
+    unfinished.write(to, |to| std::io::copy(&mut from, to).map(drop))
 }

@@ -1,38 +1,34 @@
 //! Why a run folder cannot be used.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use slipfront_case::text::display_path;
+use slipfront_case::text::{display_path, shell_quoted};
 use thiserror::Error;
-
-use super::resume_command::resume_command;
 
 /// What can go wrong with a run folder.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
 pub enum FolderError {
     #[error(
-        "the folder {} is not empty: choose another with --out, or replace slipfront's own files in it with --force",
-        path.display()
+        "the folder {path} is not empty: choose another with --out, or replace slipfront's own files in it with --force"
     )]
     NotEmpty { path: PathBuf },
     #[error(
-        "the folder {} holds a run that was interrupted: go on with it by `{}`, choose another with --out, or begin again \
+        "the folder {path} holds a run that was interrupted: go on with it by `{}`, choose another with --out, or begin again \
          with --force",
-        path.display(),
         resume_command(path)
     )]
     Interrupted { path: PathBuf },
-    #[error("{} is no folder of a run to go on with: {why}", path.display())]
+    #[error("{path} is no folder of a run to go on with: {why}")]
     NoRun { path: PathBuf, why: &'static str },
-    #[error("another process is running in the folder {}: wait for it, or choose another folder", path.display())]
+    #[error("another process is running in the folder {path}: wait for it, or choose another folder")]
     Busy { path: PathBuf },
     #[error(
         "{} is not a file of an earlier run: move it away or choose another folder with --out",
         display_path(path)
     )]
     Foreign { path: PathBuf },
-    #[error("cannot write to the folder {}: {source}; make it writable, or choose another", path.display())]
+    #[error("cannot write to the folder {path}: {source}; make it writable, or choose another")]
     Unwritable { path: PathBuf, source: std::io::Error },
     #[error(
         "cannot write {}: {source}; the folder is left without manifest.json, as incomplete",
@@ -57,4 +53,54 @@ pub enum FolderError {
     Changed { path: PathBuf },
     #[error("cannot read {}: {source}", display_path(path))]
     Read { path: PathBuf, source: std::io::Error },
+}
+
+impl FolderError {
+    /// What the system says of a folder that should be written to.
+    pub(crate) fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> Self {
+        move |source| Self::Unwritable {
+            path: path.to_owned(),
+            source,
+        }
+    }
+
+    /// What the system says of a file that should be written.
+    pub(crate) fn write(path: &Path) -> impl Fn(std::io::Error) -> Self {
+        move |source| Self::Write {
+            path: path.to_owned(),
+            source,
+        }
+    }
+
+    /// What the system says of a file or folder that should be read.
+    pub(crate) fn read(path: &Path) -> impl Fn(std::io::Error) -> Self {
+        move |source| Self::Read {
+            path: path.to_owned(),
+            source,
+        }
+    }
+}
+
+/// The command that goes on with the run in a folder, as a shell reads it.
+pub fn resume_command(folder: &Path) -> String {
+    let mut folder = display_path(folder);
+    // Else it would be taken for an option.
+    if folder.starts_with('-') {
+        folder.insert_str(0, "./");
+    }
+    format!("slipfront run --resume {}", shell_quoted(&folder))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_suggested_command_can_be_typed() {
+        let of = |name: &str| resume_command(Path::new(name));
+        assert_eq!(of("results/a-1"), "slipfront run --resume results/a-1");
+        assert_eq!(of("my run"), "slipfront run --resume 'my run'");
+        assert_eq!(of("$HOME"), "slipfront run --resume '$HOME'");
+        assert_eq!(of("-o"), "slipfront run --resume ./-o");
+    }
 }

@@ -50,19 +50,9 @@ pub enum CaseDefect {
 }
 
 impl Inspection {
-    /// Reads the case and the manifest of a folder.
-    ///
-    /// # Errors
-    /// When the folder cannot be listed.
+    /// Reads the case and the manifest of a folder that can be listed.
     pub fn of(folder: &Path) -> std::io::Result<Self> {
-        if is_unused(folder)? {
-            return Ok(Self {
-                path: folder.to_owned(),
-                contents: Contents::Empty,
-                case: Err(CaseDefect::Unreadable(ErrorKind::NotFound.into())),
-                managed_files: managed_files(folder, None, None),
-            });
-        }
+        let is_unused = is_unused(folder)?;
         let case = read_case(folder);
         let manifest = Manifest::read(folder);
         let listed = match &manifest {
@@ -72,6 +62,7 @@ impl Inspection {
         };
         let managed_files = managed_files(folder, listed, case.as_ref().ok());
         let contents = match manifest {
+            _ if is_unused => Contents::Empty,
             Err(ManifestError::Missing { .. }) if case.is_ok() => Contents::Interrupted,
             Err(ManifestError::Missing { .. }) => Contents::Foreign,
             manifest => Contents::Complete(manifest.map(Box::new)),
@@ -84,10 +75,7 @@ impl Inspection {
         })
     }
 
-    /// The manifest of a run that is complete.
-    ///
-    /// # Errors
-    /// When there is none, or it is not as it was written.
+    /// The manifest of a run that is complete, if it is as it was written.
     pub fn manifest(&self) -> Result<&Manifest, ManifestError> {
         match &self.contents {
             Contents::Complete(manifest) => manifest.as_deref().map_err(Clone::clone),
@@ -98,9 +86,6 @@ impl Inspection {
     }
 
     /// The case of a run that can be resumed, or is complete.
-    ///
-    /// # Errors
-    /// When there is no such run.
     pub fn case_to_resume(&self) -> Result<&CaseFile, FolderError> {
         let path = self.path.clone();
         let why = match &self.case {

@@ -2,22 +2,19 @@
 //!
 //! Files appear whole or not at all, and `manifest.json` comes last: where it stands, the run is complete.
 
-mod contents;
-pub mod copy;
+pub(crate) mod contents;
 pub mod error;
 pub mod inspection;
-pub mod resume_command;
 pub mod unfinished;
 
 use std::fs::{File, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use slipfront::Model;
 use slipfront_case::case::{Case, Input};
 use slipfront_case::disk::sync_folder;
 
-use self::contents::{RESULTS, refuse_foreign, remove_files};
+use self::contents::{refuse_foreign, remove_files, result_files};
 use self::error::FolderError;
 use self::inspection::{Contents, Inspection};
 use self::unfinished::Unfinished;
@@ -41,7 +38,7 @@ impl OpenedFolder {
     pub fn open(path: &Path) -> Result<Self, FolderError> {
         let existed = path.is_dir();
         let lock = if existed { lock(path)? } else { None };
-        let inspection = inspect(path)?;
+        let inspection = Inspection::of(path).map_err(FolderError::unwritable(path))?;
         Ok(Self {
             inspection,
             existed,
@@ -57,10 +54,7 @@ impl OpenedFolder {
     pub fn prepare(mut self, force: bool, inputs: &[Input]) -> Result<RunFolder, FolderError> {
         let path = self.inspection.path.clone();
         if !self.existed {
-            std::fs::create_dir_all(&path).map_err(|source| FolderError::Unwritable {
-                path: path.clone(),
-                source,
-            })?;
+            std::fs::create_dir_all(&path).map_err(FolderError::unwritable(&path))?;
             // Another process may have made it since.
             self = Self::open(&path)?;
         }
@@ -69,7 +63,7 @@ impl OpenedFolder {
             _ if force => {
                 let managed = &self.inspection.managed_files;
                 refuse_foreign(&path, managed, inputs)?;
-                remove_files(&path, managed.iter().map(String::as_str))?;
+                remove_files(&path, managed)?;
             }
             Contents::Interrupted => return Err(FolderError::Interrupted { path }),
             Contents::Foreign | Contents::Complete(_) => return Err(FolderError::NotEmpty { path }),
@@ -91,29 +85,19 @@ impl OpenedFolder {
 
     /// Takes over the folder of an interrupted run of this case: removes what it had written of its results, which are
     /// written again. The case, the files that it reads and the checkpoints stay.
-    ///
-    /// # Errors
-    /// Any error of the system.
     pub fn resume(self, case: &Case) -> Result<RunFolder, FolderError> {
         let path = self.inspection.path;
-        remove_files(&path, RESULTS)?;
+        remove_files(&path, result_files())?;
         let unfinished = Unfinished::of(&path);
         unfinished.create()?;
         unfinished
             .clear_temporary()
-            .map_err(|source| FolderError::Unwritable {
-                path: path.clone(),
-                source,
-            })?;
+            .map_err(FolderError::unwritable(&path))?;
         // A case that was loaded can be written.
         let text = case.file.to_toml().unwrap_or_default();
+        let mut written = vec![(CASE.to_owned(), Some(blake3::hash(text.as_bytes())))];
         let inputs = case.inputs.iter();
-        let inputs = inputs.map(|input| (input.name.as_str(), input.bytes.as_slice()));
-        let written = [(CASE, text.as_bytes())]
-            .into_iter()
-            .chain(inputs)
-            .map(|(name, bytes)| (name.to_owned(), Some(blake3::hash(bytes))))
-            .collect();
+        written.extend(inputs.map(|input| (input.name.clone(), Some(blake3::hash(&input.bytes)))));
         let folder = RunFolder {
             path,
             unfinished,
@@ -124,13 +108,6 @@ impl OpenedFolder {
         folder.sync()?;
         Ok(folder)
     }
-}
-
-fn inspect(path: &Path) -> Result<Inspection, FolderError> {
-    Inspection::of(path).map_err(|source| FolderError::Unwritable {
-        path: path.to_owned(),
-        source,
-    })
 }
 
 /// A folder that a run is being written to.
@@ -147,10 +124,7 @@ pub struct RunFolder {
 }
 
 impl RunFolder {
-    /// Opens a folder and makes it ready: see [`OpenedFolder::prepare`].
-    ///
-    /// # Errors
-    /// Those of [`OpenedFolder::open`] and [`OpenedFolder::prepare`].
+    /// Opens a folder and makes it ready: see [`OpenedFolder::open`] and [`OpenedFolder::prepare`].
     pub fn prepare(path: &Path, force: bool, inputs: &[Input]) -> Result<Self, FolderError> {
         OpenedFolder::open(path)?.prepare(force, inputs)
     }
@@ -158,9 +132,9 @@ impl RunFolder {
     /// Ends a run that failed: removes what this process has written, if it began the run. A resumed run keeps its case.
     pub fn discard(mut self) {
         if self.new {
-            let names: Vec<String> = self.written.drain(..).map(|(name, _)| name).rev().collect();
+            let names = self.written.drain(..).map(|(name, _)| name).rev();
             // The error of the run is what matters.
-            let _ = remove_files(&self.path, names.iter().map(String::as_str));
+            let _ = remove_files(&self.path, names);
             let _ = self.unfinished.remove();
         } else {
             self.leave();
@@ -175,17 +149,13 @@ impl RunFolder {
     }
 
     /// Syncs the folders of the case and of the files that it reads, so that these survive a power failure.
-    ///
-    /// # Errors
-    /// Any error of the system.
-    pub fn sync(&self) -> Result<(), FolderError> {
-        let inputs = self.path.join("inputs");
-        let folders = [self.path.as_path(), &inputs];
-        let mut there = folders.into_iter().filter(|folder| folder.is_dir());
-        there.try_for_each(|folder| {
-            let path = folder.to_owned();
-            sync_folder(folder).map_err(|source| FolderError::Write { path, source })
-        })
+    pub(crate) fn sync(&self) -> Result<(), FolderError> {
+        for folder in [self.path.clone(), self.path.join("inputs")] {
+            if folder.is_dir() {
+                sync_folder(&folder).map_err(FolderError::write(&folder))?;
+            }
+        }
+        Ok(())
     }
 
     /// The folder.
@@ -193,15 +163,11 @@ impl RunFolder {
         &self.path
     }
 
-    /// Writes a file of the run.
-    ///
-    /// # Errors
-    /// When it cannot be written, or a foreign file stands in its place.
+    /// Writes a file of the run, where no foreign file stands in its place.
     pub fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
         let path = self.claim(name)?;
-        self.unfinished
-            .write(&path, |file| file.write_all(bytes))
-            .map_err(|source| FolderError::Write { path, source })?;
+        let written = self.unfinished.write(&path, |file| file.write_all(bytes));
+        written.map_err(FolderError::write(&path))?;
         if let Some((_, hash)) = self.written.last_mut() {
             *hash = Some(blake3::hash(bytes));
         }
@@ -209,42 +175,32 @@ impl RunFolder {
     }
 
     /// The folder of temporary files, for a file that is [claimed](Self::claim).
-    pub fn temporary(&self) -> PathBuf {
+    pub(crate) fn temporary(&self) -> PathBuf {
         self.unfinished.temporary()
     }
 
-    /// Notes a file as part of the run, and gives its path to whoever writes it.
-    ///
-    /// # Errors
-    /// When a foreign file stands in its place, or its folder cannot be made.
-    pub fn claim(&mut self, name: &str) -> Result<PathBuf, FolderError> {
+    /// Notes a file as part of the run, where no foreign file stands in its place, and gives its path to whoever writes it.
+    pub(crate) fn claim(&mut self, name: &str) -> Result<PathBuf, FolderError> {
         let path = self.path.join(name);
         if path.exists() {
             return Err(FolderError::Foreign { path });
         }
         if let Some(parent) = path.parent() {
-            std::fs::create_dir_all(parent).map_err(|source| FolderError::Write {
-                path: parent.to_owned(),
-                source,
-            })?;
+            std::fs::create_dir_all(parent).map_err(FolderError::write(parent))?;
         }
         self.written.push((name.to_owned(), None));
         Ok(path)
     }
 
-    /// Writes the manifest: the run is complete.
-    ///
-    /// # Errors
-    /// When a file cannot be read back or is no longer as it was written, and when the manifest cannot be written.
-    pub fn complete(
+    /// Writes the manifest: the run is complete, if every file is still as it was written.
+    pub(crate) fn complete(
         self,
+        case: &Case,
         started: jiff::Timestamp,
         threads: usize,
-        model: &Model,
-        seed: u64,
     ) -> Result<Manifest, FolderError> {
         let names: Vec<&str> = self.written.iter().map(|(name, _)| name.as_str()).collect();
-        let manifest = Manifest::of(&self.path, &names, started, threads, model, seed)?;
+        let manifest = Manifest::of(&self.path, &names, case, started, threads)?;
         for (file, (name, hash)) in manifest.files.iter().zip(&self.written) {
             if hash.is_some_and(|hash| file.blake3 != hash.to_hex().as_str()) {
                 let path = self.path.join(name);
@@ -253,14 +209,12 @@ impl RunFolder {
         }
         let (manifest, bytes) = manifest.with_checksum();
         let path = self.path.join(MANIFEST);
-        self.unfinished
-            .write(&path, |file| file.write_all(&bytes))
-            .and_then(|()| sync_folder(&self.path))
-            .map_err(|source| {
-                // What may not be on the disk is not complete.
-                let _ = std::fs::remove_file(&path);
-                FolderError::Write { path, source }
-            })?;
+        let written = self.unfinished.write(&path, |file| file.write_all(&bytes));
+        if let Err(error) = written.and_then(|()| sync_folder(&self.path)) {
+            // What may not be on the disk is not complete.
+            let _ = std::fs::remove_file(&path);
+            return Err(FolderError::write(&path)(error));
+        }
         // The run is complete whether they can be removed or not.
         let _ = self.unfinished.remove();
         Ok(manifest)

@@ -19,9 +19,8 @@ pub struct Unfinished {
 impl Unfinished {
     /// That of a run folder.
     pub fn of(run: &Path) -> Self {
-        Self {
-            path: run.join(UNFINISHED),
-        }
+        let path = run.join(UNFINISHED);
+        Self { path }
     }
 
     /// The subfolder.
@@ -47,17 +46,14 @@ impl Unfinished {
         names.any(|name| self.path.join(name).symlink_metadata().is_ok())
     }
 
-    /// Makes the subfolder, where it is not there yet.
-    ///
-    /// # Errors
-    /// When it cannot be made, or a link or a file stands in its place.
+    /// Makes the subfolder, where it is not there yet; an error if a link or a file stands in its place.
     pub fn create(&self) -> Result<(), FolderError> {
         let run = self.path.parent().unwrap_or(&self.path);
         make_folder(&self.path, run)?;
         let path = self.path.join(JOURNAL);
         match File::create_new(&path) {
-            Err(source) if source.kind() != ErrorKind::AlreadyExists => {
-                return Err(FolderError::Write { path, source });
+            Err(error) if error.kind() != ErrorKind::AlreadyExists => {
+                return Err(FolderError::write(&path)(error));
             }
             _ => {}
         }
@@ -65,11 +61,8 @@ impl Unfinished {
         make_folder(&temporary, &temporary)
     }
 
-    /// Writes a file atomically: as a temporary file here, which is then renamed to `path`.
-    ///
-    /// # Errors
-    /// Any error of the system; the temporary file is removed then.
-    pub fn write(
+    /// Writes a file atomically: as a temporary file here, which is then renamed to `path`, or removed after an error.
+    pub(super) fn write(
         &self,
         path: &Path,
         fill: impl FnOnce(&mut File) -> std::io::Result<()>,
@@ -87,19 +80,13 @@ impl Unfinished {
     }
 
     /// Removes the temporary files that a killed program left.
-    ///
-    /// # Errors
-    /// Any error of the system.
-    pub fn clear_temporary(&self) -> std::io::Result<()> {
+    pub(super) fn clear_temporary(&self) -> std::io::Result<()> {
         let folder = self.temporary();
         let mut names = names_in(&folder).into_iter();
         names.try_for_each(|name| remove_if_there(&folder.join(name)))
     }
 
     /// Removes the subfolder: the run is complete. Files of others stay, and the subfolder with them.
-    ///
-    /// # Errors
-    /// Any error of the system.
     pub fn remove(&self) -> std::io::Result<()> {
         self.clear_temporary()?;
         for name in [CHECKPOINT, PREVIOUS] {
@@ -116,15 +103,11 @@ impl Unfinished {
 /// Makes a folder; an error names `told`.
 fn make_folder(path: &Path, told: &Path) -> Result<(), FolderError> {
     match std::fs::create_dir(path) {
-        Err(error) if error.kind() == ErrorKind::AlreadyExists && !is_folder(path) => {
-            Err(FolderError::Foreign {
-                path: path.to_owned(),
-            })
+        Err(error) if error.kind() != ErrorKind::AlreadyExists => Err(FolderError::unwritable(told)(error)),
+        Err(_) if !is_folder(path) => {
+            let path = path.to_owned();
+            Err(FolderError::Foreign { path })
         }
-        Err(source) if source.kind() != ErrorKind::AlreadyExists => Err(FolderError::Unwritable {
-            path: told.to_owned(),
-            source,
-        }),
         _ => Ok(()),
     }
 }

@@ -82,10 +82,10 @@ impl Axis {
                 long.len()
             ));
         }
-        let axis = Self::read(keys)?;
-        axis.check_keys()?;
-        axis.check_levels()?;
-        Ok(axis.with_numbers_or_names())
+        let mut axis = Self::read(keys)?;
+        axis.check()?;
+        axis.set_spacing();
+        Ok(axis)
     }
 
     /// The axis of one of the three forms.
@@ -139,11 +139,11 @@ impl Axis {
         }
     }
 
-    fn check_keys(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), String> {
+        let columns = self.columns.join("`, `");
         if self.levels.is_empty() {
             return Err(format!(
-                "the axis of `{}` is empty: give it at least one level",
-                self.columns.join("`, `")
+                "the axis of `{columns}` is empty: give it at least one level"
             ));
         }
         for key in self.keys() {
@@ -158,10 +158,6 @@ impl Axis {
                 ));
             }
         }
-        Ok(())
-    }
-
-    fn check_levels(&self) -> Result<(), String> {
         for level in &self.levels {
             let mut earlier = BTreeSet::new();
             for key in level.overrides.iter().map(Override::key) {
@@ -176,17 +172,16 @@ impl Axis {
         }
         let mut seen = HashSet::new();
         if let Some(twice) = self.levels.iter().find(|level| !seen.insert(&level.overrides)) {
+            let labels = twice.labels.join(", ");
             return Err(format!(
-                "the level {} stands twice on the axis of `{}`: keep one",
-                twice.labels.join(", "),
-                self.columns.join("`, `")
+                "the level {labels} stands twice on the axis of `{columns}`: keep one"
             ));
         }
         Ok(())
     }
 
     /// An axis is one of numbers only if all its levels are, each another one: zipped keys may repeat the first.
-    fn with_numbers_or_names(mut self) -> Self {
+    fn set_spacing(&mut self) {
         let mut seen = HashSet::new();
         let mut differs = |level: &Level| level.number.is_some_and(|number| seen.insert(number.to_bits()));
         if !self.levels.iter().all(&mut differs) {
@@ -194,7 +189,6 @@ impl Axis {
         } else if self.spacing == Spacing::Linear && self.is_nearer_to_ratios() {
             self.spacing = Spacing::Logarithmic;
         }
-        self
     }
 
     /// Whether the numbers of a list, such as 0.01, 0.03, 0.1, are better shown in equal ratios: they span a decade,
@@ -251,15 +245,13 @@ fn values_of(
 
 /// The keys of `zip` and the lists of their values.
 fn zipped_lists(zip: toml::Table) -> Result<Vec<(String, Vec<Value>)>, String> {
-    let mut lists: Vec<(String, Vec<Value>)> = Vec::new();
-    for (key, values) in zip {
-        let Value::Array(values) = values else {
-            return Err(format!(
-                "`{key}` in `zip` must be a list; keys with a dot stand in quotes: \"drive.v_star\""
-            ));
-        };
-        lists.push((key, values));
-    }
+    let list = |(key, values)| match values {
+        Value::Array(values) => Ok((key, values)),
+        _ => Err(format!(
+            "`{key}` in `zip` must be a list; keys with a dot stand in quotes: \"drive.v_star\""
+        )),
+    };
+    let lists = zip.into_iter().map(list).collect::<Result<Vec<_>, _>>()?;
     let count = lists.first().map_or(0, |(_, values)| values.len());
     match lists.iter().find(|(_, values)| values.len() != count) {
         Some((key, values)) => Err(format!(
@@ -334,16 +326,14 @@ fn flatten(key: &str, value: &Value, list: &mut Vec<Override>) {
 
 /// Whether setting `key` replaces what `earlier` has set: it is that key, its partner, or a table or list around it.
 pub(super) fn replaces_key(key: &str, earlier: &str) -> bool {
-    earlier
-        .strip_prefix(key)
-        .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-        || exclude_each_other(key, earlier)
+    let rest = earlier.strip_prefix(key);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.')) || exclude_each_other(key, earlier)
 }
 
 /// The first of the `other` keys that `key` replaces, or that replaces it.
 fn conflict<'k>(key: &str, other: &BTreeSet<&'k str>) -> Option<&'k str> {
-    let around = || other.iter().copied().find(|other| replaces_key(other, key));
-    replaced_key(key, other).or_else(around)
+    let mut around = other.iter().copied().filter(|other| replaces_key(other, key));
+    replaced_key(key, other).or_else(|| around.next())
 }
 
 /// The first of the `earlier` keys that setting `key` replaces.

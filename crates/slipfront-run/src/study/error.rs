@@ -44,9 +44,8 @@ pub enum StudyError {
         available: String,
     },
     #[error(
-        "the runs still to be done take about {needed} where {free} are free in {}: keep fewer run folders \
-        (`study.keep`), or choose another folder with --out",
-        path.display()
+        "the runs still to be done take about {needed} where {free} are free in {path}: keep fewer run folders \
+        (`study.keep`), or choose another folder with --out"
     )]
     Disk {
         needed: String,
@@ -55,12 +54,13 @@ pub enum StudyError {
     },
     #[error(transparent)]
     Folder(#[from] FolderError),
-    #[error("the folder {} holds other things than a study: choose another with --out", path.display())]
+    #[error("the folder {path} holds other things than a study: choose another with --out")]
     NotAStudy { path: PathBuf },
-    #[error("another study is running in {}: wait for it, or choose another folder with --out", path.display())]
+    #[error("another study is running in {path}: wait for it, or choose another folder with --out")]
     Busy { path: PathBuf },
-    #[error("cannot {action} {}: {source}; finished runs are safe, and the study goes on from there when started again",
-        path.display())]
+    #[error(
+        "cannot {action} {path}: {source}; finished runs are safe, and the study goes on from there when started again"
+    )]
     Records {
         action: &'static str,
         path: PathBuf,
@@ -71,7 +71,7 @@ pub enum StudyError {
         display_path(path)
     )]
     Write { path: PathBuf, source: std::io::Error },
-    #[error("{} is not the record file of a study", path.display())]
+    #[error("{path} is not the record file of a study")]
     NotRecords { path: PathBuf },
     #[error(
         "cannot keep the folder of a run: {0}; finished runs are safe, and the study goes on from there when \
@@ -84,7 +84,7 @@ pub enum StudyError {
         of_others(*others)
     )]
     Missing { runs: usize, others: usize },
-    #[error("{} belongs to another study than {}: merge shards of one study only", other.display(), first.display())]
+    #[error("{other} belongs to another study than {first}: merge shards of one study only")]
     Foreign { first: PathBuf, other: PathBuf },
     #[error("the shard `{given}` cannot be: {why}; write i/n with i from 1 to n, such as 2/8, or `slurm`")]
     Shard { given: String, why: String },

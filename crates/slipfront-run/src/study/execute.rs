@@ -1,26 +1,35 @@
 //! Runs what a study lacks: the scheduler on this thread, and one run at a time on each worker thread.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc;
+use std::sync::mpsc::{self, Receiver, Sender};
+use std::sync::{Arc, Mutex};
+use std::time::Instant;
 
 use super::error::StudyError;
 use super::journal::Records;
 use super::plan::{Plan, RunKey};
-use super::scheduler::Scheduler;
+use super::record::{Outcome, Record};
+use super::scheduler::{Ended, Scheduler, Task};
+use super::study_file::RetainRuns;
 use super::study_results::{Progress, StudyResults};
-use super::worker::{Ended, IsStopped, RunCase, Task, run_one, work};
+use crate::error::ResultsError;
 use crate::names::RUNS;
+use crate::run_folder::RunFolder;
+use crate::{results, running};
+use slipfront_case::case::Case;
+
+/// Whether runs should be given up: after a signal, and when the study cannot go on.
+type IsStopped<'a> = dyn Fn() -> bool + Sync + 'a;
+
+/// Runs a case; without an outcome if the run was given up.
+type RunCase<'a> = dyn Fn(RunKey, &IsStopped) -> Result<Option<Outcome>, StudyError> + Sync + 'a;
 
 /// Runs everything that the plan needs and the records lack.
 ///
 /// `threads` runs are done at once. `stop` ends them all; finished runs stay recorded. Run folders that the study keeps are
-/// written to `folder`. `watch` is called after every run.
-///
-/// # Errors
-/// [`StudyError::Interrupted`] after `stop`, and when a record or a run folder cannot be written. A run that fails
-/// is no error.
+/// written to `folder`. `watch` is called after every run. A run that fails is no error.
 pub fn execute(
     plan: &Plan,
     records: &mut Records,
@@ -34,21 +43,10 @@ pub fn execute(
     execute_with(plan, records, &run_case, threads, stop, watch)
 }
 
-/// The results of a plan from the records alone.
-///
-/// # Errors
-/// [`StudyError::Missing`] if a run is not recorded.
+/// The results of a plan from the records alone, if all its runs are recorded.
 pub fn collect(plan: &Plan, records: &mut Records) -> Result<StudyResults, StudyError> {
     let (to_workers, _tasks) = mpsc::channel();
-    let mut scheduler = Scheduler::new(plan, records, to_workers, 1);
-    scheduler.begin();
-    match scheduler.n_waiting() {
-        0 => Ok(scheduler.results()),
-        runs => Err(StudyError::Missing {
-            runs,
-            others: scheduler.orphaned_runs(),
-        }),
-    }
+    Scheduler::new(plan, records, to_workers, 1).collect()
 }
 
 fn execute_with(
@@ -73,10 +71,82 @@ fn execute_with(
             spawned.map_err(StudyError::Threads)?;
         }
         drop(to_scheduler);
-        let mut scheduler = Scheduler::new(plan, records, to_workers, threads);
-        scheduler.run(&finished, stop, watch)?;
-        Ok(scheduler.results())
+        Scheduler::new(plan, records, to_workers, threads).run(&finished, stop, watch)
     })
+}
+
+/// Runs tasks until there are no more.
+fn work(run_case: &RunCase, tasks: &Mutex<Receiver<Task>>, finished: &Sender<Ended>, is_stopped: &IsStopped) {
+    while let Some(Task { run, id }) = tasks.lock().ok().and_then(|tasks| tasks.recv().ok()) {
+        let began = Instant::now();
+        let outcome = if is_stopped() {
+            Ok(None)
+        } else {
+            // A panic is recorded as a failed run, so that the scheduler does not wait for it without end.
+            catch_unwind(AssertUnwindSafe(|| run_case(run, is_stopped)))
+                .unwrap_or_else(|panic| Ok(Some(Outcome::Failed(panicked(panic.as_ref())))))
+        };
+        let record = |outcome| Record {
+            id,
+            wall_time_s: began.elapsed().as_secs_f64(),
+            outcome,
+        };
+        if finished.send(outcome.map(|outcome| outcome.map(record))).is_err() {
+            return;
+        }
+    }
+}
+
+/// The reason of a run that failed by a panic.
+fn panicked(panic: &(dyn std::any::Any + Send)) -> String {
+    let message = panic.downcast_ref::<String>().map(String::as_str);
+    let message = message.or_else(|| panic.downcast_ref::<&str>().copied());
+    format!("a fault of the program: {}", message.unwrap_or("unknown"))
+}
+
+/// Runs the case of a run, and writes its folder to `runs` if the study keeps it.
+fn run_one(
+    plan: &Plan,
+    runs: &Path,
+    run: RunKey,
+    is_stopped: &IsStopped,
+) -> Result<Option<Outcome>, StudyError> {
+    let started = jiff::Timestamp::now();
+    // The point was valid when the study began. If it is not now, a file that it reads has changed: that ends the study and is
+    // not recorded as a failure of the run.
+    let case = Arc::new(plan.case(run)?);
+    let Some(mut record) = running::run_unless(&case, is_stopped) else {
+        return Ok(None);
+    };
+    let is_kept = match plan.settings.keep {
+        RetainRuns::All => true,
+        RetainRuns::None => false,
+        RetainRuns::Failed => record.is_err(),
+    };
+    if is_kept {
+        let path = runs.join(plan.folder_name(run));
+        write_folder(&case, record.as_mut().ok(), &path, started)?;
+    }
+    Ok(Some(match record {
+        Ok(record) => Outcome::Done(Box::new(record.summary)).or_not_finite(),
+        Err(error) => Outcome::Failed(error.to_string()),
+    }))
+}
+
+/// Writes a run folder. The folder of a failed run holds the case file alone, by which the run can be repeated.
+fn write_folder(
+    case: &Case,
+    record: Option<&mut running::Record>,
+    path: &Path,
+    started: jiff::Timestamp,
+) -> Result<(), ResultsError> {
+    let mut folder = RunFolder::prepare(path, true, &case.inputs)?;
+    results::write_case(case, &mut folder)?;
+    match record {
+        Some(record) => drop(results::write(case, record, folder, started, 1)?),
+        None => folder.leave(),
+    }
+    Ok(())
 }
 
 /// Sets a flag when it is dropped, on an error and a panic as well: without a scheduler the workers would run cases that
@@ -91,11 +161,9 @@ impl Drop for SetOnDrop<'_> {
 
 #[cfg(test)]
 mod tests {
-    use std::panic::{AssertUnwindSafe, catch_unwind};
-    use std::time::{Duration, Instant};
+    use std::time::Duration;
 
     use super::*;
-    use crate::study::record::Outcome;
     use crate::study::study_file::StudyFile;
     use crate::study::study_results::PointResult;
     use crate::summary::Summary;

@@ -1,18 +1,21 @@
 //! The results folder of a study: study file, journal, tables, pictures and run folders.
 
+use std::collections::HashSet;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use super::error::StudyError;
 use super::input_copies::Copy;
 use super::journal::Records;
-use super::picture_plan;
+#[cfg(feature = "plot")]
+use super::pictures;
 use super::plan::{Plan, RunKey};
 use super::study_file::StudyFile;
 use super::study_results::StudyResults;
+use super::{picture_plan, tables};
 use crate::manifest::Manifest;
 use crate::names::{CASE, FIGURE_CACHE, RECORDS, RUNS, TABLES};
-use crate::run_folder::copy::copy_run;
+use crate::run_folder::contents::copy_run;
 use crate::run_folder::error::FolderError;
 use slipfront_case::disk::{
     TEXT_MAX_BYTES, is_empty, is_folder, open_limited, read_limited, remove_if_there, write_atomic,
@@ -37,18 +40,11 @@ pub struct StudyFolder {
 }
 
 impl StudyFolder {
-    /// Opens a results folder: a new one, an empty one, or one of an earlier call.
-    ///
-    /// # Errors
-    /// When it holds other things, cannot be written, or another process works in it.
+    /// Opens a results folder: a new one, an empty one, or one of an earlier call that no other process works in.
     pub fn open(path: &Path, study: &StudyFile) -> Result<Self, StudyError> {
-        let unwritable = |source| FolderError::Unwritable {
-            path: path.to_owned(),
-            source,
-        };
-        std::fs::create_dir_all(path).map_err(unwritable)?;
+        std::fs::create_dir_all(path).map_err(FolderError::unwritable(path))?;
         let used = path.join(RECORDS).exists();
-        let empty = is_empty(path).map_err(unwritable)?;
+        let empty = is_empty(path).map_err(FolderError::unwritable(path))?;
         // A folder of `slipfront paper` has records and no study file.
         let is_of_figures = path.join(FIGURE_CACHE).is_dir() && !is_study(path);
         if (!used && !empty) || is_of_figures {
@@ -94,9 +90,6 @@ impl StudyFolder {
     }
 
     /// Writes a file atomically.
-    ///
-    /// # Errors
-    /// When it cannot be written.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), StudyError> {
         let path = self.path.join(name);
         let folder = path.parent().unwrap_or(&self.path);
@@ -133,16 +126,13 @@ impl StudyFolder {
     }
 
     /// Copies complete run folders, and the cases of failed runs, from the folder of a shard, where this folder lacks them.
-    ///
-    /// # Errors
-    /// When one cannot be copied.
     pub fn take_kept(&self, plan: &Plan, results: &StudyResults, shard: &Path) -> Result<(), StudyError> {
         for (run, result) in &results.runs {
             let name = plan.folder_name(*run);
-            let is_whole = |folder: &Path| match result.failure() {
+            let is_whole = |folder: &Path| match result {
                 // The run folder may be incomplete if the process was killed.
-                None => Manifest::read(folder).is_ok(),
-                Some(_) => folder.join(CASE).is_file(),
+                Ok(_) => Manifest::read(folder).is_ok(),
+                Err(_) => folder.join(CASE).is_file(),
             };
             let (from, to) = (shard.join(RUNS).join(&name), self.path.join(RUNS).join(&name));
             if is_whole(&from) && !is_whole(&to) {
@@ -153,9 +143,6 @@ impl StudyFolder {
     }
 
     /// Refuses a study if the disk has no room for the runs that it lacks, with the fewest replicates.
-    ///
-    /// # Errors
-    /// [`StudyError::Disk`].
     pub fn check_disk(&self, plan: &Plan) -> Result<(), StudyError> {
         let lacking = |run: &RunKey| self.records.get(&plan.identity(*run)).is_none();
         let needed = plan.disk(plan.runs(plan.settings.min_replicates()).filter(lacking));
@@ -170,7 +157,7 @@ impl StudyFolder {
     }
 
     /// Removes the pictures of these names. An error is ignored: an old picture that stays is no reason to stop.
-    pub(super) fn remove_pictures(&self, names: impl Iterator<Item = String>) {
+    fn remove_pictures(&self, names: impl Iterator<Item = String>) {
         for name in names {
             for ending in ["svg", "png"] {
                 let _ = remove_if_there(&self.path.join(format!("{name}.{ending}")));
@@ -179,37 +166,45 @@ impl StudyFolder {
     }
 }
 
+/// Writes the tables and pictures of a study to its folder, and removes its pictures of earlier results.
+pub fn write(plan: &Plan, results: &StudyResults, folder: &StudyFolder) -> Result<(), StudyError> {
+    let [runs, points] = TABLES;
+    folder.write(runs, &tables::runs(plan, results)?)?;
+    folder.write(points, &tables::points(plan, results)?)?;
+    #[cfg_attr(not(feature = "plot"), expect(unused_mut, reason = "nothing is drawn"))]
+    let mut drawn: HashSet<String> = HashSet::new();
+    #[cfg(feature = "plot")]
+    for (name, picture) in pictures::draw(plan, results)? {
+        folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
+        folder.write(&format!("{name}.png"), &picture.png)?;
+        drawn.insert(name);
+    }
+    folder.remove_pictures(picture_plan::names(&plan.axes).filter(|name| !drawn.contains(name)));
+    Ok(())
+}
+
 /// Whether the folder is the results folder of a study.
 pub fn is_study(folder: &Path) -> bool {
     folder.join(STUDY).exists()
 }
 
 /// Loads the study file of a results folder.
-///
-/// # Errors
-/// As for any study file.
 pub fn study_of(folder: &Path) -> Result<StudyFile, StudyError> {
     let path = folder.join(STUDY);
     // A study file given by the user may be a pipe; in a results folder, opening a pipe would block without end.
-    open_limited(&path, TEXT_MAX_BYTES).map_err(|source| FolderError::Read {
-        path: path.clone(),
-        source,
-    })?;
+    open_limited(&path, TEXT_MAX_BYTES).map_err(FolderError::read(&path))?;
     let mut study = StudyFile::load(&path)?;
-    study.name = folder
-        .file_name()
-        .map_or(study.name, |name| name.to_string_lossy().into_owned());
+    if let Some(name) = folder.file_name() {
+        study.name = name.to_string_lossy().into_owned();
+    }
     Ok(study)
 }
 
-/// Refuses folders whose studies differ.
-///
-/// # Errors
-/// [`StudyError::Foreign`] names the first that differs from the first of all.
+/// Refuses folders whose studies differ: names the first that differs from the first of all.
 pub fn refuse_foreign(folders: &[PathBuf]) -> Result<(), StudyError> {
     let read = |folder: &Path| {
         let path = folder.join(STUDY);
-        read_limited(&path, TEXT_MAX_BYTES).map_err(|source| FolderError::Read { path, source })
+        read_limited(&path, TEXT_MAX_BYTES).map_err(FolderError::read(&path))
     };
     let [first, others @ ..] = folders else {
         return Ok(());

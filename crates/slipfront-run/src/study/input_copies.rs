@@ -17,21 +17,14 @@ const FOLDER: &str = "inputs";
 /// A copy has the plain name of its original.
 pub(super) fn plain_name(written: &str) -> String {
     let path = Path::new(written);
-    let inside = path
-        .components()
-        .all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-    let last = path
-        .file_name()
-        .map_or_else(|| written.into(), |name| name.to_string_lossy().into_owned());
-    if !inside {
-        return last;
+    let is_below = |part| matches!(part, Component::Normal(_) | Component::CurDir);
+    if !path.components().all(is_below) {
+        let last = path.file_name().map(|name| name.to_string_lossy().into_owned());
+        return last.unwrap_or_else(|| written.to_owned());
     }
-    let below = path.strip_prefix(FOLDER).unwrap_or(path);
-    let parts: Vec<_> = below
-        .components()
-        .filter(|part| matches!(part, Component::Normal(_)))
-        .map(|part| part.as_os_str().to_string_lossy())
-        .collect();
+    let below = path.strip_prefix(FOLDER).unwrap_or(path).components();
+    let below = below.filter(|part| matches!(part, Component::Normal(_)));
+    let parts: Vec<_> = below.map(|part| part.as_os_str().to_string_lossy()).collect();
     parts.join("/")
 }
 
@@ -45,69 +38,51 @@ pub(super) struct Copy {
 }
 
 /// Replaces the names of all files of a study, which stand relative to `folder`, by those of copies.
-///
-/// # Errors
-/// When a file is there and cannot be read.
 pub(super) fn copy(study: &mut Table, folder: &Path) -> Result<Vec<Copy>, FolderError> {
-    let mut copies = Copies {
-        folder,
-        made: Vec::new(),
-        failed: None,
+    let mut copies = Vec::new();
+    visit_table(study, folder, &mut copies)?;
+    Ok(copies)
+}
+
+fn visit_table(table: &mut Table, folder: &Path, copies: &mut Vec<Copy>) -> Result<(), FolderError> {
+    // An axis names the key beside its values.
+    let lists_files = table.get("key").and_then(Value::as_str).is_some_and(names_a_file);
+    for (key, value) in table.iter_mut() {
+        let is_file = names_a_file(key) || (lists_files && key == "list");
+        visit(value, is_file, folder, copies)?;
+    }
+    Ok(())
+}
+
+fn visit(value: &mut Value, is_file: bool, folder: &Path, copies: &mut Vec<Copy>) -> Result<(), FolderError> {
+    match value {
+        Value::String(name) if is_file => replace(name, folder.join(&*name), copies),
+        Value::Array(values) => {
+            let mut values = values.iter_mut();
+            values.try_for_each(|value| visit(value, is_file, folder, copies))
+        }
+        Value::Table(table) => visit_table(table, folder, copies),
+        _ => Ok(()),
+    }
+}
+
+fn replace(name: &mut String, original: PathBuf, copies: &mut Vec<Copy>) -> Result<(), FolderError> {
+    // Every point was valid, so that a file that is not there is one that no point reads.
+    let Some(hash) = hash(&original).map_err(FolderError::read(&original))? else {
+        return Ok(());
     };
-    copies.visit_table(study);
-    copies.failed.map_or(Ok(copies.made), Err)
-}
-
-struct Copies<'a> {
-    folder: &'a Path,
-    made: Vec<Copy>,
-    failed: Option<FolderError>,
-}
-
-impl Copies<'_> {
-    fn visit_table(&mut self, table: &mut Table) {
-        // An axis names the key beside its values.
-        let lists_files = table.get("key").and_then(Value::as_str).is_some_and(names_a_file);
-        for (key, value) in table.iter_mut() {
-            let is_file = names_a_file(key) || (lists_files && key == "list");
-            self.visit(value, is_file);
+    *name = match name_of_copy(&plain_name(name), copies, |made| (&made.name, made.hash == hash)) {
+        CopyName::Known(copy) => copy,
+        CopyName::New(copy) => {
+            copies.push(Copy {
+                name: copy.clone(),
+                original,
+                hash,
+            });
+            copy
         }
-    }
-
-    fn visit(&mut self, value: &mut Value, is_file: bool) {
-        match value {
-            Value::String(name) if is_file => self.replace(name),
-            Value::Array(values) => values.iter_mut().for_each(|value| self.visit(value, is_file)),
-            Value::Table(table) => self.visit_table(table),
-            _ => {}
-        }
-    }
-
-    fn replace(&mut self, name: &mut String) {
-        let original = self.folder.join(&*name);
-        let hash = match hash(&original) {
-            Ok(Some(hash)) => hash,
-            // Every point was valid, so that a file that is not there is one that no point reads.
-            Ok(None) => return,
-            Err(source) => {
-                let path = original;
-                self.failed.get_or_insert(FolderError::Read { path, source });
-                return;
-            }
-        };
-        let copies = &self.made;
-        match name_of_copy(&plain_name(name), copies, |made| (&made.name, made.hash == hash)) {
-            CopyName::Known(copy) => *name = copy,
-            CopyName::New(copy) => {
-                name.clone_from(&copy);
-                self.made.push(Copy {
-                    name: copy,
-                    original,
-                    hash,
-                });
-            }
-        }
-    }
+    };
+    Ok(())
 }
 
 /// The hash of a regular file; none if there is no such file.

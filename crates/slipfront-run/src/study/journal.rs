@@ -7,7 +7,6 @@ use std::collections::HashMap;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use super::error::StudyError;
 use super::record::{Record, RunResult, looks_like_ours, may_begin_ours, parse_line, to_line};
@@ -19,7 +18,7 @@ use slipfront_case::disk::{open_limited, remove_unfinished, sync_folder};
 pub struct Records {
     path: PathBuf,
     file: File,
-    results: HashMap<String, Arc<RunResult>>,
+    results: HashMap<String, RunResult>,
     /// Lines that failed their checksum.
     pub damaged: usize,
 }
@@ -28,10 +27,7 @@ impl Records {
     /// Name of the record file in its folder.
     pub const FILE: &str = RECORDS;
 
-    /// Opens the records of a study folder; a folder without them gets an empty file.
-    ///
-    /// # Errors
-    /// When another process has them open, when they cannot be read, or when the file is something else.
+    /// Opens the records of a study folder, unless another process has them open; a folder without them gets an empty file.
     pub fn open(folder: &Path) -> Result<Self, StudyError> {
         let path = folder.join(RECORDS);
         let mut file = open_locked(&path, folder)?;
@@ -47,21 +43,18 @@ impl Records {
         if lines.bytes == 0 {
             sync_folder(folder).map_err(failed("write to", &path))?;
         }
-        let results = lines
-            .records
-            .into_iter()
-            .map(|record| (record.id, Arc::new(record.outcome.result())))
-            .collect();
+        // Each record is dropped before the next is looked at.
+        let results = lines.records.into_iter().map(|record| entry(&record));
         Ok(Self {
             path,
             file,
-            results,
+            results: results.collect(),
             damaged: lines.damaged,
         })
     }
 
     /// The result of the run with this identity, if it is recorded.
-    pub fn get(&self, id: &str) -> Option<&Arc<RunResult>> {
+    pub fn get(&self, id: &str) -> Option<&RunResult> {
         self.results.get(id)
     }
 
@@ -75,10 +68,7 @@ impl Records {
         self.results.is_empty()
     }
 
-    /// Appends finished runs and waits until the disk has them.
-    ///
-    /// # Errors
-    /// When they cannot be written; what had been recorded before stays whole.
+    /// Appends finished runs and waits until the disk has them; what had been recorded before stays whole.
     pub fn append(&mut self, records: &[Record]) -> Result<(), StudyError> {
         if records.is_empty() {
             return Ok(());
@@ -89,27 +79,19 @@ impl Records {
         let written = self.file.write_all(&lines).and_then(|()| self.file.sync_data());
         written.map_err(|source| {
             // Whole lines stay. If a part of a line cannot be cut off, the next start does it.
-            let there = self
-                .file
-                .metadata()
-                .map_or(0, |file| file.len().saturating_sub(before));
-            let there = &lines[..lines.len().min(there as usize)];
+            let length = self.file.metadata().map_or(0, |file| file.len());
+            let there = length.saturating_sub(before) as usize;
+            let there = &lines[..lines.len().min(there)];
             let last_break = there.iter().rposition(|&byte| byte == b'\n');
             let whole = last_break.map_or(0, |end| end + 1);
             let _ = self.file.set_len(before + whole as u64);
             failed("write to", &self.path)(source)
         })?;
-        for record in records {
-            self.results
-                .insert(record.id.clone(), Arc::new(record.outcome.result()));
-        }
+        self.results.extend(records.iter().map(entry));
         Ok(())
     }
 
     /// Appends the records of another folder that are not here yet, and returns their number.
-    ///
-    /// # Errors
-    /// When they cannot be read or written.
     pub fn merge(&mut self, folder: &Path) -> Result<usize, StudyError> {
         let path = folder.join(RECORDS);
         let read = open_limited(&path, u64::MAX).and_then(|mut file| Lines::read(&mut file));
@@ -125,6 +107,11 @@ impl Records {
     }
 }
 
+/// What is kept in memory of a record.
+fn entry(record: &Record) -> (String, RunResult) {
+    (record.id.clone(), record.outcome.result())
+}
+
 /// The error of an action on a record file that the system refused.
 fn failed(action: &'static str, path: &Path) -> impl Fn(std::io::Error) -> StudyError {
     move |source| StudyError::Records {
@@ -136,12 +123,9 @@ fn failed(action: &'static str, path: &Path) -> impl Fn(std::io::Error) -> Study
 
 /// Opens the record file and locks it for this process.
 fn open_locked(path: &Path, folder: &Path) -> Result<File, StudyError> {
-    let file = OpenOptions::new()
-        .read(true)
-        .append(true)
-        .create(true)
-        .open(path)
-        .map_err(failed("open", path))?;
+    let mut options = OpenOptions::new();
+    options.read(true).append(true).create(true);
+    let file = options.open(path).map_err(failed("open", path))?;
     let metadata = file.metadata().map_err(failed("open", path))?;
     // Reading a pipe would wait for a writer, and reading a device might not end.
     if !metadata.is_file() {

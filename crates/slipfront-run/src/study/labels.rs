@@ -28,22 +28,19 @@ pub(super) fn symbol(key: &str) -> String {
 }
 
 fn label(key: &str) -> Option<QuantityLabel<'_>> {
-    if let Some((title, texture)) = title_of(key) {
-        return Some(QuantityLabel {
-            words: title.words,
-            symbol: title.symbol,
-            unit: title.unit,
-            texture: texture
-                .filter(|&index| index > 0)
-                .map(|index| index.saturating_add(1)),
-        });
-    }
-    let &(_, words, symbol, unit) = QUANTITIES.iter().find(|row| row.0 == key)?;
+    let (words, symbol, unit, texture) = match title_of(key) {
+        Some((title, texture)) => (title.words, title.symbol, title.unit, texture),
+        None => {
+            let &(_, words, symbol, unit) = QUANTITIES.iter().find(|row| row.0 == key)?;
+            (words, symbol, unit, None)
+        }
+    };
+    let further = texture.filter(|&index| index > 0);
     Some(QuantityLabel {
         words,
         symbol,
         unit,
-        texture: None,
+        texture: further.map(|index| index.saturating_add(1)),
     })
 }
 

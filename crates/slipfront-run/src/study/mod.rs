@@ -8,7 +8,6 @@
 //! Every finished run is a line of the journal. A study that was stopped is continued from there.
 
 mod axis;
-mod columns;
 mod error;
 mod execute;
 mod folder;
@@ -16,7 +15,6 @@ mod input_copies;
 mod journal;
 #[cfg(feature = "plot")]
 mod labels;
-mod output;
 mod picture_plan;
 #[cfg(feature = "plot")]
 mod pictures;
@@ -30,15 +28,13 @@ mod study_file;
 mod study_results;
 mod summary_values;
 mod tables;
-mod worker;
 
 pub use axis::{Axis, Level, Spacing};
 pub use error::StudyError;
 pub(crate) use error::of_others;
 pub use execute::{collect, execute};
-pub use folder::{StudyFolder, is_study, refuse_foreign, study_of};
+pub use folder::{StudyFolder, is_study, refuse_foreign, study_of, write};
 pub use journal::Records;
-pub use output::write;
 pub use plan::{Plan, Point, Role, RunKey, Warning};
 pub use record::{Outcome, Record, RunResult};
 pub use shard::Shard;

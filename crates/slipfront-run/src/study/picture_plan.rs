@@ -19,10 +19,10 @@ const MOST_OF_LEVELS: usize = 100;
 
 /// Names of all pictures that a study of these axes may get.
 pub(super) fn names(axes: &[Axis]) -> impl Iterator<Item = String> {
-    QUANTITIES
+    let pictures = QUANTITIES
         .into_iter()
-        .flat_map(|quantity| planned(axes, quantity))
-        .map(|picture| picture.name)
+        .flat_map(|quantity| planned(axes, quantity));
+    pictures.map(|picture| picture.name)
 }
 
 /// A picture to be drawn.
@@ -54,12 +54,11 @@ pub(super) fn planned(axes: &[Axis], quantity: &str) -> Vec<PlannedPicture> {
         .filter(|&axis| axes[axis].spacing != Spacing::Named)
         .collect();
     match (numeric.first(), axes.len()) {
-        (_, 0) => Vec::new(),
         (None, 1 | 2) => vec![PlannedPicture {
             name: quantity.to_owned(),
             kind: PictureKind::Bars,
         }],
-        // No picture for names on three axes or more: the tables serve better.
+        // There is nothing to draw, or there are names on three axes or more: the tables serve better.
         (None, _) => Vec::new(),
         (Some(&x), _) => {
             let mut pictures = planned_curves(axes, x, quantity);
@@ -123,16 +122,16 @@ pub(super) type Levels = Vec<(usize, usize)>;
 
 /// Every combination of levels of these axes, the last fastest.
 pub(super) fn combinations(axes: &[Axis], of: &[usize]) -> Vec<Levels> {
-    of.iter().fold(vec![Vec::new()], |combinations, &axis| {
-        let with = |level| {
-            combinations
-                .iter()
-                .map(move |levels| [levels.as_slice(), &[(axis, level)]].concat())
+    let mut all = vec![Levels::new()];
+    for &axis in of {
+        let levels = 0..axes[axis].levels.len();
+        let with_each = |earlier: Levels| {
+            let with = move |level| [earlier.as_slice(), &[(axis, level)]].concat();
+            levels.clone().map(with)
         };
-        let mut all: Vec<Levels> = (0..axes[axis].levels.len()).flat_map(with).collect();
-        all.sort();
-        all
-    })
+        all = all.into_iter().flat_map(with_each).collect();
+    }
+    all
 }
 
 #[cfg(test)]

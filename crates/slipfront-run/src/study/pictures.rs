@@ -15,14 +15,12 @@ use slipfront_plot::{
 };
 
 /// Draws the pictures of a study, each with the name of its files.
-///
-/// # Errors
-/// When one cannot be drawn.
 pub(super) fn draw(plan: &Plan, results: &StudyResults) -> Result<Vec<(String, Picture)>, StudyError> {
     let of_quantity = |quantity: &&'static str| Measured::of(plan, results, quantity).draw();
+    // The error of the first is told, whichever fails first.
     let drawn: Vec<_> = QUANTITIES.par_iter().map(of_quantity).collect();
-    let drawn: Result<Vec<_>, StudyError> = drawn.into_iter().collect();
-    Ok(drawn?.into_iter().flatten().collect())
+    let drawn: Vec<_> = drawn.into_iter().collect::<Result<_, _>>()?;
+    Ok(drawn.concat())
 }
 
 /// A quantity at every point of a study.
@@ -56,10 +54,10 @@ impl<'a> Measured<'a> {
             return Ok(Vec::new());
         }
         let draw = |PlannedPicture { name, kind }| {
-            let picture = match &kind {
+            let picture = match kind {
                 PictureKind::Bars => self.bars(),
-                PictureKind::Curves { x, fixed, varied } => self.curves(*x, fixed, varied),
-                PictureKind::Map { x, y } => self.map(*x, *y),
+                PictureKind::Curves { x, fixed, varied } => self.curves(x, &fixed, &varied),
+                PictureKind::Map { x, y } => self.map(x, y),
             };
             match picture {
                 Ok(picture) => Ok((name, picture)),
@@ -96,12 +94,9 @@ impl<'a> Measured<'a> {
 
     /// A curve over axis `x` at these levels of the others; those of the `varied` axes name it.
     fn curve(&self, x: usize, fixed: &[(usize, usize)], varied: &[(usize, usize)]) -> Response {
-        let label: Vec<String> = varied
-            .iter()
-            .map(|&(axis, level)| self.shown(axis, level))
-            .collect();
+        let label = varied.iter().map(|&(axis, level)| self.shown(axis, level));
         let mut response = Response {
-            label: label.join(", "),
+            label: label.collect::<Vec<_>>().join(", "),
             ..Response::default()
         };
         let mut levels = vec![0; self.axes.len()];
@@ -147,9 +142,8 @@ impl<'a> Measured<'a> {
     fn bars(&self) -> Result<Picture, PictureError> {
         let bar = |axis: usize, levels: &[usize]| {
             let [mean, low, high] = self.at(levels);
-            let label = self.shown(axis, levels[axis]);
             Bar {
-                label,
+                label: self.shown(axis, levels[axis]),
                 mean,
                 low,
                 high,
@@ -167,13 +161,11 @@ impl<'a> Measured<'a> {
             };
             levels(0).map(group).collect()
         };
+        let legend = self.axes.get(1).map(|axis| symbol(axis.title()));
         slipfront_plot::bars(&BarChart {
             y_title: title(self.quantity),
             x_title: title(self.axes[0].title()),
-            legend_title: self
-                .axes
-                .get(1)
-                .map_or(String::new(), |axis| symbol(axis.title())),
+            legend_title: legend.unwrap_or_default(),
             groups,
         })
     }

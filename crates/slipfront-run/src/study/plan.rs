@@ -72,6 +72,7 @@ pub struct Warning {
 
 /// Cases of more blocks are made one at a time while planning: one for each thread might not fit into memory.
 const LARGE: u64 = 250_000;
+static MAKING_LARGE: Mutex<()> = Mutex::new(());
 
 /// A line of the records and a row of the tables.
 const RECORD_BYTES: f64 = 4096.0;
@@ -98,9 +99,6 @@ pub struct RunKey {
 
 impl Plan {
     /// Makes the points of all combinations of levels and the case of each; the first invalid one is named.
-    ///
-    /// # Errors
-    /// [`StudyError::Point`], [`StudyError::TooLarge`].
     pub fn new(file: &StudyFile, shard: Option<Shard>) -> Result<Self, StudyError> {
         let mut points: Vec<Point> = (0..file.count_points()?)
             .filter(|&index| shard.is_none_or(|shard| shard.holds(index)))
@@ -122,17 +120,13 @@ impl Plan {
             let point = point.map_or_else(String::new, |point| plan.describe(point));
             StudyError::Point { point, source }
         };
-        let base = plan
-            .base
-            .parse()
-            .map_err(|error| invalid(points.first(), error))?;
-        let large = Mutex::new(());
-        let spec = |point| {
-            plan.roles()
-                .map(|role| plan.spec(&base, point, role, &large))
-                .collect()
-        };
-        let specs: Vec<Result<Vec<RunSpec>, CaseError>> = points.par_iter().map(spec).collect();
+        let base = plan.base.parse();
+        let base = base.map_err(|error| invalid(points.first(), error))?;
+        let spec = |point, role| plan.spec(&base, point, role);
+        let specs = points
+            .par_iter()
+            .map(|point| plan.roles().map(|role| spec(point, role)).collect());
+        let specs: Vec<Result<Vec<RunSpec>, CaseError>> = specs.collect();
         // In order, so that the first invalid point is named.
         for (point, specs) in points.iter_mut().zip(specs) {
             point.specs = specs.map_err(|error| invalid(Some(point), error))?;
@@ -178,16 +172,10 @@ impl Plan {
     }
 
     /// Makes the case of a point, and collects what is known of its runs.
-    fn spec(
-        &self,
-        base: &ParsedCase,
-        point: &Point,
-        role: Role,
-        large: &Mutex<()>,
-    ) -> Result<RunSpec, CaseError> {
+    fn spec(&self, base: &ParsedCase, point: &Point, role: Role) -> Result<RunSpec, CaseError> {
         let file = self.case_file(base, point, role)?;
         let blocks: u64 = file.slider.blocks.into_iter().map(u64::from).product();
-        let _one_at_a_time = (blocks > LARGE).then(|| large.lock());
+        let _one_at_a_time = (blocks > LARGE).then(|| MAKING_LARGE.lock());
         let case = self.trimmed(file, "point")?;
         Ok(RunSpec {
             seed: case.file.friction.seed,
@@ -223,10 +211,7 @@ impl Plan {
         warnings
     }
 
-    /// The case of a run, ready to run.
-    ///
-    /// # Errors
-    /// When a file that it reads has changed since the plan was made.
+    /// The case of a run, ready to run, unless a file that it reads has changed since the plan was made.
     pub fn case(&self, run: RunKey) -> Result<Case, CaseError> {
         let mut file = self.case_file(&self.base.parse()?, &self.points[run.point], run.role)?;
         file.friction.seed = self.seed(run);
@@ -259,16 +244,18 @@ impl Plan {
 
     /// A case that records no more than the study keeps.
     fn trimmed(&self, mut file: CaseFile, name: &str) -> Result<Case, CaseError> {
-        if self.settings.keep == RetainRuns::All {
-            let case = Case::new(file, name, &self.base.folder)?;
-            check_fields(&case.file, &case.model.lattice, &case.output)?;
-            return Ok(case);
+        let keeps_all = self.settings.keep == RetainRuns::All;
+        if !keeps_all {
+            // Fields and curves are not kept, and the numbers do not depend on them.
+            file.output.snapshots = Snapshots::At(Vec::new());
+            file.output.series = AutoOr::Auto;
         }
-        // Fields and curves are not kept, and the numbers do not depend on them.
-        file.output.snapshots = Snapshots::At(Vec::new());
-        file.output.series = AutoOr::Auto;
         let mut case = Case::new(file, name, &self.base.folder)?;
-        case.output.series_stride = case.time_plan.last_step;
+        if keeps_all {
+            check_fields(&case.file, &case.model.lattice, &case.output)?;
+        } else {
+            case.output.series_stride = case.time_plan.last_step;
+        }
         Ok(case)
     }
 
@@ -322,10 +309,7 @@ impl Plan {
             .max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Refuses as many runs at once as there is no memory for.
-    ///
-    /// # Errors
-    /// [`StudyError::Memory`] with how many there is memory for, [`StudyError::PointMemory`] if it is not even one.
+    /// Refuses as many runs at once as there is no memory for, and says how many there is memory for.
     pub fn check_memory(&self, threads: usize) -> Result<(), StudyError> {
         let available = available_memory().unwrap_or(f64::INFINITY);
         // A process may be given less than the machine has.
@@ -343,18 +327,18 @@ impl Plan {
         }
         let fit = ((available - PROGRAM - self.planning()) / largest).max(0.0) as usize;
         let available = byte_size(available);
-        if fit == 0 {
-            return Err(StudyError::PointMemory {
+        Err(match fit {
+            0 => StudyError::PointMemory {
                 point: self.describe(&self.points[run.point]),
                 needed: byte_size(largest),
                 available,
-            });
-        }
-        Err(StudyError::Memory {
-            threads,
-            needed: byte_size(needed),
-            available,
-            fit,
+            },
+            _ => StudyError::Memory {
+                threads,
+                needed: byte_size(needed),
+                available,
+                fit,
+            },
         })
     }
 
@@ -381,9 +365,8 @@ impl Plan {
     pub fn columns(&self, point: &Point) -> Vec<(&str, &str)> {
         let levels = self.axes.iter().zip(&point.levels);
         let columns = levels.flat_map(|(axis, &level)| axis.columns.iter().zip(&axis.levels[level].labels));
-        columns
-            .map(|(name, value)| (name.as_str(), value.as_str()))
-            .collect()
+        let columns = columns.map(|(name, value)| (name.as_str(), value.as_str()));
+        columns.collect()
     }
 
     /// Every run of `replicates` replicates; references that points share are counted for each.

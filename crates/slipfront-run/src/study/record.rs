@@ -1,5 +1,7 @@
 //! The outcome of a run, and its line in the journal of a study: `<checksum> <json>`.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use super::summary_values::SummaryValues;
@@ -8,40 +10,22 @@ use crate::summary::Summary;
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Outcome<Numbers = Box<Summary>> {
+pub enum Outcome {
     /// Its numbers.
-    Done(Numbers),
+    Done(Box<Summary>),
     /// Why it failed.
     Failed(String),
 }
 
-/// The part of an outcome that tables and statistics need.
-pub type RunResult = Outcome<SummaryValues>;
-
-impl RunResult {
-    /// The numbers of a run that did not fail.
-    pub fn values(&self) -> Option<&SummaryValues> {
-        match self {
-            Self::Done(values) => Some(values),
-            Self::Failed(_) => None,
-        }
-    }
-
-    /// Why the run failed, if it did.
-    pub fn failure(&self) -> Option<&str> {
-        match self {
-            Self::Done(_) => None,
-            Self::Failed(reason) => Some(reason),
-        }
-    }
-}
+/// The part of an outcome that tables and statistics need: numbers, or why the run failed.
+pub type RunResult = Result<Arc<SummaryValues>, String>;
 
 impl Outcome {
     /// The part of it that tables and statistics need.
     pub(super) fn result(&self) -> RunResult {
         match self {
-            Self::Done(summary) => Outcome::Done(SummaryValues::of(summary)),
-            Self::Failed(reason) => Outcome::Failed(reason.clone()),
+            Self::Done(summary) => Ok(Arc::new(SummaryValues::of(summary))),
+            Self::Failed(reason) => Err(reason.clone()),
         }
     }
 

@@ -4,7 +4,6 @@
 //! replicates in their order, however many more have been run.
 
 use std::collections::{HashMap, HashSet};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 use std::time::Duration;
@@ -12,11 +11,20 @@ use std::time::Duration;
 use super::error::StudyError;
 use super::journal::Records;
 use super::plan::{Plan, RunKey};
-use super::record::RunResult;
+use super::record::{Record, RunResult};
 use super::statistics::Sample;
 use super::study_results::{PointResult, Progress, StudyResults};
 use super::summary_values::Quantity;
-use super::worker::{Ended, Task};
+
+/// A run to be done by a worker.
+pub(super) struct Task {
+    pub(super) run: RunKey,
+    /// [`Plan::identity`] of the run.
+    pub(super) id: String,
+}
+
+/// The record of a run that has ended; none if it was given up.
+pub(super) type Ended = Result<Option<Record>, StudyError>;
 
 /// Requests runs from the workers and decides on the number of replicates.
 pub(super) struct Scheduler<'a> {
@@ -68,13 +76,25 @@ impl<'a> Scheduler<'a> {
         }
     }
 
+    /// The results of the records alone, if no run is missing.
+    pub(super) fn collect(mut self) -> Result<StudyResults, StudyError> {
+        self.begin();
+        match self.waiting.len() {
+            0 => Ok(self.results()),
+            runs => Err(StudyError::Missing {
+                runs,
+                others: self.orphaned_runs(),
+            }),
+        }
+    }
+
     /// Records finished runs and requests more, until no run is missing.
     pub(super) fn run(
-        &mut self,
+        mut self,
         finished: &Receiver<Ended>,
         stop: &AtomicBool,
         watch: &mut dyn FnMut(&Progress),
-    ) -> Result<(), StudyError> {
+    ) -> Result<StudyResults, StudyError> {
         self.begin();
         self.report(watch);
         while !self.waiting.is_empty() {
@@ -91,16 +111,11 @@ impl<'a> Scheduler<'a> {
             }
             self.report(watch);
         }
-        Ok(())
-    }
-
-    /// Number of requested runs that are not finished.
-    pub(super) fn n_waiting(&self) -> usize {
-        self.waiting.len()
+        Ok(self.results())
     }
 
     /// Requests the fewest replicates of every point, and more where all of these are recorded already.
-    pub(super) fn begin(&mut self) {
+    fn begin(&mut self) {
         for point in 0..self.points.len() {
             self.request(point, self.plan.settings.min_replicates());
             self.decide(point);
@@ -109,8 +124,7 @@ impl<'a> Scheduler<'a> {
 
     /// Writes finished runs to the journal, then ingests them.
     fn record(&mut self, finished: impl Iterator<Item = Ended>) -> Result<(), StudyError> {
-        let mut records = Vec::new();
-        let mut failure = None;
+        let (mut records, mut failure) = (Vec::new(), None);
         for ended in finished {
             match ended {
                 Ok(record) => records.extend(record),
@@ -157,7 +171,7 @@ impl<'a> Scheduler<'a> {
 
     fn count(&mut self, id: String, result: &RunResult) {
         self.progress.done += 1;
-        self.progress.failed += usize::from(matches!(result, RunResult::Failed(_)));
+        self.progress.failed += usize::from(result.is_err());
         self.belonging.insert(id);
     }
 
@@ -169,7 +183,7 @@ impl<'a> Scheduler<'a> {
         let runs = self.waiting.remove(&id).unwrap_or_default();
         self.count(id, &result);
         for run in &runs {
-            self.results.runs.insert(*run, Arc::clone(&result));
+            self.results.runs.insert(*run, result.clone());
             self.points[run.point].missing -= 1;
         }
         for run in runs {
@@ -231,7 +245,7 @@ impl<'a> Scheduler<'a> {
     }
 
     /// The results of the study. Replicates that were run and turned out not to be needed stay in the records alone.
-    pub(super) fn results(self) -> StudyResults {
+    fn results(self) -> StudyResults {
         let orphaned_runs = self.orphaned_runs();
         let points: Vec<PointResult> = self.points.into_iter().filter_map(|point| point.result).collect();
         let mut runs = self.results.runs;
@@ -245,7 +259,7 @@ impl<'a> Scheduler<'a> {
     }
 
     /// Number of recorded runs that no point could request, even with the most replicates.
-    pub(super) fn orphaned_runs(&self) -> usize {
+    fn orphaned_runs(&self) -> usize {
         if self.records.len() == self.belonging.len() {
             return 0;
         }

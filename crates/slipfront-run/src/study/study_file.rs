@@ -8,10 +8,9 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::axis::{self, Axis, AxisKeys};
-use super::columns::is_column;
 use super::error::StudyError;
 use super::input_copies::{self, Copy};
-use super::summary_values::{self, REDUCTION};
+use super::summary_values::{REDUCTION, is_column, known};
 use slipfront_case::case_file::{
     CASE_TABLES, CaseError, ParsedCase, STUDY_TABLES, Source, Tables, header_below, keys_of, limit_nesting,
     read_text, syntax_error, unknown_key,
@@ -139,75 +138,62 @@ impl Settings {
     }
 
     fn check(&self, source: &Source) -> Result<(), CaseError> {
-        match self.problem(source) {
-            Some((key, sentence)) => Err(source.error(&format!("study.{key}"), sentence)),
-            None => Ok(()),
-        }
-    }
-
-    /// The first key with a value that it cannot have, and a sentence that says so.
-    fn problem(&self, source: &Source) -> Option<(&'static str, String)> {
+        let refuse = |key: &str, sentence: String| Err(source.error(&format!("study.{key}"), sentence));
         let replicates = self.replicates;
         if !(1..=MAX_REPLICATES).contains(&replicates) {
             let sentence = format!("`replicates` = {replicates} must lie between 1 and {MAX_REPLICATES}");
-            return Some(("replicates", sentence));
+            return refuse("replicates", sentence);
         }
         let mut reference = self.reference.iter().flat_map(axis::overrides);
         if reference.any(|set| set.key() == "friction.seed") {
             let sentence =
                 "a reduction is that against the same surface: leave `friction.seed` out of the reference";
-            return Some(("reference", sentence.to_owned()));
+            return refuse("reference", sentence.to_owned());
         }
-        let until = self.until.as_ref()?;
+        let Some(until) = &self.until else {
+            return Ok(());
+        };
         if source.has("study.replicates") {
             let sentence = "`replicates` and `until` exclude each other: keep one";
-            return Some(("replicates", sentence.to_owned()));
+            return refuse("replicates", sentence.to_owned());
         }
-        until.problem(self.reference.is_some())
-    }
-}
-
-impl StoppingRule {
-    fn problem(&self, has_reference: bool) -> Option<(&'static str, String)> {
-        let Self {
+        let StoppingRule {
             key,
             half_width,
             confidence,
             min,
             max,
-        } = self;
-        Some(if !(*half_width > 0.0 && half_width.is_finite()) {
+        } = until;
+        if !(*half_width > 0.0 && half_width.is_finite()) {
             let sentence = format!("`half_width` = {half_width} must be more than 0");
-            ("until.half_width", sentence)
-        } else if !(*confidence > 0.0 && *confidence < 1.0) {
+            return refuse("until.half_width", sentence);
+        }
+        if !(*confidence > 0.0 && *confidence < 1.0) {
             let sentence = format!("`confidence` = {confidence} must lie between 0 and 1, such as 0.95");
-            ("until.confidence", sentence)
-        } else if !(2..=*max).contains(min) || *max > MAX_REPLICATES {
+            return refuse("until.confidence", sentence);
+        }
+        if !(2..=*max).contains(min) || *max > MAX_REPLICATES {
             let sentence = format!(
                 "`min` = {min} and `max` = {max} must rise from 2 to at most {MAX_REPLICATES}: one run has no interval"
             );
-            ("until.min", sentence)
-        } else if key == REDUCTION && !has_reference {
-            (
-                "until.key",
-                format!("`{key}` needs a `reference` to be reduced from"),
-            )
-        } else if !summary_values::known().contains(key) {
+            return refuse("until.min", sentence);
+        }
+        if key == REDUCTION && self.reference.is_none() {
+            let sentence = format!("`{key}` needs a `reference` to be reduced from");
+            return refuse("until.key", sentence);
+        }
+        if !known().contains(key) {
             let sentence = format!(
                 "`{key}` is no number of a summary: take one such as static_friction_star, kinetic_friction_star or {REDUCTION}"
             );
-            ("until.key", sentence)
-        } else {
-            return None;
-        })
+            return refuse("until.key", sentence);
+        }
+        Ok(())
     }
 }
 
 impl StudyFile {
     /// The study with its base case inside and its files beside it, for the results folder.
-    ///
-    /// # Errors
-    /// When it cannot be written as TOML, and when a file cannot be read.
     pub(super) fn portable(&self) -> Result<(String, Vec<Copy>), StudyError> {
         let source = Source::new(&self.base.name, &self.base.text);
         let base: Result<toml::Table, _> = limit_nesting(&self.base.text).parse();
@@ -223,27 +209,18 @@ impl StudyFile {
         self.table.get("base").is_some_and(toml::Value::is_str)
     }
 
-    /// Points of the whole study.
-    ///
-    /// # Errors
-    /// [`StudyError::TooLarge`].
+    /// Points of the whole study, if they are not too many.
     pub fn count_points(&self) -> Result<usize, StudyError> {
         count_points(&self.axes)
     }
 
     /// Runs of the whole study at the most; references that points share are counted for each.
-    ///
-    /// # Errors
-    /// [`StudyError::TooLarge`].
     pub fn count_runs(&self) -> Result<u64, StudyError> {
         let roles = 1 + u64::from(self.settings.reference.is_some());
         Ok(self.count_points()? as u64 * self.settings.max_replicates() as u64 * roles)
     }
 
     /// Loads a study file; a base case that it names stands relative to it.
-    ///
-    /// # Errors
-    /// A sentence that names place, value, bound and remedy.
     pub fn load(path: &Path) -> Result<Self, StudyError> {
         let text = read_text(path)?;
         let stem = path.file_stem();
@@ -253,14 +230,10 @@ impl StudyFile {
     }
 
     /// Reads a study file called `file` in messages; a base case that it names stands relative to `folder`.
-    ///
-    /// # Errors
-    /// A sentence that names place, value, bound and remedy.
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
         let mut source = Source::new(file, text);
-        let root = DeTable::parse(limit_nesting(text))
-            .map_err(|error| syntax_error(&source, 0, &error))?
-            .into_inner();
+        let root = DeTable::parse(limit_nesting(text)).map_err(|error| syntax_error(&source, 0, &error))?;
+        let root = root.into_inner();
         source.note_places(&root);
         let mut tables = Tables {
             root,
@@ -327,27 +300,26 @@ fn portable_text(mut study: toml::Table) -> Result<String, CaseError> {
 }
 
 fn read_base(tables: &mut Tables, file: &str, folder: &Path) -> Result<Base, StudyError> {
-    let base = |text: String, name: String, folder: &Path| Base {
-        text,
-        name,
-        folder: folder.to_owned(),
-    };
+    let folder = folder.to_owned();
     let Some(value) = tables.root.remove("base") else {
         // Without a base the baseline is varied.
-        return Ok(base(String::new(), format!("{file} [base]"), folder));
+        let (text, name) = (String::new(), format!("{file} [base]"));
+        return Ok(Base { text, name, folder });
     };
     let span = value.span();
     match value.into_inner() {
         DeValue::String(path) => {
             let path = folder.join(path.as_ref());
             let text = read_text(&path).map_err(|error| tables.source.error_at(span, error.to_string()))?;
-            let folder = path.parent().unwrap_or(Path::new(""));
-            Ok(base(text, path.display().to_string(), folder))
+            let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+            let name = path.display().to_string();
+            Ok(Base { text, name, folder })
         }
         table @ DeValue::Table(_) => {
             let table: toml::Table = tables.read_table(Spanned::new(span, table), "[base]", &[])?;
             let text = toml::to_string(&table).map_err(CaseError::from)?;
-            Ok(base(text, format!("[base] of {file}"), folder))
+            let name = format!("[base] of {file}");
+            Ok(Base { text, name, folder })
         }
         _ => {
             let sentence = "`base` must be the path of a case file, or a table [base] that holds its keys";
@@ -391,7 +363,7 @@ fn refuse_conflicts(axes: &[Axis], source: &Source) -> Result<(), CaseError> {
     for (k, axis) in axes.iter().enumerate() {
         let refuse = |sentence: String| Err(source.error(&format!("axes.{k}"), sentence));
         for column in &axis.columns {
-            if is_column(column) || summary_values::known().contains(column) {
+            if is_column(column) {
                 return refuse(format!(
                     "the tables have a column `{column}` already: give the axis another name"
                 ));

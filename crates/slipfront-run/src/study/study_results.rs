@@ -1,7 +1,6 @@
 //! Results of a study: of every run, and of every point.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use super::plan::{Plan, Role, RunKey};
 use super::record::RunResult;
@@ -27,7 +26,7 @@ pub struct Progress {
 #[derive(Clone, Debug, Default)]
 pub struct StudyResults {
     /// The result of every run that the tables hold.
-    pub runs: BTreeMap<RunKey, Arc<RunResult>>,
+    pub runs: BTreeMap<RunKey, RunResult>,
     /// The result of each point of the plan.
     pub points: Vec<PointResult>,
     /// Number of recorded runs that are not part of the study as it is now.
@@ -52,7 +51,7 @@ impl StudyResults {
                 replicate,
                 role,
             };
-            self.runs.get(&run)?.values()
+            self.runs.get(&run)?.as_ref().ok()
         };
         match quantity {
             Quantity::Number(position) => values(Role::Point)?.get(position),
@@ -72,15 +71,14 @@ impl StudyResults {
 
     /// Runs without a transition: their static friction is only the largest mu* of the run.
     pub fn without_transition(&self) -> impl Iterator<Item = RunKey> {
-        let is_without = |result: &RunResult| result.values().is_some_and(|values| !values.transition);
-        let runs = self.runs.iter();
-        runs.filter(move |(_, result)| is_without(result))
-            .map(|(run, _)| *run)
+        let is_without = |result: &RunResult| result.as_ref().is_ok_and(|values| !values.transition);
+        let without = self.runs.iter().filter(move |(_, result)| is_without(result));
+        without.map(|(run, _)| *run)
     }
 
     /// Failed runs and the reasons.
     pub fn failures(&self) -> impl Iterator<Item = (RunKey, &str)> {
         let runs = self.runs.iter();
-        runs.filter_map(|(run, result)| Some((*run, result.failure()?)))
+        runs.filter_map(|(run, result)| Some((*run, result.as_ref().err()?.as_str())))
     }
 }

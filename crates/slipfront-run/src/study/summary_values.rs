@@ -1,4 +1,4 @@
-//! The numbers of a summary by name, for tables and statistics.
+//! The numbers of a summary by name, for tables and statistics, and the other columns of these.
 
 use std::sync::LazyLock;
 
@@ -12,14 +12,36 @@ pub const REDUCTION: &str = "static_reduction_percent";
 /// Entries of a summary that are not numbers, and the seed, whose mean has no meaning.
 const NOT_QUANTITIES: [&str; 5] = ["kinetic_window_star", "instants", "warnings", "version", "seed"];
 
-static KNOWN: LazyLock<Vec<String>> = LazyLock::new(|| {
-    let names = named(&Summary::default()).into_iter().map(|(name, _)| name);
-    names.chain([REDUCTION.to_owned()]).collect()
-});
-
 /// Names of all numbers, in the order of the summary; the reduction comes last.
 pub fn known() -> &'static [String] {
+    static KNOWN: LazyLock<Vec<String>> = LazyLock::new(|| {
+        let names = named(&Summary::default()).into_iter().map(|(name, _)| name);
+        names.chain([REDUCTION.to_owned()]).collect()
+    });
     &KNOWN
+}
+
+/// Columns of `runs.csv` before those of the axes, and after them, before the quantities.
+pub(super) const BEFORE_AXES: [&str; 3] = ["point", "replicate", "role"];
+pub(super) const AFTER_AXES: [&str; 4] = ["seed", "run", "status", "reason"];
+
+/// Columns of `points.csv` after those of the axes.
+pub(super) const STATISTICS: [&str; 9] = [
+    "quantity",
+    "n",
+    "mean",
+    "deviation",
+    "low",
+    "high",
+    "min",
+    "max",
+    "narrow_enough",
+];
+
+/// Whether the tables have a column of this name beside those of the axes: an axis cannot have it.
+pub(super) fn is_column(name: &str) -> bool {
+    let fixed = [&BEFORE_AXES[..], &AFTER_AXES, &STATISTICS].concat();
+    fixed.contains(&name) || known().iter().any(|known| known == name)
 }
 
 /// A quantity of a run, or of a run and its reference.

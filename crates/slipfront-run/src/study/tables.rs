@@ -1,16 +1,13 @@
 //! `runs.csv`, with a row for each run, and `points.csv`, with the statistics of each quantity at each point.
 
-use super::columns::{AFTER_AXES, BEFORE_AXES, STATISTICS};
 use super::error::StudyError;
 use super::plan::{Plan, Role};
 use super::study_results::StudyResults;
-use super::summary_values::{Quantity, REDUCTION, known};
+use super::summary_values::{AFTER_AXES, BEFORE_AXES, Quantity, REDUCTION, STATISTICS, known};
+use crate::series;
 
 /// `runs.csv`: for each run, references included, the levels of its point, the seed, whether it failed and why, and every
 /// number of its summary.
-///
-/// # Errors
-/// When it cannot be written as CSV.
 pub(super) fn runs(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, StudyError> {
     let mut table = csv::Writer::from_writer(Vec::new());
     let quantities = quantities(plan);
@@ -24,23 +21,19 @@ pub(super) fn runs(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, Study
             Role::Point => "point",
             Role::Reference => "reference",
         };
-        let mut row = vec![
-            point.index.to_string(),
-            run.replicate.to_string(),
-            role.to_owned(),
-        ];
+        let [index, replicate] = [point.index, run.replicate].map(|number| number.to_string());
+        let mut row = vec![index, replicate, role.to_owned()];
         row.extend(plan.columns(point).into_iter().map(|(_, value)| value.to_owned()));
-        let status = if result.failure().is_none() {
-            "done"
-        } else {
-            "failed"
-        };
-        let reason = result.failure().unwrap_or_default();
         row.extend([plan.seed(run).to_string(), plan.folder_name(run)]);
-        row.extend([status, reason].map(str::to_owned));
+        let status = result
+            .as_ref()
+            .map_or_else(|reason| ["failed", reason.as_str()], |_| ["done", ""]);
+        row.extend(status.map(str::to_owned));
         for &(_, quantity) in &quantities {
             let value = match (quantity, run.role) {
-                (Quantity::Number(position), _) => result.values().and_then(|values| values.get(position)),
+                (Quantity::Number(position), _) => {
+                    result.as_ref().ok().and_then(|values| values.get(position))
+                }
                 (Quantity::Reduction, Role::Point) => results.value(run.point, run.replicate, quantity),
                 (Quantity::Reduction, Role::Reference) => None,
             };
@@ -48,7 +41,7 @@ pub(super) fn runs(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, Study
         }
         table.write_record(row)?;
     }
-    finish(table)
+    Ok(series::finish(table)?)
 }
 
 /// The quantities that the tables of a study have: a reduction only against a reference.
@@ -62,9 +55,6 @@ fn quantities(plan: &Plan) -> Vec<(&'static str, Quantity)> {
 
 /// `points.csv`: for each point and quantity the number of values, their mean, standard deviation, confidence
 /// interval of the mean, smallest and largest; reductions are paired by seed.
-///
-/// # Errors
-/// When it cannot be written as CSV.
 pub(super) fn points(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, StudyError> {
     let mut table = csv::Writer::from_writer(Vec::new());
     table.write_record(["point"].into_iter().chain(axis_columns(plan)).chain(STATISTICS))?;
@@ -83,14 +73,8 @@ pub(super) fn points(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, Stu
             row.extend([name.to_owned(), sample.map_or(0, |sample| sample.n).to_string()]);
             let numbers = sample.map(|sample| {
                 let [low, high] = sample.interval().map_or([None; 2], |ends| ends.map(Some));
-                [
-                    Some(sample.mean),
-                    sample.deviation,
-                    low,
-                    high,
-                    Some(sample.min),
-                    Some(sample.max),
-                ]
+                let [mean, min, max] = [sample.mean, sample.min, sample.max].map(Some);
+                [mean, sample.deviation, low, high, min, max]
             });
             row.extend(numbers.unwrap_or_default().map(cell));
             let narrow = results.points[position].narrow.filter(|_| decides);
@@ -98,7 +82,7 @@ pub(super) fn points(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, Stu
             table.write_record(row)?;
         }
     }
-    finish(table)
+    Ok(series::finish(table)?)
 }
 
 /// Columns of all axes.
@@ -110,10 +94,4 @@ fn axis_columns(plan: &Plan) -> impl Iterator<Item = &str> {
 /// As few digits as are needed to read back the same bits.
 fn cell(value: Option<f64>) -> String {
     value.map_or(String::new(), |value| format!("{value:?}"))
-}
-
-fn finish(table: csv::Writer<Vec<u8>>) -> Result<Vec<u8>, StudyError> {
-    table
-        .into_inner()
-        .map_err(|error| csv::Error::from(error.into_error()).into())
 }

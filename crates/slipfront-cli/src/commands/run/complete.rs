@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use slipfront_case::case::Case;
 use slipfront_run::checkpoint::Checkpoints;
+use slipfront_run::pictures::RUN_PICTURES;
 use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::running::Running;
@@ -56,25 +57,24 @@ pub(super) fn complete(
 }
 
 fn files(case: &Case, out: &Path) -> String {
+    let pictures = RUN_PICTURES
+        .iter()
+        .map(|picture| (picture.name, ".svg .png", picture.shows));
+    let files = [
+        ("series", ".csv", "the curve, row by row"),
+        ("fields", ".nc", "the fields, for ParaView, Python, MATLAB"),
+        ("summary", ".json", "the numbers above"),
+        ("case", ".toml", "the case, every default filled in"),
+    ];
     let mut text = format!("files in {}\n", out.display());
-    for (name, what) in [
-        ("friction.svg .png", "friction and sliding blocks against time"),
-        ("stress.svg .png", "maps of the contact stress"),
-        ("series.csv", "the curve, row by row"),
-        ("fields.nc", "the fields, for ParaView, Python, MATLAB"),
-        ("summary.json", "the numbers above"),
-        ("case.toml", "the case, every default filled in"),
-    ] {
-        let exists = out.join(name.split(' ').next().unwrap_or(name)).exists();
-        if exists {
-            text += &format!("  {name:<18} {what}\n");
+    for (name, endings, what) in pictures.chain(files) {
+        let ending = endings.split(' ').next().unwrap_or(endings);
+        if out.join(format!("{name}{ending}")).exists() {
+            text += &format!("  {:<18} {what}\n", format!("{name}{endings}"));
         }
     }
     if !case.inputs.is_empty() {
-        text += &format!(
-            "  {:<18} {}\n",
-            "inputs/", "copies of the files that the case reads"
-        );
+        text += &format!("  {:<18} copies of the files that the case reads\n", "inputs/");
     }
     text
 }

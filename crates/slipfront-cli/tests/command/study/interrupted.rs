@@ -4,8 +4,8 @@ use std::process::{Child, Output};
 use std::thread::sleep;
 use std::time::Duration;
 
-use super::results::{Results, SMALL, SMALL_RUNS};
-use crate::support::process::{program, send, stderr, wait_for};
+use super::results::{SMALL, SMALL_RUNS};
+use crate::support::process::{program, send, stderr};
 use crate::support::workspace::Workspace;
 
 /// Long enough to be interrupted: 90 runs of some ten milliseconds.
@@ -31,20 +31,6 @@ fn start(workspace: &Workspace, out: &str) -> Child {
     workspace.start(&format!("study study.toml --quiet --out {out}"))
 }
 
-fn count(results: &Results) -> usize {
-    if results.records().exists() {
-        results.recorded().len()
-    } else {
-        0
-    }
-}
-
-/// Waits until `more` runs are recorded beyond those that are.
-fn wait_for_runs(results: &Results, more: usize) {
-    let before = count(results);
-    wait_for("new record of a run", || count(results) >= before + more);
-}
-
 /// A small generator, so that the random moments are the same ones every time.
 fn random(state: &mut u64) -> u64 {
     *state = state
@@ -65,14 +51,14 @@ fn killed_ten_times_the_answer_is_the_same_to_the_byte() {
         let mut child = start(&workspace, "killed");
         if kill > 0 {
             // The first is killed at any moment, however early.
-            wait_for_runs(&killed, 1 + (random(&mut state) % 5) as usize);
+            killed.wait_for_runs(1 + (random(&mut state) % 5) as usize);
         }
         sleep(Duration::from_micros(random(&mut state) % 12_000));
         child.kill().unwrap();
         let status = child.wait().unwrap();
         assert_eq!(status.code(), None, "kill {kill} came too late: {status}");
     }
-    let before = count(&killed);
+    let before = killed.recorded().len();
     assert!((9..LONG_RUNS).contains(&before), "{before}");
     workspace.study("killed").assert_same(&whole);
     killed.assert_each_run_once(LONG_RUNS);
@@ -84,7 +70,7 @@ fn signals_stop_it_with_their_status_and_it_goes_on() {
     for (signal, status) in [("-INT", 130), ("-TERM", 143)] {
         let results = workspace.results("stopped");
         let child = start(&workspace, "stopped");
-        wait_for_runs(&results, 3);
+        results.wait_for_runs(3);
         // The first of them is no reason to stop.
         for signal in ["-USR1", signal] {
             send(&child, signal);
@@ -97,7 +83,7 @@ fn signals_stop_it_with_their_status_and_it_goes_on() {
             stderr(&output)
         );
     }
-    let stopped = count(&workspace.results("stopped"));
+    let stopped = workspace.results("stopped").recorded().len();
     assert!((6..LONG_RUNS).contains(&stopped), "{stopped}");
     workspace.study("stopped").assert_each_run_once(LONG_RUNS);
     workspace
@@ -123,7 +109,7 @@ fn a_full_disk_ends_it_with_a_sentence_and_it_goes_on() {
         said.contains("records.jsonl") && said.contains("finished runs are safe"),
         "{said}"
     );
-    let before = count(&workspace.results("full"));
+    let before = workspace.results("full").recorded().len();
     assert!((1..SMALL_RUNS).contains(&before), "{before}");
     let full = workspace.study("full");
     full.assert_each_run_once(SMALL_RUNS);
@@ -151,7 +137,7 @@ fn what_the_system_does_not_give_is_refused_before_it_begins() {
 fn two_processes_do_not_share_a_folder() {
     let workspace = Workspace::with_study(LONG);
     let mut first = start(&workspace, "shared");
-    wait_for_runs(&workspace.results("shared"), 1);
+    workspace.results("shared").wait_for_runs(1);
     let second = workspace.output("study study.toml -o shared");
     first.kill().unwrap();
     first.wait().unwrap();

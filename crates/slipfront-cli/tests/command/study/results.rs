@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use crate::support::process::wait_for;
 use crate::support::workspace::Workspace;
 
 /// Six points on a lattice of 36 blocks, three surfaces and their references: 36 runs of a millisecond or so.
@@ -84,8 +85,11 @@ impl Results {
         self.path.join("records.jsonl")
     }
 
-    /// Identities of recorded runs, in their order.
+    /// Identities of recorded runs, in their order; none where there is no journal yet.
     pub(crate) fn recorded(&self) -> Vec<String> {
+        if !self.records().exists() {
+            return Vec::new();
+        }
         let text = String::from_utf8_lossy(&std::fs::read(self.records()).unwrap()).into_owned();
         let whole = text.split_inclusive('\n').filter(|line| line.ends_with('\n'));
         whole
@@ -93,6 +97,12 @@ impl Results {
             // A damaged line may have lost its very name.
             .filter_map(|record| Some(record["id"].as_str()?.to_owned()))
             .collect()
+    }
+
+    /// Waits until `more` runs are recorded beyond those that are.
+    pub(crate) fn wait_for_runs(&self, more: usize) {
+        let before = self.recorded().len();
+        wait_for("new record of a run", || self.recorded().len() >= before + more);
     }
 
     /// Demands that this many runs were made, each once.
