@@ -4,7 +4,7 @@ use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 
-use super::ArrayError;
+use super::error::{ArrayError, broken};
 
 /// Comment lines are searched for the separator up to this total length.
 pub(super) const PREAMBLE_MAX_BYTES: u64 = 1 << 20;
@@ -28,11 +28,7 @@ pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<
     let mut row = 0;
     while table
         .read_record(&mut record)
-        .map_err(|source| ArrayError::Broken {
-            path: path.to_owned(),
-            format: ".csv",
-            detail: source.to_string(),
-        })?
+        .map_err(|source| broken(path, ".csv", source.to_string()))?
     {
         let line = record.position().map_or(0, csv::Position::line);
         // Numbers in columns are padded with several blanks.
@@ -45,12 +41,8 @@ pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<
             continue;
         }
         if row == ny {
-            return Err(wrong_shape(
-                path,
-                format!("more than {ny} lines of numbers"),
-                nx,
-                ny,
-            ));
+            let found = format!("more than {ny} lines of numbers");
+            return Err(wrong_shape(path, found, nx, ny));
         }
         if fields.len() != nx {
             let found = format!("{} numbers in line {line}", fields.len());

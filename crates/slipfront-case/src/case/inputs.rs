@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use slipfront::Lattice;
 
-use super::budget::{Budget, within_budget};
+use super::budget::Budget;
 use crate::arrays;
 use crate::case_file::{CaseError, CaseFile};
 
@@ -19,33 +19,25 @@ pub struct Input {
     pub bytes: Vec<u8>,
 }
 
-/// The name of a copy of a file in the folder `inputs/`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum CopyName {
-    /// A copy of this name has the same contents already.
-    Known(String),
-    /// No copy has this name yet.
-    New(String),
-}
-
-/// Names the copy of a file after its plain name; files of one name and different contents are numbered.
+/// Names the copy of a file in the folder `inputs/` after its plain name; files of one name and different contents are
+/// numbered. The name, and whether a copy of it has the same contents already.
 ///
 /// `describe` gives the name of a copy made before, and whether its contents are those of the file.
 pub fn name_of_copy<'c, C>(
     plain: &str,
     copies: &'c [C],
     describe: impl Fn(&'c C) -> (&'c str, bool),
-) -> CopyName {
+) -> (String, bool) {
     let mut name = format!("inputs/{plain}");
     let mut number = 1;
     while let Some((_, is_same)) = copies.iter().map(&describe).find(|(other, _)| *other == name) {
         if is_same {
-            return CopyName::Known(name);
+            return (name, true);
         }
         number += 1;
         name = format!("inputs/{number}-{plain}");
     }
-    CopyName::New(name)
+    (name, false)
 }
 
 /// A file that was read, and its contents.
@@ -55,21 +47,14 @@ pub(super) struct InputBytes {
 }
 
 /// Files read so far, and the budget of the case with them.
-pub(super) struct Inputs {
-    folder: PathBuf,
+pub(super) struct Inputs<'a> {
+    /// The folder that the names of files are relative to.
+    pub(super) folder: &'a Path,
     pub(super) kept: Vec<Input>,
     pub(super) budget: Budget,
 }
 
-impl Inputs {
-    pub(super) fn new(folder: &Path, budget: Budget) -> Self {
-        Self {
-            folder: folder.to_owned(),
-            kept: Vec::new(),
-            budget,
-        }
-    }
-
+impl Inputs<'_> {
     /// Reads a file that the case names. It is read once, so that its copy holds what the case was made of.
     pub(super) fn read(
         &self,
@@ -90,17 +75,17 @@ impl Inputs {
         let plain = path
             .file_name()
             .map_or_else(|| "input".into(), |name| name.to_string_lossy().into_owned());
-        let name = match name_of_copy(&plain, &self.kept, |kept| (&kept.name, kept.bytes == bytes)) {
-            CopyName::Known(name) => return Ok(name),
-            CopyName::New(name) => name,
-        };
+        let (name, is_kept) = name_of_copy(&plain, &self.kept, |kept| (&kept.name, kept.bytes == bytes));
+        if is_kept {
+            return Ok(name);
+        }
         self.budget.add_input(bytes.len());
         self.kept.push(Input {
             name: name.clone(),
             original: path,
             bytes,
         });
-        within_budget(file, self.budget.check_making())?;
+        self.budget.check_making(file)?;
         Ok(name)
     }
 }

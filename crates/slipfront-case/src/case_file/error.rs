@@ -68,10 +68,7 @@ pub enum Place {
 impl Place {
     /// The place of a span of the file `name`, which holds `text`.
     pub(super) fn in_file(name: &str, text: &str, span: Range<usize>) -> Self {
-        let start = (0..=span.start.min(text.len()))
-            .rev()
-            .find(|&i| text.is_char_boundary(i))
-            .unwrap_or(0);
+        let start = text.floor_char_boundary(span.start);
         let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
         let line = text[line_start..].lines().next().unwrap_or_default();
         let marked = text.get(start..span.end).unwrap_or_default();

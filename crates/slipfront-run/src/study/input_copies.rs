@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 use toml::{Table, Value};
 
 use crate::run_folder::error::FolderError;
-use slipfront_case::case::{CopyName, name_of_copy};
+use slipfront_case::case::name_of_copy;
 use slipfront_case::case_file::names_a_file;
 
 /// Folder of the copies.
@@ -96,16 +96,14 @@ impl Copies<'_> {
             }
         };
         let copies = &self.made;
-        match name_of_copy(&plain_name(name), copies, |made| (&made.name, made.hash == hash)) {
-            CopyName::Known(copy) => *name = copy,
-            CopyName::New(copy) => {
-                name.clone_from(&copy);
-                self.made.push(Copy {
-                    name: copy,
-                    original,
-                    hash,
-                });
-            }
+        let (copy, is_made) = name_of_copy(&plain_name(name), copies, |made| (&made.name, made.hash == hash));
+        name.clone_from(&copy);
+        if !is_made {
+            self.made.push(Copy {
+                name: copy,
+                original,
+                hash,
+            });
         }
     }
 }

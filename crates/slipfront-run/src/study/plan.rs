@@ -13,7 +13,7 @@ use super::study_file::{Base, RetainRuns, Settings, StudyFile};
 use super::summary_values::REDUCTION;
 use crate::program;
 use slipfront_case::case::{Budget, Case, PROGRAM, check_fields};
-use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Output, Override, ParsedCase, Snapshots};
+use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Override, ParsedCase, Snapshots};
 use slipfront_case::machine::{available_memory, most_at_once};
 use slipfront_case::number_format::byte_size;
 use slipfront_case::text::display_path;
@@ -261,7 +261,7 @@ impl Plan {
     fn trimmed(&self, mut file: CaseFile, name: &str) -> Result<Case, CaseError> {
         if self.settings.keep == RetainRuns::All {
             let case = Case::new(file, name, &self.base.folder)?;
-            check_fields(&case.file, &case.model.lattice, &case.output)?;
+            check_fields(&case.file)?;
             return Ok(case);
         }
         // Fields and curves are not kept, and the numbers do not depend on them.
@@ -408,7 +408,7 @@ impl Plan {
 fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
     let mut file = case.file.clone();
     file.friction.seed = 0;
-    file.output = Output::default();
+    file.output = CaseFile::default().output;
     for (_, name) in file.files_mut() {
         let input = case.inputs.iter().find(|input| input.name == *name);
         let hash = input.map(|input| blake3::hash(&input.bytes).to_hex());
