@@ -44,18 +44,6 @@ const PREFIXES: [(&str, i32); 12] = [
     ("T", 12),
 ];
 
-/// Dimensions that have a name, for messages.
-const NAMED: [(Dimension, &str); 8] = [
-    (Length::DIMENSION, "a length"),
-    (Pressure::DIMENSION, "a pressure"),
-    (Density::DIMENSION, "a density"),
-    (Speed::DIMENSION, "a speed"),
-    (Duration::DIMENSION, "a time"),
-    (Rate::DIMENSION, "a rate"),
-    (Dimension::new(1, 0, 0), "a mass"),
-    (Dimension::new(1, 1, -2), "a force"),
-];
-
 /// The exponents of kilogram, metre and second.
 ///
 /// ```
@@ -145,52 +133,47 @@ pub trait Kind: Clone + fmt::Debug + PartialEq {
     const SI_UNIT: &'static str;
 }
 
-/// The markers that tell quantities of different dimension apart.
-pub mod kind {
-    use super::{Dimension, Kind};
-
-    macro_rules! kinds {
-        ($($(#[$doc:meta])* $name:ident: $dimension:expr, $label:literal, $example:literal, $unit:literal;)*) => {$(
-            $(#[$doc])*
-            #[derive(Clone, Debug, PartialEq, Eq)]
-            pub enum $name {}
-            impl Kind for $name {
-                const DIMENSION: Dimension = $dimension;
-                const NAME: &'static str = $label;
-                const EXAMPLE: &'static str = $example;
-                const SI_UNIT: &'static str = $unit;
-            }
-        )*};
-    }
-
-    kinds! {
-        /// Lengths, in m.
-        Length: Dimension::new(0, 1, 0), "a length", "1 um", "m";
-        /// Pressures and elastic moduli, in Pa.
-        Pressure: Dimension::new(1, -1, -2), "a pressure", "100 kPa", "Pa";
-        /// Densities, in kg/m^3.
-        Density: Dimension::new(1, -3, 0), "a density", "10 g/cm^3", "kg/m^3";
-        /// Speeds, in m/s.
-        Speed: Dimension::new(0, 1, -1), "a speed", "0.0949 mm/s", "m/s";
-        /// Durations, in s.
-        Duration: Dimension::new(0, 0, 1), "a time", "84 ns", "s";
-        /// Rates, in 1/s.
-        Rate: Dimension::new(0, 0, -1), "a rate", "3e8 1/s", "1/s";
-    }
+macro_rules! quantities {
+    ($($(#[$doc:meta])* $name:ident: $dimension:expr, $label:literal, $example:literal, $unit:literal;)*) => {
+        /// The markers that tell quantities of different dimension apart.
+        pub mod kind {
+            use super::{Dimension, Kind};
+            $(
+                $(#[$doc])*
+                #[derive(Clone, Debug, PartialEq, Eq)]
+                pub enum $name {}
+                impl Kind for $name {
+                    const DIMENSION: Dimension = $dimension;
+                    const NAME: &'static str = $label;
+                    const EXAMPLE: &'static str = $example;
+                    const SI_UNIT: &'static str = $unit;
+                }
+            )*
+        }
+        $($(#[$doc])* pub type $name = Quantity<kind::$name>;)*
+        /// Dimensions that have a name, for messages.
+        const NAMED: &[(Dimension, &str)] = &[
+            $(($dimension, $label),)*
+            (Dimension::new(1, 0, 0), "a mass"),
+            (Dimension::new(1, 1, -2), "a force"),
+        ];
+    };
 }
 
-/// A length, read into m.
-pub type Length = Quantity<kind::Length>;
-/// A pressure or an elastic modulus, read into Pa.
-pub type Pressure = Quantity<kind::Pressure>;
-/// A density, read into kg/m^3.
-pub type Density = Quantity<kind::Density>;
-/// A speed, read into m/s.
-pub type Speed = Quantity<kind::Speed>;
-/// A duration, read into s.
-pub type Duration = Quantity<kind::Duration>;
-/// A rate, read into 1/s.
-pub type Rate = Quantity<kind::Rate>;
+quantities! {
+    /// A length, read into m.
+    Length: Dimension::new(0, 1, 0), "a length", "1 um", "m";
+    /// A pressure or an elastic modulus, read into Pa.
+    Pressure: Dimension::new(1, -1, -2), "a pressure", "100 kPa", "Pa";
+    /// A density, read into kg/m^3.
+    Density: Dimension::new(1, -3, 0), "a density", "10 g/cm^3", "kg/m^3";
+    /// A speed, read into m/s.
+    Speed: Dimension::new(0, 1, -1), "a speed", "0.0949 mm/s", "m/s";
+    /// A duration, read into s.
+    Duration: Dimension::new(0, 0, 1), "a time", "84 ns", "s";
+    /// A rate, read into 1/s.
+    Rate: Dimension::new(0, 0, -1), "a rate", "3e8 1/s", "1/s";
+}
 
 /// A quantity, with the text it was written as.
 ///
@@ -311,12 +294,8 @@ impl<K: Kind> Visitor<'_> for QuantityVisitor<K> {
     type Value = Quantity<K>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{} as a string with its unit, such as {:?}",
-            K::NAME,
-            K::EXAMPLE
-        )
+        let (name, example) = (K::NAME, K::EXAMPLE);
+        write!(f, "{name} as a string with its unit, such as {example:?}")
     }
 
     fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Self::Value, E> {

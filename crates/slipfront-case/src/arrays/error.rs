@@ -23,44 +23,8 @@ pub enum ArrayError {
         found: String,
         known: &'static str,
     },
-    #[error("`{}` is not a readable {format} file: {}; write the file again", path.display(), single_line(detail))]
-    Broken {
-        path: PathBuf,
-        format: &'static str,
-        detail: String,
-    },
-    #[error(
-        "`{}` holds values of type {found} where real numbers, integers or booleans are wanted; \
-         convert the array with `.astype(float)` before saving it",
-        path.display()
-    )]
-    Dtype { path: PathBuf, found: String },
-    #[error("`{}` has {found} bytes where {wanted}; {remedy}", path.display())]
-    TooLong {
-        path: PathBuf,
-        found: u64,
-        wanted: String,
-        remedy: &'static str,
-    },
-    #[error("`{}` has {found} where {wanted} is wanted; {remedy}", path.display())]
-    Shape {
-        path: PathBuf,
-        found: String,
-        wanted: String,
-        remedy: &'static str,
-    },
-    #[error(
-        "`{}` has {value} in row {row}, column {column} (both counted from 0), where {wanted} is wanted; \
-         correct this value",
-        path.display()
-    )]
-    Value {
-        path: PathBuf,
-        row: usize,
-        column: usize,
-        value: String,
-        wanted: &'static str,
-    },
+    #[error("`{}` {problem}", path.display())]
+    Contents { path: PathBuf, problem: String },
     #[error(
         "the image `{}` has {width} x {height} pixels where at most {limit} pixels are read; scale it down",
         path.display()
@@ -75,13 +39,26 @@ pub enum ArrayError {
     Write { path: PathBuf, source: io::Error },
 }
 
+/// An error about the contents of a file; the sentence goes on after its name.
+pub(super) fn contents_error(path: &Path, problem: String) -> ArrayError {
+    let path = path.to_owned();
+    ArrayError::Contents { path, problem }
+}
+
 /// An error about a file that cannot be read as what its name says.
-pub(super) fn broken(path: &Path, format: &'static str, detail: impl Into<String>) -> ArrayError {
-    ArrayError::Broken {
-        path: path.to_owned(),
-        format,
-        detail: detail.into(),
-    }
+pub(super) fn broken(path: &Path, format: &str, detail: &str) -> ArrayError {
+    let detail = single_line(detail);
+    let problem = format!("is not a readable {format} file: {detail}; write the file again");
+    contents_error(path, problem)
+}
+
+/// An error about a value in the row and column `at`.
+pub(super) fn value_error(path: &Path, value: &str, at: [usize; 2], wanted: &str) -> ArrayError {
+    let [row, column] = at;
+    let problem = format!(
+        "has {value} in row {row}, column {column} (both counted from 0), where {wanted} is wanted; correct this value"
+    );
+    contents_error(path, problem)
 }
 
 /// Refuses an array of `nx` columns for the first of its values that is wrong.
@@ -89,19 +66,18 @@ pub(super) fn refuse_value(
     path: &Path,
     values: &[f64],
     nx: usize,
-    wanted: &'static str,
+    wanted: &str,
     is_wrong: impl Fn(f64) -> bool,
 ) -> Result<(), ArrayError> {
-    let Some(at) = values.iter().position(|value| is_wrong(*value)) else {
-        return Ok(());
-    };
-    Err(ArrayError::Value {
-        path: path.to_owned(),
-        row: at / nx,
-        column: at % nx,
-        value: values[at].to_string(),
-        wanted,
-    })
+    match values.iter().position(|value| is_wrong(*value)) {
+        Some(at) => Err(value_error(
+            path,
+            &values[at].to_string(),
+            [at / nx, at % nx],
+            wanted,
+        )),
+        None => Ok(()),
+    }
 }
 
 /// The extension in lower case, empty if there is none.

@@ -6,7 +6,7 @@ use std::path::Path;
 use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, InterlaceInfo, Reader};
 use slipfront::surface::MaskImage;
 
-use super::error::{ArrayError, broken, extension, unknown_extension};
+use super::error::{ArrayError, broken, contents_error, extension, unknown_extension};
 use crate::disk::write_atomic;
 
 /// More pixels than any lattice has blocks.
@@ -28,7 +28,6 @@ const DEFLATE_MAX_RATIO: u64 = 1040;
 /// over white.
 ///
 /// # Errors
-///
 /// [`ArrayError`] if the bytes are not those of a PNG image, corrupt, or have more than 2^28 pixels.
 pub fn mask_png(path: &Path, bytes: &[u8], threshold: f64) -> Result<MaskImage, ArrayError> {
     let file_bytes = bytes.len() as u64;
@@ -54,7 +53,7 @@ pub fn mask_png(path: &Path, bytes: &[u8], threshold: f64) -> Result<MaskImage, 
             "it has {file_bytes} bytes where its {} x {} pixels take at least {packed_bytes}",
             info.width, info.height
         );
-        return Err(broken(path, ".png", detail));
+        return Err(broken(path, ".png", &detail));
     }
     let reader = decoder
         .read_info()
@@ -72,7 +71,7 @@ fn check_palette(path: &Path, palette: Option<&[u8]>) -> Result<(), ArrayError> 
         return Ok(());
     }
     let detail = format!("its palette has {bytes} bytes where 3 for each of 1 to 256 colours are wanted");
-    Err(broken(path, ".png", detail))
+    Err(broken(path, ".png", &detail))
 }
 
 /// Decodes row by row, so that only one byte per pixel is kept.
@@ -137,7 +136,6 @@ fn decoding_error(path: &Path, source: DecodingError) -> ArrayError {
 /// image is the largest y. [`mask_png`] gives the same mask back.
 ///
 /// # Errors
-///
 /// [`ArrayError`] if the name does not end in `.png`, `textured` has another length or the file cannot be written.
 pub fn write_mask_png(path: &Path, nx: usize, ny: usize, textured: &[bool]) -> Result<(), ArrayError> {
     let ending = extension(path);
@@ -145,12 +143,11 @@ pub fn write_mask_png(path: &Path, nx: usize, ny: usize, textured: &[bool]) -> R
         return Err(unknown_extension(path, &ending, ".png"));
     }
     if textured.len() != nx * ny || textured.is_empty() {
-        return Err(ArrayError::Shape {
-            path: path.to_owned(),
-            found: format!("{} pixels to write", textured.len()),
-            wanted: format!("nx * ny = {nx} * {ny}"),
-            remedy: "hand over one value per block",
-        });
+        let found = textured.len();
+        let problem = format!(
+            "has {found} pixels to write where nx * ny = {nx} * {ny} is wanted; hand over one value per block"
+        );
+        return Err(contents_error(path, problem));
     }
     let encoded = encode(nx, ny, textured).map_err(io::Error::other);
     encoded

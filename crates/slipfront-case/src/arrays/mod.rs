@@ -17,13 +17,12 @@ pub use mask::{mask_png, write_mask_png};
 pub use npy::mask_npy;
 
 use crate::disk::open_regular;
-use error::{refuse_value, unknown_extension};
+use error::{contents_error, refuse_value, unknown_extension};
 
 /// Reads the bytes of a file for a lattice of `nx` x `ny` blocks. They are read once, so that the copy in the run folder
 /// holds what the case was made of even if the file changes.
 ///
 /// # Errors
-///
 /// [`ArrayError`] if the file is missing, not a regular file, or longer than that lattice can need.
 pub fn read_file(path: &Path, nx: usize, ny: usize) -> Result<Vec<u8>, ArrayError> {
     let read_error = |source| ArrayError::Read {
@@ -49,12 +48,8 @@ pub fn read_file(path: &Path, nx: usize, ny: usize) -> Result<Vec<u8>, ArrayErro
             ),
             None => ("an image takes".to_owned(), "scale it down"),
         };
-        return Err(ArrayError::TooLong {
-            path: path.to_owned(),
-            found,
-            wanted: format!("{what} at most {longest}"),
-            remedy,
-        });
+        let problem = format!("has {found} bytes where {what} at most {longest}; {remedy}");
+        return Err(contents_error(path, problem));
     }
     let mut bytes = Vec::new();
     file.take(longest).read_to_end(&mut bytes).map_err(read_error)?;
@@ -70,14 +65,12 @@ pub fn read_file(path: &Path, nx: usize, ny: usize) -> Result<Vec<u8>, ArrayErro
 /// file; a friction coefficient has none.
 ///
 /// # Errors
-///
 /// [`ArrayError`] if the bytes are of another format or shape, or have a value that is not finite or is below zero.
 pub fn field(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<f64>, ArrayError> {
-    let known = ".npy or .csv";
     let values = match extension(path).as_str() {
         "npy" => npy::values(path, bytes, nx, ny)?,
         "csv" => table::values(path, bytes, nx, ny)?,
-        other => return Err(unknown_extension(path, other, known)),
+        other => return Err(unknown_extension(path, other, ".npy or .csv")),
     };
     refuse_value(path, &values, nx, "a finite number >= 0", |value| {
         !value.is_finite() || value < 0.0

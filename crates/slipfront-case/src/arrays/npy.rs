@@ -4,7 +4,7 @@ use std::path::Path;
 
 use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 
-use super::error::{ArrayError, broken, refuse_value};
+use super::error::{ArrayError, broken, contents_error, refuse_value};
 use crate::text::truncated;
 
 /// Numpy itself refuses longer headers.
@@ -20,7 +20,6 @@ const HEADER_MAX_DIGITS: usize = 18;
 /// row-major order, row j = 0 (the smallest y) first.
 ///
 /// # Errors
-///
 /// [`ArrayError`] if the bytes are not those of a `.npy` file, of another shape, or have another value:
 /// a picture or a height map says nothing unambiguous about what is textured.
 pub fn mask_npy(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<bool>, ArrayError> {
@@ -35,9 +34,13 @@ pub fn mask_npy(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<b
 pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<f64>, ArrayError> {
     let (header, data_start) = read_header(bytes, path)?;
 
-    let number = Number::of(&header.dtype()).ok_or_else(|| ArrayError::Dtype {
-        path: path.to_owned(),
-        found: truncated(&header.dtype().descr()),
+    let number = Number::of(&header.dtype()).ok_or_else(|| {
+        let problem = format!(
+            "holds values of type {} where real numbers, integers or booleans are wanted; convert the array with \
+             `.astype(float)` before saving it",
+            truncated(&header.dtype().descr())
+        );
+        contents_error(path, problem)
     })?;
     if header.shape() != [ny as u64, nx as u64] {
         return Err(wrong_shape(path, header.shape(), nx, ny));
@@ -48,7 +51,7 @@ pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<
             "it has {} bytes where its header asks for {wanted_bytes}",
             bytes.len()
         );
-        return Err(broken(path, ".npy", detail));
+        return Err(broken(path, ".npy", &detail));
     }
 
     let mut values = vec![0.0; nx * ny];
@@ -137,12 +140,10 @@ fn wrong_shape(path: &Path, found: &[u64], nx: usize, ny: usize) -> ArrayError {
     } else {
         "save one value per block, or change `blocks`"
     };
-    ArrayError::Shape {
-        path: path.to_owned(),
-        found: format!("the shape ({})", sizes.join(", ")),
-        wanted: format!("({ny}, {nx}), that is (ny, nx),"),
-        remedy,
-    }
+    let sizes = sizes.join(", ");
+    let problem =
+        format!("has the shape ({sizes}) where ({ny}, {nx}), that is (ny, nx), is wanted; {remedy}");
+    contents_error(path, problem)
 }
 
 /// How one number is stored.

@@ -30,8 +30,6 @@ const REFERENCE: f64 = 23.0 * NUMBER + CONTACT;
 const SAVED: f64 = 5.0 * NUMBER;
 /// Room for what is read of it, which grows by an eighth at a time.
 const ROOM_TO_READ: f64 = 1.125;
-/// [`slipfront::observe::FirstSlip`].
-const FIRST_SLIP: f64 = NUMBER;
 
 /// A value of a field.
 const VALUE: f64 = size_of::<f32>() as f64;
@@ -77,9 +75,9 @@ pub struct Budget {
     /// Maps that are drawn.
     maps: f64,
     /// Bytes of the files that the case reads, kept for their copies.
-    inputs: f64,
+    pub(super) inputs: f64,
     /// Bytes of masks, one a pixel or block, until they are laid over the lattice.
-    masks: f64,
+    pub(super) masks: f64,
     /// Whether the run resumes from a checkpoint.
     is_resumed: bool,
 }
@@ -140,16 +138,6 @@ impl Budget {
         }
     }
 
-    /// Adds a file that the case reads.
-    pub(super) fn add_input(&mut self, bytes: usize) {
-        self.inputs += bytes as f64;
-    }
-
-    /// Adds a mask.
-    pub(super) fn add_mask(&mut self, pixels: usize) {
-        self.masks += pixels as f64;
-    }
-
     /// What takes how many bytes in each phase.
     fn parts(&self) -> [Part; 4] {
         let (blocks, cells, inputs) = (self.blocks, self.cells, self.inputs);
@@ -165,7 +153,8 @@ impl Budget {
                 bytes: [
                     blocks * SURFACE,
                     blocks * (SURFACE + self.kernel),
-                    blocks * (SURFACE + FIRST_SLIP) + cells * DECODED,
+                    // With the time of its first slip.
+                    blocks * (SURFACE + NUMBER) + cells * DECODED,
                     cells * STATICS_ON_DISK,
                     blocks * SAVED,
                 ],

@@ -19,9 +19,9 @@ pub(super) fn coefficients(
         let Some(written) = name(&mut file.friction).clone() else {
             return Ok(None);
         };
-        let given = inputs.read(file, key, &written, lattice)?;
-        let field = arrays::field(&given.path, &given.bytes, lattice.nx, lattice.ny)
-            .map_err(|error| file.source.error(key, error.to_string()))?;
+        let (given, field) = inputs.read(file, key, &written, lattice, |given| {
+            arrays::field(&given.original, &given.bytes, lattice.nx, lattice.ny)
+        })?;
         *name(&mut file.friction) = Some(inputs.keep(file, given)?);
         Ok(Some(field))
     };

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use slipfront::Lattice;
 
 use super::budget::Budget;
-use crate::arrays;
+use crate::arrays::{self, ArrayError};
 use crate::case_file::{CaseError, CaseFile};
 
 /// A file that a case reads, kept so that the run folder can hold a copy.
@@ -20,17 +20,13 @@ pub struct Input {
 }
 
 /// Names the copy of a file in the folder `inputs/` after its plain name; files of one name and different contents are
-/// numbered. The name, and whether a copy of it has the same contents already.
+/// numbered. Gives the name, and whether there is such a copy already.
 ///
-/// `describe` gives the name of a copy made before, and whether its contents are those of the file.
-pub fn name_of_copy<'c, C>(
-    plain: &str,
-    copies: &'c [C],
-    describe: impl Fn(&'c C) -> (&'c str, bool),
-) -> (String, bool) {
+/// `is_same` says of a name whether the copy that has it, if there is one, has the contents of the file.
+pub fn name_of_copy(plain: &str, is_same: impl Fn(&str) -> Option<bool>) -> (String, bool) {
     let mut name = format!("inputs/{plain}");
     let mut number = 1;
-    while let Some((_, is_same)) = copies.iter().map(&describe).find(|(other, _)| *other == name) {
+    while let Some(is_same) = is_same(&name) {
         if is_same {
             return (name, true);
         }
@@ -38,12 +34,6 @@ pub fn name_of_copy<'c, C>(
         name = format!("inputs/{number}-{plain}");
     }
     (name, false)
-}
-
-/// A file that was read, and its contents.
-pub(super) struct InputBytes {
-    pub(super) path: PathBuf,
-    pub(super) bytes: Vec<u8>,
 }
 
 /// Files read so far, and the budget of the case with them.
@@ -55,37 +45,40 @@ pub(super) struct Inputs<'a> {
 }
 
 impl Inputs<'_> {
-    /// Reads a file that the case names. It is read once, so that its copy holds what the case was made of.
-    pub(super) fn read(
+    /// Reads a file that the case names, and what `parse` makes of it. It is read once, so that its copy holds what the case
+    /// was made of. It has its plain name until it is kept.
+    pub(super) fn read<T>(
         &self,
         file: &CaseFile,
         key: &str,
         written: &str,
         lattice: &Lattice,
-    ) -> Result<InputBytes, CaseError> {
-        let path = self.folder.join(written);
-        let bytes = arrays::read_file(&path, lattice.nx, lattice.ny)
-            .map_err(|error| file.source.error(key, error.to_string()))?;
-        Ok(InputBytes { path, bytes })
+        parse: impl FnOnce(&Input) -> Result<T, ArrayError>,
+    ) -> Result<(Input, T), CaseError> {
+        let original = self.folder.join(written);
+        let name = original
+            .file_name()
+            .map(|name| name.to_string_lossy().into_owned());
+        let given = arrays::read_file(&original, lattice.nx, lattice.ny).map(|bytes| Input {
+            name: name.unwrap_or_else(|| "input".to_owned()),
+            original,
+            bytes,
+        });
+        let read = given.and_then(|given| parse(&given).map(|parsed| (given, parsed)));
+        read.map_err(|error| file.source.error(key, error.to_string()))
     }
 
     /// Keeps the contents of a file that the case uses; gives the path of its copy in the run folder.
-    pub(super) fn keep(&mut self, file: &CaseFile, given: InputBytes) -> Result<String, CaseError> {
-        let InputBytes { path, bytes } = given;
-        let plain = path
-            .file_name()
-            .map_or_else(|| "input".into(), |name| name.to_string_lossy().into_owned());
-        let (name, is_kept) = name_of_copy(&plain, &self.kept, |kept| (&kept.name, kept.bytes == bytes));
-        if is_kept {
-            return Ok(name);
+    pub(super) fn keep(&mut self, file: &CaseFile, mut given: Input) -> Result<String, CaseError> {
+        let kept = |name: &str| self.kept.iter().find(|kept| kept.name == name);
+        let is_same = |name: &str| Some(kept(name)?.bytes == given.bytes);
+        let (name, is_kept) = name_of_copy(&given.name, is_same);
+        if !is_kept {
+            self.budget.inputs += given.bytes.len() as f64;
+            given.name.clone_from(&name);
+            self.kept.push(given);
+            self.budget.check_making(file)?;
         }
-        self.budget.add_input(bytes.len());
-        self.kept.push(Input {
-            name: name.clone(),
-            original: path,
-            bytes,
-        });
-        self.budget.check_making(file)?;
         Ok(name)
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use slipfront::{Lattice, Scales, surface};
 
-use super::inputs::{InputBytes, Inputs};
+use super::inputs::{Input, Inputs};
 use crate::arrays::ArrayError;
 use crate::case_file::{CaseError, CaseFile};
 use crate::quantity::Length;
@@ -30,13 +30,13 @@ pub(super) fn textures(
             }
             case_file::Texture::Mask(mask) => {
                 let key = format!("texture.{index}.file");
-                let given = inputs.read(file, &key, &mask.file, lattice)?;
-                let shape = mask_of(&given, mask.threshold, lattice)
-                    .map_err(|error| file.source.error(&key, error.to_string()))?;
-                inputs.budget.add_mask(match &shape {
+                let parse = |given: &_| mask_of(given, mask.threshold, lattice);
+                let (given, shape) = inputs.read(file, &key, &mask.file, lattice, parse)?;
+                let pixels = match &shape {
                     surface::Texture::Image(image) => image.dark.len(),
                     _ => lattice.n_blocks(),
-                });
+                };
+                inputs.budget.masks += pixels as f64;
                 let copy = inputs.keep(file, given)?;
                 if let case_file::Texture::Mask(mask) = &mut file.texture[index] {
                     mask.file = copy;
@@ -138,8 +138,8 @@ fn groove_in_blocks(
     (surface::Texture::Groove(groove), Some(percent))
 }
 
-fn mask_of(given: &InputBytes, threshold: f64, lattice: &Lattice) -> Result<surface::Texture, ArrayError> {
-    let InputBytes { path, bytes } = given;
+fn mask_of(given: &Input, threshold: f64, lattice: &Lattice) -> Result<surface::Texture, ArrayError> {
+    let (path, bytes) = (&given.original, &given.bytes);
     Ok(if is_array(path) {
         surface::Texture::Blocks(arrays::mask_npy(path, bytes, lattice.nx, lattice.ny)?)
     } else {

@@ -53,10 +53,7 @@ impl<'a> Check<'a> {
 
     /// Refuses a value that is not of this kind.
     pub(super) fn value_of(&self, kind: &Kind, key: &str, value: &dyn Checked) -> Result<(), CaseError> {
-        match value.complaint(kind) {
-            Some(complaint) => self.refuse(key, |path| format!("`{path}` is {complaint}")),
-            None => Ok(()),
-        }
+        self.hold(key, value.complaint(kind))
     }
 
     /// Refuses a number out of bounds that depend on other values, or none (`nan`).
@@ -67,10 +64,14 @@ impl<'a> Check<'a> {
         bounds: Bounds,
         remark: &str,
     ) -> Result<(), CaseError> {
-        match out_of(bounds, value, remark) {
-            Some(complaint) => self.refuse(key, |path| format!("`{path}` is {complaint}")),
-            None => Ok(()),
-        }
+        self.hold(key, out_of(bounds, value, remark))
+    }
+
+    /// Refuses the value of a key if there is a complaint about it.
+    fn hold(&self, key: &str, complaint: Option<String>) -> Result<(), CaseError> {
+        complaint.map_or(Ok(()), |complaint| {
+            self.refuse(key, |path| format!("`{path}` is {complaint}"))
+        })
     }
 }
 

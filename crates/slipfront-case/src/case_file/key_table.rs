@@ -19,32 +19,25 @@ pub type Bounds = (Bound<f64>, Bound<f64>);
 
 /// What a key takes.
 #[derive(Clone, Copy, Debug)]
+#[expect(
+    missing_docs,
+    reason = "the sentence of each variant tells what its fields are"
+)]
 pub enum Kind {
     /// A number, or one of these words in its place. The remark ends the sentence about a number out of bounds.
     Number {
-        /// The bounds.
         bounds: Bounds,
-        /// Advice, or what the number is.
         remark: &'static str,
-        /// Words that stand for a number.
         words: &'static [&'static str],
     },
-    /// A string of number and unit.
-    Quantity {
-        /// The SI unit of the bounds.
-        unit: &'static str,
-        /// The bounds.
-        bounds: Bounds,
-    },
-    /// A whole number, or a pair of them.
+    /// A string of number and unit; the bounds are in this unit of the SI.
+    Quantity { unit: &'static str, bounds: Bounds },
+    /// A whole number, or a pair of them. The noun is what it must be, where "from 1 to 64" does not say enough, and the
+    /// remark ends the sentence about a number out of bounds.
     Whole {
-        /// The smallest.
         least: u64,
-        /// The largest.
         most: u64,
-        /// What it must be, where "from 1 to 64" does not say enough.
         noun: &'static str,
-        /// Ends the sentence about a number out of bounds.
         remark: &'static str,
     },
     /// One of the words of an enum.
@@ -109,17 +102,12 @@ impl Section {
 
     /// Gives a table the defaults of the keys that it lacks, unless their partner stands there.
     pub(super) fn fill_in(&self, table: &mut DeTable<'_>) {
-        for Key {
-            name,
-            default,
-            partner,
-            ..
-        } in self.keys
-        {
-            let is_given = table.contains_key(*name) || partner.is_some_and(|key| table.contains_key(key));
+        for key in self.keys {
+            let names = [Some(key.name), key.partner];
+            let is_given = names.into_iter().flatten().any(|name| table.contains_key(name));
             // A key without a default has an empty text, which is no value.
-            if let (false, Ok(value)) = (is_given, DeValue::parse(default)) {
-                table.insert(Spanned::new(0..0, Cow::Borrowed(*name)), value);
+            if let (false, Ok(value)) = (is_given, DeValue::parse(key.default)) {
+                table.insert(Spanned::new(0..0, Cow::Borrowed(key.name)), value);
             }
         }
     }
@@ -270,12 +258,10 @@ const GROOVE: &[Key] = &[
         .title("groove offset", "", "m"),
 ];
 
-const POLYGON: &[Key] = &[key(
-    "points",
-    "",
-    Kind::Special("at least 3 pairs within 1e9 m"),
-    "the corners",
-)];
+#[rustfmt::skip]
+const POLYGON: &[Key] = &[
+    key("points", "", Kind::Special("at least 3 pairs within 1e9 m"), "the corners"),
+];
 
 #[rustfmt::skip]
 const MASK: &[Key] = &[

@@ -92,12 +92,11 @@ pub(super) fn refuse_both(root: &DeTable<'_>, source: &Source) -> Result<(), Cas
 pub fn unknown(key: &str, header: &str, known: &[&str]) -> String {
     let list = known.join(", ");
     let advice = match (home_of(key), nearest(key, known)) {
-        (Some(home), _) => format!(": it belongs in {home}"),
+        (Some(home), _) => format!(": it belongs in {home}."),
         (None, Some(near)) => format!(": did you mean `{near}`?"),
         (None, None) => ".".to_owned(),
     };
-    let end = if advice.ends_with(['?', '.']) { "" } else { "." };
-    format!("unknown key `{key}` in {header}{advice}{end} Known keys: {list}")
+    format!("unknown key `{key}` in {header}{advice} Known keys: {list}")
 }
 
 /// The sentence about a key or table that the file as a whole does not have.
@@ -147,8 +146,6 @@ pub(super) fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
     let distances = known
         .iter()
         .map(|key| (strsim::damerau_levenshtein(word, key), *key));
-    distances
-        .min()
-        .filter(|(distance, key)| *distance <= (key.len() / 3).max(1))
-        .map(|(_, key)| key)
+    let (distance, key) = distances.min()?;
+    (distance <= (key.len() / 3).max(1)).then_some(key)
 }

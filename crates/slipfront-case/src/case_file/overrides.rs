@@ -208,7 +208,7 @@ impl Change<'_> {
     fn remove_partners(&self, table: &mut DeTable<'_>, key: &str) -> Result<(), String> {
         for partner in partners(self.table, key) {
             if let Some(old) = table.remove(partner)
-                && old.span().start > self.source.file_len()
+                && self.source.override_at(old.span().start).is_some()
             {
                 return Err(format!(
                     "`{key}` and `{partner}`, which another --set gives, set the same thing: keep one"

@@ -59,11 +59,6 @@ impl Source {
         &self.name
     }
 
-    /// Length of the file without the overrides, in bytes.
-    pub(super) fn file_len(&self) -> usize {
-        self.file.len()
-    }
-
     /// A piece of the file or of an override.
     pub(super) fn slice(&self, span: Range<usize>) -> &str {
         let piece = match self.override_at(span.start) {
@@ -117,7 +112,7 @@ impl Source {
     }
 
     /// The override that holds a position, and where it begins.
-    fn override_at(&self, position: usize) -> Option<&(usize, String)> {
+    pub(super) fn override_at(&self, position: usize) -> Option<&(usize, String)> {
         self.overrides.iter().rev().find(|(start, _)| *start <= position)
     }
 }

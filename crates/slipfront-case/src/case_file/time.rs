@@ -98,13 +98,11 @@ impl TryFrom<WordOrNumber> for Step {
     fn try_from(value: WordOrNumber) -> Result<Self, String> {
         match value {
             WordOrNumber::Number(dt_star) => Ok(Self::Number(dt_star)),
-            WordOrNumber::Word(word) => match word.as_str() {
-                "auto" => Ok(Self::Auto),
-                "paper" => Ok(Self::Paper),
-                _ => Err(format!(
-                    "{word:?} is given, a number, \"auto\" or \"paper\" is wanted"
-                )),
-            },
+            WordOrNumber::Word(word) if word == "auto" => Ok(Self::Auto),
+            WordOrNumber::Word(word) if word == "paper" => Ok(Self::Paper),
+            WordOrNumber::Word(word) => Err(format!(
+                "{word:?} is given, a number, \"auto\" or \"paper\" is wanted"
+            )),
         }
     }
 }

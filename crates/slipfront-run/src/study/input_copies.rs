@@ -95,8 +95,9 @@ impl Copies<'_> {
                 return;
             }
         };
-        let copies = &self.made;
-        let (copy, is_made) = name_of_copy(&plain_name(name), copies, |made| (&made.name, made.hash == hash));
+        let made = |name: &str| self.made.iter().find(|made| made.name == name);
+        let is_same = |name: &str| Some(made(name)?.hash == hash);
+        let (copy, is_made) = name_of_copy(&plain_name(name), is_same);
         name.clone_from(&copy);
         if !is_made {
             self.made.push(Copy {
