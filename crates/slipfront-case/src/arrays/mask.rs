@@ -31,13 +31,12 @@ const DEFLATE_MAX_RATIO: u64 = 1040;
 /// [`ArrayError`] if the bytes are not those of a PNG image, corrupt, or have more than 2^28 pixels.
 pub fn mask_png(path: &Path, bytes: &[u8], threshold: f64) -> Result<MaskImage, ArrayError> {
     let file_bytes = bytes.len() as u64;
+    let unreadable = |source| decoding_error(path, source);
     let mut decoder = Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(png::Transformations::EXPAND);
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);
-    let info = decoder
-        .read_header_info()
-        .map_err(|source| decoding_error(path, source))?;
+    let info = decoder.read_header_info().map_err(unreadable)?;
     let pixels = u64::from(info.width) * u64::from(info.height);
     if pixels > PIXELS_MAX {
         return Err(ArrayError::TooManyPixels {
@@ -55,13 +54,11 @@ pub fn mask_png(path: &Path, bytes: &[u8], threshold: f64) -> Result<MaskImage, 
         );
         return Err(broken(path, ".png", &detail));
     }
-    let reader = decoder
-        .read_info()
-        .map_err(|source| decoding_error(path, source))?;
+    let reader = decoder.read_info().map_err(unreadable)?;
     if reader.info().color_type == ColorType::Indexed {
         check_palette(path, reader.info().palette.as_deref())?;
     }
-    read_rows(reader, threshold).map_err(|source| decoding_error(path, source))
+    read_rows(reader, threshold).map_err(unreadable)
 }
 
 /// The decoder takes a palette of any length and panics on one that is not made of 1 to 256 whole colours.
@@ -89,10 +86,7 @@ fn read_rows(mut reader: Reader<Cursor<&[u8]>>, threshold: f64) -> Result<MaskIm
         match row.interlace() {
             InterlaceInfo::Adam7(pass) => png::expand_interlaced_row(&mut dark, width, &row_dark, pass, 8),
             InterlaceInfo::Null(_) => {
-                dark.iter_mut()
-                    .skip(rows_done * width)
-                    .zip(&row_dark)
-                    .for_each(|(to, from)| *to = *from);
+                dark[rows_done * width..][..width].copy_from_slice(&row_dark);
                 rows_done += 1;
             }
         }

@@ -116,7 +116,6 @@ impl Budget {
             Snapshots::At(steps) => steps.len() as f64,
             Snapshots::Every(every) => (last_step / every + 1) as f64,
         };
-        let has_maps = output.fields.contains(&Field::ContactStress);
         Self {
             blocks: lattice.nx as f64 * lattice.ny as f64,
             kernel: match Kernel::Fused.for_law(law) {
@@ -127,10 +126,9 @@ impl Budget {
             frames,
             fields: output.fields.len() as f64,
             rows: (last_step / output.series_stride) as f64 + 2.0,
-            maps: if has_maps {
-                frames.min(MAX_MAPS as f64)
-            } else {
-                0.0
+            maps: match output.fields.contains(&Field::ContactStress) {
+                true => frames.min(MAX_MAPS as f64),
+                false => 0.0,
             },
             inputs: 0.0,
             masks: 0.0,
@@ -256,7 +254,7 @@ impl Budget {
 
     /// Refuses a run, or to resume one, that needs more memory than there is; what a case takes is there already if it is
     /// `made`.
-    pub(super) fn check_memory(&self, file: &CaseFile, made: bool) -> Result<(), CaseError> {
+    pub fn check_memory(&self, file: &CaseFile, made: bool) -> Result<(), CaseError> {
         let made = if made { self.total(Phase::Making) } else { 0.0 };
         let phase = self.largest(true);
         self.compare_memory(file, "a run of this case", phase, made, available_memory())
@@ -281,24 +279,21 @@ impl Budget {
         };
         let (key, most, remedy) = self.most(phase);
         // The case of a run that resumes can be changed no more.
-        let (whose, remedy) = if self.is_resumed {
-            (
+        let (whose, remedy) = match self.is_resumed {
+            true => (
                 "going on with this run",
                 "give it more, in a queue for example with `--mem`",
-            )
-        } else {
-            (whose, remedy)
+            ),
+            false => (whose, remedy),
         };
-        let sentence = format!(
-            "{whose} takes about {} of memory ({most}) where {bound}: {remedy}",
-            byte_size(needed)
-        );
+        let needed = byte_size(needed);
+        let sentence = format!("{whose} takes about {needed} of memory ({most}) where {bound}: {remedy}");
         Err(file.source.error(key, sentence))
     }
 
     /// Refuses a run whose files, and checkpoints if it saves any, have no room in `folder`, which need not be there yet.
     /// `replaced` is what goes from there before.
-    pub(super) fn check_disk(
+    pub fn check_disk(
         &self,
         file: &CaseFile,
         folder: &Path,
@@ -308,20 +303,21 @@ impl Budget {
         let Some(free) = free_disk(folder).map(|free| free + replaced as f64) else {
             return Ok(());
         };
-        let (taken, beside, without) = if checkpoints {
-            let checkpoints = self.disk_of_checkpoints();
-            let beside = format!(" and its checkpoints {}", byte_size(checkpoints));
-            (
-                checkpoints,
-                beside,
-                ", run without checkpoints (--checkpoint off)",
-            )
+        let beside = if checkpoints {
+            self.disk_of_checkpoints()
         } else {
-            (0.0, String::new(), "")
+            0.0
         };
-        if self.disk() + taken <= free {
+        if self.disk() + beside <= free {
             return Ok(());
         }
+        let (beside, without) = match checkpoints {
+            true => (
+                format!(" and its checkpoints {}", byte_size(beside)),
+                ", run without checkpoints (--checkpoint off)",
+            ),
+            false => (String::new(), ""),
+        };
         let (key, most, remedy) = self.most(Phase::Files);
         let sentence = format!(
             "the files of this run take about {} ({most}){beside} where {} are free in {}: free some, {remedy}{without}, \
@@ -336,10 +332,9 @@ impl Budget {
     /// The key that most bytes of a phase are due to, how many these are and for what, and the remedy.
     fn most(&self, phase: Phase) -> (&'static str, String, &'static str) {
         let bytes_of = |part: &Part| part.bytes[phase as usize];
-        let most = self.parts().into_iter();
-        let most = most
-            .max_by(|a, b| bytes_of(a).total_cmp(&bytes_of(b)))
-            .unwrap_or_default();
+        let parts = self.parts().into_iter();
+        let most = parts.max_by(|a, b| bytes_of(a).total_cmp(&bytes_of(b)));
+        let most = most.unwrap_or_default();
         let what = format!("{} of it for {}", byte_size(bytes_of(&most)), most.what);
         (most.key, what, most.remedy)
     }

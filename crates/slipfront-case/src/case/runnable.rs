@@ -148,17 +148,6 @@ impl Case {
         })
     }
 
-    /// Refuses a run whose files, and checkpoints if it saves any, need more disk space than `folder` has after `replaced`
-    /// bytes there were removed.
-    pub fn check_disk(&self, folder: &Path, replaced: u64, checkpoints: bool) -> Result<(), CaseError> {
-        self.budget.check_disk(&self.file, folder, replaced, checkpoints)
-    }
-
-    /// Refuses to resume from a checkpoint if that needs more memory than there is.
-    pub fn check_memory_resumed(&self) -> Result<(), CaseError> {
-        self.budget.resumed().check_memory(&self.file, true)
-    }
-
     /// Steps times blocks, the measure of what the run costs.
     pub fn block_steps(&self) -> f64 {
         self.time_plan.last_step as f64 * self.model.lattice.n_blocks() as f64

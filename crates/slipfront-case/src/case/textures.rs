@@ -44,10 +44,8 @@ pub(super) fn textures(
                 (shape, None)
             }
         };
-        within_reach(&shape, lattice).map_err(|sentence| {
-            let key = format!("texture.{index}");
-            file.source.error(&key, sentence)
-        })?;
+        within_reach(&shape, lattice)
+            .map_err(|sentence| file.source.error(&format!("texture.{index}"), sentence))?;
         shapes.push(shape);
         asked = asked.zip(percent).map(|(sum, percent)| sum + percent);
     }

@@ -108,13 +108,8 @@ fn excerpt(line: &str, start: usize, width: usize) -> String {
         return String::new();
     }
     // Tabs stay tabs, so that the caret stands below its character however wide they are.
-    let margin: String = before
-        .chars()
-        .map(|c| if c == '\t' { '\t' } else { ' ' })
-        .collect();
+    let margin = before.replace(|c| c != '\t', " ");
     let line = truncated(line);
-    let width = width
-        .min(line.chars().count().saturating_sub(before.chars().count()))
-        .max(1);
-    format!("\n  {line}\n  {margin}{}", "^".repeat(width))
+    let room = line.chars().count().saturating_sub(before.chars().count());
+    format!("\n  {line}\n  {margin}{}", "^".repeat(width.min(room).max(1)))
 }

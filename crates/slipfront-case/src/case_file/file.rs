@@ -79,19 +79,15 @@ impl CaseFile {
         Self::parse(&text, &path.display().to_string(), overrides)
     }
 
-    /// Every file that the case names, relative to the case file, and the key that names it.
-    pub fn files_mut(&mut self) -> impl Iterator<Item = (String, &mut String)> {
-        let textures = self.texture.iter_mut().enumerate();
-        let masks = textures.filter_map(|(index, texture)| match texture {
-            Texture::Mask(mask) => Some((format!("texture.{index}.file"), &mut mask.file)),
+    /// Every file that the case names, relative to the case file.
+    pub fn files_mut(&mut self) -> impl Iterator<Item = &mut String> {
+        let masks = self.texture.iter_mut().filter_map(|texture| match texture {
+            Texture::Mask(mask) => Some(&mut mask.file),
             _ => None,
         });
-        let fields = [
-            ("friction.mu_static_field", &mut self.friction.mu_static_field),
-            ("friction.mu_kinetic_field", &mut self.friction.mu_kinetic_field),
-        ];
-        let fields = fields.into_iter();
-        masks.chain(fields.filter_map(|(key, name)| Some((key.to_owned(), name.as_mut()?))))
+        let friction = &mut self.friction;
+        let fields = [&mut friction.mu_static_field, &mut friction.mu_kinetic_field];
+        masks.chain(fields.into_iter().flatten())
     }
 
     /// Checks every bound that needs nothing but the file. [`parse`](Self::parse) has done so already.

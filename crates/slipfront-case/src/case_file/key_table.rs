@@ -3,7 +3,9 @@
 //! Bounds on quantities are generous: they refuse typing errors (a block of 1000 km), not unusual materials.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::ops::Bound::{self, Excluded, Included, Unbounded};
+use std::sync::LazyLock;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -105,13 +107,20 @@ impl Section {
         for key in self.keys {
             let names = [Some(key.name), key.partner];
             let is_given = names.into_iter().flatten().any(|name| table.contains_key(name));
-            // A key without a default has an empty text, which is no value.
-            if let (false, Ok(value)) = (is_given, DeValue::parse(key.default)) {
-                table.insert(Spanned::new(0..0, Cow::Borrowed(key.name)), value);
+            if let (false, Some(value)) = (is_given, DEFAULTS.get(key.default)) {
+                table.insert(Spanned::new(0..0, Cow::Borrowed(key.name)), value.clone());
             }
         }
     }
 }
+
+/// The values of the defaults by their texts. They are parsed once, since a study makes many cases.
+static DEFAULTS: LazyLock<HashMap<&str, Spanned<DeValue<'static>>>> = LazyLock::new(|| {
+    let keys = SECTIONS.iter().flat_map(|section| section.keys);
+    // A key without a default has an empty text, which is no value.
+    keys.filter_map(|key| Some((key.default, DeValue::parse(key.default).ok()?)))
+        .collect()
+});
 
 /// The table of the textures.
 pub(super) const TEXTURE: &str = "texture";

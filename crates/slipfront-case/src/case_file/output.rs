@@ -71,18 +71,13 @@ impl Output {
 #[derive(Serialize, Deserialize)]
 #[serde(
     untagged,
+    deny_unknown_fields,
     expecting = "expected \"auto\", a list of times t* such as [10.0, 80.0], or { every = 5.0 }"
 )]
 enum SnapshotsKey {
     Word(String),
     At(Vec<f64>),
-    Every(Every),
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Every {
-    every: f64,
+    Every { every: f64 },
 }
 
 impl TryFrom<SnapshotsKey> for Snapshots {
@@ -95,7 +90,7 @@ impl TryFrom<SnapshotsKey> for Snapshots {
                 "{word:?} is given, \"auto\", a list of times t* or {{ every = 5.0 }} is wanted"
             )),
             SnapshotsKey::At(times) => Ok(Self::At(times)),
-            SnapshotsKey::Every(Every { every }) => Ok(Self::Every(every)),
+            SnapshotsKey::Every { every } => Ok(Self::Every(every)),
         }
     }
 }
@@ -105,7 +100,7 @@ impl From<Snapshots> for SnapshotsKey {
         match snapshots {
             Snapshots::Auto => Self::Word("auto".to_owned()),
             Snapshots::At(times) => Self::At(times),
-            Snapshots::Every(every) => Self::Every(Every { every }),
+            Snapshots::Every(every) => Self::Every { every },
         }
     }
 }

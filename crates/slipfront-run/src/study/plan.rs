@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
-use std::sync::Mutex;
+use std::sync::{LazyLock, Mutex};
 
 use rayon::prelude::*;
 
@@ -408,8 +408,9 @@ impl Plan {
 fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
     let mut file = case.file.clone();
     file.friction.seed = 0;
-    file.output = CaseFile::default().output;
-    for (_, name) in file.files_mut() {
+    static DEFAULT: LazyLock<CaseFile> = LazyLock::new(CaseFile::default);
+    file.output.clone_from(&DEFAULT.output);
+    for name in file.files_mut() {
         let input = case.inputs.iter().find(|input| input.name == *name);
         let hash = input.map(|input| blake3::hash(&input.bytes).to_hex());
         let ending = name.rsplit('.').next().unwrap_or_default();
