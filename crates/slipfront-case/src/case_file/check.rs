@@ -83,10 +83,10 @@ pub(super) trait Checked {
 
 impl Checked for f64 {
     fn complaint(&self, kind: &Kind) -> Option<String> {
-        match kind {
-            Kind::Number { bounds, remark, .. } => out_of(*bounds, *self, remark),
-            _ => None,
-        }
+        let Kind::Number { bounds, remark, .. } = kind else {
+            return None;
+        };
+        out_of(*bounds, *self, remark)
     }
 }
 
@@ -101,15 +101,13 @@ impl Checked for AutoOr {
 
 impl<K: quantity::Kind> Checked for Quantity<K> {
     fn complaint(&self, kind: &Kind) -> Option<String> {
-        match kind {
-            Kind::Quantity { bounds, unit } if !is_within(*bounds, self.si()) => {
-                let range = in_words(*bounds);
-                Some(format!(
-                    "\"{self}\": it must be {range} {unit}; look at number and unit"
-                ))
-            }
-            _ => None,
-        }
+        let Kind::Quantity { bounds, unit } = kind else {
+            return None;
+        };
+        (!is_within(*bounds, self.si())).then(|| {
+            let range = in_words(*bounds);
+            format!("\"{self}\": it must be {range} {unit}; look at number and unit")
+        })
     }
 }
 
@@ -131,14 +129,12 @@ impl Checked for u64 {
 
 impl Checked for [u32; 2] {
     fn complaint(&self, kind: &Kind) -> Option<String> {
+        let Kind::Whole { least, most, .. } = kind else {
+            return None;
+        };
         let [x, y] = self.map(u64::from);
-        let wrong = x.complaint(kind).or_else(|| y.complaint(kind));
-        match kind {
-            Kind::Whole { least, most, .. } if wrong.is_some() => {
-                Some(format!("[{x}, {y}]: both must be from {least} to {most}"))
-            }
-            _ => None,
-        }
+        let is_wrong = [x, y].iter().any(|count| !(least..=most).contains(&count));
+        is_wrong.then(|| format!("[{x}, {y}]: both must be from {least} to {most}"))
     }
 }
 
