@@ -10,34 +10,17 @@ use tempfile::TempPath;
 /// The beginning of the names of files that are being written.
 pub const UNFINISHED: &str = ".slipfront";
 
-/// Writes a file atomically: as a temporary file in its folder, which is then renamed.
-///
-/// # Errors
-/// Any error of the system; the temporary file is removed then.
+/// Writes a file atomically: as a temporary file in its folder, which is then renamed, or removed after an error.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    write_atomic_with(path, |file| file.write_all(bytes))
-}
-
-/// Writes a file atomically, with the contents that `fill` writes.
-///
-/// # Errors
-/// As for [`write_atomic`].
-pub fn write_atomic_with(
-    path: &Path,
-    fill: impl FnOnce(&mut File) -> std::io::Result<()>,
-) -> std::io::Result<()> {
     let folder = path
         .parent()
         .filter(|parent| !parent.as_os_str().is_empty())
         .unwrap_or(Path::new("."));
-    write_temp(folder, fill)?.persist(path)?;
+    write_temp(folder, |file| file.write_all(bytes))?.persist(path)?;
     Ok(())
 }
 
 /// Writes a temporary file in a folder and syncs it. It is removed when dropped, unless it is renamed (`persist`).
-///
-/// # Errors
-/// Any error of the system.
 pub fn write_temp(
     folder: &Path,
     fill: impl FnOnce(&mut File) -> std::io::Result<()>,
@@ -54,9 +37,6 @@ pub fn write_temp(
 }
 
 /// Syncs a folder, so that files renamed in it keep their names after a power failure.
-///
-/// # Errors
-/// Any error of the system.
 pub fn sync_folder(folder: &Path) -> std::io::Result<()> {
     // Only Unix opens folders as files.
     if cfg!(unix) {
@@ -83,9 +63,6 @@ pub fn remove_unfinished(folder: &Path) {
 }
 
 /// Removes a file if it exists.
-///
-/// # Errors
-/// Any error of the system.
 pub fn remove_if_there(path: &Path) -> std::io::Result<()> {
     match std::fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
@@ -94,17 +71,11 @@ pub fn remove_if_there(path: &Path) -> std::io::Result<()> {
 }
 
 /// Whether a folder is empty.
-///
-/// # Errors
-/// When it cannot be read.
 pub fn is_empty(folder: &Path) -> std::io::Result<bool> {
     Ok(std::fs::read_dir(folder)?.next().transpose()?.is_none())
 }
 
 /// Opens a regular file, and nothing else: a pipe may block, and a device such as `/dev/zero` has no end.
-///
-/// # Errors
-/// Any error of the system, and for anything but a regular file.
 pub fn open_regular(path: &Path) -> std::io::Result<File> {
     if !std::fs::metadata(path)?.is_file() {
         return Err(std::io::Error::other("it is not a regular file"));
@@ -121,9 +92,6 @@ pub fn begins_with(path: &Path, beginning: &[u8]) -> bool {
 
 /// Opens a regular file of at most `most` bytes, so that a huge file in the place of a small one is refused before it
 /// fills the memory.
-///
-/// # Errors
-/// Any error of the system, and for a longer file.
 pub fn open_limited(path: &Path, most: u64) -> std::io::Result<Take<File>> {
     let file = open_regular(path)?;
     let length = file.metadata()?.len();
@@ -135,9 +103,6 @@ pub fn open_limited(path: &Path, most: u64) -> std::io::Result<Take<File>> {
 }
 
 /// Reads a regular file of at most `most` bytes.
-///
-/// # Errors
-/// As for [`open_limited`].
 pub fn read_limited(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open_limited(path, most)?.read_to_end(&mut bytes)?;

@@ -44,18 +44,6 @@ const PREFIXES: [(&str, i32); 12] = [
     ("T", 12),
 ];
 
-/// Dimensions that have a name, for messages.
-const NAMED: [(Dimension, &str); 8] = [
-    (Length::DIMENSION, "a length"),
-    (Pressure::DIMENSION, "a pressure"),
-    (Density::DIMENSION, "a density"),
-    (Speed::DIMENSION, "a speed"),
-    (Duration::DIMENSION, "a time"),
-    (Rate::DIMENSION, "a rate"),
-    (Dimension::new(1, 0, 0), "a mass"),
-    (Dimension::new(1, 1, -2), "a force"),
-];
-
 /// The exponents of kilogram, metre and second.
 ///
 /// ```
@@ -63,54 +51,34 @@ const NAMED: [(Dimension, &str); 8] = [
 /// assert_eq!(Pressure::DIMENSION.to_string(), "kg m^-1 s^-2");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Dimension {
-    kilogram: i32,
-    metre: i32,
-    second: i32,
-}
+pub struct Dimension([i32; 3]);
 
 impl Dimension {
     /// The dimension kg^`kilogram` m^`metre` s^`second`.
     pub const fn new(kilogram: i32, metre: i32, second: i32) -> Self {
-        Self {
-            kilogram,
-            metre,
-            second,
-        }
+        Self([kilogram, metre, second])
     }
 
     fn times(self, other: Self, power: i32) -> Self {
-        Self {
-            kilogram: self.kilogram + power * other.kilogram,
-            metre: self.metre + power * other.metre,
-            second: self.second + power * other.second,
-        }
+        Self(std::array::from_fn(|unit| self.0[unit] + power * other.0[unit]))
     }
 
     fn name(self) -> &'static str {
-        NAMED
-            .iter()
-            .find(|(dimension, _)| *dimension == self)
-            .map_or("another quantity", |(_, name)| name)
+        let named = NAMED.iter().find(|(dimension, _)| *dimension == self);
+        named.map_or("another quantity", |(_, name)| name)
     }
 }
 
 impl fmt::Display for Dimension {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut separator = "";
-        for (unit, power) in [("kg", self.kilogram), ("m", self.metre), ("s", self.second)] {
-            match power {
-                0 => continue,
-                1 => write!(f, "{separator}{unit}")?,
-                _ => write!(f, "{separator}{unit}^{power}")?,
-            }
-            separator = " ";
-        }
-        if separator.is_empty() {
-            f.write_str("1")
-        } else {
-            Ok(())
-        }
+        let powers = ["kg", "m", "s"].into_iter().zip(self.0);
+        let factors = powers.filter_map(|(unit, power)| match power {
+            0 => None,
+            1 => Some(unit.to_owned()),
+            _ => Some(format!("{unit}^{power}")),
+        });
+        let text = factors.collect::<Vec<_>>().join(" ");
+        f.write_str(if text.is_empty() { "1" } else { &text })
     }
 }
 
@@ -165,52 +133,47 @@ pub trait Kind: Clone + fmt::Debug + PartialEq {
     const SI_UNIT: &'static str;
 }
 
-/// The markers that tell quantities of different dimension apart.
-pub mod kind {
-    use super::{Dimension, Kind};
-
-    macro_rules! kinds {
-        ($($(#[$doc:meta])* $name:ident: $dimension:expr, $label:literal, $example:literal, $unit:literal;)*) => {$(
-            $(#[$doc])*
-            #[derive(Clone, Debug, PartialEq, Eq)]
-            pub enum $name {}
-            impl Kind for $name {
-                const DIMENSION: Dimension = $dimension;
-                const NAME: &'static str = $label;
-                const EXAMPLE: &'static str = $example;
-                const SI_UNIT: &'static str = $unit;
-            }
-        )*};
-    }
-
-    kinds! {
-        /// Lengths, in m.
-        Length: Dimension::new(0, 1, 0), "a length", "1 um", "m";
-        /// Pressures and elastic moduli, in Pa.
-        Pressure: Dimension::new(1, -1, -2), "a pressure", "100 kPa", "Pa";
-        /// Densities, in kg/m^3.
-        Density: Dimension::new(1, -3, 0), "a density", "10 g/cm^3", "kg/m^3";
-        /// Speeds, in m/s.
-        Speed: Dimension::new(0, 1, -1), "a speed", "0.0949 mm/s", "m/s";
-        /// Durations, in s.
-        Duration: Dimension::new(0, 0, 1), "a time", "84 ns", "s";
-        /// Rates, in 1/s.
-        Rate: Dimension::new(0, 0, -1), "a rate", "3e8 1/s", "1/s";
-    }
+macro_rules! quantities {
+    ($($(#[$doc:meta])* $name:ident: $dimension:expr, $label:literal, $example:literal, $unit:literal;)*) => {
+        /// The markers that tell quantities of different dimension apart.
+        pub mod kind {
+            use super::{Dimension, Kind};
+            $(
+                $(#[$doc])*
+                #[derive(Clone, Debug, PartialEq, Eq)]
+                pub enum $name {}
+                impl Kind for $name {
+                    const DIMENSION: Dimension = $dimension;
+                    const NAME: &'static str = $label;
+                    const EXAMPLE: &'static str = $example;
+                    const SI_UNIT: &'static str = $unit;
+                }
+            )*
+        }
+        $($(#[$doc])* pub type $name = Quantity<kind::$name>;)*
+        /// Dimensions that have a name, for messages.
+        const NAMED: &[(Dimension, &str)] = &[
+            $(($dimension, $label),)*
+            (Dimension::new(1, 0, 0), "a mass"),
+            (Dimension::new(1, 1, -2), "a force"),
+        ];
+    };
 }
 
-/// A length, read into m.
-pub type Length = Quantity<kind::Length>;
-/// A pressure or an elastic modulus, read into Pa.
-pub type Pressure = Quantity<kind::Pressure>;
-/// A density, read into kg/m^3.
-pub type Density = Quantity<kind::Density>;
-/// A speed, read into m/s.
-pub type Speed = Quantity<kind::Speed>;
-/// A duration, read into s.
-pub type Duration = Quantity<kind::Duration>;
-/// A rate, read into 1/s.
-pub type Rate = Quantity<kind::Rate>;
+quantities! {
+    /// A length, read into m.
+    Length: Dimension::new(0, 1, 0), "a length", "1 um", "m";
+    /// A pressure or an elastic modulus, read into Pa.
+    Pressure: Dimension::new(1, -1, -2), "a pressure", "100 kPa", "Pa";
+    /// A density, read into kg/m^3.
+    Density: Dimension::new(1, -3, 0), "a density", "10 g/cm^3", "kg/m^3";
+    /// A speed, read into m/s.
+    Speed: Dimension::new(0, 1, -1), "a speed", "0.0949 mm/s", "m/s";
+    /// A duration, read into s.
+    Duration: Dimension::new(0, 0, 1), "a time", "84 ns", "s";
+    /// A rate, read into 1/s.
+    Rate: Dimension::new(0, 0, -1), "a rate", "3e8 1/s", "1/s";
+}
 
 /// A quantity, with the text it was written as.
 ///
@@ -247,15 +210,6 @@ impl<K: Kind> Quantity<K> {
     pub fn from_si(si: f64) -> Self {
         Self {
             text: format!("{si:?} {}", K::SI_UNIT),
-            si,
-            kind: PhantomData,
-        }
-    }
-
-    /// A quantity whose text is known to read as `si`: for defaults, which tests hold against their text.
-    pub(crate) fn from_text(text: &str, si: f64) -> Self {
-        Self {
-            text: text.to_owned(),
             si,
             kind: PhantomData,
         }
@@ -300,22 +254,20 @@ impl<K: Kind> FromStr for Quantity<K> {
         if number.rest.trim().is_empty() {
             return Err(Self::no_unit(text.trim().to_owned()));
         }
-        let unit = read_unit(text, number.rest)?;
-        if unit.dimension != K::DIMENSION {
+        let (dimension, power_of_ten) = read_unit(text, number.rest)?;
+        if dimension != K::DIMENSION {
             return Err(QuantityError::Dimension {
                 text: text.to_owned(),
-                given: unit.dimension.name(),
-                dimension: unit.dimension,
+                given: dimension.name(),
+                dimension,
                 wanted: K::NAME,
                 example: K::EXAMPLE,
             });
         }
-        let si = number
-            .shifted(unit.power_of_ten)
-            .ok_or_else(|| QuantityError::Range {
-                text: text.to_owned(),
-                what: if number.exponent > 0 { "large" } else { "small" },
-            })?;
+        let si = number.shifted(power_of_ten).ok_or_else(|| QuantityError::Range {
+            text: text.to_owned(),
+            what: if number.exponent > 0 { "large" } else { "small" },
+        })?;
         Ok(Self {
             text: text.to_owned(),
             si,
@@ -342,12 +294,8 @@ impl<K: Kind> Visitor<'_> for QuantityVisitor<K> {
     type Value = Quantity<K>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{} as a string with its unit, such as {:?}",
-            K::NAME,
-            K::EXAMPLE
-        )
+        let (name, example) = (K::NAME, K::EXAMPLE);
+        write!(f, "{name} as a string with its unit, such as {example:?}")
     }
 
     fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Self::Value, E> {
@@ -419,27 +367,18 @@ fn split_exponent(text: &str) -> Option<(i32, &str)> {
     Some((digits.parse().unwrap_or(limit), rest))
 }
 
-/// A product of powers of units: its dimension and the power of ten of its SI unit.
-struct Unit {
-    dimension: Dimension,
-    power_of_ten: i32,
-}
-
-fn read_unit(text: &str, unit_text: &str) -> Result<Unit, QuantityError> {
+/// The dimension of a product of powers of units, and the power of ten of its SI unit.
+fn read_unit(text: &str, unit_text: &str) -> Result<(Dimension, i32), QuantityError> {
     let wrong = |why| QuantityError::Unit {
         text: text.to_owned(),
         why,
     };
     let unit_text = with_ascii_signs(unit_text);
-    let mut unit = Unit {
-        dimension: Dimension::new(0, 0, 0),
-        power_of_ten: 0,
-    };
+    let mut dimension = Dimension::new(0, 0, 0);
+    let mut power_of_ten = 0;
     for (place, part) in unit_text.split('/').enumerate() {
-        let factors: Vec<&str> = part
-            .split(['*', ' '])
-            .filter(|factor| !factor.is_empty())
-            .collect();
+        let factors = part.split(['*', ' ']).filter(|factor| !factor.is_empty());
+        let factors: Vec<&str> = factors.collect();
         let sign = if place == 0 { 1 } else { -1 };
         match factors.as_slice() {
             // "1/s" after the number, or "5/s" without the 1.
@@ -455,12 +394,12 @@ fn read_unit(text: &str, unit_text: &str) -> Result<Unit, QuantityError> {
         for factor in factors {
             let (symbol, power) = split_power(factor)
                 .ok_or_else(|| wrong("a power is a whole number from -9 to 9, as in `m^-3`"))?;
-            let (dimension, power_of_ten) = find_symbol(symbol).ok_or_else(|| unknown_unit(text, symbol))?;
-            unit.dimension = unit.dimension.times(dimension, sign * power);
-            unit.power_of_ten += sign * power * power_of_ten;
+            let (of_symbol, of_ten) = find_symbol(symbol).ok_or_else(|| unknown_unit(text, symbol))?;
+            dimension = dimension.times(of_symbol, sign * power);
+            power_of_ten += sign * power * of_ten;
         }
     }
-    Ok(unit)
+    Ok((dimension, power_of_ten))
 }
 
 /// Writes the signs that have an ASCII spelling in that spelling: micro, middle dot, superscripts.
@@ -490,22 +429,18 @@ fn with_ascii_signs(text: &str) -> String {
 }
 
 fn split_power(factor: &str) -> Option<(&str, i32)> {
-    match factor.split_once('^') {
-        None => Some((factor, 1)),
-        Some((symbol, power)) => {
-            let power = power.parse().ok().filter(|power| (-9..=9).contains(power))?;
-            Some((symbol, power))
-        }
-    }
+    let Some((symbol, power)) = factor.split_once('^') else {
+        return Some((factor, 1));
+    };
+    let power = power.parse().ok().filter(|power| (-9..=9).contains(power))?;
+    Some((symbol, power))
 }
 
 /// The dimension and power of ten of a symbol: a unit as it stands, or else a prefix and a unit.
 fn find_symbol(symbol: &str) -> Option<(Dimension, i32)> {
     let bare = |name: &str| {
-        UNITS
-            .iter()
-            .find(|(unit, ..)| *unit == name)
-            .map(|&(_, dimension, power)| (dimension, power))
+        let unit = UNITS.iter().find(|(unit, ..)| *unit == name);
+        unit.map(|&(_, dimension, power)| (dimension, power))
     };
     bare(symbol).or_else(|| {
         PREFIXES.iter().find_map(|(prefix, power_of_prefix)| {

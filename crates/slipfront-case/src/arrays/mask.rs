@@ -3,14 +3,10 @@
 use std::io::{self, Cursor};
 use std::path::Path;
 
-use png::{
-    BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, InterlaceInfo, Reader,
-    Transformations,
-};
-
+use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, InterlaceInfo, Reader};
 use slipfront::surface::MaskImage;
 
-use super::{ArrayError, extension, unknown_extension};
+use super::error::{ArrayError, broken, contents_error, extension, unknown_extension};
 use crate::disk::write_atomic;
 
 /// More pixels than any lattice has blocks.
@@ -32,24 +28,21 @@ const DEFLATE_MAX_RATIO: u64 = 1040;
 /// over white.
 ///
 /// # Errors
-///
 /// [`ArrayError`] if the bytes are not those of a PNG image, corrupt, or have more than 2^28 pixels.
 pub fn mask_png(path: &Path, bytes: &[u8], threshold: f64) -> Result<MaskImage, ArrayError> {
     let file_bytes = bytes.len() as u64;
+    let unreadable = |source| decoding_error(path, source);
     let mut decoder = Decoder::new(Cursor::new(bytes));
-    decoder.set_transformations(Transformations::EXPAND);
+    decoder.set_transformations(png::Transformations::EXPAND);
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);
-    let info = decoder
-        .read_header_info()
-        .map_err(|source| decoding_error(path, source))?;
+    let info = decoder.read_header_info().map_err(unreadable)?;
     let pixels = u64::from(info.width) * u64::from(info.height);
     if pixels > PIXELS_MAX {
-        let (path, width, height) = (path.to_owned(), info.width, info.height);
         return Err(ArrayError::TooManyPixels {
-            path,
-            width,
-            height,
+            path: path.to_owned(),
+            width: info.width,
+            height: info.height,
             limit: PIXELS_MAX,
         });
     }
@@ -59,15 +52,13 @@ pub fn mask_png(path: &Path, bytes: &[u8], threshold: f64) -> Result<MaskImage, 
             "it has {file_bytes} bytes where its {} x {} pixels take at least {packed_bytes}",
             info.width, info.height
         );
-        return Err(broken(path, detail));
+        return Err(broken(path, ".png", &detail));
     }
-    let reader = decoder
-        .read_info()
-        .map_err(|source| decoding_error(path, source))?;
+    let reader = decoder.read_info().map_err(unreadable)?;
     if reader.info().color_type == ColorType::Indexed {
         check_palette(path, reader.info().palette.as_deref())?;
     }
-    read_rows(reader, threshold).map_err(|source| decoding_error(path, source))
+    read_rows(reader, threshold).map_err(unreadable)
 }
 
 /// The decoder takes a palette of any length and panics on one that is not made of 1 to 256 whole colours.
@@ -76,10 +67,8 @@ fn check_palette(path: &Path, palette: Option<&[u8]>) -> Result<(), ArrayError> 
     if bytes.is_multiple_of(3) && (3..=768).contains(&bytes) {
         return Ok(());
     }
-    Err(broken(
-        path,
-        format!("its palette has {bytes} bytes where 3 for each of 1 to 256 colours are wanted"),
-    ))
+    let detail = format!("its palette has {bytes} bytes where 3 for each of 1 to 256 colours are wanted");
+    Err(broken(path, ".png", &detail))
 }
 
 /// Decodes row by row, so that only one byte per pixel is kept.
@@ -91,16 +80,13 @@ fn read_rows(mut reader: Reader<Cursor<&[u8]>>, threshold: f64) -> Result<MaskIm
     while let Some(row) = reader.next_interlaced_row()? {
         let row_dark: Vec<u8> = row
             .data()
-            .chunks_exact(pixel_bytes(color, depth))
+            .chunks_exact(color.samples() * if depth == BitDepth::Sixteen { 2 } else { 1 })
             .map(|pixel| u8::from(luminance(pixel, color, depth) < threshold))
             .collect();
         match row.interlace() {
             InterlaceInfo::Adam7(pass) => png::expand_interlaced_row(&mut dark, width, &row_dark, pass, 8),
             InterlaceInfo::Null(_) => {
-                dark.iter_mut()
-                    .skip(rows_done * width)
-                    .zip(&row_dark)
-                    .for_each(|(to, from)| *to = *from);
+                dark[rows_done * width..][..width].copy_from_slice(&row_dark);
                 rows_done += 1;
             }
         }
@@ -112,16 +98,7 @@ fn read_rows(mut reader: Reader<Cursor<&[u8]>>, threshold: f64) -> Result<MaskIm
     })
 }
 
-/// The bytes of one pixel after expansion to at least 8 bits per sample.
-fn pixel_bytes(color: ColorType, depth: BitDepth) -> usize {
-    color.samples() * sample_bytes(depth)
-}
-
-fn sample_bytes(depth: BitDepth) -> usize {
-    if depth == BitDepth::Sixteen { 2 } else { 1 }
-}
-
-/// The Rec. 709 luminance of one pixel on white, in 0 to 1.
+/// The Rec. 709 luminance of one pixel on white, in 0 to 1. Samples have been expanded to at least 8 bits.
 fn luminance(pixel: &[u8], color: ColorType, depth: BitDepth) -> f64 {
     let sample = |index: usize| match depth {
         BitDepth::Sixteen => {
@@ -129,32 +106,21 @@ fn luminance(pixel: &[u8], color: ColorType, depth: BitDepth) -> f64 {
         }
         _ => f64::from(pixel[index]) / 255.0,
     };
+    let rec_709 = || 0.2126 * sample(0) + 0.7152 * sample(1) + 0.0722 * sample(2);
     let (luminance, opacity) = match color {
         ColorType::Grayscale => (sample(0), 1.0),
         ColorType::GrayscaleAlpha => (sample(0), sample(1)),
-        ColorType::Rgba => (rec_709(sample(0), sample(1), sample(2)), sample(3)),
+        ColorType::Rgba => (rec_709(), sample(3)),
         // Palettes have been expanded.
-        ColorType::Rgb | ColorType::Indexed => (rec_709(sample(0), sample(1), sample(2)), 1.0),
+        ColorType::Rgb | ColorType::Indexed => (rec_709(), 1.0),
     };
     opacity * luminance + (1.0 - opacity)
 }
 
-fn rec_709(red: f64, green: f64, blue: f64) -> f64 {
-    0.2126 * red + 0.7152 * green + 0.0722 * blue
-}
-
-fn broken(path: &Path, detail: String) -> ArrayError {
-    ArrayError::Broken {
-        path: path.to_owned(),
-        format: ".png",
-        detail,
-    }
-}
-
 fn decoding_error(path: &Path, source: DecodingError) -> ArrayError {
     match source {
-        DecodingError::IoError(_) => broken(path, "it ends before the last pixel".to_owned()),
-        other => broken(path, other.to_string().trim_end_matches('.').to_owned()),
+        DecodingError::IoError(_) => broken(path, ".png", "it ends before the last pixel"),
+        other => broken(path, ".png", other.to_string().trim_end_matches('.')),
     }
 }
 
@@ -164,7 +130,6 @@ fn decoding_error(path: &Path, source: DecodingError) -> ArrayError {
 /// image is the largest y. [`mask_png`] gives the same mask back.
 ///
 /// # Errors
-///
 /// [`ArrayError`] if the name does not end in `.png`, `textured` has another length or the file cannot be written.
 pub fn write_mask_png(path: &Path, nx: usize, ny: usize, textured: &[bool]) -> Result<(), ArrayError> {
     let ending = extension(path);
@@ -172,12 +137,11 @@ pub fn write_mask_png(path: &Path, nx: usize, ny: usize, textured: &[bool]) -> R
         return Err(unknown_extension(path, &ending, ".png"));
     }
     if textured.len() != nx * ny || textured.is_empty() {
-        return Err(ArrayError::Shape {
-            path: path.to_owned(),
-            found: format!("{} pixels to write", textured.len()),
-            wanted: format!("nx * ny = {nx} * {ny}"),
-            remedy: "hand over one value per block",
-        });
+        let found = textured.len();
+        let problem = format!(
+            "has {found} pixels to write where nx * ny = {nx} * {ny} is wanted; hand over one value per block"
+        );
+        return Err(contents_error(path, problem));
     }
     let encoded = encode(nx, ny, textured).map_err(io::Error::other);
     encoded
@@ -192,14 +156,10 @@ pub fn write_mask_png(path: &Path, nx: usize, ny: usize, textured: &[bool]) -> R
 fn encode(nx: usize, ny: usize, textured: &[bool]) -> Result<Vec<u8>, EncodingError> {
     let mut rows = Vec::with_capacity(nx.div_ceil(8) * ny);
     for row in textured.chunks(nx).rev() {
-        for eight in row.chunks(8) {
-            rows.push(
-                eight
-                    .iter()
-                    .enumerate()
-                    .fold(0, |byte, (bit, textured)| byte | u8::from(!textured) << (7 - bit)),
-            );
-        }
+        rows.extend(row.chunks(8).map(|eight| {
+            let bits = eight.iter().enumerate();
+            bits.fold(0, |byte, (bit, textured)| byte | u8::from(!textured) << (7 - bit))
+        }));
     }
     let mut bytes = Vec::new();
     let mut encoder = Encoder::new(&mut bytes, nx as u32, ny as u32);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 
-use super::ArrayError;
+use super::error::{ArrayError, broken, contents_error, refuse_value};
 use crate::text::truncated;
 
 /// Numpy itself refuses longer headers.
@@ -20,30 +20,27 @@ const HEADER_MAX_DIGITS: usize = 18;
 /// row-major order, row j = 0 (the smallest y) first.
 ///
 /// # Errors
-///
 /// [`ArrayError`] if the bytes are not those of a `.npy` file, of another shape, or have another value:
 /// a picture or a height map says nothing unambiguous about what is textured.
 pub fn mask_npy(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<bool>, ArrayError> {
     let values = values(path, bytes, nx, ny)?;
-    match values.iter().position(|value| ![0.0, 1.0].contains(value)) {
-        None => Ok(values.iter().map(|value| *value == 1.0).collect()),
-        Some(at) => Err(ArrayError::Value {
-            path: path.to_owned(),
-            row: at / nx,
-            column: at % nx,
-            value: values[at].to_string(),
-            wanted: "0 or 1, 1 being textured,",
-        }),
-    }
+    refuse_value(path, &values, nx, "0 or 1, 1 being textured,", |value| {
+        ![0.0, 1.0].contains(&value)
+    })?;
+    Ok(values.iter().map(|value| *value == 1.0).collect())
 }
 
 /// An array of shape (ny, nx) in row-major order; the values may be anything, NaN included.
 pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<f64>, ArrayError> {
     let (header, data_start) = read_header(bytes, path)?;
 
-    let number = Number::of(&header.dtype()).ok_or_else(|| ArrayError::Dtype {
-        path: path.to_owned(),
-        found: truncated(&header.dtype().descr()),
+    let number = Number::of(&header.dtype()).ok_or_else(|| {
+        let problem = format!(
+            "holds values of type {} where real numbers, integers or booleans are wanted; convert the array with \
+             `.astype(float)` before saving it",
+            truncated(&header.dtype().descr())
+        );
+        contents_error(path, problem)
     })?;
     if header.shape() != [ny as u64, nx as u64] {
         return Err(wrong_shape(path, header.shape(), nx, ny));
@@ -54,7 +51,7 @@ pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<
             "it has {} bytes where its header asks for {wanted_bytes}",
             bytes.len()
         );
-        return Err(broken(path, detail));
+        return Err(broken(path, ".npy", &detail));
     }
 
     let mut values = vec![0.0; nx * ny];
@@ -74,42 +71,32 @@ pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<
 /// `npyz` reserves what the header asks for, recurses without bound and overflows on the product of an absurd
 /// shape, hence the checks on the bytes before it sees them.
 fn read_header(bytes: &[u8], path: &Path) -> Result<(NpyHeader, usize), ArrayError> {
+    let refuse = |detail: &str| broken(path, ".npy", detail);
     let head = &bytes[..bytes.len().min(HEADER_MAX_BYTES)];
     if !head.starts_with(b"\x93NUMPY") {
-        return Err(broken(
-            path,
-            "it does not begin with the signature of numpy".to_owned(),
-        ));
+        return Err(refuse("it does not begin with the signature of numpy"));
     }
     let (text_start, text_bytes) = match head {
         [_, _, _, _, _, _, 1, _, a, b, ..] => (10, usize::from(u16::from_le_bytes([*a, *b]))),
         [_, _, _, _, _, _, 2 | 3, _, a, b, c, d, ..] => (12, u32::from_le_bytes([*a, *b, *c, *d]) as usize),
         [_, _, _, _, _, _, major, minor, ..] if !(1..=3).contains(major) => {
-            return Err(broken(
-                path,
-                format!("its format version is {major}.{minor}, known are 1.0 to 3.0"),
-            ));
+            let detail = format!("its format version is {major}.{minor}, known are 1.0 to 3.0");
+            return Err(refuse(&detail));
         }
-        _ => return Err(broken(path, "it ends inside the header".to_owned())),
+        _ => return Err(refuse("it ends inside the header")),
     };
     let data_start = text_start + text_bytes;
     let Some(text) = head.get(text_start..data_start) else {
-        return Err(broken(
-            path,
-            format!("its header of {data_start} bytes is cut short or longer than {HEADER_MAX_BYTES} bytes"),
-        ));
+        let detail =
+            format!("its header of {data_start} bytes is cut short or longer than {HEADER_MAX_BYTES} bytes");
+        return Err(refuse(&detail));
     };
     if nesting(text) > HEADER_MAX_NESTING || digits(text) > HEADER_MAX_DIGITS {
-        return Err(broken(
-            path,
-            "its header does not describe a plain array of numbers".to_owned(),
-        ));
+        return Err(refuse("its header does not describe a plain array of numbers"));
     }
     let header = NpyHeader::from_reader(&head[..data_start]).map_err(|source| {
-        broken(
-            path,
-            format!("its header is corrupt ({})", one_line(&source.to_string())),
-        )
+        let detail = format!("its header is corrupt ({})", one_line(&source.to_string()));
+        refuse(&detail)
     })?;
     Ok((header, data_start))
 }
@@ -146,14 +133,6 @@ fn one_line(message: &str) -> &str {
         .trim_end_matches(|last: char| !last.is_alphanumeric())
 }
 
-fn broken(path: &Path, detail: String) -> ArrayError {
-    ArrayError::Broken {
-        path: path.to_owned(),
-        format: ".npy",
-        detail,
-    }
-}
-
 fn wrong_shape(path: &Path, found: &[u64], nx: usize, ny: usize) -> ArrayError {
     let sizes: Vec<String> = found.iter().map(u64::to_string).collect();
     let remedy = if found == [nx as u64, ny as u64] {
@@ -161,12 +140,10 @@ fn wrong_shape(path: &Path, found: &[u64], nx: usize, ny: usize) -> ArrayError {
     } else {
         "save one value per block, or change `blocks`"
     };
-    ArrayError::Shape {
-        path: path.to_owned(),
-        found: format!("the shape ({})", sizes.join(", ")),
-        wanted: format!("({ny}, {nx}), that is (ny, nx),"),
-        remedy,
-    }
+    let sizes = sizes.join(", ");
+    let problem =
+        format!("has the shape ({sizes}) where ({ny}, {nx}), that is (ny, nx), is wanted; {remedy}");
+    contents_error(path, problem)
 }
 
 /// How one number is stored.
@@ -184,9 +161,7 @@ impl Number {
         let kind = text.type_char();
         let size = match (kind, text.size_field()) {
             (TypeChar::Bool | TypeChar::Int | TypeChar::Uint, 1) => 1,
-            (TypeChar::Int | TypeChar::Uint | TypeChar::Float, 2) => 2,
-            (TypeChar::Int | TypeChar::Uint | TypeChar::Float, 4) => 4,
-            (TypeChar::Int | TypeChar::Uint | TypeChar::Float, 8) => 8,
+            (TypeChar::Int | TypeChar::Uint | TypeChar::Float, size @ (2 | 4 | 8)) => size as usize,
             _ => return None,
         };
         Some(Number {

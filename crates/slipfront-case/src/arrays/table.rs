@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use csv::{ReaderBuilder, StringRecord, Trim};
+use csv::{ReaderBuilder, Trim};
 
-use super::ArrayError;
+use super::error::{ArrayError, broken, contents_error, value_error};
 
 /// Comment lines are searched for the separator up to this total length.
 pub(super) const PREAMBLE_MAX_BYTES: u64 = 1 << 20;
@@ -14,7 +14,7 @@ pub(super) const NUMBER_MAX_BYTES: u64 = 64;
 /// `ny` lines of `nx` numbers in row-major order; the values may be anything that is written as a number.
 pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<f64>, ArrayError> {
     let separator = separator(bytes);
-    let mut table = ReaderBuilder::new()
+    let table = ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
         .comment(Some(b'#'))
@@ -24,20 +24,13 @@ pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<
 
     // A number and what separates it from the next take two bytes at the least.
     let mut values = Vec::with_capacity((nx * ny).min(bytes.len() / 2 + 1));
-    let mut record = StringRecord::new();
     let mut row = 0;
-    while table
-        .read_record(&mut record)
-        .map_err(|source| ArrayError::Broken {
-            path: path.to_owned(),
-            format: ".csv",
-            detail: source.to_string(),
-        })?
-    {
+    for record in table.into_records() {
+        let record = record.map_err(|source| broken(path, ".csv", &source.to_string()))?;
         let line = record.position().map_or(0, csv::Position::line);
         // Numbers in columns are padded with several blanks.
-        let fields: Vec<&str> = record
-            .iter()
+        let fields = record.iter();
+        let fields: Vec<&str> = fields
             .filter(|field| separator != b' ' || !field.is_empty())
             .collect();
         // The csv crate gives an empty record for a comment that ends the file without a line break.
@@ -45,31 +38,24 @@ pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<
             continue;
         }
         if row == ny {
-            return Err(wrong_shape(
-                path,
-                format!("more than {ny} lines of numbers"),
-                nx,
-                ny,
-            ));
+            let found = format!("more than {ny} lines of numbers");
+            return Err(wrong_shape(path, &found, nx, ny));
         }
         if fields.len() != nx {
             let found = format!("{} numbers in line {line}", fields.len());
-            return Err(wrong_shape(path, found, nx, ny));
+            return Err(wrong_shape(path, &found, nx, ny));
         }
         for (column, field) in fields.iter().enumerate() {
-            let value = field.parse().map_err(|_| ArrayError::Value {
-                path: path.to_owned(),
-                row,
-                column,
-                value: format!("`{}`", excerpt(field)),
-                wanted: "a number with a decimal point",
-            })?;
-            values.push(value);
+            let value = field.parse().map_err(|_| {
+                let field = format!("`{}`", excerpt(field));
+                value_error(path, &field, [row, column], "a number with a decimal point")
+            });
+            values.push(value?);
         }
         row += 1;
     }
     if row < ny {
-        return Err(wrong_shape(path, format!("{row} lines of numbers"), nx, ny));
+        return Err(wrong_shape(path, &format!("{row} lines of numbers"), nx, ny));
     }
     Ok(values)
 }
@@ -88,13 +74,12 @@ fn separator(bytes: &[u8]) -> u8 {
         .unwrap_or(b',')
 }
 
-fn wrong_shape(path: &Path, found: String, nx: usize, ny: usize) -> ArrayError {
-    ArrayError::Shape {
-        path: path.to_owned(),
-        found,
-        wanted: format!("one line per row of blocks, {ny} lines of {nx} numbers,"),
-        remedy: "write one number per block, or change `blocks`",
-    }
+fn wrong_shape(path: &Path, found: &str, nx: usize, ny: usize) -> ArrayError {
+    let problem = format!(
+        "has {found} where one line per row of blocks, {ny} lines of {nx} numbers, is wanted; write one number per \
+         block, or change `blocks`"
+    );
+    contents_error(path, problem)
 }
 
 /// The beginning of a field, for a message.

@@ -1,22 +1,11 @@
 //! Memory and disk space that a run needs, estimated before it begins and compared with what the machine has.
 //!
-//! Memory is that of the largest of three phases: a case is made, it is run and its results are written, its pictures are
-//! drawn. Per block of the lattice, in bytes:
-//!
-//! | | made | run | drawn |
-//! |---|---|---|---|
-//! | surface: textured, mu_s, mu_k | 17 | 17 | 17 |
-//! | fused kernel: displacement, velocity, thresholds, first slip, masks and tiles | | 58 | |
-//! | instead, reference kernel: state, forces, springs, thresholds, first slip | | 185 | |
-//! | first slip | | | 8 |
-//!
-//! and per block that is kept of a field (one in `stride` along each axis) 4 for every snapshot and field, of which
-//! drawing keeps the contact stress of six snapshots only. A row of the series takes 104 and its text, in arrays that
-//! double as they grow, and three times 104 when it is drawn; pictures take their primitives and pixels.
+//! [`Budget::parts`] is the table of what takes how much. Memory is that of the largest of three phases: a case is made, it is
+//! run and its results are written, its pictures are drawn.
 
 use std::path::Path;
 
-use slipfront::observe::{CurveRow, Frame};
+use slipfront::observe::{CurveRow, Field, Frame};
 use slipfront::{Contact, FrictionLaw, Kernel, Lattice};
 
 use super::output::{MAX_MAPS, Output, Snapshots};
@@ -24,7 +13,6 @@ use super::time_plan::TimePlan;
 use crate::case_file::{CaseError, CaseFile};
 use crate::machine::{available_memory, can_be_had, free_disk};
 use crate::number_format::byte_size;
-use slipfront::observe::Field;
 
 /// A number of a block.
 const NUMBER: f64 = size_of::<f64>() as f64;
@@ -42,8 +30,6 @@ const REFERENCE: f64 = 23.0 * NUMBER + CONTACT;
 const SAVED: f64 = 5.0 * NUMBER;
 /// Room for what is read of it, which grows by an eighth at a time.
 const ROOM_TO_READ: f64 = 1.125;
-/// [`slipfront::observe::FirstSlip`].
-const FIRST_SLIP: f64 = NUMBER;
 
 /// A value of a field.
 const VALUE: f64 = size_of::<f32>() as f64;
@@ -55,7 +41,7 @@ const STATICS_ON_DISK: f64 = 2.0 + 3.0 * NUMBER;
 /// A row of `series.csv`: 13 columns of at most 24 characters and what separates them.
 const ROW_TEXT: f64 = 13.0 * 25.0;
 /// A row of `series.csv` in memory: 13 numbers.
-const SERIES_ROW: usize = 13 * size_of::<f64>();
+const SERIES_ROW: f64 = 13.0 * NUMBER;
 /// Stretches of the history of mu* and their copies while an uncertainty is sought.
 const HISTORY: f64 = 1024.0 * 1024.0;
 
@@ -75,7 +61,7 @@ pub const PROGRAM: f64 = 8.0 * 1024.0 * 1024.0;
 /// Cases whose making takes less are not compared with the machine.
 const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
 
-/// Memory and disk space that a run needs; the head of its file says what is counted.
+/// Memory and disk space that a run needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     blocks: f64,
@@ -86,56 +72,50 @@ pub struct Budget {
     frames: f64,
     fields: f64,
     rows: f64,
-    /// Whether maps are drawn.
-    maps: bool,
+    /// Maps that are drawn.
+    maps: f64,
     /// Bytes of the files that the case reads, kept for their copies.
-    inputs: f64,
+    pub(super) inputs: f64,
     /// Bytes of masks, one a pixel or block, until they are laid over the lattice.
-    masks: f64,
+    pub(super) masks: f64,
+    /// Whether the run resumes from a checkpoint.
+    is_resumed: bool,
 }
 
-/// Bytes by their purpose.
-#[derive(Clone, Copy, Debug, Default)]
-struct Bytes {
-    blocks: f64,
-    snapshots: f64,
-    series: f64,
-    inputs: f64,
-    /// Bytes that no key of a case changes.
-    fixed: f64,
+/// What takes memory or disk space.
+#[derive(Default)]
+struct Part {
+    /// The key of the case that it is due to.
+    key: &'static str,
+    what: String,
+    remedy: &'static str,
+    /// Bytes in each [`Phase`].
+    bytes: [f64; 5],
 }
 
-impl Bytes {
-    fn total(&self) -> f64 {
-        self.blocks + self.snapshots + self.series + self.inputs + self.fixed
-    }
-}
-
-/// The task that memory is needed for.
+/// The phases of a run that take memory, then what takes disk space.
 #[derive(Clone, Copy, Debug)]
-enum Needs {
-    /// To make the case.
-    Case,
-    /// To run it.
-    Run,
-    /// To go on from a checkpoint of it.
-    Resumed,
-}
-
-/// More memory or disk space needed than there is.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BudgetExceeded {
-    /// The key of the case that most of it is due to.
-    pub key: &'static str,
-    /// A sentence with both figures, the cause and the remedy.
-    pub sentence: String,
+enum Phase {
+    Making,
+    /// What writing files takes for the blocks is less than the kernel's share.
+    Running,
+    /// Both pictures at once.
+    Drawing,
+    Files,
+    /// Blocks, snapshots and rows as they stand in memory.
+    Checkpoint,
 }
 
 impl Budget {
     /// The budget of a run, from the parameters of its case alone.
-    pub fn new(lattice: &Lattice, law: FrictionLaw, time_plan: &TimePlan, output: &Output) -> Self {
+    pub(super) fn new(lattice: &Lattice, law: FrictionLaw, time_plan: &TimePlan, output: &Output) -> Self {
         let kept = |blocks: usize| blocks.div_ceil(output.stride) as f64;
         let last_step = time_plan.last_step;
+        let frames = match &output.snapshots {
+            Snapshots::Instants => 6.0,
+            Snapshots::At(steps) => steps.len() as f64,
+            Snapshots::Every(every) => (last_step / every + 1) as f64,
+        };
         Self {
             blocks: lattice.nx as f64 * lattice.ny as f64,
             kernel: match Kernel::Fused.for_law(law) {
@@ -143,164 +123,153 @@ impl Budget {
                 Kernel::Reference => REFERENCE,
             },
             cells: kept(lattice.nx) * kept(lattice.ny),
-            frames: match &output.snapshots {
-                Snapshots::Instants => 6.0,
-                Snapshots::At(steps) => steps.len() as f64,
-                Snapshots::Every(every) => (last_step / every + 1) as f64,
-            },
+            frames,
             fields: output.fields.len() as f64,
             rows: (last_step / output.series_stride) as f64 + 2.0,
-            maps: output.fields.contains(&Field::ContactStress),
+            maps: match output.fields.contains(&Field::ContactStress) {
+                true => frames.min(MAX_MAPS as f64),
+                false => 0.0,
+            },
             inputs: 0.0,
             masks: 0.0,
+            is_resumed: false,
         }
     }
 
-    /// Adds a file that the case reads.
-    pub fn add_input(&mut self, bytes: usize) {
-        self.inputs += bytes as f64;
+    /// What takes how many bytes in each phase.
+    fn parts(&self) -> [Part; 4] {
+        let (blocks, cells, inputs) = (self.blocks, self.cells, self.inputs);
+        let (frames, fields, rows) = (self.frames, self.fields, self.rows);
+        let frame = size_of::<Frame>() as f64 + fields * size_of::<Vec<f32>>() as f64;
+        let snapshots = frames * fields * cells * VALUE + grown(frames) * frame;
+        let row = size_of::<CurveRow>() as f64;
+        [
+            Part {
+                key: "slider.blocks",
+                what: format!("{blocks} blocks"),
+                remedy: "lower `slider.blocks`",
+                bytes: [
+                    blocks * SURFACE,
+                    blocks * (SURFACE + self.kernel),
+                    // With the time of its first slip.
+                    blocks * (SURFACE + NUMBER) + cells * DECODED,
+                    cells * STATICS_ON_DISK,
+                    blocks * SAVED,
+                ],
+            },
+            Part {
+                key: "output.snapshots",
+                what: format!("{frames} snapshots of {fields} fields"),
+                remedy: "take fewer `output.snapshots`, name fewer `output.fields`, or raise `output.stride`",
+                bytes: [
+                    0.0,
+                    snapshots,
+                    self.maps * cells * VALUE,
+                    frames * (fields * cells * VALUE + 4.0 * NUMBER),
+                    snapshots,
+                ],
+            },
+            Part {
+                key: "output.series",
+                what: format!("{rows} rows of the series"),
+                remedy: "raise `output.series`",
+                bytes: [
+                    0.0,
+                    grown(rows) * row + grown(rows * ROW_TEXT),
+                    grown(rows) * (row + 2.0 * SERIES_ROW + 3.0 * NUMBER),
+                    rows * ROW_TEXT,
+                    rows * row,
+                ],
+            },
+            Part {
+                key: "texture",
+                what: "the files that it reads".to_owned(),
+                remedy: "scale them down",
+                bytes: [inputs + self.masks, inputs, inputs, inputs, 0.0],
+            },
+        ]
     }
 
-    /// Adds a mask.
-    pub fn add_mask(&mut self, pixels: usize) {
-        self.masks += pixels as f64;
+    /// Bytes of a phase, with those that no key of a case changes.
+    fn total(&self, phase: Phase) -> f64 {
+        let pictures = if self.maps > 0.0 { 2.0 * PICTURE } else { PICTURE };
+        let fixed = [0.0, HISTORY, pictures, PICTURE_FILES, HISTORY];
+        let parts = self.parts();
+        parts.iter().map(|part| part.bytes[phase as usize]).sum::<f64>() + fixed[phase as usize]
     }
 
-    /// While the case is made.
-    fn making(&self) -> Bytes {
-        Bytes {
-            blocks: self.blocks * SURFACE,
-            inputs: self.inputs + self.masks,
-            ..Bytes::default()
-        }
-    }
-
-    /// While it runs and its files are written: what writing takes for the blocks is less than the kernel's share.
-    fn running(&self) -> Bytes {
-        Bytes {
-            blocks: self.blocks * (SURFACE + self.kernel),
-            snapshots: self.snapshots(),
-            series: grown(self.rows) * size_of::<CurveRow>() as f64 + grown(self.rows * ROW_TEXT),
-            inputs: self.inputs,
-            fixed: HISTORY,
-        }
-    }
-
-    /// While its pictures are drawn, both at once.
-    fn drawing(&self) -> Bytes {
-        let maps = if self.maps {
-            self.frames.min(MAX_MAPS as f64)
-        } else {
-            0.0
-        };
-        let row = size_of::<CurveRow>() + 2 * SERIES_ROW + 3 * size_of::<f64>();
-        Bytes {
-            blocks: self.blocks * (SURFACE + FIRST_SLIP) + self.cells * DECODED,
-            snapshots: maps * self.cells * VALUE,
-            series: grown(self.rows) * row as f64,
-            inputs: self.inputs,
-            fixed: if maps > 0.0 { 2.0 * PICTURE } else { PICTURE },
-        }
-    }
-
-    /// All snapshots in memory.
-    fn snapshots(&self) -> f64 {
-        let frame = size_of::<Frame>() as f64 + self.fields * size_of::<Vec<f32>>() as f64;
-        self.frames * self.fields * self.cells * VALUE + grown(self.frames) * frame
-    }
-
-    /// The phase that takes the most.
-    fn largest(&self) -> Bytes {
-        [self.making(), self.running(), self.drawing()]
-            .into_iter()
-            .max_by(|a, b| a.total().total_cmp(&b.total()))
-            .unwrap_or_default()
+    /// The phase that takes the most memory, in a run that writes no files if not `writes`.
+    fn largest(&self, writes: bool) -> Phase {
+        let phases = [Phase::Making, Phase::Running, Phase::Drawing];
+        let phases = phases.into_iter().take(if writes { 3 } else { 2 });
+        let most = phases.max_by(|a, b| self.total(*a).total_cmp(&self.total(*b)));
+        most.unwrap_or(Phase::Running)
     }
 
     /// Memory of a run with its files and pictures, in bytes.
     pub fn memory(&self) -> f64 {
-        PROGRAM + HEAP * self.largest().total()
+        PROGRAM + self.memory_beside_others(true)
     }
 
     /// Memory of one of several runs at once, in bytes; of one that writes no files if not `writes`.
     pub fn memory_beside_others(&self, writes: bool) -> f64 {
-        let phases = if writes {
-            self.largest().total()
-        } else {
-            self.making().total().max(self.running().total())
-        };
-        HEAP * phases
+        HEAP * self.total(self.largest(writes))
     }
 
     /// Memory of a case that is made and not run, in bytes.
     pub fn memory_of_case(&self) -> f64 {
-        self.making().total()
+        self.total(Phase::Making)
     }
 
     /// The budget of the run when it resumes from a checkpoint, which is in memory until the kernel has taken it over.
-    pub fn resumed(self) -> Self {
-        Self {
-            kernel: self.kernel + ROOM_TO_READ * SAVED,
-            ..self
-        }
+    pub fn resumed(mut self) -> Self {
+        self.kernel += ROOM_TO_READ * SAVED;
+        self.is_resumed = true;
+        self
     }
 
     /// Room for the files of a run, in bytes.
     pub fn disk(&self) -> f64 {
-        self.files().total()
+        self.total(Phase::Files)
     }
 
     /// Disk space for the snapshots alone, in bytes.
     pub fn disk_of_snapshots(&self) -> f64 {
-        self.files().snapshots
+        let [_, snapshots, ..] = self.parts();
+        snapshots.bytes[Phase::Files as usize]
     }
 
-    /// Room for checkpoints while the run goes on, in bytes: blocks, snapshots and rows as they stand in memory, in the
-    /// latest one, the one before it, and one that is being written.
+    /// Room for checkpoints while the run goes on, in bytes: the latest one, the one before it, and one that is being written.
     pub fn disk_of_checkpoints(&self) -> f64 {
-        let rows = self.rows * size_of::<CurveRow>() as f64;
-        3.0 * (self.blocks * SAVED + self.snapshots() + rows + HISTORY)
-    }
-
-    fn files(&self) -> Bytes {
-        Bytes {
-            blocks: self.cells * STATICS_ON_DISK,
-            snapshots: self.frames * (self.fields * self.cells * VALUE + 4.0 * NUMBER),
-            series: self.rows * ROW_TEXT,
-            inputs: self.inputs,
-            fixed: PICTURE_FILES,
-        }
+        3.0 * self.total(Phase::Checkpoint)
     }
 
     /// Refuses a case that cannot even be made.
-    pub fn check_making(&self) -> Result<(), BudgetExceeded> {
-        if self.making().total() < SMALL {
+    pub(super) fn check_making(&self, file: &CaseFile) -> Result<(), CaseError> {
+        if self.total(Phase::Making) < SMALL {
             return Ok(());
         }
-        self.compare_memory(Needs::Case, &self.making(), 0.0, available_memory())
+        self.compare_memory(file, "this case", Phase::Making, 0.0, available_memory())
     }
 
-    /// Refuses a run that needs more memory than there is; what a case takes is there already if it is `made`.
-    pub fn check_memory(&self, made: bool) -> Result<(), BudgetExceeded> {
-        let made = if made { self.making().total() } else { 0.0 };
-        self.compare_memory(Needs::Run, &self.largest(), made, available_memory())
+    /// Refuses a run, or to resume one, that needs more memory than there is; what a case takes is there already if it is
+    /// `made`.
+    pub fn check_memory(&self, file: &CaseFile, made: bool) -> Result<(), CaseError> {
+        let made = if made { self.total(Phase::Making) } else { 0.0 };
+        let phase = self.largest(true);
+        self.compare_memory(file, "a run of this case", phase, made, available_memory())
     }
 
-    /// Refuses to go on from a checkpoint with a case that is made, where there is less memory than that needs.
-    pub fn check_memory_resumed(&self) -> Result<(), BudgetExceeded> {
-        let (resumed, made) = (self.resumed(), self.making().total());
-        resumed.compare_memory(Needs::Resumed, &resumed.largest(), made, available_memory())
-    }
-
-    /// `had` is what has been taken of `bytes` already, `available` what there is beside it.
+    /// `had` is what has been taken of the memory already, `available` what there is beside it.
     fn compare_memory(
         &self,
-        needs: Needs,
-        bytes: &Bytes,
+        file: &CaseFile,
+        whose: &str,
+        phase: Phase,
         had: f64,
         available: Option<f64>,
-    ) -> Result<(), BudgetExceeded> {
-        let needed = PROGRAM + HEAP * bytes.total();
+    ) -> Result<(), CaseError> {
+        let needed = PROGRAM + HEAP * self.total(phase);
         let bound = match available {
             Some(available) if needed > available + had => {
                 format!("{} are available", byte_size(available + had))
@@ -308,26 +277,29 @@ impl Budget {
             _ if !can_be_had(needed - had) => "the system gives less at once (see `ulimit -v`)".to_owned(),
             _ => return Ok(()),
         };
-        let (key, most, remedy) = self.most(bytes);
-        let (whose, remedy) = match needs {
-            Needs::Case => ("this case", remedy),
-            Needs::Run => ("a run of this case", remedy),
-            // Its case can be changed no more.
-            Needs::Resumed => (
+        let (key, most, remedy) = self.most(phase);
+        // The case of a run that resumes can be changed no more.
+        let (whose, remedy) = match self.is_resumed {
+            true => (
                 "going on with this run",
                 "give it more, in a queue for example with `--mem`",
             ),
+            false => (whose, remedy),
         };
-        let sentence = format!(
-            "{whose} takes about {} of memory ({most}) where {bound}: {remedy}",
-            byte_size(needed)
-        );
-        Err(BudgetExceeded { key, sentence })
+        let needed = byte_size(needed);
+        let sentence = format!("{whose} takes about {needed} of memory ({most}) where {bound}: {remedy}");
+        Err(file.source.error(key, sentence))
     }
 
     /// Refuses a run whose files, and checkpoints if it saves any, have no room in `folder`, which need not be there yet.
     /// `replaced` is what goes from there before.
-    pub fn check_disk(&self, folder: &Path, replaced: u64, checkpoints: bool) -> Result<(), BudgetExceeded> {
+    pub fn check_disk(
+        &self,
+        file: &CaseFile,
+        folder: &Path,
+        replaced: u64,
+        checkpoints: bool,
+    ) -> Result<(), CaseError> {
         let Some(free) = free_disk(folder).map(|free| free + replaced as f64) else {
             return Ok(());
         };
@@ -339,13 +311,14 @@ impl Budget {
         if self.disk() + beside <= free {
             return Ok(());
         }
-        let (key, most, remedy) = self.most(&self.files());
-        let (beside, without) = if checkpoints {
-            let beside = format!(" and its checkpoints {}", byte_size(beside));
-            (beside, ", run without checkpoints (--checkpoint off)")
-        } else {
-            (String::new(), "")
+        let (beside, without) = match checkpoints {
+            true => (
+                format!(" and its checkpoints {}", byte_size(beside)),
+                ", run without checkpoints (--checkpoint off)",
+            ),
+            false => (String::new(), ""),
         };
+        let (key, most, remedy) = self.most(Phase::Files);
         let sentence = format!(
             "the files of this run take about {} ({most}){beside} where {} are free in {}: free some, {remedy}{without}, \
              or choose another folder",
@@ -353,52 +326,18 @@ impl Budget {
             byte_size(free),
             folder.display()
         );
-        Err(BudgetExceeded { key, sentence })
+        Err(file.source.error(key, sentence))
     }
 
-    /// The key that most bytes are due to, how many these are and for what, and the remedy.
-    fn most(&self, bytes: &Bytes) -> (&'static str, String, &'static str) {
-        let Self {
-            blocks,
-            frames,
-            fields,
-            ..
-        } = self;
-        let parts = [
-            (
-                "slider.blocks",
-                bytes.blocks,
-                format!("{blocks} blocks"),
-                "lower `slider.blocks`",
-            ),
-            (
-                "output.snapshots",
-                bytes.snapshots,
-                format!("{frames} snapshots of {fields} fields"),
-                "take fewer `output.snapshots`, name fewer `output.fields`, or raise `output.stride`",
-            ),
-            (
-                "output.series",
-                bytes.series,
-                format!("{} rows of the series", self.rows),
-                "raise `output.series`",
-            ),
-            (
-                "texture",
-                bytes.inputs,
-                "the files that it reads".to_owned(),
-                "scale them down",
-            ),
-        ];
-        let most = parts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
-        let (key, part, what, remedy) = most.unwrap_or_default();
-        (key, format!("{} of it for {what}", byte_size(part)), remedy)
+    /// The key that most bytes of a phase are due to, how many these are and for what, and the remedy.
+    fn most(&self, phase: Phase) -> (&'static str, String, &'static str) {
+        let bytes_of = |part: &Part| part.bytes[phase as usize];
+        let parts = self.parts().into_iter();
+        let most = parts.max_by(|a, b| bytes_of(a).total_cmp(&bytes_of(b)));
+        let most = most.unwrap_or_default();
+        let what = format!("{} of it for {}", byte_size(bytes_of(&most)), most.what);
+        (most.key, what, most.remedy)
     }
-}
-
-/// An exceeded budget as an error at the key that causes it.
-pub(super) fn within_budget(file: &CaseFile, checked: Result<(), BudgetExceeded>) -> Result<(), CaseError> {
-    checked.map_err(|excess| file.source.error(excess.key, excess.sentence))
 }
 
 /// Elements for which a vector has room that grew to `length` by doubling.
@@ -411,9 +350,16 @@ mod tests {
     use super::*;
     use crate::case::Case;
 
-    fn budget(sets: &[&str]) -> Budget {
+    fn case(sets: &[&str]) -> Case {
         let overrides: Vec<String> = sets.iter().map(|&set| set.to_owned()).collect();
-        Case::parse("", "case", &overrides).unwrap().budget
+        Case::parse("", "case", &overrides).unwrap()
+    }
+
+    /// Why a run with this budget is refused, if it is.
+    fn refusal(case: &Case, budget: &Budget, had: f64, available: Option<f64>) -> Option<String> {
+        let phase = budget.largest(true);
+        let compared = budget.compare_memory(&case.file, "a run of this case", phase, had, available);
+        compared.err().map(|error| error.to_string())
     }
 
     #[test]
@@ -435,13 +381,12 @@ mod tests {
                 ["for 10000002 rows of the series", "raise `output.series`"],
             ),
         ] {
-            let budget = budget(&sets);
-            let refused = budget
-                .compare_memory(Needs::Run, &budget.largest(), 0.0, Some(2e8))
-                .unwrap_err();
-            assert_eq!(refused.key, key);
+            let case = case(&sets);
+            let refused = refusal(&case, &case.budget, 0.0, Some(2e8)).unwrap();
+            // The place is the override of the key.
+            assert!(refused.starts_with(&format!("--set {key}=")), "{key}: {refused}");
             for word in ["where 190.7 MiB are available"].iter().chain(&words) {
-                assert!(refused.sentence.contains(word), "{word}: {}", refused.sentence);
+                assert!(refused.contains(word), "{word}: {refused}");
             }
         }
     }
@@ -449,35 +394,22 @@ mod tests {
     /// The case itself is in memory when its run is judged.
     #[test]
     fn what_has_been_taken_already_counts_as_available() {
-        let budget = budget(&["slider.blocks=[2000,1000]", "output.snapshots=[]"]);
-        let (run, made) = (budget.largest(), budget.making().total());
-        let enough = budget.memory() - made;
-        assert!(
-            budget
-                .compare_memory(Needs::Run, &run, made, Some(enough))
-                .is_ok()
-        );
-        assert!(
-            budget
-                .compare_memory(Needs::Run, &run, made, Some(0.99 * enough))
-                .is_err()
-        );
+        let case = case(&["slider.blocks=[2000,1000]", "output.snapshots=[]"]);
+        let made = case.budget.total(Phase::Making);
+        let enough = case.budget.memory() - made;
+        assert_eq!(refusal(&case, &case.budget, made, Some(enough)), None);
+        assert!(refusal(&case, &case.budget, made, Some(0.99 * enough)).is_some());
         // A system that does not say what it has is asked for all of it.
-        assert!(budget.compare_memory(Needs::Run, &run, made, None).is_ok());
-        let all = Bytes {
-            blocks: 1e18,
-            ..Bytes::default()
-        };
-        let refused = budget.compare_memory(Needs::Run, &all, 0.0, None).unwrap_err();
-        assert!(refused.sentence.contains("ulimit -v"), "{}", refused.sentence);
+        assert_eq!(refusal(&case, &case.budget, made, None), None);
+        let mut huge = case.budget;
+        huge.blocks = 1e16;
+        let refused = refusal(&case, &huge, 0.0, None).unwrap();
+        assert!(refused.contains("ulimit -v"), "{refused}");
         // Of a run that has begun no key can be changed.
-        let refused = budget
-            .compare_memory(Needs::Resumed, &run, made, Some(0.0))
-            .unwrap_err();
+        let refused = refusal(&case, &case.budget.resumed(), made, Some(0.0)).unwrap();
         assert!(
-            refused.sentence.contains("give it more") && !refused.sentence.contains("lower"),
-            "{}",
-            refused.sentence
+            refused.contains("give it more") && !refused.contains("lower"),
+            "{refused}"
         );
     }
 

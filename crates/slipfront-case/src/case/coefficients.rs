@@ -6,7 +6,7 @@ use slipfront::surface::{Coefficients, Distribution};
 use super::groups::Groups;
 use super::inputs::Inputs;
 use crate::arrays;
-use crate::case_file::{CaseError, CaseFile};
+use crate::case_file::{CaseError, CaseFile, Friction};
 
 pub(super) fn coefficients(
     file: &mut CaseFile,
@@ -15,24 +15,22 @@ pub(super) fn coefficients(
     inputs: &mut Inputs,
 ) -> Result<Coefficients, CaseError> {
     let mean = file.friction.mu_static;
-    let mut given = |key: &str, name: &mut Option<String>, file: &CaseFile| -> Result<_, CaseError> {
-        let Some(written) = name.as_ref() else {
+    let mut given = |key: &str, name: fn(&mut Friction) -> &mut Option<String>| -> Result<_, CaseError> {
+        let Some(written) = name(&mut file.friction).clone() else {
             return Ok(None);
         };
-        let given = inputs.read(file, key, written, lattice)?;
-        let field = arrays::field(&given.path, &given.bytes, lattice.nx, lattice.ny)
-            .map_err(|error| file.source.error(key, error.to_string()))?;
-        *name = Some(inputs.keep(file, given)?);
+        let (given, field) = inputs.read(file, key, &written, lattice, |given| {
+            arrays::field(&given.original, &given.bytes, lattice.nx, lattice.ny)
+        })?;
+        *name(&mut file.friction) = Some(inputs.keep(file, given)?);
         Ok(Some(field))
     };
-    let (mut static_name, mut kinetic_name) = (
-        file.friction.mu_static_field.clone(),
-        file.friction.mu_kinetic_field.clone(),
-    );
-    let mu_static = given("friction.mu_static_field", &mut static_name, file)?;
-    let mu_kinetic = given("friction.mu_kinetic_field", &mut kinetic_name, file)?;
-    file.friction.mu_static_field = static_name;
-    file.friction.mu_kinetic_field = kinetic_name;
+    let mu_static = given("friction.mu_static_field", |friction| {
+        &mut friction.mu_static_field
+    })?;
+    let mu_kinetic = given("friction.mu_kinetic_field", |friction| {
+        &mut friction.mu_kinetic_field
+    })?;
     // A given field takes the place of its draws; the other stream is not shifted by it.
     let spread = |mean: f64, sigma_star: f64, given: bool| Distribution {
         mean,

@@ -1,9 +1,10 @@
 //! The dimensionless groups of a case.
 
+use std::ops::RangeInclusive;
+
 use slipfront::Scales;
 
-use crate::case_file;
-use crate::case_file::{CaseError, CaseFile};
+use crate::case_file::{CaseError, CaseFile, Damping, DriveSpeed, KineticFriction};
 
 /// The dimensionless groups on which the model depends (Eq. 11).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,10 +30,7 @@ const MAX_V_STAR: f64 = 10.0;
 const MAX_OMEGA_STAR: f64 = 1000.0;
 
 impl Groups {
-    /// The groups of a case file.
-    ///
-    /// # Errors
-    /// When a group is out of the range in which the model is valid.
+    /// The groups of a case file, refused when one is out of the range in which the model is valid.
     pub(super) fn of(file: &CaseFile, scales: &Scales) -> Result<Self, CaseError> {
         let epsilon = scales.epsilon();
         if epsilon > MAX_EPSILON {
@@ -42,30 +40,20 @@ impl Groups {
             );
             return Err(file.source.error("load.pressure", sentence));
         }
-        let v_star = match &file.drive.speed {
-            case_file::DriveSpeed::VStar(v_star) => *v_star,
-            case_file::DriveSpeed::Speed(speed) => speed.si() / scales.speed(),
+        let (key, v_star) = match &file.drive.speed {
+            DriveSpeed::VStar(v_star) => ("drive.v_star", *v_star),
+            DriveSpeed::Speed(speed) => ("drive.speed", speed.si() / scales.speed()),
         };
-        let key = if file.source.has("drive.speed") {
-            "drive.speed"
-        } else {
-            "drive.v_star"
-        };
-        within(file, key, "V*", v_star, MIN_V_STAR, MAX_V_STAR)?;
+        within(file, key, "V*", v_star, MIN_V_STAR..=MAX_V_STAR)?;
         let r_star = match file.friction.kinetic {
-            case_file::KineticFriction::RStar(r_star) => r_star,
-            case_file::KineticFriction::MuKinetic(mu) => mu / scales.mu_static_mean,
+            KineticFriction::RStar(r_star) => r_star,
+            KineticFriction::MuKinetic(mu) => mu / scales.mu_static_mean,
         };
-        let omega_star = match &file.slider.damping {
-            case_file::Damping::OmegaStar(omega_star) => *omega_star,
-            case_file::Damping::Rate(rate) => scales.omega_star(rate.si()),
+        let (key, omega_star) = match &file.slider.damping {
+            Damping::OmegaStar(omega_star) => ("slider.omega_star", *omega_star),
+            Damping::Rate(rate) => ("slider.damping_rate", scales.omega_star(rate.si())),
         };
-        let key = if file.source.has("slider.damping_rate") {
-            "slider.damping_rate"
-        } else {
-            "slider.omega_star"
-        };
-        within(file, key, "Omega*", omega_star, 0.0, MAX_OMEGA_STAR)?;
+        within(file, key, "Omega*", omega_star, 0.0..=MAX_OMEGA_STAR)?;
         Ok(Groups {
             v_star,
             r_star,
@@ -82,14 +70,12 @@ fn within(
     key: &str,
     symbol: &str,
     value: f64,
-    low: f64,
-    high: f64,
+    bounds: RangeInclusive<f64>,
 ) -> Result<(), CaseError> {
-    if (low..=high).contains(&value) {
+    if bounds.contains(&value) {
         return Ok(());
     }
-    Err(file.source.error(
-        key,
-        format!("this makes {symbol} = {value:?}, which must lie between {low:?} and {high:?}"),
-    ))
+    let (low, high) = bounds.into_inner();
+    let sentence = format!("this makes {symbol} = {value:?}, which must lie between {low:?} and {high:?}");
+    Err(file.source.error(key, sentence))
 }

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use slipfront::Lattice;
 
-use super::budget::{Budget, within_budget};
-use crate::arrays;
+use super::budget::Budget;
+use crate::arrays::{self, ArrayError};
 use crate::case_file::{CaseError, CaseFile};
 
 /// A file that a case reads, kept so that the run folder can hold a copy.
@@ -19,88 +19,66 @@ pub struct Input {
     pub bytes: Vec<u8>,
 }
 
-/// The name of a copy of a file in the folder `inputs/`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum CopyName {
-    /// A copy of this name has the same contents already.
-    Known(String),
-    /// No copy has this name yet.
-    New(String),
-}
-
-/// Names the copy of a file after its plain name; files of one name and different contents are numbered.
+/// Names the copy of a file in the folder `inputs/` after its plain name; files of one name and different contents are
+/// numbered. Gives the name, and whether there is such a copy already.
 ///
-/// `describe` gives the name of a copy made before, and whether its contents are those of the file.
-pub fn name_of_copy<'c, C>(
-    plain: &str,
-    copies: &'c [C],
-    describe: impl Fn(&'c C) -> (&'c str, bool),
-) -> CopyName {
+/// `is_same` says of a name whether the copy that has it, if there is one, has the contents of the file.
+pub fn name_of_copy(plain: &str, is_same: impl Fn(&str) -> Option<bool>) -> (String, bool) {
     let mut name = format!("inputs/{plain}");
     let mut number = 1;
-    while let Some((_, is_same)) = copies.iter().map(&describe).find(|(other, _)| *other == name) {
+    while let Some(is_same) = is_same(&name) {
         if is_same {
-            return CopyName::Known(name);
+            return (name, true);
         }
         number += 1;
         name = format!("inputs/{number}-{plain}");
     }
-    CopyName::New(name)
-}
-
-/// A file that was read, and its contents.
-pub(super) struct InputBytes {
-    pub(super) path: PathBuf,
-    pub(super) bytes: Vec<u8>,
+    (name, false)
 }
 
 /// Files read so far, and the budget of the case with them.
-pub(super) struct Inputs {
-    folder: PathBuf,
+pub(super) struct Inputs<'a> {
+    /// The folder that the names of files are relative to.
+    pub(super) folder: &'a Path,
     pub(super) kept: Vec<Input>,
     pub(super) budget: Budget,
 }
 
-impl Inputs {
-    pub(super) fn new(folder: &Path, budget: Budget) -> Self {
-        Self {
-            folder: folder.to_owned(),
-            kept: Vec::new(),
-            budget,
-        }
-    }
-
-    /// Reads a file that the case names. It is read once, so that its copy holds what the case was made of.
-    pub(super) fn read(
+impl Inputs<'_> {
+    /// Reads a file that the case names, and what `parse` makes of it. It is read once, so that its copy holds what the case
+    /// was made of. It has its plain name until it is kept.
+    pub(super) fn read<T>(
         &self,
         file: &CaseFile,
         key: &str,
         written: &str,
         lattice: &Lattice,
-    ) -> Result<InputBytes, CaseError> {
-        let path = self.folder.join(written);
-        let bytes = arrays::read_file(&path, lattice.nx, lattice.ny)
-            .map_err(|error| file.source.error(key, error.to_string()))?;
-        Ok(InputBytes { path, bytes })
+        parse: impl FnOnce(&Input) -> Result<T, ArrayError>,
+    ) -> Result<(Input, T), CaseError> {
+        let original = self.folder.join(written);
+        let name = original
+            .file_name()
+            .map(|name| name.to_string_lossy().into_owned());
+        let given = arrays::read_file(&original, lattice.nx, lattice.ny).map(|bytes| Input {
+            name: name.unwrap_or_else(|| "input".to_owned()),
+            original,
+            bytes,
+        });
+        let read = given.and_then(|given| parse(&given).map(|parsed| (given, parsed)));
+        read.map_err(|error| file.source.error(key, error.to_string()))
     }
 
     /// Keeps the contents of a file that the case uses; gives the path of its copy in the run folder.
-    pub(super) fn keep(&mut self, file: &CaseFile, given: InputBytes) -> Result<String, CaseError> {
-        let InputBytes { path, bytes } = given;
-        let plain = path
-            .file_name()
-            .map_or_else(|| "input".into(), |name| name.to_string_lossy().into_owned());
-        let name = match name_of_copy(&plain, &self.kept, |kept| (&kept.name, kept.bytes == bytes)) {
-            CopyName::Known(name) => return Ok(name),
-            CopyName::New(name) => name,
-        };
-        self.budget.add_input(bytes.len());
-        self.kept.push(Input {
-            name: name.clone(),
-            original: path,
-            bytes,
-        });
-        within_budget(file, self.budget.check_making())?;
+    pub(super) fn keep(&mut self, file: &CaseFile, mut given: Input) -> Result<String, CaseError> {
+        let kept = |name: &str| self.kept.iter().find(|kept| kept.name == name);
+        let is_same = |name: &str| Some(kept(name)?.bytes == given.bytes);
+        let (name, is_kept) = name_of_copy(&given.name, is_same);
+        if !is_kept {
+            self.budget.inputs += given.bytes.len() as f64;
+            given.name.clone_from(&name);
+            self.kept.push(given);
+            self.budget.check_making(file)?;
+        }
         Ok(name)
     }
 }

@@ -5,7 +5,6 @@ mod coefficients;
 mod groups;
 mod inputs;
 mod output;
-mod parameters;
 mod runnable;
 mod textures;
 mod time_plan;
@@ -13,8 +12,7 @@ mod warnings;
 
 pub use self::budget::{Budget, PROGRAM};
 pub use self::groups::Groups;
-pub use self::inputs::{CopyName, Input, name_of_copy};
-pub use self::output::{MAX_MAPS, Output, Snapshots, VARIABLE_MAX_BYTES, smallest_stride};
-pub use self::parameters::check_fields;
+pub use self::inputs::{Input, name_of_copy};
+pub use self::output::{MAX_MAPS, Output, Snapshots, VARIABLE_MAX_BYTES, check_fields, smallest_stride};
 pub use self::runnable::{Case, TextureReport};
 pub use self::time_plan::TimePlan;

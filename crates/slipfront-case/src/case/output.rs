@@ -1,9 +1,10 @@
 //! Which results a case writes, and at which steps.
 
+use slipfront::observe::Field;
+
 use super::time_plan::TimePlan;
 use crate::case_file;
 use crate::case_file::{AutoOr, CaseError, CaseFile};
-use slipfront::observe::Field;
 
 /// Which results are written.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,23 +40,18 @@ pub const VARIABLE_MAX_BYTES: usize = i32::MAX as usize - 3;
 const SERIES_ROWS: u64 = 20_000;
 
 impl Output {
-    /// The output that a case file asks for.
-    ///
-    /// # Errors
-    /// When a time lies behind the end of the run, or a spacing is shorter than a step.
+    /// The output that a case file asks for, refused when a time lies behind the end of the run, or a spacing is shorter
+    /// than a step.
     pub(super) fn of(file: &CaseFile, time_plan: &TimePlan) -> Result<Self, CaseError> {
-        let TimePlan {
-            dt_star, last_step, ..
-        } = *time_plan;
+        let (dt_star, last_step) = (time_plan.dt_star, time_plan.last_step);
         let spacing = |key: &str, time: f64| -> Result<u64, CaseError> {
             let steps = (time / dt_star).round();
             if steps >= 1.0 {
                 return Ok(steps as u64);
             }
-            Err(file.source.error(
-                key,
-                format!("a spacing of {time:?} in t* is less than one step of {dt_star}: raise it"),
-            ))
+            let sentence =
+                format!("a spacing of {time:?} in t* is less than one step of {dt_star}: raise it");
+            Err(file.source.error(key, sentence))
         };
         let snapshots = match &file.output.snapshots {
             case_file::Snapshots::Auto => Snapshots::Instants,
@@ -77,11 +73,10 @@ impl Output {
             AutoOr::Auto => last_step.div_ceil(SERIES_ROWS),
             AutoOr::Number(time) => spacing("output.series", time)?,
         };
-        let stride = file.output.stride as usize;
         Ok(Output {
             snapshots,
             fields: file.output.fields.clone(),
-            stride,
+            stride: file.output.stride as usize,
             series_stride,
         })
     }
@@ -89,10 +84,39 @@ impl Output {
 
 /// The smallest stride, not below `stride`, with which a field of `nx` x `ny` blocks fits into one variable.
 pub fn smallest_stride(nx: usize, ny: usize, stride: usize) -> usize {
-    let enough = (stride..).find(|stride| fits(nx.div_ceil(*stride), ny.div_ceil(*stride)));
-    enough.unwrap_or(usize::MAX)
+    let blocks = |stride| nx.div_ceil(stride).saturating_mul(ny.div_ceil(stride));
+    let fits = |stride: &usize| blocks(*stride).saturating_mul(size_of::<f64>()) <= VARIABLE_MAX_BYTES;
+    (stride..).find(fits).unwrap_or(usize::MAX)
 }
 
-fn fits(columns: usize, rows: usize) -> bool {
-    columns.saturating_mul(rows).saturating_mul(size_of::<f64>()) <= VARIABLE_MAX_BYTES
+/// Refuses a case whose fields are too large for their file.
+pub fn check_fields(file: &CaseFile) -> Result<(), CaseError> {
+    let [nx, ny] = file.slider.blocks.map(|count| count as usize);
+    let stride = file.output.stride as usize;
+    let needed = smallest_stride(nx, ny, stride);
+    if needed == stride {
+        return Ok(());
+    }
+    let sentence = format!(
+        "one field of {nx} x {ny} blocks takes more than the 2 GiB that the format of fields.nc holds: set \
+         `output.stride` to {needed} or more"
+    );
+    Err(file.source.error("output.stride", sentence))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_that_no_file_holds_are_refused_before_the_run() {
+        let check = |text: &str| check_fields(&CaseFile::parse(text, "case.toml", &[]).unwrap());
+        let large = "[slider]\nblocks = [40000, 20000]\n[output]\nstride =";
+        assert!(check(&format!("{large} 2")).is_ok());
+        let said = check(&format!("{large} 1")).unwrap_err().to_string();
+        assert!(
+            said.contains("case.toml:4:10: ") && said.contains("set `output.stride` to 2 or more"),
+            "{said}"
+        );
+    }
 }

@@ -5,14 +5,13 @@ use std::sync::Arc;
 
 use slipfront::scales::damping;
 use slipfront::surface::{Load, mesh};
-use slipfront::{Drive, Model, Scales, Surface};
+use slipfront::{Drive, Lattice, Model, Scales, Surface};
 
-use super::budget::{Budget, within_budget};
+use super::budget::Budget;
 use super::coefficients::coefficients;
 use super::groups::Groups;
 use super::inputs::{Input, Inputs};
-use super::output::Output;
-use super::parameters::{Parameters, check_fields};
+use super::output::{Output, check_fields};
 use super::textures::textures;
 use super::time_plan::TimePlan;
 use crate::case_file::{CaseError, CaseFile};
@@ -58,9 +57,6 @@ pub struct TextureReport {
 impl Case {
     /// Loads a case file and the files it names, which stand relative to it. A run that needs more
     /// memory than there is gets refused before any array is allocated.
-    ///
-    /// # Errors
-    /// A sentence that names place, value, bound and remedy.
     pub fn load(path: &Path, overrides: &[String]) -> Result<Self, CaseError> {
         let file = CaseFile::load(path, overrides)?;
         let name = path
@@ -71,69 +67,65 @@ impl Case {
     }
 
     /// Makes a case of text, as [`load`](Self::load) does; the files it names stand in the working directory.
-    ///
-    /// # Errors
-    /// A sentence that names place, value, bound and remedy.
     pub fn parse(text: &str, name: &str, overrides: &[String]) -> Result<Self, CaseError> {
         Self::parse_in(text, name, Path::new(""), overrides)
     }
 
     /// Makes a case of text, as [`load`](Self::load) does; the files it names stand relative to `folder`.
-    ///
-    /// # Errors
-    /// A sentence that names place, value, bound and remedy.
     pub fn parse_in(text: &str, name: &str, folder: &Path, overrides: &[String]) -> Result<Self, CaseError> {
         Self::to_run(CaseFile::parse(text, name, overrides)?, name, folder)
     }
 
     /// Makes a case of a case file that was read already, to be run; the files it names stand relative to `folder`.
-    ///
-    /// # Errors
-    /// As for [`load`](Self::load).
     pub fn to_run(file: CaseFile, name: &str, folder: &Path) -> Result<Self, CaseError> {
-        let Parameters {
-            lattice,
-            output,
-            budget,
-            ..
-        } = Parameters::of(&file)?;
-        within_budget(&file, budget.check_memory(false))?;
-        check_fields(&file, &lattice, &output)?;
-        let case = Self::new(file, name, folder)?;
+        let case = Self::make(file, name, folder, true)?;
         // Once more, with the files that it reads.
-        within_budget(&case.file, case.budget.check_memory(true))?;
+        case.budget.check_memory(&case.file, true)?;
         Ok(case)
     }
 
     /// Makes a case of a case file; the files it names stand relative to `folder`. The memory for a run of it is not
     /// checked.
-    ///
-    /// # Errors
-    /// A sentence that names place, value, bound and remedy.
-    pub fn new(mut file: CaseFile, name: &str, folder: &Path) -> Result<Self, CaseError> {
-        let Parameters {
-            scales,
-            groups,
-            lattice,
-            time_plan,
-            output,
+    pub fn new(file: CaseFile, name: &str, folder: &Path) -> Result<Self, CaseError> {
+        Self::make(file, name, folder, false)
+    }
+
+    fn make(mut file: CaseFile, name: &str, folder: &Path, to_run: bool) -> Result<Self, CaseError> {
+        let scales = Scales {
+            block_size: file.slider.block_size.si(),
+            young_modulus: file.slider.young_modulus.si(),
+            density: file.slider.density.si(),
+            pressure: file.load.pressure.si(),
+            mu_static_mean: file.friction.mu_static,
+        };
+        let groups = Groups::of(&file, &scales)?;
+        let [nx, ny] = file.slider.blocks.map(|count| count as usize);
+        let lattice = Lattice::with_edges(nx, ny, file.slider.edges);
+        let time_plan = TimePlan::of(&file, &scales, &groups)?;
+        let output = Output::of(&file, &time_plan)?;
+        let budget = Budget::new(&lattice, file.friction.law, &time_plan, &output);
+        if to_run {
+            budget.check_memory(&file, false)?;
+            check_fields(&file)?;
+        }
+        budget.check_making(&file)?;
+        let mut inputs = Inputs {
+            folder,
+            kept: Vec::new(),
             budget,
-        } = Parameters::of(&file)?;
-        within_budget(&file, budget.check_making())?;
-        let mut inputs = Inputs::new(folder, budget);
-        let textures = textures(&mut file, &scales, &lattice, &mut inputs)?;
-        let meshed = mesh(&lattice, &textures.shapes);
+        };
+        let (shapes, asked_percent) = textures(&mut file, &scales, &lattice, &mut inputs)?;
+        let meshed = mesh(&lattice, &shapes);
         let coefficients = coefficients(&mut file, &groups, &lattice, &mut inputs)?;
         let negative_draws = coefficients.negative_draws;
-        let load = if file.load.redistribute {
-            Load::Redistributed
-        } else {
-            Load::Kept
+        let load = match file.load.redistribute {
+            true => Load::Redistributed,
+            false => Load::Kept,
         };
         let surface = Surface::new(coefficients, meshed.textured, load, scales.mu_static_mean)
             .map_err(|error| file.source.error("texture", error.to_string()))?;
         let texture = TextureReport {
-            asked_percent: textures.asked_percent,
+            asked_percent,
             meshed_percent: surface.texture_percent(),
             clipped: meshed.clipped,
         };
@@ -159,23 +151,6 @@ impl Case {
             time_plan,
             output,
         })
-    }
-
-    /// Refuses a run whose files, and checkpoints if it saves any, need more disk space than `folder` has after `replaced`
-    /// bytes there were removed.
-    ///
-    /// # Errors
-    /// With the figures, and which key to change.
-    pub fn check_disk(&self, folder: &Path, replaced: u64, checkpoints: bool) -> Result<(), CaseError> {
-        within_budget(&self.file, self.budget.check_disk(folder, replaced, checkpoints))
-    }
-
-    /// Refuses to resume from a checkpoint if that needs more memory than there is.
-    ///
-    /// # Errors
-    /// With the figures.
-    pub fn check_memory_resumed(&self) -> Result<(), CaseError> {
-        within_budget(&self.file, self.budget.check_memory_resumed())
     }
 
     /// Steps times blocks, the measure of what the run costs.

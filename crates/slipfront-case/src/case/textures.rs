@@ -4,26 +4,20 @@ use std::path::Path;
 
 use slipfront::{Lattice, Scales, surface};
 
-use super::inputs::{InputBytes, Inputs};
+use super::inputs::{Input, Inputs};
 use crate::arrays::ArrayError;
 use crate::case_file::{CaseError, CaseFile};
 use crate::quantity::Length;
 use crate::{arrays, case_file};
 
-/// The shapes of all textures.
-pub(super) struct Textures {
-    pub(super) shapes: Vec<surface::Texture>,
-    /// See [`TextureReport`](super::runnable::TextureReport).
-    pub(super) asked_percent: Option<f64>,
-}
-
-/// The shapes of all textures of a case file; masks are read.
+/// The shapes of all textures of a case file, and their area as asked for, % (see
+/// [`TextureReport`](super::runnable::TextureReport)); masks are read.
 pub(super) fn textures(
     file: &mut CaseFile,
     scales: &Scales,
     lattice: &Lattice,
     inputs: &mut Inputs,
-) -> Result<Textures, CaseError> {
+) -> Result<(Vec<surface::Texture>, Option<f64>), CaseError> {
     let mut shapes = Vec::new();
     let mut asked = Some(0.0);
     for index in 0..file.texture.len() {
@@ -31,22 +25,18 @@ pub(super) fn textures(
             case_file::Texture::Cavity(cavity) => cavity_in_blocks(cavity, scales, lattice),
             case_file::Texture::Groove(groove) => groove_in_blocks(groove, scales, lattice),
             case_file::Texture::Polygon(polygon) => {
-                let points = polygon
-                    .points
-                    .iter()
-                    .map(|point| in_blocks(scales, point))
-                    .collect();
-                (surface::Texture::Polygon(points), None)
+                let points = polygon.points.iter().map(|point| in_blocks(scales, point));
+                (surface::Texture::Polygon(points.collect()), None)
             }
             case_file::Texture::Mask(mask) => {
                 let key = format!("texture.{index}.file");
-                let given = inputs.read(file, &key, &mask.file, lattice)?;
-                let shape = mask_of(&given, mask.threshold, lattice)
-                    .map_err(|error| file.source.error(&key, error.to_string()))?;
-                inputs.budget.add_mask(match &shape {
+                let parse = |given: &_| mask_of(given, mask.threshold, lattice);
+                let (given, shape) = inputs.read(file, &key, &mask.file, lattice, parse)?;
+                let pixels = match &shape {
                     surface::Texture::Image(image) => image.dark.len(),
                     _ => lattice.n_blocks(),
-                });
+                };
+                inputs.budget.masks += pixels as f64;
                 let copy = inputs.keep(file, given)?;
                 if let case_file::Texture::Mask(mask) = &mut file.texture[index] {
                     mask.file = copy;
@@ -54,17 +44,12 @@ pub(super) fn textures(
                 (shape, None)
             }
         };
-        within_reach(&shape, lattice).map_err(|sentence| {
-            let key = format!("texture.{index}");
-            file.source.error(&key, sentence)
-        })?;
+        within_reach(&shape, lattice)
+            .map_err(|sentence| file.source.error(&format!("texture.{index}"), sentence))?;
         shapes.push(shape);
         asked = asked.zip(percent).map(|(sum, percent)| sum + percent);
     }
-    Ok(Textures {
-        shapes,
-        asked_percent: asked,
-    })
+    Ok((shapes, asked))
 }
 
 /// How far a texture may reach, in slider lengths. Farther away it is a typing error, and on a periodic axis its position
@@ -72,11 +57,7 @@ pub(super) fn textures(
 const REACH: f64 = 100.0;
 
 fn within_reach(shape: &surface::Texture, lattice: &Lattice) -> Result<(), String> {
-    let farthest = |lengths: &[f64]| {
-        lengths
-            .iter()
-            .fold(0.0, |most: f64, length| most.max(length.abs()))
-    };
+    let farthest = |lengths: &[f64]| lengths.iter().copied().map(f64::abs).fold(0.0, f64::max);
     let reach = match shape {
         surface::Texture::Cavity(cavity) => farthest(&cavity.center) + 2.0 * cavity.lambda,
         surface::Texture::Groove(groove) => groove.offset.abs() + groove.width,
@@ -105,38 +86,30 @@ fn cavity_in_blocks(
     let n_blocks = lattice.n_blocks();
     let array = cavity.array.map(|count| count as usize);
     let count = array[0] * array[1];
+    let (s, w) = (cavity.s, cavity.w);
     let (lambda, percent) = match &cavity.size {
-        case_file::CavitySize::Coverage(percent) => (
-            surface::cavity_lambda(*percent, n_blocks, cavity.s, cavity.w, count),
-            *percent,
-        ),
+        case_file::CavitySize::Coverage(percent) => {
+            (surface::cavity_lambda(*percent, n_blocks, s, w, count), *percent)
+        }
         case_file::CavitySize::Lambda(lambda) => {
             let lambda = scales.in_blocks(lambda.si());
-            (
-                lambda,
-                surface::cavity_percent(lambda, n_blocks, cavity.s, cavity.w, count),
-            )
+            (lambda, surface::cavity_percent(lambda, n_blocks, s, w, count))
         }
     };
     let center = match &cavity.center {
         case_file::Center::Middle => [0.5 * lattice.nx as f64, 0.5 * lattice.ny as f64],
         case_file::Center::At(center) => in_blocks(scales, center),
     };
-    let &case_file::Cavity {
-        s, w, across, rotate, ..
-    } = cavity;
-    (
-        surface::Texture::Cavity(surface::Cavity {
-            center,
-            lambda,
-            s,
-            w,
-            across,
-            rotate,
-            array,
-        }),
-        Some(percent),
-    )
+    let cavity = surface::Cavity {
+        center,
+        lambda,
+        s,
+        w,
+        across: cavity.across,
+        rotate: cavity.rotate,
+        array,
+    };
+    (surface::Texture::Cavity(cavity), Some(percent))
 }
 
 fn groove_in_blocks(
@@ -155,19 +128,16 @@ fn groove_in_blocks(
             (width, 100.0 * width / breadth)
         }
     };
-    let offset = scales.in_blocks(groove.offset.si());
-    (
-        surface::Texture::Groove(surface::Groove {
-            orientation: groove.orientation,
-            width,
-            offset,
-        }),
-        Some(percent),
-    )
+    let groove = surface::Groove {
+        orientation: groove.orientation,
+        width,
+        offset: scales.in_blocks(groove.offset.si()),
+    };
+    (surface::Texture::Groove(groove), Some(percent))
 }
 
-fn mask_of(given: &InputBytes, threshold: f64, lattice: &Lattice) -> Result<surface::Texture, ArrayError> {
-    let InputBytes { path, bytes } = given;
+fn mask_of(given: &Input, threshold: f64, lattice: &Lattice) -> Result<surface::Texture, ArrayError> {
+    let (path, bytes) = (&given.original, &given.bytes);
     Ok(if is_array(path) {
         surface::Texture::Blocks(arrays::mask_npy(path, bytes, lattice.nx, lattice.ny)?)
     } else {

@@ -5,8 +5,7 @@ use slipfront::observe::KineticStart;
 use slipfront::{Scales, Stop, StopReason};
 
 use super::groups::Groups;
-use crate::case_file;
-use crate::case_file::{AutoOr, CaseError, CaseFile};
+use crate::case_file::{AutoOr, CaseError, CaseFile, RunTime, Step};
 
 /// Duration and time step of a run, its end and the window of the kinetic friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,16 +24,13 @@ pub struct TimePlan {
 const MAX_STEPS: f64 = 1e11;
 
 impl TimePlan {
-    /// The time plan of a case file.
-    ///
-    /// # Errors
-    /// When the step is unstable, the run too long, or the kinetic window empty.
+    /// The time plan of a case file, refused when the step is unstable, the run too long, or the kinetic window empty.
     pub(super) fn of(file: &CaseFile, scales: &Scales, groups: &Groups) -> Result<Self, CaseError> {
         let time = &file.time;
         let dt_star = match time.step {
-            case_file::Step::Auto => 0.1,
-            case_file::Step::Paper => 2.0 / 3.0 * groups.v_star,
-            case_file::Step::Number(dt_star) => dt_star,
+            Step::Auto => 0.1,
+            Step::Paper => 2.0 / 3.0 * groups.v_star,
+            Step::Number(dt_star) => dt_star,
         };
         if dt_star >= dt_star_limit() {
             let sentence = format!(
@@ -43,10 +39,10 @@ impl TimePlan {
             );
             return Err(file.source.error("time.step", sentence));
         }
-        let end_star = match &time.duration {
-            case_file::RunTime::Auto => 8.0 / groups.v_star,
-            case_file::RunTime::Star(duration) => *duration,
-            case_file::RunTime::Duration(duration) => duration.si() / scales.time(),
+        let (key, end_star) = match &time.duration {
+            RunTime::Star(AutoOr::Auto) => ("time.duration_star", 8.0 / groups.v_star),
+            RunTime::Star(AutoOr::Number(duration)) => ("time.duration_star", *duration),
+            RunTime::Duration(duration) => ("time.duration", duration.si() / scales.time()),
         };
         // A duration that is a whole number of steps up to rounding must not gain one.
         let steps = (end_star / dt_star - 1e-6).ceil().max(1.0);
@@ -55,11 +51,6 @@ impl TimePlan {
                 "a run to t* = {end_star:.4e} in steps of {dt_star} takes {steps:.2e} steps, more than {MAX_STEPS:.0e}: \
                  shorten it or raise the step"
             );
-            let key = if file.source.has("time.duration") {
-                "time.duration"
-            } else {
-                "time.duration_star"
-            };
             return Err(file.source.error(key, sentence));
         }
         let kinetic = match time.kinetic_from_star {

@@ -6,7 +6,7 @@ use slipfront::FrictionLaw;
 
 use super::runnable::Case;
 use super::textures::is_array;
-use crate::case_file::{DEFAULT_THRESHOLD, Texture};
+use crate::case_file::{DEFAULT_THRESHOLD, Mask, Texture};
 
 /// Difference between the texture as asked and as meshed, relative to what was asked, above which there is a warning.
 const LARGE_MISFIT: f64 = 0.25;
@@ -23,38 +23,28 @@ impl Case {
     /// Warnings about a case outside the range in which the model is valid, or that differs from what was asked.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
-        let mut warn = |wrong: bool, sentence: String| {
-            if wrong {
+        let mut warn = |is_wrong: bool, sentence: String| {
+            if is_wrong {
                 warnings.push(sentence);
             }
         };
-        self.warn_of_texture(&mut warn);
-        self.warn_of_coefficients(&mut warn);
-        self.warn_of_model(&mut warn);
-        warnings
-    }
-
-    fn warn_of_texture(&self, warn: &mut impl FnMut(bool, String)) {
         for texture in &self.texture.clipped {
+            let sentence = format!(
+                "texture {} reaches over a free edge and is clipped there",
+                texture + 1
+            );
+            warn(true, sentence);
+        }
+        for (texture, number) in self.file.texture.iter().zip(1..) {
+            let Texture::Mask(Mask { file, threshold }) = texture else {
+                continue;
+            };
             warn(
-                true,
+                *threshold != DEFAULT_THRESHOLD && is_array(Path::new(file)),
                 format!(
-                    "texture {} reaches over a free edge and is clipped there",
-                    texture + 1
+                    "`threshold` = {threshold} of texture {number} is for images: an array says by 0 or 1 what is textured"
                 ),
             );
-        }
-        for (index, texture) in self.file.texture.iter().enumerate() {
-            if let Texture::Mask(mask) = texture {
-                warn(
-                    mask.threshold != DEFAULT_THRESHOLD && is_array(Path::new(&mask.file)),
-                    format!(
-                        "`threshold` = {} of texture {} is for images: an array says by 0 or 1 what is textured",
-                        mask.threshold,
-                        index + 1
-                    ),
-                );
-            }
         }
         let meshed = self.texture.meshed_percent;
         match self.texture.asked_percent {
@@ -67,43 +57,34 @@ impl Case {
             ),
             None => warn(meshed == 0.0, "the texture covers no block".to_owned()),
         }
-    }
 
-    fn warn_of_coefficients(&self, warn: &mut impl FnMut(bool, String)) {
+        let negative = self.negative_draws;
         warn(
-            self.negative_draws > 0,
-            format!(
-                "{} negative draws of the friction coefficients were set to 0",
-                self.negative_draws
-            ),
+            negative > 0,
+            format!("{negative} negative draws of the friction coefficients were set to 0"),
         );
         let surface = &self.model.surface;
         let mean = surface.mu_static.iter().sum::<f64>() / surface.n_contact() as f64;
-        let given = self.file.friction.mu_static_field.is_some();
+        let mu_static = self.scales.mu_static_mean;
         warn(
-            given && (mean / self.scales.mu_static_mean - 1.0).abs() > LARGE_MISMATCH,
+            self.file.friction.mu_static_field.is_some() && (mean / mu_static - 1.0).abs() > LARGE_MISMATCH,
             format!(
-                "the given static coefficients have a mean of {mean:.4}, mu_static is {}: what is starred is relative to \
-                 mu_static",
-                self.scales.mu_static_mean
+                "the given static coefficients have a mean of {mean:.4}, mu_static is {mu_static}: what is starred is \
+                 relative to mu_static"
             ),
         );
-    }
 
-    fn warn_of_model(&self, warn: &mut impl FnMut(bool, String)) {
-        let groups = &self.groups;
+        let (epsilon, v_star, dt_star) = (self.groups.epsilon, self.groups.v_star, self.time_plan.dt_star);
         warn(
-            groups.epsilon > LARGE_EPSILON,
+            epsilon > LARGE_EPSILON,
             format!(
-                "the load strains the slider by {:.3}, more than {LARGE_EPSILON}: results depend on it",
-                groups.epsilon
+                "the load strains the slider by {epsilon:.3}, more than {LARGE_EPSILON}: results depend on it"
             ),
         );
         warn(
-            groups.v_star > LARGE_V_STAR,
+            v_star > LARGE_V_STAR,
             format!(
-                "V* = {} is above {LARGE_V_STAR}: the slider slips as a whole before any front can cross it",
-                groups.v_star
+                "V* = {v_star} is above {LARGE_V_STAR}: the slider slips as a whole before any front can cross it"
             ),
         );
         warn(
@@ -111,18 +92,16 @@ impl Case {
             "law = \"literal\" is for comparison only: its results depend on the time step".to_owned(),
         );
         warn(
-            self.time_plan.dt_star > 0.5,
-            format!(
-                "dt* = {} is stable but coarse: with 0.1, mu_s* is good to 1e-3",
-                self.time_plan.dt_star
-            ),
+            dt_star > 0.5,
+            format!("dt* = {dt_star} is stable but coarse: with 0.1, mu_s* is good to 1e-3"),
         );
+        let n_blocks = self.model.lattice.n_blocks();
         warn(
-            self.model.lattice.n_blocks() < FEW_BLOCKS,
+            n_blocks < FEW_BLOCKS,
             format!(
-                "{} blocks are few: edges weigh heavily below {FEW_BLOCKS} (Fig. 5 of the paper)",
-                self.model.lattice.n_blocks()
+                "{n_blocks} blocks are few: edges weigh heavily below {FEW_BLOCKS} (Fig. 5 of the paper)"
             ),
         );
+        warnings
     }
 }

@@ -5,15 +5,17 @@ use std::ops::RangeBounds;
 use std::path::Path;
 
 use super::error::CaseError;
-use super::key_table::{Bounds, Kind, SECTIONS, Section};
+use super::key_table::{Bounds, Key, Kind, SECTIONS};
 use super::source::Source;
+use super::values::AutoOr;
 use crate::number_format::exact;
 use crate::quantity::{self, Quantity};
 
 /// The checks of one table. Keys are named as within that table.
 pub(super) struct Check<'a> {
     source: &'a Source,
-    section: Option<&'static Section>,
+    /// The keys of the table or shape of texture.
+    keys: &'static [Key],
     path: &'a str,
 }
 
@@ -21,16 +23,8 @@ impl<'a> Check<'a> {
     /// The checks of a table or shape of texture, which stands at `path` of the file.
     pub(super) fn new(source: &'a Source, section: &str, path: &'a str) -> Self {
         let section = SECTIONS.iter().find(|found| found.name == section);
-        Self {
-            source,
-            section,
-            path,
-        }
-    }
-
-    /// What a key takes.
-    fn kind(&self, key: &str) -> Option<Kind> {
-        Some(self.section?.key(key)?.kind)
+        let keys = section.map_or(&[][..], |section| section.keys);
+        Self { source, keys, path }
     }
 
     /// The key as the user writes it.
@@ -49,12 +43,17 @@ impl<'a> Check<'a> {
         self.source.has(&self.path_of(key))
     }
 
-    /// Refuses a number out of the bounds of its key, or none (`nan`).
-    pub(super) fn number(&self, key: &str, value: f64) -> Result<(), CaseError> {
-        match self.kind(key) {
-            Some(Kind::Number { bounds, remark, .. }) => self.number_within(key, value, bounds, remark),
-            _ => Ok(()),
+    /// Refuses a value that is not what its key takes.
+    pub(super) fn value(&self, key: &str, value: &dyn Checked) -> Result<(), CaseError> {
+        match self.keys.iter().find(|found| found.name == key) {
+            Some(found) => self.value_of(&found.kind, key, value),
+            None => Ok(()),
         }
+    }
+
+    /// Refuses a value that is not of this kind.
+    pub(super) fn value_of(&self, kind: &Kind, key: &str, value: &dyn Checked) -> Result<(), CaseError> {
+        self.hold(key, value.complaint(kind))
     }
 
     /// Refuses a number out of bounds that depend on other values, or none (`nan`).
@@ -65,89 +64,104 @@ impl<'a> Check<'a> {
         bounds: Bounds,
         remark: &str,
     ) -> Result<(), CaseError> {
-        if bounds.contains(&value) && value.is_finite() {
-            return Ok(());
-        }
-        self.refuse(key, |path| {
-            let (value, range) = (exact(value), in_words(bounds));
-            format!("`{path}` is {value}: it must be {range}; {remark}")
+        self.hold(key, out_of(bounds, value, remark))
+    }
+
+    /// Refuses the value of a key if there is a complaint about it.
+    fn hold(&self, key: &str, complaint: Option<String>) -> Result<(), CaseError> {
+        complaint.map_or(Ok(()), |complaint| {
+            self.refuse(key, |path| format!("`{path}` is {complaint}"))
         })
     }
+}
 
-    /// Refuses a quantity whose SI value is out of the bounds of its key.
-    pub(super) fn quantity<K: quantity::Kind>(
-        &self,
-        key: &str,
-        value: &Quantity<K>,
-    ) -> Result<(), CaseError> {
-        match self.kind(key) {
-            Some(Kind::Quantity { bounds, .. }) => self.quantity_within(key, value, bounds),
-            _ => Ok(()),
+/// A value that is checked against what its key takes.
+pub(super) trait Checked {
+    /// What it is, and what it must be, if it is not of this kind.
+    fn complaint(&self, kind: &Kind) -> Option<String>;
+}
+
+impl Checked for f64 {
+    fn complaint(&self, kind: &Kind) -> Option<String> {
+        let Kind::Number { bounds, remark, .. } = kind else {
+            return None;
+        };
+        out_of(*bounds, *self, remark)
+    }
+}
+
+impl Checked for AutoOr {
+    fn complaint(&self, kind: &Kind) -> Option<String> {
+        match self {
+            Self::Auto => None,
+            Self::Number(number) => number.complaint(kind),
         }
     }
+}
 
-    /// Refuses a quantity whose SI value is out of bounds.
-    pub(super) fn quantity_within<K: quantity::Kind>(
-        &self,
-        key: &str,
-        value: &Quantity<K>,
-        bounds: Bounds,
-    ) -> Result<(), CaseError> {
-        if bounds.contains(&value.si()) && value.si().is_finite() {
-            return Ok(());
-        }
-        self.refuse(key, |path| {
-            let (range, unit) = (in_words(bounds), K::SI_UNIT);
-            format!("`{path}` is \"{value}\": it must be {range} {unit}; look at number and unit")
+impl<K: quantity::Kind> Checked for Quantity<K> {
+    fn complaint(&self, kind: &Kind) -> Option<String> {
+        let Kind::Quantity { bounds, unit } = kind else {
+            return None;
+        };
+        (!is_within(*bounds, self.si())).then(|| {
+            let range = in_words(*bounds);
+            format!("\"{self}\": it must be {range} {unit}; look at number and unit")
         })
     }
+}
 
-    /// Refuses a whole number out of the bounds of its key.
-    pub(super) fn whole(&self, key: &str, value: u64) -> Result<(), CaseError> {
-        match self.kind(key) {
-            Some(Kind::Whole {
+impl Checked for u64 {
+    fn complaint(&self, kind: &Kind) -> Option<String> {
+        match kind {
+            Kind::Whole {
                 least,
                 most,
                 noun,
                 remark,
-            }) if !(least..=most).contains(&value) => self.refuse(key, |path| {
-                format!("`{path}` is {value}: it must be {noun}from {least} to {most}{remark}")
-            }),
-            _ => Ok(()),
-        }
-    }
-
-    /// Refuses a pair of whole numbers of which one is out of the bounds of their key.
-    pub(super) fn pair(&self, key: &str, [x, y]: [u32; 2]) -> Result<(), CaseError> {
-        match self.kind(key) {
-            Some(Kind::Whole { least, most, .. })
-                if [x, y].iter().any(|&n| !(least..=most).contains(&n.into())) =>
-            {
-                self.refuse(key, |path| {
-                    format!("`{path}` is [{x}, {y}]: both must be from {least} to {most}")
-                })
+            } if !(least..=most).contains(&self) => {
+                Some(format!("{self}: it must be {noun}from {least} to {most}{remark}"))
             }
-            _ => Ok(()),
+            _ => None,
         }
     }
+}
 
-    /// Refuses a file whose name does not end as one of the formats of its key.
-    pub(super) fn file(&self, key: &str, name: &str) -> Result<(), CaseError> {
-        let Some(Kind::File(formats)) = self.kind(key) else {
-            return Ok(());
+impl Checked for [u32; 2] {
+    fn complaint(&self, kind: &Kind) -> Option<String> {
+        let Kind::Whole { least, most, .. } = kind else {
+            return None;
         };
-        let ending = Path::new(name)
-            .extension()
-            .and_then(|ending| ending.to_str())
-            .unwrap_or_default();
-        if formats.iter().any(|format| ending.eq_ignore_ascii_case(format)) {
-            return Ok(());
-        }
-        self.refuse(key, |path| {
-            let formats = formats.join(" or .");
-            format!("`{path}` is {name:?}: it must name a .{formats} file")
-        })
+        let [x, y] = self.map(u64::from);
+        let is_wrong = [x, y].iter().any(|count| !(least..=most).contains(&count));
+        is_wrong.then(|| format!("[{x}, {y}]: both must be from {least} to {most}"))
     }
+}
+
+impl Checked for String {
+    fn complaint(&self, kind: &Kind) -> Option<String> {
+        let Kind::File(formats) = kind else { return None };
+        let ending = Path::new(self).extension().and_then(|ending| ending.to_str());
+        let ending = ending.unwrap_or_default();
+        let is_known = formats.iter().any(|format| ending.eq_ignore_ascii_case(format));
+        (!is_known).then(|| format!("{self:?}: it must name a .{} file", formats.join(" or .")))
+    }
+}
+
+impl<V: Checked> Checked for Option<V> {
+    fn complaint(&self, kind: &Kind) -> Option<String> {
+        self.as_ref()?.complaint(kind)
+    }
+}
+
+fn is_within(bounds: Bounds, value: f64) -> bool {
+    bounds.contains(&value) && value.is_finite()
+}
+
+/// What is wrong with a number out of its bounds, or none (`nan`).
+fn out_of(bounds: Bounds, value: f64, remark: &str) -> Option<String> {
+    let sentence = || format!("{}: it must be {}; {remark}", exact(value), in_words(bounds));
+    (!is_within(bounds, value)).then(sentence)
 }
 
 /// A range in words, such as "more than 0 and at most 10".

@@ -32,8 +32,7 @@ pub(super) fn value_error(
     known: &[&str],
 ) -> CaseError {
     let message = one_line(message);
-    if let Some((key, expected)) = name_and_rest(&message, "unknown field `") {
-        let expected: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
+    if let Some((key, expected)) = name_and_expected(&message, "unknown field `") {
         // A table within the one under `header` has keys of its own.
         let inner = source.key_at(&span).filter(|_| expected != known);
         let sentence = match inner {
@@ -42,11 +41,8 @@ pub(super) fn value_error(
         };
         return source.error_at(span, sentence);
     }
-    let complaint = match name_and_rest(&message, "unknown variant `") {
-        Some((word, expected)) => {
-            let words: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
-            unknown_word(&truncated(word), &words)
-        }
+    let complaint = match name_and_expected(&message, "unknown variant `") {
+        Some((word, words)) => unknown_word(&truncated(word), &words),
         None => in_plain_words(&message),
     };
     let subject = source.key_at(&span).unwrap_or(header);
@@ -54,17 +50,15 @@ pub(super) fn value_error(
     source.error_at(span, sentence)
 }
 
-/// The name and what follows "expected" in a message of serde: "unknown field `name`, expected ...".
-fn name_and_rest<'m>(message: &'m str, start: &str) -> Option<(&'m str, &'m str)> {
-    message.strip_prefix(start)?.rsplit_once("`, expected ")
+/// The name, and those that were expected, in a message of serde: "unknown field `name`, expected one of `a`, `b`".
+fn name_and_expected<'m>(message: &'m str, start: &str) -> Option<(&'m str, Vec<&'m str>)> {
+    let (name, expected) = message.strip_prefix(start)?.rsplit_once("`, expected ")?;
+    Some((name, expected.split('`').skip(1).step_by(2).collect()))
 }
 
 fn unknown_word(word: &str, known: &[&str]) -> String {
-    let list = known
-        .iter()
-        .map(|word| format!("\"{word}\""))
-        .collect::<Vec<_>>()
-        .join(", ");
+    let quoted: Vec<String> = known.iter().map(|word| format!("\"{word}\"")).collect();
+    let list = quoted.join(", ");
     match keys::nearest(word, known) {
         Some(near) => format!("unknown word {word:?}: did you mean \"{near}\"? It can be {list}"),
         None => format!("unknown word {word:?}: it can be {list}"),

@@ -68,10 +68,7 @@ pub enum Place {
 impl Place {
     /// The place of a span of the file `name`, which holds `text`.
     pub(super) fn in_file(name: &str, text: &str, span: Range<usize>) -> Self {
-        let start = (0..=span.start.min(text.len()))
-            .rev()
-            .find(|&i| text.is_char_boundary(i))
-            .unwrap_or(0);
+        let start = text.floor_char_boundary(span.start);
         let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
         let line = text[line_start..].lines().next().unwrap_or_default();
         let marked = text.get(start..span.end).unwrap_or_default();
@@ -111,13 +108,8 @@ fn excerpt(line: &str, start: usize, width: usize) -> String {
         return String::new();
     }
     // Tabs stay tabs, so that the caret stands below its character however wide they are.
-    let margin: String = before
-        .chars()
-        .map(|c| if c == '\t' { '\t' } else { ' ' })
-        .collect();
+    let margin = before.replace(|c| c != '\t', " ");
     let line = truncated(line);
-    let width = width
-        .min(line.chars().count().saturating_sub(before.chars().count()))
-        .max(1);
-    format!("\n  {line}\n  {margin}{}", "^".repeat(width))
+    let room = line.chars().count().saturating_sub(before.chars().count());
+    format!("\n  {line}\n  {margin}{}", "^".repeat(width.min(room).max(1)))
 }

@@ -34,7 +34,7 @@ use super::time::Time;
 /// assert_eq!(CaseFile::parse(&case.to_toml()?, "printed", &[])?, case);
 /// # Ok::<(), slipfront_case::case_file::CaseError>(())
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CaseFile {
     /// `[slider]`: the lattice of blocks and its material.
     pub slider: Slider,
@@ -66,11 +66,8 @@ impl CaseFile {
     /// [`CaseError::Invalid`], with its place, for what is not TOML, not a known key, or out of its bounds.
     pub fn parse(text: &str, name: &str, overrides: &[String]) -> Result<Self, CaseError> {
         let base = ParsedCase::parse(text, name)?;
-        let overrides: Vec<Override> = overrides
-            .iter()
-            .map(|entry| Override::parse(entry))
-            .collect::<Result<_, _>>()?;
-        base.with(&overrides)
+        let overrides = overrides.iter().map(|entry| Override::parse(entry));
+        base.with(&overrides.collect::<Result<Vec<_>, _>>()?)
     }
 
     /// Reads a case file of at most 16 MiB, as [`parse`](Self::parse) does.
@@ -82,22 +79,15 @@ impl CaseFile {
         Self::parse(&text, &path.display().to_string(), overrides)
     }
 
-    /// Every file that the case names, relative to the case file, and the key that names it.
-    pub fn files_mut(&mut self) -> impl Iterator<Item = (String, &mut String)> {
-        let textures = self.texture.iter_mut().enumerate();
-        let masks = textures.filter_map(|(index, texture)| match texture {
-            Texture::Mask(mask) => Some((format!("texture.{index}.file"), &mut mask.file)),
+    /// Every file that the case names, relative to the case file.
+    pub fn files_mut(&mut self) -> impl Iterator<Item = &mut String> {
+        let masks = self.texture.iter_mut().filter_map(|texture| match texture {
+            Texture::Mask(mask) => Some(&mut mask.file),
             _ => None,
         });
-        let fields = [
-            ("friction.mu_static_field", &mut self.friction.mu_static_field),
-            ("friction.mu_kinetic_field", &mut self.friction.mu_kinetic_field),
-        ];
-        masks.chain(
-            fields
-                .into_iter()
-                .filter_map(|(key, name)| Some((key.to_owned(), name.as_mut()?))),
-        )
+        let friction = &mut self.friction;
+        let fields = [&mut friction.mu_static_field, &mut friction.mu_kinetic_field];
+        masks.chain(fields.into_iter().flatten())
     }
 
     /// Checks every bound that needs nothing but the file. [`parse`](Self::parse) has done so already.
@@ -125,6 +115,12 @@ impl CaseFile {
     pub fn to_toml(&self) -> Result<String, CaseError> {
         self.check()?;
         Ok(toml::to_string(self)?)
+    }
+}
+
+impl Default for CaseFile {
+    fn default() -> Self {
+        Self::parse("", "", &[]).expect("the defaults of the table of keys are a case")
     }
 }
 
@@ -157,8 +153,7 @@ impl<'t> ParsedCase<'t> {
     pub fn with<'o>(&self, overrides: impl IntoIterator<Item = &'o Override>) -> Result<CaseFile, CaseError> {
         let mut root: DeTable<'_> = self.root.clone();
         let mut source = self.source.clone();
-        let overrides: Vec<&Override> = overrides.into_iter().collect();
-        for change in &overrides {
+        for change in overrides {
             change.apply(&mut root, &mut source)?;
         }
         source.note_places(&root);

@@ -2,45 +2,44 @@
 //!
 //! Bounds on quantities are generous: they refuse typing errors (a block of 1000 km), not unusual materials.
 
+use std::borrow::Cow;
+use std::collections::HashMap;
 use std::ops::Bound::{self, Excluded, Included, Unbounded};
+use std::sync::LazyLock;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 use slipfront::observe::Field;
 use slipfront::surface::Orientation;
 use slipfront::{Edges, FrictionLaw, StopReason};
 
-use super::probe::words_of;
+use super::probe::names_of;
 
 /// A range of numbers.
 pub type Bounds = (Bound<f64>, Bound<f64>);
 
 /// What a key takes.
 #[derive(Clone, Copy, Debug)]
+#[expect(
+    missing_docs,
+    reason = "the sentence of each variant tells what its fields are"
+)]
 pub enum Kind {
     /// A number, or one of these words in its place. The remark ends the sentence about a number out of bounds.
     Number {
-        /// The bounds.
         bounds: Bounds,
-        /// Advice, or what the number is.
         remark: &'static str,
-        /// Words that stand for a number.
         words: &'static [&'static str],
     },
-    /// A string of number and unit.
-    Quantity {
-        /// The SI unit of the bounds.
-        unit: &'static str,
-        /// The bounds.
-        bounds: Bounds,
-    },
-    /// A whole number, or a pair of them.
+    /// A string of number and unit; the bounds are in this unit of the SI.
+    Quantity { unit: &'static str, bounds: Bounds },
+    /// A whole number, or a pair of them. The noun is what it must be, where "from 1 to 64" does not say enough, and the
+    /// remark ends the sentence about a number out of bounds.
     Whole {
-        /// The smallest.
         least: u64,
-        /// The largest.
         most: u64,
-        /// What it must be, where "from 1 to 64" does not say enough.
         noun: &'static str,
-        /// Ends the sentence about a number out of bounds.
         remark: &'static str,
     },
     /// One of the words of an enum.
@@ -102,7 +101,26 @@ impl Section {
     pub fn key(&self, name: &str) -> Option<&'static Key> {
         self.keys.iter().find(|key| key.name == name)
     }
+
+    /// Gives a table the defaults of the keys that it lacks, unless their partner stands there.
+    pub(super) fn fill_in(&self, table: &mut DeTable<'_>) {
+        for key in self.keys {
+            let names = [Some(key.name), key.partner];
+            let is_given = names.into_iter().flatten().any(|name| table.contains_key(name));
+            if let (false, Some(value)) = (is_given, DEFAULTS.get(key.default)) {
+                table.insert(Spanned::new(0..0, Cow::Borrowed(key.name)), value.clone());
+            }
+        }
+    }
 }
+
+/// The values of the defaults by their texts. They are parsed once, since a study makes many cases.
+static DEFAULTS: LazyLock<HashMap<&str, Spanned<DeValue<'static>>>> = LazyLock::new(|| {
+    let keys = SECTIONS.iter().flat_map(|section| section.keys);
+    // A key without a default has an empty text, which is no value.
+    keys.filter_map(|key| Some((key.default, DeValue::parse(key.default).ok()?)))
+        .collect()
+});
 
 /// The table of the textures.
 pub(super) const TEXTURE: &str = "texture";
@@ -126,21 +144,21 @@ const SIGMA: Kind = number(
     "it is relative to the mean coefficient, so that 0.05 is 5 percent",
 );
 const SIZE: Kind = quantity("m", above(0.0, MAX_LENGTH));
-const COORDINATE: Kind = quantity("m", within(-MAX_LENGTH, MAX_LENGTH));
+pub(super) const COORDINATE: Kind = quantity("m", within(-MAX_LENGTH, MAX_LENGTH));
 const COEFFICIENTS: Kind = Kind::File(&["npy", "csv"]);
 
 /// Every section of a case file.
 pub const SECTIONS: [Section; 10] = [
-    table("slider", SLIDER),
-    table("load", LOAD),
-    table("drive", DRIVE),
-    table("friction", FRICTION),
-    table("time", TIME),
-    table("output", OUTPUT),
-    shape("cavity", CAVITY),
-    shape("groove", GROOVE),
-    shape("polygon", POLYGON),
-    shape("mask", MASK),
+    section(false, "slider", SLIDER),
+    section(false, "load", LOAD),
+    section(false, "drive", DRIVE),
+    section(false, "friction", FRICTION),
+    section(false, "time", TIME),
+    section(false, "output", OUTPUT),
+    section(true, "cavity", CAVITY),
+    section(true, "groove", GROOVE),
+    section(true, "polygon", POLYGON),
+    section(true, "mask", MASK),
 ];
 
 #[rustfmt::skip]
@@ -155,7 +173,7 @@ const SLIDER: &[Key] = &[
         .or("damping_rate").title("damping", "\u{3a9}*", ""),
     key("damping_rate", "", quantity("1/s", within(0.0, 1e24)), "damping with its unit")
         .or("omega_star").title("damping", "\u{3a9}", "1/s"),
-    key("edges", "\"free\"", Kind::Words(words_of::<Edges>), "what lies beyond the edges that bound x and those that bound y"),
+    key("edges", "\"free\"", Kind::Words(names_of::<Edges>), "what lies beyond the edges that bound x and those that bound y"),
 ];
 
 #[rustfmt::skip]
@@ -177,7 +195,7 @@ const DRIVE: &[Key] = &[
 
 #[rustfmt::skip]
 const FRICTION: &[Key] = &[
-    key("law", "\"projection\"", Kind::Words(words_of::<FrictionLaw>), "the reading of Eq. 4"),
+    key("law", "\"projection\"", Kind::Words(names_of::<FrictionLaw>), "the reading of Eq. 4"),
     key("mu_static", "1.0", number(above(0.0, 100.0), "it is the scale of all forces"), "mean static coefficient")
         .title("mean static coefficient", "\u{3bc}\u{209b}", ""),
     key("r_star", "0.5", number(within(0.0, MAX_R_STAR), "it is the kinetic over the static coefficient"),
@@ -204,7 +222,7 @@ const TIME: &[Key] = &[
         .or("duration_star").title("duration", "t", "s"),
     key("step", "\"auto\"", or_word(between(0.0, UNSTABLE_STEP), "beyond it the scheme is unstable; \"auto\" is 0.1",
         &["auto", "paper"]), "time step").title("time step", "\u{394}t*", ""),
-    key("stop", "\"end\"", Kind::Words(words_of::<StopReason>),
+    key("stop", "\"end\"", Kind::Words(names_of::<StopReason>),
         "end at the duration, or as soon as the fall that ends the first peak is seen"),
     key("kinetic_from_star", "\"auto\"", or_word((Included(0.0), Unbounded),
         "the average is taken from there to the end of the run", AUTO), "start of the window that mu_k* is averaged over"),
@@ -214,14 +232,14 @@ const TIME: &[Key] = &[
 const OUTPUT: &[Key] = &[
     key("snapshots", "\"auto\"", Kind::Special("`\"auto\"`, a list, or `{ every = 5.0 }`"), "when fields are written"),
     key("fields", "[\"contact_stress_star\", \"traction\", \"displacement_x\", \"displacement_y\", \"sliding\"]",
-        Kind::Words(words_of::<Field>), "what is written then"),
+        Kind::Words(names_of::<Field>), "what is written then"),
     key("stride", "1", Kind::Whole { least: 1, most: MAX_BLOCKS, noun: "", remark: "; 1 writes every block" },
         "every n-th block in the fields file"),
-    key("series", "\"auto\"", or_word(POSITIVE_TIME, SPACING, AUTO), "spacing of the rows of the series in t*"),
+    key("series", "\"auto\"", SPACING, "spacing of the rows of the series in t*"),
 ];
 
-/// What a time between snapshots or rows is.
-pub(super) const SPACING: &str = "it is a spacing in t*";
+/// A time between snapshots or rows.
+pub(super) const SPACING: Kind = or_word(POSITIVE_TIME, "it is a spacing in t*", AUTO);
 
 #[rustfmt::skip]
 const CAVITY: &[Key] = &[
@@ -241,7 +259,7 @@ const CAVITY: &[Key] = &[
 
 #[rustfmt::skip]
 const GROOVE: &[Key] = &[
-    key("orientation", "\"across\"", Kind::Words(words_of::<Orientation>),
+    key("orientation", "\"across\"", Kind::Words(names_of::<Orientation>),
         "whether the groove runs along y (across the x axis) or along x"),
     key("coverage", "", COVERAGE, "size: percent of the whole area").or("width").title("texture coverage", "A*", "%"),
     key("width", "", SIZE, "size: the width").or("coverage").title("groove width", "", "m"),
@@ -249,12 +267,10 @@ const GROOVE: &[Key] = &[
         .title("groove offset", "", "m"),
 ];
 
-const POLYGON: &[Key] = &[key(
-    "points",
-    "",
-    Kind::Special("at least 3 pairs within 1e9 m"),
-    "the corners",
-)];
+#[rustfmt::skip]
+const POLYGON: &[Key] = &[
+    key("points", "", Kind::Special("at least 3 pairs within 1e9 m"), "the corners"),
+];
 
 #[rustfmt::skip]
 const MASK: &[Key] = &[
@@ -263,12 +279,8 @@ const MASK: &[Key] = &[
         "a pixel of an image is dark below this share of white"),
 ];
 
-/// The bounds of coordinates that stand in lists.
-pub(super) const COORDINATES: Bounds = within(-MAX_LENGTH, MAX_LENGTH);
-/// The bounds of the times of snapshots.
-pub(super) const SNAPSHOT_TIMES: Bounds = within(0.0, MAX_TIME_STAR);
-/// The bounds of times between snapshots.
-pub(super) const SPACINGS: Bounds = POSITIVE_TIME;
+/// A time of a snapshot in a list of them.
+pub(super) const SNAPSHOT_TIME: Kind = number(within(0.0, MAX_TIME_STAR), "snapshots are times t*");
 
 const AUTO: &[&str] = &["auto"];
 
@@ -284,20 +296,8 @@ impl Key {
     }
 }
 
-const fn table(name: &'static str, keys: &'static [Key]) -> Section {
-    Section {
-        name,
-        is_shape: false,
-        keys,
-    }
-}
-
-const fn shape(name: &'static str, keys: &'static [Key]) -> Section {
-    Section {
-        name,
-        is_shape: true,
-        keys,
-    }
+const fn section(is_shape: bool, name: &'static str, keys: &'static [Key]) -> Section {
+    Section { name, is_shape, keys }
 }
 
 const fn key(name: &'static str, default: &'static str, kind: Kind, doc: &'static str) -> Key {
@@ -351,22 +351,15 @@ const fn between(low: f64, high: f64) -> Bounds {
     (Excluded(low), Excluded(high))
 }
 
-/// The key that a path such as `drive.v_star` leads to, and the position of the texture in one such as `texture.0.w`.
-fn find(path: &str) -> Option<(&'static Key, Option<usize>)> {
+/// The title of a key such as `drive.v_star` or `texture.0.coverage`, and the position of its texture.
+pub fn title_of(path: &str) -> Option<(Title, Option<usize>)> {
     let (table, rest) = path.split_once('.')?;
     let (texture, name) = match rest.split_once('.') {
         Some((index, name)) if table == TEXTURE => (Some(index.parse().ok()?), name),
         _ => (None, rest),
     };
-    let mut sections = SECTIONS.iter().filter(|section| section.table() == table);
-    let key = sections.find_map(|section| section.key(name))?;
-    Some((key, texture))
-}
-
-/// The title of a key such as `drive.v_star` or `texture.0.coverage`, and the position of its texture.
-pub fn title_of(path: &str) -> Option<(Title, Option<usize>)> {
-    let (key, texture) = find(path)?;
-    Some((key.title?, texture))
+    let mut keys = sections_of(table).filter_map(|section| section.key(name));
+    Some((keys.next()?.title?, texture))
 }
 
 /// Whether a key, such as `texture.0.file` or `file` within its table, names a file.
@@ -376,8 +369,12 @@ pub fn names_a_file(key: &str) -> bool {
     keys.any(|key| matches!(key.kind, Kind::File(_)))
 }
 
+/// The sections of a top-level table.
+fn sections_of(table: &str) -> impl Iterator<Item = &'static Section> {
+    SECTIONS.iter().filter(move |section| section.table() == table)
+}
+
 /// The names of the keys that exclude `key` in a table: each sets the same thing.
 pub(super) fn partners<'k>(table: &'k str, key: &'k str) -> impl Iterator<Item = &'static str> + 'k {
-    let sections = SECTIONS.iter().filter(move |section| section.table() == table);
-    sections.filter_map(move |section| section.key(key)?.partner)
+    sections_of(table).filter_map(move |section| section.key(key)?.partner)
 }

@@ -38,16 +38,8 @@ pub(super) fn texture_header(shape: &str) -> String {
 /// The header of the first table that has the key.
 fn home_of(key: &str) -> Option<String> {
     let home = SECTIONS.iter().find(|section| section.key(key).is_some())?;
-    Some(header_of(home))
-}
-
-/// The header of a section, for messages.
-fn header_of(section: &Section) -> String {
-    if section.is_shape {
-        texture_header(section.name)
-    } else {
-        header(section.name)
-    }
+    let header = if home.is_shape { texture_header } else { header };
+    Some(header(home.name))
 }
 
 /// The keys that set the same thing as a key such as `drive.v_star`, which has `drive.speed`.
@@ -66,21 +58,12 @@ pub fn exclude_each_other(one: &str, other: &str) -> bool {
     partners_of(one).iter().any(|partner| partner == other)
 }
 
-/// Every two keys of a table that set the same thing.
-fn pairs() -> impl Iterator<Item = (&'static str, [&'static str; 2])> {
-    SECTIONS.iter().flat_map(|section| {
-        let position = |name| section.keys.iter().position(|key| key.name == name);
-        let first_of_pair = section.keys.iter().enumerate().filter_map(move |(index, key)| {
-            let partner = key.partner?;
-            (position(partner) > Some(index)).then_some([key.name, partner])
-        });
-        first_of_pair.map(|pair| (section.table(), pair))
-    })
-}
-
 /// Refuses a table that holds both keys of a pair.
 pub(super) fn refuse_both(root: &DeTable<'_>, source: &Source) -> Result<(), CaseError> {
-    for (table, [first, second]) in pairs() {
+    let keys_of = |section: &'static Section| section.keys.iter().map(|key| (section.table(), key));
+    for (table, key) in SECTIONS.iter().flat_map(keys_of) {
+        let Some(second) = key.partner else { continue };
+        let first = key.name;
         let tables: Vec<&DeTable<'_>> = match root.get(table).map(Spanned::get_ref) {
             Some(DeValue::Table(keys)) => vec![keys],
             Some(DeValue::Array(values)) => values
@@ -109,12 +92,11 @@ pub(super) fn refuse_both(root: &DeTable<'_>, source: &Source) -> Result<(), Cas
 pub fn unknown(key: &str, header: &str, known: &[&str]) -> String {
     let list = known.join(", ");
     let advice = match (home_of(key), nearest(key, known)) {
-        (Some(home), _) => format!(": it belongs in {home}"),
+        (Some(home), _) => format!(": it belongs in {home}."),
         (None, Some(near)) => format!(": did you mean `{near}`?"),
         (None, None) => ".".to_owned(),
     };
-    let end = if advice.ends_with(['?', '.']) { "" } else { "." };
-    format!("unknown key `{key}` in {header}{advice}{end} Known keys: {list}")
+    format!("unknown key `{key}` in {header}{advice} Known keys: {list}")
 }
 
 /// The sentence about a key or table that the file as a whole does not have.
@@ -164,8 +146,6 @@ pub(super) fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
     let distances = known
         .iter()
         .map(|key| (strsim::damerau_levenshtein(word, key), *key));
-    distances
-        .min()
-        .filter(|(distance, key)| *distance <= (key.len() / 3).max(1))
-        .map(|(_, key)| key)
+    let (distance, key) = distances.min()?;
+    (distance <= (key.len() / 3).max(1)).then_some(key)
 }

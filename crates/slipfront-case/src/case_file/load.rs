@@ -14,33 +14,24 @@ const MAX_MIB: u64 = 16;
 /// # Errors
 /// When the path is missing, a folder, too large or not UTF-8 text.
 pub fn read_text(path: &Path) -> Result<String, CaseError> {
-    let unreadable = |source| CaseError::Unreadable {
-        path: path.to_owned(),
-        source,
-    };
+    let path = path.to_owned();
     if path.is_dir() {
-        return Err(CaseError::Folder {
-            path: path.to_owned(),
-        });
+        return Err(CaseError::Folder { path });
     }
     let limit = MAX_MIB << 20;
     let mut bytes = Vec::new();
     // The limit holds for what is read, since a device or a pipe tells no size.
-    File::open(path)
-        .and_then(|file| file.take(limit + 1).read_to_end(&mut bytes))
-        .map_err(unreadable)?;
+    let read = File::open(&path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes));
+    if let Err(source) = read {
+        return Err(CaseError::Unreadable { path, source });
+    }
     if bytes.len() as u64 > limit {
-        return Err(CaseError::TooLarge {
-            path: path.to_owned(),
-            limit_mib: MAX_MIB,
-        });
+        let limit_mib = MAX_MIB;
+        return Err(CaseError::TooLarge { path, limit_mib });
     }
     String::from_utf8(bytes).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = good.iter().filter(|byte| **byte == b'\n').count() + 1;
-        CaseError::NotText {
-            path: path.to_owned(),
-            line,
-        }
+        CaseError::NotText { path, line }
     })
 }

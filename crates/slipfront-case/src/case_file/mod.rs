@@ -36,7 +36,7 @@ pub use load::read_text;
 pub use motion::{Drive, DriveSpeed, Friction, KineticFriction, Load};
 pub use output::{Output, Snapshots};
 pub use overrides::Override;
-pub use probe::keys_of;
+pub use probe::names_of;
 pub use slider::{Damping, Slider};
 pub use source::Source;
 pub use tables::Tables;

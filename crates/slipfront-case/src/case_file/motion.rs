@@ -1,13 +1,12 @@
 //! `[load]`, `[drive]` and `[friction]`: what acts on the slider.
 
-use serde::{Deserialize, Serialize};
-
-use slipfront::FrictionLaw;
-
 use std::ops::Bound::Included;
 
+use serde::{Deserialize, Serialize};
+use slipfront::FrictionLaw;
+
 use super::check::Check;
-use super::choice::{default_table, keys_with_choice};
+use super::choice::keys_with_choice;
 use super::error::CaseError;
 use super::key_table::MAX_R_STAR;
 use super::values::word;
@@ -15,7 +14,7 @@ use crate::quantity::{Pressure, Speed};
 
 /// `[load]`: the normal load.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(deny_unknown_fields)]
 pub struct Load {
     /// Pressure over the whole area (P), Pa.
     pub pressure: Pressure,
@@ -23,18 +22,9 @@ pub struct Load {
     pub redistribute: bool,
 }
 
-impl Default for Load {
-    fn default() -> Self {
-        Self {
-            pressure: Pressure::from_text("100 kPa", 1e5),
-            redistribute: true,
-        }
-    }
-}
-
 impl Load {
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
-        check.quantity("pressure", &self.pressure)
+        check.value("pressure", &self.pressure)
     }
 }
 
@@ -59,11 +49,8 @@ pub enum DriveSpeed {
 
 impl Drive {
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
-        match &self.speed {
-            DriveSpeed::VStar(v_star) => check.number("v_star", *v_star)?,
-            DriveSpeed::Speed(speed) => check.quantity("speed", speed)?,
-        }
-        check.number("direction", self.direction)
+        self.speed.check(check)?;
+        check.value("direction", &self.direction)
     }
 }
 
@@ -72,9 +59,9 @@ keys_with_choice! {
         (speed: DriveSpeed {
             v_star: f64 => VStar,
             speed: Speed => Speed,
-            _ => Ok(DriveSpeed::VStar(0.03))
+            _ => "the drive needs `v_star` or `speed`"
         }),
-        direction: f64 = 0.0,
+        direction: f64,
     }
 }
 
@@ -111,44 +98,35 @@ pub enum KineticFriction {
 
 impl Friction {
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
-        check.number("mu_static", self.mu_static)?;
-        match self.kinetic {
-            KineticFriction::RStar(r_star) => check.number("r_star", r_star)?,
-            KineticFriction::MuKinetic(mu_kinetic) => {
-                let bounds = (Included(0.0), Included(MAX_R_STAR * self.mu_static));
-                let remark = format!("at most {MAX_R_STAR} times `mu_static`");
-                check.number_within("mu_kinetic", mu_kinetic, bounds, &remark)?;
-            }
+        check.value("mu_static", &self.mu_static)?;
+        self.kinetic.check(check)?;
+        if let KineticFriction::MuKinetic(mu_kinetic) = self.kinetic {
+            let bounds = (Included(0.0), Included(MAX_R_STAR * self.mu_static));
+            let remark = format!("at most {MAX_R_STAR} times `mu_static`");
+            check.number_within("mu_kinetic", mu_kinetic, bounds, &remark)?;
         }
-        check.number("sigma_static_star", self.sigma_static_star)?;
-        check.number("sigma_kinetic_star", self.sigma_kinetic_star)?;
-        check.whole("seed", self.seed)?;
-        for (key, file) in [
-            ("mu_static_field", &self.mu_static_field),
-            ("mu_kinetic_field", &self.mu_kinetic_field),
-        ] {
-            if let Some(file) = file {
-                check.file(key, file)?;
-            }
-        }
-        Ok(())
+        check.value("sigma_static_star", &self.sigma_static_star)?;
+        check.value("sigma_kinetic_star", &self.sigma_kinetic_star)?;
+        check.value("seed", &self.seed)?;
+        check.value("mu_static_field", &self.mu_static_field)?;
+        check.value("mu_kinetic_field", &self.mu_kinetic_field)
     }
 }
 
 keys_with_choice! {
     Friction: FrictionKeys {
         #[serde(deserialize_with = "word")]
-        law: FrictionLaw = FrictionLaw::Projection,
-        mu_static: f64 = 1.0,
+        law: FrictionLaw,
+        mu_static: f64,
         (kinetic: KineticFriction {
             r_star: f64 => RStar,
             mu_kinetic: f64 => MuKinetic,
-            _ => Ok(KineticFriction::RStar(0.5))
+            _ => "friction needs `r_star` or `mu_kinetic`"
         }),
-        sigma_static_star: f64 = 0.05,
-        sigma_kinetic_star: f64 = 0.05,
-        seed: u64 = 1,
-        mu_static_field: Option<String> = None,
-        mu_kinetic_field: Option<String> = None,
+        sigma_static_star: f64,
+        sigma_kinetic_star: f64,
+        seed: u64,
+        mu_static_field: Option<String>,
+        mu_kinetic_field: Option<String>,
     }
 }

@@ -1,17 +1,17 @@
 //! `[output]`: what is written, how often and how finely.
 
 use serde::{Deserialize, Serialize};
+use slipfront::observe::Field;
 
 use super::check::Check;
 use super::error::CaseError;
-use super::key_table::{SNAPSHOT_TIMES, SPACING, SPACINGS};
+use super::key_table::{SNAPSHOT_TIME, SPACING};
 use super::values::{AutoOr, words};
 use crate::number_format::exact;
-use slipfront::observe::Field;
 
 /// `[output]`: snapshots, fields and the series.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(deny_unknown_fields)]
 pub struct Output {
     /// The instants at which fields are written.
     pub snapshots: Snapshots,
@@ -36,32 +36,15 @@ pub enum Snapshots {
     Every(f64),
 }
 
-impl Default for Output {
-    fn default() -> Self {
-        Self {
-            snapshots: Snapshots::Auto,
-            fields: vec![
-                Field::ContactStress,
-                Field::Traction,
-                Field::DisplacementX,
-                Field::DisplacementY,
-                Field::Sliding,
-            ],
-            stride: 1,
-            series: AutoOr::Auto,
-        }
-    }
-}
-
 impl Output {
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
         match &self.snapshots {
             Snapshots::Auto => {}
             // A table of its own in the file, or the value of `snapshots`: either has a place.
-            Snapshots::Every(every) => check.number_within("snapshots.every", *every, SPACINGS, SPACING)?,
+            Snapshots::Every(every) => check.value_of(&SPACING, "snapshots.every", every)?,
             Snapshots::At(times) => {
                 for time in times {
-                    check.number_within("snapshots", *time, SNAPSHOT_TIMES, "snapshots are times t*")?;
+                    check.value_of(&SNAPSHOT_TIME, "snapshots", time)?;
                 }
                 if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {
                     let (later, earlier) = (exact(pair[1]), exact(pair[0]));
@@ -79,11 +62,8 @@ impl Output {
                 format!("`{key}` names a field twice: name each once")
             });
         }
-        check.whole("stride", self.stride.into())?;
-        match self.series {
-            AutoOr::Auto => Ok(()),
-            AutoOr::Number(spacing) => check.number("series", spacing),
-        }
+        check.value("stride", &u64::from(self.stride))?;
+        check.value("series", &self.series)
     }
 }
 
@@ -91,18 +71,13 @@ impl Output {
 #[derive(Serialize, Deserialize)]
 #[serde(
     untagged,
+    deny_unknown_fields,
     expecting = "expected \"auto\", a list of times t* such as [10.0, 80.0], or { every = 5.0 }"
 )]
 enum SnapshotsKey {
     Word(String),
     At(Vec<f64>),
-    Every(Every),
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Every {
-    every: f64,
+    Every { every: f64 },
 }
 
 impl TryFrom<SnapshotsKey> for Snapshots {
@@ -115,7 +90,7 @@ impl TryFrom<SnapshotsKey> for Snapshots {
                 "{word:?} is given, \"auto\", a list of times t* or {{ every = 5.0 }} is wanted"
             )),
             SnapshotsKey::At(times) => Ok(Self::At(times)),
-            SnapshotsKey::Every(Every { every }) => Ok(Self::Every(every)),
+            SnapshotsKey::Every { every } => Ok(Self::Every(every)),
         }
     }
 }
@@ -125,7 +100,7 @@ impl From<Snapshots> for SnapshotsKey {
         match snapshots {
             Snapshots::Auto => Self::Word("auto".to_owned()),
             Snapshots::At(times) => Self::At(times),
-            Snapshots::Every(every) => Self::Every(Every { every }),
+            Snapshots::Every(every) => Self::Every { every },
         }
     }
 }

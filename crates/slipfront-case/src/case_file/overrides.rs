@@ -24,8 +24,6 @@ pub struct Override {
     text: String,
     key: Range<usize>,
     value: Range<usize>,
-    /// Whether the value is TOML; otherwise it is a string without quotes, which a shell takes away.
-    is_toml: bool,
 }
 
 impl fmt::Display for Override {
@@ -41,7 +39,6 @@ impl Override {
         Self {
             key: 0..key.len(),
             value: key.len() + 1..text.len(),
-            is_toml: true,
             text,
         }
     }
@@ -69,20 +66,16 @@ impl Override {
                 "the override has no value: write KEY=VALUE, such as drive.v_star=0.05",
             ));
         }
-        let is_toml = match DeValue::parse(limit_nesting(value)) {
-            Ok(_) => true,
-            // What opens a string, a list or a table was meant to be one.
-            Err(error) if value.starts_with(['"', '\'', '[', '{']) => {
-                return Err(syntax_error(&source, start + value_start, &error));
-            }
-            Err(_) => false,
-        };
+        // What opens a string, a list or a table was meant to be one.
+        if value.starts_with(['"', '\'', '[', '{']) {
+            DeValue::parse(limit_nesting(value))
+                .map_err(|error| syntax_error(&source, start + value_start, &error))?;
+        }
         let key_start = key.len() - key.trim_start().len();
         Ok(Self {
             text: text.to_owned(),
             key: key_start..key_start + key.trim().len(),
             value: value_start..value_start + value.len(),
-            is_toml,
         })
     }
 
@@ -98,13 +91,9 @@ impl Override {
         let span = start..start + self.text.len();
         let refuse = |sentence: &str| source.error_at(span.clone(), sentence);
         let path: Vec<&str> = self.key().split('.').map(str::trim).collect();
-        let is_bare = |part: &str| {
-            !part.is_empty()
-                && part
-                    .chars()
-                    .all(|c| c.is_ascii_alphanumeric() || "_-".contains(c))
-        };
-        if path.len() > MAX_PARTS || !path.iter().all(|part| is_bare(part)) {
+        let is_bare = |c: char| c.is_ascii_alphanumeric() || "_-".contains(c);
+        let is_name = |part: &&str| !part.is_empty() && part.chars().all(is_bare);
+        if path.len() > MAX_PARTS || !path.iter().all(is_name) {
             return Err(refuse(
                 "the key of an override is made of names and dots, such as drive.v_star or texture.0.coverage",
             ));
@@ -114,24 +103,13 @@ impl Override {
             table: path[0],
             span: &span,
         };
-        change
-            .set(root, &path, self.spanned_value(source, start)?)
-            .map_err(|sentence| refuse(&sentence))
-    }
-
-    /// The value, in an override that begins at `start` of the source.
-    fn spanned_value(&self, source: &Source, start: usize) -> Result<Spanned<DeValue<'_>>, CaseError> {
         let text = &self.text[self.value.clone()];
-        let offset = start + self.value.start;
-        if self.is_toml {
-            let value = DeValue::parse(limit_nesting(text));
-            return Ok(moved(
-                value.map_err(|error| syntax_error(source, offset, &error))?,
-                offset,
-            ));
-        }
-        let span = offset..offset + text.len();
-        Ok(Spanned::new(span, DeValue::String(Cow::Borrowed(text))))
+        // What is not TOML is a string without quotes, which a shell takes away.
+        let string = || Spanned::new(0..text.len(), DeValue::String(Cow::Borrowed(text)));
+        let value = DeValue::parse(limit_nesting(text)).unwrap_or_else(|_| string());
+        change
+            .set(root, &path, moved(value, start + self.value.start))
+            .map_err(|sentence| refuse(&sentence))
     }
 }
 
@@ -143,22 +121,18 @@ fn moved(value: Spanned<DeValue<'_>>, offset: usize) -> Spanned<DeValue<'_>> {
         DeValue::Array(values) => {
             DeValue::Array(values.into_iter().map(|value| moved(value, offset)).collect())
         }
-        DeValue::Table(table) => DeValue::Table(
-            table
-                .into_iter()
-                .map(|(key, value)| {
-                    (
-                        Spanned::new(shift(key.span()), key.into_inner()),
-                        moved(value, offset),
-                    )
-                })
-                .collect(),
-        ),
+        DeValue::Table(table) => {
+            let moved_key = |key: Spanned<_>| Spanned::new(shift(key.span()), key.into_inner());
+            let entries = table.into_iter();
+            let entries = entries.map(|(key, value)| (moved_key(key), moved(value, offset)));
+            DeValue::Table(entries.collect())
+        }
         scalar => scalar,
     };
     Spanned::new(span, inner)
 }
 
+/// An override that is being applied.
 struct Change<'a> {
     source: &'a Source,
     /// The top-level table that the override changes.
@@ -183,18 +157,16 @@ impl Change<'_> {
                 Ok(())
             }
             [key, rest @ ..] => {
-                if !table.contains_key(*key) {
-                    let is_index = rest[0].bytes().all(|byte| byte.is_ascii_digit());
-                    let empty = if is_index {
-                        DeValue::Array(DeArray::default())
-                    } else {
-                        DeValue::Table(DeTable::default())
-                    };
-                    table.insert(self.spanned(Cow::Borrowed(*key)), self.spanned(empty));
-                }
-                match table.get_mut(*key).map(Spanned::get_mut) {
-                    Some(DeValue::Table(inner)) => self.set(inner, rest, value),
-                    Some(DeValue::Array(values)) => self.set_element(values, key, rest, value),
+                let is_index = rest[0].bytes().all(|byte| byte.is_ascii_digit());
+                let empty = if is_index {
+                    DeValue::Array(DeArray::default())
+                } else {
+                    DeValue::Table(DeTable::default())
+                };
+                let inner = table.entry(self.spanned(Cow::Borrowed(*key)));
+                match inner.or_insert(self.spanned(empty)).get_mut() {
+                    DeValue::Table(inner) => self.set(inner, rest, value),
+                    DeValue::Array(values) => self.set_element(values, key, rest, value),
                     _ => Err(format!("`{key}` is not a table in the case: set it as a whole")),
                 }
             }
@@ -236,7 +208,7 @@ impl Change<'_> {
     fn remove_partners(&self, table: &mut DeTable<'_>, key: &str) -> Result<(), String> {
         for partner in partners(self.table, key) {
             if let Some(old) = table.remove(partner)
-                && old.span().start > self.source.file_len()
+                && self.source.override_at(old.span().start).is_some()
             {
                 return Err(format!(
                     "`{key}` and `{partner}`, which another --set gives, set the same thing: keep one"

@@ -3,17 +3,8 @@
 use serde::de::value::Error as ProbeError;
 use serde::de::{DeserializeOwned, Deserializer, Error as _, Visitor};
 
-/// The keys of the struct `T`, in their order.
-pub fn keys_of<T: DeserializeOwned>() -> &'static [&'static str] {
-    names_of::<T>()
-}
-
-/// The words of the enum `T`, in their order.
-pub(super) fn words_of<T: DeserializeOwned>() -> &'static [&'static str] {
-    names_of::<T>()
-}
-
-fn names_of<T: DeserializeOwned>() -> &'static [&'static str] {
+/// The keys of the struct or the words of the enum `T`, in their order.
+pub fn names_of<T: DeserializeOwned>() -> &'static [&'static str] {
     let mut names: &'static [&'static str] = &[];
     // The probe has no value to give, so that this ends in an error, after the names were noted.
     let _ = T::deserialize(Probe(&mut names));

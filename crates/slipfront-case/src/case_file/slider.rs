@@ -1,11 +1,10 @@
 //! `[slider]`: the lattice of blocks and its material.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
 use slipfront::Edges;
 
 use super::check::Check;
-use super::choice::{default_table, keys_with_choice};
+use super::choice::keys_with_choice;
 use super::error::CaseError;
 use super::values::{Pair, pair};
 use crate::quantity::{Density, Length, Pressure, Rate};
@@ -45,7 +44,7 @@ const MIN_BLOCKS_PERIODIC: u32 = 3;
 impl Slider {
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
         let [nx, ny] = self.blocks;
-        check.pair("blocks", self.blocks)?;
+        check.value("blocks", &self.blocks)?;
         let total = u64::from(nx) * u64::from(ny);
         if total > MAX_BLOCKS_TOTAL {
             return check.refuse("blocks", |key| {
@@ -66,30 +65,27 @@ impl Slider {
                 });
             }
         }
-        check.quantity("block_size", &self.block_size)?;
-        check.quantity("young_modulus", &self.young_modulus)?;
-        check.quantity("density", &self.density)?;
-        match &self.damping {
-            Damping::OmegaStar(omega_star) => check.number("omega_star", *omega_star),
-            Damping::Rate(rate) => check.quantity("damping_rate", rate),
-        }
+        check.value("block_size", &self.block_size)?;
+        check.value("young_modulus", &self.young_modulus)?;
+        check.value("density", &self.density)?;
+        self.damping.check(check)
     }
 }
 
 keys_with_choice! {
     Slider: SliderKeys {
         #[serde(deserialize_with = "pair")]
-        blocks: [u32; 2] = [25, 25],
-        block_size: Length = Length::from_text("1 um", 1e-6),
-        young_modulus: Pressure = Pressure::from_text("100 GPa", 1e11),
-        density: Density = Density::from_text("10 g/cm^3", 1e4),
+        blocks: [u32; 2],
+        block_size: Length,
+        young_modulus: Pressure,
+        density: Density,
         (damping: Damping {
             omega_star: f64 => OmegaStar,
             damping_rate: Rate => Rate,
-            _ => Ok(Damping::OmegaStar(0.1))
+            _ => "the slider needs a damping: `omega_star` or `damping_rate`"
         }),
         #[serde(serialize_with = "write_edges", deserialize_with = "read_edges")]
-        edges: [Edges; 2] = [Edges::Free; 2],
+        edges: [Edges; 2],
     }
 }
 

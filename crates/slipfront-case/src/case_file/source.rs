@@ -59,11 +59,6 @@ impl Source {
         &self.name
     }
 
-    /// Length of the file without the overrides, in bytes.
-    pub(super) fn file_len(&self) -> usize {
-        self.file.len()
-    }
-
     /// A piece of the file or of an override.
     pub(super) fn slice(&self, span: Range<usize>) -> &str {
         let piece = match self.override_at(span.start) {
@@ -76,11 +71,6 @@ impl Source {
     /// Notes the place of every value of a parsed file.
     pub fn note_places(&mut self, root: &DeTable<'_>) {
         note_table(&mut self.places, "", root);
-    }
-
-    /// The span of the value of `key`; `None` when the key has its default.
-    pub fn span(&self, key: &str) -> Option<Range<usize>> {
-        self.places.get(key).cloned()
     }
 
     /// The key whose value has exactly this span, or else the innermost one around it.
@@ -104,7 +94,8 @@ impl Source {
     ///
     /// It carries the place of that value, or none when the value is a default or was set in code.
     pub fn error(&self, key: &str, sentence: impl Into<String>) -> CaseError {
-        CaseError::invalid(self.span(key).map(|span| self.place(span)), sentence)
+        let span = self.places.get(key).cloned();
+        CaseError::invalid(span.map(|span| self.place(span)), sentence)
     }
 
     /// An error at a place in the text.
@@ -121,9 +112,8 @@ impl Source {
     }
 
     /// The override that holds a position, and where it begins.
-    fn override_at(&self, position: usize) -> Option<&(usize, String)> {
-        let begun = self.overrides.iter().rev();
-        begun.into_iter().find(|(start, _)| *start <= position)
+    pub(super) fn override_at(&self, position: usize) -> Option<&(usize, String)> {
+        self.overrides.iter().rev().find(|(start, _)| *start <= position)
     }
 }
 
@@ -140,12 +130,9 @@ fn note_value(places: &mut BTreeMap<String, Range<usize>>, key: String, value: &
     match value.get_ref() {
         DeValue::Table(table) => note_table(places, &format!("{key}."), table),
         DeValue::Array(values) => {
-            let tables = values
-                .iter()
-                .enumerate()
-                .filter(|(_, value)| value.get_ref().is_table());
-            for (i, value) in tables {
-                note_value(places, format!("{key}.{i}"), value);
+            let values = values.iter().enumerate();
+            for (index, table) in values.filter(|(_, value)| value.get_ref().is_table()) {
+                note_value(places, format!("{key}.{index}"), table);
             }
         }
         _ => {}

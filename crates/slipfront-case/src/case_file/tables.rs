@@ -6,8 +6,9 @@ use toml::de::{DeTable, DeValue, ValueDeserializer};
 
 use super::diagnose::value_error;
 use super::error::CaseError;
+use super::key_table::SECTIONS;
 use super::keys;
-use super::probe::keys_of;
+use super::probe::names_of;
 use super::source::Source;
 
 /// The tables of a parsed file that are still to be read.
@@ -19,33 +20,43 @@ pub struct Tables<'a, 'i> {
 }
 
 impl<'i> Tables<'_, 'i> {
-    /// The table `[name]`, or its default where the file has none.
-    pub fn read<T: Default + DeserializeOwned>(&mut self, name: &str) -> Result<T, CaseError> {
-        match self.root.remove(name) {
-            None => Ok(T::default()),
-            Some(value) if value.get_ref().is_table() => {
-                self.read_table(value, &keys::header(name), keys_of::<T>())
-            }
-            Some(value) => {
-                let sentence = format!("`{name}` must be a table: write its keys below a line [{name}]");
-                Err(self.source.error_at(value.span(), sentence))
-            }
+    /// The table `[name]`, or an empty one where the file has none.
+    pub fn read<T: DeserializeOwned>(&mut self, name: &str) -> Result<T, CaseError> {
+        let table = self.root.remove(name);
+        let table = table.unwrap_or_else(|| Spanned::new(0..0, DeValue::Table(DeTable::default())));
+        if !table.get_ref().is_table() {
+            let sentence = format!("`{name}` must be a table: write its keys below a line [{name}]");
+            return Err(self.source.error_at(table.span(), sentence));
         }
+        self.read_section(table, name, &keys::header(name))
     }
 
-    /// A table that stands under `header` and has the `known` keys.
+    /// A table that stands under `header`, with the defaults of a table or shape of texture called `section`.
+    pub(super) fn read_section<T: DeserializeOwned>(
+        &self,
+        mut table: Spanned<DeValue<'i>>,
+        section: &str,
+        header: &str,
+    ) -> Result<T, CaseError> {
+        let section = SECTIONS.iter().find(|found| found.name == section);
+        if let (Some(section), DeValue::Table(keys)) = (section, table.get_mut()) {
+            section.fill_in(keys);
+        }
+        self.read_table(table, header)
+    }
+
+    /// A table that stands under `header`.
     pub fn read_table<T: DeserializeOwned>(
         &self,
         table: Spanned<DeValue<'i>>,
         header: &str,
-        known: &[&str],
     ) -> Result<T, CaseError> {
         let span = table.span();
         let read = T::deserialize(ValueDeserializer::from(table));
         read.map_err(|error| {
             // An error about the table as a whole, such as a size that is missing, comes without a span.
             let span = error.span().unwrap_or(span);
-            value_error(self.source, span, error.message(), header, known)
+            value_error(self.source, span, error.message(), header, names_of::<T>())
         })
     }
 }

@@ -4,16 +4,16 @@ use super::*;
 #[test]
 fn the_table_has_the_keys_of_the_structs() {
     let read = [
-        keys_of::<Slider>(),
-        keys_of::<Load>(),
-        keys_of::<Drive>(),
-        keys_of::<Friction>(),
-        keys_of::<Time>(),
-        keys_of::<Output>(),
-        keys_of::<Cavity>(),
-        keys_of::<Groove>(),
-        keys_of::<Polygon>(),
-        keys_of::<Mask>(),
+        names_of::<Slider>(),
+        names_of::<Load>(),
+        names_of::<Drive>(),
+        names_of::<Friction>(),
+        names_of::<Time>(),
+        names_of::<Output>(),
+        names_of::<Cavity>(),
+        names_of::<Groove>(),
+        names_of::<Polygon>(),
+        names_of::<Mask>(),
     ];
     for (section, read) in SECTIONS.iter().zip(read) {
         let listed: Vec<&str> = section.keys.iter().map(|key| key.name).collect();

@@ -2,19 +2,16 @@
 
 use std::ops::Bound::{Excluded, Included};
 
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-
 use slipfront::surface::Orientation;
 use toml::Spanned;
 use toml::de::DeValue;
 
 use super::check::Check;
-use super::choice::{default_table, keys_with_choice};
+use super::choice::keys_with_choice;
 use super::error::CaseError;
-use super::key_table::COORDINATES;
+use super::key_table::COORDINATE;
 use super::keys::{texture_header, unknown_shape};
-use super::probe::keys_of;
 use super::tables::Tables;
 use super::values::{Pair, pair, word};
 use crate::quantity::{Length, QuantityError};
@@ -109,16 +106,11 @@ pub struct Mask {
     /// A `.png` (dark pixels are textured) or a `.npy` of shape (ny, nx) of 0 and 1 (textured), relative to the case file.
     pub file: String,
     /// A pixel of an image is dark below this share of white, more than 0, less than 1.
-    #[serde(default = "default_threshold")]
     pub threshold: f64,
 }
 
 /// Halfway to white.
 pub const DEFAULT_THRESHOLD: f64 = 0.5;
-
-fn default_threshold() -> f64 {
-    DEFAULT_THRESHOLD
-}
 
 impl Texture {
     /// The name of its shape in the file.
@@ -135,11 +127,8 @@ impl Texture {
         match self {
             Self::Cavity(cavity) => cavity.check(check),
             Self::Groove(groove) => {
-                match &groove.size {
-                    GrooveSize::Coverage(coverage) => check.number("coverage", *coverage)?,
-                    GrooveSize::Width(width) => check.quantity("width", width)?,
-                }
-                check.quantity("offset", &groove.offset)
+                groove.size.check(check)?;
+                check.value("offset", &groove.offset)
             }
             Self::Polygon(polygon) => {
                 let count = polygon.points.len();
@@ -149,11 +138,11 @@ impl Texture {
                     });
                 }
                 let mut lengths = polygon.points.iter().flatten();
-                lengths.try_for_each(|length| check.quantity_within("points", length, COORDINATES))
+                lengths.try_for_each(|length| check.value_of(&COORDINATE, "points", length))
             }
             Self::Mask(Mask { file, threshold }) => {
-                check.file("file", file)?;
-                check.number("threshold", *threshold)
+                check.value("file", file)?;
+                check.value("threshold", threshold)
             }
         }
     }
@@ -161,7 +150,7 @@ impl Texture {
 
 impl Cavity {
     fn check(&self, check: &Check) -> Result<(), CaseError> {
-        check.whole("s", self.s.into())?;
+        check.value("s", &u64::from(self.s))?;
         let (most, remark) = match self.s {
             1 => (Excluded(1.0), "at 1 the cavity is a line".to_owned()),
             s => (
@@ -171,46 +160,43 @@ impl Cavity {
         };
         let least = most.map(|most: f64| -most);
         check.number_within("w", self.w, (least, most), &remark)?;
-        match &self.size {
-            CavitySize::Coverage(coverage) => check.number("coverage", *coverage)?,
-            CavitySize::Lambda(lambda) => check.quantity("lambda", lambda)?,
-        }
+        self.size.check(check)?;
         if let Center::At(center) = &self.center {
             let mut lengths = center.iter();
-            lengths.try_for_each(|length| check.quantity_within("center", length, COORDINATES))?;
+            lengths.try_for_each(|length| check.value_of(&COORDINATE, "center", length))?;
         }
-        check.number("rotate", self.rotate)?;
-        check.pair("array", self.array)
+        check.value("rotate", &self.rotate)?;
+        check.value("array", &self.array)
     }
 }
 
 keys_with_choice! {
     Cavity: CavityKeys {
-        s: u32 = 1,
-        w: f64 = 0.0,
+        s: u32,
+        w: f64,
         (size: CavitySize {
             coverage: f64 => Coverage,
             lambda: Length => Lambda,
-            _ => Err("a cavity needs a size: `coverage = 10` (percent of the area) or `lambda = \"8 um\"`")
+            _ => "a cavity needs a size: `coverage = 10` (percent of the area) or `lambda = \"8 um\"`"
         }),
-        across: bool = false,
-        center: Center = Center::Middle,
-        rotate: f64 = 0.0,
+        across: bool,
+        center: Center,
+        rotate: f64,
         #[serde(deserialize_with = "pair")]
-        array: [u32; 2] = [1, 1],
+        array: [u32; 2],
     }
 }
 
 keys_with_choice! {
     Groove: GrooveKeys {
         #[serde(deserialize_with = "word")]
-        orientation: Orientation = Orientation::Across,
+        orientation: Orientation,
         (size: GrooveSize {
             coverage: f64 => Coverage,
             width: Length => Width,
-            _ => Err("a groove needs a size: `coverage = 10` (percent of the area) or `width = \"5 um\"`")
+            _ => "a groove needs a size: `coverage = 10` (percent of the area) or `width = \"5 um\"`"
         }),
-        offset: Length = Length::from_text("0 um", 0.0),
+        offset: Length,
     }
 }
 
@@ -281,20 +267,13 @@ impl<'i> Tables<'_, 'i> {
         let shape_span = shape.as_ref().map_or(span.clone(), Spanned::span);
         let table = Spanned::new(span, DeValue::Table(table));
         let name = shape.as_ref().and_then(|shape| shape.get_ref().as_str());
+        let header = texture_header(name.unwrap_or_default());
         match name {
-            Some("cavity") => self.read_shape(table, "cavity").map(Texture::Cavity),
-            Some("groove") => self.read_shape(table, "groove").map(Texture::Groove),
-            Some("polygon") => self.read_shape(table, "polygon").map(Texture::Polygon),
-            Some("mask") => self.read_shape(table, "mask").map(Texture::Mask),
+            Some(name @ "cavity") => self.read_section(table, name, &header).map(Texture::Cavity),
+            Some(name @ "groove") => self.read_section(table, name, &header).map(Texture::Groove),
+            Some(name @ "polygon") => self.read_section(table, name, &header).map(Texture::Polygon),
+            Some(name @ "mask") => self.read_section(table, name, &header).map(Texture::Mask),
             _ => Err(self.source.error_at(shape_span, unknown_shape(name))),
         }
-    }
-
-    fn read_shape<T: DeserializeOwned>(
-        &self,
-        table: Spanned<DeValue<'i>>,
-        shape: &str,
-    ) -> Result<T, CaseError> {
-        self.read_table(table, &texture_header(shape), keys_of::<T>())
     }
 }

@@ -3,10 +3,10 @@
 use std::ops::Bound::{Excluded, Included};
 
 use serde::{Deserialize, Serialize};
-
 use slipfront::StopReason;
 
 use super::check::Check;
+use super::choice::keys_with_choice;
 use super::error::CaseError;
 use super::key_table::{MAX_TIME_STAR, UNSTABLE_STEP};
 use super::motion::DriveSpeed;
@@ -15,7 +15,7 @@ use crate::quantity::Duration;
 
 /// `[time]`: duration, step, end and averaging window of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "TimeKeys", into = "TimeKeys")]
+#[serde(try_from = "TimeKeys", into = "TimeKeys")]
 pub struct Time {
     /// How long the run is: `duration_star` or `duration`.
     pub duration: RunTime,
@@ -30,10 +30,8 @@ pub struct Time {
 /// The length of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RunTime {
-    /// `duration_star = "auto"`: t* = 8/V*.
-    Auto,
-    /// `duration_star`: in t*, more than 0.
-    Star(f64),
+    /// `duration_star`: in t*, more than 0; `auto` is 8/V*.
+    Star(AutoOr),
     /// `duration`: in s.
     Duration(Duration),
 }
@@ -50,27 +48,12 @@ pub enum Step {
     Number(f64),
 }
 
-impl Default for Time {
-    fn default() -> Self {
-        Self {
-            duration: RunTime::Auto,
-            step: Step::Auto,
-            stop: StopReason::End,
-            kinetic_from_star: AutoOr::Auto,
-        }
-    }
-}
-
 impl Time {
     /// Checks the times; some bounds depend on the speed of the drive.
     pub(super) fn check(&self, check: &Check, speed: &DriveSpeed) -> Result<(), CaseError> {
-        match &self.duration {
-            RunTime::Auto => {}
-            RunTime::Star(star) => check.number("duration_star", *star)?,
-            RunTime::Duration(duration) => check.quantity("duration", duration)?,
-        }
+        self.duration.check(check)?;
         match (self.step, speed) {
-            (Step::Number(dt_star), _) => check.number("step", dt_star)?,
+            (Step::Number(dt_star), _) => check.value("step", &dt_star)?,
             (Step::Paper, DriveSpeed::VStar(v_star)) if v_star * 2.0 / 3.0 >= UNSTABLE_STEP => {
                 let step = v_star * 2.0 / 3.0;
                 return check.refuse("step", |key| {
@@ -84,8 +67,8 @@ impl Time {
         }
         if let AutoOr::Number(from) = self.kinetic_from_star {
             let end = match (&self.duration, speed) {
-                (RunTime::Star(star), _) => Excluded(*star),
-                (RunTime::Auto, DriveSpeed::VStar(v_star)) => Excluded(8.0 / v_star),
+                (RunTime::Star(AutoOr::Number(star)), _) => Excluded(*star),
+                (RunTime::Star(AutoOr::Auto), DriveSpeed::VStar(v_star)) => Excluded(8.0 / v_star),
                 _ => Included(MAX_TIME_STAR),
             };
             let remark = "the average is taken from there to the end of the run";
@@ -95,57 +78,17 @@ impl Time {
     }
 }
 
-/// The keys of `[time]` as they stand in the file.
-#[derive(Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub(super) struct TimeKeys {
-    duration_star: Option<AutoOr>,
-    duration: Option<Duration>,
-    step: Step,
-    #[serde(deserialize_with = "word")]
-    stop: StopReason,
-    kinetic_from_star: AutoOr,
-}
-
-impl Default for TimeKeys {
-    fn default() -> Self {
-        // No duration here: either key replaces the default.
-        let mut keys = Self::from(Time::default());
-        keys.duration_star = None;
-        keys
-    }
-}
-
-impl From<TimeKeys> for Time {
-    fn from(keys: TimeKeys) -> Self {
-        let duration = match (keys.duration, keys.duration_star) {
-            (Some(duration), _) => RunTime::Duration(duration),
-            (None, Some(AutoOr::Number(duration_star))) => RunTime::Star(duration_star),
-            (None, Some(AutoOr::Auto) | None) => RunTime::Auto,
-        };
-        Self {
-            duration,
-            step: keys.step,
-            stop: keys.stop,
-            kinetic_from_star: keys.kinetic_from_star,
-        }
-    }
-}
-
-impl From<Time> for TimeKeys {
-    fn from(time: Time) -> Self {
-        let (duration_star, duration) = match time.duration {
-            RunTime::Auto => (Some(AutoOr::Auto), None),
-            RunTime::Star(duration_star) => (Some(AutoOr::Number(duration_star)), None),
-            RunTime::Duration(duration) => (None, Some(duration)),
-        };
-        Self {
-            duration_star,
-            duration,
-            step: time.step,
-            stop: time.stop,
-            kinetic_from_star: time.kinetic_from_star,
-        }
+keys_with_choice! {
+    Time: TimeKeys {
+        (duration: RunTime {
+            duration_star: AutoOr => Star,
+            duration: Duration => Duration,
+            _ => "the run needs a length: `duration_star` or `duration`"
+        }),
+        step: Step,
+        #[serde(deserialize_with = "word")]
+        stop: StopReason,
+        kinetic_from_star: AutoOr,
     }
 }
 
@@ -155,13 +98,11 @@ impl TryFrom<WordOrNumber> for Step {
     fn try_from(value: WordOrNumber) -> Result<Self, String> {
         match value {
             WordOrNumber::Number(dt_star) => Ok(Self::Number(dt_star)),
-            WordOrNumber::Word(word) => match word.as_str() {
-                "auto" => Ok(Self::Auto),
-                "paper" => Ok(Self::Paper),
-                _ => Err(format!(
-                    "{word:?} is given, a number, \"auto\" or \"paper\" is wanted"
-                )),
-            },
+            WordOrNumber::Word(word) if word == "auto" => Ok(Self::Auto),
+            WordOrNumber::Word(word) if word == "paper" => Ok(Self::Paper),
+            WordOrNumber::Word(word) => Err(format!(
+                "{word:?} is given, a number, \"auto\" or \"paper\" is wanted"
+            )),
         }
     }
 }

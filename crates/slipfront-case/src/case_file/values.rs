@@ -4,9 +4,10 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use serde::de::{Error as _, IntoDeserializer, SeqAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// Exactly two values. (Serde's own `[T; 2]` leaves a third value unread.)
+#[derive(Serialize)]
 pub(super) struct Pair<T>(pub(super) [T; 2]);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Pair<T> {
@@ -33,12 +34,6 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for PairVisitor<T> {
         let pair = <[T; 2]>::try_from(values);
         pair.map(Pair)
             .map_err(|values| A::Error::invalid_length(values.len(), &self))
-    }
-}
-
-impl<T: Serialize> Serialize for Pair<T> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.0.serialize(serializer)
     }
 }
 

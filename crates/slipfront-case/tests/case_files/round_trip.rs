@@ -179,8 +179,7 @@ fn texture() -> impl Strategy<Value = Texture> {
 
 fn time() -> impl Strategy<Value = Time> {
     let duration = prop_oneof![
-        Just(RunTime::Auto),
-        (10.0..1e9).prop_map(RunTime::Star),
+        auto_or(10.0..1e9).prop_map(RunTime::Star),
         quantity(-24, 12, &["ns", "s"]).prop_map(RunTime::Duration)
     ];
     let step = prop_oneof![
@@ -209,7 +208,7 @@ fn output() -> impl Strategy<Value = Output> {
             .prop_map(|times| Snapshots::At(times.into_iter().map(|time| f64::from(time) / 7.0).collect())),
         (1e-3..1e6).prop_map(Snapshots::Every)
     ];
-    let fields = subsequence(Output::default().fields, 0..=5).prop_shuffle();
+    let fields = subsequence(CaseFile::default().output.fields, 0..=5).prop_shuffle();
     (snapshots, fields, 1..=100_000_u32, auto_or(1e-6..1e6)).prop_map(
         |(snapshots, fields, stride, series): (_, Vec<Field>, _, _)| Output {
             snapshots,

@@ -120,7 +120,9 @@ impl Verify {
         .map(Arc::new)
         .map_err(Failure::input)?;
         let again = tempfile::tempdir().map_err(|error| Failure::running(VerifyError::Temporary(error)))?;
-        case.check_disk(again.path(), 0, false).map_err(Failure::input)?;
+        case.budget
+            .check_disk(&case.file, again.path(), 0, false)
+            .map_err(Failure::input)?;
         let mut running = Running::start(&case, rayon::current_num_threads());
         let mut progress = RunProgress::new(&running, self.quiet);
         let reason = loop {

@@ -63,7 +63,7 @@ fn is_listed(folder: &Path, name: &str, listed: &[ManifestFile]) -> bool {
 fn copies(listed: Option<&[ManifestFile]>, case: Option<&CaseFile>) -> Vec<String> {
     let mut case = case.cloned();
     let read = case.iter_mut().flat_map(CaseFile::files_mut);
-    let mut copies: Vec<String> = read.map(|(_, name)| name.clone()).collect();
+    let mut copies: Vec<String> = read.map(|name| name.clone()).collect();
     copies.extend(listed.into_iter().flatten().map(|file| file.name.clone()));
     copies.sort();
     copies.dedup();

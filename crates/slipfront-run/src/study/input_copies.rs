@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 use toml::{Table, Value};
 
 use crate::run_folder::error::FolderError;
-use slipfront_case::case::{CopyName, name_of_copy};
+use slipfront_case::case::name_of_copy;
 use slipfront_case::case_file::names_a_file;
 
 /// Folder of the copies.
@@ -71,17 +71,16 @@ fn replace(name: &mut String, original: PathBuf, copies: &mut Vec<Copy>) -> Resu
     let Some(hash) = hash(&original).map_err(FolderError::read(&original))? else {
         return Ok(());
     };
-    *name = match name_of_copy(&plain_name(name), copies, |made| (&made.name, made.hash == hash)) {
-        CopyName::Known(copy) => copy,
-        CopyName::New(copy) => {
-            copies.push(Copy {
-                name: copy.clone(),
-                original,
-                hash,
-            });
-            copy
-        }
-    };
+    let is_same = |name: &str| Some(copies.iter().find(|made| made.name == name)?.hash == hash);
+    let (copy, is_made) = name_of_copy(&plain_name(name), is_same);
+    name.clone_from(&copy);
+    if !is_made {
+        copies.push(Copy {
+            name: copy,
+            original,
+            hash,
+        });
+    }
     Ok(())
 }
 

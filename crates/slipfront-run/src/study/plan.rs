@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
-use std::sync::Mutex;
+use std::sync::{LazyLock, Mutex};
 
 use rayon::prelude::*;
 
@@ -13,7 +13,7 @@ use super::study_file::{Base, RetainRuns, Settings, StudyFile};
 use super::summary_values::REDUCTION;
 use crate::program;
 use slipfront_case::case::{Budget, Case, PROGRAM, check_fields};
-use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Output, Override, ParsedCase, Snapshots};
+use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Override, ParsedCase, Snapshots};
 use slipfront_case::machine::{available_memory, most_at_once};
 use slipfront_case::number_format::byte_size;
 use slipfront_case::text::display_path;
@@ -252,7 +252,7 @@ impl Plan {
         }
         let mut case = Case::new(file, name, &self.base.folder)?;
         if keeps_all {
-            check_fields(&case.file, &case.model.lattice, &case.output)?;
+            check_fields(&case.file)?;
         } else {
             case.output.series_stride = case.time_plan.last_step;
         }
@@ -391,8 +391,9 @@ impl Plan {
 fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
     let mut file = case.file.clone();
     file.friction.seed = 0;
-    file.output = Output::default();
-    for (_, name) in file.files_mut() {
+    static DEFAULT: LazyLock<CaseFile> = LazyLock::new(CaseFile::default);
+    file.output.clone_from(&DEFAULT.output);
+    for name in file.files_mut() {
         let input = case.inputs.iter().find(|input| input.name == *name);
         let hash = input.map(|input| blake3::hash(&input.bytes).to_hex());
         let ending = name.rsplit('.').next().unwrap_or_default();

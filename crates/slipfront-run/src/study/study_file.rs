@@ -12,7 +12,7 @@ use super::error::StudyError;
 use super::input_copies::{self, Copy};
 use super::summary_values::{REDUCTION, is_column, known};
 use slipfront_case::case_file::{
-    CASE_TABLES, CaseError, ParsedCase, STUDY_TABLES, Source, Tables, header_below, keys_of, limit_nesting,
+    CASE_TABLES, CaseError, ParsedCase, STUDY_TABLES, Source, Tables, header_below, limit_nesting, names_of,
     read_text, syntax_error, unknown_key,
 };
 
@@ -263,7 +263,7 @@ fn refuse_rest(tables: &Tables) -> Result<(), CaseError> {
         return Ok(());
     };
     let name = key.get_ref().as_ref();
-    let sentence = if keys_of::<Settings>().contains(&name) {
+    let sentence = if names_of::<Settings>().contains(&name) {
         format!("`{name}` stands outside its table: it belongs in [study]")
     } else if CASE_TABLES.contains(&name) {
         let [key, below] = ["", "base."].map(|above| header_below(above, name));
@@ -316,7 +316,7 @@ fn read_base(tables: &mut Tables, file: &str, folder: &Path) -> Result<Base, Stu
             Ok(Base { text, name, folder })
         }
         table @ DeValue::Table(_) => {
-            let table: toml::Table = tables.read_table(Spanned::new(span, table), "[base]", &[])?;
+            let table: toml::Table = tables.read_table(Spanned::new(span, table), "[base]")?;
             let text = toml::to_string(&table).map_err(CaseError::from)?;
             let name = format!("[base] of {file}");
             Ok(Base { text, name, folder })
@@ -340,7 +340,7 @@ fn read_axes(tables: &mut Tables) -> Result<Vec<Axis>, StudyError> {
     let mut axes: Vec<Axis> = Vec::new();
     for value in values {
         let span = value.span();
-        let keys: AxisKeys = tables.read_table(value, "[[axes]]", keys_of::<AxisKeys>())?;
+        let keys: AxisKeys = tables.read_table(value, "[[axes]]")?;
         let axis = Axis::new(keys).map_err(|sentence| tables.source.error_at(span, sentence))?;
         axes.push(axis);
         // A line of the file makes up to 100 000 levels: too many are noticed before more are made.

@@ -92,7 +92,8 @@ impl Run {
         } else {
             0
         };
-        case.check_disk(&out, replaced, options.interval.saves())
+        case.budget
+            .check_disk(&case.file, &out, replaced, options.interval.saves())
             .map_err(Failure::input)?;
         let mut folder = folder.prepare(self.force, &case.inputs).map_err(Failure::input)?;
         // What the run needs to go on if it is stopped.

@@ -30,9 +30,11 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
         Contents::Empty | Contents::Foreign | Contents::Interrupted => {}
     }
     let case = Arc::new(make_case(path, file.clone())?);
-    case.check_memory_resumed().map_err(Failure::input)?;
+    let budget = case.budget.resumed();
+    budget.check_memory(&case.file, true).map_err(Failure::input)?;
     let loaded = load(path, &case, previous)?;
-    case.check_disk(path, run.managed_bytes(), options.interval.saves())
+    case.budget
+        .check_disk(&case.file, path, run.managed_bytes(), options.interval.saves())
         .map_err(Failure::input)?;
     let (running, checkpoints, from) = match loaded {
         None => {

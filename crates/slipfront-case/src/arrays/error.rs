@@ -1,0 +1,100 @@
+//! What can be wrong with an array or image file.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::text::single_line;
+
+/// What is wrong with an array or image file: one sentence that ends with the remedy.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum ArrayError {
+    #[error(
+        "cannot read `{}`: {source}; check the path (relative to the case file) and its permissions",
+        path.display()
+    )]
+    Read { path: PathBuf, source: io::Error },
+    #[error(
+        "cannot tell the format of `{}` from {found}; name a file that ends in {known}",
+        path.display()
+    )]
+    Extension {
+        path: PathBuf,
+        found: String,
+        known: &'static str,
+    },
+    #[error("`{}` {problem}", path.display())]
+    Contents { path: PathBuf, problem: String },
+    #[error(
+        "the image `{}` has {width} x {height} pixels where at most {limit} pixels are read; scale it down",
+        path.display()
+    )]
+    TooManyPixels {
+        path: PathBuf,
+        width: u32,
+        height: u32,
+        limit: u64,
+    },
+    #[error("cannot write `{}`: {source}; check that the folder exists, is writable and has room", path.display())]
+    Write { path: PathBuf, source: io::Error },
+}
+
+/// An error about the contents of a file; the sentence goes on after its name.
+pub(super) fn contents_error(path: &Path, problem: String) -> ArrayError {
+    let path = path.to_owned();
+    ArrayError::Contents { path, problem }
+}
+
+/// An error about a file that cannot be read as what its name says.
+pub(super) fn broken(path: &Path, format: &str, detail: &str) -> ArrayError {
+    let detail = single_line(detail);
+    let problem = format!("is not a readable {format} file: {detail}; write the file again");
+    contents_error(path, problem)
+}
+
+/// An error about a value in the row and column `at`.
+pub(super) fn value_error(path: &Path, value: &str, at: [usize; 2], wanted: &str) -> ArrayError {
+    let [row, column] = at;
+    let problem = format!(
+        "has {value} in row {row}, column {column} (both counted from 0), where {wanted} is wanted; correct this value"
+    );
+    contents_error(path, problem)
+}
+
+/// Refuses an array of `nx` columns for the first of its values that is wrong.
+pub(super) fn refuse_value(
+    path: &Path,
+    values: &[f64],
+    nx: usize,
+    wanted: &str,
+    is_wrong: impl Fn(f64) -> bool,
+) -> Result<(), ArrayError> {
+    match values.iter().position(|value| is_wrong(*value)) {
+        Some(at) => Err(value_error(
+            path,
+            &values[at].to_string(),
+            [at / nx, at % nx],
+            wanted,
+        )),
+        None => Ok(()),
+    }
+}
+
+/// The extension in lower case, empty if there is none.
+pub fn extension(path: &Path) -> String {
+    path.extension()
+        .map(|text| text.to_string_lossy().to_lowercase())
+        .unwrap_or_default()
+}
+
+pub(super) fn unknown_extension(path: &Path, extension: &str, known: &'static str) -> ArrayError {
+    let found = match extension {
+        "" => "a name without extension".to_owned(),
+        other => format!("the extension `.{other}`"),
+    };
+    ArrayError::Extension {
+        path: path.to_owned(),
+        found,
+        known,
+    }
+}
