@@ -5,13 +5,11 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use slipfront::checkpoint::BlockNumbers;
 use slipfront::observe::frames::Selection;
-use slipfront::observe::{
-    Curve, CurveRow, FirstSlip, Frame, Frames, Instants, KineticHistory, Observer, Schedule, Scheduled,
-};
+use slipfront::observe::{CurveRow, Frame, Frames, Instants, Schedule, Scheduled};
 use slipfront::{Checkpoint, Execution, RunError, Simulation, Snapshot, Stop, StopReason};
 
 use crate::fields::{FieldFrame, in_si_units};
-use crate::summary::{Observed, Summary};
+use crate::summary::{Summary, SummaryObservers};
 use slipfront_case::case::{Case, Output, Snapshots};
 
 /// Everything a run leaves behind, in memory.
@@ -57,8 +55,7 @@ pub struct Running {
 /// What a run has recorded up to now.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Observers {
-    curve: Curve,
-    history: KineticHistory,
+    summary: SummaryObservers,
     fields: Fields,
 }
 
@@ -90,8 +87,7 @@ impl Observers {
         let (time_plan, output) = (&case.time_plan, &case.output);
         let selection = selection(output);
         Self {
-            curve: Curve::every(output.series_stride),
-            history: KineticHistory::new(last_step),
+            summary: SummaryObservers::new(case, last_step),
             fields: match output.snapshots {
                 Snapshots::Instants => Fields::Instants(Box::new(Instants::new(
                     selection,
@@ -111,26 +107,21 @@ impl Observers {
             (Fields::Frames(old), Fields::Frames(new)) => old.is_consistent_with(new, lattice, step),
             _ => false,
         };
-        fields
-            && self.curve.is_consistent_with(&new.curve, step)
-            && self.history.is_consistent_with(&new.history, step)
+        fields && self.summary.is_consistent_with(&new.summary, step)
     }
 
-    fn scheduled(&mut self, snapshots: &Snapshots) -> [Scheduled<'_>; 3] {
+    fn scheduled(&mut self, snapshots: &Snapshots) -> Vec<Scheduled<'_>> {
         let schedule = match snapshots {
-            Snapshots::Instants => Schedule::Always,
+            Snapshots::Instants => Schedule::Every(1),
             Snapshots::At(steps) => Schedule::At(steps.clone()),
             Snapshots::Every(steps) => Schedule::Every(*steps),
         };
-        let fields: &mut dyn Observer = match &mut self.fields {
-            Fields::Instants(instants) => &mut **instants,
-            Fields::Frames(frames) => frames,
-        };
-        [
-            Scheduled::always(&mut self.curve),
-            Scheduled::always(&mut self.history),
-            Scheduled::new(schedule, fields),
-        ]
+        let mut scheduled = self.summary.scheduled();
+        scheduled.push(match &mut self.fields {
+            Fields::Instants(instants) => Scheduled::new(schedule, &mut **instants),
+            Fields::Frames(frames) => Scheduled::new(schedule, frames),
+        });
+        scheduled
     }
 }
 
@@ -233,50 +224,20 @@ impl Running {
             observers,
             ..
         } = self;
-        let Observers {
-            curve,
-            history,
-            fields,
-        } = observers;
-        let time_plan = &case.time_plan;
-        let first_slip = FirstSlip::of(&simulation.snapshot());
+        let Observers { summary, fields } = observers;
         let (instants, frames) = match fields {
             Fields::Instants(instants) => (instants.found(), Vec::new()),
             Fields::Frames(frames) => (Vec::new(), frames.frames),
         };
-        let peak = simulation.peak();
-        let kinetic_from = time_plan.kinetic.time_star(&peak, case.groups.v_star);
-        // A run that stops at its onset has no kinetic phase, wherever the window was meant to begin, and neither has one
-        // in which nothing slipped.
-        let kinetic = match reason {
-            StopReason::End if first_slip.earliest.is_none() => None,
-            StopReason::End => history.kinetic(kinetic_from, time_plan.dt_star),
-            StopReason::Onset => None,
-        };
-        let (steps, energies) = curve
-            .rows
-            .last()
-            .map(|row| (row.step, row.energies))
-            .unwrap_or_default();
-        let found = Observed {
-            reason,
-            steps,
-            peak,
-            kinetic,
-            first_slip: first_slip.earliest,
-            sliding_percent_max: history.sliding_percent_max(),
-            energies,
-            instants: &instants,
-        };
         Record {
-            summary: Summary::new(&case, &found),
-            rows: curve.rows,
+            summary: summary.end(&case, &simulation, reason, &instants),
+            rows: summary.curve.rows,
             frames: if instants.is_empty() {
                 unlettered(frames)
             } else {
                 merged(instants)
             },
-            first_slip_time_star: first_slip.time_star,
+            first_slip_time_star: simulation.snapshot().first_slip_time_star(),
             contact_stress_max: simulation.contact_stress_max(),
         }
     }
