@@ -145,13 +145,15 @@ fn textures_and_strains(
 /// change it while blocks are at rest.
 #[rstest]
 fn slow_drives(
-    #[values([40, 24], [300, 3], [3, 200])] blocks: [usize; 2],
-    #[values([Edges::Free, Edges::Free], [Edges::Periodic, Edges::Periodic])] edges: [Edges; 2],
+    #[values(
+        ([40, 24], Edges::Free), ([40, 24], Edges::Periodic), ([300, 3], Edges::Free), ([3, 200], Edges::Periodic)
+    )]
+    (blocks, edges): ([usize; 2], Edges),
     #[values((0.0, 1e-6), (65.0, 3e-4), (0.0, 1.7e-3), (65.0, 4e-3))] (degrees, epsilon): (f64, f64),
 ) {
     let slider = Slider {
         blocks,
-        edges,
+        edges: [edges; 2],
         degrees,
         epsilon,
         v_star: 0.004,
