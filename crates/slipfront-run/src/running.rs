@@ -5,13 +5,11 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use slipfront::checkpoint::BlockNumbers;
 use slipfront::observe::frames::Selection;
-use slipfront::observe::{
-    Curve, CurveRow, FirstSlip, Frame, Frames, Instants, KineticHistory, Observer, Schedule, Scheduled,
-};
+use slipfront::observe::{CurveRow, Frame, Frames, Instants, Schedule, Scheduled};
 use slipfront::{Checkpoint, Execution, RunError, Simulation, Snapshot, Stop, StopReason};
 
 use crate::fields::FieldFrame;
-use crate::summary::{Observed, Summary};
+use crate::summary::{Summary, SummaryObservers};
 use slipfront_case::case::{Case, Output, Snapshots};
 
 /// Everything a run leaves behind, in memory.
@@ -54,8 +52,7 @@ pub struct Running {
 /// What a run has recorded up to now.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Observers {
-    curve: Curve,
-    history: KineticHistory,
+    summary: SummaryObservers,
     fields: Fields,
 }
 
@@ -101,8 +98,7 @@ impl Observers {
             Snapshots::At(_) | Snapshots::Every(_) => Fields::Frames(Frames::new(selection)),
         };
         Self {
-            curve: Curve::every(output.series_stride),
-            history: KineticHistory::new(last_step),
+            summary: SummaryObservers::new(case, last_step),
             fields,
         }
     }
@@ -115,26 +111,21 @@ impl Observers {
             (Fields::Frames(old), Fields::Frames(new)) => old.is_consistent_with(new, lattice, step),
             _ => false,
         };
-        fields
-            && self.curve.is_consistent_with(&new.curve, step)
-            && self.history.is_consistent_with(&new.history, step)
+        fields && self.summary.is_consistent_with(&new.summary, step)
     }
 
-    fn scheduled(&mut self, snapshots: &Snapshots) -> [Scheduled<'_>; 3] {
+    fn scheduled(&mut self, snapshots: &Snapshots) -> Vec<Scheduled<'_>> {
         let schedule = match snapshots {
-            Snapshots::Instants => Schedule::Always,
+            Snapshots::Instants => Schedule::Every(1),
             Snapshots::At(steps) => Schedule::At(steps.clone()),
             Snapshots::Every(steps) => Schedule::Every(*steps),
         };
-        let fields: &mut dyn Observer = match &mut self.fields {
-            Fields::Instants(instants) => &mut **instants,
-            Fields::Frames(frames) => frames,
-        };
-        [
-            Scheduled::always(&mut self.curve),
-            Scheduled::always(&mut self.history),
-            Scheduled::new(schedule, fields),
-        ]
+        let mut scheduled = self.summary.scheduled();
+        scheduled.push(match &mut self.fields {
+            Fields::Instants(instants) => Scheduled::new(schedule, &mut **instants),
+            Fields::Frames(frames) => Scheduled::new(schedule, frames),
+        });
+        scheduled
     }
 }
 
@@ -210,39 +201,16 @@ impl Running {
     /// What the run leaves behind, once it has ended.
     pub fn record(self, reason: StopReason) -> Record {
         let (case, simulation) = (self.case, self.simulation);
-        let (curve, history) = (self.observers.curve, self.observers.history);
-        let time_plan = &case.time_plan;
-        let first_slip = FirstSlip::of(&simulation.snapshot());
-        let (instants, frames) = match self.observers.fields {
+        let Observers { summary, fields } = self.observers;
+        let (instants, frames) = match fields {
             Fields::Instants(instants) => (instants.found(), Vec::new()),
             Fields::Frames(frames) => (Vec::new(), frames.frames),
         };
-        let peak = simulation.peak();
-        let kinetic_from = time_plan.kinetic.time_star(&peak, case.groups.v_star);
-        // A run that stops at its onset has no kinetic phase, wherever the window was meant to begin, and neither has one
-        // in which nothing slipped.
-        let kinetic = match reason {
-            StopReason::End if first_slip.earliest.is_none() => None,
-            StopReason::End => history.kinetic(kinetic_from, time_plan.dt_star),
-            StopReason::Onset => None,
-        };
-        let last = curve.rows.last().map(|row| (row.step, row.energies));
-        let (steps, energies) = last.unwrap_or_default();
-        let found = Observed {
-            reason,
-            steps,
-            peak,
-            kinetic,
-            first_slip: first_slip.earliest,
-            sliding_percent_max: history.sliding_percent_max(),
-            energies,
-            instants: &instants,
-        };
         Record {
-            summary: Summary::new(&case, &found),
-            rows: curve.rows,
+            summary: summary.end(&case, &simulation, reason, &instants),
+            rows: summary.curve.rows,
             frames: lettered(instants, frames),
-            first_slip_time_star: first_slip.time_star,
+            first_slip_time_star: simulation.snapshot().first_slip_time_star(),
             contact_stress_max: simulation.contact_stress_max(),
         }
     }

@@ -66,9 +66,9 @@ impl SeriesRow {
             mu_lateral_star: row.point.mu_lateral_star,
             sliding_percent: row.point.sliding_percent,
             work_j: row.energies.work * energy,
-            kinetic_energy_j: row.energies.kinetic * energy,
-            lattice_energy_j: row.energies.lattice * energy,
-            drive_spring_energy_j: row.energies.drive_springs * energy,
+            kinetic_energy_j: row.energies.stored.kinetic * energy,
+            lattice_energy_j: row.energies.stored.lattice * energy,
+            drive_spring_energy_j: row.energies.stored.drive_springs * energy,
             friction_loss_j: row.energies.friction_loss * energy,
             damping_loss_j: row.energies.damping_loss * energy,
         }

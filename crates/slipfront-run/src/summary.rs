@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use slipfront::StopReason;
-use slipfront::observe::{Energies, Frame, Kinetic, NoUncertainty, Peak};
+use slipfront::observe::{Curve, Energies, Frame, Kinetic, KineticHistory, NoUncertainty, Peak, Scheduled};
+use slipfront::{Simulation, StopReason};
 
 use crate::error::ResultsError;
 use crate::names::SUMMARY;
@@ -101,45 +101,81 @@ pub struct InstantSummary {
     pub sliding_percent: f64,
 }
 
-/// What the observers of a run have found.
-pub(crate) struct Observed<'a> {
-    pub reason: StopReason,
-    pub steps: u64,
-    pub peak: Peak,
-    pub kinetic: Option<Kinetic>,
-    pub first_slip: Option<f64>,
-    pub sliding_percent_max: f64,
-    pub energies: Energies,
-    pub instants: &'a [(char, Frame)],
+/// The observers of which every run has one each, and its numbers.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct SummaryObservers {
+    pub(crate) curve: Curve,
+    history: KineticHistory,
 }
 
-impl Summary {
-    pub(crate) fn new(case: &Case, found: &Observed) -> Self {
-        let (peak, kinetic, energies) = (&found.peak, &found.kinetic, &found.energies);
+impl SummaryObservers {
+    /// Those of a run of at most `last_step` steps, [`u64::MAX`] for a run without an end.
+    pub(crate) fn new(case: &Case, last_step: u64) -> Self {
+        Self {
+            curve: Curve::every(case.output.series_stride),
+            history: KineticHistory::new(last_step),
+        }
+    }
+
+    /// Whether they can be those that began as `new` after `step` steps.
+    pub(crate) fn is_consistent_with(&self, new: &Self, step: u64) -> bool {
+        self.curve.is_consistent_with(&new.curve, step) && self.history.is_consistent_with(&new.history, step)
+    }
+
+    pub(crate) fn scheduled(&mut self) -> Vec<Scheduled<'_>> {
+        vec![
+            Scheduled::always(&mut self.curve),
+            Scheduled::always(&mut self.history),
+        ]
+    }
+
+    /// The numbers of a run that has ended, with the instants A-F that it had.
+    pub(crate) fn end(
+        &self,
+        case: &Case,
+        simulation: &Simulation,
+        reason: StopReason,
+        instants: &[(char, Frame)],
+    ) -> Summary {
+        let (peak, first_slip) = (simulation.peak(), simulation.snapshot().earliest_first_slip());
+        let kinetic_from = case.time_plan.kinetic.time_star(&peak, case.groups.v_star);
+        // A run that stops at its onset has no kinetic phase, wherever the window was meant to begin, and neither has one
+        // in which nothing slipped.
+        let kinetic = match reason {
+            StopReason::End if first_slip.is_none() => None,
+            StopReason::End => self.history.kinetic(kinetic_from, case.time_plan.dt_star),
+            StopReason::Onset => None,
+        };
+        let last = self.curve.rows.last();
+        let (steps, energies) = last.map(|row| (row.step, row.energies)).unwrap_or_default();
         let (mean, time) = (case.scales.mu_static_mean, case.scales.time());
         let energy = case.scales.energy();
-        let instants = found.instants.iter().map(|(letter, frame)| InstantSummary {
-            instant: *letter,
-            time_star: frame.time_star,
-            mu_star: frame.point.mu_star,
-            sliding_percent: frame.point.sliding_percent,
-        });
-        Self {
+        let instants = instants
+            .iter()
+            .map(|(letter, frame)| InstantSummary {
+                instant: *letter,
+                time_star: frame.time_star,
+                mu_star: frame.point.mu_star,
+                sliding_percent: frame.point.sliding_percent,
+            })
+            .collect();
+        let after_run = after_run(reason, &peak, first_slip, kinetic, &energies);
+        Summary {
             static_friction_star: peak.mu_star,
             static_friction: peak.mu_star * mean,
             onset_time_star: peak.time_star,
             onset_time_s: peak.time_star * time,
-            first_slip_time_star: found.first_slip,
-            first_slip_time_s: found.first_slip.map(|star| star * time),
+            first_slip_time_star: first_slip,
+            first_slip_time_s: first_slip.map(|star| star * time),
             kinetic_friction_star: kinetic.map(|k| k.mu_star),
             kinetic_friction_star_uncertainty: kinetic.and_then(|k| k.uncertainty.ok()),
             kinetic_friction: kinetic.map(|k| k.mu_star * mean),
             kinetic_window_star: kinetic.map(|k| k.window_star),
             sliding_percent_kinetic: kinetic.map(|k| k.sliding_percent),
-            sliding_percent_max: found.sliding_percent_max,
+            sliding_percent_max: self.history.sliding_percent_max(),
             mu_star_max: peak.mu_star_max,
             transition: peak.ended,
-            instants: instants.collect(),
+            instants,
             v_star: case.groups.v_star,
             r_star: case.groups.r_star,
             omega_star: case.groups.omega_star,
@@ -150,14 +186,14 @@ impl Summary {
             texture_percent: case.texture.meshed_percent,
             texture_percent_asked: case.texture.asked_percent,
             dt_star: case.time_plan.dt_star,
-            steps: found.steps,
+            steps,
             seed: case.file.friction.seed,
             negative_draws: case.negative_draws,
             energy_error: energies.error(),
             work_j: energies.work * energy,
             friction_loss_j: energies.friction_loss * energy,
             damping_loss_j: energies.damping_loss * energy,
-            warnings: [case.warnings(), after_run(found)].concat(),
+            warnings: [case.warnings(), after_run].concat(),
             version: VERSION.to_owned(),
         }
     }
@@ -179,22 +215,28 @@ pub fn summary_json(summary: &Summary) -> String {
 const LARGE_ENERGY_ERROR: f64 = 0.01;
 
 /// What the run itself gives reason to warn of.
-fn after_run(run: &Observed) -> Vec<String> {
+fn after_run(
+    reason: StopReason,
+    peak: &Peak,
+    first_slip: Option<f64>,
+    kinetic: Option<Kinetic>,
+    energies: &Energies,
+) -> Vec<String> {
     let mut warnings = Vec::new();
-    if run.energies.error().abs() > LARGE_ENERGY_ERROR {
+    if energies.error().abs() > LARGE_ENERGY_ERROR {
         warnings.push(format!(
             "the ledger of energies misses {:.0} % of what was put in: the time step is too coarse for this case",
-            100.0 * run.energies.error().abs()
+            100.0 * energies.error().abs()
         ));
     }
-    if !run.peak.ended {
+    if !peak.ended {
         warnings.push(
             "mu* never fell half-way to its steady level: there was no transition, and static_friction_star is the \
              largest mu* of the run"
                 .to_owned(),
         );
     }
-    if run.first_slip.is_none() {
+    if first_slip.is_none() {
         warnings.push(
             "no block in contact slipped before the run ended: kinetic_friction_star is empty; lengthen \
              time.duration_star"
@@ -202,8 +244,8 @@ fn after_run(run: &Observed) -> Vec<String> {
         );
         return warnings;
     }
-    match run.kinetic.map(|kinetic| kinetic.uncertainty) {
-        None if run.reason == StopReason::Onset => {}
+    match kinetic.map(|kinetic| kinetic.uncertainty) {
+        None if reason == StopReason::Onset => {}
         None => warnings.push(
             "the run ended before the kinetic window began: kinetic_friction_star is empty; lengthen \
              time.duration_star or set time.kinetic_from_star"

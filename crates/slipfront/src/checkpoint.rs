@@ -9,12 +9,11 @@ use std::fmt::Formatter;
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::kernel::strain_bound::StrainBound;
 use crate::kernel::totals::Totals;
 use crate::measure::Peak;
+use crate::state::State;
 
-/// A run between two steps. `N` is one value per block: [`BlockNumbers`] when read back, [`BlockColumn`](crate::kernel::BlockColumn) of a
-/// running simulation.
+/// A run between two steps. `N` is one value per block: [`BlockNumbers`] when read back.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint<N = BlockNumbers> {
     /// Number of steps done.
@@ -38,6 +37,38 @@ impl Checkpoint {
     pub(crate) fn has_blocks(&self, n: usize) -> bool {
         let all = self.displacement.iter().chain(&self.velocity);
         all.chain([&self.first_slip]).all(|column| column.0.len() == n)
+    }
+
+    /// Takes displacements and velocities out of it.
+    pub(crate) fn take_state(&mut self) -> State {
+        let take =
+            |columns: &mut [BlockNumbers; 2]| columns.each_mut().map(|c| std::mem::take(&mut c.0)).into();
+        State {
+            displacement: take(&mut self.displacement),
+            velocity: take(&mut self.velocity),
+        }
+    }
+}
+
+/// An upper bound on the strain of every spring, by which the fused kernel chooses how to compute spring forces: it bounds all
+/// differences of displacement by the extent of the displacements when they were last measured, and by the
+/// highest speeds since then. Part of a checkpoint, so that a resumed run chooses the same formula at every step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct StrainBound {
+    /// Largest u_x, -u_x, u_y, -u_y at the latest measurement.
+    pub(crate) extent: [f64; 4],
+    /// By how much differences of displacement may have grown since.
+    pub(crate) growth: f64,
+    /// Highest speed after the latest sweep.
+    pub(crate) speed: f64,
+}
+
+impl StrainBound {
+    /// Largest possible `|eps s|/d^2` of a spring, with `s = (r^2 - d^2)/eps`.
+    pub(crate) fn max_strain(&self, epsilon: f64) -> f64 {
+        let [right, left, top, bottom] = self.extent;
+        let (ex, ey) = (right + left + self.growth, top + bottom + self.growth);
+        epsilon * (2.0 * (ex + ey) + epsilon * (ex * ex + ey * ey))
     }
 }
 

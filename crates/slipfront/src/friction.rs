@@ -5,7 +5,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::state::{Contact, contact_of};
 use crate::vector_field::{add, dot, length};
 
 /// Which reading of Eq. 4 is used.
@@ -38,8 +37,8 @@ pub(crate) struct Update {
     pub velocity: [f64; 2],
     /// Friction force `F_f`; for a block that sticks, minus the sum of the other forces.
     pub friction: [f64; 2],
-    /// Stuck or sliding from t_n on.
-    pub contact: Contact,
+    /// Whether it slides from t_n on.
+    pub slides: bool,
 }
 
 /// Time step and damping (Eq. 5), centred in time so that stability does not depend on it.
@@ -83,7 +82,7 @@ fn stuck(force: [f64; 2]) -> Update {
     Update {
         velocity: [0.0, 0.0],
         friction: [-force[0], -force[1]],
-        contact: Contact::Stuck,
+        slides: false,
     }
 }
 
@@ -92,10 +91,7 @@ fn stuck(force: [f64; 2]) -> Update {
 fn friction_against(motion: [f64; 2], kinetic_force: f64) -> [f64; 2] {
     let speed = length(motion);
     if speed > 0.0 {
-        [
-            -kinetic_force * motion[0] / speed,
-            -kinetic_force * motion[1] / speed,
-        ]
+        motion.map(|component| -kinetic_force * component / speed)
     } else {
         [0.0, 0.0]
     }
@@ -121,7 +117,7 @@ impl Law for Projection {
         Update {
             velocity: select(slides, [remaining * free[0], remaining * free[1]], [0.0, 0.0]),
             friction: select(slides, [-pull * free[0], -pull * free[1]], [-force[0], -force[1]]),
-            contact: if slides { Contact::Sliding } else { Contact::Stuck },
+            slides,
         }
     }
 }
@@ -146,7 +142,7 @@ impl Law for Reversal {
     #[inline(always)]
     fn update(&self, block: &BlockState, integrator: &Integrator) -> Update {
         let total = length(block.force);
-        let starts = contact_of(block.velocity) == Contact::Stuck;
+        let starts = block.velocity == [0.0, 0.0];
         if starts && total <= block.static_limit.max(block.kinetic_force) {
             return stuck(block.force);
         }
@@ -161,7 +157,7 @@ impl Law for Reversal {
         Update {
             velocity,
             friction,
-            contact: contact_of(velocity),
+            slides: velocity != [0.0, 0.0],
         }
     }
 }
@@ -172,7 +168,7 @@ pub(crate) struct Literal;
 impl Law for Literal {
     #[inline(always)]
     fn update(&self, block: &BlockState, integrator: &Integrator) -> Update {
-        let starts = contact_of(block.velocity) == Contact::Stuck;
+        let starts = block.velocity == [0.0, 0.0];
         let friction = if length(block.force) <= block.static_limit {
             [-block.force[0], -block.force[1]]
         } else {
@@ -185,7 +181,7 @@ impl Law for Literal {
         Update {
             velocity,
             friction,
-            contact: contact_of(velocity),
+            slides: velocity != [0.0, 0.0],
         }
     }
 }

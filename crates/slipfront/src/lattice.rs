@@ -3,6 +3,8 @@
 //! Block (i, j) has index `j nx + i`: i runs along x, row 0 lies at y = 0, and its centre stands at
 //! ((i + 1/2), (j + 1/2)) in units of the block size. The [`kernel`](crate::kernel) reads the springs from here.
 
+use std::f64::consts::SQRT_2;
+
 use serde::{Deserialize, Serialize};
 
 /// Stiffness of a spring to a straight neighbour, `k_1 = (3/4) E l`, in units of `E l`.
@@ -123,35 +125,25 @@ pub struct Bond {
 
 impl Bond {
     /// To the neighbour at x + 1.
-    pub const EAST: Bond = Bond {
-        offset: [1, 0],
-        stiffness: K_STRAIGHT,
-        rest: [1.0, 0.0],
-        rest_length: 1.0,
-    };
+    pub const EAST: Bond = Bond::new([1, 0], K_STRAIGHT, 1.0);
     /// To the neighbour at y + 1.
-    pub const NORTH: Bond = Bond {
-        offset: [0, 1],
-        stiffness: K_STRAIGHT,
-        rest: [0.0, 1.0],
-        rest_length: 1.0,
-    };
+    pub const NORTH: Bond = Bond::new([0, 1], K_STRAIGHT, 1.0);
     /// To the neighbour at (x + 1, y + 1).
-    pub const NORTH_EAST: Bond = Bond {
-        offset: [1, 1],
-        stiffness: K_DIAGONAL,
-        rest: [1.0, 1.0],
-        rest_length: std::f64::consts::SQRT_2,
-    };
+    pub const NORTH_EAST: Bond = Bond::new([1, 1], K_DIAGONAL, SQRT_2);
     /// To the neighbour at (x - 1, y + 1).
-    pub const NORTH_WEST: Bond = Bond {
-        offset: [-1, 1],
-        stiffness: K_DIAGONAL,
-        rest: [-1.0, 1.0],
-        rest_length: std::f64::consts::SQRT_2,
-    };
+    pub const NORTH_WEST: Bond = Bond::new([-1, 1], K_DIAGONAL, SQRT_2);
     /// The four bonds that, over all blocks, make every spring once.
     pub const ALL: [Bond; 4] = [Bond::EAST, Bond::NORTH, Bond::NORTH_EAST, Bond::NORTH_WEST];
+
+    const fn new(offset: [isize; 2], stiffness: f64, rest_length: f64) -> Self {
+        let rest = [offset[0] as f64, offset[1] as f64];
+        Self {
+            offset,
+            stiffness,
+            rest,
+            rest_length,
+        }
+    }
 
     /// Force on the block from this spring (one term of Eq. 3), exact at any strain:
     ///

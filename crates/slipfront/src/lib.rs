@@ -31,7 +31,6 @@ pub mod scales;
 pub mod surface;
 
 mod error;
-mod field;
 mod friction;
 mod measure;
 mod model;
@@ -51,7 +50,7 @@ pub use model::{Drive, Model};
 pub use scales::Scales;
 pub use simulation::Simulation;
 pub use snapshot::Snapshot;
-pub use state::{Contact, State};
+pub use state::State;
 pub use stop::{Stop, StopReason};
 pub use surface::Surface;
 pub use vector_field::VectorField;

@@ -30,10 +30,7 @@ impl CurvePoint {
         let (drive, n) = (&model.drive, model.lattice.n_blocks() as f64);
         let mean = totals.displacement.map(|sum| sum / n);
         let position = drive.position(time_star);
-        let pull = [
-            drive.k_drive * (position[0] - mean[0]),
-            drive.k_drive * (position[1] - mean[1]),
-        ];
+        let pull = [0, 1].map(|axis| drive.k_drive * (position[axis] - mean[axis]));
         let [dx, dy] = drive.direction;
         Self {
             mu_star: dot(pull, [dx, dy]),

@@ -47,10 +47,7 @@ impl Drive {
     /// Force of the drive spring on a block at displacement `u` (Eq. 2), `F_s = k_s (V t - u)`, with the constant force.
     pub fn force(&self, u: [f64; 2], time_star: f64) -> [f64; 2] {
         let position = self.position(time_star);
-        [
-            self.k_drive * (position[0] - u[0]) + self.constant_force[0],
-            self.k_drive * (position[1] - u[1]) + self.constant_force[1],
-        ]
+        [0, 1].map(|axis| self.k_drive * (position[axis] - u[axis]) + self.constant_force[axis])
     }
 }
 

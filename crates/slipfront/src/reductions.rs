@@ -4,6 +4,22 @@
 /// Number of running values, whatever the width of the processor's registers.
 const LANES: usize = 8;
 
+/// Lane k mod 8 takes term k of `0..n` to what it has.
+#[inline(always)]
+fn lanes(n: usize, term: impl Fn(usize) -> f64, take: impl Fn(f64, f64) -> f64) -> [f64; LANES] {
+    let mut lanes = [0.0; LANES];
+    let whole = n - n % LANES;
+    for first in (0..whole).step_by(LANES) {
+        for (k, lane) in lanes.iter_mut().enumerate() {
+            *lane = take(*lane, term(first + k));
+        }
+    }
+    for (k, lane) in lanes.iter_mut().enumerate().take(n - whole) {
+        *lane = take(*lane, term(whole + k));
+    }
+    lanes
+}
+
 /// Sum of `term(k)` over `0..n`: lane k mod 8 takes term k, then the lanes are added in pairs.
 ///
 /// ```text
@@ -11,35 +27,15 @@ const LANES: usize = 8;
 /// ```
 #[inline(always)]
 pub(crate) fn sum(n: usize, term: impl Fn(usize) -> f64) -> f64 {
-    let mut lanes = [0.0; LANES];
-    let whole = n - n % LANES;
-    for first in (0..whole).step_by(LANES) {
-        for (k, lane) in lanes.iter_mut().enumerate() {
-            *lane += term(first + k);
-        }
-    }
-    for (k, lane) in lanes.iter_mut().enumerate().take(n - whole) {
-        *lane += term(whole + k);
-    }
-    let [a, b, c, d, e, f, g, h] = lanes;
+    let [a, b, c, d, e, f, g, h] = lanes(n, term, |sum, term| sum + term);
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
 /// Largest `term(k)` over `0..n`, at least 0.
 #[inline(always)]
 pub(crate) fn largest(n: usize, term: impl Fn(usize) -> f64) -> f64 {
-    let mut lanes = [0.0; LANES];
     let larger = |one: f64, other: f64| if other > one { other } else { one };
-    let whole = n - n % LANES;
-    for first in (0..whole).step_by(LANES) {
-        for (k, lane) in lanes.iter_mut().enumerate() {
-            *lane = larger(*lane, term(first + k));
-        }
-    }
-    for (k, lane) in lanes.iter_mut().enumerate().take(n - whole) {
-        *lane = larger(*lane, term(whole + k));
-    }
-    lanes.into_iter().fold(0.0, larger)
+    lanes(n, term, larger).into_iter().fold(0.0, larger)
 }
 
 #[cfg(test)]

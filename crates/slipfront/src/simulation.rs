@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use serde::{Serialize, Serializer};
+
 use crate::checkpoint::Checkpoint;
 use crate::error::RunError;
-use crate::kernel::block_column::{BlockColumn, checkpoint};
 use crate::kernel::engine::Engine;
 use crate::kernel::execution::Execution;
 use crate::kernel::totals::Totals;
@@ -20,7 +21,7 @@ pub struct Simulation {
     model: Arc<Model>,
     dt_star: f64,
     step: u64,
-    engine: Engine,
+    engine: Box<dyn Engine>,
     totals: Totals,
     point: CurvePoint,
     peak: Peak,
@@ -34,11 +35,6 @@ impl Simulation {
         Self::with_execution(model, dt_star, None, Execution::default())
     }
 
-    /// A slider in a given state at t = 0.
-    pub fn from_state(model: impl Into<Arc<Model>>, dt_star: f64, state: State) -> Self {
-        Self::with_execution(model, dt_star, Some(state), Execution::default())
-    }
-
     /// A slider in a given state, or at rest, computed as `execution` says.
     pub fn with_execution(
         model: impl Into<Arc<Model>>,
@@ -47,7 +43,7 @@ impl Simulation {
         execution: Execution,
     ) -> Self {
         let model = model.into();
-        let mut engine = Engine::new(&model, dt_star, state, execution);
+        let mut engine = execution.begin(&model, dt_star, state);
         let totals = engine.step(&model, 0, true);
         let mut simulation = Self {
             peak: Peak::new(model.steady_level()),
@@ -73,7 +69,7 @@ impl Simulation {
     ) -> Option<Self> {
         let model = model.into();
         let (step, totals, peak) = (checkpoint.step, checkpoint.totals, checkpoint.peak);
-        let engine = Engine::resume(&model, dt_star, checkpoint, execution)?;
+        let engine = execution.resume(&model, dt_star, checkpoint)?;
         Some(Self {
             point: CurvePoint::measure(&model, &totals, step as f64 * dt_star),
             model,
@@ -88,8 +84,28 @@ impl Simulation {
 
     /// What [`Simulation::resume`] needs, to be serialized. Taken between two calls of [`Simulation::advance`], it belongs
     /// together with what the observers have recorded by then.
-    pub fn checkpoint(&self) -> Checkpoint<BlockColumn<'_>> {
-        checkpoint(&self.engine, &self.model, self.step, self.totals, self.peak)
+    pub fn checkpoint(&self) -> Checkpoint<impl Serialize> {
+        let column = |value| BlockColumn {
+            engine: &*self.engine,
+            n_blocks: self.model.lattice.n_blocks(),
+            value,
+        };
+        Checkpoint {
+            step: self.step,
+            totals: self.totals,
+            peak: self.peak,
+            stress_square_max: self.engine.stress_square_max(&self.model, self.step),
+            strain_bound: self.engine.strain_bound(),
+            displacement: [
+                column(|engine, b| engine.motion(b)[0][0]),
+                column(|engine, b| engine.motion(b)[0][1]),
+            ],
+            velocity: [
+                column(|engine, b| engine.checkpoint_velocity(b)[0]),
+                column(|engine, b| engine.checkpoint_velocity(b)[1]),
+            ],
+            first_slip: column(|engine, b| engine.first_slip(b)),
+        }
     }
 
     /// Steps until `stop`, showing every instant to the observers that are due, the last one included.
@@ -165,7 +181,7 @@ impl Simulation {
             point: self.point,
             peak: self.peak,
             last: false,
-            engine: &self.engine,
+            engine: &*self.engine,
         }
     }
 
@@ -191,15 +207,10 @@ impl Simulation {
         self.peak
     }
 
-    /// When each block first slid while in contact, t*; NaN where none has.
-    pub fn first_slip_time_star(&self) -> Vec<f64> {
-        self.snapshot().first_slip_time_star()
-    }
-
     /// The largest contact stress (Eq. 10) over blocks in contact and all steps so far, in units of `P mu_s`: the scale of
     /// tau_c*.
     pub fn contact_stress_max(&self) -> f64 {
-        self.engine.contact_stress_max(&self.model, self.step)
+        self.engine.stress_square_max(&self.model, self.step).sqrt()
     }
 
     /// Checks mu* alone: a single displacement that is not finite makes it NaN or infinite.
@@ -221,5 +232,19 @@ impl Simulation {
             j,
             value,
         })
+    }
+}
+
+/// One value of every block, in the order of the lattice. The values are read as they are serialized, so that a checkpoint needs
+/// no memory of its own.
+struct BlockColumn<'a> {
+    engine: &'a dyn Engine,
+    n_blocks: usize,
+    value: fn(&dyn Engine, usize) -> f64,
+}
+
+impl Serialize for BlockColumn<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq((0..self.n_blocks).map(|b| (self.value)(self.engine, b)))
     }
 }

@@ -1,7 +1,6 @@
 //! What observers see of a run.
 
-use crate::field::Field;
-use crate::kernel::block::Block;
+use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
 use crate::kernel::totals::{StoredEnergy, Totals};
 use crate::measure::{CurvePoint, Peak};
@@ -25,7 +24,7 @@ pub struct Snapshot<'a> {
     pub peak: Peak,
     /// Whether the run ends here.
     pub last: bool,
-    pub(crate) engine: &'a Engine,
+    pub(crate) engine: &'a dyn Engine,
 }
 
 /// Changes of mu* below this are taken for rounding errors.
@@ -54,8 +53,9 @@ impl Snapshot<'_> {
 
     /// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the row, the column
     /// of the first value, and the values.
-    pub(crate) fn read_rows(&self, field: Field, stride: usize, write: impl FnMut(usize, usize, &[f32])) {
-        self.engine.read_rows(self.model, self.step, field, stride, write);
+    pub(crate) fn read_rows(&self, field: Field, stride: usize, mut write: impl FnMut(usize, usize, &[f32])) {
+        self.engine
+            .read_rows(self.model, self.step, field, stride, &mut write);
     }
 
     /// Energies stored now.
@@ -71,9 +71,14 @@ impl Snapshot<'_> {
 
     /// When each block first slid while in contact, t*; NaN where none has.
     pub fn first_slip_time_star(&self) -> Vec<f64> {
-        (0..self.model.lattice.n_blocks())
-            .map(|b| self.engine.first_slip(b))
-            .collect()
+        let blocks = 0..self.model.lattice.n_blocks();
+        blocks.map(|b| self.engine.first_slip(b)).collect()
+    }
+
+    /// When the first block slid while in contact, t*.
+    pub fn earliest_first_slip(&self) -> Option<f64> {
+        let times = self.first_slip_time_star().into_iter();
+        times.filter(|time| !time.is_nan()).reduce(f64::min)
     }
 
     /// mu* at the next step, which the velocities of the blocks already determine up to rounding.

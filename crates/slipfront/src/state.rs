@@ -2,16 +2,6 @@
 
 use crate::vector_field::VectorField;
 
-/// Whether a block sticks to the substrate or slides over it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Contact {
-    /// At rest; friction balances the other forces.
-    Stuck,
-    /// Moving: its velocity is not zero (D12).
-    Sliding,
-}
-
 /// A state at step n: displacements at t_n, velocities half a step earlier or later (leapfrog, D6). A block slides if and
 /// only if its velocity is not zero (D12), so that the friction law (D2) needs no further memory.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,15 +19,5 @@ impl State {
             displacement: VectorField::zeros(n_blocks),
             velocity: VectorField::zeros(n_blocks),
         }
-    }
-}
-
-/// A block slides if and only if its velocity is not zero (D12).
-#[inline(always)]
-pub(crate) fn contact_of(velocity: [f64; 2]) -> Contact {
-    if velocity == [0.0, 0.0] {
-        Contact::Stuck
-    } else {
-        Contact::Sliding
     }
 }

@@ -23,16 +23,6 @@ impl VectorField {
     pub fn at(&self, b: usize) -> [f64; 2] {
         [self.x[b], self.y[b]]
     }
-
-    /// Number of blocks.
-    pub fn len(&self) -> usize {
-        self.x.len()
-    }
-
-    /// Whether there is no block at all.
-    pub fn is_empty(&self) -> bool {
-        self.x.is_empty()
-    }
 }
 
 impl From<[Vec<f64>; 2]> for VectorField {

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use slipfront::observe::{CurveRow, Field, Frame};
-use slipfront::{Contact, FrictionLaw, Kernel, Lattice};
+use slipfront::{FrictionLaw, Kernel, Lattice};
 
 use super::output::{MAX_MAPS, Output, Snapshots};
 use super::time_plan::TimePlan;
@@ -18,14 +18,13 @@ use crate::number_format::byte_size;
 const NUMBER: f64 = size_of::<f64>() as f64;
 /// Whether a block is textured; whether it slides.
 const FLAG: f64 = size_of::<bool>() as f64;
-const CONTACT: f64 = size_of::<Contact>() as f64;
 
 /// [`slipfront::Surface`].
 const SURFACE: f64 = FLAG + 2.0 * NUMBER;
 /// The fused kernel: two vectors, two thresholds, a time; masks and tiles take 1.8 together.
 const FUSED: f64 = 7.0 * NUMBER + 2.0;
 /// The reference kernel: two vectors of state, eight of forces, two thresholds, a time.
-const REFERENCE: f64 = 23.0 * NUMBER + CONTACT;
+const REFERENCE: f64 = 23.0 * NUMBER + FLAG;
 /// A block in a checkpoint: two vectors, a time.
 const SAVED: f64 = 5.0 * NUMBER;
 /// Room for what is read of it, which grows by an eighth at a time.

@@ -2,7 +2,13 @@
 
 use fearless_simd::Level;
 
+use super::engine::Engine;
+use super::fused::Fused;
+use super::reference::Reference;
+use crate::checkpoint::Checkpoint;
 use crate::friction::FrictionLaw;
+use crate::model::Model;
+use crate::state::State;
 
 /// Which kernel computes the steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +45,42 @@ impl Kernel {
         match self {
             Self::Reference => "reference",
             Self::Fused => "fused",
+        }
+    }
+}
+
+impl Execution {
+    /// A kernel that begins in a given state, or at rest.
+    pub(crate) fn begin(self, model: &Model, dt_star: f64, state: Option<State>) -> Box<dyn Engine> {
+        match self.kernel.for_law(model.law) {
+            Kernel::Fused => {
+                let kernel = Fused::new(model, dt_star, state.as_ref(), self.threads, self.skips);
+                Box::new(kernel)
+            }
+            Kernel::Reference => {
+                let state = state.unwrap_or_else(|| State::at_rest(model.lattice.n_blocks()));
+                Box::new(Reference::new(model, dt_star, state))
+            }
+        }
+    }
+
+    /// A kernel that continues from a checkpoint; none if it is that of another lattice or kernel.
+    pub(crate) fn resume(
+        self,
+        model: &Model,
+        dt_star: f64,
+        checkpoint: Checkpoint,
+    ) -> Option<Box<dyn Engine>> {
+        if !checkpoint.has_blocks(model.lattice.n_blocks()) {
+            return None;
+        }
+        match (self.kernel.for_law(model.law), checkpoint.strain_bound) {
+            (Kernel::Fused, Some(bound)) => {
+                let kernel = Fused::resume(model, dt_star, checkpoint, bound, self.threads, self.skips);
+                Some(Box::new(kernel))
+            }
+            (Kernel::Reference, None) => Some(Box::new(Reference::resume(model, dt_star, checkpoint))),
+            _ => None,
         }
     }
 }

@@ -4,19 +4,17 @@
 //! Forces of opposite neighbours are summed in pairs, straight ones before diagonal ones, so that the trajectory of a rotated
 //! or mirrored problem is the rotated or mirrored trajectory, with the same bits.
 
-use std::ops::Range;
-
 use fearless_simd::{Level, dispatch};
 
-use super::block::Block;
+use super::block::{Block, Field};
+use super::engine::Engine;
 use super::totals::{StoredEnergy, Totals};
-use crate::checkpoint::Checkpoint;
-use crate::field::Field;
+use crate::checkpoint::{Checkpoint, StrainBound};
 use crate::friction::{BlockState, FrictionLaw, Integrator, Law, Literal, Projection, Reversal};
 use crate::lattice::{Bond, Edges, Lattice};
 use crate::model::Model;
 use crate::reductions;
-use crate::state::{Contact, State};
+use crate::state::State;
 use crate::vector_field::VectorField;
 
 /// The state of all blocks, and the forces of the latest step.
@@ -44,7 +42,7 @@ struct Forces {
     friction: VectorField,
     /// Velocities after the update within a step; between steps those before it.
     velocity: VectorField,
-    contact: Vec<Contact>,
+    slides: Vec<bool>,
     /// Force of the spring along each bond, before they are summed into `lattice`.
     springs: [VectorField; 4],
 }
@@ -62,8 +60,8 @@ impl Reference {
                 lattice: zeros(),
                 friction: zeros(),
                 velocity: zeros(),
-                contact: vec![Contact::Stuck; n],
-                springs: [zeros(), zeros(), zeros(), zeros()],
+                slides: vec![false; n],
+                springs: [(); 4].map(|()| zeros()),
             },
             static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
             kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
@@ -73,11 +71,8 @@ impl Reference {
     }
 
     /// Continues from a checkpoint: its instant is evaluated again to find forces, friction and velocities.
-    pub(crate) fn resume(model: &Model, dt_star: f64, checkpoint: Checkpoint) -> Self {
-        let state = State {
-            displacement: checkpoint.displacement.map(|column| column.0).into(),
-            velocity: checkpoint.velocity.map(|column| column.0).into(),
-        };
+    pub(crate) fn resume(model: &Model, dt_star: f64, mut checkpoint: Checkpoint) -> Self {
+        let state = checkpoint.take_state();
         let mut kernel = Self {
             first_slip: checkpoint.first_slip.0,
             stress_square_max: checkpoint.stress_square_max,
@@ -85,15 +80,6 @@ impl Reference {
         };
         kernel.step(model, checkpoint.step, false);
         kernel
-    }
-
-    /// Advances to step `number`: the next one, or the one to begin with.
-    pub(crate) fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals {
-        let time_star = number as f64 * self.dt_star;
-        let level = Level::new();
-        dispatch!(level, _ => self.advance_and_evaluate(model, time_star));
-        self.mark_first_slips(model, time_star);
-        dispatch!(level, _ => self.measure(model, time_star, energies))
     }
 
     #[inline(always)]
@@ -120,31 +106,24 @@ impl Reference {
     /// Eqs. 4-7: friction and damping, and the velocity half a step later.
     #[inline(always)]
     fn friction_forces<L: Law>(&mut self, law: &L, integrator: &Integrator) {
-        let Forces {
-            drive,
-            lattice,
-            friction,
-            velocity,
-            contact,
-            ..
-        } = &mut self.forces;
-        let before = &self.state.velocity;
+        let (forces, before) = (&mut self.forces, &self.state.velocity);
+        let (drive, lattice) = (&forces.drive, &forces.lattice);
         apply_friction(
             law,
             integrator,
             [&self.static_limit, &self.kinetic_force],
             [&before.x, &before.y],
             [&drive.x, &drive.y, &lattice.x, &lattice.y],
-            [&mut friction.x, &mut friction.y],
-            [&mut velocity.x, &mut velocity.y],
-            contact,
+            [&mut forces.friction.x, &mut forces.friction.y],
+            [&mut forces.velocity.x, &mut forces.velocity.y],
+            &mut forces.slides,
         );
     }
 
     fn mark_first_slips(&mut self, model: &Model, time_star: f64) {
-        let contacts = self.forces.contact.iter().zip(&model.surface.textured);
-        for ((&contact, textured), time) in contacts.zip(&mut self.first_slip) {
-            if contact == Contact::Sliding && !textured && time.is_nan() {
+        let blocks = self.forces.slides.iter().zip(&model.surface.textured);
+        for ((slides, textured), time) in blocks.zip(&mut self.first_slip) {
+            if *slides && !textured && time.is_nan() {
                 *time = time_star;
             }
         }
@@ -155,19 +134,15 @@ impl Reference {
     fn measure(&mut self, model: &Model, time_star: f64, energies: bool) -> Totals {
         let n = self.static_limit.len();
         let [ux, uy] = components(&self.state.displacement, n);
-        let ([bx, by], [ax, ay]) = (
-            components(&self.forces.velocity, n),
-            components(&self.state.velocity, n),
-        );
-        let ([lx, ly], [fx, fy]) = (
-            components(&self.forces.lattice, n),
-            components(&self.forces.friction, n),
-        );
-        let (textured, contact) = (&model.surface.textured[..n], &self.forces.contact[..n]);
+        let [bx, by] = components(&self.forces.velocity, n);
+        let [ax, ay] = components(&self.state.velocity, n);
+        let [lx, ly] = components(&self.forces.lattice, n);
+        let [fx, fy] = components(&self.forces.friction, n);
+        let (textured, slides) = (&model.surface.textured[..n], &self.forces.slides[..n]);
         let sum = |[x, y]: [&[f64]; 2]| [reductions::sum(n, |b| x[b]), reductions::sum(n, |b| y[b])];
         let squares = |[x, y]: [&[f64]; 2]| reductions::sum(n, |b| x[b] * x[b] + y[b] * y[b]);
         let (vx, vy) = (|b: usize| 0.5 * (bx[b] + ax[b]), |b: usize| 0.5 * (by[b] + ay[b]));
-        let sliding = || contact.iter().map(|&c| c == Contact::Sliding);
+        let slipping = slides.iter().zip(textured);
         let stress_square = reductions::largest(n, |b| {
             let (x, y) = (fx[b] + lx[b], fy[b] + ly[b]);
             if textured[b] { 0.0 } else { x * x + y * y }
@@ -179,10 +154,9 @@ impl Reference {
             velocity_after: sum([ax, ay]),
             velocity_square: reductions::sum(n, |b| vx(b) * vx(b) + vy(b) * vy(b)),
             friction_power: reductions::sum(n, |b| fx[b] * vx(b) + fy[b] * vy(b)),
-            n_sliding: sliding().filter(|&slides| slides).count(),
-            n_slipping: sliding()
-                .zip(textured)
-                .filter(|&(slides, textured)| slides && !textured)
+            n_sliding: slides.iter().filter(|&&slides| slides).count(),
+            n_slipping: slipping
+                .filter(|&(slides, textured)| *slides && !textured)
                 .count(),
             stored_energy: energies.then(|| {
                 let [x, y] = model.drive.position(time_star);
@@ -196,9 +170,18 @@ impl Reference {
             }),
         }
     }
+}
 
-    /// Block `b` with the forces on it.
-    pub(crate) fn block(&self, b: usize) -> Block {
+impl Engine for Reference {
+    fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals {
+        let time_star = number as f64 * self.dt_star;
+        let level = Level::new();
+        dispatch!(level, _ => self.advance_and_evaluate(model, time_star));
+        self.mark_first_slips(model, time_star);
+        dispatch!(level, _ => self.measure(model, time_star, energies))
+    }
+
+    fn block(&self, _: &Model, _: u64, b: usize) -> Block {
         Block {
             displacement: self.state.displacement.at(b),
             velocity: self.state.velocity.at(b),
@@ -208,76 +191,48 @@ impl Reference {
         }
     }
 
-    /// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the row, the column
-    /// of the first value, and the values.
-    pub(crate) fn read_rows(
+    fn read_rows(
         &self,
         model: &Model,
+        number: u64,
         field: Field,
         stride: usize,
-        mut write: impl FnMut(usize, usize, &[f32]),
+        write: &mut dyn FnMut(usize, usize, &[f32]),
     ) {
         const WIDTH: usize = 128;
         let lattice = &model.lattice;
-        let level = Level::new();
         let mut values = [0.0; WIDTH];
         for j in (0..lattice.ny).step_by(stride) {
             for i in (0..lattice.nx).step_by(WIDTH) {
                 let values = &mut values[..WIDTH.min(lattice.nx - i)];
-                let first = lattice.block(i, j);
-                dispatch!(level, _ => self.read_blocks(model, field, first, values));
+                for (value, b) in values.iter_mut().zip(lattice.block(i, j)..) {
+                    *value = field.value(&self.block(model, number, b), model.surface.textured[b]) as f32;
+                }
                 write(j, i, values);
             }
         }
     }
 
-    /// Values of `field` of the blocks from `first` on.
-    #[inline(always)]
-    fn read_blocks(&self, model: &Model, field: Field, first: usize, values: &mut [f32]) {
-        let n = values.len();
-        let blocks = first..first + n;
-        let u = part(&self.state.displacement, &blocks);
-        let v = part(&self.state.velocity, &blocks);
-        let lattice = part(&self.forces.lattice, &blocks);
-        let friction = part(&self.forces.friction, &blocks);
-        let textured = &model.surface.textured[blocks];
-        for (k, value) in values.iter_mut().enumerate() {
-            let at = |[x, y]: [&[f64]; 2]| [x[k], y[k]];
-            let block = Block {
-                displacement: at(u),
-                velocity: at(v),
-                force_drive: [0.0; 2],
-                force_lattice: at(lattice),
-                force_friction: at(friction),
-            };
-            *value = field.value(&block, textured[k]) as f32;
-        }
-    }
-
-    /// Displacement now and velocity half a step later of block `b`.
-    pub(crate) fn motion(&self, b: usize) -> [[f64; 2]; 2] {
+    fn motion(&self, b: usize) -> [[f64; 2]; 2] {
         [self.state.displacement.at(b), self.state.velocity.at(b)]
     }
 
-    /// When block `b` first slid while in contact; NaN if it never has.
-    pub(crate) fn first_slip(&self, b: usize) -> f64 {
+    fn first_slip(&self, b: usize) -> f64 {
         self.first_slip[b]
     }
 
-    /// Velocity of block `b` half a step before the present instant.
-    pub(crate) fn velocity_before(&self, b: usize) -> [f64; 2] {
-        self.forces.velocity.at(b)
-    }
-
-    /// Largest square of a contact stress of a block in contact so far.
-    pub(crate) fn stress_square_max(&self) -> f64 {
+    fn stress_square_max(&self, _: &Model, _: u64) -> f64 {
         self.stress_square_max
     }
-}
 
-#[inline(always)]
-fn part<'a>(field: &'a VectorField, blocks: &Range<usize>) -> [&'a [f64]; 2] {
-    [&field.x[blocks.clone()], &field.y[blocks.clone()]]
+    fn strain_bound(&self) -> Option<StrainBound> {
+        None
+    }
+
+    /// Half a step before the present instant, which is evaluated again when it resumes.
+    fn checkpoint_velocity(&self, b: usize) -> [f64; 2] {
+        self.forces.velocity.at(b)
+    }
 }
 
 #[inline(always)]
@@ -288,15 +243,11 @@ fn components(field: &VectorField, n: usize) -> [&[f64]; 2] {
 /// Eq. 8: `u(t + dt) = u(t) + dt v(t + dt/2)`.
 #[inline(always)]
 fn move_blocks(state: &mut State, dt_star: f64) {
-    let State {
-        displacement,
-        velocity,
-    } = state;
-    let axes = [
+    let (displacement, velocity) = (&mut state.displacement, &state.velocity);
+    for (u, v) in [
         (&mut displacement.x, &velocity.x),
         (&mut displacement.y, &velocity.y),
-    ];
-    for (u, v) in axes {
+    ] {
         u.iter_mut().zip(v).for_each(|(u, v)| *u += dt_star * v);
     }
 }
@@ -323,16 +274,8 @@ fn lattice_forces(model: &Model, state: &State, force: &mut VectorField, springs
         spring_forces(lattice, bond, &state.displacement, model.epsilon, spring);
     }
     let [x, y] = [&*springs; 2];
-    sum_springs(
-        lattice,
-        x.each_ref().map(|spring| spring.x.as_slice()),
-        &mut force.x,
-    );
-    sum_springs(
-        lattice,
-        y.each_ref().map(|spring| spring.y.as_slice()),
-        &mut force.y,
-    );
+    sum_springs(lattice, x.each_ref().map(|spring| &*spring.x), &mut force.x);
+    sum_springs(lattice, y.each_ref().map(|spring| &*spring.y), &mut force.y);
 }
 
 /// Force on every block from its spring along `bond`; zero where a free edge leaves it out.
@@ -418,7 +361,7 @@ fn add_pairs(own: [&[f64]; 4], behind: [&[f64]; 4], total: &mut [f64]) {
     }
 }
 
-/// Applies the friction law to every block: finds friction, velocities and contact from thresholds, velocities and forces.
+/// Applies the friction law to every block: finds friction, velocities and which slide from thresholds, velocities and forces.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)] // Separate slices are known not to overlap, so that the loop is vectorised.
 fn apply_friction<L: Law>(
@@ -429,9 +372,9 @@ fn apply_friction<L: Law>(
     forces: [&[f64]; 4],
     friction: [&mut [f64]; 2],
     after: [&mut [f64]; 2],
-    contact: &mut [Contact],
+    slides: &mut [bool],
 ) {
-    let n = contact.len();
+    let n = slides.len();
     let [static_limit, kinetic_force] = thresholds.map(|array| &array[..n]);
     let [vx, vy] = velocity.map(|array| &array[..n]);
     let [drive_x, drive_y, lattice_x, lattice_y] = forces.map(|array| &array[..n]);
@@ -449,7 +392,7 @@ fn apply_friction<L: Law>(
         );
         [friction_x[b], friction_y[b]] = update.friction;
         [after_x[b], after_y[b]] = update.velocity;
-        contact[b] = update.contact;
+        slides[b] = update.slides;
     }
 }
 

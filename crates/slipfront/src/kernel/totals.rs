@@ -33,3 +33,10 @@ pub struct StoredEnergy {
     /// In the drive springs.
     pub drive_springs: f64,
 }
+
+impl StoredEnergy {
+    /// All of it.
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.lattice + self.drive_springs
+    }
+}

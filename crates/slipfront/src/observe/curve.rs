@@ -51,12 +51,11 @@ impl Observer for Curve {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
         self.ledger.add(now);
         if now.last || now.step.is_multiple_of(self.stride) {
-            let energies = self.ledger.energies(now.stored_energy());
             self.rows.push(CurveRow {
                 step: now.step,
                 time_star: now.time_star,
                 point: now.point,
-                energies,
+                energies: self.ledger.energies(now.stored_energy()),
             });
         }
         Ok(())

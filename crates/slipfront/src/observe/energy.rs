@@ -11,12 +11,8 @@ use crate::vector_field::dot;
 /// Energies stored at an instant, and supplied and lost since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energies {
-    /// Kinetic energy, the mean of the half steps before and after.
-    pub kinetic: f64,
-    /// Stored in the springs between blocks.
-    pub lattice: f64,
-    /// Stored in the drive springs.
-    pub drive_springs: f64,
+    /// Stored at this instant.
+    pub stored: StoredEnergy,
     /// Work done by the drive (and by a constant force) since the start.
     pub work: f64,
     /// Lost to friction since the start.
@@ -28,11 +24,6 @@ pub struct Energies {
 }
 
 impl Energies {
-    /// Energy stored at this instant.
-    pub fn stored_energy(&self) -> f64 {
-        self.kinetic + self.lattice + self.drive_springs
-    }
-
     /// Error of the balance, relative to all energy supplied:
     ///
     /// ```text
@@ -43,10 +34,8 @@ impl Energies {
     /// of a slip, at most `(mu_k F_n dt)^2/2`. While all blocks slide the error is that of rounding.
     pub fn error(&self) -> f64 {
         let supplied = self.work.abs() + self.stored_at_start;
-        let missing = self.work
-            - (self.stored_energy() - self.stored_at_start)
-            - self.friction_loss
-            - self.damping_loss;
+        let missing =
+            self.work - (self.stored.total() - self.stored_at_start) - self.friction_loss - self.damping_loss;
         if supplied > 0.0 { missing / supplied } else { 0.0 }
     }
 }
@@ -90,7 +79,7 @@ impl Ledger {
                 self.totals.friction_loss += half * (before.friction + powers.friction);
                 self.totals.damping_loss += half * (before.damping + powers.damping);
             }
-            None => self.totals.stored_at_start = self.energies(now.stored_energy()).stored_energy(),
+            None => self.totals.stored_at_start = now.stored_energy().total(),
         }
         self.before = Some(powers);
     }
@@ -98,9 +87,7 @@ impl Ledger {
     /// The balance at an instant with these stored energies.
     pub(crate) fn energies(&self, stored: StoredEnergy) -> Energies {
         Energies {
-            kinetic: stored.kinetic,
-            lattice: stored.lattice,
-            drive_springs: stored.drive_springs,
+            stored,
             ..self.totals
         }
     }

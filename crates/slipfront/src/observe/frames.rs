@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::observer::Observer;
 use crate::error::RunError;
-use crate::field::Field;
+use crate::kernel::block::Field;
 use crate::lattice::Lattice;
 use crate::measure::CurvePoint;
 use crate::snapshot::Snapshot;

@@ -1,23 +1,20 @@
 //! What is measured on a run. Observers look at [`Snapshot`](crate::Snapshot)s and change nothing.
 //!
 //! [`curve`]: mu*, N* and energies against time; [`summary`]: the kinetic friction coefficient; [`frames`]: fields at
-//! chosen steps; [`instants`]: fields at the instants A-F; [`fronts`]: first slip block by block; [`energy`]: the energy
-//! balance.
+//! chosen steps; [`instants`]: fields at the instants A-F; [`energy`]: the energy balance.
 
 pub mod curve;
 pub mod energy;
 pub mod frames;
-pub mod fronts;
 pub mod instants;
 pub(crate) mod observer;
 pub mod summary;
 
-pub use crate::field::Field;
+pub use crate::kernel::block::Field;
 pub use crate::measure::{CurvePoint, Peak};
 pub use curve::{Curve, CurveRow};
 pub use energy::{Energies, Ledger};
 pub use frames::{Frame, Frames};
-pub use fronts::FirstSlip;
 pub use instants::Instants;
 pub use observer::{Observer, Schedule, Scheduled};
 pub use summary::{Kinetic, KineticHistory, KineticStart, NoUncertainty};

@@ -21,8 +21,6 @@ pub trait Observer {
 /// At which steps an observer is called.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Schedule {
-    /// At every step.
-    Always,
     /// At every n-th step from 0.
     Every(u64),
     /// At these steps, in rising order.
@@ -43,12 +41,11 @@ impl<'a> Scheduled<'a> {
 
     /// Calls `observer` at every step.
     pub fn always(observer: &'a mut dyn Observer) -> Self {
-        Self::new(Schedule::Always, observer)
+        Self::new(Schedule::Every(1), observer)
     }
 
     pub(crate) fn due(&self, step: u64) -> bool {
         match &self.schedule {
-            Schedule::Always => true,
             Schedule::Every(n) => step.is_multiple_of(*n),
             Schedule::At(steps) => steps.binary_search(&step).is_ok(),
         }

@@ -125,29 +125,30 @@ pub fn mesh(lattice: &Lattice, textures: &[Texture]) -> Meshed {
         clipped: Vec::new(),
     };
     for (index, texture) in textures.iter().enumerate() {
+        let mut clipped = false;
+        let mut cover = |outline: Outline| {
+            clipped |= extends_beyond(&outline, lattice);
+            fill(&outline, lattice, &mut meshed.textured);
+        };
         match texture {
-            Texture::Blocks(blocks) => {
-                meshed
-                    .textured
-                    .iter_mut()
-                    .zip(blocks)
-                    .for_each(|(textured, block)| *textured |= block);
-            }
+            // One outline at a time: a million cavities with thousands of vertices each would not fit in memory.
+            Texture::Cavity(cavity) => cavity
+                .centers(lattice)
+                .for_each(|center| cover(cavity.outline(center))),
+            Texture::Groove(groove) => cover(groove.outline(lattice)),
+            Texture::Polygon(points) => cover(Outline::Polygon(points.clone())),
             Texture::Image(image) => {
-                for b in 0..lattice.n_blocks() {
+                for (b, textured) in meshed.textured.iter_mut().enumerate() {
                     let (i, j) = lattice.column_row(b);
-                    meshed.textured[b] |= image.covers(lattice, i, j);
+                    *textured |= image.covers(lattice, i, j);
                 }
             }
-            Texture::Cavity(_) | Texture::Groove(_) | Texture::Polygon(_) => {
-                let mut clipped = false;
-                for outline in outlines(texture, lattice) {
-                    clipped |= extends_beyond(&outline, lattice);
-                    fill(&outline, lattice, &mut meshed.textured);
-                }
-                meshed.clipped.extend(clipped.then_some(index));
+            Texture::Blocks(blocks) => {
+                let pairs = meshed.textured.iter_mut().zip(blocks);
+                pairs.for_each(|(textured, block)| *textured |= block);
             }
         }
+        meshed.clipped.extend(clipped.then_some(index));
     }
     meshed
 }
@@ -160,29 +161,21 @@ enum Outline {
         axis: [f64; 2],
     },
     Polygon(Vec<[f64; 2]>),
-    Strip {
-        along_x: bool,
-        from: f64,
-        to: f64,
-    },
+    /// Smallest and largest (x, y), infinite along the strip.
+    Strip([[f64; 2]; 2]),
 }
 
-/// Outlines of a texture, made one at a time: a million cavities with thousands of vertices each would not fit in memory.
-fn outlines<'a>(texture: &'a Texture, lattice: &Lattice) -> Box<dyn Iterator<Item = Outline> + 'a> {
-    match texture {
-        Texture::Cavity(cavity) => Box::new(cavity.centers(lattice).map(|center| cavity.outline(center))),
-        Texture::Groove(groove) => {
-            let along_x = groove.orientation == Orientation::Along;
-            let size = if along_x { lattice.ny } else { lattice.nx } as f64;
-            let middle = 0.5 * size + groove.offset;
-            Box::new(std::iter::once(Outline::Strip {
-                along_x,
-                from: middle - 0.5 * groove.width,
-                to: middle + 0.5 * groove.width,
-            }))
-        }
-        Texture::Polygon(points) => Box::new(std::iter::once(Outline::Polygon(points.clone()))),
-        Texture::Image(_) | Texture::Blocks(_) => Box::new(std::iter::empty()),
+impl Groove {
+    fn outline(&self, lattice: &Lattice) -> Outline {
+        let along_x = self.orientation == Orientation::Along;
+        let size = if along_x { lattice.ny } else { lattice.nx } as f64;
+        let middle = 0.5 * size + self.offset;
+        let (from, to) = (middle - 0.5 * self.width, middle + 0.5 * self.width);
+        Outline::Strip(if along_x {
+            [[f64::NEG_INFINITY, from], [f64::INFINITY, to]]
+        } else {
+            [[from, f64::NEG_INFINITY], [to, f64::INFINITY]]
+        })
     }
 }
 
@@ -265,16 +258,7 @@ impl Outline {
                         ]
                     })
             }
-            Outline::Strip {
-                along_x: true,
-                from,
-                to,
-            } => [[f64::NEG_INFINITY, *from], [f64::INFINITY, *to]],
-            Outline::Strip {
-                along_x: false,
-                from,
-                to,
-            } => [[*from, f64::NEG_INFINITY], [*to, f64::INFINITY]],
+            Outline::Strip(bounds) => *bounds,
         }
     }
 
@@ -290,7 +274,7 @@ impl Outline {
                 let (dx, dy) = (x - center[0], y - center[1]);
                 ((dx * c + dy * s) / a).powi(2) + ((dy * c - dx * s) / b).powi(2) < 1.0
             }
-            Outline::Polygon(_) | Outline::Strip { .. } => true,
+            Outline::Polygon(_) | Outline::Strip(_) => true,
         }
     }
 
@@ -327,20 +311,11 @@ impl Outline {
                 }
                 crossings.sort_by(f64::total_cmp);
             }
-            Outline::Strip {
-                along_x: true,
-                from,
-                to,
-            } => {
-                if (*from..*to).contains(&y) {
-                    crossings.extend([f64::NEG_INFINITY, f64::INFINITY]);
+            Outline::Strip([[left, bottom], [right, top]]) => {
+                if (*bottom..*top).contains(&y) {
+                    crossings.extend([*left, *right]);
                 }
             }
-            Outline::Strip {
-                along_x: false,
-                from,
-                to,
-            } => crossings.extend([*from, *to]),
         }
     }
 }

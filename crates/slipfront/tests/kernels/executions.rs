@@ -42,7 +42,8 @@ fn state(simulation: &Simulation) -> Vec<u64> {
 }
 
 /// The fused kernel on one thread without skipping against all other ways to execute it, among them runs in parts of so many
-/// steps; energies are measured at some of the steps.
+/// steps; energies are measured at some of the steps. Sums are compared at every step, whole states at every seventh and at the
+/// last: a difference stays in the state.
 fn assert_same_bits(model: &Model, dt_star: f64, from: Option<&State>, steps: u64) {
     let of = |threads| {
         [false, true].map(|skips| Execution {
@@ -71,7 +72,8 @@ fn assert_same_bits(model: &Model, dt_star: f64, from: Option<&State>, steps: u6
         }
         let energies = step % 5 == 0 || step % 7 == 0;
         go(&mut plain, energies);
-        let (here, exact) = (shown(&plain), state(&plain));
+        let here = shown(&plain);
+        let exact = (step % 7 == 0 || step == steps).then(|| state(&plain));
         for (other, execution) in others.iter_mut().zip(&executions) {
             go(other, energies);
             let (found, expected) = (other.snapshot().totals, plain.snapshot().totals);
@@ -81,14 +83,16 @@ fn assert_same_bits(model: &Model, dt_star: f64, from: Option<&State>, steps: u6
                 other.contact_stress_max(),
                 plain.contact_stress_max()
             );
-            assert!(state(other) == exact, "step {step}, {execution:?}");
+            if let Some(exact) = &exact {
+                assert!(state(other) == *exact, "step {step}, {execution:?}");
+            }
         }
     }
-    let first = plain.first_slip_time_star();
+    let first = plain.snapshot().first_slip_time_star();
     assert!(first.iter().any(|t| !t.is_nan()), "nothing ever slips");
     for (other, execution) in others.iter().zip(&executions) {
         assert!(
-            bits(&other.first_slip_time_star()) == bits(&first),
+            bits(&other.snapshot().first_slip_time_star()) == bits(&first),
             "{execution:?}"
         );
     }
@@ -141,14 +145,15 @@ fn textures_and_strains(
 /// change it while blocks are at rest.
 #[rstest]
 fn slow_drives(
-    #[values([40, 40], [300, 5], [3, 400])] blocks: [usize; 2],
-    #[values([Edges::Free, Edges::Free], [Edges::Periodic, Edges::Periodic])] edges: [Edges; 2],
-    #[values(0.0, 65.0)] degrees: f64,
-    #[values(1e-6, 3e-4, 1.7e-3, 4e-3)] epsilon: f64,
+    #[values(
+        ([40, 24], Edges::Free), ([40, 24], Edges::Periodic), ([300, 3], Edges::Free), ([3, 200], Edges::Periodic)
+    )]
+    (blocks, edges): ([usize; 2], Edges),
+    #[values((0.0, 1e-6), (65.0, 3e-4), (0.0, 1.7e-3), (65.0, 4e-3))] (degrees, epsilon): (f64, f64),
 ) {
     let slider = Slider {
         blocks,
-        edges,
+        edges: [edges; 2],
         degrees,
         epsilon,
         v_star: 0.004,
@@ -156,7 +161,7 @@ fn slow_drives(
         sigma_static_star: 0.1,
         ..Slider::default()
     };
-    assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(3.0));
+    assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(2.6));
 }
 
 /// Blocks that are displaced at the start, a few of them with a velocity.

@@ -42,10 +42,11 @@ fn all_blocks_have_the_same_bits_as_single_ones(
         [Edges::Periodic, Edges::Periodic]
     )]
     edges: [Edges; 2],
-    #[values(1e-6, 1e-2)] epsilon: f64,
-    #[values(None, Some(groove(Orientation::Along, 1.0)), Some(cavity([25, 25], 5.0, 1, 0.3, true)))] texture: Option<
-        Texture,
-    >,
+    #[values(
+        (1e-6, None), (1e-2, None), (1e-6, Some(groove(Orientation::Along, 1.0))),
+        (1e-2, Some(cavity([25, 25], 5.0, 1, 0.3, true)))
+    )]
+    (epsilon, texture): (f64, Option<Texture>),
     #[values(
         FUSED, Execution { threads: 3, ..FUSED }, Execution { skips: true, ..FUSED }, REFERENCE
     )]

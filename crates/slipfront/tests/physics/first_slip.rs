@@ -2,17 +2,16 @@
 
 use rstest::rstest;
 use slipfront::exact_solutions::first_slip_time_star;
-use slipfront::observe::FirstSlip;
 use slipfront::surface::{Coefficients, Load};
-use slipfront::{Drive, FrictionLaw, Lattice, Model, Stop, Surface};
+use slipfront::{Drive, FrictionLaw, Lattice, Model, Simulation, Stop, Surface};
 
 use crate::common::{Slider, at_rest};
 
-fn first_slip(model: &Model, dt_star: f64) -> FirstSlip {
+fn slipping(model: &Model, dt_star: f64) -> Simulation {
     let steps = (4.0 / model.drive.v_star / dt_star) as u64;
     let mut simulation = at_rest(model, dt_star);
     simulation.run(Stop::at_step(steps), &mut []).unwrap();
-    FirstSlip::of(&simulation.snapshot())
+    simulation
 }
 
 /// The first instant at which the force exceeds the threshold: at most one step late, never early; rounding
@@ -37,12 +36,14 @@ fn the_weakest_block_slips_when_its_drive_spring_reaches_its_threshold(#[case] s
     let exact = first_slip_time_star(&drawn.mu_static, &drawn.mu_kinetic, 1.0, slider.v_star);
     let model = slider.model();
     assert!((model.first_slip_estimate() / exact - 1.0).abs() < 1e-14);
-    let first = first_slip(&model, slider.dt_star);
-    assert_is_first_instant_after(first.earliest.unwrap(), exact, slider.dt_star);
+    let simulation = slipping(&model, slider.dt_star);
+    let earliest = simulation.snapshot().earliest_first_slip().unwrap();
+    assert_is_first_instant_after(earliest, exact, slider.dt_star);
     // The block that slips is the one with the least threshold.
     let threshold = |b: usize| drawn.mu_static[b].max(drawn.mu_kinetic[b]);
     let weakest = (0..drawn.mu_static.len()).min_by(|&a, &b| threshold(a).total_cmp(&threshold(b)));
-    assert_eq!(first.time_star[weakest.unwrap()], first.earliest.unwrap());
+    let first = simulation.snapshot().first_slip_time_star();
+    assert_eq!(first[weakest.unwrap()], earliest);
 }
 
 #[test]
@@ -59,7 +60,11 @@ fn the_scale_of_coefficients_is_their_static_mean() {
         1e-6,
         FrictionLaw::Projection,
     );
-    assert_is_first_instant_after(first_slip(&model, 0.01).earliest.unwrap(), exact, 0.01);
+    assert_is_first_instant_after(
+        slipping(&model, 0.01).snapshot().earliest_first_slip().unwrap(),
+        exact,
+        0.01,
+    );
 }
 
 /// D12: a block whose kinetic coefficient exceeds the static one sticks up to the kinetic threshold.
@@ -76,7 +81,11 @@ fn a_block_holds_up_to_the_larger_of_its_coefficients() {
             FrictionLaw::Projection,
         );
         let exact = first_slip_time_star(&[mu_static], &[mu_kinetic], 1.0, 0.03);
-        assert_is_first_instant_after(first_slip(&model, 0.02).earliest.unwrap(), exact, 0.02);
+        assert_is_first_instant_after(
+            slipping(&model, 0.02).snapshot().earliest_first_slip().unwrap(),
+            exact,
+            0.02,
+        );
     }
 }
 

@@ -3,7 +3,6 @@
 use rstest::rstest;
 use slipfront::exact_solutions::{Facing, front_speed};
 use slipfront::lattice::K_STRAIGHT;
-use slipfront::observe::FirstSlip;
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Stop, Surface};
 
 use crate::common::at_rest;
@@ -35,9 +34,9 @@ fn measured_delay(model: &Model, dt: f64, expected: f64) -> f64 {
     let steps = (1.2 * COLUMNS as f64 * expected / dt) as u64;
     let mut simulation = at_rest(model, dt);
     simulation.run(Stop::at_step(steps), &mut []).unwrap();
-    let first = FirstSlip::of(&simulation.snapshot());
+    let first = simulation.snapshot().first_slip_time_star();
     let (from, to) = (COLUMNS / 2, COLUMNS - 10);
-    (first.time_star[to] - first.time_star[from]) / (to - from) as f64
+    (first[to] - first[from]) / (to - from) as f64
 }
 
 /// A front that runs steadily takes a whole number of steps from one column to the next, the nearest one to

@@ -2,7 +2,7 @@
 
 use rstest::rstest;
 use slipfront::observe::frames::Selection;
-use slipfront::observe::{Field, FirstSlip, Instants, KineticHistory, KineticStart, Observer, Scheduled};
+use slipfront::observe::{Field, Instants, KineticHistory, KineticStart, Observer, Scheduled};
 use slipfront::{RunError, Stop, StopReason};
 
 use crate::common::{Slider, at_rest, cavity};
@@ -34,7 +34,7 @@ fn instants_are_those_of_their_definitions(#[case] slider: Slider, #[case] kinet
     simulation
         .run(Stop::at_step(steps), &mut [Scheduled::always(&mut instants)])
         .unwrap();
-    let first = FirstSlip::of(&simulation.snapshot());
+    let first = simulation.snapshot().earliest_first_slip();
     let peak = simulation.peak();
     let found = instants.found();
     let letters: String = found.iter().map(|(letter, _)| *letter).collect();
@@ -62,7 +62,7 @@ fn instants_are_those_of_their_definitions(#[case] slider: Slider, #[case] kinet
         .find(|row| row.point.mu_star == least)
         .unwrap()
         .step;
-    let b = first_at(first.earliest.unwrap());
+    let b = first_at(first.unwrap());
     let expected = [
         first_at(0.5 / v),
         b,

@@ -1,8 +1,8 @@
 //! What a texture does to load, friction, counts and times; and the three readings of the friction law.
 
 use rstest::rstest;
+use slipfront::observe::Field;
 use slipfront::observe::frames::Selection;
-use slipfront::observe::{Field, FirstSlip};
 use slipfront::surface::{Load, Orientation};
 use slipfront::{FrictionLaw, State, Stop, Surface, VectorField};
 
@@ -76,16 +76,12 @@ fn textured_blocks_move_at_once(#[values(FrictionLaw::Projection, FrictionLaw::R
         }
     }
     simulation.run(Stop::at_step(1500), &mut []).unwrap();
-    let first = FirstSlip::of(&simulation.snapshot());
-    for b in 0..625 {
-        assert_eq!(
-            first.time_star[b].is_nan(),
-            model.surface.textured[b],
-            "block {b}"
-        );
+    let first = simulation.snapshot().first_slip_time_star();
+    for (b, time) in first.iter().enumerate() {
+        assert_eq!(time.is_nan(), model.surface.textured[b], "block {b}");
     }
-    let earliest = first.time_star.iter().copied().fold(f64::INFINITY, f64::min);
-    assert_eq!(first.earliest, Some(earliest));
+    let earliest = first.iter().copied().fold(f64::INFINITY, f64::min);
+    assert_eq!(simulation.snapshot().earliest_first_slip(), Some(earliest));
     // The pull of the cavity's blocks makes its rim slip before an untextured surface would.
     assert!(earliest < model.first_slip_estimate());
 }

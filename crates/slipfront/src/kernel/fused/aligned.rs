@@ -5,7 +5,7 @@ use std::ops::{Deref, DerefMut};
 use super::vector::LANES;
 
 /// A fixed number of f64 on a 64-byte boundary.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Aligned {
     /// The numbers, after up to seven unused ones. It never grows, so that its memory never moves.
     storage: Vec<f64>,
@@ -19,9 +19,7 @@ impl Aligned {
         let first = storage.as_ptr().align_offset(64).min(LANES - 1);
         Self { storage, first, len }
     }
-}
 
-impl Aligned {
     /// The cache lines from element `k` on, which may be beyond the end.
     #[inline(always)]
     pub(super) fn cache_lines(&self, k: usize) -> CacheLines {
@@ -69,7 +67,7 @@ impl DerefMut for Aligned {
 }
 
 /// A plane vector per element, one array per component.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Vectors {
     pub(super) x: Aligned,
     pub(super) y: Aligned,

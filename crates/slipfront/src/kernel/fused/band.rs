@@ -1,18 +1,20 @@
 //! The arrays of a band of tiles, and the sweep that takes the band through a step.
 
 use std::ops::Range;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use fearless_simd::{Simd, SimdBase};
+use fearless_simd::{Simd, SimdBase, f64x8};
 
 use super::aligned::{Aligned, Vectors};
 use super::blocks::{
-    ChunksMut, FreeMotion, FrictionLoop, LatticeLoop, Step, Sums, TileSums, UpwardLoop, friction,
-    lattice_forces, spring, stretch_square, upward_springs,
+    ChunksMut, FrictionLoop, LatticeLoop, Step, Sums, friction, lattice_forces, spring, stretch_square,
+    upward_springs,
 };
 use super::layout::{Layout, TILE};
 use super::rest::{RestingTile, steps_until_slip};
 use super::springs::Geometry;
 use super::vector::{LANES, Vec2x8, load, load_vec2, splat};
+use crate::friction::Integrator;
 use crate::lattice::Bond;
 use crate::model::Model;
 use crate::state::State;
@@ -20,7 +22,7 @@ use crate::state::State;
 /// A tile after its latest sweep.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tile {
-    pub(super) sums: TileSums,
+    pub(super) sums: Sums<f64>,
     /// Whether an element of it moves, ghosts included.
     pub(super) moving: bool,
     /// The first step at which a block of it may slip if nothing around it moves; 0 if unknown.
@@ -80,18 +82,25 @@ pub(super) struct Band {
     moving: Vec<u8>,
     /// Which blocks in contact have ever slid.
     slipped: Vec<u8>,
+    /// Locked while fields are read; a sweep, which nothing runs beside, takes it without.
+    scratch: Mutex<Scratch>,
+    /// Elements from a row to the next.
+    stride: usize,
+}
+
+/// What is found on the way through the tiles; nothing of it is needed later.
+#[derive(Debug, Default)]
+pub(super) struct Scratch {
     /// Forces of the latest springs to the next row: a ring buffer over the elements.
     upward: [Vectors; 3],
     /// `F_c` of the present tile.
-    lattice: Vectors,
+    pub(super) lattice: Vectors,
     /// `F_s` of the present tile.
     drive: Vectors,
     /// Velocities without friction of the present tile.
     free: Vectors,
     /// Fractions of these that kinetic friction removes.
     removed_fraction: Aligned,
-    /// Elements from a row to the next.
-    stride: usize,
 }
 
 /// Number of sliding blocks in a tile above which all tiles around it are marked, instead of those around each block.
@@ -144,46 +153,48 @@ impl Band {
             in_contact: bytes(),
             moving: bytes(),
             slipped: bytes(),
-            upward: [Vectors::zeros(ring), Vectors::zeros(ring), Vectors::zeros(ring)],
-            lattice: Vectors::zeros(TILE),
-            drive: Vectors::zeros(TILE),
-            free: Vectors::zeros(TILE),
-            removed_fraction: Aligned::filled(TILE, 0.0),
+            scratch: Mutex::new(Scratch {
+                upward: [(); 3].map(|()| Vectors::zeros(ring)),
+                lattice: Vectors::zeros(TILE),
+                drive: Vectors::zeros(TILE),
+                free: Vectors::zeros(TILE),
+                removed_fraction: Aligned::filled(TILE, 0.0),
+            }),
             stride: layout.stride,
         };
-        let force_to_velocity = Step::new(model, 0, dt_star).force_to_velocity;
+        let force_to_velocity = Integrator::new(model.damping, dt_star).force_to_velocity;
         for k in 0..len {
-            if let Some(b) = layout.block(first + k) {
-                band.set_surface(k, model, b, force_to_velocity);
-                if let Some(state) = state {
-                    band.set_state(k, state, b);
-                }
+            let Some(b) = layout.block(first + k) else {
+                continue;
+            };
+            let static_limit = model.surface.static_limit(b);
+            band.static_limit_squares[k] = static_limit * static_limit;
+            band.kinetic_impulses[k] = force_to_velocity * model.surface.kinetic_force(b);
+            let bit = 1 << (k % LANES);
+            band.blocks[k / LANES] |= bit;
+            if !model.surface.textured[b] {
+                band.in_contact[k / LANES] |= bit;
+            }
+            band.tiles[k / TILE].extent_is_old = true;
+            if let Some(state) = state {
+                let v = state.velocity.at(b);
+                band.displacement.set(halo + k, state.displacement.at(b));
+                band.velocity.set(k, v);
+                band.set_moving(k, v != [0.0, 0.0]);
+                let speed_square = &mut band.tiles[k / TILE].sums.speed_square;
+                *speed_square = speed_square.max(v[0] * v[0] + v[1] * v[1]);
             }
         }
         band
     }
 
-    /// Sets the thresholds of block `b` at element `k`.
-    fn set_surface(&mut self, k: usize, model: &Model, b: usize, force_to_velocity: f64) {
-        let static_limit = model.surface.static_limit(b);
-        self.static_limit_squares[k] = static_limit * static_limit;
-        self.kinetic_impulses[k] = force_to_velocity * model.surface.kinetic_force(b);
-        let bit = 1 << (k % LANES);
-        self.blocks[k / LANES] |= bit;
-        if !model.surface.textured[b] {
-            self.in_contact[k / LANES] |= bit;
-        }
-        self.tiles[k / TILE].extent_is_old = true;
+    /// Memory for what is found while fields are read.
+    pub(super) fn lock_scratch(&self) -> MutexGuard<'_, Scratch> {
+        self.scratch.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Sets displacement and velocity of block `b` at element `k`.
-    fn set_state(&mut self, k: usize, state: &State, b: usize) {
-        let (u, v) = (state.displacement.at(b), state.velocity.at(b));
-        self.displacement.set(self.halo + k, u);
-        self.velocity.set(k, v);
-        self.set_moving(k, v != [0.0, 0.0]);
-        let speed_square = &mut self.tiles[k / TILE].sums.speed_square;
-        *speed_square = speed_square.max(v[0] * v[0] + v[1] * v[1]);
+    fn scratch(&mut self) -> &mut Scratch {
+        self.scratch.get_mut().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Continues from a checkpoint with these first slips, as if every tile had just been swept: the largest contact stress of
@@ -193,13 +204,9 @@ impl Band {
             task.active = true;
         }
         for k in 0..self.len {
-            let Some(b) = layout.block(self.first + k) else {
-                continue;
-            };
-            self.first_slip[k] = first_slip[b];
-            if !first_slip[b].is_nan() {
-                self.slipped[k / LANES] |= 1 << (k % LANES);
-            }
+            let time = layout.block(self.first + k).map_or(f64::NAN, |b| first_slip[b]);
+            self.first_slip[k] = time;
+            self.slipped[k / LANES] |= u8::from(!time.is_nan()) << (k % LANES);
         }
     }
 
@@ -248,48 +255,43 @@ impl Band {
     /// One step of the scheduled tiles: displacements to t_n, forces there, velocities to t_n + dt/2. The halos contain the
     /// displacements at t_n of the elements around the band.
     #[inline(always)]
-    pub(super) fn sweep<S: Simd, G: Geometry>(
-        &mut self,
-        simd: S,
-        geometry: G,
-        model: &Model,
-        step: Step,
-        energies: bool,
-    ) {
+    pub(super) fn sweep<S: Simd, G: Geometry>(&mut self, simd: S, geometry: G, step: Step, energies: bool) {
         // Springs lead to elements a row and a block ahead, which must have moved before.
         let n_tiles = self.tiles.len();
         let ahead = self.tiles_ahead().min(n_tiles);
         for t in 0..ahead {
             self.advance(simd, t, step.move_dt);
         }
-        let behind = whole_vectors(self.stride + 1);
-        self.upward(simd, geometry, self.halo - behind, self.halo);
+        let mut scratch = std::mem::take(self.scratch());
+        self.upward(simd, geometry, &mut scratch, self.below(self.halo), self.halo);
         for t in 0..n_tiles {
             if t + ahead < n_tiles {
                 self.advance(simd, t + ahead, step.move_dt);
             }
             let (task, elements) = (self.tasks[t], self.elements(t));
             if task.needs_springs {
-                self.upward(
-                    simd,
-                    geometry,
-                    self.halo + elements.start,
-                    self.halo + elements.end,
-                );
+                let (from, to) = (self.halo + elements.start, self.halo + elements.end);
+                self.upward(simd, geometry, &mut scratch, from, to);
             }
             if task.active {
                 if energies || task.newly_resting {
-                    self.tile::<S, G, true>(simd, geometry, step, t);
+                    self.tile::<S, G, true>(simd, geometry, step, t, &mut scratch);
                 } else {
-                    self.tile::<S, G, false>(simd, geometry, step, t);
+                    self.tile::<S, G, false>(simd, geometry, step, t, &mut scratch);
                 }
             }
             if task.newly_resting && self.tiles[t].sums.sliding == 0 {
-                self.tiles[t].active_from_step = step
-                    .number
-                    .saturating_add(self.steps_until_slip(simd, model, step, t).max(1));
+                let steps = self.steps_until_slip(simd, step, t, &scratch);
+                self.tiles[t].active_from_step = step.number.saturating_add(steps.max(1));
             }
         }
+        *self.scratch() = scratch;
+    }
+
+    /// The first of the elements whose springs to the next row are needed below element `k`.
+    #[inline(always)]
+    pub(super) fn below(&self, k: usize) -> usize {
+        k - whole_vectors(self.stride + 1)
     }
 
     /// Number of tiles after the present one that must have moved before its forces are computed.
@@ -318,52 +320,28 @@ impl Band {
         }
     }
 
-    /// Divides the elements `from..to` at the end of the ring buffer, where their own springs or those of the row below wrap
-    /// around: first element, end, and the two positions in the buffer.
-    #[inline(always)]
-    fn ring_segments(
-        &self,
-        from: usize,
-        to: usize,
-    ) -> impl Iterator<Item = (usize, usize, usize, usize)> + use<> {
-        let (ring, stride) = (self.upward[0].x.len() - MIRROR, self.stride);
-        let mut first = from;
-        std::iter::from_fn(move || {
-            if first >= to {
-                return None;
-            }
-            let own = first % ring;
-            let behind = (first + ring - stride - 1) % ring;
-            let room = (ring - own).min((ring + MIRROR - 2 - behind) / LANES * LANES);
-            let end = to.min(first + room);
-            Some((std::mem::replace(&mut first, end), end, own, behind))
-        })
-    }
-
     /// Springs of the elements `from..to` to the next row, into the ring buffer.
     #[inline(always)]
-    fn upward<S: Simd, G: Geometry>(&mut self, simd: S, geometry: G, from: usize, to: usize) {
-        for (first, end, own, _) in self.ring_segments(from, to) {
+    pub(super) fn upward<S: Simd, G: Geometry>(
+        &self,
+        simd: S,
+        geometry: G,
+        scratch: &mut Scratch,
+        from: usize,
+        to: usize,
+    ) {
+        for (first, end, own, _) in scratch.ring_segments(self.stride, from, to) {
             let n = end - first;
-            let (x, y) = (&self.displacement.x, &self.displacement.y);
-            let at = |k: usize| [x[k..k + n].as_chunks().0, y[k..k + n].as_chunks().0];
             let north = first + self.stride;
             let vectors = first / LANES..end / LANES;
-            let [north_f, north_east_f, north_west_f] = &mut self.upward;
-            let arrays = UpwardLoop {
-                here: at(first),
-                there: [at(north), at(north + 1), at(north - 1)],
-                masks: self.masks.each_ref().map(|masks| &masks[vectors.clone()]),
-                force: [
-                    chunks_mut(north_f, own, n),
-                    chunks_mut(north_east_f, own, n),
-                    chunks_mut(north_west_f, own, n),
-                ],
-            };
-            upward_springs(simd, geometry, arrays);
+            let here = chunks(&self.displacement, first, n);
+            let there = [north, north + 1, north - 1].map(|there| chunks(&self.displacement, there, n));
+            let masks = self.masks.each_ref().map(|masks| &masks[vectors.clone()]);
+            let force = scratch.upward.each_mut().map(|force| chunks_mut(force, own, n));
+            upward_springs(simd, geometry, here, there, masks, force);
             if own < MIRROR {
-                let ring = self.upward[0].x.len() - MIRROR;
-                for force in &mut self.upward {
+                let ring = scratch.ring();
+                for force in &mut scratch.upward {
                     force.x.copy_within(..MIRROR, ring);
                     force.y.copy_within(..MIRROR, ring);
                 }
@@ -373,10 +351,17 @@ impl Band {
 
     /// Forces and velocities of a tile. Its springs to the next row and those of the row below are in the ring buffer.
     #[inline(always)]
-    fn tile<S: Simd, G: Geometry, const ENERGY: bool>(&mut self, simd: S, geometry: G, step: Step, t: usize) {
+    fn tile<S: Simd, G: Geometry, const ENERGY: bool>(
+        &mut self,
+        simd: S,
+        geometry: G,
+        step: Step,
+        t: usize,
+        scratch: &mut Scratch,
+    ) {
         let mut sums = Sums::zero(simd);
-        self.lattice_forces::<S, G, ENERGY>(simd, geometry, t, &mut sums);
-        self.friction::<S, ENERGY>(simd, step, t, &mut sums);
+        self.lattice_forces::<S, G, ENERGY>(simd, geometry, t, scratch, &mut sums.lattice_energy);
+        self.friction::<S, ENERGY>(simd, step, t, scratch, &mut sums);
         let tile = &mut self.tiles[t];
         tile.sums = sums.totals();
         tile.moving = tile.sums.sliding > 0;
@@ -385,47 +370,49 @@ impl Band {
 
     /// Eq. 3 in a tile.
     #[inline(always)]
-    fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
-        &mut self,
+    pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
+        &self,
         simd: S,
         geometry: G,
         t: usize,
-        sums: &mut Sums<S>,
+        scratch: &mut Scratch,
+        energy: &mut f64x8<S>,
     ) {
         let elements = self.elements(t);
         let start = self.halo + elements.start;
         let mut west = self.east_springs(simd, geometry, start - LANES);
-        for (first, end, own, behind) in self.ring_segments(start, self.halo + elements.end) {
+        for (first, end, own, behind) in scratch.ring_segments(self.stride, start, self.halo + elements.end) {
             let n = end - first;
-            let (x, y) = (&self.displacement.x, &self.displacement.y);
-            let at = |k: usize| [x[k..k + n].as_chunks().0, y[k..k + n].as_chunks().0];
-            let [north, north_east, north_west] = &self.upward;
+            let [north, north_east, north_west] = &scratch.upward;
             let vectors = first / LANES..end / LANES;
             let halo = self.halo / LANES;
             let arrays = LatticeLoop {
-                here: at(first),
-                east: at(first + 1),
+                here: chunks(&self.displacement, first, n),
+                east: chunks(&self.displacement, first + 1, n),
                 has_east: &self.masks[0][vectors.clone()],
                 blocks: &self.blocks[vectors.start - halo..vectors.end - halo],
-                own: [
-                    chunks(north, own, n),
-                    chunks(north_east, own, n),
-                    chunks(north_west, own, n),
-                ],
+                own: scratch.upward.each_ref().map(|force| chunks(force, own, n)),
                 behind: [
                     chunks(north, behind + 1, n),
                     chunks(north_east, behind, n),
                     chunks(north_west, behind + 2, n),
                 ],
-                force: chunks_mut(&mut self.lattice, first - start, n),
+                force: chunks_mut(&mut scratch.lattice, first - start, n),
             };
-            lattice_forces::<S, G, ENERGY>(simd, geometry, arrays, &mut west, &mut sums.lattice_energy);
+            lattice_forces::<S, G, ENERGY>(simd, geometry, arrays, &mut west, energy);
         }
     }
 
     /// Eqs. 2 and 4-7 in a tile.
     #[inline(always)]
-    fn friction<S: Simd, const ENERGY: bool>(&mut self, simd: S, step: Step, t: usize, sums: &mut Sums<S>) {
+    fn friction<S: Simd, const ENERGY: bool>(
+        &mut self,
+        simd: S,
+        step: Step,
+        t: usize,
+        scratch: &mut Scratch,
+        sums: &mut Sums<f64x8<S>>,
+    ) {
         let elements = self.elements(t);
         let (start, n) = (self.halo + elements.start, elements.len());
         let next = elements.start + TILE;
@@ -441,7 +428,7 @@ impl Band {
         let vectors = elements.start / LANES..elements.end / LANES;
         let arrays = FrictionLoop {
             displacement: chunks(&self.displacement, start, n),
-            lattice: chunks(&self.lattice, 0, n),
+            lattice: chunks(&scratch.lattice, 0, n),
             static_limit_squares: self.static_limit_squares[elements.clone()].as_chunks().0,
             kinetic_impulses: self.kinetic_impulses[elements.clone()].as_chunks().0,
             blocks: &self.blocks[vectors.clone()],
@@ -450,14 +437,12 @@ impl Band {
             moving: &mut self.moving[vectors.clone()],
             slipped: &mut self.slipped[vectors],
             first_slip: self.first_slip[elements.clone()].as_chunks_mut().0,
+            drive: chunks_mut(&mut scratch.drive, 0, n),
+            free: chunks_mut(&mut scratch.free, 0, n),
+            removed_fraction: scratch.removed_fraction[..n].as_chunks_mut().0,
             prefetched,
         };
-        let motion = FreeMotion {
-            drive: chunks_mut(&mut self.drive, 0, n),
-            free: chunks_mut(&mut self.free, 0, n),
-            removed_fraction: self.removed_fraction[..n].as_chunks_mut().0,
-        };
-        friction::<S, ENERGY>(simd, step, arrays, motion, sums);
+        friction::<S, ENERGY>(simd, step, arrays, sums);
     }
 
     /// Springs to the east of the eight elements from `first` on.
@@ -465,28 +450,22 @@ impl Band {
     fn east_springs<S: Simd, G: Geometry>(&self, simd: S, geometry: G, first: usize) -> Vec2x8<S> {
         let here = load_vec2(simd, chunks(&self.displacement, first, LANES), 0);
         let there = load_vec2(simd, chunks(&self.displacement, first + 1, LANES), 0);
-        spring(
-            simd,
-            geometry,
-            &Bond::EAST,
-            self.masks[0][first / LANES],
-            here,
-            there,
-        )
+        let has_east = self.masks[0][first / LANES];
+        spring(simd, geometry, &Bond::EAST, has_east, here, there)
     }
 
     /// For how many steps a tile at rest can be skipped; its lattice forces are those of the present sweep.
     #[inline(always)]
-    fn steps_until_slip<S: Simd>(&self, simd: S, model: &Model, step: Step, t: usize) -> u64 {
+    fn steps_until_slip<S: Simd>(&self, simd: S, step: Step, t: usize, scratch: &Scratch) -> u64 {
         let elements = self.elements(t);
         let n = elements.len();
         let blocks = RestingTile {
             displacement: chunks(&self.displacement, self.halo + elements.start, n),
-            lattice: chunks(&self.lattice, 0, n),
+            lattice: chunks(&scratch.lattice, 0, n),
             static_limit_squares: self.static_limit_squares[elements.clone()].as_chunks().0,
             kinetic_impulses: self.kinetic_impulses[elements].as_chunks().0,
         };
-        steps_until_slip(simd, &step, &model.drive, &blocks)
+        steps_until_slip(simd, &step, &blocks)
     }
 
     /// Measures the extent of displacements in the tiles that have moved since the latest measurement.
@@ -528,9 +507,9 @@ impl Band {
         let mut most = 0.0_f64;
         for k in self.elements(t) {
             if self.in_contact[k / LANES] >> (k % LANES) & 1 == 1 {
-                let [ux, uy] = self.displacement.at(self.halo + k);
-                let x = step.k_drive * (step.drive_position[0] - ux) + step.constant_force[0];
-                let y = step.k_drive * (step.drive_position[1] - uy) + step.constant_force[1];
+                let [x, y] = step
+                    .drive
+                    .force(self.displacement.at(self.halo + k), step.time_star);
                 most = most.max(x * x + y * y);
             }
         }
@@ -538,8 +517,39 @@ impl Band {
     }
 }
 
+impl Scratch {
+    /// Number of elements in the ring buffer.
+    #[inline(always)]
+    fn ring(&self) -> usize {
+        self.upward[0].x.len() - MIRROR
+    }
+
+    /// Divides the elements `from..to` at the end of the ring buffer, where their own springs or those of the row below, `stride`
+    /// elements before, wrap around: first element, end, and the two positions in the buffer.
+    #[inline(always)]
+    fn ring_segments(
+        &self,
+        stride: usize,
+        from: usize,
+        to: usize,
+    ) -> impl Iterator<Item = (usize, usize, usize, usize)> + use<> {
+        let ring = self.ring();
+        let mut first = from;
+        std::iter::from_fn(move || {
+            if first >= to {
+                return None;
+            }
+            let own = first % ring;
+            let behind = (first + ring - stride - 1) % ring;
+            let room = (ring - own).min((ring + MIRROR - 2 - behind) / LANES * LANES);
+            let end = to.min(first + room);
+            Some((std::mem::replace(&mut first, end), end, own, behind))
+        })
+    }
+}
+
 #[inline(always)]
-fn chunks(vectors: &Vectors, from: usize, n: usize) -> [&[[f64; LANES]]; 2] {
+pub(super) fn chunks(vectors: &Vectors, from: usize, n: usize) -> [&[[f64; LANES]]; 2] {
     [
         vectors.x[from..from + n].as_chunks().0,
         vectors.y[from..from + n].as_chunks().0,

@@ -12,7 +12,7 @@ use super::vector::{
 };
 use crate::friction::Integrator;
 use crate::lattice::Bond;
-use crate::model::Model;
+use crate::model::{Drive, Model};
 
 /// One number per element, in vectors of eight.
 pub(super) type Chunks<'a> = &'a [[f64; LANES]];
@@ -29,51 +29,29 @@ pub(super) struct Step {
     pub(super) dt_star: f64,
     /// Time for which displacements move before forces are evaluated: `dt*`, or 0 at the start.
     pub(super) move_dt: f64,
+    pub(super) drive: Drive,
     /// Displacement of the driven ends of the drive springs.
     pub(super) drive_position: [f64; 2],
-    /// `k_s`.
-    pub(super) k_drive: f64,
-    /// Force on every block in addition to the drive spring's.
-    pub(super) constant_force: [f64; 2],
-    /// `c-/c+`, the factor by which damping reduces the velocity in a step.
-    pub(super) velocity_decay: f64,
-    /// `dt/(m c+)`: change of velocity per force.
-    pub(super) force_to_velocity: f64,
-    /// `m c+/dt`: force per change of velocity.
-    pub(super) velocity_to_force: f64,
+    pub(super) integrator: Integrator,
 }
 
 impl Step {
     pub(super) fn new(model: &Model, number: u64, dt_star: f64) -> Self {
-        let integrator = Integrator::new(model.damping, dt_star);
         let time_star = number as f64 * dt_star;
         Self {
             number,
             time_star,
             dt_star,
             move_dt: dt_star,
+            drive: model.drive,
             drive_position: model.drive.position(time_star),
-            k_drive: model.drive.k_drive,
-            constant_force: model.drive.constant_force,
-            velocity_decay: integrator.velocity_decay,
-            force_to_velocity: integrator.force_to_velocity,
-            velocity_to_force: integrator.velocity_to_force,
+            integrator: Integrator::new(model.damping, dt_star),
         }
     }
 }
 
 /// x and y of a quantity of the springs to the next row: north, north-east and north-west.
 pub(super) type Upward<T> = [[T; 2]; 3];
-
-/// Input of [`upward_springs`], and where the forces on the lower blocks are stored.
-pub(super) struct UpwardLoop<'a> {
-    pub(super) here: [Chunks<'a>; 2],
-    /// Displacements of the neighbours along the three bonds.
-    pub(super) there: Upward<Chunks<'a>>,
-    /// See [`super::layout::Layout::masks`].
-    pub(super) masks: [&'a [u8]; 3],
-    pub(super) force: Upward<ChunksMut<'a>>,
-}
 
 /// Input of [`lattice_forces`], and where the sums are stored.
 pub(super) struct LatticeLoop<'a> {
@@ -113,17 +91,26 @@ fn zero_missing<S: Simd>(simd: S, present: u8, a: Vec2x8<S>) -> Vec2x8<S> {
     }
 }
 
-/// Eq. 3: the springs to the next row, each computed once for the blocks at its two ends.
+/// Eq. 3: the springs to the next row, each computed once for the blocks at its two ends, from the displacements of the blocks
+/// and of their neighbours along the three bonds. `force` is that on the lower blocks; for `masks` see
+/// [`super::layout::Layout::masks`].
 #[inline(always)]
-pub(super) fn upward_springs<S: Simd, G: Geometry>(simd: S, geometry: G, arrays: UpwardLoop) {
-    let [[nx, ny], [nex, ney], [nwx, nwy]] = arrays.force;
+pub(super) fn upward_springs<S: Simd, G: Geometry>(
+    simd: S,
+    geometry: G,
+    here: [Chunks; 2],
+    there: Upward<Chunks>,
+    masks: [&[u8]; 3],
+    force: Upward<ChunksMut>,
+) {
+    let [[nx, ny], [nex, ney], [nwx, nwy]] = force;
     let n = nx.len();
     let (ny, nex, ney) = (&mut ny[..n], &mut nex[..n], &mut ney[..n]);
     let (nwx, nwy) = (&mut nwx[..n], &mut nwy[..n]);
-    let here = first_n(arrays.here, n);
-    let [north, north_east, north_west] = arrays.there;
+    let here = first_n(here, n);
+    let [north, north_east, north_west] = there;
     let (north, north_east, north_west) = (first_n(north, n), first_n(north_east, n), first_n(north_west, n));
-    let [has_east, has_west, has_north] = arrays.masks;
+    let [has_east, has_west, has_north] = masks;
     let (has_east, has_west, has_north) = (&has_east[..n], &has_west[..n], &has_north[..n]);
     for c in 0..n {
         let u = load_vec2(simd, here, c);
@@ -168,14 +155,8 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
     let mut before = *west;
     for c in 0..n {
         let u = load_vec2(simd, here, c);
-        let east = spring(
-            simd,
-            geometry,
-            &Bond::EAST,
-            has_east[c],
-            u,
-            load_vec2(simd, there, c),
-        );
+        let v = load_vec2(simd, there, c);
+        let east = spring(simd, geometry, &Bond::EAST, has_east[c], u, v);
         let west = shift_in(before, east);
         before = east;
         let north = load_vec2(simd, north, c);
@@ -226,53 +207,44 @@ pub(super) struct FrictionLoop<'a> {
     pub(super) slipped: &'a mut [u8],
     /// When they first did.
     pub(super) first_slip: ChunksMut<'a>,
+    /// `F_s`, found by [`free_motion`].
+    pub(super) drive: [ChunksMut<'a>; 2],
+    /// Velocity that the block would have without friction, likewise.
+    pub(super) free: [ChunksMut<'a>; 2],
+    /// Fraction of it that friction removes if the block slides, likewise.
+    pub(super) removed_fraction: ChunksMut<'a>,
     /// Memory of later tiles, fetched ahead.
     pub(super) prefetched: [CacheLines; 6],
 }
 
-/// Sums over the elements of a tile, one per lane.
-pub(super) struct Sums<S: Simd> {
-    displacement: Vec2x8<S>,
-    velocity: Vec2x8<S>,
-    motion_square: f64x8<S>,
-    friction_work: f64x8<S>,
-    stress_square: f64x8<S>,
-    speed_square: f64x8<S>,
-    pub(super) lattice_energy: f64x8<S>,
-    velocity_squares: f64x8<S>,
-    stretch_square: f64x8<S>,
-    sliding: u32,
-    slipping: u32,
-}
-
-/// Sums over all blocks of a tile.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct TileSums {
+/// Sums over the blocks of a tile. While the tile is swept `T` is one number for each of eight lanes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Sums<T> {
     /// `sum u`.
-    pub(super) displacement: [f64; 2],
+    pub(super) displacement: [T; 2],
     /// `sum v(t + dt/2)`.
-    pub(super) velocity: [f64; 2],
+    pub(super) velocity: [T; 2],
     /// `sum (v(t - dt/2) + v(t + dt/2))^2`.
-    pub(super) motion_square: f64,
+    pub(super) motion_square: T,
     /// `sum F_f . (v(t - dt/2) + v(t + dt/2))`.
-    pub(super) friction_work: f64,
+    pub(super) friction_work: T,
     /// Largest `tau_c^2` of a block in contact.
-    pub(super) stress_square: f64,
+    pub(super) stress_square: T,
     /// Square of the highest speed, ghosts included.
-    pub(super) speed_square: f64,
+    pub(super) speed_square: T,
     /// Energy of the springs times `2 k_1`, at steps at which energies are needed.
-    pub(super) lattice_energy: f64,
+    pub(super) lattice_energy: T,
     /// `sum v(t - dt/2)^2 + v(t + dt/2)^2`, at steps at which energies are needed.
-    pub(super) velocity_squares: f64,
+    pub(super) velocity_squares: T,
     /// `sum (V t - u)^2`, at steps at which energies are needed.
-    pub(super) stretch_square: f64,
+    pub(super) stretch_square: T,
     /// Number of blocks that slide.
     pub(super) sliding: u32,
     /// Number of sliding blocks that are in contact.
     pub(super) slipping: u32,
 }
 
-impl<S: Simd> Sums<S> {
+impl<S: Simd> Sums<f64x8<S>> {
     #[inline(always)]
     pub(super) fn zero(simd: S) -> Self {
         let zero = splat(simd, 0.0);
@@ -292,8 +264,8 @@ impl<S: Simd> Sums<S> {
     }
 
     #[inline(always)]
-    pub(super) fn totals(&self) -> TileSums {
-        TileSums {
+    pub(super) fn totals(&self) -> Sums<f64> {
+        Sums {
             displacement: self.displacement.map(lane_sum),
             velocity: self.velocity.map(lane_sum),
             motion_square: lane_sum(self.motion_square),
@@ -312,26 +284,16 @@ impl<S: Simd> Sums<S> {
 /// Stretch of the drive springs, `V t - u`.
 #[inline(always)]
 fn drive_stretch<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
-    subtract(
-        [
-            splat(simd, step.drive_position[0]),
-            splat(simd, step.drive_position[1]),
-        ],
-        u,
-    )
+    let [x, y] = step.drive_position;
+    subtract([splat(simd, x), splat(simd, y)], u)
 }
 
 /// Eq. 2: `F_s = k_s (V t - u)`, with any constant force.
 #[inline(always)]
 pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
-    let constant = [
-        splat(simd, step.constant_force[0]),
-        splat(simd, step.constant_force[1]),
-    ];
-    add(
-        scale(splat(simd, step.k_drive), drive_stretch(simd, step, u)),
-        constant,
-    )
+    let [x, y] = step.drive.constant_force;
+    let spring = scale(splat(simd, step.drive.k_drive), drive_stretch(simd, step, u));
+    add(spring, [splat(simd, x), splat(simd, y)])
 }
 
 /// `sum (V t - u)^2` over blocks, in the order of the sweep.
@@ -345,33 +307,26 @@ pub(super) fn stretch_square<S: Simd>(simd: S, step: Step, displacement: [Chunks
     lane_sum(sum)
 }
 
-/// What [`free_motion`] finds for [`friction`], over a tile.
-pub(super) struct FreeMotion<'a> {
-    /// `F_s`.
-    pub(super) drive: [ChunksMut<'a>; 2],
-    /// Velocity that the block would have without friction.
-    pub(super) free: [ChunksMut<'a>; 2],
-    /// Fraction of it that friction removes if the block slides.
-    pub(super) removed_fraction: ChunksMut<'a>,
-}
-
 /// The first part of the friction law: drive (Eq. 2), damping (Eq. 5), and the velocity without friction.
 #[inline(always)]
-fn free_motion<S: Simd>(simd: S, step: Step, arrays: &FrictionLoop, motion: &mut FreeMotion) {
-    let n = motion.removed_fraction.len();
+fn free_motion<S: Simd>(simd: S, step: Step, arrays: &mut FrictionLoop) {
+    let n = arrays.removed_fraction.len();
     let (u, lattice) = (first_n(arrays.displacement, n), first_n(arrays.lattice, n));
     let velocity = [&arrays.velocity[0][..n], &arrays.velocity[1][..n]];
     let kinetic_impulses = &arrays.kinetic_impulses[..n];
-    let [dx, dy] = &mut motion.drive;
-    let [fx, fy] = &mut motion.free;
+    let [dx, dy] = &mut arrays.drive;
+    let [fx, fy] = &mut arrays.free;
     let (dx, dy, fx, fy) = (&mut dx[..n], &mut dy[..n], &mut fx[..n], &mut fy[..n]);
-    let removed_fraction = &mut motion.removed_fraction[..n];
+    let removed_fraction = &mut arrays.removed_fraction[..n];
     for c in 0..n {
         let drive = pull(simd, step, load_vec2(simd, u, c));
         let force = add(drive, load_vec2(simd, lattice, c));
         let free = add(
-            scale(splat(simd, step.velocity_decay), load_vec2(simd, velocity, c)),
-            scale(splat(simd, step.force_to_velocity), force),
+            scale(
+                splat(simd, step.integrator.velocity_decay),
+                load_vec2(simd, velocity, c),
+            ),
+            scale(splat(simd, step.integrator.force_to_velocity), force),
         );
         let removed = load(simd, &kinetic_impulses[c]) / square(free).sqrt();
         drive[0].store_array(&mut dx[c]);
@@ -388,19 +343,18 @@ fn free_motion<S: Simd>(simd: S, step: Step, arrays: &FrictionLoop, motion: &mut
 pub(super) fn friction<S: Simd, const ENERGY: bool>(
     simd: S,
     step: Step,
-    arrays: FrictionLoop,
-    mut motion: FreeMotion,
-    sums: &mut Sums<S>,
+    mut arrays: FrictionLoop,
+    sums: &mut Sums<f64x8<S>>,
 ) {
-    free_motion(simd, step, &arrays, &mut motion);
+    free_motion(simd, step, &mut arrays);
     let [vx, vy] = arrays.velocity;
     let n = vx.len();
     let vy = &mut vy[..n];
     let (u, lattice_force) = (first_n(arrays.displacement, n), first_n(arrays.lattice, n));
-    let [dx, dy] = motion.drive;
-    let [fx, fy] = motion.free;
+    let [dx, dy] = arrays.drive;
+    let [fx, fy] = arrays.free;
     let (drive_force, free_velocity) = ([&dx[..n], &dy[..n]], [&fx[..n], &fy[..n]]);
-    let removed_fraction = &motion.removed_fraction[..n];
+    let removed_fraction = &arrays.removed_fraction[..n];
     let static_limit_squares = &arrays.static_limit_squares[..n];
     let (blocks, in_contact) = (&arrays.blocks[..n], &arrays.in_contact[..n]);
     let (moving, slipped) = (&mut arrays.moving[..n], &mut arrays.slipped[..n]);
@@ -425,7 +379,10 @@ pub(super) fn friction<S: Simd, const ENERGY: bool>(
         after[1].store_array(&mut vy[c]);
 
         // Minus the friction force: kinetic friction of a sliding block, else the sum of the other forces.
-        let kinetic = scale(removed_fraction * splat(simd, step.velocity_to_force), free);
+        let kinetic = scale(
+            removed_fraction * splat(simd, step.integrator.velocity_to_force),
+            free,
+        );
         let against = select(slides, kinetic, force);
         let displacement = load_vec2(simd, u, c);
         let both = zero_missing(simd, blocks[c], add(before, after));

@@ -5,6 +5,8 @@
 //! free edge are masked. Along a periodic x axis every row has a ghost at either end, a copy of the block at its other end.
 //! Elements that are no blocks never move, because their threshold is infinite, and are excluded from all sums.
 
+use std::ops::Range;
+
 use super::vector::LANES;
 use crate::lattice::{Edges, Lattice};
 
@@ -79,10 +81,21 @@ impl Layout {
         [(first - 1, last), (last + 1, first)]
     }
 
-    /// The row at the other end for one beyond a periodic edge; none beyond a free edge.
-    pub(super) fn wrapped_row(&self, row: isize) -> Option<usize> {
-        let ny = self.lattice.ny as isize;
-        (self.is_periodic_along_y() || (0..ny).contains(&row)).then(|| row.rem_euclid(ny) as usize)
+    /// The blocks among these elements, row after row: the row, the column of the first, and which of the elements they are.
+    pub(super) fn rows_among(
+        &self,
+        elements: Range<usize>,
+    ) -> impl Iterator<Item = (usize, usize, Range<usize>)> + use<> {
+        let layout = *self;
+        let rows = elements.start / self.stride..elements.end.div_ceil(self.stride).min(self.rows());
+        rows.filter_map(move |j| {
+            let first = layout.element(0, j);
+            let (from, to) = (
+                elements.start.max(first),
+                elements.end.min(first + layout.lattice.nx),
+            );
+            (from < to).then(|| (j, from - first, from - elements.start..to - elements.start))
+        })
     }
 
     pub(super) fn has_ghosts(&self) -> bool {
@@ -93,27 +106,21 @@ impl Layout {
         self.lattice.edges[1] == Edges::Periodic
     }
 
-    /// Which neighbours of an element exist: to the east, to the west, and in the next row. `element` may lie before the first or
-    /// after the last row.
-    fn neighbours(&self, element: isize) -> [bool; 3] {
-        let row = element.div_euclid(self.stride as isize);
-        let periodic = self.is_periodic_along_y();
-        let up = periodic || (0..self.lattice.ny as isize - 1).contains(&row);
-        let i = element.rem_euclid(self.stride as isize);
-        let i = i - self.ghosts as isize;
-        let (nx, ghosts) = (self.lattice.nx as isize, self.ghosts as isize);
-        [
-            -ghosts <= i && i + 1 < nx + ghosts,
-            -ghosts < i && i < nx + ghosts,
-            up,
-        ]
-    }
-
-    /// [`Layout::neighbours`] of the eight elements from `first` on, one bit each.
+    /// Which neighbours of the eight elements from `first` on exist, one bit each: to the east, to the west, and in the next row.
+    /// The elements may lie before the first or after the last row.
     pub(super) fn masks(&self, first: isize) -> [u8; 3] {
+        let (stride, ghosts) = (self.stride as isize, self.ghosts as isize);
+        let (nx, ny) = (self.lattice.nx as isize, self.lattice.ny as isize);
         let mut bits = [0; 3];
         for lane in 0..LANES {
-            for (bits, exists) in bits.iter_mut().zip(self.neighbours(first + lane as isize)) {
+            let element = first + lane as isize;
+            let (row, i) = (element.div_euclid(stride), element.rem_euclid(stride) - ghosts);
+            let exist = [
+                (-ghosts..nx + ghosts - 1).contains(&i),
+                (1 - ghosts..nx + ghosts).contains(&i),
+                self.is_periodic_along_y() || (0..ny - 1).contains(&row),
+            ];
+            for (bits, exists) in bits.iter_mut().zip(exist) {
                 *bits |= u8::from(exists) << lane;
             }
         }

@@ -15,9 +15,8 @@
 mod aligned;
 mod band;
 mod blocks;
-mod field_rows;
+mod fields;
 mod layout;
-mod recompute;
 mod rest;
 mod springs;
 mod vector;
@@ -27,16 +26,13 @@ mod tests;
 
 use fearless_simd::{Level, dispatch};
 
-use self::aligned::Vectors;
 use self::band::Band;
 use self::blocks::Step;
-use self::field_rows::Motion;
 use self::layout::Layout;
 use self::springs::{Series, SquareRoot};
-use crate::checkpoint::Checkpoint;
-use crate::field::Field;
-use crate::kernel::block::Block;
-use crate::kernel::strain_bound::StrainBound;
+use crate::checkpoint::{Checkpoint, StrainBound};
+use crate::kernel::block::{Block, Field};
+use crate::kernel::engine::Engine;
 use crate::kernel::totals::{StoredEnergy, Totals};
 use crate::lattice::K_STRAIGHT;
 use crate::model::Model;
@@ -92,50 +88,6 @@ impl Fused {
         threads: usize,
         skips: bool,
     ) -> Self {
-        Self::at_level(model, dt_star, state, threads, skips, Level::new())
-    }
-
-    /// Continues from a checkpoint. Every tile is swept at the next step, also those that could be skipped: both give the same
-    /// bits. The step of the checkpoint counts as one in which all tiles were swept.
-    pub(crate) fn resume(
-        model: &Model,
-        dt_star: f64,
-        checkpoint: Checkpoint,
-        strain_bound: StrainBound,
-        threads: usize,
-        skips: bool,
-    ) -> Self {
-        let state = State {
-            displacement: checkpoint.displacement.map(|column| column.0).into(),
-            velocity: checkpoint.velocity.map(|column| column.0).into(),
-        };
-        let mut kernel = Self::new(model, dt_star, Some(&state), threads, skips);
-        drop(state);
-        for band in &mut kernel.bands {
-            band.resume(&kernel.layout, &checkpoint.first_slip.0);
-        }
-        Self {
-            totals: checkpoint.totals,
-            stress_square_max: checkpoint.stress_square_max,
-            swept_step: Some(checkpoint.step),
-            strain_bound,
-            ..kernel
-        }
-    }
-
-    /// What the choice of springs depends on.
-    pub(crate) fn strain_bound(&self) -> StrainBound {
-        self.strain_bound
-    }
-
-    fn at_level(
-        model: &Model,
-        dt_star: f64,
-        state: Option<&State>,
-        threads: usize,
-        skips: bool,
-        level: Level,
-    ) -> Self {
         let layout = Layout::new(&model.lattice);
         let n_tiles = layout.n_tiles();
         let n_bands = threads.clamp(1, n_tiles);
@@ -157,7 +109,7 @@ impl Fused {
             layout,
             dt_star,
             bands,
-            level,
+            level: Level::new(),
             skips,
             has_moving_neighbour: vec![false; n_tiles],
             needs_springs: vec![false; n_tiles],
@@ -174,34 +126,32 @@ impl Fused {
             stress_square_max: 0.0,
         };
         kernel.copy_ghosts();
+        kernel.fill_halos(0.0);
         kernel
     }
 
-    /// Advances to step `number`: the next one, or 0 to begin with.
-    pub(crate) fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals {
-        let mut step = Step::new(model, number, self.dt_star);
-        if self.swept_step.is_none() {
-            // At the start displacements are those of t_0 already.
-            step.move_dt = 0.0;
+    /// Continues from a checkpoint. Every tile is swept at the next step, also those that could be skipped: both give the same
+    /// bits. The step of the checkpoint counts as one in which all tiles were swept.
+    pub(crate) fn resume(
+        model: &Model,
+        dt_star: f64,
+        mut checkpoint: Checkpoint,
+        strain_bound: StrainBound,
+        threads: usize,
+        skips: bool,
+    ) -> Self {
+        let state = checkpoint.take_state();
+        let mut kernel = Self::new(model, dt_star, Some(&state), threads, skips);
+        drop(state);
+        for band in &mut kernel.bands {
+            band.resume(&kernel.layout, &checkpoint.first_slip.0);
         }
-        let springs = self.choose_springs(model, &step);
-        // Skipped tiles keep the energy of their springs. After a change of formula it must be found anew, to have the same bits.
-        let springs_changed = self.springs != Some(springs);
-        if !self.skips || springs_changed || number >= self.active_from_step {
-            self.schedule_tiles(number, springs_changed);
-            self.record_skipped_stress_maxima(model, number);
-            self.fill_halos(step.move_dt);
-            let level = self.level;
-            for_each_band(&mut self.bands, &|band| {
-                sweep(level, band, model, step, springs, energies);
-            });
-            self.copy_ghosts();
-            (self.swept_step, self.springs) = (Some(number), Some(springs));
-            self.sum_tiles();
-        }
-        Totals {
-            stored_energy: energies.then(|| self.stored_energy(step)),
-            ..self.totals
+        Self {
+            totals: checkpoint.totals,
+            stress_square_max: checkpoint.stress_square_max,
+            swept_step: Some(checkpoint.step),
+            strain_bound,
+            ..kernel
         }
     }
 
@@ -369,12 +319,68 @@ impl Fused {
         StoredEnergy {
             kinetic: 0.25 * velocity_squares,
             lattice: lattice / (2.0 * K_STRAIGHT),
-            drive_springs: 0.5 * step.k_drive * stretch_square,
+            drive_springs: 0.5 * step.drive.k_drive * stretch_square,
+        }
+    }
+}
+
+impl Engine for Fused {
+    fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals {
+        let mut step = Step::new(model, number, self.dt_star);
+        if self.swept_step.is_none() {
+            // At the start displacements are those of t_0 already.
+            step.move_dt = 0.0;
+        }
+        let springs = self.choose_springs(model, &step);
+        // Skipped tiles keep the energy of their springs. After a change of formula it must be found anew, to have the same bits.
+        let springs_changed = self.springs != Some(springs);
+        if !self.skips || springs_changed || number >= self.active_from_step {
+            self.schedule_tiles(number, springs_changed);
+            self.record_skipped_stress_maxima(model, number);
+            self.fill_halos(step.move_dt);
+            let level = self.level;
+            for_each_band(&mut self.bands, &|band| {
+                sweep(level, band, model.epsilon, step, springs, energies);
+            });
+            self.copy_ghosts();
+            (self.swept_step, self.springs) = (Some(number), Some(springs));
+            self.sum_tiles();
+        }
+        Totals {
+            stored_energy: energies.then(|| self.stored_energy(step)),
+            ..self.totals
         }
     }
 
-    /// Largest square of a contact stress of a block in contact up to step `number`, the present one.
-    pub(crate) fn stress_square_max(&self, model: &Model, number: u64) -> f64 {
+    fn block(&self, model: &Model, number: u64, b: usize) -> Block {
+        fields::block(model, number as f64 * self.dt_star, b, |b| self.motion(b))
+    }
+
+    fn read_rows(
+        &self,
+        model: &Model,
+        number: u64,
+        field: Field,
+        stride: usize,
+        write: &mut dyn FnMut(usize, usize, &[f32]),
+    ) {
+        let step = Step::new(model, number, self.dt_star);
+        let elements = (&self.layout, self.bands.as_slice());
+        dispatch!(self.level, simd => fields::read_rows(simd, model, step, field, stride, elements, write));
+    }
+
+    fn motion(&self, b: usize) -> [[f64; 2]; 2] {
+        let (band, k) = self.locate(self.layout.element_of(b));
+        let band = &self.bands[band];
+        [band.displacement.at(band.halo + k), band.velocity.at(k)]
+    }
+
+    fn first_slip(&self, b: usize) -> f64 {
+        let (band, k) = self.locate(self.layout.element_of(b));
+        self.bands[band].first_slip[k]
+    }
+
+    fn stress_square_max(&self, model: &Model, number: u64) -> f64 {
         let step = Step::new(model, number, self.dt_star);
         let mut square = self.stress_square_max;
         for band in &self.bands {
@@ -386,74 +392,12 @@ impl Fused {
         square
     }
 
-    /// Displacement now and velocity half a step later of block `b`.
-    pub(crate) fn motion(&self, b: usize) -> [[f64; 2]; 2] {
-        let (band, k) = self.locate(self.layout.element_of(b));
-        let band = &self.bands[band];
-        [band.displacement.at(band.halo + k), band.velocity.at(k)]
+    fn strain_bound(&self) -> Option<StrainBound> {
+        Some(self.strain_bound)
     }
 
-    /// Block `b` with the forces on it at step `number`, the present one.
-    pub(crate) fn block(&self, model: &Model, number: u64, b: usize) -> Block {
-        recompute::block(model, number as f64 * self.dt_star, b, |b| self.motion(b))
-    }
-
-    /// Values of `field` in every `stride`-th row at step `number`, the present one, several blocks of a row at a time: `write`
-    /// is given the row, the column of the first value, and the values.
-    pub(crate) fn read_rows(
-        &self,
-        model: &Model,
-        number: u64,
-        field: Field,
-        stride: usize,
-        mut write: impl FnMut(usize, usize, &[f32]),
-    ) {
-        let step = Step::new(model, number, self.dt_star);
-        dispatch!(self.level, simd => {
-            field_rows::read_rows(simd, model, step, field, stride, self, &mut write);
-        });
-    }
-
-    /// Copies a vector of the elements from `first` on; those outside the lattice are left as they are. `vectors` gives the
-    /// array of a band, and where its first element is.
-    fn copy_elements(
-        &self,
-        first: isize,
-        [x, y]: [&mut [f64]; 2],
-        vectors: impl Fn(&Band) -> (&Vectors, usize),
-    ) {
-        let end = first + x.len() as isize;
-        for band in &self.bands {
-            let band_end = (band.first + band.len) as isize;
-            let (from, to) = (first.max(band.first as isize), end.min(band_end));
-            if from < to {
-                let (vectors, offset) = vectors(band);
-                let read = from as usize - band.first + offset..to as usize - band.first + offset;
-                let written = (from - first) as usize..(to - first) as usize;
-                x[written.clone()].copy_from_slice(&vectors.x[read.clone()]);
-                y[written].copy_from_slice(&vectors.y[read]);
-            }
-        }
-    }
-
-    /// When block `b` first slid while in contact; NaN if it never has.
-    pub(crate) fn first_slip(&self, b: usize) -> f64 {
-        let (band, k) = self.locate(self.layout.element_of(b));
-        self.bands[band].first_slip[k]
-    }
-}
-
-impl Motion for Fused {
-    fn displacements(&self, row: isize, first: isize, into: [&mut [f64]; 2]) {
-        if let Some(row) = self.layout.wrapped_row(row) {
-            let element = self.layout.element(0, row) as isize + first;
-            self.copy_elements(element, into, |band| (&band.displacement, band.halo));
-        }
-    }
-
-    fn velocities(&self, row: usize, first: usize, into: [&mut [f64]; 2]) {
-        let element = self.layout.element(first, row) as isize;
-        self.copy_elements(element, into, |band| (&band.velocity, 0));
+    fn checkpoint_velocity(&self, b: usize) -> [f64; 2] {
+        self.motion(b)[1]
     }
 }
 
@@ -470,20 +414,16 @@ fn for_each_band(bands: &mut [Band], work: &(impl Fn(&mut Band) + Sync)) {
 }
 
 /// Takes a band through a step with the vector instructions of `level`.
-fn sweep(level: Level, band: &mut Band, model: &Model, step: Step, springs: Springs, energies: bool) {
-    let epsilon = model.epsilon;
+fn sweep(level: Level, band: &mut Band, epsilon: f64, step: Step, springs: Springs, energies: bool) {
     match springs {
         Springs::ShortSeries => {
-            let geometry = Series::<3> { epsilon };
-            dispatch!(level, simd => band.sweep(simd, geometry, model, step, energies));
+            dispatch!(level, simd => band.sweep(simd, Series::<3> { epsilon }, step, energies));
         }
         Springs::LongSeries => {
-            let geometry = Series::<7> { epsilon };
-            dispatch!(level, simd => band.sweep(simd, geometry, model, step, energies));
+            dispatch!(level, simd => band.sweep(simd, Series::<7> { epsilon }, step, energies));
         }
         Springs::SquareRoot => {
-            let geometry = SquareRoot { epsilon };
-            dispatch!(level, simd => band.sweep(simd, geometry, model, step, energies));
+            dispatch!(level, simd => band.sweep(simd, SquareRoot { epsilon }, step, energies));
         }
     }
 }

@@ -12,7 +12,6 @@ use fearless_simd::{Select, Simd, SimdBase, SimdFloat};
 
 use super::blocks::{Chunks, Step, pull};
 use super::vector::{add, dot, lane_max, load, load_vec2, splat, square};
-use crate::model::Drive;
 
 /// Blocks of a tile in which nothing moves.
 pub(super) struct RestingTile<'a> {
@@ -28,7 +27,8 @@ pub(super) struct RestingTile<'a> {
 /// With a drive at an angle it is zero if one component of the drive force on a block shrinks while the other grows. So the
 /// contact stress of a skipped block is always largest at the first or at the last skipped step.
 #[inline(always)]
-pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, drive: &Drive, blocks: &RestingTile) -> u64 {
+pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingTile) -> u64 {
+    let drive = &step.drive;
     let [bx, by] = drive.direction.map(|d| drive.k_drive * drive.v_star * d);
     let growth_square = bx * bx + by * by;
     if growth_square == 0.0 {
@@ -41,7 +41,8 @@ pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, drive: &Drive, blo
     for k in 0..blocks.static_limit_squares.len() {
         let drive = pull(simd, *step, load_vec2(simd, blocks.displacement, k));
         let force = add(drive, load_vec2(simd, blocks.lattice, k));
-        let kinetic_force = load(simd, &blocks.kinetic_impulses[k]) * splat(simd, step.velocity_to_force);
+        let kinetic_force =
+            load(simd, &blocks.kinetic_impulses[k]) * splat(simd, step.integrator.velocity_to_force);
         let threshold_square = load(simd, &blocks.static_limit_squares[k]).max(kinetic_force * kinetic_force);
         let a = dot(force, growth);
         let room = threshold_square - square(force);
@@ -58,7 +59,7 @@ pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, drive: &Drive, blo
     // Forces have rounding errors of some units of their last place: the result is shortened by the time in which the load
     // grows by that, and by two steps for the rounding of the root and of the division.
     let distance = step.drive_position[0].abs() + step.drive_position[1].abs();
-    let noise = 1e-13 * (1.0 + step.k_drive * distance) / growth_square.sqrt();
+    let noise = 1e-13 * (1.0 + step.drive.k_drive * distance) / growth_square.sqrt();
     let steps = (-lane_max(soonest) * (1.0 - 1e-9) - noise) / step.dt_star - 2.0;
     // The conversion saturates: at zero if negative, at the largest integer if too large.
     steps as u64

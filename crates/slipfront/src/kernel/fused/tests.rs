@@ -46,7 +46,8 @@ fn levels() -> Vec<Level> {
 
 /// The bits of all displacements, velocities and sums at every tenth step.
 fn history(model: &Model, level: Level, steps: u64) -> Vec<u64> {
-    let mut kernel = Fused::at_level(model, 0.2, None, 1, true, level);
+    let mut kernel = Fused::new(model, 0.2, None, 1, true);
+    kernel.level = level;
     let mut bits = Vec::new();
     for number in 0..=steps {
         let energies = number % 10 == 0;

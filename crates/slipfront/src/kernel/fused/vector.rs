@@ -27,22 +27,6 @@ pub(super) fn load_vec2<S: Simd>(simd: S, [x, y]: [&[[f64; LANES]]; 2], chunk: u
     [load(simd, &x[chunk]), load(simd, &y[chunk])]
 }
 
-/// Both components of eight blocks from the `k`-th on.
-#[inline(always)]
-pub(super) fn load_at<S: Simd, const N: usize>(simd: S, [x, y]: &[[f64; N]; 2], k: usize) -> Vec2x8<S> {
-    [
-        f64x8::from_slice(simd, &x[k..k + LANES]),
-        f64x8::from_slice(simd, &y[k..k + LANES]),
-    ]
-}
-
-/// Stores both components of eight blocks from the `k`-th on.
-#[inline(always)]
-pub(super) fn store_at<S: Simd, const N: usize>(a: Vec2x8<S>, [x, y]: &mut [[f64; N]; 2], k: usize) {
-    a[0].store_slice(&mut x[k..k + LANES]);
-    a[1].store_slice(&mut y[k..k + LANES]);
-}
-
 #[inline(always)]
 pub(super) fn mask<S: Simd>(simd: S, bits: u8) -> mask64x8<S> {
     mask64x8::from_bitmask(simd, u64::from(bits))

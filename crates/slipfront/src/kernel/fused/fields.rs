@@ -1,0 +1,168 @@
+//! What a sweep does not keep, found again from displacements and velocities, by the exact spring law whatever formula the sweep
+//! used: the forces on one block, and one field of all blocks, tile after tile, with the same bits.
+
+use fearless_simd::{Simd, SimdBase, SimdFloat};
+
+use super::band::{Band, Scratch, chunks};
+use super::blocks::{Step, pull};
+use super::layout::{Layout, TILE};
+use super::springs::SquareRoot;
+use super::vector::{LANES, add, bits, is_zero, load, load_vec2, scale, select, splat, square};
+use crate::kernel::block::{Block, Field};
+use crate::lattice::Bond;
+use crate::model::Model;
+use crate::vector_field::length;
+
+/// Block `b` at `time_star`. `motion` gives displacement and velocity of a block.
+pub(super) fn block(
+    model: &Model,
+    time_star: f64,
+    b: usize,
+    motion: impl Fn(usize) -> [[f64; 2]; 2],
+) -> Block {
+    let [displacement, velocity] = motion(b);
+    let force_lattice = lattice_force(model, b, displacement, |b| motion(b)[0]);
+    let force_drive = model.drive.force(displacement, time_star);
+    Block {
+        displacement,
+        velocity,
+        force_drive,
+        force_lattice,
+        force_friction: friction(model, b, velocity, force_drive, force_lattice),
+    }
+}
+
+/// Eq. 3 for one block, its springs summed in the order of the sweep.
+fn lattice_force(model: &Model, b: usize, u: [f64; 2], displacement: impl Fn(usize) -> [f64; 2]) -> [f64; 2] {
+    let (i, j) = model.lattice.column_row(b);
+    let pair = |bond: &Bond| {
+        let [di, dj] = bond.offset;
+        let force =
+            |from: [f64; 2], to: [f64; 2]| bond.force([to[0] - from[0], to[1] - from[1]], model.epsilon);
+        let neighbour = |offset| model.lattice.neighbour(i, j, offset).map(&displacement);
+        let ahead = neighbour([di, dj]).map_or([0.0; 2], |v| force(u, v));
+        let behind = neighbour([-di, -dj]).map_or([0.0; 2], |v| force(v, u));
+        [ahead[0] - behind[0], ahead[1] - behind[1]]
+    };
+    let [e, n, ne, nw] = Bond::ALL.each_ref().map(pair);
+    [(e[0] + n[0]) + (ne[0] + nw[0]), (e[1] + n[1]) + (ne[1] + nw[1])]
+}
+
+/// `F_f` of the projection law: kinetic friction against the velocity that the update left, or for a stuck block minus the
+/// sum of the other forces.
+fn friction(model: &Model, b: usize, velocity: [f64; 2], drive: [f64; 2], lattice: [f64; 2]) -> [f64; 2] {
+    if velocity == [0.0, 0.0] {
+        return [-(drive[0] + lattice[0]), -(drive[1] + lattice[1])];
+    }
+    let per_velocity = model.surface.kinetic_force(b) / length(velocity);
+    [-per_velocity * velocity[0], -per_velocity * velocity[1]]
+}
+
+/// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the row, the column of the
+/// first value, and the values.
+#[inline(always)]
+pub(super) fn read_rows<S: Simd>(
+    simd: S,
+    model: &Model,
+    step: Step,
+    field: Field,
+    stride: usize,
+    (layout, bands): (&Layout, &[Band]),
+    write: &mut dyn FnMut(usize, usize, &[f32]),
+) {
+    let mut values = [0.0; TILE];
+    for band in bands {
+        let mut scratch = band.lock_scratch();
+        let mut springs_end = 0;
+        for t in 0..band.tiles.len() {
+            let elements = band.elements(t);
+            let rows = || layout.rows_among(band.first + elements.start..band.first + elements.end);
+            if !rows().any(|(j, ..)| j.is_multiple_of(stride)) {
+                continue;
+            }
+            let displaced = band.halo + elements.start..band.halo + elements.end;
+            match field {
+                Field::ContactStress | Field::Traction => {
+                    let from = band.below(displaced.start).max(springs_end);
+                    springs_end = displaced.end;
+                    let epsilon = model.epsilon;
+                    let geometry = SquareRoot { epsilon };
+                    band.upward(simd, geometry, &mut scratch, from, springs_end);
+                    let energy = &mut splat(simd, 0.0);
+                    band.lattice_forces::<S, SquareRoot, false>(simd, geometry, t, &mut scratch, energy);
+                    let mut forces = [[0.0; LANES]; TILE / LANES];
+                    if band.tiles[t].moving {
+                        for (j, i, blocks) in rows() {
+                            let kinetic = &mut forces.as_flattened_mut()[blocks];
+                            model
+                                .surface
+                                .read_kinetic_forces(model.lattice.block(i, j), kinetic);
+                        }
+                    }
+                    stresses(simd, step, field, band, t, &scratch, &mut forces);
+                    round(&mut values, forces.as_flattened());
+                }
+                Field::DisplacementX => round(&mut values, &band.displacement.x[displaced]),
+                Field::DisplacementY => round(&mut values, &band.displacement.y[displaced]),
+                Field::VelocityX => round(&mut values, &band.velocity.x[elements.clone()]),
+                Field::VelocityY => round(&mut values, &band.velocity.y[elements.clone()]),
+                Field::Sliding => {
+                    let [x, y] = [&band.velocity.x, &band.velocity.y].map(|v| &v[elements.clone()]);
+                    for ((value, x), y) in values.iter_mut().zip(x).zip(y) {
+                        *value = f32::from(u8::from([*x, *y] != [0.0, 0.0]));
+                    }
+                }
+            }
+            for (j, i, blocks) in rows().filter(|(j, ..)| j.is_multiple_of(stride)) {
+                let values = &mut values[blocks];
+                if field == Field::Traction {
+                    let textured = &model.surface.textured[model.lattice.block(i, j)..];
+                    for (value, &textured) in values.iter_mut().zip(textured) {
+                        *value = if textured { f32::NAN } else { *value };
+                    }
+                }
+                write(j, i, values);
+            }
+        }
+    }
+}
+
+fn round(values: &mut [f32; TILE], exact: &[f64]) {
+    for (value, exact) in values.iter_mut().zip(exact) {
+        *value = *exact as f32;
+    }
+}
+
+/// Contact stress `|F_f + F_c|` (Eq. 10) or traction `|F_f|` in a tile, with friction as for one block. `forces` are the kinetic
+/// friction of every element, and become what is found.
+#[inline(always)]
+fn stresses<S: Simd>(
+    simd: S,
+    step: Step,
+    field: Field,
+    band: &Band,
+    t: usize,
+    scratch: &Scratch,
+    forces: &mut [[f64; LANES]],
+) {
+    let elements = band.elements(t);
+    let n = elements.len();
+    let displacements = chunks(&band.displacement, band.halo + elements.start, n);
+    let velocities = chunks(&band.velocity, elements.start, n);
+    let lattice_forces = chunks(&scratch.lattice, 0, n);
+    for (c, stress) in forces[..n / LANES].iter_mut().enumerate() {
+        let velocity = load_vec2(simd, velocities, c);
+        let lattice = load_vec2(simd, lattice_forces, c);
+        let [x, y] = add(pull(simd, step, load_vec2(simd, displacements, c)), lattice);
+        let mut force = [-x, -y];
+        let stuck = is_zero(simd, velocity);
+        if bits(stuck) != u8::MAX {
+            let per_velocity = load(simd, stress) / square(velocity).sqrt();
+            force = select(stuck, force, scale(-per_velocity, velocity));
+        }
+        if field == Field::ContactStress {
+            force = add(force, lattice);
+        }
+        square(force).sqrt().store_array(stress);
+    }
+}
