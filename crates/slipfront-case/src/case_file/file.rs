@@ -67,7 +67,8 @@ impl CaseFile {
     pub fn parse(text: &str, name: &str, overrides: &[String]) -> Result<Self, CaseError> {
         let base = ParsedCase::parse(text, name)?;
         let overrides = overrides.iter().map(|entry| Override::parse(entry));
-        base.with(&overrides.collect::<Result<Vec<_>, _>>()?)
+        let overrides = overrides.collect::<Result<Vec<_>, _>>()?;
+        base.with(&overrides.iter().collect::<Vec<_>>())
     }
 
     /// Reads a case file of at most 16 MiB, as [`parse`](Self::parse) does.
@@ -150,7 +151,7 @@ impl<'t> ParsedCase<'t> {
     ///
     /// # Errors
     /// [`CaseError::Invalid`], with its place, for an unknown key or a value out of its bounds.
-    pub fn with<'o>(&self, overrides: impl IntoIterator<Item = &'o Override>) -> Result<CaseFile, CaseError> {
+    pub fn with(&self, overrides: &[&Override]) -> Result<CaseFile, CaseError> {
         let mut root: DeTable<'_> = self.root.clone();
         let mut source = self.source.clone();
         for change in overrides {

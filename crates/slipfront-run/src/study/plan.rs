@@ -159,16 +159,13 @@ impl Plan {
     fn case_file(&self, base: &ParsedCase, point: &Point, role: Role) -> Result<CaseFile, CaseError> {
         let levels = self.axes.iter().zip(&point.levels);
         let overrides = levels.flat_map(|(axis, &level)| &axis.levels[level].overrides);
-        match &self.reference {
-            Some(reference) if role == Role::Reference => {
-                let is_kept = |set: &&Override| {
-                    let mut others = reference.iter();
-                    others.all(|other| !axis::replaces_key(other.key(), set.key()))
-                };
-                base.with(overrides.filter(is_kept).chain(reference))
-            }
-            _ => base.with(overrides),
+        let mut overrides: Vec<&Override> = overrides.collect();
+        if let (Some(reference), Role::Reference) = (&self.reference, role) {
+            let replaces = |other: &Override, set: &Override| axis::replaces_key(other.key(), set.key());
+            overrides.retain(|set| !reference.iter().any(|other| replaces(other, set)));
+            overrides.extend(reference);
         }
+        base.with(&overrides)
     }
 
     /// Makes the case of a point, and collects what is known of its runs.

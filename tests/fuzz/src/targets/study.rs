@@ -41,7 +41,7 @@ fn study_file(input: &[u8]) {
         .flat_map(|axis| axis.levels.iter().take(MAX_LEVELS))
     {
         let base = ParsedCase::parse(&study.base.text, &study.base.name);
-        if let Err(error) = base.and_then(|base| base.with(&level.overrides)) {
+        if let Err(error) = base.and_then(|base| base.with(&level.overrides.iter().collect::<Vec<_>>())) {
             readable(&error);
         }
     }

@@ -335,9 +335,21 @@ impl Band {
             let north = first + self.stride;
             let vectors = first / LANES..end / LANES;
             let here = chunks(&self.displacement, first, n);
-            let there = [north, north + 1, north - 1].map(|there| chunks(&self.displacement, there, n));
-            let masks = self.masks.each_ref().map(|masks| &masks[vectors.clone()]);
-            let force = scratch.upward.each_mut().map(|force| chunks_mut(force, own, n));
+            // Written out: an array's `map` costs more than its elements here.
+            let at = |k| chunks(&self.displacement, k, n);
+            let there = [at(north), at(north + 1), at(north - 1)];
+            let [has_east, has_west, has_north] = &self.masks;
+            let masks = [
+                &has_east[vectors.clone()],
+                &has_west[vectors.clone()],
+                &has_north[vectors],
+            ];
+            let [north_f, north_east_f, north_west_f] = &mut scratch.upward;
+            let force = [
+                chunks_mut(north_f, own, n),
+                chunks_mut(north_east_f, own, n),
+                chunks_mut(north_west_f, own, n),
+            ];
             upward_springs(simd, geometry, here, there, masks, force);
             if own < MIRROR {
                 let ring = scratch.ring();
@@ -391,7 +403,11 @@ impl Band {
                 east: chunks(&self.displacement, first + 1, n),
                 has_east: &self.masks[0][vectors.clone()],
                 blocks: &self.blocks[vectors.start - halo..vectors.end - halo],
-                own: scratch.upward.each_ref().map(|force| chunks(force, own, n)),
+                own: [
+                    chunks(north, own, n),
+                    chunks(north_east, own, n),
+                    chunks(north_west, own, n),
+                ],
                 behind: [
                     chunks(north, behind + 1, n),
                     chunks(north_east, behind, n),
