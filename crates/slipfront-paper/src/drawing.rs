@@ -6,7 +6,7 @@ use crate::error::PaperError;
 use crate::number::Number;
 
 use slipfront_plot::{
-    BarChart, FieldMap, FieldMaps, FrictionCurve, Picture, PictureError, Response, Responses, Shape,
+    BarChart, FieldMap, FieldMaps, FrictionCurve, Picture, PictureError, Response, Responses, Shape, Sketch,
 };
 
 /// The contents of a picture.
@@ -22,6 +22,8 @@ pub enum Drawing {
     Bars(BarChart),
     /// Outlines.
     Shapes(Vec<Shape>),
+    /// Lines and names.
+    Sketch(Sketch),
 }
 
 impl Drawing {
@@ -36,6 +38,7 @@ impl Drawing {
             Self::Responses(responses) => slipfront_plot::response(responses),
             Self::Bars(chart) => slipfront_plot::bars(chart),
             Self::Shapes(shapes) => slipfront_plot::shapes(shapes),
+            Self::Sketch(sketch) => slipfront_plot::sketch(sketch),
         }
     }
 
@@ -86,6 +89,14 @@ impl Drawing {
                 for shape in shapes {
                     for [x, y] in &shape.points {
                         table.serialize((&shape.label, x, y))?;
+                    }
+                }
+            }
+            Self::Sketch(sketch) => {
+                table.write_record(["line", "x", "y"])?;
+                for (line, stroke) in sketch.strokes.iter().enumerate() {
+                    for [x, y] in &stroke.points {
+                        table.serialize((line, x, y))?;
                     }
                 }
             }

@@ -10,7 +10,6 @@ macro_rules! files {
 /// Case and study files by their names.
 pub(super) const FILES: &[(&str, &str)] = files![
     "fig02",
-    "fig04",
     "fig05",
     "fig05_long",
     "fig06",

@@ -9,8 +9,11 @@ use crate::run::{Run, on_each, seen_at};
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, smallest};
 
+/// The curve of Fig. 3 on which the instants are marked.
+const CASE: &str = "table1/case8";
+
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
-    let runs = runner.run(runner.case_on_surfaces("fig04")?)?;
+    let runs = runner.run(runner.case_on_surfaces(CASE)?)?;
     let [main, ..] = &runs[..] else { return Ok(()) };
     let maps = ['A', 'B', 'C', 'D', 'E', 'F']
         .map(|letter| main.stress_map(main.instant(letter)?, &letter.to_string()));
@@ -58,7 +61,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 fn before_slip(runner: &FigureRunner, main: &Run, data: &mut FigureData) -> Result<(), PaperError> {
     let first = main.first_slip()?;
     let times: Vec<f64> = (1..=8).map(|k| first * f64::from(k) / 9.0).collect();
-    let run = runner.run_one(seen_at(runner.case("fig04", &[])?, &times))?;
+    let run = runner.run_one(seen_at(runner.case(CASE, &[])?, &times))?;
     let drive = &run.case.model.drive;
     let (mut error, mut motion) = (0.0_f64, 0.0_f64);
     for (_, frame) in &run.record.frames {
@@ -93,7 +96,7 @@ fn stress_left(runner: &FigureRunner, run: &Run) -> Result<f64, PaperError> {
     let mut times = vec![first - dt_star];
     times.extend((1..=20).map(|k| first + 0.5 * f64::from(k)));
     let seed = format!("friction.seed={}", run.case.file.friction.seed);
-    let again = runner.run_one(seen_at(runner.case("fig04", &[&seed])?, &times))?;
+    let again = runner.run_one(seen_at(runner.case(CASE, &[&seed])?, &times))?;
     let stress = |(_, frame): &(String, Frame)| -> Result<f64, PaperError> {
         Ok(f64::from(again.field(frame, Field::ContactStress)?[block]))
     };

@@ -20,29 +20,21 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
             Number::of(&ratios(&times, &steps))
         })
         .collect();
-    let curves = |title: &str, numbers: &[Number], label: &str, fit: fn(f64) -> f64| {
+    data.panel(
+        "fig06",
+        "Onset time and time steps up to the onset, with dt* = (2/3) V*, against speed, beside Eqs. 12 and 14.",
         Drawing::Responses(Responses {
             x_title: "drive speed V*".to_owned(),
             log_x: true,
             log_y: true,
-            y_title: title.to_owned(),
+            y_title: "onset time t\u{209b}*, steps to the onset n\u{209b}*".to_owned(),
             curves: vec![
-                measured("measured", &speeds, numbers),
-                formula(label, &speeds, fit),
+                measured("t\u{209b}*", &speeds, &onsets),
+                formula("(5/2)/V*", &speeds, |v| 2.5 / v),
+                measured("n\u{209b}*", &speeds, &steps),
+                formula("(15/4)/V*\u{b2}", &speeds, |v| 3.75 / (v * v)),
             ],
             ..Responses::default()
-        })
-    };
-    data.panel(
-        "fig06",
-        "Onset time against speed, beside Eq. 12.",
-        curves("onset time t\u{209b}*", &onsets, "(5/2)/V*", |v| 2.5 / v),
-    );
-    data.panel(
-        "fig06_steps",
-        "Time steps up to the onset with dt* = (2/3) V*, beside Eq. 14.",
-        curves("steps to the onset n\u{209b}*", &steps, "(15/4)/V*\u{b2}", |v| {
-            3.75 / (v * v)
         }),
     );
     let errors = |numbers: &[Number], fit: fn(f64) -> f64| {

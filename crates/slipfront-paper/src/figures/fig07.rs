@@ -23,7 +23,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     );
     let amplitudes = on_each(&runs, Run::kinetic_fluctuation)?;
     let amplitude = amplitudes[amplitudes.len() - 1];
-    let slow = runner.run_one(runner.case("fig04", &[])?)?;
+    let slow = runner.run_one(runner.case("table1/case8", &[])?)?;
     data.value("fluctuation", amplitude);
     data.value("fluctuation_over_slow", amplitude / slow.kinetic_fluctuation()?);
     data.value(

@@ -9,7 +9,7 @@ use crate::runner::FigureRunner;
 use crate::statistics::largest;
 use slipfront_case::case_file;
 use slipfront_case::case_file::CavitySize;
-use slipfront_plot::Shape;
+use slipfront_plot::{Shape, Sketch, Stroke, StrokeStyle};
 
 /// Corners of a drawn outline.
 const CORNERS: usize = 360;
@@ -41,6 +41,12 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     }
     data.panel(
         "fig13",
+        "The parameters of Eq. 17: an arm \u{3bb} at the angle \u{3c6} from the middle (x_0, y_0), and an arm w \u{3bb} at the \
+         angle -s \u{3c6} from its end, lead to the outline; here s = 3, w = 0.2.",
+        Drawing::Sketch(parameters()),
+    );
+    data.panel(
+        "fig13_shapes",
         "The outlines of Eq. 17 at equal area: ellipses (s = 1), semi-triangles (s = 2), -squares (s = 3) and -pentagons \
          (s = 4), round (w = 1/(5 s)) and sharp (w = 1/s).",
         Drawing::Shapes(shapes),
@@ -53,16 +59,56 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 
 /// Eq. 17 at the area of a circle of radius 1.
 fn outline(s: u32, w: f64) -> Vec<[f64; 2]> {
-    let s = f64::from(s);
-    let lambda = 1.0 / (1.0 - s * w * w).sqrt();
-    let point = |k: usize| {
-        let phi = TAU * k as f64 / CORNERS as f64;
-        [
-            lambda * (libm::cos(phi) + w * libm::cos(s * phi)),
-            lambda * (libm::sin(phi) - w * libm::sin(s * phi)),
-        ]
-    };
+    let lambda = 1.0 / (1.0 - f64::from(s) * w * w).sqrt();
+    let point = |k: usize| on_outline(s, w, TAU * k as f64 / CORNERS as f64).map(|at| lambda * at);
     (0..CORNERS).map(point).collect()
+}
+
+/// Eq. 17 for lambda = 1 about the origin.
+fn on_outline(s: u32, w: f64, phi: f64) -> [f64; 2] {
+    let s = f64::from(s);
+    [
+        libm::cos(phi) + w * libm::cos(s * phi),
+        libm::sin(phi) - w * libm::sin(s * phi),
+    ]
+}
+
+/// A cavity with the arms that lead to a point of its outline.
+fn parameters() -> Sketch {
+    let (s, w, phi) = (3, 0.2, TAU / 10.0);
+    let circle = |radius: f64, from: f64, until: f64| -> Vec<[f64; 2]> {
+        let angles = (0..=CORNERS).map(|k| from + (until - from) * k as f64 / CORNERS as f64);
+        angles
+            .map(|angle| [radius * libm::cos(angle), radius * libm::sin(angle)])
+            .collect()
+    };
+    let points = (0..CORNERS).map(|k| on_outline(s, w, TAU * k as f64 / CORNERS as f64));
+    let middle = [0.0, 0.0];
+    let arm = [libm::cos(phi), libm::sin(phi)];
+    let end = on_outline(s, w, phi);
+    let stroke = |style, points| Stroke { style, points };
+    Sketch {
+        strokes: vec![
+            stroke(StrokeStyle::Area, points.collect()),
+            stroke(StrokeStyle::Thin, circle(1.0, 0.0, TAU)),
+            stroke(StrokeStyle::Thin, circle(0.35, 0.0, phi)),
+            stroke(StrokeStyle::Arrow, vec![middle, [1.6, 0.0]]),
+            stroke(StrokeStyle::Arrow, vec![middle, [0.0, 1.35]]),
+            stroke(StrokeStyle::Arrow, vec![middle, arm]),
+            stroke(StrokeStyle::Arrow, vec![arm, end]),
+        ],
+        labels: [
+            ("x", [1.6, -0.1]),
+            ("y", [0.12, 1.35]),
+            ("(x_0, y_0)", [-0.25, -0.1]),
+            ("\u{3bb}", [0.42, 0.42]),
+            ("\u{3c6}", [0.45, 0.14]),
+            ("w \u{3bb}", [0.94, 0.66]),
+            ("(x_\u{393}, y_\u{393})", [1.18, 0.38]),
+        ]
+        .map(|(name, at)| (name.to_owned(), at))
+        .to_vec(),
+    }
 }
 
 /// How many places of an outline lie farther out than those before and after: its vertices.

@@ -7,7 +7,7 @@ use crate::number::{Number, values};
 use crate::run::peak_maps;
 use crate::runner::FigureRunner;
 use crate::statistics::{farthest, largest, range};
-use slipfront_plot::{Bar, BarChart, BarGroup};
+use slipfront_plot::{Bar, BarChart, BarGroup, FieldMap};
 use slipfront_run::study::REDUCTION;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
@@ -26,7 +26,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     };
     data.panel(
         "fig18a",
-        "Reduction of static friction by cavities of seven shapes, each under 10 % of the slider: means of five surfaces \
+        "a: reduction of static friction by cavities of seven shapes, each under 10 % of the slider: means of five surfaces \
          with their 95 % intervals.",
         Drawing::Bars(BarChart {
             y_title: "reduction of \u{3bc}\u{209b}* (%)".to_owned(),
@@ -38,10 +38,18 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         }),
     );
     let runs = runner.run(sweep.first_cases()?.split_off(1))?;
+    let maps = peak_maps(&runs, &names[1..])?;
+    // After the circle come triangles, squares and pentagons, each round and sharp.
+    let lettered = [(0, "b: "), (1, "c: "), (2, ""), (4, "d: "), (5, "e: "), (3, "")];
+    let maps = lettered.map(|(index, letter)| FieldMap {
+        label: format!("{letter}{}", maps[index].label),
+        ..maps[index].clone()
+    });
     data.panel(
-        "fig18b",
-        "Contact stress around six of them at the peak of friction.",
-        stress_maps(peak_maps(&runs, &names[1..])?, 3),
+        "fig18_maps",
+        "b-e: contact stress at the peak of friction around the shapes with the fewest and with the most vertices (the text \
+         does not name the shapes of its four maps); beside them, without a letter, the squares between.",
+        stress_maps(maps.to_vec(), 3),
     );
     let means = values(&reductions);
     data.value("spread_percent", range(&means[1..]));

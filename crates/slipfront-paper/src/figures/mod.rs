@@ -1,5 +1,6 @@
 //! The figures and tables of the paper. Each has a file: which cases it runs, what it measures on them, and what is drawn.
 
+mod fig01;
 mod fig02;
 mod fig03;
 mod fig04;
@@ -34,9 +35,10 @@ pub struct Figure {
     pub(crate) measure: fn(&mut FigureRunner, &mut FigureData) -> Result<(), PaperError>,
 }
 
-/// All figures and tables except the schematic of Fig. 1, and an appendix on what the paper leaves open.
+/// All figures and tables, and an appendix on what the paper leaves open.
 #[rustfmt::skip]
-pub const FIGURES: [Figure; 19] = [
+pub const FIGURES: [Figure; 20] = [
+    Figure { name: "fig01", title: "Fig. 1: the model", measure: fig01::measure },
     Figure { name: "fig02", title: "Fig. 2: a sampled surface", measure: fig02::measure },
     Figure { name: "table1", title: "Table 1: eight materials at one dimensionless speed", measure: fig03::measure_table },
     Figure { name: "fig03", title: "Fig. 3: eight materials, one curve", measure: fig03::measure },

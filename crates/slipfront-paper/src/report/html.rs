@@ -146,7 +146,7 @@ fn section(paper: &Paper, figure: &Figure, data: &FigureData, pictures: &[Pictur
             @for (Panel { name, caption, .. }, picture) in data.panels.iter().zip(pictures) {
                 figure {
                     img src={ "data:image/png;base64," (BASE64.encode(&picture.png)) } alt=(caption) style=(width(&picture.svg));
-                    figcaption { (caption) " Numbers: " (name) ".csv." }
+                    figcaption { (text(caption)) " Numbers: " (name) ".csv." }
                 }
             }
             @for table in &data.tables { (plain_table(table)) }

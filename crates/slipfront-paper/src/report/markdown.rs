@@ -1,4 +1,4 @@
-//! `docs/validation/paper.md`: the claims table and a few figures.
+//! `docs/validation/paper.md`: the claims table and all figures.
 
 use std::fmt::Write as _;
 
@@ -7,11 +7,6 @@ use crate::claims::ClaimResult;
 use crate::figure_data::Panel;
 use crate::paper::Paper;
 use crate::step_rule::StepRule;
-
-/// The pictures that the page shows.
-pub(super) const SHOWN: [&str; 8] = [
-    "fig03", "fig04", "fig06", "fig12", "fig14", "fig15", "fig16", "fig18a",
-];
 
 /// The first line of the page, by which a page of an earlier call is recognised.
 pub(super) const TITLE: &str = "# The paper, claim by claim\n";
@@ -67,20 +62,16 @@ fn other_verdicts(paper: &Paper) -> String {
     }
 }
 
-/// Some of the pictures, and all tables.
+/// All pictures and tables, figure by figure.
 fn write_figures(paper: &Paper, text: &mut String) {
     for (figure, data) in &paper.figures {
-        let title = figure.title;
+        let _ = write!(text, "\n## {}\n", figure.title);
         for Panel { name, caption, .. } in &data.panels {
-            if SHOWN.contains(&name.as_str()) {
-                let _ = write!(
-                    text,
-                    "\n## {title}\n\n{caption}\n\n![{title}](images/paper-{name}.png)\n"
-                );
-            }
+            let caption = greek(caption);
+            let _ = write!(text, "\n{caption}\n\n![{name}](images/paper-{name}.png)\n");
         }
         for table in &data.tables {
-            let _ = write!(text, "\n## {title}\n\n{}\n\n", greek(&table.caption));
+            let _ = write!(text, "\n{}\n\n", greek(&table.caption));
             let _ = writeln!(text, "| {} |", greek(&table.header.join(" | ")));
             let _ = writeln!(text, "|{}", "---|".repeat(table.header.len()));
             for row in &table.rows {

@@ -54,18 +54,24 @@ pub fn foreign_docs(folder: &Path) -> Option<PathBuf> {
     if begins_with(&page, markdown::TITLE.as_bytes()) {
         return None;
     }
-    let pictures = markdown::SHOWN.iter().map(|name| folder.join(docs_picture(name)));
-    let mut files = [page].into_iter().chain(pictures);
-    files.find(|path| path.symlink_metadata().is_ok())
+    if page.symlink_metadata().is_ok() {
+        return Some(page);
+    }
+    let pictures = std::fs::read_dir(folder.join(IMAGES))
+        .into_iter()
+        .flatten()
+        .flatten();
+    let mut pictures = pictures.filter(|file| file.file_name().to_string_lossy().starts_with(PICTURE));
+    pictures.next().map(|file| file.path())
 }
 
 const PAGE: &str = "paper.md";
+/// The folder of the pictures of the page.
+const IMAGES: &str = "images";
+/// What their names begin with.
+const PICTURE: &str = "paper-";
 
-fn docs_picture(name: &str) -> String {
-    format!("images/paper-{name}.png")
-}
-
-/// Writes the claims table as `paper.md` with some of its pictures: what stands in `docs/validation`.
+/// Writes the claims table as `paper.md` with all pictures: what stands in `docs/validation`.
 ///
 /// # Errors
 /// When a picture cannot be drawn or a file not be written.
@@ -74,9 +80,11 @@ pub fn write_docs(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
     write_file(folder, PAGE, page(paper).as_bytes())?;
     for (_, data) in &paper.figures {
         for (panel, picture) in data.panels.iter().zip(draw(data)?) {
-            if markdown::SHOWN.contains(&panel.name.as_str()) {
-                write_file(folder, &docs_picture(&panel.name), &picture.png)?;
-            }
+            write_file(
+                folder,
+                &format!("{IMAGES}/{PICTURE}{}.png", panel.name),
+                &picture.png,
+            )?;
         }
     }
     Ok(())

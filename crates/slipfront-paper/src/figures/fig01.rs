@@ -1,0 +1,130 @@
+//! Fig. 1: the lattice of blocks and springs, and the forces on a block. A drawing; nothing is run.
+
+use slipfront_plot::{Sketch, Stroke, StrokeStyle};
+
+use crate::drawing::Drawing;
+use crate::error::PaperError;
+use crate::figure_data::FigureData;
+use crate::runner::FigureRunner;
+
+/// Blocks a side of the part of the lattice that is drawn.
+const BLOCKS: i32 = 3;
+/// Half the edge of a block, over the distance of two.
+const HALF: f64 = 0.14;
+
+// The signature is that of all figures.
+#[allow(clippy::unnecessary_wraps)]
+pub(super) fn measure(_: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
+    let mut drawn = Sketch::default();
+    from_above(&mut drawn);
+    from_the_side(&mut drawn, [3.35, 0.6]);
+    data.panel(
+        "fig01",
+        "The model. Left, from above: every block is tied to its eight neighbours by springs k_1 = (3/4) E l along the axes and k_2 = \
+         (3/8) E l across them. Right, from the side: the load F_n presses a block on the substrate, the drive at speed V \
+         pulls it through k_s = k_2, friction F_f holds it.",
+        Drawing::Sketch(drawn),
+    );
+    Ok(())
+}
+
+fn add(drawn: &mut Sketch, style: StrokeStyle, points: Vec<[f64; 2]>) {
+    drawn.strokes.push(Stroke { style, points });
+}
+
+fn label(drawn: &mut Sketch, name: &str, at: [f64; 2]) {
+    drawn.labels.push((name.to_owned(), at));
+}
+
+/// The lattice; springs first, so that blocks cover their ends.
+fn from_above(drawn: &mut Sketch) {
+    let place = |i: i32, j: i32| [f64::from(i), f64::from(j)];
+    for (i, j) in blocks() {
+        for (di, dj, colour) in [(1, 0, 0), (0, 1, 0), (1, 1, 1), (-1, 1, 1)] {
+            let (to_i, to_j) = (i + di, j + dj);
+            if (0..BLOCKS).contains(&to_i) && (0..BLOCKS).contains(&to_j) {
+                // Diagonals cross where they are straight.
+                let middle = if colour == 0 { 0.5 } else { 0.3 };
+                let spring = spring(place(i, j), place(to_i, to_j), middle);
+                add(drawn, StrokeStyle::Line(colour), spring);
+            }
+        }
+    }
+    for (i, j) in blocks() {
+        body(drawn, place(i, j), HALF);
+    }
+    label(drawn, "k_1", [0.5, 2.2]);
+    label(drawn, "k_2", [1.5, 1.72]);
+    add(drawn, StrokeStyle::Thin, vec![[0.0, -0.2], [0.0, -0.45]]);
+    add(drawn, StrokeStyle::Thin, vec![[1.0, -0.2], [1.0, -0.45]]);
+    add(drawn, StrokeStyle::Arrow, vec![[0.5, -0.35], [0.0, -0.35]]);
+    add(drawn, StrokeStyle::Arrow, vec![[0.5, -0.35], [1.0, -0.35]]);
+    label(drawn, "l", [0.5, -0.52]);
+}
+
+fn blocks() -> impl Iterator<Item = (i32, i32)> {
+    (0..BLOCKS).flat_map(|j| (0..BLOCKS).map(move |i| (i, j)))
+}
+
+/// A block with its load, drive and friction.
+fn from_the_side(drawn: &mut Sketch, [x, y]: [f64; 2]) {
+    let half = 2.0 * HALF;
+    let floor = y - half;
+    add(
+        drawn,
+        StrokeStyle::Thin,
+        vec![[x - 0.75, floor], [x + 1.75, floor]],
+    );
+    for k in 0..25 {
+        let at = x - 0.65 + 0.1 * f64::from(k);
+        add(
+            drawn,
+            StrokeStyle::Thin,
+            vec![[at, floor], [at - 0.1, floor - 0.12]],
+        );
+    }
+    let pulled = x + 1.15;
+    add(drawn, StrokeStyle::Line(2), spring([x, y], [pulled, y], 0.6));
+    add(drawn, StrokeStyle::Arrow, vec![[pulled, y], [x + 1.7, y]]);
+    body(drawn, [x, y], half);
+    add(
+        drawn,
+        StrokeStyle::Arrow,
+        vec![[x, y + half + 0.6], [x, y + half + 0.03]],
+    );
+    add(
+        drawn,
+        StrokeStyle::Arrow,
+        vec![[x - half, floor + 0.07], [x - 0.75, floor + 0.07]],
+    );
+    label(drawn, "m", [x, y]);
+    label(drawn, "F_n", [x + 0.2, y + half + 0.4]);
+    label(drawn, "F_f", [x - 0.55, floor + 0.25]);
+    label(drawn, "k_s", [x + 0.69, y + 0.24]);
+    label(drawn, "V", [x + 1.55, y + 0.18]);
+}
+
+fn body(drawn: &mut Sketch, [x, y]: [f64; 2], half: f64) {
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let corner = |(to_x, to_y): (f64, f64)| [x + half * to_x, y + half * to_y];
+    add(drawn, StrokeStyle::Body, corners.map(corner).to_vec());
+}
+
+/// A line between two points with a zigzag about the place `middle`, from 0 to 1, of its length.
+fn spring([x, y]: [f64; 2], [to_x, to_y]: [f64; 2], middle: f64) -> Vec<[f64; 2]> {
+    const TURNS: i32 = 7;
+    const AMPLITUDE: f64 = 0.055;
+    let distance = libm::hypot(to_x - x, to_y - y);
+    let (dx, dy) = ((to_x - x) / distance, (to_y - y) / distance);
+    let at = |along: f64, aside: f64| [x + along * dx - aside * dy, y + along * dy + aside * dx];
+    let (length, middle) = (0.4, middle * distance);
+    let begin = middle - 0.5 * length;
+    let turn = |k: i32| {
+        let aside = if k % 2 == 0 { AMPLITUDE } else { -AMPLITUDE };
+        at(begin + length * (f64::from(k) + 0.5) / f64::from(TURNS), aside)
+    };
+    let mut points = vec![[x, y], at(begin, 0.0)];
+    points.extend((0..TURNS).map(turn));
+    points.extend([at(begin + length, 0.0), [to_x, to_y]]);
+    points
+}
