@@ -88,7 +88,7 @@ impl Run {
         refuse_to_replace(case_path.as_deref(), &case, &out)?;
         let folder = OpenedFolder::open(&out).map_err(Failure::input)?;
         let replaced = if self.force {
-            folder.inspection.managed_bytes()
+            folder.inspection.managed_bytes().map_err(Failure::input)?
         } else {
             0
         };

@@ -33,8 +33,9 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
     let budget = case.budget.resumed();
     budget.check_memory(&case.file, true).map_err(Failure::input)?;
     let loaded = load(path, &case, previous)?;
+    let replaced = run.managed_bytes().map_err(Failure::input)?;
     case.budget
-        .check_disk(&case.file, path, run.managed_bytes(), options.interval.saves())
+        .check_disk(&case.file, path, replaced, options.interval.saves())
         .map_err(Failure::input)?;
     let (running, checkpoints, from) = match loaded {
         None => {
