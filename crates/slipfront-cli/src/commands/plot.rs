@@ -11,7 +11,7 @@ use slipfront_run::run_folder::inspection::Inspection;
 use slipfront_run::verify::{expect_as_written, inspect};
 
 use crate::failure::Failure;
-use crate::print::print;
+use crate::print::print_message;
 
 /// Draw the pictures of a run again, or the friction curves of several runs over each other
 #[derive(Args)]
@@ -77,7 +77,8 @@ impl Plot {
             write_atomic(&path, bytes).map_err(failed)?;
             written += &format!("{}\n", path.display());
         }
-        print(&written)
+        print_message(&written);
+        Ok(())
     }
 }
 
