@@ -5,7 +5,7 @@ use std::str::FromStr;
 use std::time::{Duration, Instant};
 
 use slipfront_run::checkpoint::Checkpoints;
-use slipfront_run::run_folder::error::resume_command;
+use slipfront_run::resume_command::resume_command;
 use slipfront_run::running::Running;
 
 use crate::failure::Failure;

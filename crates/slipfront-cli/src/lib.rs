@@ -24,6 +24,8 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
+use crate::print::expect_printed;
+
 /// Friction of micro-textured surfaces: the lattice spring-block model of the transition from static to kinetic
 /// friction.
 #[derive(Parser)]
@@ -56,10 +58,13 @@ enum Command {
 pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     let command = match Cli::try_parse_from(args) {
         Ok(cli) => cli.command,
+        // Of a wrong line the status is what matters; help and version are what was asked for.
         Err(error) => {
-            // Help that nobody reads any more is no failure.
-            let _ = error.print();
-            return ExitCode::from(error.exit_code() as u8);
+            let status = ExitCode::from(error.exit_code() as u8);
+            return match expect_printed(error.print()) {
+                Err(failure) if !error.use_stderr() => failure.report(),
+                _ => status,
+            };
         }
     };
     // If the signal cannot be caught, only the error message for a file that grows too large is lost.

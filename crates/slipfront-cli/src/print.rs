@@ -1,16 +1,31 @@
-//! Results on stdout.
+//! What the commands print to stdout: there is no other place that does.
 
 use std::io::{ErrorKind, Write};
 
 use crate::failure::Failure;
 
-/// Prints to stdout. It is no failure when the reader has closed the pipe, as `head` does.
+/// Prints what the command was called for. It is no failure when the reader has closed the pipe, as `head` does.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
-    let mut stdout = std::io::stdout().lock();
-    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+    expect_printed(write(text))
+}
+
+/// Prints a message of a command whose work are files. A message that cannot be printed is lost: the command goes on and
+/// ends with the exit status of its work.
+pub(crate) fn print_message(text: &str) {
+    let _ = write(text);
+}
+
+/// Fails if what the command was called for could not be printed, for another reason than a closed pipe.
+pub(crate) fn expect_printed(written: std::io::Result<()>) -> Result<(), Failure> {
+    match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::running(anyhow::anyhow!(
             "cannot write to standard output: {error}"
         ))),
         _ => Ok(()),
     }
+}
+
+fn write(text: &str) -> std::io::Result<()> {
+    let mut stdout = std::io::stdout().lock();
+    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush())
 }

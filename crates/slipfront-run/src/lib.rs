@@ -15,6 +15,7 @@ pub mod names;
 pub mod pictures;
 pub mod program;
 pub mod results;
+pub mod resume_command;
 pub mod run_folder;
 pub mod running;
 pub mod series;

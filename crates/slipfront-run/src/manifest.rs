@@ -12,7 +12,7 @@ use thiserror::Error;
 
 use crate::names::{CASE, MANIFEST};
 use crate::program;
-use crate::run_folder::error::{FolderError, resume_command};
+use crate::resume_command::resume_command;
 use slipfront_case::case::Case;
 use slipfront_case::disk::{TEXT_MAX_BYTES, json, open_regular, read_limited};
 use slipfront_case::text::{single_line, truncated};
@@ -93,30 +93,23 @@ pub enum ManifestError {
         resume_command(path)
     )]
     Missing { path: PathBuf },
+    #[error("cannot read {path}: {why}")]
+    Unreadable { path: PathBuf, why: String },
     #[error("{path} is damaged: {why}")]
-    Damaged {
-        path: PathBuf,
-        why: String,
-        /// What the manifest says, if it can be parsed at all.
-        unverified: Option<Box<Manifest>>,
-    },
+    Damaged { path: PathBuf, why: String },
 }
 
 impl Manifest {
-    /// Takes stock of the files of a run that ends now.
+    /// That of a run which ends now and has written these files.
     pub(crate) fn of(
-        folder: &Path,
-        names: &[&str],
+        files: Vec<ManifestFile>,
         case: &Case,
         started: jiff::Timestamp,
         threads: usize,
-    ) -> Result<Self, FolderError> {
-        let file =
-            |name: &&str| ManifestFile::of(folder, name).map_err(FolderError::read(&folder.join(name)));
-        let files: Vec<ManifestFile> = names.iter().map(file).collect::<Result<_, _>>()?;
+    ) -> Self {
         let case_file = files.iter().find(|file| file.name == CASE);
         let finished = jiff::Timestamp::now();
-        Ok(Self {
+        Self {
             version: program::VERSION.to_owned(),
             revision: program::REVISION.map(str::to_owned),
             build: program::this_build().to_owned(),
@@ -136,7 +129,7 @@ impl Manifest {
             },
             files,
             checksum: String::new(),
-        })
+        }
     }
 
     /// The manifest with its checksum, and the bytes of its file.
@@ -150,19 +143,21 @@ impl Manifest {
     /// Reads the manifest of a run folder, if it is as it was written.
     pub fn read(folder: &Path) -> Result<Self, ManifestError> {
         let path = folder.join(MANIFEST);
-        let damaged = |why, unverified| ManifestError::Damaged {
+        let damaged = |why| ManifestError::Damaged {
             path: path.clone(),
             why,
-            unverified,
         };
         let bytes = read_limited(&path, TEXT_MAX_BYTES).map_err(|error| match error.kind() {
             std::io::ErrorKind::NotFound => ManifestError::Missing {
                 path: folder.to_owned(),
             },
-            _ => damaged(error.to_string(), None),
+            _ => ManifestError::Unreadable {
+                path: path.clone(),
+                why: error.to_string(),
+            },
         })?;
         let manifest: Self =
-            serde_json::from_slice(&bytes).map_err(|error| damaged(single_line(&error.to_string()), None))?;
+            serde_json::from_slice(&bytes).map_err(|error| damaged(single_line(&error.to_string())))?;
         if checksum_of(&bytes).as_ref() == Some(&manifest.checksum) {
             return Ok(manifest);
         }
@@ -171,7 +166,7 @@ impl Manifest {
         } else {
             "its seal does not fit, so that it was changed after the run"
         };
-        Err(damaged(why.to_owned(), Some(Box::new(manifest))))
+        Err(damaged(why.to_owned()))
     }
 
     /// The program that wrote it, in words.
@@ -192,10 +187,15 @@ impl ManifestFile {
     pub(crate) fn of(folder: &Path, name: &str) -> std::io::Result<Self> {
         let mut hasher = blake3::Hasher::new();
         hasher.update_reader(open_regular(&folder.join(name))?)?;
-        Ok(Self {
+        Ok(Self::hashed(name, &hasher))
+    }
+
+    /// One of this name whose bytes have been hashed.
+    pub(crate) fn hashed(name: &str, hasher: &blake3::Hasher) -> Self {
+        Self {
             name: name.to_owned(),
             bytes: hasher.count(),
             blake3: hasher.finalize().to_hex().to_string(),
-        })
+        }
     }
 }

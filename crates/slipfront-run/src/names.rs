@@ -12,7 +12,7 @@ pub const SERIES: &str = "series.csv";
 pub const FIELDS: &str = "fields.nc";
 /// The hidden subfolder of everything that belongs to a run which is not complete.
 pub const UNFINISHED: &str = ".slipfront";
-/// In the hidden subfolder: what says that the subfolder is slipfront's.
+/// In the hidden subfolder: the files that the run has finished, which also says that the subfolder is slipfront's.
 pub const JOURNAL: &str = "journal.jsonl";
 /// In the hidden subfolder: a folder of the temporary files that are being written.
 pub const TEMPORARY: &str = "tmp";

@@ -2,10 +2,9 @@
 //!
 //! Pictures are always drawn from the files, so that those of a run and those of `slipfront plot` are equal.
 
-use std::path::Path;
-
 use slipfront_case::case::Case;
 use slipfront_case::disk;
+use tempfile::TempPath;
 
 use crate::error::ResultsError;
 use crate::fields::{self, FieldFrame, FieldsError, FieldsFile, StaticFields};
@@ -30,8 +29,8 @@ pub fn write(
     folder.write(SUMMARY, &disk::json(&record.summary))?;
     let rows = record.rows.iter().map(|row| SeriesRow::new(row, &case.scales));
     folder.write(SERIES, &series::to_csv(rows)?)?;
-    let fields = folder.claim(FIELDS)?;
-    write_fields(case, record, &folder.temporary(), &fields)?;
+    let fields = write_fields(case, record, &folder)?;
+    folder.place(FIELDS, fields)?;
     #[cfg(feature = "plot")]
     for (name, picture) in pictures::draw(folder.path())? {
         folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
@@ -49,7 +48,7 @@ pub fn write_case(case: &Case, folder: &mut RunFolder) -> Result<(), ResultsErro
     Ok(folder.sync()?)
 }
 
-fn write_fields(case: &Case, record: &mut Record, temporary: &Path, path: &Path) -> Result<(), FieldsError> {
+fn write_fields(case: &Case, record: &mut Record, folder: &RunFolder) -> Result<TempPath, FieldsError> {
     let surface = &case.model.surface;
     let names = &case.output.fields;
     let scale = record.contact_stress_max;
@@ -72,5 +71,5 @@ fn write_fields(case: &Case, record: &mut Record, temporary: &Path, path: &Path)
         },
         frames: &frames,
     };
-    fields::write_fields(temporary, path, &file)
+    fields::write_fields(&folder.temporary(), &folder.path().join(FIELDS), &file)
 }

@@ -98,7 +98,7 @@ pub fn verify_run(run: &Inspection) -> Result<Verdict, VerifyError> {
         Ok(manifest) => manifest,
         Err(error @ ManifestError::Missing { .. }) => return Err(error.into()),
         // It is a run folder, of which nothing else can be said.
-        Err(error @ ManifestError::Damaged { .. }) => {
+        Err(error @ (ManifestError::Unreadable { .. } | ManifestError::Damaged { .. })) => {
             verdict.differences.push(error.to_string());
             return Ok(verdict);
         }

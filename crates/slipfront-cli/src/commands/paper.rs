@@ -8,7 +8,7 @@ use slipfront_paper::Options;
 use slipfront_run::study::{Records, is_study};
 
 use crate::failure::Failure;
-use crate::print::print;
+use crate::print::print_message;
 use crate::progress::paper::PaperProgress;
 use crate::signals::Signals;
 use crate::threads::set_threads;
@@ -74,8 +74,8 @@ impl Paper {
             slipfront_paper::write_docs(&paper, docs).map_err(Failure::running)?;
         }
         if !self.quiet {
-            print(&slipfront_paper::summary(&paper))?;
-            print(&format!("{}\n", self.out.join("report.html").display()))?;
+            print_message(&slipfront_paper::summary(&paper));
+            print_message(&format!("{}\n", self.out.join("report.html").display()));
         }
         match paper.unexpected_verdicts().count() {
             0 => Ok(()),

@@ -3,14 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use slipfront_case::disk::{is_same, write_atomic};
+use slipfront_case::disk::{is_same, read_limited, write_atomic};
 use slipfront_plot::Picture;
 use slipfront_run::names::MANIFEST;
 use slipfront_run::pictures;
+use slipfront_run::run_folder::inspection::Inspection;
 use slipfront_run::verify::{expect_as_written, inspect};
 
 use crate::failure::Failure;
-use crate::print::print;
+use crate::print::print_message;
 
 /// Draw the pictures of a run again, or the friction curves of several runs over each other
 #[derive(Args)]
@@ -31,11 +32,12 @@ pub(crate) struct Plot {
 
 impl Plot {
     pub(crate) fn execute(self) -> Result<(), Failure> {
+        let mut runs = Vec::new();
         for folder in &self.folders {
             expect_results(folder)?;
-            inspect(folder)
-                .and_then(|run| expect_as_written(&run, |name| pictures::DRAWN_FROM.contains(&name)))
-                .map_err(Failure::input)?;
+            let run = inspect(folder).map_err(Failure::input)?;
+            expect_as_written(&run, |name| pictures::DRAWN_FROM.contains(&name)).map_err(Failure::input)?;
+            runs.push(run);
         }
         let (out, drawn) = match self.folders.as_slice() {
             [folder] => (folder.clone(), pictures::draw(folder).map_err(Failure::input)?),
@@ -51,24 +53,32 @@ impl Plot {
                 out.display()
             ))
         };
-        let files: Vec<(PathBuf, &[u8])> = drawn
+        let files: Vec<(String, &[u8])> = drawn
             .iter()
             .flat_map(|(name, Picture { svg, png })| {
                 [("svg", svg.as_bytes()), ("png", png)]
-                    .map(|(ending, bytes)| (out.join(format!("{name}.{ending}")), bytes))
+                    .map(|(ending, bytes)| (format!("{name}.{ending}"), bytes))
             })
             .collect();
-        let own = matches!(self.folders.as_slice(), [folder] if is_same(folder, &out));
-        if !own {
-            refuse_to_replace(&out, files.iter().map(|(path, _)| path), self.force)?;
+        let own = match runs.as_slice() {
+            [run] if is_same(&run.path, &out) => Some(run),
+            _ => None,
+        };
+        if own.is_none() {
+            refuse_other_run(&out)?;
+        }
+        if !self.force {
+            refuse_to_replace(&out, &files, own)?;
         }
         std::fs::create_dir_all(&out).map_err(failed)?;
         let mut written = String::new();
-        for (path, bytes) in files {
+        for (name, bytes) in files {
+            let path = out.join(name);
             write_atomic(&path, bytes).map_err(failed)?;
             written += &format!("{}\n", path.display());
         }
-        print(&written)
+        print_message(&written);
+        Ok(())
     }
 }
 
@@ -85,28 +95,43 @@ fn expect_results(folder: &Path) -> Result<(), Failure> {
     Err(Failure::input(anyhow::anyhow!(sentence)))
 }
 
-/// Refuses the folder of a run that these are not the pictures of, and pictures that are there already.
-fn refuse_to_replace<'p>(
-    out: &Path,
-    mut files: impl Iterator<Item = &'p PathBuf>,
-    force: bool,
-) -> Result<(), Failure> {
+/// Refuses the folder of a run that these are not the pictures of.
+fn refuse_other_run(out: &Path) -> Result<(), Failure> {
     let manifest = out.join(MANIFEST);
-    let holds_a_run = manifest
-        .try_exists()
-        .map_err(|error| Failure::input(anyhow::anyhow!("cannot read {}: {error}", manifest.display())))?;
-    let sentence = if holds_a_run {
-        format!(
+    let sentence = match manifest.try_exists() {
+        Ok(false) => return Ok(()),
+        Ok(true) => format!(
             "{} holds a run, and these are not its pictures: choose another folder with --out",
             out.display()
-        )
-    } else if let Some(path) = files.find(|path| !force && path.symlink_metadata().is_ok()) {
-        format!(
-            "{} exists: choose another folder with --out, or replace it with --force",
-            path.display()
-        )
-    } else {
-        return Ok(());
+        ),
+        Err(error) => format!("cannot read {}: {error}", manifest.display()),
     };
     Err(Failure::input(anyhow::anyhow!(sentence)))
+}
+
+/// Refuses to replace what stands where the pictures go, unless it is the same, or a picture that the run in the folder, if
+/// they are `own` ones of it, has drawn there.
+fn refuse_to_replace(out: &Path, files: &[(String, &[u8])], own: Option<&Inspection>) -> Result<(), Failure> {
+    for (name, bytes) in files {
+        let path = out.join(name);
+        let is_same = || read_limited(&path, bytes.len() as u64).is_ok_and(|found| found == *bytes);
+        if path.symlink_metadata().is_err() || is_same() {
+            continue;
+        }
+        let what = match own
+            .map(|run| run.has_written(name))
+            .transpose()
+            .map_err(Failure::input)?
+        {
+            Some(true) => continue,
+            Some(false) => "is not as the run has drawn it",
+            None => "exists",
+        };
+        let sentence = format!(
+            "{} {what}: choose another folder with --out, or replace it with --force",
+            path.display()
+        );
+        return Err(Failure::input(anyhow::anyhow!(sentence)));
+    }
+    Ok(())
 }

@@ -9,7 +9,7 @@ use slipfront_case::disk::is_same;
 
 use crate::case_args::CaseArgs;
 use crate::failure::Failure;
-use crate::print::print;
+use crate::print::print_message;
 use crate::report;
 
 /// Write the texture of a case as a mask: one pixel per block, textured ones black
@@ -56,6 +56,7 @@ impl Texture {
                 error => Failure::running(error),
             },
         )?;
-        print(&format!("{}\n{}\n", report::texture(&case), self.out.display()))
+        print_message(&format!("{}\n{}\n", report::texture(&case), self.out.display()));
+        Ok(())
     }
 }

@@ -43,6 +43,68 @@ fn a_closed_pipe_is_no_failure() {
     assert!(workspace.exists("results/small/manifest.json"));
 }
 
+/// A full disk behind stdout loses messages and nothing else; what has no other product than its output says so.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_stdout_stops_no_work() {
+    let workspace = Workspace::masked();
+    workspace.write(
+        "study.toml",
+        "base.slider.blocks = [2, 2]\n[study]\nreplicates = 2\n",
+    );
+    workspace.succeed("run small.toml -o whole");
+    workspace.succeed("study study.toml -o study-whole");
+    workspace.fill("begun", &workspace.files("whole"));
+    workspace.interrupt("begun");
+    let full = |line: &str| {
+        let mut process = workspace.process(line);
+        process.stdout(std::fs::File::create("/dev/full").unwrap());
+        let output = process.output().unwrap();
+        (output.status.code().unwrap(), stderr(&output))
+    };
+    for line in [
+        "run small.toml -o a",
+        "run --resume begun",
+        "run --resume a",
+        "study study.toml -o study-a",
+        "study merge study-whole -o merged",
+        "plot whole -o drawn",
+        "texture masked.toml -o texture.png",
+    ] {
+        let (status, said) = full(line);
+        assert_eq!(status, 0, "{line}: {said}");
+        assert!(!said.contains("error"), "{line}: {said}");
+    }
+    workspace.assert_same_run("whole", "a");
+    workspace.assert_same_run("whole", "begun");
+    for table in ["runs.csv", "points.csv", "study.toml"] {
+        let whole = workspace.read(&format!("study-whole/{table}"));
+        assert!(workspace.read(&format!("study-a/{table}")) == whole, "{table}");
+        assert!(workspace.read(&format!("merged/{table}")) == whole, "{table}");
+    }
+    assert!(workspace.exists("drawn/stress.png") && workspace.exists("texture.png"));
+    for line in [
+        "check small.toml",
+        "completions zsh",
+        "study study.toml --dry-run",
+        "study slurm study.toml",
+        "verify whole",
+        "run small.toml --json -o b",
+        "run --resume whole --json",
+        "--help",
+        "run --help",
+        "--version",
+    ] {
+        let (status, said) = full(line);
+        assert_eq!(status, 1, "{line}: {said}");
+        assert!(
+            said.contains("error: cannot write to standard output: No space left"),
+            "{line}: {said}"
+        );
+    }
+    workspace.assert_same_run("whole", "b");
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interrupt_ends_the_run_and_leaves_it_incomplete() {

@@ -190,7 +190,7 @@ fn what_is_complete_or_has_not_begun() {
     // Killed before its first checkpoint, or while it wrote its results.
     let case = String::from_utf8(before["case.toml"].clone()).unwrap();
     workspace.write("begun/case.toml", &case);
-    workspace.write("begun/series.csv", "half of");
+    workspace.write("begun/.slipfront/journal.jsonl", "");
     workspace.write("begun/.slipfront/tmp/123abc", "half of");
     let said = workspace.succeed("run --resume begun");
     assert!(said.contains("goes on from the start"), "{said}");

@@ -49,6 +49,17 @@ impl Workspace {
         files
     }
 
+    /// Makes the folder of a complete run one of a run that was killed before it wrote its manifest: a journal lists what the
+    /// manifest did.
+    pub(crate) fn interrupt(&self, folder: &str) {
+        let manifest = format!("{folder}/manifest.json");
+        let listed: serde_json::Value = serde_json::from_slice(&self.read(&manifest)).unwrap();
+        let lines = listed["files"].as_array().unwrap().iter();
+        let lines: String = lines.map(|file| format!("{file}\n")).collect();
+        self.write(&format!("{folder}/.slipfront/journal.jsonl"), lines);
+        self.remove(&manifest);
+    }
+
     /// Demands that two runs have the same bytes, file by file.
     pub(crate) fn assert_same_run(&self, one: &str, other: &str) {
         let (one_files, other_files) = (self.run_files(one), self.run_files(other));

@@ -75,7 +75,8 @@ fn a_damaged_manifest_deletes_nothing_elsewhere() {
     let workspace = Workspace::small();
     workspace.write("treasure", "mine");
     workspace.write("a/inputs/deep/treasure", "mine");
-    let entry = |name: &str| format!(r#"{{"name":"{name}","bytes":1,"blake3":""}}"#);
+    let hash = blake3::hash(b"mine").to_hex();
+    let entry = |name: &str| format!(r#"{{"name":"{name}","bytes":4,"blake3":"{hash}"}}"#);
     let entries = [
         "../treasure",
         "inputs/../../treasure",
@@ -92,6 +93,16 @@ fn a_damaged_manifest_deletes_nothing_elsewhere() {
         ),
     );
     workspace.write("a/notes.txt", "mine");
+    let said = workspace.fail("run small.toml --quiet -o a --force", 2);
+    assert!(
+        said.contains("a/manifest.json is damaged: it has no seal"),
+        "{said}"
+    );
+    assert!(said.contains("move it away"), "{said}");
+    // A journal has no seal.
+    workspace.remove("a/manifest.json");
+    let lines: String = entries.iter().map(|entry| format!("{entry}\n")).collect();
+    workspace.write("a/.slipfront/journal.jsonl", lines);
     workspace.succeed("run small.toml -o a --force");
     for name in ["treasure", "a/inputs/deep/treasure", "a/notes.txt"] {
         assert_eq!(workspace.read(name), b"mine", "{name}");
@@ -173,10 +184,8 @@ fn force_takes_the_copies_of_a_killed_run_along() {
     let workspace = Workspace::masked();
     workspace.succeed("run masked.toml -o clean");
     workspace.succeed("run masked.toml -o a");
-    std::fs::remove_file(workspace.path("a/manifest.json")).unwrap();
-    for name in ["a/.slipfront/journal.jsonl", "a/.slipfront/tmp/123456"] {
-        workspace.write(name, if name.ends_with("jsonl") { "" } else { "half of" });
-    }
+    workspace.interrupt("a");
+    workspace.write("a/.slipfront/tmp/123456", "half of");
     workspace.succeed("run masked.toml -o a --force");
     workspace.assert_same_run("clean", "a");
     // A case that a user wrote may name the only copy that there is.
@@ -188,6 +197,99 @@ fn force_takes_the_copies_of_a_killed_run_along() {
         "{said}"
     );
     assert_eq!(workspace.files("b").len(), 2);
+}
+
+/// Whatever a file is called, it is a run's only if the run has finished it, and if it is still the same.
+#[test]
+fn what_an_interrupted_run_has_not_written_stays() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o whole");
+    for (name, listed) in [
+        ("summary.json", false),
+        ("series.csv", false),
+        ("friction.png", false),
+        ("stress.svg", true),
+        ("fields.nc", true),
+    ] {
+        workspace.fill("a", &workspace.files("whole"));
+        if !listed {
+            let text = workspace.read_text("a/manifest.json");
+            workspace.write("a/manifest.json", text.replace(name, "another.txt"));
+        }
+        workspace.interrupt("a");
+        workspace.write(&format!("a/{name}"), "mine");
+        let before = workspace.files("a");
+        let why = match listed {
+            true => "was changed after the run had written it: move it away",
+            false => "is not a file of an earlier run: move it away",
+        };
+        for line in ["run --quiet --resume a", "run small.toml --quiet -o a --force"] {
+            let said = workspace.fail(line, 2);
+            assert!(said.contains(&format!("a/{name} {why}")), "{line}: {said}");
+            assert!(workspace.files("a") == before, "{line} has changed the folder");
+        }
+        // A name that a run does not write does not matter.
+        std::fs::rename(workspace.path("a").join(name), workspace.path("a/mine.txt")).unwrap();
+        workspace.succeed("run --resume a");
+        assert_eq!(workspace.read("a/mine.txt"), b"mine");
+        workspace.remove("a/mine.txt");
+        workspace.assert_same_run("whole", "a");
+    }
+}
+
+/// A kill while the journal is written leaves a part of a line, of a file that is not there yet.
+#[test]
+fn a_torn_line_of_the_journal_does_no_harm() {
+    let workspace = Workspace::masked();
+    workspace.succeed("run masked.toml -o whole");
+    workspace.fill("a", &workspace.files("whole"));
+    workspace.interrupt("a");
+    let journal = workspace.read_text("a/.slipfront/journal.jsonl");
+    for line in ["run --resume a", "run masked.toml -o a --force"] {
+        let last = journal.trim_end().rfind('\n').unwrap();
+        workspace.fill("a", &workspace.files("whole"));
+        workspace.remove("a/manifest.json");
+        workspace.remove("a/stress.png");
+        workspace.write("a/.slipfront/journal.jsonl", &journal[..last + 20]);
+        workspace.succeed(line);
+        workspace.assert_same_run("whole", "a");
+        workspace.succeed("verify a");
+    }
+}
+
+/// `--force` replaces slipfront's own files: one that was edited is somebody's work.
+#[test]
+fn what_was_edited_in_a_complete_folder_is_not_replaced_without_a_word() {
+    let workspace = Workspace::masked();
+    workspace.succeed("run masked.toml -o a");
+    let whole = workspace.files("a");
+    for name in ["friction.svg", "summary.json", "case.toml", "inputs/spot.png"] {
+        workspace.write(&format!("a/{name}"), "mine");
+        let before = workspace.files("a");
+        let said = workspace.fail("run masked.toml --quiet -o a --force", 2);
+        let why = format!("a/{name} was changed after the run had written it");
+        assert!(said.contains(&why), "{said}");
+        assert!(workspace.files("a") == before);
+        workspace.fill("a", &whole);
+    }
+    workspace.write("a/friction.svg", "mine");
+    let said = workspace.fail("plot a", 2);
+    assert!(
+        said.contains("a/friction.svg is not as the run has drawn it") && said.contains("--force"),
+        "{said}"
+    );
+    assert_eq!(workspace.read("a/friction.svg"), b"mine");
+    workspace.succeed("plot a --force");
+    workspace.succeed("verify a");
+    workspace.succeed("plot a");
+    workspace.succeed("run masked.toml -o a --force");
+    assert!(
+        workspace.run_files("a")
+            == whole
+                .into_iter()
+                .filter(|(name, _)| name != "manifest.json")
+                .collect()
+    );
 }
 
 /// What a link leads to is somebody else's.

@@ -102,7 +102,7 @@ fn what_has_changed_is_not_drawn() {
     assert!(!workspace.exists("drawn"));
     // What pictures are not drawn from does not matter.
     workspace.write("a/friction.svg", "changed");
-    workspace.succeed("plot a");
+    workspace.succeed("plot a --force");
     let seen = verified(&workspace, "a");
     assert_eq!(seen.0, 0, "{}", seen.1);
 }
@@ -118,6 +118,27 @@ fn every_byte_of_the_manifest_is_under_its_seal() {
         let (status, said, _) = verified(&workspace, "a");
         assert_eq!(status, 1, "byte {at}");
         assert!(said.starts_with("a/manifest.json is damaged: "), "{said}");
+    }
+}
+
+/// It may be whole: what is wrong are the rights or the disk.
+#[cfg(unix)]
+#[test]
+fn a_manifest_that_cannot_be_read_is_not_called_damaged() {
+    let workspace = workspace_with_a_run();
+    remove(&workspace, "a/manifest.json");
+    // Rights do not bind root, a link to itself does.
+    std::os::unix::fs::symlink("manifest.json", workspace.path("a/manifest.json")).unwrap();
+    let (status, said, _) = verified(&workspace, "a");
+    assert_eq!(status, 1);
+    assert!(said.starts_with("cannot read a/manifest.json: "), "{said}");
+    for line in [
+        "run --quiet --resume a",
+        "run small.toml --quiet -o a --force",
+        "plot a",
+    ] {
+        let said = workspace.fail(line, 2);
+        assert!(said.contains("cannot read a/manifest.json: "), "{line}: {said}");
     }
 }
 

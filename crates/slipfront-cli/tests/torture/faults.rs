@@ -379,6 +379,22 @@ fn renames_are_seen() {
     assert_eq!(ended.unwrap().unwrap().status, 0);
     let count = |start: &str| calls.iter().filter(|call| call.name.starts_with(start)).count();
     let files = workspace.files_if_any("out").len();
-    // So are folders: that of the run with its case, that of the inputs, and that of the complete run.
-    assert_eq!((count("rename"), count("fsync")), (files, files + 3));
+    // So are folders: the hidden one and that of the run with the journal, that of the run with its case, that of the inputs,
+    // and that of the complete run. The journal itself is synced for every file, before this takes its name.
+    assert_eq!((count("rename"), count("fsync")), (files, files + 5));
+    let places = |start: &str| {
+        let calls = calls.iter().enumerate();
+        let places = calls
+            .filter(|(_, call)| call.name.starts_with(start))
+            .map(|(place, _)| place);
+        places.collect::<Vec<usize>>()
+    };
+    let synced = places("fdatasync");
+    assert_eq!(synced.len(), files);
+    assert!(
+        synced
+            .iter()
+            .zip(places("rename"))
+            .all(|(synced, renamed)| *synced < renamed)
+    );
 }

@@ -12,7 +12,11 @@ use slipfront_case::field_info::{field_info, field_named};
 
 /// Writes a file by way of a temporary one beside it.
 fn write(path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
-    write_fields(path.parent().unwrap(), path, file)
+    let written = write_fields(path.parent().unwrap(), path, file)?;
+    written.persist(path).map_err(|error| FieldsError::Write {
+        path: path.to_owned(),
+        source: error.error,
+    })
 }
 
 const NX: usize = 5;

@@ -12,23 +12,23 @@ use slipfront::observe::Field;
 use slipfront_case::case::smallest_stride;
 use slipfront_case::disk::write_temp;
 use slipfront_case::field_info::field_info;
+use tempfile::TempPath;
 
 use super::frame::*;
 
-/// Writes `fields.nc`, with its temporary file in a folder on the same file system.
+/// Writes what will be the `fields.nc` at `path` to a temporary file in a folder on the same file system.
 ///
-/// The file appears under its name only when it is complete: flushed to the disk and renamed. Coordinates are the block
+/// It is complete and on the disk, and takes its name when it is renamed (`persist`). Coordinates are the block
 /// centres in m and the time in s; fields are float32, what never changes is float64.
 ///
 /// # Errors
 ///
 /// [`FieldsError`] if an array does not have the length that `nx`, `ny` and `stride` ask for, one field takes more
 /// than 2 GiB, or the file cannot be written in full.
-pub fn write_fields(temporary: &Path, path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
+pub fn write_fields(temporary: &Path, path: &Path, file: &FieldsFile) -> Result<TempPath, FieldsError> {
     check(path, file)?;
     let fill = |output: &mut File| write_to(output.try_clone()?, file).map(drop);
-    let written = write_temp(temporary, fill).and_then(|written| Ok(written.persist(path)?));
-    written.map_err(|source| FieldsError::Write {
+    write_temp(temporary, fill).map_err(|source| FieldsError::Write {
         path: path.to_owned(),
         source,
     })

@@ -2,8 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use slipfront_case::text::{display_path, shell_quoted};
+use slipfront_case::text::display_path;
 use thiserror::Error;
+
+use crate::manifest::ManifestError;
+use crate::resume_command::resume_command;
 
 /// What can go wrong with a run folder.
 #[derive(Debug, Error)]
@@ -24,10 +27,17 @@ pub enum FolderError {
     #[error("another process is running in the folder {path}: wait for it, or choose another folder")]
     Busy { path: PathBuf },
     #[error(
-        "{} is not a file of an earlier run: move it away or choose another folder with --out",
+        "{} is not a file of an earlier run: move it away, or choose another folder",
         display_path(path)
     )]
     Foreign { path: PathBuf },
+    #[error(
+        "{} was changed after the run had written it: move it away, or choose another folder",
+        display_path(path)
+    )]
+    Edited { path: PathBuf },
+    #[error("{0}; move it away, or choose another folder")]
+    Manifest(#[from] ManifestError),
     #[error("cannot write to the folder {path}: {source}; make it writable, or choose another")]
     Unwritable { path: PathBuf, source: std::io::Error },
     #[error(
@@ -78,29 +88,5 @@ impl FolderError {
             path: path.to_owned(),
             source,
         }
-    }
-}
-
-/// The command that goes on with the run in a folder, as a shell reads it.
-pub fn resume_command(folder: &Path) -> String {
-    let mut folder = display_path(folder);
-    // Else it would be taken for an option.
-    if folder.starts_with('-') {
-        folder.insert_str(0, "./");
-    }
-    format!("slipfront run --resume {}", shell_quoted(&folder))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_suggested_command_can_be_typed() {
-        let of = |name: &str| resume_command(Path::new(name));
-        assert_eq!(of("results/a-1"), "slipfront run --resume results/a-1");
-        assert_eq!(of("my run"), "slipfront run --resume 'my run'");
-        assert_eq!(of("$HOME"), "slipfront run --resume '$HOME'");
-        assert_eq!(of("-o"), "slipfront run --resume ./-o");
     }
 }

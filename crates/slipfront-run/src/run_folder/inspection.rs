@@ -4,13 +4,13 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use slipfront_case::case_file::{CaseError, CaseFile, read_text};
-use slipfront_case::disk::{TEXT_MAX_BYTES, is_folder, open_limited};
+use slipfront_case::disk::{TEXT_MAX_BYTES, open_limited};
 
-use super::contents::managed_files;
+use super::contents::{is_as_listed, managed_bytes};
 use super::error::FolderError;
 use super::unfinished::Unfinished;
-use crate::manifest::{Manifest, ManifestError};
-use crate::names::{CASE, UNFINISHED};
+use crate::manifest::{Manifest, ManifestError, ManifestFile};
+use crate::names::{CASE, MANIFEST, UNFINISHED};
 
 /// A folder that may be that of a run, as it was found.
 #[derive(Debug)]
@@ -21,8 +21,6 @@ pub struct Inspection {
     pub contents: Contents,
     /// Its `case.toml`.
     pub case: Result<CaseFile, CaseDefect>,
-    /// Paths in the folder of the files that slipfront wrote, in the order in which they may be removed.
-    pub managed_files: Vec<String>,
 }
 
 /// Whose a folder is.
@@ -55,12 +53,6 @@ impl Inspection {
         let is_unused = is_unused(folder)?;
         let case = read_case(folder);
         let manifest = Manifest::read(folder);
-        let listed = match &manifest {
-            Ok(manifest) => Some(manifest),
-            Err(ManifestError::Damaged { unverified, .. }) => unverified.as_deref(),
-            Err(ManifestError::Missing { .. }) => None,
-        };
-        let managed_files = managed_files(folder, listed, case.as_ref().ok());
         let contents = match manifest {
             _ if is_unused => Contents::Empty,
             Err(ManifestError::Missing { .. }) if case.is_ok() => Contents::Interrupted,
@@ -71,7 +63,6 @@ impl Inspection {
             path: folder.to_owned(),
             contents,
             case,
-            managed_files,
         })
     }
 
@@ -89,13 +80,7 @@ impl Inspection {
     pub fn case_to_resume(&self) -> Result<&CaseFile, FolderError> {
         let path = self.path.clone();
         let why = match &self.case {
-            Ok(case) => {
-                let unfinished = path.join(UNFINISHED);
-                if unfinished.symlink_metadata().is_ok() && !is_folder(&unfinished) {
-                    return Err(FolderError::Foreign { path: unfinished });
-                }
-                return Ok(case);
-            }
+            Ok(case) => return Ok(case),
             Err(_) if !path.exists() => "there is none of this name",
             Err(_) if !path.is_dir() => "it is a file: name its folder",
             Err(CaseDefect::Unreadable(error)) if error.kind() == ErrorKind::NotFound => {
@@ -108,10 +93,26 @@ impl Inspection {
         Err(FolderError::NoRun { path, why })
     }
 
+    /// Every file that slipfront has written here, as the manifest and the journal of a run that is not complete list them.
+    pub(super) fn listed(&self) -> Result<Vec<ManifestFile>, FolderError> {
+        let mut listed = Unfinished::of(&self.path).listed()?;
+        if let Contents::Complete(Ok(manifest)) = &self.contents {
+            let itself = ManifestFile::of(&self.path, MANIFEST);
+            listed.push(itself.map_err(FolderError::read(&self.path.join(MANIFEST)))?);
+            listed.extend_from_slice(&manifest.files);
+        }
+        Ok(listed)
+    }
+
+    /// Whether a file of this name stands in the folder as slipfront has written it.
+    pub fn has_written(&self, name: &str) -> Result<bool, FolderError> {
+        let listed = self.listed()?;
+        is_as_listed(&self.path, name, &listed).map_err(FolderError::read(&self.path.join(name)))
+    }
+
     /// Bytes that are free when the files of the run in the folder are removed.
-    pub fn managed_bytes(&self) -> u64 {
-        let length = |name| std::fs::symlink_metadata(self.path.join(name)).map_or(0, |file| file.len());
-        self.managed_files.iter().map(length).sum()
+    pub fn managed_bytes(&self) -> Result<u64, FolderError> {
+        Ok(managed_bytes(&self.path, &self.listed()?))
     }
 }
 

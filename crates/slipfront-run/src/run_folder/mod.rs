@@ -1,10 +1,13 @@
 //! The run folder: everything needed to read a run's results and to make them again.
 //!
-//! Files appear whole or not at all, and `manifest.json` comes last: where it stands, the run is complete.
+//! Files appear whole or not at all, and `manifest.json` comes last: where it stands, the run is complete. Slipfront's own
+//! files are those that the manifest lists, or the journal of a run that is not complete, with the hash that they have.
 
-pub(crate) mod contents;
+mod contents;
+pub(crate) mod copy;
 pub mod error;
 pub mod inspection;
+mod journal;
 pub mod unfinished;
 
 use std::fs::{File, TryLockError};
@@ -12,14 +15,16 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use slipfront_case::case::{Case, Input};
-use slipfront_case::disk::sync_folder;
+use slipfront_case::disk::{sync_folder, write_temp};
+use tempfile::TempPath;
 
-use self::contents::{refuse_foreign, remove_files, result_files};
+use self::contents::{managed_files, refuse_unmanaged, remove_files, result_files};
 use self::error::FolderError;
 use self::inspection::{Contents, Inspection};
+use self::journal::Journal;
 use self::unfinished::Unfinished;
-use crate::manifest::Manifest;
-use crate::names::{CASE, MANIFEST};
+use crate::manifest::{Manifest, ManifestFile};
+use crate::names::{CASE, CHECKPOINT, JOURNAL, MANIFEST, PREVIOUS, UNFINISHED};
 
 /// A folder that was locked, if it exists, and inspected, for a run that begins or is resumed there.
 #[derive(Debug)]
@@ -58,53 +63,51 @@ impl OpenedFolder {
             // Another process may have made it since.
             self = Self::open(&path)?;
         }
-        match self.inspection.contents {
-            Contents::Empty => {}
-            _ if force => {
-                let managed = &self.inspection.managed_files;
-                refuse_foreign(&path, managed, inputs)?;
-                remove_files(&path, managed)?;
-            }
+        let listed = match self.inspection.contents {
+            Contents::Empty => Vec::new(),
+            Contents::Complete(Err(error)) if force => return Err(error.into()),
+            _ if force => self.inspection.listed()?,
             Contents::Interrupted => return Err(FolderError::Interrupted { path }),
             Contents::Foreign | Contents::Complete(_) => return Err(FolderError::NotEmpty { path }),
-        }
-        let unfinished = Unfinished::of(&path);
-        unfinished.create()?;
-        // Without a lock another process may be writing.
-        if self.lock.is_some() {
-            let _ = unfinished.clear_temporary();
-        }
-        Ok(RunFolder {
-            path,
-            unfinished,
-            written: Vec::new(),
-            new: true,
-            _lock: self.lock,
-        })
+        };
+        let managed = managed_files(&path, &listed);
+        let checkpoints = [CHECKPOINT, PREVIOUS].map(|name| format!("{UNFINISHED}/{name}"));
+        let inputs = inputs.iter().map(|input| input.name.clone());
+        let names = result_files().chain([CASE.to_owned()]).chain(checkpoints);
+        refuse_unmanaged(&path, names.chain(inputs), &managed, &listed)?;
+        let mut folder = RunFolder::begin(path, self.lock)?;
+        folder.new = true;
+        // Once the manifest is gone, nothing else says whose they are.
+        folder.list(&listed)?;
+        remove_files(&folder.path, managed)?;
+        Ok(folder)
     }
 
     /// Takes over the folder of an interrupted run of this case: removes what it had written of its results, which are
     /// written again. The case, the files that it reads and the checkpoints stay.
+    ///
+    /// # Errors
+    /// When a file that the run has not written stands where its results go: then nothing is removed.
     pub fn resume(self, case: &Case) -> Result<RunFolder, FolderError> {
+        let listed = self.inspection.listed()?;
         let path = self.inspection.path;
-        remove_files(&path, result_files())?;
-        let unfinished = Unfinished::of(&path);
-        unfinished.create()?;
-        unfinished
-            .clear_temporary()
-            .map_err(FolderError::unwritable(&path))?;
+        refuse_unmanaged(&path, result_files(), &managed_files(&path, &listed), &listed)?;
+        let mut folder = RunFolder::begin(path, self.lock)?;
+        remove_files(&folder.path, result_files())?;
+        let unwritable = FolderError::unwritable(&folder.path);
+        folder.unfinished.clear_temporary().map_err(unwritable)?;
         // A case that was loaded can be written.
         let text = case.file.to_toml().unwrap_or_default();
-        let mut written = vec![(CASE.to_owned(), Some(blake3::hash(text.as_bytes())))];
-        let inputs = case.inputs.iter();
-        written.extend(inputs.map(|input| (input.name.clone(), Some(blake3::hash(&input.bytes)))));
-        let folder = RunFolder {
-            path,
-            unfinished,
-            written,
-            new: false,
-            _lock: self.lock,
-        };
+        let inputs = case
+            .inputs
+            .iter()
+            .map(|input| (input.name.as_str(), &*input.bytes));
+        for (name, bytes) in [(CASE, text.as_bytes())].into_iter().chain(inputs) {
+            let mut hasher = blake3::Hasher::new();
+            folder
+                .written
+                .push(ManifestFile::hashed(name, hasher.update(bytes)));
+        }
         folder.sync()?;
         Ok(folder)
     }
@@ -115,8 +118,9 @@ impl OpenedFolder {
 pub struct RunFolder {
     path: PathBuf,
     unfinished: Unfinished,
-    /// Files of the run, and the hash of what this process knows of their contents.
-    written: Vec<(String, Option<blake3::Hash>)>,
+    journal: Journal,
+    /// Files of the run.
+    written: Vec<ManifestFile>,
     /// Whether this process began the run.
     new: bool,
     /// Held as long as the run goes on.
@@ -129,21 +133,25 @@ impl RunFolder {
         OpenedFolder::open(path)?.prepare(force, inputs)
     }
 
-    /// Ends a run that failed: removes what this process has written, if it began the run. A resumed run keeps its case.
-    pub fn discard(mut self) {
-        if self.new {
-            let names = self.written.drain(..).map(|(name, _)| name).rev();
-            // The error of the run is what matters.
-            let _ = remove_files(&self.path, names);
-            let _ = self.unfinished.remove();
-        } else {
-            self.leave();
-        }
+    /// Makes the hidden subfolder, with which a run begins or is resumed.
+    fn begin(path: PathBuf, lock: Option<File>) -> Result<Self, FolderError> {
+        let unfinished = Unfinished::of(&path);
+        Ok(Self {
+            journal: unfinished.create()?,
+            path,
+            unfinished,
+            written: Vec::new(),
+            new: false,
+            _lock: lock,
+        })
     }
 
-    /// Ends with the case alone: the hidden subfolder is removed, unless it holds a checkpoint.
-    pub fn leave(self) {
-        if !self.unfinished.has_checkpoint() {
+    /// Ends a run that failed: removes what this process has written, if it began the run. A resumed run keeps its case.
+    pub fn discard(self) {
+        if self.new {
+            let names = self.written.iter().map(|file| &file.name).rev();
+            // The error of the run is what matters.
+            let _ = remove_files(&self.path, names);
             let _ = self.unfinished.remove();
         }
     }
@@ -165,59 +173,74 @@ impl RunFolder {
 
     /// Writes a file of the run, where no foreign file stands in its place.
     pub fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
-        let path = self.claim(name)?;
-        let written = self.unfinished.write(&path, |file| file.write_all(bytes));
-        written.map_err(FolderError::write(&path))?;
-        if let Some((_, hash)) = self.written.last_mut() {
-            *hash = Some(blake3::hash(bytes));
-        }
-        Ok(())
+        let file = write_temp(&self.temporary(), |file| file.write_all(bytes));
+        let path = self.path.join(name);
+        self.place(name, file.map_err(FolderError::write(&path))?)
     }
 
-    /// The folder of temporary files, for a file that is [claimed](Self::claim).
+    /// The folder of temporary files.
     pub(crate) fn temporary(&self) -> PathBuf {
         self.unfinished.temporary()
     }
 
-    /// Notes a file as part of the run, where no foreign file stands in its place, and gives its path to whoever writes it.
-    pub(crate) fn claim(&mut self, name: &str) -> Result<PathBuf, FolderError> {
+    /// Makes a finished temporary file one of the run: it is listed in the journal, and then takes its name, where no
+    /// foreign file stands in its place.
+    pub(crate) fn place(&mut self, name: &str, file: TempPath) -> Result<(), FolderError> {
         let path = self.path.join(name);
-        if path.exists() {
+        if path.symlink_metadata().is_ok() {
             return Err(FolderError::Foreign { path });
         }
         if let Some(parent) = path.parent() {
             std::fs::create_dir_all(parent).map_err(FolderError::write(parent))?;
         }
-        self.written.push((name.to_owned(), None));
-        Ok(path)
+        let hashed = File::open(&file).and_then(|file| {
+            let mut hasher = blake3::Hasher::new();
+            Ok(ManifestFile::hashed(name, hasher.update_reader(file)?))
+        });
+        let listed = hashed.map_err(FolderError::write(&path))?;
+        self.list(std::slice::from_ref(&listed))?;
+        self.written.push(listed);
+        let placed = file.persist(&path).map_err(|error| error.error);
+        placed.map_err(FolderError::write(&path))
+    }
+
+    /// Lists files in the journal.
+    fn list(&mut self, files: &[ManifestFile]) -> Result<(), FolderError> {
+        let path = self.unfinished.path().join(JOURNAL);
+        self.journal.append(files).map_err(FolderError::write(&path))
     }
 
     /// Writes the manifest: the run is complete, if every file is still as it was written.
     pub(crate) fn complete(
-        self,
+        mut self,
         case: &Case,
         started: jiff::Timestamp,
         threads: usize,
     ) -> Result<Manifest, FolderError> {
-        let names: Vec<&str> = self.written.iter().map(|(name, _)| name.as_str()).collect();
-        let manifest = Manifest::of(&self.path, &names, case, started, threads)?;
-        for (file, (name, hash)) in manifest.files.iter().zip(&self.written) {
-            if hash.is_some_and(|hash| file.blake3 != hash.to_hex().as_str()) {
-                let path = self.path.join(name);
+        for file in &self.written {
+            let path = self.path.join(&file.name);
+            let found = ManifestFile::of(&self.path, &file.name).map_err(FolderError::read(&path))?;
+            if found != *file {
                 return Err(FolderError::Changed { path });
             }
         }
-        let (manifest, bytes) = manifest.with_checksum();
-        let path = self.path.join(MANIFEST);
-        let written = self.unfinished.write(&path, |file| file.write_all(&bytes));
-        if let Err(error) = written.and_then(|()| sync_folder(&self.path)) {
+        let files = std::mem::take(&mut self.written);
+        let (manifest, bytes) = Manifest::of(files, case, started, threads).with_checksum();
+        self.write(MANIFEST, &bytes)?;
+        if let Err(error) = sync_folder(&self.path) {
+            let path = self.path.join(MANIFEST);
             // What may not be on the disk is not complete.
             let _ = std::fs::remove_file(&path);
             return Err(FolderError::write(&path)(error));
         }
-        // The run is complete whether they can be removed or not.
-        let _ = self.unfinished.remove();
+        self.close();
         Ok(manifest)
+    }
+
+    /// Ends a run that is complete: removes the hidden subfolder.
+    fn close(self) {
+        // The run is complete whether it can be removed or not.
+        let _ = self.unfinished.remove();
     }
 }
 

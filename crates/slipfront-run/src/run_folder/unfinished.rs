@@ -1,13 +1,14 @@
-//! The hidden subfolder of a run folder, which holds everything that belongs to a run which is not complete: temporary
-//! files that are being written, and checkpoints. It is removed when the run is complete.
+//! The hidden subfolder of a run folder, which holds everything that belongs to a run which is not complete: its journal,
+//! temporary files that are being written, and checkpoints. It is removed when the run is complete.
 
-use std::fs::File;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use slipfront_case::disk::{is_empty, is_folder, remove_if_there, write_temp};
+use slipfront_case::disk::{is_empty, is_folder, remove_if_there, sync_folder};
 
 use super::error::FolderError;
+use super::journal::{self, Journal};
+use crate::manifest::ManifestFile;
 use crate::names::{CHECKPOINT, JOURNAL, PREVIOUS, TEMPORARY, UNFINISHED};
 
 /// The hidden subfolder of a run folder, whether it exists or not.
@@ -35,7 +36,7 @@ impl Unfinished {
 
     /// Whether slipfront made the subfolder: it holds a journal, or nothing yet. A link is never slipfront's.
     pub fn is_managed(&self) -> bool {
-        let journal = self.path.join(JOURNAL).symlink_metadata();
+        let journal = self.journal().symlink_metadata();
         let has_journal = journal.is_ok_and(|journal| journal.is_file());
         is_folder(&self.path) && (has_journal || is_empty(&self.path).unwrap_or(false))
     }
@@ -47,32 +48,41 @@ impl Unfinished {
     }
 
     /// Makes the subfolder, where it is not there yet; an error if a link or a file stands in its place.
-    pub fn create(&self) -> Result<(), FolderError> {
+    pub fn create(&self) -> Result<Journal, FolderError> {
         let run = self.path.parent().unwrap_or(&self.path);
         make_folder(&self.path, run)?;
-        let path = self.path.join(JOURNAL);
-        match File::create_new(&path) {
-            Err(error) if error.kind() != ErrorKind::AlreadyExists => {
-                return Err(FolderError::write(&path)(error));
+        let path = self.journal();
+        let is_new = !path.exists();
+        let journal = Journal::open(&path).map_err(FolderError::write(&path))?;
+        if is_new {
+            // What it lists must not outlast it in a power failure.
+            for folder in [&self.path, run] {
+                sync_folder(folder).map_err(FolderError::write(folder))?;
             }
-            _ => {}
         }
         let temporary = self.temporary();
-        make_folder(&temporary, &temporary)
+        make_folder(&temporary, &temporary)?;
+        Ok(journal)
     }
 
-    /// Writes a file atomically: as a temporary file here, which is then renamed to `path`, or removed after an error.
-    pub(super) fn write(
-        &self,
-        path: &Path,
-        fill: impl FnOnce(&mut File) -> std::io::Result<()>,
-    ) -> std::io::Result<()> {
-        write_temp(&self.temporary(), fill)?.persist(path)?;
-        Ok(())
+    fn journal(&self) -> PathBuf {
+        self.path.join(JOURNAL)
     }
 
-    /// What may be in it beside the journal, as paths in the run folder.
-    pub(super) fn files(&self) -> Vec<String> {
+    /// The files that the run has finished; none where the subfolder is not slipfront's.
+    pub(super) fn listed(&self) -> Result<Vec<ManifestFile>, FolderError> {
+        let path = self.journal();
+        if !self.is_managed() || !path.exists() {
+            return Ok(Vec::new());
+        }
+        journal::read(&path).map_err(FolderError::read(&path))
+    }
+
+    /// What may be in it beside the journal, as paths in the run folder; nothing where it is not slipfront's.
+    pub(super) fn managed_files(&self) -> Vec<String> {
+        if !self.is_managed() {
+            return Vec::new();
+        }
         let temporary = names_in(&self.temporary()).into_iter();
         let temporary = temporary.map(|name| format!("{TEMPORARY}/{name}"));
         let names = temporary.chain([CHECKPOINT, PREVIOUS].map(str::to_owned));
@@ -92,9 +102,12 @@ impl Unfinished {
         for name in [CHECKPOINT, PREVIOUS] {
             remove_if_there(&self.path.join(name))?;
         }
-        let _ = std::fs::remove_dir(self.temporary());
+        match std::fs::remove_dir(self.temporary()) {
+            Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+            _ => {}
+        }
         // Until here it says whose the rest is.
-        remove_if_there(&self.path.join(JOURNAL))?;
+        remove_if_there(&self.journal())?;
         let _ = std::fs::remove_dir(&self.path);
         Ok(())
     }

@@ -133,7 +133,7 @@ fn run_one(
     }))
 }
 
-/// Writes a run folder. The folder of a failed run holds the case file alone, by which the run can be repeated.
+/// Writes a run folder. Of a failed run it is that of an interrupted one and holds the case alone, by which it can be repeated.
 fn write_folder(
     case: &Case,
     record: Option<&mut running::Record>,
@@ -142,9 +142,8 @@ fn write_folder(
 ) -> Result<(), ResultsError> {
     let mut folder = RunFolder::prepare(path, true, &case.inputs)?;
     results::write_case(case, &mut folder)?;
-    match record {
-        Some(record) => drop(results::write(case, record, folder, started, 1)?),
-        None => folder.leave(),
+    if let Some(record) = record {
+        results::write(case, record, folder, started, 1)?;
     }
     Ok(())
 }

@@ -15,7 +15,7 @@ use super::study_results::StudyResults;
 use super::{picture_plan, tables};
 use crate::manifest::Manifest;
 use crate::names::{CASE, FIGURE_CACHE, RECORDS, RUNS, TABLES};
-use crate::run_folder::contents::copy_run;
+use crate::run_folder::copy::copy_run;
 use crate::run_folder::error::FolderError;
 use slipfront_case::disk::{
     TEXT_MAX_BYTES, is_empty, is_folder, open_limited, read_limited, remove_if_there, write_atomic,

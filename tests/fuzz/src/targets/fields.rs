@@ -65,7 +65,10 @@ pub(crate) fn file([nx, ny]: [usize; 2], stride: usize, frames: usize, block_siz
         frames: &frames,
     };
     let path = scratch::file("made.nc", b"");
-    write_fields(path.parent().unwrap(), &path, &data).unwrap();
+    write_fields(path.parent().unwrap(), &path, &data)
+        .unwrap()
+        .persist(&path)
+        .unwrap();
     std::fs::read(path).unwrap()
 }
 
@@ -129,7 +132,10 @@ fn expect_round_trip(data: &FieldsData) {
         },
         frames: &data.frames,
     };
-    write_fields(path.parent().unwrap(), &path, &file).unwrap();
+    write_fields(path.parent().unwrap(), &path, &file)
+        .unwrap()
+        .persist(&path)
+        .unwrap();
     let again = read_fields(&path).unwrap();
     assert_eq!(format!("{again:?}"), format!("{data:?}"));
 }

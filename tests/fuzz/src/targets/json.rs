@@ -194,12 +194,14 @@ fn manifest(bytes: &[u8]) {
             }
         }
     }
-    Inspection::of(&folder).unwrap().managed_bytes();
+    Inspection::of(&folder).unwrap().managed_bytes().unwrap();
     let case = folder.join("case.toml");
     match RunFolder::prepare(&folder, true, &[]) {
         Ok(_) => assert!(!folder.join("manifest.json").exists() && !case.exists()),
         // Without a manifest that knows them they may be a user's.
-        Err(error @ FolderError::Foreign { .. }) => {
+        Err(
+            error @ (FolderError::Foreign { .. } | FolderError::Edited { .. } | FolderError::Manifest(_)),
+        ) => {
             readable(&error);
             assert_eq!(std::fs::read(case).unwrap(), CASE);
         }

@@ -14,7 +14,7 @@ use slipfront_run::summary::summary_json;
 use super::options::RunOptions;
 use crate::checkpoint_timer::CheckpointTimer;
 use crate::failure::Failure;
-use crate::print::print;
+use crate::print::{print, print_message};
 use crate::progress::run::RunProgress;
 use crate::report;
 
@@ -50,8 +50,8 @@ pub(super) fn complete(
     if options.json {
         print(&summary_json(&record.summary))?;
     } else if is_verbose {
-        print(&report::summary(&case, &record.summary))?;
-        print(&files(&case, &out))?;
+        print_message(&report::summary(&case, &record.summary));
+        print_message(&files(&case, &out));
     }
     Ok(())
 }

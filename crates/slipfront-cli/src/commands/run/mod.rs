@@ -20,7 +20,7 @@ use self::options::RunOptions;
 use crate::case_args::CaseArgs;
 use crate::checkpoint_timer::Interval;
 use crate::failure::Failure;
-use crate::print::print;
+use crate::print::print_message;
 use crate::report;
 use crate::signals::Signals;
 use crate::threads::set_threads;
@@ -88,7 +88,7 @@ impl Run {
         refuse_to_replace(case_path.as_deref(), &case, &out)?;
         let folder = OpenedFolder::open(&out).map_err(Failure::input)?;
         let replaced = if self.force {
-            folder.inspection.managed_bytes()
+            folder.inspection.managed_bytes().map_err(Failure::input)?
         } else {
             0
         };
@@ -99,7 +99,7 @@ impl Run {
         // What the run needs to go on if it is stopped.
         results::write_case(&case, &mut folder).map_err(Failure::running)?;
         if options.is_verbose() {
-            print(&report::physics(&case))?;
+            print_message(&report::physics(&case));
         }
         let checkpoints = Checkpoints::new(&out, &case, started);
         complete(

@@ -17,7 +17,7 @@ use slipfront_run::verify::{VerifyError, expect_as_written};
 use super::complete::complete;
 use super::options::RunOptions;
 use crate::failure::Failure;
-use crate::print::print;
+use crate::print::{print, print_message};
 use crate::report;
 
 pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result<(), Failure> {
@@ -33,8 +33,9 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
     let budget = case.budget.resumed();
     budget.check_memory(&case.file, true).map_err(Failure::input)?;
     let loaded = load(path, &case, previous)?;
+    let replaced = run.managed_bytes().map_err(Failure::input)?;
     case.budget
-        .check_disk(&case.file, path, run.managed_bytes(), options.interval.saves())
+        .check_disk(&case.file, path, replaced, options.interval.saves())
         .map_err(Failure::input)?;
     let (running, checkpoints, from) = match loaded {
         None => {
@@ -57,8 +58,8 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
     };
     let folder = folder.resume(&case).map_err(Failure::input)?;
     if options.is_verbose() {
-        print(&report::physics(&case))?;
-        print(&format!("goes on from {from}\n"))?;
+        print_message(&report::physics(&case));
+        print_message(&format!("goes on from {from}\n"));
     }
     complete(running, folder, checkpoints, options)
 }
@@ -105,7 +106,7 @@ fn report_complete(run: &Inspection, options: &RunOptions) -> Result<(), Failure
         let summary = read_summary(path).map_err(Failure::input)?;
         print(&summary_json(&summary))?;
     } else if options.is_verbose() {
-        print(&format!("the run in {} is complete\n", path.display()))?;
+        print_message(&format!("the run in {} is complete\n", path.display()));
     }
     Ok(())
 }

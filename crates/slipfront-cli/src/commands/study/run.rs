@@ -10,7 +10,7 @@ use slipfront_run::study::{Plan, RunKey, Shard, StudyError, StudyFile, StudyFold
 
 use crate::estimate_cost::seconds_per_step;
 use crate::failure::Failure;
-use crate::print::print;
+use crate::print::{print, print_message};
 use crate::print_stderr::print_stderr;
 use crate::progress::study::StudyProgress;
 use crate::report;
@@ -151,7 +151,7 @@ pub(super) fn finish(
 ) -> Result<(), Failure> {
     study::write(plan, results, folder).map_err(Failure::running)?;
     if !quiet {
-        print(&report::study(plan, results, folder.path()))?;
+        print_message(&report::study(plan, results, folder.path()));
     }
     expect_no_failures(plan, results)
 }

@@ -48,10 +48,13 @@ fn run_folders_that_shards_kept_are_taken_over() {
     }
     // What kills left: of an earlier try, of a run in the folder, and of one in a shard which another one holds whole.
     workspace.write("merged/records.jsonl", "");
+    let hash = blake3::hash(b"an old case").to_hex();
+    let journal = format!("{{\"name\":\"case.toml\",\"bytes\":11,\"blake3\":\"{hash}\"}}\n");
     for run in std::fs::read_dir(workspace.path("part2/runs")).unwrap() {
         let run = run.unwrap().file_name().into_string().unwrap();
         for out in ["merged", "part1"] {
-            workspace.write(&format!("{out}/runs/{run}/case.toml"), "half of");
+            workspace.write(&format!("{out}/runs/{run}/case.toml"), "an old case");
+            workspace.write(&format!("{out}/runs/{run}/.slipfront/journal.jsonl"), &journal);
             workspace.write(&format!("{out}/runs/{run}/.slipfront/tmp/AbCdEf"), "half of");
         }
     }
