@@ -45,6 +45,35 @@ pub fn with_uncertainty(value: f64, uncertainty: Option<f64>) -> String {
     }
 }
 
+/// A value and the half width of its interval, both to the place of the value's third digit, or of the second digit of the half
+/// width where that is coarser; a half width that is smaller than that place to its first digit.
+pub fn with_half_width(value: f64, half: Option<f64>) -> String {
+    let Some(half) = half else {
+        return four_places(value);
+    };
+    let decade = |number: f64| number.abs().log10().floor();
+    if value != 0.0 && !(-3.0..6.0).contains(&decade(value)) {
+        let scale = 10_f64.powf(decade(value));
+        let scaled = with_half_width(value / scale, Some(half / scale));
+        return format!("({scaled})e{}", decade(value));
+    }
+    let place = |number: f64, digit: f64| {
+        let place = if number == 0.0 {
+            12.0
+        } else {
+            digit - 1.0 - decade(number)
+        };
+        place.clamp(0.0, 12.0) as usize
+    };
+    let places = place(value, 3.0).min(place(half, 2.0));
+    let smallest = 0.5 * 0.1_f64.powi(places as i32);
+    let half_places = if half < smallest { place(half, 1.0) } else { places };
+    match half {
+        0.0 => format!("{value:.places$} \u{b1} 0"),
+        _ => format!("{value:.places$} \u{b1} {half:.half_places$}"),
+    }
+}
+
 /// A value to `digits` places with the half width of its interval; a value below half the last place as a power of ten.
 pub fn with_interval(value: f64, interval: Option<[f64; 2]>, digits: usize) -> String {
     let small = value != 0.0 && value.abs() < 0.5 * 0.1_f64.powi(digits as i32);
@@ -79,6 +108,18 @@ pub fn with_si_prefix(value: f64, unit: &str) -> String {
     )
 }
 
+/// A number of things: 1 block, 2 blocks.
+pub fn count(number: usize, thing: &str) -> String {
+    let ending = if number == 1 { "" } else { "s" };
+    format!("{number} {thing}{ending}")
+}
+
+/// A number of things and its verb: 1 block is, 2 blocks are.
+pub fn are(number: usize, thing: &str) -> String {
+    let verb = if number == 1 { "is" } else { "are" };
+    format!("{} {verb}", count(number, thing))
+}
+
 /// A number of bytes: 22.9 GiB.
 pub fn byte_size(bytes: f64) -> String {
     const UNITS: [&str; 7] = ["B", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
@@ -104,9 +145,27 @@ mod tests {
         assert_eq!([0.70631, 0.0001].map(four_places), ["0.7063", "1.000e-4"]);
         assert_eq!(with_uncertainty(0.70631, Some(0.0123)), "0.706 \u{b1} 0.012");
         assert_eq!(with_uncertainty(0.70631, Some(0.0)), "0.7063 \u{b1} 0");
+        for (value, half, text) in [
+            (37.80163, 0.00039, "37.8 \u{b1} 0.0004"),
+            (22.79, 0.37, "22.8 \u{b1} 0.4"),
+            (0.89194, 0.00116, "0.892 \u{b1} 0.001"),
+            (0.865, 0.0531, "0.865 \u{b1} 0.053"),
+            (37.8, 41.0, "38 \u{b1} 41"),
+            (0.0, 2.5, "0.0 \u{b1} 2.5"),
+            (0.5, 0.0, "0.500 \u{b1} 0"),
+            (2.33e-8, 4.2e-10, "(2.33 \u{b1} 0.04)e-8"),
+        ] {
+            assert_eq!(with_half_width(value, Some(half)), text);
+        }
+        assert_eq!(with_half_width(0.89194, None), "0.8919");
+        assert_eq!([1, 2].map(|n| are(n, "block")), ["1 block is", "2 blocks are"]);
         assert_eq!(with_interval(0.5, Some([0.4, 0.6]), 2), "0.50 \u{b1} 0.10");
         assert_eq!(with_interval(0.001, None, 2), "1.0e-3");
         assert_eq!(with_si_prefix(0.025, "s"), "25 ms");
+        assert_eq!(
+            [0, 1, 2].map(|n| count(n, "block")),
+            ["0 blocks", "1 block", "2 blocks"]
+        );
     }
 
     #[test]

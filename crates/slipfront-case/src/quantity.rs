@@ -12,6 +12,7 @@ use serde::de::{Deserialize, Deserializer, Visitor};
 use serde::ser::{Serialize, Serializer};
 use thiserror::Error;
 
+use crate::number_format::exact;
 use crate::text::truncated;
 
 /// The longest text that is read as a quantity, in bytes.
@@ -26,6 +27,44 @@ const UNITS: [(&str, Dimension, i32); 7] = [
     ("N", Dimension::new(1, 1, -2), 0),
     ("bar", Dimension::new(1, -1, -2), 5),
     ("Hz", Dimension::new(0, 0, -1), 0),
+];
+
+/// Units that are not read, for messages that convert them: symbol, dimension, size in its SI unit.
+const FOREIGN_UNITS: [(&str, Dimension, f64); 34] = [
+    ("min", Dimension::new(0, 0, 1), 60.0),
+    ("h", Dimension::new(0, 0, 1), 3600.0),
+    ("hr", Dimension::new(0, 0, 1), 3600.0),
+    ("hour", Dimension::new(0, 0, 1), 3600.0),
+    ("d", Dimension::new(0, 0, 1), 86_400.0),
+    ("day", Dimension::new(0, 0, 1), 86_400.0),
+    ("sec", Dimension::new(0, 0, 1), 1.0),
+    ("micron", Dimension::new(0, 1, 0), 1e-6),
+    ("A", Dimension::new(0, 1, 0), 1e-10),
+    ("\u{c5}", Dimension::new(0, 1, 0), 1e-10),
+    ("\u{212b}", Dimension::new(0, 1, 0), 1e-10),
+    ("angstrom", Dimension::new(0, 1, 0), 1e-10),
+    ("in", Dimension::new(0, 1, 0), 0.0254),
+    ("inch", Dimension::new(0, 1, 0), 0.0254),
+    ("mil", Dimension::new(0, 1, 0), 25.4e-6),
+    ("ft", Dimension::new(0, 1, 0), 0.3048),
+    ("cc", Dimension::new(0, 3, 0), 1e-6),
+    ("l", Dimension::new(0, 3, 0), 1e-3),
+    ("L", Dimension::new(0, 3, 0), 1e-3),
+    ("t", Dimension::new(1, 0, 0), 1e3),
+    ("lb", Dimension::new(1, 0, 0), 0.453_592_37),
+    ("kgf", Dimension::new(1, 1, -2), 9.806_65),
+    ("lbf", Dimension::new(1, 1, -2), 4.448_221_615_260_5),
+    ("dyn", Dimension::new(1, 1, -2), 1e-5),
+    ("psi", Dimension::new(1, -1, -2), 6_894.757_293_168),
+    ("ksi", Dimension::new(1, -1, -2), 6_894_757.293_168),
+    ("atm", Dimension::new(1, -1, -2), 101_325.0),
+    ("at", Dimension::new(1, -1, -2), 98_066.5),
+    ("torr", Dimension::new(1, -1, -2), 101_325.0 / 760.0),
+    ("Torr", Dimension::new(1, -1, -2), 101_325.0 / 760.0),
+    ("mmHg", Dimension::new(1, -1, -2), 101_325.0 / 760.0),
+    ("mph", Dimension::new(0, 1, -1), 0.447_04),
+    ("kph", Dimension::new(0, 1, -1), 1.0 / 3.6),
+    ("kmh", Dimension::new(0, 1, -1), 1.0 / 3.6),
 ];
 
 /// Prefixes: symbol, power of ten. The micro sign and the Greek mu are read as `u`.
@@ -254,7 +293,8 @@ impl<K: Kind> FromStr for Quantity<K> {
         if number.rest.trim().is_empty() {
             return Err(Self::no_unit(text.trim().to_owned()));
         }
-        let (dimension, power_of_ten) = read_unit(text, number.rest)?;
+        let unit = Unit::read(text, number.rest, K::DIMENSION, K::EXAMPLE)?;
+        let dimension = unit.dimension;
         if dimension != K::DIMENSION {
             return Err(QuantityError::Dimension {
                 text: text.to_owned(),
@@ -264,10 +304,20 @@ impl<K: Kind> FromStr for Quantity<K> {
                 example: K::EXAMPLE,
             });
         }
-        let si = number.shifted(power_of_ten).ok_or_else(|| QuantityError::Range {
-            text: text.to_owned(),
-            what: if number.exponent > 0 { "large" } else { "small" },
-        })?;
+        let si = number.shifted(unit.power_of_ten).map(|si| si * unit.factor);
+        let si = si
+            .filter(|si| si.is_finite())
+            .ok_or_else(|| QuantityError::Range {
+                text: text.to_owned(),
+                what: if number.exponent > 0 { "large" } else { "small" },
+            })?;
+        if let Some(foreign) = unit.foreign {
+            return Err(QuantityError::UnknownUnit {
+                text: text.to_owned(),
+                unit: foreign,
+                advice: format!("write \"{} {}\"", six_digits(si), K::SI_UNIT),
+            });
+        }
         Ok(Self {
             text: text.to_owned(),
             si,
@@ -367,15 +417,61 @@ fn split_exponent(text: &str) -> Option<(i32, &str)> {
     Some((digits.parse().unwrap_or(limit), rest))
 }
 
-/// The dimension of a product of powers of units, and the power of ten of its SI unit.
-fn read_unit(text: &str, unit_text: &str) -> Result<(Dimension, i32), QuantityError> {
+/// A product of powers of units.
+struct Unit {
+    dimension: Dimension,
+    /// Its size in its SI unit is 10^`power_of_ten` times `factor`, which is 1 where every unit in it is accepted.
+    power_of_ten: i32,
+    factor: f64,
+    /// The first unit in it that is not accepted.
+    foreign: Option<String>,
+}
+
+impl Unit {
+    /// Reads the unit of `text`, which is one of a quantity of dimension `wanted`.
+    fn read(
+        text: &str,
+        unit_text: &str,
+        wanted: Dimension,
+        example: &'static str,
+    ) -> Result<Self, QuantityError> {
+        let unit_text = with_ascii_signs(unit_text);
+        let factors = split_factors(text, &unit_text)?;
+        let mut unit = Self {
+            dimension: Dimension::new(0, 0, 0),
+            power_of_ten: 0,
+            factor: 1.0,
+            foreign: None,
+        };
+        for &(symbol, power) in &factors {
+            if let Some((dimension, power_of_ten)) = find_symbol(symbol) {
+                unit.dimension = unit.dimension.times(dimension, power);
+                unit.power_of_ten += power * power_of_ten;
+            } else if let Some((_, dimension, factor)) =
+                FOREIGN_UNITS.iter().find(|(foreign, ..)| *foreign == symbol)
+            {
+                unit.dimension = unit.dimension.times(*dimension, power);
+                unit.factor *= factor.powi(power);
+                unit.foreign.get_or_insert_with(|| symbol.to_owned());
+            } else {
+                return Err(QuantityError::UnknownUnit {
+                    text: text.to_owned(),
+                    unit: truncated(symbol),
+                    advice: advice_on(symbol, &factors, wanted, example),
+                });
+            }
+        }
+        Ok(unit)
+    }
+}
+
+/// Splits "kg/m^3" into the symbols and powers ("kg", 1) and ("m", -3).
+fn split_factors<'u>(text: &str, unit_text: &'u str) -> Result<Vec<(&'u str, i32)>, QuantityError> {
     let wrong = |why| QuantityError::Unit {
         text: text.to_owned(),
         why,
     };
-    let unit_text = with_ascii_signs(unit_text);
-    let mut dimension = Dimension::new(0, 0, 0);
-    let mut power_of_ten = 0;
+    let mut all = Vec::new();
     for (place, part) in unit_text.split('/').enumerate() {
         let factors = part.split(['*', ' ']).filter(|factor| !factor.is_empty());
         let factors: Vec<&str> = factors.collect();
@@ -394,12 +490,10 @@ fn read_unit(text: &str, unit_text: &str) -> Result<(Dimension, i32), QuantityEr
         for factor in factors {
             let (symbol, power) = split_power(factor)
                 .ok_or_else(|| wrong("a power is a whole number from -9 to 9, as in `m^-3`"))?;
-            let (of_symbol, of_ten) = find_symbol(symbol).ok_or_else(|| unknown_unit(text, symbol))?;
-            dimension = dimension.times(of_symbol, sign * power);
-            power_of_ten += sign * power * of_ten;
+            all.push((symbol, sign * power));
         }
     }
-    Ok((dimension, power_of_ten))
+    Ok(all)
 }
 
 /// Writes the signs that have an ASCII spelling in that spelling: micro, middle dot, superscripts.
@@ -450,27 +544,57 @@ fn find_symbol(symbol: &str) -> Option<(Dimension, i32)> {
     })
 }
 
-fn unknown_unit(text: &str, symbol: &str) -> QuantityError {
-    let prefixes = PREFIXES.iter().map(|(prefix, _)| *prefix).chain([""]);
-    let candidates =
-        prefixes.flat_map(|prefix| UNITS.iter().map(move |(unit, ..)| format!("{prefix}{unit}")));
+/// What to write in place of an unknown `symbol` among the `factors` of a unit: the nearest unit that makes the whole one of
+/// the `wanted` dimension, or else what units there are.
+fn advice_on(symbol: &str, factors: &[(&str, i32)], wanted: Dimension, example: &str) -> String {
+    // What the other factors leave to the unknown one; none if there are several unknown ones.
+    let is_unknown = |&&(other, _): &&(&str, i32)| find_symbol(other).is_none();
+    let unknown: Vec<&(&str, i32)> = factors.iter().filter(is_unknown).collect();
+    if let [(_, power)] = unknown.as_slice() {
+        let known = factors
+            .iter()
+            .filter_map(|&(other, power)| Some((find_symbol(other)?.0, power)));
+        let rest = known.fold(Dimension::new(0, 0, 0), |all, (unit, power)| {
+            all.times(unit, power)
+        });
+        let fits = |unit: Dimension, power: i32| rest.times(unit, power) == wanted;
+        // "mm2" for "mm^2".
+        let bare = symbol.trim_end_matches(|c: char| c.is_ascii_digit());
+        if let (Some((unit, _)), Ok(raised @ 1..=9)) =
+            (find_symbol(bare), symbol[bare.len()..].parse::<i32>())
+            && fits(unit, power * raised)
+        {
+            return format!("did you mean `{bare}^{raised}`?");
+        }
+        if let Some(near) = nearest_unit(symbol, |unit| fits(unit, *power)) {
+            return format!("did you mean `{near}`?");
+        }
+    }
+    format!(
+        "write it as in {example:?}; the units are m, g, s, Pa, N, bar and Hz, with the prefixes f p n u m c d h k M G T"
+    )
+}
+
+/// The accepted unit, with its prefix, that is spelt nearly like `symbol`, among those of a dimension that fits.
+fn nearest_unit(symbol: &str, fits: impl Fn(Dimension) -> bool) -> Option<String> {
+    let units = UNITS.iter().filter(|(_, dimension, _)| fits(*dimension));
+    let candidates = units.flat_map(|(unit, ..)| {
+        let prefixes = PREFIXES.iter().map(|(prefix, _)| *prefix).chain([""]);
+        prefixes.map(move |prefix| format!("{prefix}{unit}"))
+    });
     let distance = |unit: &str| {
         // "KPA" is nearer to "kPa" than to any unit of other letters.
         let folded = strsim::damerau_levenshtein(&unit.to_lowercase(), &symbol.to_lowercase());
         (folded, strsim::damerau_levenshtein(unit, symbol))
     };
     let nearest = candidates.map(|unit| (distance(&unit), unit)).min();
-    let advice = match nearest {
-        Some(((distance, _), unit)) if distance == 0 || distance == 1 && symbol.len() > 1 => {
-            format!("did you mean `{unit}`?")
-        }
-        _ => "the units are m, g, s, Pa, N, bar and Hz, with the prefixes f p n u m c d h k M G T".to_owned(),
-    };
-    QuantityError::UnknownUnit {
-        text: text.to_owned(),
-        unit: truncated(symbol),
-        advice,
-    }
+    let ((distance, _), unit) = nearest?;
+    (distance == 0 || distance == 1 && symbol.len() > 1).then_some(unit)
+}
+
+/// A number to six digits, as a conversion is written.
+fn six_digits(value: f64) -> String {
+    exact(format!("{value:.5e}").parse().unwrap_or(value))
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use std::process::ExitCode;
 
 use crate::print_stderr::print_stderr;
 use crate::signals::Signals;
+use crate::wrap::for_stderr;
 
 /// Why a command failed.
 pub(crate) enum Failure {
@@ -36,7 +37,7 @@ impl Failure {
             Self::Running(error) => (error, 1),
             Self::Stopped(signal, error) => (error, 128 + signal as u8),
         };
-        print_stderr(&format!("error: {error}"));
+        print_stderr(&for_stderr(&format!("error: {error}")));
         ExitCode::from(status)
     }
 }

@@ -18,12 +18,18 @@ mod progress;
 mod report;
 mod signals;
 mod threads;
+mod wrap;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
 
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser, Subcommand};
 
+use slipfront_case::text::shell_quoted;
+use slipfront_run::study::StudyFile;
+
+use crate::failure::Failure;
 use crate::print::expect_printed;
 
 /// Friction of micro-textured surfaces: the lattice spring-block model of the transition from static to kinetic
@@ -60,6 +66,9 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(cli) => cli.command,
         // Of a wrong line the status is what matters; help and version are what was asked for.
         Err(error) => {
+            if let Some(sentence) = forgotten_subcommand(&error) {
+                return Failure::input(anyhow::anyhow!(sentence)).report();
+            }
             let status = ExitCode::from(error.exit_code() as u8);
             return match expect_printed(error.print()) {
                 Err(failure) if !error.use_stderr() => failure.report(),
@@ -83,4 +92,27 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }
+}
+
+/// What was meant by a file or folder in the place of the subcommand.
+fn forgotten_subcommand(error: &clap::Error) -> Option<String> {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else {
+        return None;
+    };
+    let path = std::path::Path::new(word);
+    let is_toml = path.extension().is_some_and(|ending| ending == "toml");
+    if error.kind() != ErrorKind::InvalidSubcommand || !(is_toml || path.is_dir()) {
+        return None;
+    }
+    let quoted = shell_quoted(word);
+    let meant = if path.is_dir() {
+        format!("`slipfront plot {quoted}` or `slipfront verify {quoted}`")
+    } else if StudyFile::load(path).is_ok_and(|study| study.is_study()) {
+        format!("`slipfront study {quoted}`")
+    } else {
+        format!("`slipfront run {quoted}` or `slipfront check {quoted}`")
+    };
+    Some(format!(
+        "{word} stands in the place of a subcommand: did you mean {meant}?"
+    ))
 }

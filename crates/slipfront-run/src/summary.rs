@@ -73,7 +73,7 @@ pub struct Summary {
     pub seed: u64,
     /// Negative draws of the coefficients that were set to 0.
     pub negative_draws: usize,
-    /// What the energy ledger lacks, relative to the energy put in.
+    /// Energy that is not accounted for, relative to the energy put in.
     pub energy_error: f64,
     /// Work of the drive, J.
     pub work_j: f64,
@@ -211,7 +211,7 @@ pub fn summary_json(summary: &Summary) -> String {
     String::from_utf8_lossy(&json(summary)).into_owned()
 }
 
-/// Share of the energy that the ledger may miss; a step of 0.1 stays a factor of ten below.
+/// Share of the energy that may be unaccounted for; a step of 0.1 stays a factor of ten below.
 const LARGE_ENERGY_ERROR: f64 = 0.01;
 
 /// What the run itself gives reason to warn of.
@@ -225,7 +225,7 @@ fn after_run(
     let mut warnings = Vec::new();
     if energies.error().abs() > LARGE_ENERGY_ERROR {
         warnings.push(format!(
-            "the ledger of energies misses {:.0} % of what was put in: the time step is too coarse for this case",
+            "{:.0} % of the energy put in is unaccounted for: the time step is too coarse for this case",
             100.0 * energies.error().abs()
         ));
     }
@@ -251,14 +251,12 @@ fn after_run(
              time.duration_star or set time.kinetic_from_star"
                 .to_owned(),
         ),
-        Some(Err(NoUncertainty::TooFewBlocks { found, needed_time_star })) => warnings.push(format!(
-            "mu_k* has no uncertainty: a half of the kinetic window holds {found} independent blocks of the 10 needed; \
-             a run of time.duration_star = {needed_time_star:.0} or more would do"
+        Some(Err(NoUncertainty::TooFewBlocks { needed_time_star, .. })) => warnings.push(format!(
+            "mu_k* has no uncertainty; time.duration_star = {needed_time_star:.0} would give one"
         )),
-        Some(Err(NoUncertainty::Drift { halves: [one, other], needed_time_star })) => warnings.push(format!(
-            "mu_k* has no uncertainty: mu* still drifts, from {one:.4} to {other:.4} between the halves of the kinetic \
-             window; run to time.duration_star = {needed_time_star:.0} or more, or begin later with \
-             time.kinetic_from_star"
+        Some(Err(NoUncertainty::Drift { needed_time_star, .. })) => warnings.push(format!(
+            "mu_k* has no uncertainty, since mu* still drifts: run to time.duration_star = {needed_time_star:.0}, or begin \
+             later by time.kinetic_from_star"
         )),
         Some(Ok(_)) => {}
     }

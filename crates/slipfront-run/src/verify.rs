@@ -17,6 +17,7 @@ use crate::run_folder::unfinished::Unfinished;
 use crate::study;
 use crate::study::{Plan, Records, RetainRuns, StudyError, StudyFolder, StudyResults};
 use slipfront_case::disk::is_unfinished;
+use slipfront_case::number_format::{are, count};
 use slipfront_case::text::{single_line, truncated};
 
 /// What was found in a folder.
@@ -44,7 +45,8 @@ pub enum VerifyError {
     )]
     Changed { difference: String, manifest: PathBuf },
     #[error(
-        "the study in {path} lacks {runs} runs{}: finish it, or merge it with its other shards, and verify it then",
+        "the study in {path} lacks {}{}: finish it, or merge it with its other shards, and verify it then",
+        count(*runs, "run"),
         study::of_others(*others)
     )]
     Unfinished {
@@ -104,8 +106,8 @@ pub fn verify_run(run: &Inspection) -> Result<Verdict, VerifyError> {
         }
     };
     verdict.what = format!(
-        "{} files as {} wrote them, finished {}",
-        manifest.files.len(),
+        "{} as {} wrote them, finished {}",
+        count(manifest.files.len(), "file"),
         manifest.program(),
         truncated(&manifest.finished)
     );
@@ -230,7 +232,7 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
         }
         // What its tables should be is lost with the damaged lines.
         Err(StudyError::Missing { .. }) => {
-            let damage = format!("{records} differs: {damaged} lines of it are damaged");
+            let damage = format!("{records} differs: it has {}", count(damaged, "damaged line"));
             verdict.differences.push(damage);
             return Ok(verdict);
         }
@@ -246,14 +248,17 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
     let known = known.chain([Records::FILE, RUNS]).collect();
     verdict.notes = unlisted_files(folder, &known, is_left);
     if damaged > 0 {
-        let damage =
-            format!("{records} has {damaged} damaged lines, whose runs are recorded once more or not needed");
+        let damage = format!(
+            "{records} has {}, whose runs are recorded once more or not needed",
+            count(damaged, "damaged line")
+        );
         verdict.notes.push(damage);
     }
     let kept = verify_kept(folder, &plan, &results, &mut verdict)?;
     verdict.what = format!(
-        "tables and pictures as its {} recorded runs give them, {kept} run folders as they were written",
-        again.records.len()
+        "tables and pictures as its {} give them, {} as they were written",
+        count(again.records.len(), "recorded run"),
+        count(kept, "run folder")
     );
     Ok(verdict)
 }
@@ -295,9 +300,9 @@ fn verify_kept(
     // They may have been removed on purpose, or have run before the study was told to keep them.
     if plan.settings.keep == RetainRuns::All && !missing.is_empty() {
         verdict.notes.push(format!(
-            "{} of {} runs have no folder in {}, where the study keeps all",
+            "{} of {} not in {}, where the study keeps all",
             missing.len(),
-            done.len(),
+            are(done.len(), "run folder"),
             runs.display()
         ));
     }

@@ -12,7 +12,7 @@ use super::output::{MAX_MAPS, Output, Snapshots};
 use super::time_plan::TimePlan;
 use crate::case_file::{CaseError, CaseFile};
 use crate::machine::{available_memory, can_be_had, free_disk};
-use crate::number_format::byte_size;
+use crate::number_format::{byte_size, count};
 
 /// A number of a block.
 const NUMBER: f64 = size_of::<f64>() as f64;
@@ -145,7 +145,7 @@ impl Budget {
         [
             Part {
                 key: "slider.blocks",
-                what: format!("{blocks} blocks"),
+                what: count(blocks as usize, "block"),
                 remedy: "lower `slider.blocks`",
                 bytes: [
                     blocks * SURFACE,
@@ -158,7 +158,11 @@ impl Budget {
             },
             Part {
                 key: "output.snapshots",
-                what: format!("{frames} snapshots of {fields} fields"),
+                what: format!(
+                    "{} of {}",
+                    count(frames as usize, "snapshot"),
+                    count(fields as usize, "field")
+                ),
                 remedy: "take fewer `output.snapshots`, name fewer `output.fields`, or raise `output.stride`",
                 bytes: [
                     0.0,
@@ -170,7 +174,7 @@ impl Budget {
             },
             Part {
                 key: "output.series",
-                what: format!("{rows} rows of the series"),
+                what: format!("{} of the series", count(rows as usize, "row")),
                 remedy: "raise `output.series`",
                 bytes: [
                     0.0,

@@ -7,6 +7,7 @@ use slipfront::FrictionLaw;
 use super::runnable::Case;
 use super::textures::is_array;
 use crate::case_file::{DEFAULT_THRESHOLD, Mask, Texture};
+use crate::number_format::{are, count};
 
 /// Difference between the texture as asked and as meshed, relative to what was asked, above which there is a warning.
 const LARGE_MISFIT: f64 = 0.25;
@@ -61,7 +62,11 @@ impl Case {
         let negative = self.negative_draws;
         warn(
             negative > 0,
-            format!("{negative} negative draws of the friction coefficients were set to 0"),
+            format!(
+                "{} of the friction coefficients {} set to 0",
+                count(negative, "negative draw"),
+                if negative == 1 { "was" } else { "were" }
+            ),
         );
         let surface = &self.model.surface;
         let mean = surface.mu_static.iter().sum::<f64>() / surface.n_contact() as f64;
@@ -99,7 +104,8 @@ impl Case {
         warn(
             n_blocks < FEW_BLOCKS,
             format!(
-                "{n_blocks} blocks are few: edges weigh heavily below {FEW_BLOCKS} (Fig. 5 of the paper)"
+                "{} few: edges weigh heavily below {FEW_BLOCKS} (Fig. 5 of the paper)",
+                are(n_blocks, "block")
             ),
         );
         warnings

@@ -165,7 +165,7 @@ fn out_of(bounds: Bounds, value: f64, remark: &str) -> Option<String> {
 }
 
 /// A range in words, such as "more than 0 and at most 10".
-fn in_words((low, high): Bounds) -> String {
+pub(super) fn in_words((low, high): Bounds) -> String {
     let side = |bound, included: &str, excluded: &str| match bound {
         Included(limit) => Some(format!("{included} {}", exact(limit))),
         Excluded(limit) => Some(format!("{excluded} {}", exact(limit))),

@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
+use super::check::in_words;
 use super::error::CaseError;
+use super::key_table::{Key, Kind, Section};
 use super::keys;
 use super::source::Source;
 use crate::text::truncated;
@@ -17,19 +19,23 @@ pub fn syntax_error(source: &Source, offset: usize, error: &toml::de::Error) -> 
             "duplicate key `{}`: it is already set in this table",
             source.slice(span.clone())
         )
+    } else if message.starts_with("invalid boolean") {
+        "this is not valid TOML: a word must stand in quotes, unless it is true or false".to_owned()
     } else {
         format!("this is not valid TOML: {message}")
     };
     source.error_at(span, sentence)
 }
 
-/// An error of serde at `span`, while it reads the table under `header`, whose keys are `known`.
+/// An error of serde at `span`, while it reads the table under `header`, whose keys are `known`, those of `section` if it is one
+/// of a case.
 pub(super) fn value_error(
     source: &Source,
     span: Range<usize>,
     message: &str,
     header: &str,
     known: &[&str],
+    section: Option<&Section>,
 ) -> CaseError {
     let message = one_line(message);
     if let Some((key, expected)) = name_and_expected(&message, "unknown field `") {
@@ -41,12 +47,30 @@ pub(super) fn value_error(
         };
         return source.error_at(span, sentence);
     }
-    let complaint = match name_and_expected(&message, "unknown variant `") {
-        Some((word, words)) => unknown_word(&truncated(word), &words),
-        None => in_plain_words(&message),
+    let path = source.key_at(&span);
+    let subject = path.unwrap_or(header);
+    let key = path.and_then(|path| section?.key(path.rsplit('.').next()?));
+    let sentence = if let Some((word, words)) = name_and_expected(&message, "unknown variant `") {
+        format!("`{subject}`: {}", unknown_word(&truncated(word), &words))
+    } else if let Some(expected) = expected_by(&message) {
+        let whole = source.written(subject);
+        let takes = key.and_then(|key| takes(key, &message));
+        // An element of a list that has a form of its own, such as a corner of a polygon, is named alone.
+        let (verb, written) = match source.slice(span.clone()) {
+            element if takes.is_none() && element != whole => ("holds", element),
+            _ => ("is", whole),
+        };
+        let takes = takes.unwrap_or_else(|| in_plain_words(expected));
+        let written = truncated(written);
+        let hint = key.map_or(String::new(), |key| hint(key, section, &written));
+        format!("`{subject}` {verb} {written}: it must be {takes}{hint}")
+    } else {
+        let has_no_unit = message.contains(" has no unit; ");
+        let key = key.filter(|_| has_no_unit);
+        let hint = key.map_or(String::new(), |key| hint(key, section, ""));
+        let message = message.replace("missing field", "it needs the key");
+        format!("`{subject}`: {message}{hint}")
     };
-    let subject = source.key_at(&span).unwrap_or(header);
-    let sentence = format!("`{subject}`: {complaint}");
     source.error_at(span, sentence)
 }
 
@@ -69,22 +93,90 @@ fn one_line(message: &str) -> String {
     message.trim().replace('\n', ", ")
 }
 
-/// A message of serde with the names of TOML's types in place of those of Rust's.
-fn in_plain_words(message: &str) -> String {
-    const WORDS: [(&str, &str); 8] = [
-        ("missing field", "it needs the key"),
-        ("integer number overflowed", "the whole number is too large"),
-        ("expected f64", "expected a number"),
-        ("expected u32", "expected a whole number from 0 to 4294967295"),
-        (
-            "expected u64",
-            "expected a whole number from 0 to 9223372036854775807",
-        ),
-        ("type: map", "type: table"),
-        ("sequence", "list"),
-        ("floating point", "number"),
-    ];
-    WORDS.iter().fold(message.to_owned(), |text, (rust, plain)| {
-        text.replace(rust, plain)
+/// What serde expected, in a message about a value that is of another type or length.
+fn expected_by(message: &str) -> Option<&str> {
+    if message == "integer number overflowed" {
+        return Some("a whole number");
+    }
+    let is_about_type = ["invalid type: ", "invalid value: ", "invalid length "]
+        .iter()
+        .any(|start| message.starts_with(start));
+    match is_about_type {
+        true => message.rsplit_once(", expected ").map(|(_, expected)| expected),
+        false => message.strip_prefix("expected "),
+    }
+}
+
+/// What a key takes by the table of keys; none where serde says more of its form.
+fn takes(key: &Key, message: &str) -> Option<String> {
+    let example = match key.default.starts_with('[') {
+        true => format!(", such as {}", key.default),
+        false => String::new(),
+    };
+    Some(match key.kind {
+        Kind::Number { bounds, words, .. } => {
+            let words: String = words.iter().map(|word| format!(", or \"{word}\"")).collect();
+            format!("a number, {}{words}", in_words(bounds))
+        }
+        Kind::Whole { least, most, .. } if example.is_empty() => {
+            format!("a whole number from {least} to {most}")
+        }
+        Kind::Whole { least, most, .. } => {
+            format!("a pair of whole numbers from {least} to {most}{example}")
+        }
+        // A word or a pair of words has told so itself.
+        Kind::Words(_) if message.starts_with("expected ") => return None,
+        Kind::Words(words) => {
+            let words: Vec<String> = words().iter().map(|word| format!("\"{word}\"")).collect();
+            let list = if example.is_empty() { "one of" } else { "a list of" };
+            format!("{list} {}", words.join(", "))
+        }
+        Kind::Switch => "true or false".to_owned(),
+        Kind::File(formats) => format!("the path of a .{} file, in quotes", formats.join(" or .")),
+        Kind::Quantity { .. } | Kind::Special(_) => return None,
     })
+}
+
+/// What else may help with a value as it was `written`: a number needs no quotes, and a key with a unit may have a partner
+/// without, and the other way round.
+fn hint(key: &Key, section: Option<&Section>, written: &str) -> String {
+    let partner = key.partner.and_then(|name| section?.key(name));
+    let quantity = |key: &Key| matches!(key.kind, Kind::Quantity { .. });
+    let inside = written.trim_matches(['"', '\'']);
+    let is_number = inside.parse::<f64>().is_ok();
+    match (key.kind, partner) {
+        (Kind::Number { .. } | Kind::Whole { .. }, _) if is_number && inside != written => {
+            "; write it without quotes".to_owned()
+        }
+        (Kind::Number { .. }, Some(partner))
+            if quantity(partner) && inside.starts_with(|c: char| c.is_ascii_digit()) =>
+        {
+            format!("; with a unit, the key is `{}`", partner.name)
+        }
+        (Kind::Quantity { .. }, Some(partner)) if !quantity(partner) && written.is_empty() => {
+            format!("; without a unit, the key is `{}`", partner.name)
+        }
+        _ => String::new(),
+    }
+}
+
+/// What serde expected, with the names of TOML's types in place of those of Rust's.
+fn in_plain_words(expected: &str) -> String {
+    const WORDS: [(&str, &str); 9] = [
+        ("f64", "a number"),
+        ("u32", "a whole number, 0 or more"),
+        ("u64", "a whole number, 0 or more"),
+        ("usize", "a whole number, 0 or more"),
+        ("a boolean", "true or false"),
+        ("a string", "a text in quotes"),
+        ("string or table", "a word in quotes"),
+        ("a sequence", "a list"),
+        ("a map", "a table of keys"),
+    ];
+    let plain = WORDS.iter().find(|(rust, _)| *rust == expected);
+    match plain {
+        Some((_, plain)) => (*plain).to_owned(),
+        None if expected.starts_with("struct ") => "a table of keys".to_owned(),
+        None => expected.to_owned(),
+    }
 }

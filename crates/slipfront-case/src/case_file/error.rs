@@ -16,6 +16,8 @@ use crate::text::{MAX_EXCERPT, single_line, truncated};
 pub enum CaseError {
     #[error("cannot read {}: {source}", path.display())]
     Unreadable { path: PathBuf, source: io::Error },
+    #[error("there is no file {}: did you mean {}?", path.display(), near.display())]
+    Misspelt { path: PathBuf, near: PathBuf },
     #[error("{} is a folder: name the file in it", path.display())]
     Folder { path: PathBuf },
     #[error("{} is larger than {limit_mib} MiB, so it is no case or study file", path.display())]

@@ -6,6 +6,7 @@ use toml::de::{DeTable, DeValue};
 use super::error::CaseError;
 use super::key_table::{SECTIONS, Section, TEXTURE, partners};
 use super::source::Source;
+use super::synonyms::advice_on;
 
 /// The longest name that is compared with the known ones, in bytes.
 const MAX_NAME: usize = 100;
@@ -91,10 +92,11 @@ pub(super) fn refuse_both(root: &DeTable<'_>, source: &Source) -> Result<(), Cas
 /// The sentence about a key that the table under `header` does not have.
 pub fn unknown(key: &str, header: &str, known: &[&str]) -> String {
     let list = known.join(", ");
-    let advice = match (home_of(key), nearest(key, known)) {
-        (Some(home), _) => format!(": it belongs in {home}."),
-        (None, Some(near)) => format!(": did you mean `{near}`?"),
-        (None, None) => ".".to_owned(),
+    let advice = match (advice_on(key), home_of(key), nearest(key, known)) {
+        (Some(advice), ..) => format!(": {advice}."),
+        (None, Some(home), _) => format!(": it belongs in {home}."),
+        (None, None, Some(near)) => format!(": did you mean `{near}`?"),
+        (None, None, None) => ".".to_owned(),
     };
     format!("unknown key `{key}` in {header}{advice} Known keys: {list}")
 }
@@ -110,12 +112,13 @@ pub(super) fn unknown_table(key: &str) -> String {
         );
     }
     let list = TABLES.map(header).join(", ");
-    match nearest(key, &TABLES) {
-        Some(near) => format!(
+    match (advice_on(key), nearest(key, &TABLES)) {
+        (Some(advice), _) => format!("unknown table `{key}`: {advice}. The tables are {list}"),
+        (None, Some(near)) => format!(
             "unknown table `{key}`: did you mean {}? The tables are {list}",
             header(near)
         ),
-        None => format!("unknown table `{key}`: the tables are {list}"),
+        (None, None) => format!("unknown table `{key}`: the tables are {list}"),
     }
 }
 
@@ -128,12 +131,13 @@ pub(super) fn unknown_shape(shape: Option<&str>) -> String {
         Some((last, others)) => format!("it can be {} or {last}", others.join(", ")),
         None => String::new(),
     };
-    match shape.map(|shape| (shape, nearest(shape, &shapes))) {
-        None => format!("a texture needs `shape`: {choice}"),
-        Some((shape, Some(near))) => {
-            format!("unknown shape {shape:?}: did you mean \"{near}\"? In full, {choice}")
-        }
-        Some((shape, None)) => format!("unknown shape {shape:?}: {choice}"),
+    let Some(shape) = shape else {
+        return format!("a texture needs `shape`: {choice}");
+    };
+    match (advice_on(shape), nearest(shape, &shapes)) {
+        (Some(advice), _) => format!("unknown shape {shape:?}: {advice}. In full, {choice}"),
+        (None, Some(near)) => format!("unknown shape {shape:?}: did you mean \"{near}\"? In full, {choice}"),
+        (None, None) => format!("unknown shape {shape:?}: {choice}"),
     }
 }
 

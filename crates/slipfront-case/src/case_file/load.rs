@@ -1,10 +1,11 @@
 //! The text of a case or study file.
 
 use std::fs::File;
-use std::io::Read;
-use std::path::Path;
+use std::io::{ErrorKind, Read};
+use std::path::{Path, PathBuf};
 
 use super::error::CaseError;
+use super::keys::nearest;
 
 /// The largest file that is read as a case, in MiB.
 const MAX_MIB: u64 = 16;
@@ -16,6 +17,10 @@ const MAX_MIB: u64 = 16;
 pub fn read_text(path: &Path) -> Result<String, CaseError> {
     let path = path.to_owned();
     if path.is_dir() {
+        let near = path.join("case.toml");
+        if near.is_file() {
+            return Err(CaseError::Misspelt { path, near });
+        }
         return Err(CaseError::Folder { path });
     }
     let limit = MAX_MIB << 20;
@@ -23,7 +28,11 @@ pub fn read_text(path: &Path) -> Result<String, CaseError> {
     // The limit holds for what is read, since a device or a pipe tells no size.
     let read = File::open(&path).and_then(|file| file.take(limit + 1).read_to_end(&mut bytes));
     if let Err(source) = read {
-        return Err(CaseError::Unreadable { path, source });
+        let is_missing = source.kind() == ErrorKind::NotFound;
+        return Err(match similar_file(&path).filter(|_| is_missing) {
+            Some(near) => CaseError::Misspelt { path, near },
+            None => CaseError::Unreadable { path, source },
+        });
     }
     if bytes.len() as u64 > limit {
         let limit_mib = MAX_MIB;
@@ -33,5 +42,32 @@ pub fn read_text(path: &Path) -> Result<String, CaseError> {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = good.iter().filter(|byte| **byte == b'\n').count() + 1;
         CaseError::NotText { path, line }
+    })
+}
+
+/// Most entries of a folder among which a similar name is looked for.
+const MAX_ENTRIES: usize = 10_000;
+
+/// The file that a missing one was probably meant to be: one of a similar name, or with the ending .toml, in the same folder,
+/// or else in its folder `cases` or `cases/studies`.
+fn similar_file(path: &Path) -> Option<PathBuf> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let stem = path.file_name()?.to_str()?.trim_end_matches(".toml");
+    let within = ["", "cases", "cases/studies"].map(|inner| folder.join(inner));
+    within.iter().find_map(|folder| {
+        let listed = match folder.as_os_str().is_empty() {
+            true => Path::new("."),
+            false => folder,
+        };
+        let entries = std::fs::read_dir(listed).ok()?.take(MAX_ENTRIES).flatten();
+        let mut stems: Vec<String> = entries
+            .filter_map(|entry| Some(entry.file_name().to_str()?.strip_suffix(".toml")?.to_owned()))
+            .collect();
+        // The order of a folder is that of no name.
+        stems.sort();
+        let stems: Vec<&str> = stems.iter().map(String::as_str).collect();
+        let near = folder.join(format!("{}.toml", nearest(stem, &stems)?));
+        // A link that leads nowhere is listed under the name that it has.
+        (near != path).then_some(near)
     })
 }

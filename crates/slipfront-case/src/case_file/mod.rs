@@ -18,6 +18,7 @@ mod overrides;
 mod probe;
 mod slider;
 mod source;
+mod synonyms;
 mod tables;
 mod texture;
 mod time;

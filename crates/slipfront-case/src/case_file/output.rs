@@ -81,14 +81,14 @@ enum SnapshotsKey {
 }
 
 impl TryFrom<SnapshotsKey> for Snapshots {
-    type Error = String;
+    type Error = &'static str;
 
-    fn try_from(key: SnapshotsKey) -> Result<Self, String> {
+    fn try_from(key: SnapshotsKey) -> Result<Self, Self::Error> {
         match key {
             SnapshotsKey::Word(word) if word == "auto" => Ok(Self::Auto),
-            SnapshotsKey::Word(word) => Err(format!(
-                "{word:?} is given, \"auto\", a list of times t* or {{ every = 5.0 }} is wanted"
-            )),
+            SnapshotsKey::Word(_) => {
+                Err("expected \"auto\", a list of times t* such as [10.0, 80.0], or { every = 5.0 }")
+            }
             SnapshotsKey::At(times) => Ok(Self::At(times)),
             SnapshotsKey::Every { every } => Ok(Self::Every(every)),
         }

@@ -7,6 +7,7 @@ use super::check::Check;
 use super::choice::keys_with_choice;
 use super::error::CaseError;
 use super::values::{Pair, pair};
+use crate::number_format::count;
 use crate::quantity::{Density, Length, Pressure, Rate};
 
 /// `[slider]`: the blocks, their material, the damping and the edges.
@@ -59,8 +60,8 @@ impl Slider {
                 let key = if check.has("blocks") { "blocks" } else { "edges" };
                 return check.refuse(key, |_| {
                     format!(
-                        "{n} block(s) along {axis} are too few for periodic edges: take at least {MIN_BLOCKS_PERIODIC}, or \
-                         free edges along {axis}"
+                        "{} along {axis}: periodic edges need at least {MIN_BLOCKS_PERIODIC}; take more, or free edges along {axis}",
+                        count(n as usize, "block")
                     )
                 });
             }

@@ -85,6 +85,12 @@ impl Source {
             .map(|(key, _)| key.as_str())
     }
 
+    /// The value of `key` as the user wrote it; empty if there is none.
+    pub(super) fn written(&self, key: &str) -> &str {
+        let span = self.places.get(key).cloned();
+        span.map_or("", |span| self.slice(span))
+    }
+
     /// Whether the user wrote a value for `key`, in the file or by `--set`.
     pub fn has(&self, key: &str) -> bool {
         self.places.contains_key(key)

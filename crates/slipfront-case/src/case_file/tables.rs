@@ -6,7 +6,7 @@ use toml::de::{DeTable, DeValue, ValueDeserializer};
 
 use super::diagnose::value_error;
 use super::error::CaseError;
-use super::key_table::SECTIONS;
+use super::key_table::{SECTIONS, Section};
 use super::keys;
 use super::probe::names_of;
 use super::source::Source;
@@ -42,7 +42,7 @@ impl<'i> Tables<'_, 'i> {
         if let (Some(section), DeValue::Table(keys)) = (section, table.get_mut()) {
             section.fill_in(keys);
         }
-        self.read_table(table, header)
+        self.read_keys(table, header, section)
     }
 
     /// A table that stands under `header`.
@@ -51,12 +51,28 @@ impl<'i> Tables<'_, 'i> {
         table: Spanned<DeValue<'i>>,
         header: &str,
     ) -> Result<T, CaseError> {
+        self.read_keys(table, header, None)
+    }
+
+    fn read_keys<T: DeserializeOwned>(
+        &self,
+        table: Spanned<DeValue<'i>>,
+        header: &str,
+        section: Option<&Section>,
+    ) -> Result<T, CaseError> {
         let span = table.span();
         let read = T::deserialize(ValueDeserializer::from(table));
         read.map_err(|error| {
             // An error about the table as a whole, such as a size that is missing, comes without a span.
             let span = error.span().unwrap_or(span);
-            value_error(self.source, span, error.message(), header, names_of::<T>())
+            value_error(
+                self.source,
+                span,
+                error.message(),
+                header,
+                names_of::<T>(),
+                section,
+            )
         })
     }
 }

@@ -14,6 +14,7 @@ use super::key_table::COORDINATE;
 use super::keys::{texture_header, unknown_shape};
 use super::tables::Tables;
 use super::values::{Pair, pair, word};
+use crate::number_format::count;
 use crate::quantity::{Length, QuantityError};
 
 /// One `[[texture]]` of the file; a block is textured when its centre lies inside any of them.
@@ -131,10 +132,13 @@ impl Texture {
                 check.value("offset", &groove.offset)
             }
             Self::Polygon(polygon) => {
-                let count = polygon.points.len();
-                if count < 3 {
+                let corners = polygon.points.len();
+                if corners < 3 {
                     return check.refuse("points", |key| {
-                        format!("`{key}` has {count} point(s): a polygon needs at least 3")
+                        format!(
+                            "`{key}` has {}: a polygon needs at least 3",
+                            count(corners, "point")
+                        )
                     });
                 }
                 let mut lengths = polygon.points.iter().flatten();
@@ -218,9 +222,9 @@ impl TryFrom<CenterKey> for Center {
     fn try_from(key: CenterKey) -> Result<Self, String> {
         match key {
             CenterKey::Word(word) if word == "middle" => Ok(Self::Middle),
-            CenterKey::Word(word) => Err(format!(
-                "{word:?} is given, \"middle\" or a pair of lengths is wanted"
-            )),
+            CenterKey::Word(_) => {
+                Err("expected \"middle\" or a pair of lengths such as [\"25 um\", \"25 um\"]".to_owned())
+            }
             CenterKey::At(Pair([x, y])) => {
                 let length = |text: String| text.parse().map_err(|error: QuantityError| error.to_string());
                 Ok(Self::At([length(x)?, length(y)?]))

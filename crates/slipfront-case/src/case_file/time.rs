@@ -93,16 +93,14 @@ keys_with_choice! {
 }
 
 impl TryFrom<WordOrNumber> for Step {
-    type Error = String;
+    type Error = &'static str;
 
-    fn try_from(value: WordOrNumber) -> Result<Self, String> {
+    fn try_from(value: WordOrNumber) -> Result<Self, Self::Error> {
         match value {
             WordOrNumber::Number(dt_star) => Ok(Self::Number(dt_star)),
             WordOrNumber::Word(word) if word == "auto" => Ok(Self::Auto),
             WordOrNumber::Word(word) if word == "paper" => Ok(Self::Paper),
-            WordOrNumber::Word(word) => Err(format!(
-                "{word:?} is given, a number, \"auto\" or \"paper\" is wanted"
-            )),
+            WordOrNumber::Word(_) => Err("expected a number, \"auto\" or \"paper\""),
         }
     }
 }

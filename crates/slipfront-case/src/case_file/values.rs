@@ -105,13 +105,13 @@ pub enum AutoOr {
 }
 
 impl TryFrom<WordOrNumber> for AutoOr {
-    type Error = String;
+    type Error = &'static str;
 
-    fn try_from(value: WordOrNumber) -> Result<Self, String> {
+    fn try_from(value: WordOrNumber) -> Result<Self, Self::Error> {
         match value {
             WordOrNumber::Number(number) => Ok(Self::Number(number)),
             WordOrNumber::Word(word) if word == "auto" => Ok(Self::Auto),
-            WordOrNumber::Word(word) => Err(format!("{word:?} is given, a number or \"auto\" is wanted")),
+            WordOrNumber::Word(_) => Err("expected a number or \"auto\""),
         }
     }
 }

@@ -96,7 +96,6 @@ fn messages_say_what_to_write() {
         error::<kind::Pressure>("100 kpa"),
         "unknown unit `kpa` in \"100 kpa\": did you mean `kPa`?"
     );
-    assert!(error::<kind::Duration>("3 min").contains("unknown unit `min`"));
     assert!(error::<kind::Length>("3 parsec").contains("the units are m, g"));
     assert!(error::<kind::Length>("3 m^2").contains("is another quantity (m^2)"));
     assert!(error::<kind::Length>("3 m/m").contains("is another quantity (1)"));
@@ -122,6 +121,40 @@ fn messages_say_what_to_write() {
         assert!(error::<kind::Length>(text).contains("too small"), "{text}");
     }
     assert!(error::<kind::Length>(&"1".repeat(201)).contains("201 bytes"));
+}
+
+/// A suggestion is of the dimension that is wanted, and a unit that is known elsewhere is converted.
+#[test]
+fn suggestions_are_of_the_wanted_dimension() {
+    let psi = error::<kind::Pressure>("5 psi");
+    assert_eq!(psi, "unknown unit `psi` in \"5 psi\": write \"34473.8 Pa\"");
+    for (said, written) in [
+        (error::<kind::Speed>("1 m/min"), "0.0166667 m/s"),
+        (error::<kind::Speed>("36 km/h"), "10 m/s"),
+        (error::<kind::Duration>("3 min"), "180 s"),
+        (error::<kind::Length>("5 A"), "5e-10 m"),
+        (error::<kind::Density>("7.8 g/cc"), "7800 kg/m^3"),
+        (error::<kind::Pressure>("1 kgf/cm^2"), "98066.5 Pa"),
+    ] {
+        assert!(said.ends_with(&format!("write \"{written}\"")), "{said}");
+    }
+    // What is written can be read, and is what was meant to the six digits that are printed.
+    for (symbol, dimension, size) in FOREIGN_UNITS {
+        if dimension == Pressure::DIMENSION {
+            let said = error::<kind::Pressure>(&format!("3 {symbol}"));
+            let written = said.split('"').nth(3).unwrap();
+            let read = written.parse::<Pressure>().unwrap().si();
+            assert!((read / (3.0 * size) - 1.0).abs() < 5e-6, "{said}");
+        }
+    }
+    assert!(error::<kind::Pressure>("3 lbf").contains("is a force"));
+    assert!(error::<kind::Speed>("3 m/x").contains("write it as in \"0.0949 mm/s\""));
+    assert!(error::<kind::Pressure>("1 N/mm2").ends_with("did you mean `mm^2`?"));
+    assert!(error::<kind::Pressure>("1 N/mm3").contains("write it as in"));
+    assert!(error::<kind::Pressure>("1 kPaa").ends_with("did you mean `kPa`?"));
+    // `ps` is no pressure; of `mN` and `ms` the second is a time.
+    assert!(error::<kind::Pressure>("5 psy").contains("write it as in \"100 kPa\""));
+    assert!(error::<kind::Speed>("1 m/mn").ends_with("did you mean `ms`?"));
 }
 
 #[test]

@@ -98,3 +98,32 @@ fn files_that_cannot_be_read_say_why() {
             .starts_with(&format!("{}:2:12: ", path.display()))
     );
 }
+
+/// A misspelt name is answered with the file that was meant: in the folder, or in its folder `cases`.
+#[test]
+fn a_misspelt_file_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("cases")).unwrap();
+    for name in ["circle.toml", "cases/groove_across.toml"] {
+        fs::write(folder.path().join(name), "").unwrap();
+    }
+    for (written, meant) in [
+        ("circel.toml", Some("circle.toml")),
+        ("circle", Some("circle.toml")),
+        ("groove_across.toml", Some("cases/groove_across.toml")),
+        ("cases/groove-across.toml", Some("cases/groove_across.toml")),
+        ("something_else.toml", None),
+    ] {
+        let path = folder.path().join(written);
+        let said = CaseFile::load(&path, &[]).unwrap_err().to_string();
+        let expected = match meant {
+            Some(meant) => format!(
+                "there is no file {}: did you mean {}?",
+                path.display(),
+                folder.path().join(meant).display()
+            ),
+            None => format!("cannot read {}: ", path.display()),
+        };
+        assert!(said.starts_with(&expected), "{said}");
+    }
+}

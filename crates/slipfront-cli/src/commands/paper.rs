@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use slipfront_case::disk::is_empty;
+use slipfront_case::number_format::are;
 use slipfront_paper::Options;
 use slipfront_run::study::{Records, is_study};
 
@@ -79,8 +80,9 @@ impl Paper {
         }
         match paper.unexpected_verdicts().count() {
             0 => Ok(()),
-            count => Err(Failure::running(anyhow::anyhow!(
-                "{count} verdicts are not the expected ones: see {}",
+            unexpected => Err(Failure::running(anyhow::anyhow!(
+                "{} not as expected: see {}",
+                are(unexpected, "verdict"),
                 self.out.join("claims.csv").display()
             ))),
         }

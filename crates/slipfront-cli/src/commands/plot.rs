@@ -83,6 +83,12 @@ impl Plot {
 }
 
 fn expect_results(folder: &Path) -> Result<(), Failure> {
+    if folder.is_file() {
+        return Err(Failure::input(anyhow::anyhow!(
+            "{} is a file: plot takes folders of finished runs, whose series.csv it draws, and no other curves",
+            folder.display()
+        )));
+    }
     let path = folder.join("summary.json");
     let sentence = match path.try_exists() {
         Ok(true) => return Ok(()),

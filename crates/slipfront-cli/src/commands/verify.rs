@@ -6,6 +6,7 @@ use std::sync::Arc;
 use clap::Args;
 use jiff::Timestamp;
 use slipfront_case::case::Case;
+use slipfront_case::number_format::count;
 use slipfront_case::text::truncated;
 use slipfront_run::manifest::Manifest;
 use slipfront_run::program;
@@ -21,6 +22,7 @@ use crate::print_stderr::print_stderr;
 use crate::progress::run::RunProgress;
 use crate::signals::Signals;
 use crate::threads::set_threads;
+use crate::wrap;
 
 /// Check that results are what was written: every file of a run against its manifest, a study against its records
 #[derive(Args)]
@@ -71,14 +73,15 @@ impl Verify {
                 Err(failure) => return Err(failure),
             }
         }
-        let of_all = format!("of {} folders", self.folders.len());
+        let of_all = format!("of {}", count(self.folders.len(), "folder"));
+        let differ = if different == 1 { "differs" } else { "differ" };
         match (unusable, different) {
             (0, 0) => Ok(()),
             (0, _) => Err(Failure::running(anyhow::anyhow!(
-                "{different} {of_all} differ from what was written"
+                "{different} {of_all} {differ} from what was written"
             ))),
             (_, _) => Err(Failure::input(anyhow::anyhow!(
-                "{unusable} {of_all} cannot be verified, {different} differ"
+                "{unusable} {of_all} cannot be verified, {different} {differ}"
             ))),
         }
     }
@@ -175,7 +178,7 @@ impl Verify {
             text += &format!("{}: {}\n", folder.display(), verdict.what);
         }
         for note in &verdict.notes {
-            text += &format!("note: {note}\n");
+            text += &wrap::note(note);
         }
         text
     }

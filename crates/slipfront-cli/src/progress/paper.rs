@@ -10,7 +10,7 @@ pub(crate) struct PaperProgress(ProgressDisplay);
 impl PaperProgress {
     pub(crate) fn new(quiet: bool) -> Self {
         Self(ProgressDisplay::new(
-            "{bar:32} {pos}/{len} figures  {elapsed}  {msg}",
+            "{wide_bar} {pos} of {len} figures  {elapsed}  {msg}",
             quiet,
         ))
     }

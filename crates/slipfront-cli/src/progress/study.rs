@@ -1,5 +1,7 @@
 //! Progress of a study.
 
+use std::time::Duration;
+
 use slipfront_run::study::Progress;
 
 use super::display::{ProgressDisplay, time_left};
@@ -9,27 +11,12 @@ pub(crate) struct StudyProgress(ProgressDisplay);
 
 impl StudyProgress {
     pub(crate) fn new(quiet: bool) -> Self {
-        let template = "{bar:32} {pos}/{len} runs  {per_sec}, {eta} left  {msg}";
-        Self(ProgressDisplay::new(template, quiet))
+        Self(ProgressDisplay::new("{wide_bar} {msg}", quiet))
     }
 
     pub(crate) fn show(&mut self, now: &Progress) {
         let (done, total) = (now.done as u64, now.total as u64);
-        if now.here == 0 {
-            self.0.start_from(done, total);
-        }
-        let notes = notes(now);
-        self.0.move_bar(done, total, || notes.clone());
-        self.0.print_line_if_due(|passed| {
-            // Runs recorded before say nothing of the rate.
-            let rate = if now.here > 0 {
-                let rate = now.here as f64 / passed.as_secs_f64();
-                format!("  {rate:.1} runs/s  {} left", time_left(total - done, rate))
-            } else {
-                String::new()
-            };
-            format!("{done} of {total} runs{rate}{notes}")
-        });
+        self.0.show(done, total, |passed| text(now, passed));
     }
 
     pub(crate) fn finish(&self) {
@@ -37,32 +24,76 @@ impl StudyProgress {
     }
 }
 
-/// Failed runs, and the widest interval of a study that goes on until intervals are narrow.
-fn notes(now: &Progress) -> String {
+/// Runs done, their rate in this process, which has run for the time `passed`, what is left, failed runs, and the widest interval
+/// of a study that goes on until intervals are narrow.
+fn text(now: &Progress, passed: Duration) -> String {
     let failed = match now.failed {
         0 => String::new(),
         failed => format!("  {failed} failed"),
     };
-    let worst = now.worst.map_or(String::new(), |worst| {
-        format!("  widest interval \u{b1} {worst:.1e}")
-    });
-    failed + &worst
+    let worst = now
+        .worst
+        .map_or(String::new(), |worst| format!("  widest \u{b1} {worst:.1e}"));
+    // Runs recorded before say nothing of the rate.
+    let rate = match now.here {
+        0 => String::new(),
+        here => format!("  {}", rate(here as f64 / passed.as_secs_f64())),
+    };
+    let left = time_left((now.total - now.done) as u64, now.here as u64, passed);
+    format!("{} of {} runs{rate}{left}{failed}{worst}", now.done, now.total)
+}
+
+/// A rate in the unit in which it is a number that can be read.
+fn rate(per_second: f64) -> String {
+    if per_second >= 1.0 {
+        format!("{per_second:.1} runs/s")
+    } else if 60.0 * per_second >= 1.0 {
+        format!("{:.1} runs/min", 60.0 * per_second)
+    } else {
+        format!("{:.1} runs/h", 3600.0 * per_second)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// All runs were recorded before: there is no rate.
     #[test]
-    fn a_study_in_which_nothing_is_left_has_no_rate() {
-        let mut progress = StudyProgress(ProgressDisplay::due_lines());
-        progress.show(&Progress {
+    fn rates_have_units_and_count_the_runs_of_this_process() {
+        let mut now = Progress {
             done: 7,
             total: 7,
             here: 0,
             failed: 0,
             worst: None,
-        });
+        };
+        // All were recorded before: there is no rate.
+        assert_eq!(text(&now, Duration::from_secs(1)), "7 of 7 runs");
+        now = Progress {
+            done: 100,
+            total: 110,
+            here: 5,
+            ..now
+        };
+        assert_eq!(
+            text(&now, Duration::from_secs(30)),
+            "100 of 110 runs  10.0 runs/min  60 seconds left"
+        );
+        assert_eq!(rate(12.0), "12.0 runs/s");
+        assert_eq!(rate(1.0 / 600.0), "6.0 runs/h");
+    }
+
+    /// Of the most runs that need no confirmation.
+    #[test]
+    fn the_longest_text_fits_a_terminal() {
+        let now = Progress {
+            done: 9999,
+            total: 10_000,
+            here: 9998,
+            failed: 99,
+            worst: Some(1e-3),
+        };
+        let text = text(&now, Duration::from_secs(599_880));
+        assert!(text.chars().count() <= 80, "{text}");
     }
 }

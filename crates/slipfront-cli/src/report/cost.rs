@@ -25,7 +25,7 @@ fn onset(case: &Case) -> String {
     let mut text = String::new();
     if case.file.texture.is_empty() {
         let (first, late) = at(case.model.first_slip_estimate());
-        text += &format!("first slip        {first}, exactly{late}\n");
+        text += &format!("first slip        {first}{late}\n");
     }
     let (onset, late) = at(2.5 / case.groups.v_star);
     text += &format!("onset expected    about {onset} (Eq. 12){late}\n");

@@ -2,7 +2,7 @@
 
 use slipfront::FrictionLaw;
 use slipfront_case::case::Case;
-use slipfront_case::number_format::{four_digits, with_si_prefix};
+use slipfront_case::number_format::{count, four_digits, with_si_prefix};
 
 /// The resolved physics of a case, as a tree.
 pub(crate) fn physics(case: &Case) -> String {
@@ -36,7 +36,9 @@ fn slider(case: &Case) -> String {
         format!("{edges_x} in x, {edges_y} in y")
     };
     let size = with_si_prefix(case.scales.block_size, "m");
-    format!("{} x {} blocks of {size}, {edges} edges", lattice.nx, lattice.ny)
+    let (nx, ny) = (lattice.nx, lattice.ny);
+    let blocks = if nx * ny == 1 { "block" } else { "blocks" };
+    format!("{nx} x {ny} {blocks} of {size}, {edges} edges")
 }
 
 fn material(case: &Case) -> String {
@@ -66,16 +68,16 @@ fn drive(case: &Case) -> String {
 fn friction(case: &Case) -> String {
     let (groups, friction) = (&case.groups, &case.file.friction);
     let law = match friction.law {
-        FrictionLaw::Projection => "projection",
-        FrictionLaw::Reversal => "reversal (for comparison)",
-        FrictionLaw::Literal => "literal (for comparison)",
+        FrictionLaw::Projection => "",
+        FrictionLaw::Reversal => ", law \"reversal\" (for comparison)",
+        FrictionLaw::Literal => ", law \"literal\" (for comparison)",
     };
     let spread = |field: &Option<String>, sigma: f64| match field {
         Some(file) => format!("from {file}"),
-        None => format!("sigma* = {}", four_digits(sigma)),
+        None => format!("spread {}", four_digits(sigma)),
     };
     format!(
-        "{law}; mu_s = {} ({}), R* = {} ({}), seed {}",
+        "mu_s = {} ({}), R* = {} ({}), seed {}{law}",
         four_digits(friction.mu_static),
         spread(&friction.mu_static_field, groups.sigma_static_star),
         four_digits(groups.r_star),
@@ -103,10 +105,10 @@ fn time(case: &Case) -> String {
     let time_plan = &case.time_plan;
     let end_star = time_plan.end_star();
     format!(
-        "to t* = {} ({}) in {} steps of dt* = {}",
+        "to t* = {} ({}) in {} of dt* = {}",
         four_digits(end_star),
         with_si_prefix(end_star * case.scales.time(), "s"),
-        time_plan.last_step,
+        count(time_plan.last_step as usize, "step"),
         four_digits(time_plan.dt_star)
     )
 }

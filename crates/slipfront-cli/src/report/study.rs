@@ -3,10 +3,11 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use slipfront_case::number_format::{byte_size, with_uncertainty};
-use slipfront_run::study::{Plan, RunKey, StudyResults};
+use slipfront_case::number_format::{are, byte_size, count, with_half_width};
+use slipfront_run::study::{Plan, RunKey, StudyResults, idle_axes};
 
 use super::times::duration;
+use crate::wrap::note;
 
 /// Most levels of an axis that are printed.
 const MAX_LEVELS: usize = 10;
@@ -22,7 +23,7 @@ pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) 
     let settings = &plan.settings;
     let (min, max) = (settings.min_replicates(), settings.max_replicates());
     let replicates = match &settings.until {
-        None => format!("{} replicates", settings.replicates),
+        None => count(min, "replicate"),
         Some(until) => format!(
             "{min} to {max} replicates, until {} is known within {}",
             until.key, until.half_width
@@ -35,20 +36,23 @@ pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) 
     };
     let runs = |replicates| plan.runs(replicates).count();
     let runs = if runs(min) == runs(max) {
-        runs(min).to_string()
+        count(runs(min), "run")
     } else {
-        format!("{} to {}", runs(min), runs(max))
+        format!("{} to {} runs", runs(min), runs(max))
     };
     format!(
-        "{}\n{}  {} points, {replicates}{reference}: at most {runs} runs\n  \
-         {block_steps:.2e} block-steps, {} on {threads} threads of this machine\n  \
-         {} of memory for {threads} runs at once, {} on the disk\n{}",
+        "{}\n{}  {}, {replicates}{reference}: at most {runs}\n  \
+         {block_steps:.2e} block-steps, {} on {} of this machine\n  \
+         {} of memory for {} at once, {} on the disk\n{}{}",
         plan.name,
         axes(plan),
-        plan.points.len(),
+        count(plan.points.len(), "point"),
         duration(seconds),
+        count(threads, "thread"),
         byte_size(plan.memory(threads)),
+        count(threads, "run"),
         byte_size(plan.disk(plan.runs(min))),
+        idle_axes(plan).iter().map(|axis| note(axis)).collect::<String>(),
         case_warnings(plan)
     )
 }
@@ -78,11 +82,13 @@ fn case_warnings(plan: &Plan) -> String {
             (1, _) => format!("at the point {first}"),
             (some, _) => format!("at {some} points, the first {first}"),
         };
-        text += &format!("note: {} ({place})\n", warning.sentence);
+        text += &note(&format!("{} ({place})", warning.sentence));
     }
     if all.len() > MAX_WARNINGS {
         let more = all.len() - MAX_WARNINGS;
-        text += &format!("note: and {more} more of the kind, which `slipfront check` tells for a case\n");
+        text += &note(&format!(
+            "and {more} more of the kind, which `slipfront check` tells for a case"
+        ));
     }
     text
 }
@@ -112,7 +118,8 @@ fn points(plan: &Plan, results: &StudyResults) -> String {
         text += &format!("  {name:<width$}   {}\n", point_value(plan, results, point));
     }
     if plan.points.len() > shown {
-        text += &format!("  and {} more points in points.csv\n", plan.points.len() - shown);
+        let more = count(plan.points.len() - shown, "more point");
+        text += &format!("  and {more} in points.csv\n");
     }
     text
 }
@@ -121,10 +128,14 @@ fn points(plan: &Plan, results: &StudyResults) -> String {
 fn point_value(plan: &Plan, results: &StudyResults, point: usize) -> String {
     let is_here = |run: &RunKey| run.point == point;
     let has_failed = || results.failures().any(|(run, _)| is_here(&run));
+    let without = results.without_transition().filter(is_here).count();
     let mut text = match results.sample(plan, point, plan.main_quantity()) {
         Some(sample) => {
-            let mean = with_uncertainty(sample.mean, sample.half_width);
-            format!("{mean}   n = {}", sample.n)
+            // The largest mu* of a run without a transition may still be exceeded.
+            let is_bound = without > 0 && plan.main_quantity() == "static_friction_star";
+            let bound = if is_bound { "at least " } else { "" };
+            let mean = with_half_width(sample.mean, sample.half_width);
+            format!("{bound}{mean}   n = {}", sample.n)
         }
         None if has_failed() => "failed".to_owned(),
         None => "none".to_owned(),
@@ -132,10 +143,9 @@ fn point_value(plan: &Plan, results: &StudyResults, point: usize) -> String {
     if results.points[point].narrow == Some(false) {
         text += "   (interval still too wide)";
     }
-    let without = results.without_transition().filter(is_here).count();
     if without > 0 {
         let runs = results.runs.keys().filter(|run| is_here(run)).count();
-        text += &format!("   (no transition in {without} of {runs} runs)");
+        text += &format!("   (no transition in {without} of {})", count(runs, "run"));
     }
     text
 }
@@ -149,18 +159,18 @@ fn notes(plan: &Plan, results: &StudyResults) -> String {
         .map(|run| plan.identity(run))
         .collect();
     if !without.is_empty() {
-        text += &format!(
-            "note: mu* never fell half-way to its steady level in {} runs, and static_friction_star is the largest mu* of them: \
-             lengthen `time.duration_star` of the base, unless they were expected to have no transition\n",
-            without.len()
-        );
+        text += &note(&format!(
+            "mu* never fell half-way to its steady level in {}, and static_friction_star is the largest mu* of them: lengthen \
+             `time.duration_star` of the base, unless they were expected to have no transition",
+            count(without.len(), "run")
+        ));
     }
     text += &case_warnings(plan);
     if results.orphaned_runs > 0 {
-        text += &format!(
-            "note: {} recorded runs are not part of the study as it is now; they stay in records.jsonl\n",
-            results.orphaned_runs
-        );
+        text += &note(&format!(
+            "{} not part of the study as it is now, but kept in records.jsonl",
+            are(results.orphaned_runs, "recorded run")
+        ));
     }
     text
 }

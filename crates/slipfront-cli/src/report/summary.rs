@@ -5,6 +5,7 @@ use slipfront_case::number_format::{four_digits, with_si_prefix, with_uncertaint
 use slipfront_run::summary::Summary;
 
 use super::times::instant;
+use crate::wrap::note;
 
 /// The summary of a run, a line for each number, and its warnings.
 pub(crate) fn summary(case: &Case, summary: &Summary) -> String {
@@ -23,8 +24,10 @@ pub(crate) fn summary(case: &Case, summary: &Summary) -> String {
 }
 
 fn static_friction(case: &Case, summary: &Summary) -> String {
+    // A peak that no fall has followed may still be exceeded.
+    let bound = if summary.transition { "" } else { "at least " };
     format!(
-        "mu_s* = {:.4}   mu_s = {:.4}   at {}",
+        "{bound}mu_s* = {:.4}   mu_s = {:.4}   at {}",
         summary.static_friction_star,
         summary.static_friction,
         instant(summary.onset_time_star, &case.scales)
@@ -60,16 +63,13 @@ fn sliding_blocks(summary: &Summary) -> String {
 
 fn energy(summary: &Summary) -> String {
     format!(
-        "{} put in, the ledger closes to {:.1e}",
+        "{} put in, {:.1e} of it unaccounted for",
         with_si_prefix(summary.work_j, "J"),
         summary.energy_error.abs()
     )
 }
 
-/// Warnings, a line for each.
+/// Warnings, a note for each.
 pub(super) fn notes(warnings: &[String]) -> String {
-    warnings
-        .iter()
-        .map(|warning| format!("note: {warning}\n"))
-        .collect()
+    warnings.iter().map(|warning| note(warning)).collect()
 }

@@ -73,3 +73,8 @@ impl Workspace {
         }
     }
 }
+
+/// What is printed, with every note on one line again.
+pub(crate) fn unwrapped(text: &str) -> String {
+    text.replace("\n      ", " ")
+}

@@ -1,6 +1,6 @@
 //! Help, version, completions, and what `check` and `run` print.
 
-use crate::fixtures::SMALL;
+use crate::fixtures::{SMALL, unwrapped};
 use crate::support::workspace::Workspace;
 
 #[test]
@@ -61,7 +61,7 @@ fn check_prints_groups_onset_and_cost_and_runs_nothing() {
         "6 x 5 blocks of 1 um",
         "Omega* = 0.1",
         "V* = 0.1",
-        "R* = 0.5 (sigma* = 0.05)",
+        "mu_s = 1 (spread 0.05), R* = 0.5 (spread 0.05), seed 1",
         "onset expected    about t* = 25",
         "stability         dt* = 0.1 of at most 0.9058",
         "cost ",
@@ -81,6 +81,7 @@ fn check_warns_where_the_model_leaves_its_validity() {
         "check odd.toml --set drive.v_star=0.3 --set time.step=0.6 --set load.pressure=3GPa \
          --set friction.sigma_static_star=0.9",
     );
+    let said = unwrapped(&said);
     for words in [
         "texture 1 reaches over a free edge",
         "negative draws",
@@ -93,18 +94,15 @@ fn check_warns_where_the_model_leaves_its_validity() {
     }
     // A texture that the blocks cannot show, and coefficients that are not what mu_static says.
     let fine = "texture.0={shape=\"cavity\",coverage=50,array=[1000,1000]}";
-    let said = workspace.succeed(&format!("check small.toml --set {fine}"));
+    let said = unwrapped(&workspace.succeed(&format!("check small.toml --set {fine}")));
     assert!(
         said.contains("covers 0.00 % of the blocks instead of 50.00 %"),
         "{said}"
     );
     workspace.write("mu.csv", "0.4,0.5,0.6\n0.4,0.5,0.6\n");
     let given = "check small.toml --set slider.blocks=[3,2] --set friction.mu_static_field=mu.csv";
-    assert!(
-        workspace
-            .succeed(given)
-            .contains("a mean of 0.5000, mu_static is 1:")
-    );
+    let said = unwrapped(&workspace.succeed(given));
+    assert!(said.contains("a mean of 0.5000, mu_static is 1:"), "{said}");
     // Of these only the size remains where nothing is odd.
     let calm = workspace.succeed("check small.toml");
     assert_eq!(calm.matches("note:").count(), 1, "{calm}");
@@ -134,7 +132,99 @@ fn a_run_says_what_its_numbers_are_worth() {
     assert!(stuck.contains("no block in contact slipped"), "{stuck}");
     assert!(workspace.summary("stuck")["kinetic_friction_star"].is_null());
     let coarse = workspace.succeed("run small.toml -o coarse --set time.step=0.9");
-    assert!(coarse.contains("the ledger of energies misses"), "{coarse}");
+    assert!(
+        coarse.contains("of the energy put in is unaccounted for"),
+        "{coarse}"
+    );
     let fine = workspace.succeed("run small.toml -o fine");
-    assert!(!fine.contains("the ledger of energies misses"), "{fine}");
+    assert!(
+        !fine.contains("of the energy put in is unaccounted for"),
+        "{fine}"
+    );
+    // The largest pull so far is a bound and no coefficient; after a transition it is one.
+    assert!(stuck.contains("static friction   at least mu_s* = "), "{stuck}");
+    assert!(fine.contains("static friction   mu_s* = "), "{fine}");
+    assert_eq!(workspace.summary("stuck")["transition"], false);
+    assert!(workspace.summary("stuck")["first_slip_time_star"].is_null());
+}
+
+/// What is meant by a file or a folder in the place of a subcommand, and by a misspelt file.
+#[test]
+fn a_forgotten_subcommand_and_a_misspelt_file_are_understood() {
+    let workspace = Workspace::small();
+    workspace.write("study.toml", "base = 'small.toml'\n");
+    workspace.write("results/a/case.toml", SMALL);
+    for (line, meant) in [
+        (
+            "small.toml",
+            "`slipfront run small.toml` or `slipfront check small.toml`",
+        ),
+        ("study.toml", "`slipfront study study.toml`"),
+        (
+            "results/a",
+            "`slipfront plot results/a` or `slipfront verify results/a`",
+        ),
+        (
+            "run smal.toml",
+            "there is no file smal.toml: did you mean small.toml?",
+        ),
+        ("check small", "there is no file small: did you mean small.toml?"),
+        ("run results/a", "did you mean results/a/case.toml?"),
+        (
+            "study studdy.toml",
+            "there is no file studdy.toml: did you mean study.toml?",
+        ),
+    ] {
+        let said = workspace.fail(line, 2);
+        assert!(said.contains(meant), "{line}: {said}");
+    }
+    // Words that are neither stay what they are.
+    assert!(workspace.fail("rum", 2).contains("unrecognized subcommand"));
+}
+
+#[test]
+fn plot_says_what_it_takes() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o a");
+    workspace.write("measured.csv", "t,mu\n0,0\n");
+    let said = workspace.fail("plot a measured.csv", 2);
+    assert!(
+        said.contains("measured.csv is a file: plot takes folders of finished runs"),
+        "{said}"
+    );
+}
+
+/// A refused folder comes with the name of one that is free.
+#[test]
+fn a_folder_that_is_free_is_named() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml");
+    let again = "run small.toml --set drive.v_star=0.2";
+    let said = workspace.fail(again, 2);
+    assert!(said.contains("`--out results/small-2` is free"), "{said}");
+    workspace.succeed(&format!("{again} --out results/small-2"));
+    assert!(
+        workspace
+            .fail(again, 2)
+            .contains("`--out results/small-3` is free")
+    );
+}
+
+/// Lines of notes end between words, within the width of a terminal.
+#[test]
+fn notes_are_broken_between_words() {
+    let workspace = Workspace::small();
+    let said = workspace.succeed("run small.toml --set time.duration_star=5");
+    let notes = said.lines().skip_while(|line| !line.starts_with("note: "));
+    let notes: Vec<&str> = notes.take_while(|line| !line.starts_with("files in")).collect();
+    assert!(notes.iter().any(|line| line.starts_with("      ")), "{said}");
+    assert!(notes.iter().all(|line| line.chars().count() <= 80), "{said}");
+}
+
+#[test]
+fn one_block_is_no_blocks() {
+    let workspace = Workspace::small();
+    let said = workspace.succeed("check small.toml --set slider.blocks=[1,1]");
+    assert!(said.contains("1 x 1 block of 1 um"), "{said}");
+    assert!(said.contains("note: 1 block is few"), "{said}");
 }

@@ -232,5 +232,8 @@ fn periodic_edges_are_told_and_change_the_result() {
         "run small.toml -o c --set slider.blocks=[2,9] --set slider.edges=periodic",
         2,
     );
-    assert!(said.contains("too few for periodic edges"), "{said}");
+    assert!(
+        said.contains("2 blocks along x: periodic edges need at least 3"),
+        "{said}"
+    );
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::fixtures::RUN_FILES;
+use crate::fixtures::{RUN_FILES, unwrapped};
 use crate::support::workspace::Workspace;
 
 /// Verifies; gives the status and what was said on stdout and on stderr.
@@ -10,7 +10,7 @@ pub(crate) fn verified(workspace: &Workspace, line: &str) -> (i32, String, Strin
     let output = workspace.command(&format!("verify {line}")).output().unwrap();
     let [out, err] = [output.stdout, output.stderr].map(|said| String::from_utf8(said).unwrap());
     assert!(!err.contains("panicked"), "{err}");
-    (output.status.code().unwrap(), out, err)
+    (output.status.code().unwrap(), unwrapped(&out), err)
 }
 
 /// A run with an input, so that every kind of file is there.
@@ -62,7 +62,7 @@ fn every_changed_byte_is_seen() {
             let (status, said, errors) = verified(&workspace, "a");
             assert_eq!(status, 1, "byte {at} of {name}: {said}");
             assert!(
-                errors.contains("1 of 1 folders differ from what was written"),
+                errors.contains("1 of 1 folder differs from what was written"),
                 "{errors}"
             );
             // A case may be no case any more, besides; of a manifest that is not to be trusted nothing else is said.

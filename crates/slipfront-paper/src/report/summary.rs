@@ -3,9 +3,9 @@
 use crate::claims::ClaimResult;
 use crate::paper::Paper;
 
-/// A line for every claim, the number of claims with each verdict, and the verdicts that are not the expected ones.
+/// A table with a line for every claim, the number of claims with each verdict, and the verdicts that are not the expected ones.
 pub fn summary(paper: &Paper) -> String {
-    let mut text = String::new();
+    let mut text = format!("{:>3}  {:<22}  {:<18}  claim\n", "no.", "verdict", "measured");
     for result in &paper.results {
         let ClaimResult { claim, verdict, .. } = result;
         let deviation = claim.deviation_in_brackets();

@@ -59,8 +59,9 @@ pub enum Spacing {
 pub(super) struct AxisKeys {
     key: Option<String>,
     list: Option<Vec<Value>>,
-    linspace: Option<(f64, f64, usize)>,
-    logspace: Option<(f64, f64, usize)>,
+    /// `[from, to, count]`, as `logspace`.
+    linspace: Option<Vec<f64>>,
+    logspace: Option<Vec<f64>>,
     zip: Option<toml::Table>,
     name: Option<String>,
     variants: Option<toml::Table>,
@@ -220,17 +221,19 @@ impl Axis {
 fn values_of(
     key: &str,
     list: Option<Vec<Value>>,
-    linspace: Option<(f64, f64, usize)>,
-    logspace: Option<(f64, f64, usize)>,
+    linspace: Option<Vec<f64>>,
+    logspace: Option<Vec<f64>>,
 ) -> Result<(Vec<Value>, Spacing), String> {
     match (list, linspace, logspace) {
         (Some(list), None, None) => Ok((list, Spacing::Linear)),
-        (None, Some((from, to, count)), None) => {
+        (None, Some(range), None) => {
+            let (from, to, count) = ends_and_count("linspace", &range)?;
             // Symmetric, so that a spacing from -1 to 1 meets 0.
             let value = |share: f64| from * (1.0 - share) + to * share;
             Ok((spaced(from, to, count, value)?, Spacing::Linear))
         }
-        (None, None, Some((from, to, count))) => {
+        (None, None, Some(range)) => {
+            let (from, to, count) = ends_and_count("logspace", &range)?;
             if !(from > 0.0 && to > 0.0) {
                 return Err(format!("`logspace` from {from} to {to} must lie above 0"));
             }
@@ -350,6 +353,20 @@ pub(super) fn replaced_key<'k>(key: &str, earlier: &BTreeSet<&'k str>) -> Option
             .filter(|found| found.starts_with(&below))
     };
     same.or_else(inside).copied()
+}
+
+/// The three numbers of a spacing.
+fn ends_and_count(name: &str, range: &[f64]) -> Result<(f64, f64, usize), String> {
+    match range {
+        [from, to, count] if *count >= 0.0 && count.fract() == 0.0 => Ok((*from, *to, *count as usize)),
+        _ => {
+            let given: Vec<String> = range.iter().map(f64::to_string).collect();
+            Err(format!(
+                "`{name}` is [{}]: it must be [from, to, count], two ends and how many values, such as [0.01, 0.2, 6]",
+                truncated(&given.join(", "))
+            ))
+        }
+    }
 }
 
 /// `count` values from `from` to `to`, both exactly; `between` gives the value at a share of the way.
@@ -545,6 +562,11 @@ mod tests {
             "name = 'x'",
         ] {
             assert!(axis(text).is_err(), "{text}");
+        }
+        for range in ["[0, 1]", "[0, 1, 2.5]", "[0, 1, 5, 7]", "[0, 1, -5]"] {
+            let said = axis(&format!("key = 'a'\nlinspace = {range}")).unwrap_err();
+            let expected = format!("`linspace` is {range}: it must be [from, to, count]");
+            assert!(said.starts_with(&expected), "{said}");
         }
     }
 }

@@ -8,6 +8,7 @@ use crate::error::ResultsError;
 use crate::program;
 use crate::run_folder::error::FolderError;
 use slipfront_case::case_file::CaseError;
+use slipfront_case::number_format::{are, count};
 use slipfront_case::text::display_path;
 #[cfg(feature = "plot")]
 use slipfront_plot::PictureError;
@@ -25,8 +26,9 @@ pub enum StudyError {
     #[error("the axes of the study multiply to more than {limit} points: take fewer levels")]
     TooLarge { limit: usize },
     #[error(
-        "{threads} runs at once take about {needed} of memory where {available} are available to this process: give \
-        --threads {fit}"
+        "{} at once take about {needed} of memory where {available} are available to this process: give \
+        --threads {fit}",
+        count(*threads, "run")
     )]
     Memory {
         threads: usize,
@@ -79,8 +81,9 @@ pub enum StudyError {
     )]
     Keep(#[from] ResultsError),
     #[error(
-        "{runs} runs are in none of the shards{}: finish them, or run the rest with `slipfront study` on the \
-        study.toml of the united folder, with --out the folder itself",
+        "{} in none of the shards{}: finish them, or run the rest with `slipfront study` on the study.toml of the united \
+        folder, with --out the folder itself",
+        are(*runs, "run"),
         of_others(*others)
     )]
     Missing { runs: usize, others: usize },
@@ -104,7 +107,8 @@ pub(crate) fn of_others(runs: usize) -> String {
     match runs {
         0 => String::new(),
         _ => format!(
-            ", and {runs} recorded runs are of another program than {}, or of a study that was changed since",
+            ", and {} of another program than {}, or of a study that was changed since",
+            are(runs, "recorded run"),
             program::this_program()
         ),
     }

@@ -11,6 +11,7 @@ mod axis;
 mod error;
 mod execute;
 mod folder;
+mod idle_axes;
 mod input_copies;
 mod journal;
 #[cfg(feature = "plot")]
@@ -34,6 +35,7 @@ pub use error::StudyError;
 pub(crate) use error::of_others;
 pub use execute::{collect, execute};
 pub use folder::{StudyFolder, is_study, refuse_foreign, study_of, write};
+pub use idle_axes::idle_axes;
 pub use journal::Records;
 pub use plan::{Plan, Point, Role, RunKey, Warning};
 pub use record::{Outcome, Record, RunResult};

@@ -57,6 +57,46 @@ struct RunSpec {
     budget: Budget,
     /// Warnings about its case.
     warnings: Vec<String>,
+    /// What differs between its replicates.
+    random: Random,
+}
+
+/// The coefficients that differ from seed to seed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Random {
+    /// The static ones at the least.
+    Static,
+    /// The kinetic ones alone.
+    KineticAlone,
+    /// None.
+    Nothing,
+}
+
+impl Random {
+    fn of(case: &Case) -> Self {
+        let (friction, groups) = (&case.file.friction, &case.groups);
+        if friction.mu_static_field.is_none() && groups.sigma_static_star > 0.0 {
+            Self::Static
+        } else if friction.mu_kinetic_field.is_none() && groups.sigma_kinetic_star * groups.r_star > 0.0 {
+            Self::KineticAlone
+        } else {
+            Self::Nothing
+        }
+    }
+
+    /// What a reader of intervals must know.
+    fn note(self) -> Option<&'static str> {
+        match self {
+            Self::Static => None,
+            Self::KineticAlone => Some(
+                "replicates differ in their kinetic coefficients alone, and intervals show no more than that: the static \
+                 ones are the same for every seed",
+            ),
+            Self::Nothing => {
+                Some("all replicates are the same run: no coefficient is random, and one replicate says all")
+            }
+        }
+    }
 }
 
 /// A warning about points of a study.
@@ -168,6 +208,16 @@ impl Plan {
         base.with(&overrides)
     }
 
+    /// The case of a combination of levels, for a look at what it computes.
+    pub(super) fn case_of(&self, levels: Vec<usize>) -> Result<Case, CaseError> {
+        let point = Point {
+            index: 0,
+            levels,
+            specs: Vec::new(),
+        };
+        self.trimmed(self.case_file(&self.base.parse()?, &point, Role::Point)?, "point")
+    }
+
     /// Makes the case of a point, and collects what is known of its runs.
     fn spec(&self, base: &ParsedCase, point: &Point, role: Role) -> Result<RunSpec, CaseError> {
         let file = self.case_file(base, point, role)?;
@@ -180,6 +230,7 @@ impl Plan {
             block_steps: case.block_steps(),
             n_blocks: case.model.lattice.n_blocks(),
             budget: case.budget,
+            random: Random::of(&case),
             warnings: case.warnings(),
         })
     }
@@ -191,14 +242,22 @@ impl Plan {
         let kind = |sentence: &str| sentence.replace(|c: char| c.is_ascii_digit() || c == '.', "");
         let mut known: HashMap<String, usize> = HashMap::new();
         for (position, point) in self.points.iter().enumerate() {
-            let of_runs = point.specs.iter().flat_map(|run| &run.warnings);
-            let of_point: BTreeMap<String, &String> = of_runs.map(|one| (kind(one), one)).rev().collect();
+            let of_runs = point
+                .specs
+                .iter()
+                .flat_map(|run| &run.warnings)
+                .map(String::as_str);
+            let is_repeated = self.settings.max_replicates() > 1;
+            let random = point.specs.first().filter(|_| is_repeated);
+            let random = random.and_then(|run| run.random.note());
+            let of_point = of_runs.chain(random).map(|one| (kind(one), one));
+            let of_point: BTreeMap<String, &str> = of_point.rev().collect();
             for (kind, sentence) in of_point {
                 let at = *known.entry(kind).or_insert(warnings.len());
                 match warnings.get_mut(at) {
                     Some(warning) => warning.points += 1,
                     None => warnings.push(Warning {
-                        sentence: sentence.clone(),
+                        sentence: sentence.to_owned(),
                         points: 1,
                         first: position,
                     }),
@@ -417,6 +476,23 @@ mod tests {
     use std::path::Path;
 
     use super::*;
+
+    /// An interval of replicates that differ in little looks better than it is.
+    #[test]
+    fn what_differs_between_replicates_is_said() {
+        let notes = |keys: &str| -> Vec<String> {
+            let text =
+                format!("base.slider.blocks = [25, 25]\nbase.friction = {{ {keys} }}\nstudy.replicates = 2");
+            let file = StudyFile::parse(&text, "study.toml", "study", Path::new("")).unwrap();
+            let warnings = Plan::new(&file, None).unwrap().warnings();
+            warnings.into_iter().map(|warning| warning.sentence).collect()
+        };
+        assert!(notes("").is_empty());
+        assert!(notes("sigma_kinetic_star = 0").is_empty());
+        assert!(notes("sigma_static_star = 0")[0].contains("kinetic coefficients alone"));
+        assert!(notes("sigma_static_star = 0, r_star = 0")[0].contains("the same run"));
+        assert!(notes("sigma_static_star = 0, sigma_kinetic_star = 0")[0].contains("the same run"));
+    }
 
     /// Runs at once count with the largest of them, and not with more than there are.
     #[test]

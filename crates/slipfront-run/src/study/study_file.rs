@@ -204,6 +204,11 @@ impl StudyFile {
         Ok((portable_text(table)?, copies))
     }
 
+    /// Whether it has anything of a study: an empty file is one, too, and varies nothing.
+    pub fn is_study(&self) -> bool {
+        !self.table.is_empty()
+    }
+
     /// Whether its base is a file of its own, and not a table in it.
     pub fn has_base_file(&self) -> bool {
         self.table.get("base").is_some_and(toml::Value::is_str)

@@ -10,9 +10,11 @@ use std::sync::Arc;
 use clap::Args;
 use jiff::Timestamp;
 use slipfront_case::case::Case;
+use slipfront_case::text::{display_path, shell_quoted};
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::results;
 use slipfront_run::run_folder::OpenedFolder;
+use slipfront_run::run_folder::error::FolderError;
 use slipfront_run::running::Running;
 
 use self::complete::complete;
@@ -95,7 +97,9 @@ impl Run {
         case.budget
             .check_disk(&case.file, &out, replaced, options.interval.saves())
             .map_err(Failure::input)?;
-        let mut folder = folder.prepare(self.force, &case.inputs).map_err(Failure::input)?;
+        let mut folder = folder
+            .prepare(self.force, &case.inputs)
+            .map_err(|error| with_free_folder(error, &out))?;
         // What the run needs to go on if it is stopped.
         results::write_case(&case, &mut folder).map_err(Failure::running)?;
         if options.is_verbose() {
@@ -108,6 +112,26 @@ impl Run {
             checkpoints,
             options,
         )
+    }
+}
+
+/// The refusal of a folder; where it is taken, with the name of one that is free.
+fn with_free_folder(error: FolderError, out: &Path) -> Failure {
+    let is_taken = matches!(
+        error,
+        FolderError::NotEmpty { .. } | FolderError::Interrupted { .. }
+    );
+    let mut numbered = (2..1000).map(|number| {
+        let mut name = out.as_os_str().to_owned();
+        name.push(format!("-{number}"));
+        PathBuf::from(name)
+    });
+    match numbered.find(|free| is_taken && free.symlink_metadata().is_err()) {
+        Some(free) => {
+            let free = shell_quoted(&display_path(&free));
+            Failure::input(anyhow::anyhow!("{error}; `--out {free}` is free"))
+        }
+        None => Failure::input(error),
     }
 }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use slipfront_case::number_format::count;
 use slipfront_run::study::{Plan, StudyFolder, collect, is_study, refuse_foreign, study_of};
 
 use super::run::finish;
@@ -38,8 +39,9 @@ impl Merge {
         }
         if !self.quiet {
             print_stderr(&format!(
-                "{taken} runs taken over from {} shards",
-                self.shards.len()
+                "{} taken over from {}",
+                count(taken, "run"),
+                count(self.shards.len(), "shard")
             ));
         }
         let results = collect(&plan, &mut folder.records).map_err(Failure::running)?;

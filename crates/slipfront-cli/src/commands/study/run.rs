@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use slipfront_case::disk::is_same;
+use slipfront_case::number_format::count;
 use slipfront_run::study;
 use slipfront_run::study::{Plan, RunKey, Shard, StudyError, StudyFile, StudyFolder, StudyResults};
 
@@ -16,6 +17,7 @@ use crate::progress::study::StudyProgress;
 use crate::report;
 use crate::signals::Signals;
 use crate::threads::set_threads;
+use crate::wrap::for_stderr;
 
 #[derive(Args)]
 pub(crate) struct StudyRun {
@@ -106,7 +108,7 @@ fn complete(plan: &Plan, folder: &mut StudyFolder, threads: usize, quiet: bool) 
     let signals = Signals::catch().map_err(Failure::running)?;
     let mut progress = StudyProgress::new(quiet);
     if !quiet {
-        print_notes(folder);
+        print_notes(plan, folder);
     }
     let path = folder.path().to_owned();
     let done = study::execute(
@@ -127,18 +129,20 @@ fn complete(plan: &Plan, folder: &mut StudyFolder, threads: usize, quiet: bool) 
     finish(plan, &results, folder, quiet)
 }
 
-/// Prints what the user must know of a folder that has been used before.
-fn print_notes(folder: &StudyFolder) {
+/// Prints what the user must know before the runs: of axes that change nothing, and of a folder that has been used before.
+fn print_notes(plan: &Plan, folder: &StudyFolder) {
+    let note = |sentence: &str| print_stderr(&for_stderr(&format!("note: {sentence}")));
+    for axis in study::idle_axes(plan) {
+        note(&axis);
+    }
     if folder.records.damaged > 0 {
-        print_stderr(&format!(
-            "note: {} damaged lines of the record file are passed over; their runs count as not run",
-            folder.records.damaged
+        note(&format!(
+            "the record file has {}, passed over: its runs count as not run",
+            count(folder.records.damaged, "damaged line")
         ));
     }
     if folder.changed {
-        print_stderr(
-            "note: the study has changed since this folder was last used; runs that still belong to it are kept",
-        );
+        note("the study has changed since this folder was last used; runs that still belong to it are kept");
     }
 }
 
@@ -164,9 +168,9 @@ fn expect_no_failures(plan: &Plan, results: &StudyResults) -> Result<(), Failure
     };
     let place = plan.describe(&plan.points[run.point]);
     let sentence = format!(
-        "{} of {} runs failed, the others stand in the tables; the first, replicate {} of the point {place}: {reason}",
+        "{} of {} failed, the others stand in the tables; the first, replicate {} of the point {place}: {reason}",
         failed.len(),
-        results.runs.len(),
+        count(results.runs.len(), "run"),
         run.replicate
     );
     Err(Failure::running(anyhow::anyhow!(sentence)))

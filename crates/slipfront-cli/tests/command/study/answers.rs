@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::results::{SMALL, SMALL_RUNS, deviation, mean};
+use crate::fixtures::unwrapped;
 use crate::support::process::stderr;
 use crate::support::workspace::Workspace;
 
@@ -261,7 +262,19 @@ fn runs_without_a_transition_are_pointed_out() {
         .collect();
     assert!(without.len() >= 6, "{without:?}");
     let note = format!("steady level in {} runs", without.len());
-    assert!(said.contains(&note), "{said}");
+    assert!(unwrapped(&said).contains(&note), "{said}");
+    // What is largest before a transition is a bound.
+    let text = workspace
+        .read_text("study.toml")
+        .replace("reference", "# reference");
+    workspace.write("bounds.toml", text);
+    let said = workspace.succeed("study bounds.toml -o bounds");
+    let at_least = said.lines().filter(|line| line.contains("   at least 0."));
+    assert!(at_least.clone().count() > 0, "{said}");
+    assert!(
+        at_least.clone().all(|line| line.contains("no transition")),
+        "{said}"
+    );
 }
 
 /// The cases of a study have no other place to say it.
@@ -273,12 +286,56 @@ fn what_deserves_a_word_is_said_once() {
          [[axes]]\nkey = 'texture.0.coverage'\nlist = [0.2, 11]",
     );
     for line in ["study study.toml --dry-run", "study study.toml -o out"] {
-        let said = workspace.succeed(line);
+        let said = unwrapped(&workspace.succeed(line));
         let note = "of the blocks instead of 0.20 %: it is clipped, overlaps, or is too fine for the blocks \
                     (at the point texture.0.coverage = 0.2)";
         assert_eq!(said.matches(note).count(), 1, "{said}");
-        assert_eq!(said.matches("note: ").count(), 1, "{said}");
+        // Both levels cover the same blocks, which is said where nothing has run yet.
+        let idle = said.contains("the axis of `texture.0.coverage` changes nothing");
+        assert_eq!(idle, line.ends_with("--dry-run"), "{said}");
+        assert_eq!(said.matches("note: ").count(), 1 + usize::from(idle), "{said}");
     }
+}
+
+/// Pressures of one V* are one dimensionless model: the study says so before it runs, and how to mean it.
+#[test]
+fn an_axis_that_changes_nothing_is_pointed_out() {
+    let axes = "[[axes]]\nkey = 'load.pressure'\nlist = ['50 kPa', '100 kPa', '200 kPa']\n\
+                [[axes]]\nkey = 'drive.v_star'\nlist = [0.1, 0.2, 0.3]\n";
+    let workspace = Workspace::with_study(&format!("base.slider.blocks = [30, 30]\n{axes}"));
+    let note = "note: the axis of `load.pressure` changes nothing but the units of results as long as `drive.v_star` is held: \
+                set `drive.speed` in its place";
+    let said = unwrapped(&workspace.succeed("study study.toml --dry-run"));
+    assert_eq!(said.matches(note).count(), 1, "{said}");
+    assert!(said.contains("9 points, 1 replicate: at most 9 runs"), "{said}");
+    let output = workspace.output("study study.toml -o out --threads 1");
+    assert!(stderr(&output).contains(note), "{}", stderr(&output));
+    // So it is: of nine points six repeat what the others found, but for the digits that the strain of the load moves.
+    let rows = workspace.results("out").table("runs.csv");
+    let found: BTreeSet<String> = rows
+        .iter()
+        .map(|row| format!("{:.5}", row["static_friction_star"].parse::<f64>().unwrap()))
+        .collect();
+    assert_eq!(found.len(), 3, "{found:?}");
+    let quiet = workspace.output("study study.toml -o quiet --quiet");
+    assert!(stderr(&quiet).is_empty(), "{}", stderr(&quiet));
+}
+
+/// An interval is printed to three figures, with what it is of where that is little.
+#[test]
+fn intervals_are_rounded_and_say_what_varies() {
+    let study = "base.slider.blocks = [30, 30]\nbase.time.stop = 'after_onset'\nbase.drive.v_star = 0.2\n\
+                 base.friction.sigma_static_star = 0\nstudy.replicates = 3\nstudy.reference = { texture = [] }\n\
+                 base.texture = [{ shape = 'groove', coverage = 10 }]";
+    let workspace = Workspace::with_study(study);
+    let said = workspace.succeed("study study.toml -o out");
+    let value = said.lines().nth(1).unwrap();
+    let mean = value
+        .split_whitespace()
+        .find(|word| word.parse::<f64>().is_ok())
+        .unwrap();
+    assert!(mean.chars().filter(char::is_ascii_digit).count() <= 3, "{said}");
+    assert!(unwrapped(&said).contains("kinetic coefficients alone"), "{said}");
 }
 
 /// Few values are soon close together, and none never: neither is an interval that is narrow enough.

@@ -91,13 +91,13 @@ fn a_damaged_line_is_run_again() {
         },
         1,
     );
-    assert!(said.contains("1 damaged lines"), "{said}");
+    assert!(said.contains("1 damaged line,"), "{said}");
 }
 
 #[test]
 fn a_torn_last_line_is_run_again() {
     let said = mends(|bytes| bytes.truncate(bytes.len() - 100), 1);
-    assert!(said.contains("1 damaged lines"), "{said}");
+    assert!(said.contains("1 damaged line,"), "{said}");
 }
 
 #[test]

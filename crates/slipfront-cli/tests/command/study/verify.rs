@@ -87,7 +87,7 @@ fn run_folders_of_a_study_are_verified_too() {
     let (status, said, _) = verified(&workspace, "out");
     assert!(status == 0 && said.contains(", 0 run folders"), "{said}");
     assert!(
-        said.contains("note: 2 of 2 runs have no folder in out/runs"),
+        said.contains("note: 2 of 2 run folders are not in out/runs"),
         "{said}"
     );
 }
@@ -117,13 +117,13 @@ fn records_that_were_damaged_and_mended_are_whole() {
     std::fs::write(results.records(), bytes).unwrap();
     let (status, said, _) = verified(&workspace, "out");
     assert!(
-        status == 1 && said.contains("1 lines of it are damaged"),
+        status == 1 && said.contains("differs: it has 1 damaged line\n"),
         "{said}"
     );
     workspace.study("out");
     let (status, said, _) = verified(&workspace, "out");
     assert!(
-        status == 0 && said.contains("note: out/records.jsonl has 1 damaged lines"),
+        status == 0 && said.contains("note: out/records.jsonl has 1 damaged line, whose"),
         "{said}"
     );
 }

@@ -1,0 +1,219 @@
+//! Words that people try first, and what a case file has in their place.
+
+/// Each word, in small letters if it is longer than one, and the advice on it. Keys stand in backquotes.
+pub(super) const SYNONYMS: &[(&str, &str)] = &[
+    ("E", YOUNG),
+    ("young", YOUNG),
+    ("youngs_modulus", YOUNG),
+    ("modulus", YOUNG),
+    ("elastic_modulus", YOUNG),
+    ("stiffness", SPRINGS),
+    ("spring_constant", SPRINGS),
+    ("k", SPRINGS),
+    ("k1", SPRINGS),
+    ("k2", SPRINGS),
+    ("nu", POISSON),
+    ("poisson", POISSON),
+    ("poisson_ratio", POISSON),
+    ("rho", "the density is `slider.density`"),
+    (
+        "mass",
+        "the mass of a block follows from `slider.density` and `slider.block_size`",
+    ),
+    ("l", "the edge of a block is `slider.block_size`"),
+    ("n", BLOCKS),
+    ("N", BLOCKS),
+    ("nx", BLOCKS),
+    ("ny", BLOCKS),
+    ("length", BLOCKS),
+    (
+        "material",
+        "the material stands in [slider]: `slider.young_modulus`, `slider.density`, `slider.omega_star`",
+    ),
+    (
+        "damping",
+        "the damping is `slider.omega_star`, or `slider.damping_rate` with its unit",
+    ),
+    (
+        "omega",
+        "the damping is `slider.omega_star`, or `slider.damping_rate` with its unit",
+    ),
+    ("boundary", "what lies beyond the edges is `slider.edges`"),
+    ("periodic", "periodic edges are `slider.edges` = \"periodic\""),
+    ("P", PRESSURE),
+    ("force", PRESSURE),
+    ("normal_force", PRESSURE),
+    ("normal_load", PRESSURE),
+    ("weight", PRESSURE),
+    ("V", SPEED),
+    ("v", SPEED),
+    ("velocity", SPEED),
+    (
+        "angle",
+        "the direction of the drive is `drive.direction`, and a cavity is turned by `texture.N.rotate`",
+    ),
+    ("theta", "the direction of the drive is `drive.direction`"),
+    ("mu", FRICTION),
+    ("friction_coefficient", FRICTION),
+    ("coefficient", FRICTION),
+    ("mu_s", "the mean static coefficient is `friction.mu_static`"),
+    ("static", "the mean static coefficient is `friction.mu_static`"),
+    ("mu_k", KINETIC),
+    ("kinetic", KINETIC),
+    ("r", KINETIC),
+    ("ratio", KINETIC),
+    ("sigma", SPREAD),
+    ("std", SPREAD),
+    ("roughness", SPREAD),
+    (
+        "surface",
+        "the surface is made of the coefficients in [friction] and of each [[texture]]",
+    ),
+    ("dt", "the time step is `time.step`"),
+    ("timestep", "the time step is `time.step`"),
+    ("time_step", "the time step is `time.step`"),
+    ("end", DURATION),
+    ("t_end", DURATION),
+    ("n_steps", DURATION),
+    (
+        "every",
+        "snapshots at equal times are `output.snapshots` = { every = 5.0 }",
+    ),
+    (
+        "frames",
+        "what is written when are `output.snapshots` and `output.fields`",
+    ),
+    ("circle", CIRCLE),
+    ("circular", CIRCLE),
+    ("dimple", CIRCLE),
+    (
+        "dimples",
+        "many dimples are one `shape` = \"cavity\" with `array` = [4, 4]",
+    ),
+    ("disc", CIRCLE),
+    ("disk", CIRCLE),
+    ("hole", CIRCLE),
+    ("pit", CIRCLE),
+    ("pocket", CIRCLE),
+    ("sphere", CIRCLE),
+    (
+        "ellipse",
+        "an ellipse is `shape` = \"cavity\" with `w` between -1 and 1",
+    ),
+    (
+        "triangle",
+        "a triangle is `shape` = \"cavity\" with `s` = 2 and `w` between -1/2 and 1/2, or a \"polygon\"",
+    ),
+    (
+        "square",
+        "a square is `shape` = \"cavity\" with `s` = 3 and `w` between -1/3 and 1/3, or a \"polygon\"",
+    ),
+    (
+        "rectangle",
+        "a rectangle is `shape` = \"polygon\" with its four `points`",
+    ),
+    ("line", GROOVE),
+    ("stripe", GROOVE),
+    ("channel", GROOVE),
+    (
+        "groove_across",
+        "a groove is `shape` = \"groove\" with `orientation` = \"across\"",
+    ),
+    (
+        "groove_along",
+        "a groove is `shape` = \"groove\" with `orientation` = \"along\"",
+    ),
+    (
+        "image",
+        "an image is `shape` = \"mask\" with `file` = \"mask.png\"",
+    ),
+    ("png", "an image is `shape` = \"mask\" with `file` = \"mask.png\""),
+    ("radius", RADIUS),
+    ("diameter", RADIUS),
+    (
+        "size",
+        "the size of a texture is `coverage`, or `lambda` of a cavity and `width` of a groove; that of the slider is \
+        `slider.blocks` times `slider.block_size`",
+    ),
+    ("area", "the share of the area is `coverage`, in percent"),
+    ("depth", "a texture has no depth: blocks within it do not touch"),
+    (
+        "position",
+        "a cavity stands at `center`, a groove at `offset` from the middle",
+    ),
+    (
+        "x",
+        "a cavity stands at `center`, a groove at `offset` from the middle",
+    ),
+    (
+        "y",
+        "a cavity stands at `center`, a groove at `offset` from the middle",
+    ),
+    ("pitch", "cavities at equal distances are an `array` = [4, 4]"),
+    ("temperature", "the model has no temperature"),
+];
+
+const YOUNG: &str = "Young's modulus is `slider.young_modulus`";
+const SPRINGS: &str = "the springs follow from `slider.young_modulus`";
+const POISSON: &str = "Poisson's ratio is that of the lattice, 1/3, and cannot be set";
+const BLOCKS: &str = "the slider is `slider.blocks` = [25, 25] blocks of edge `slider.block_size`";
+const PRESSURE: &str = "the normal load is `load.pressure`, over the whole area";
+const SPEED: &str = "the speed of the drive is `drive.v_star`, or `drive.speed` with its unit";
+const FRICTION: &str =
+    "the mean coefficients are `friction.mu_static` and `friction.r_star` (or `friction.mu_kinetic`)";
+const KINETIC: &str =
+    "the mean kinetic coefficient is `friction.r_star` over the static one, or `friction.mu_kinetic` itself";
+const SPREAD: &str =
+    "the spreads of the coefficients are `friction.sigma_static_star` and `friction.sigma_kinetic_star`";
+const DURATION: &str = "the length of the run is `time.duration_star`, or `time.duration` with its unit";
+const CIRCLE: &str = "a circle is `shape` = \"cavity\" with `coverage`, or with `lambda`, its radius";
+const GROOVE: &str = "a straight one is `shape` = \"groove\" with `coverage` or `width`";
+const RADIUS: &str = "the radius of a circle is `lambda`";
+
+/// The advice on a word.
+pub(super) fn advice_on(word: &str) -> Option<&'static str> {
+    // Of one letter, E and e, V and v differ.
+    let small = word.to_lowercase();
+    let mut known = SYNONYMS.iter();
+    known
+        .find(|(known, _)| *known == word || (word.len() > 1 && *known == small))
+        .map(|(_, advice)| *advice)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case_file::key_table::SECTIONS;
+
+    /// Every key that is named exists, and no word is a key itself, which would be misdirected from the wrong table.
+    #[test]
+    fn advice_names_keys_that_exist() {
+        for (word, advice) in SYNONYMS {
+            let has = |table: &str, name: &str| {
+                let mut sections = SECTIONS.iter().filter(|section| section.table() == table);
+                sections.any(|section| section.key(name).is_some())
+            };
+            for named in advice.split('`').skip(1).step_by(2) {
+                let (table, name) = match named.split_once('.') {
+                    Some((table, name)) => (table, name.trim_start_matches("N.")),
+                    None => ("texture", named),
+                };
+                assert!(has(table, name) || name == "shape", "{word}: {named}");
+            }
+            assert!(
+                SECTIONS.iter().all(|section| section.key(word).is_none()),
+                "{word}"
+            );
+            assert!(word.len() == 1 || *word == word.to_lowercase(), "{word}");
+            assert_eq!(
+                SYNONYMS.iter().filter(|(other, _)| other == word).count(),
+                1,
+                "{word}"
+            );
+            assert_eq!(advice_on(word), Some(*advice));
+        }
+        assert_eq!(advice_on("E"), Some(YOUNG));
+        assert_eq!(advice_on("Velocity"), Some(SPEED));
+        assert_eq!(advice_on("e"), None);
+    }
+}

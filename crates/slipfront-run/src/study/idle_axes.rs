@@ -1,0 +1,183 @@
+//! Axes along which a study does not vary what is computed: the dimensionless model and its time plan are the same at every
+//! level. Pressure, stiffness and density alone do that, since they set units only, as long as the drive has a V*.
+
+use slipfront::observe::KineticStart;
+use slipfront_case::case::Case;
+
+use super::axis::Axis;
+use super::plan::Plan;
+
+/// Strain of the load below which results do not depend on it in the digits that are printed: it shows in the third one above
+/// ten times this.
+const NEGLIGIBLE_EPSILON: f64 = 1e-3;
+
+/// The keys that set the unit of speed (Eq. 11a): V* stays what it is when they vary.
+const UNITS_OF_SPEED: [&str; 4] = [
+    "load.pressure",
+    "slider.young_modulus",
+    "slider.density",
+    "friction.mu_static",
+];
+
+/// A sentence for each axis that changes nothing: the axis and the remedy.
+pub fn idle_axes(plan: &Plan) -> Vec<String> {
+    let idle = (0..plan.axes.len()).filter(|&axis| is_idle(plan, axis));
+    idle.map(|axis| sentence(&plan.axes[axis])).collect()
+}
+
+/// Whether all levels of an axis are one model, both at the first levels of the other axes and at the last ones.
+fn is_idle(plan: &Plan, axis: usize) -> bool {
+    let count = plan.axes[axis].levels.len();
+    let is_same_from = |others: Vec<usize>| {
+        let digest = |level: usize| {
+            let mut levels = others.clone();
+            levels[axis] = level;
+            // A level that is no valid case is one of a part of the study that this process does not run.
+            plan.case_of(levels).ok().as_ref().map(digest)
+        };
+        let first = digest(0);
+        first.is_some() && (1..count).all(|level| digest(level) == first)
+    };
+    let first = vec![0; plan.axes.len()];
+    let last: Vec<usize> = plan.axes.iter().map(|axis| axis.levels.len() - 1).collect();
+    count > 1 && is_same_from(first) && is_same_from(last)
+}
+
+/// Hash of all that the kernel and the observers use of a case. Numbers are rounded to 24 bits, since units that cancel leave
+/// the rounding of two operations at 53 bits.
+fn digest(case: &Case) -> blake3::Hash {
+    let (model, time) = (&case.model, &case.time_plan);
+    let mut hasher = blake3::Hasher::new();
+    let words = (model.lattice, model.law, time.last_step, time.stop);
+    hasher.update(format!("{words:?}").as_bytes());
+    let mut number = |value: f64| {
+        hasher.update(&(value as f32).to_le_bytes());
+    };
+    number(if model.epsilon > NEGLIGIBLE_EPSILON {
+        model.epsilon
+    } else {
+        0.0
+    });
+    let [along_x, along_y] = model.drive.direction;
+    for value in [model.drive.v_star, along_x, along_y, model.damping, time.dt_star] {
+        number(value);
+    }
+    if let KineticStart::At(from) = time.kinetic {
+        number(from);
+    }
+    let surface = &model.surface;
+    for block in 0..surface.n_blocks() {
+        number(surface.normal_force(block));
+        number(surface.static_limit(block));
+        number(surface.kinetic_force(block));
+    }
+    hasher.finalize()
+}
+
+fn sentence(axis: &Axis) -> String {
+    let keys = axis.keys();
+    let why = if keys.iter().any(|key| UNITS_OF_SPEED.contains(key)) {
+        "but the units of results as long as `drive.v_star` is held: set `drive.speed` in its place"
+    } else if keys.contains("slider.block_size") {
+        "but the units of results as long as no other length has one: vary `slider.blocks`"
+    } else if keys.contains("friction.seed") {
+        "as long as no coefficient is random: raise `friction.sigma_static_star`"
+    } else if keys.iter().any(|key| key.starts_with("texture")) {
+        "since all its levels cover the same blocks: take more of them by `slider.blocks`"
+    } else {
+        "with the other keys as they are: change those"
+    };
+    let columns = axis.columns.join("`, `");
+    format!("the axis of `{columns}` changes nothing {why}, or leave the axis out")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::study::StudyFile;
+
+    fn idle(text: &str) -> Vec<String> {
+        let text = format!("base.slider.blocks = [4, 4]\n{text}");
+        let file = StudyFile::parse(&text, "study.toml", "study", Path::new("")).unwrap();
+        idle_axes(&Plan::new(&file, None).unwrap())
+    }
+
+    fn axis(key: &str, list: &str) -> String {
+        format!("[[axes]]\nkey = '{key}'\nlist = {list}\n")
+    }
+
+    /// What is dimensionless alone counts, whatever the key is called.
+    #[test]
+    fn axes_of_units_are_named_with_their_remedy() {
+        let (pressure, speed) = (
+            axis("load.pressure", "['50 kPa', '100 kPa', '200 kPa']"),
+            axis("drive.v_star", "[0.02, 0.03, 0.05]"),
+        );
+        let said = idle(&format!("{pressure}{speed}"));
+        let expected = "the axis of `load.pressure` changes nothing but the units of results as long as `drive.v_star` is \
+                        held: set `drive.speed` in its place, or leave the axis out";
+        assert_eq!(said, [expected]);
+        // As the remedy says, and so do they change what is computed with sizes that have a unit.
+        assert!(idle(&format!("base.drive.speed = '0.1 mm/s'\n{pressure}")).is_empty());
+        for (key, list) in [
+            ("slider.young_modulus", "['50 GPa', '100 GPa']"),
+            ("slider.density", "['5 g/cm^3', '10 g/cm^3']"),
+            ("slider.block_size", "['1 um', '3 um']"),
+            // Divided by themselves, these leave other roundings.
+            ("friction.mu_static", "[0.3, 0.7, 1.0]"),
+        ] {
+            let said = idle(&axis(key, list));
+            assert!(said.len() == 1 && said[0].contains(key), "{key}: {said:?}");
+        }
+        let sized = "[[base.texture]]\nshape = 'cavity'\nlambda = '1 um'\n";
+        assert!(
+            idle(&format!(
+                "{sized}{}",
+                axis("slider.block_size", "['1 um', '3 um']")
+            ))
+            .is_empty()
+        );
+    }
+
+    #[test]
+    fn axes_that_change_what_is_computed_are_not_named() {
+        for (key, list) in [
+            ("friction.seed", "[1, 2]"),
+            ("friction.r_star", "[0.5, 0.6]"),
+            ("friction.sigma_kinetic_star", "[0, 0.05]"),
+            ("drive.direction", "[0, 10]"),
+            ("slider.omega_star", "[0.1, 0.2]"),
+            ("slider.edges", "['free', 'periodic']"),
+            ("time.duration_star", "[10, 20]"),
+            ("time.kinetic_from_star", "[200, 210]"),
+            ("time.stop", "['end', 'after_onset']"),
+            ("friction.law", "['projection', 'literal']"),
+            // Strains that show.
+            ("load.pressure", "['1 GPa', '2 GPa']"),
+        ] {
+            assert!(idle(&axis(key, list)).is_empty(), "{key}");
+        }
+        // Four blocks a side show no difference between these.
+        let sized = "[[base.texture]]\nshape = 'cavity'\n";
+        let said = idle(&format!("{sized}{}", axis("texture.0.coverage", "[12, 13]")));
+        assert!(said.len() == 1 && said[0].contains("the same blocks"), "{said:?}");
+        let smooth = "base.friction.sigma_static_star = 0\nbase.friction.sigma_kinetic_star = 0\n";
+        let said = idle(&format!("{smooth}{}", axis("friction.seed", "[1, 2]")));
+        assert!(
+            said.len() == 1 && said[0].contains("no coefficient is random"),
+            "{said:?}"
+        );
+    }
+
+    /// An axis that counts at the last levels of the others alone is none that changes nothing.
+    #[test]
+    fn an_axis_may_count_at_some_points_alone() {
+        let variants = "[[axes]]\nname = 'held'\n[axes.variants]\nv_star = { drive.v_star = 0.03 }\n\
+                        speed = { drive.speed = '0.1 mm/s' }\n";
+        let pressure = axis("load.pressure", "['50 kPa', '100 kPa']");
+        assert!(idle(&format!("{variants}{pressure}")).is_empty());
+        assert!(idle(&format!("{pressure}{variants}")).is_empty());
+    }
+}
