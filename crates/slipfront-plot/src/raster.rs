@@ -81,22 +81,20 @@ fn path(points: &[Point], closed: bool) -> Option<Path> {
 fn letters(text: &str, size: f64, at: Point, upwards: bool) -> Option<Path> {
     let mut path = PathBuilder::new();
     let scale = size as f32;
+    // Steps along the line and above it, y downwards.
+    let (along, above) = match upwards {
+        true => ([0.0, -1.0], [-1.0, 0.0]),
+        false => ([1.0, 0.0], [0.0, -1.0]),
+    };
     let mut pen = 0.0;
     for character in text.chars() {
-        match upwards {
-            true => {
-                let (x, y) = (at.0 as f32, (at.1 - pen) as f32);
-                font::draw(character, &mut path, |along, above| {
-                    (x - scale * above, y - scale * along)
-                });
-            }
-            false => {
-                let (x, y) = ((at.0 + pen) as f32, at.1 as f32);
-                font::draw(character, &mut path, |along, above| {
-                    (x + scale * along, y - scale * above)
-                });
-            }
-        }
+        let origin = [at.0 + pen * along[0], at.1 + pen * along[1]];
+        font::draw(character, &mut path, |right, up| {
+            let place = |axis: usize| {
+                origin[axis] as f32 + scale * (right * along[axis] as f32 + up * above[axis] as f32)
+            };
+            (place(0), place(1))
+        });
         pen += font::advance(character) * size;
     }
     path.finish()
