@@ -17,6 +17,7 @@ mod fig15;
 mod fig16;
 mod fig17;
 mod fig18;
+mod lattice;
 mod sensitivity;
 
 use crate::error::PaperError;
@@ -34,9 +35,10 @@ pub struct Figure {
     pub(crate) measure: fn(&mut FigureRunner, &mut FigureData) -> Result<(), PaperError>,
 }
 
-/// All figures and tables except the schematic of Fig. 1, and an appendix on what the paper leaves open.
+/// All figures and tables except the schematic of Fig. 1, a test of its springs, and an appendix on what the paper leaves open.
 #[rustfmt::skip]
-pub const FIGURES: [Figure; 19] = [
+pub const FIGURES: [Figure; 20] = [
+    Figure { name: "lattice", title: "Section 2.1: the springs, stretched", measure: lattice::measure },
     Figure { name: "fig02", title: "Fig. 2: a sampled surface", measure: fig02::measure },
     Figure { name: "table1", title: "Table 1: eight materials at one dimensionless speed", measure: fig03::measure_table },
     Figure { name: "fig03", title: "Fig. 3: eight materials, one curve", measure: fig03::measure },
@@ -58,7 +60,7 @@ pub const FIGURES: [Figure; 19] = [
     Figure { name: "sensitivity", title: "Appendix: what the paper leaves open", measure: sensitivity::measure },
 ];
 
-/// The figures that a user names: `all`, `fig3` or `fig03`, `table1`, `sensitivity`.
+/// The figures that a user names: `all`, `fig3` or `fig03`, `table1`, `lattice`, `sensitivity`.
 ///
 /// # Errors
 /// [`PaperError::Figure`] names the first unknown one.
