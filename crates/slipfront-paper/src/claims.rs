@@ -8,6 +8,12 @@ use crate::embedded_cases::CLAIMS;
 use crate::error::PaperError;
 use crate::number::Number;
 
+/// Why the numbers of claims are not in order.
+pub(super) const NUMBERING: &str = "A claim keeps its number: 2 and 62 are not used, since the paper does not say what they said, and \
+                                    those from 82 on were found later and stand where the text makes them.";
+/// What [`Claim::revised`] tells.
+pub(super) const REVISED: &str = "\u{201c}Revised\u{201d} tells what of a claim's wording or criterion was settled only after a measurement.";
+
 /// A claim of the paper and how it is judged.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -30,8 +36,11 @@ pub struct Claim {
     pub digits: usize,
     /// Bounds of the number within which the claim holds, ends included.
     pub within: [f64; 2],
-    /// A second number: where it is out of its bounds, the claim holds only with a condition.
-    pub condition: Option<Condition>,
+    /// A second number: where it is out of its bounds, the claim holds only with a condition, which its words name.
+    pub condition: Option<Reading>,
+    /// The number that a slip of the print leads to once it is put right: where it is within its bounds, a claim that does not
+    /// hold as printed is a misprint, which its words put right.
+    pub correction: Option<Reading>,
     /// The expected verdict. Another one points to a fault of the program or to a change of the model.
     pub expected: Verdict,
     /// Number of the deviation from the paper's print (D1 to D12) that explains the verdict.
@@ -39,21 +48,24 @@ pub struct Claim {
     /// A remark for the reader; may be empty.
     #[serde(default)]
     pub remark: String,
+    /// What of its wording or criterion was settled only after which measurement; empty if nothing was.
+    #[serde(default)]
+    pub revised: String,
     /// Whether two surfaces and one time step are enough to judge it.
     #[serde(default = "yes")]
     pub reduced: bool,
 }
 
-/// The condition of a claim.
+/// Another reading of a claim than the plain one of its text.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Condition {
+pub struct Reading {
     /// Name of the number that decides.
     pub quantity: String,
-    /// Bounds of the number within which the claim holds without a condition, ends included.
+    /// Bounds of the number within which this reading holds, ends included.
     pub within: [f64; 2],
-    /// The condition in words.
-    pub only: String,
+    /// The condition or the correction.
+    pub words: String,
 }
 
 fn three() -> usize {
@@ -72,18 +84,43 @@ pub enum Verdict {
     Holds,
     /// It holds under a condition that the paper does not state.
     HoldsWithCondition,
+    /// As printed it does not hold; with a slip of print or algebra put right it does.
+    Misprint,
     /// It does not hold.
     DoesNotHold,
 }
 
 impl Verdict {
+    /// All verdicts, in the order in which they are counted.
+    pub const ALL: [Self; 4] = [
+        Self::Holds,
+        Self::HoldsWithCondition,
+        Self::Misprint,
+        Self::DoesNotHold,
+    ];
+
     /// The verdict in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Holds => "holds",
             Self::HoldsWithCondition => "holds with a condition",
+            Self::Misprint => "misprint or slip of algebra",
             Self::DoesNotHold => "does not hold",
         }
+    }
+
+    /// How many claims have the verdict, as a part of a sentence about claims.
+    pub fn counted(self, count: usize) -> String {
+        let (one, several) = match self {
+            Self::Holds => ("holds", "hold"),
+            Self::HoldsWithCondition => ("holds with a condition", "hold with a condition"),
+            Self::Misprint => (
+                "is a misprint or slip of algebra",
+                "are misprints or slips of algebra",
+            ),
+            Self::DoesNotHold => ("does not hold", "do not hold"),
+        };
+        format!("{count} {}", if count == 1 { one } else { several })
     }
 }
 
@@ -94,8 +131,6 @@ pub struct ClaimResult {
     pub claim: Claim,
     /// The measured number.
     pub number: Number,
-    /// The measured number of its condition.
-    pub condition: Option<Number>,
     /// Whether it holds.
     pub verdict: Verdict,
 }
@@ -155,25 +190,24 @@ impl Claim {
                 quantity: quantity.clone(),
             })
         };
-        let number = measured(&self.quantity)?;
-        let condition = self.condition.as_ref();
-        let condition = condition
-            .map(|condition| measured(&condition.quantity))
-            .transpose()?;
         let inside = |number: &Number, [low, high]: [f64; 2]| (low..=high).contains(&number.value);
-        let general = match (&self.condition, &condition) {
-            (Some(bound), Some(number)) => inside(number, bound.within),
-            _ => true,
+        let holds_by = |reading: &Option<Reading>| -> Result<Option<bool>, PaperError> {
+            let Some(reading) = reading else {
+                return Ok(None);
+            };
+            Ok(Some(inside(&measured(&reading.quantity)?, reading.within)))
         };
-        let verdict = match (inside(&number, self.within), general) {
-            (false, _) => Verdict::DoesNotHold,
-            (true, true) => Verdict::Holds,
-            (true, false) => Verdict::HoldsWithCondition,
+        let number = measured(&self.quantity)?;
+        let (general, corrected) = (holds_by(&self.condition)?, holds_by(&self.correction)?);
+        let verdict = match (inside(&number, self.within), general, corrected) {
+            (true, Some(false), _) => Verdict::HoldsWithCondition,
+            (true, ..) => Verdict::Holds,
+            (false, _, Some(true)) => Verdict::Misprint,
+            (false, ..) => Verdict::DoesNotHold,
         };
         Ok(ClaimResult {
             claim: self,
             number,
-            condition,
             verdict,
         })
     }
@@ -185,15 +219,18 @@ impl ClaimResult {
         self.verdict == self.claim.expected
     }
 
-    /// The verdict in words, with the condition and the deviation that explain it.
+    /// The verdict in words, with the condition, the correction and the deviation that explain it.
     pub(super) fn verdict_in_full(&self) -> String {
         let words = self.verdict.words();
         let deviation = self.claim.deviation_in_brackets();
-        match (self.verdict, &self.claim.condition) {
-            (Verdict::HoldsWithCondition, Some(condition)) => {
-                format!("{words}: {}{deviation}", condition.only)
-            }
-            _ => format!("{words}{deviation}"),
+        let reading = match self.verdict {
+            Verdict::HoldsWithCondition => &self.claim.condition,
+            Verdict::Misprint => &self.claim.correction,
+            Verdict::Holds | Verdict::DoesNotHold => &None,
+        };
+        match reading {
+            Some(reading) => format!("{words}: {}{deviation}", reading.words),
+            None => format!("{words}{deviation}"),
         }
     }
 
@@ -207,10 +244,11 @@ impl ClaimResult {
     }
 }
 
-/// Number of claims with each verdict: holds, holds with a condition, does not hold.
-pub(super) fn count_verdicts(results: &[ClaimResult]) -> [usize; 3] {
-    [Verdict::Holds, Verdict::HoldsWithCondition, Verdict::DoesNotHold]
-        .map(|verdict| results.iter().filter(|result| result.verdict == verdict).count())
+/// How many claims have each verdict, as a sentence.
+pub(super) fn tally(verdicts: &[Verdict]) -> String {
+    let counted = Verdict::ALL
+        .map(|verdict| verdict.counted(verdicts.iter().filter(|&&other| other == verdict).count()));
+    format!("{} claims: {}", verdicts.len(), counted.join(", "))
 }
 
 #[cfg(test)]
@@ -227,15 +265,21 @@ mod tests {
             unit: String::new(),
             digits: 2,
             within,
-            condition: condition.map(|within| Condition {
-                quantity: "fig99.other".to_owned(),
-                within,
-                only: "on Sundays".to_owned(),
-            }),
+            condition: condition.map(other),
+            correction: None,
             expected: Verdict::Holds,
             deviation: None,
             remark: String::new(),
+            revised: String::new(),
             reduced: true,
+        }
+    }
+
+    fn other(within: [f64; 2]) -> Reading {
+        Reading {
+            quantity: "fig99.other".to_owned(),
+            within,
+            words: "on Sundays".to_owned(),
         }
     }
 
@@ -265,6 +309,33 @@ mod tests {
     }
 
     #[test]
+    fn a_claim_that_fails_as_printed_is_a_misprint_if_it_holds_corrected() {
+        let corrected = || Claim {
+            correction: Some(other([0.0, 1.0])),
+            ..claim([0.0, 1.0], None)
+        };
+        assert_eq!(verdict(corrected(), 2.0, 0.5), Verdict::Misprint);
+        assert_eq!(verdict(corrected(), 2.0, 2.0), Verdict::DoesNotHold);
+        assert_eq!(verdict(corrected(), 0.5, 2.0), Verdict::Holds);
+        let numbers = [("fig99.main", 2.0), ("fig99.other", 0.5)];
+        let numbers = numbers.map(|(name, value)| (name.to_owned(), Number::exact(value)));
+        let result = corrected().judge(&BTreeMap::from(numbers)).unwrap();
+        assert_eq!(
+            result.verdict_in_full(),
+            "misprint or slip of algebra: on Sundays"
+        );
+    }
+
+    #[test]
+    fn verdicts_are_counted_by_class() {
+        let verdicts = [Verdict::DoesNotHold, Verdict::Misprint, Verdict::Misprint];
+        assert_eq!(
+            tally(&verdicts),
+            "3 claims: 0 hold, 0 hold with a condition, 2 are misprints or slips of algebra, 1 does not hold"
+        );
+    }
+
+    #[test]
     fn another_verdict_than_the_expected_one_is_noticed() {
         let result = |value| {
             let numbers = BTreeMap::from([("fig99.main".to_owned(), Number::exact(value))]);
@@ -285,9 +356,22 @@ mod tests {
     #[test]
     fn the_list_of_claims_is_complete() {
         let claims = claims().unwrap();
-        assert!(claims.len() >= 30);
-        for (index, claim) in claims.iter().enumerate() {
-            assert_eq!(claim.number as usize, index + 1);
+        let mut numbers: Vec<u32> = claims.iter().map(|claim| claim.number).collect();
+        // Those of the first list stand in its order.
+        assert!(numbers.iter().filter(|&&number| number <= 81).is_sorted());
+        numbers.sort_unstable();
+        let last = numbers[numbers.len() - 1];
+        let unused: Vec<u32> = (1..=last).filter(|number| !numbers.contains(number)).collect();
+        assert_eq!(unused, [2, 62]);
+        assert!(numbers.windows(2).all(|pair| pair[0] < pair[1]), "{numbers:?}");
+        // Worded or changed after measuring, as the history of the list tells: the ledger says so.
+        for claim in claims
+            .iter()
+            .filter(|claim| [16, 40, 51, 56, 58].contains(&claim.number))
+        {
+            assert!(!claim.revised.is_empty(), "claim {}", claim.number);
+        }
+        for claim in &claims {
             assert!(
                 crate::figures::FIGURES
                     .iter()
@@ -306,6 +390,12 @@ mod tests {
             assert_eq!(
                 claim.expected == Verdict::HoldsWithCondition,
                 claim.condition.is_some(),
+                "claim {}",
+                claim.number
+            );
+            assert_eq!(
+                claim.expected == Verdict::Misprint,
+                claim.correction.is_some(),
                 "claim {}",
                 claim.number
             );

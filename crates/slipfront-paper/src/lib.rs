@@ -24,7 +24,7 @@ mod step_rule;
 mod sweep;
 
 pub use cache::FigureCache;
-pub use claims::{Claim, ClaimResult, Condition, Verdict, claims};
+pub use claims::{Claim, ClaimResult, Reading, Verdict, claims};
 pub use drawing::Drawing;
 pub use error::PaperError;
 pub use figure_data::{FigureData, Panel, Table};

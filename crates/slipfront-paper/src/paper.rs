@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use slipfront_run::study::{self, Records};
 
 use crate::cache::FigureCache;
-use crate::claims::{Claim, ClaimResult, claims, count_verdicts};
+use crate::claims::{Claim, ClaimResult, claims, tally};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::figures::{FIGURES, Figure};
@@ -71,11 +71,8 @@ impl Paper {
 
     /// How many claims have each verdict, as a sentence.
     pub(super) fn tally(&self) -> String {
-        let [holds, conditioned, fails] = count_verdicts(&self.results);
-        format!(
-            "{} claims: {holds} hold, {conditioned} hold with a condition, {fails} do not hold",
-            self.results.len()
-        )
+        let verdicts: Vec<_> = self.results.iter().map(|result| result.verdict).collect();
+        tally(&verdicts)
     }
 }
 

@@ -1,10 +1,11 @@
-//! Fig. 1: the lattice of blocks and springs, and the forces on a block. A drawing; nothing is run.
+//! Fig. 1: the lattice of blocks and springs, and the forces on a block; how stiff the springs make the slider.
 
 use slipfront_plot::{Sketch, Stroke, StrokeStyle};
 
 use crate::drawing::Drawing;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
+use crate::figures::lattice;
 use crate::runner::FigureRunner;
 
 /// Blocks a side of the part of the lattice that is drawn.
@@ -12,9 +13,7 @@ const BLOCKS: i32 = 3;
 /// Half the edge of a block, over the distance of two.
 const HALF: f64 = 0.14;
 
-// The signature is that of all figures.
-#[allow(clippy::unnecessary_wraps)]
-pub(super) fn measure(_: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
+pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let mut drawn = Sketch::default();
     from_above(&mut drawn);
     from_the_side(&mut drawn, [3.35, 0.6]);
@@ -25,7 +24,7 @@ pub(super) fn measure(_: &mut FigureRunner, data: &mut FigureData) -> Result<(),
          pulls it through k_s = k_2, friction F_f holds it.",
         Drawing::Sketch(drawn),
     );
-    Ok(())
+    lattice::measure(runner, data)
 }
 
 fn add(drawn: &mut Sketch, style: StrokeStyle, points: Vec<[f64; 2]>) {

@@ -81,6 +81,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         data.value(&format!("spread_{name}"), spread(mu_star));
         data.value(&format!("sliding_spread_{name}_percent"), spread(sliding_percent));
     }
+    other_surfaces(runner, main, data)?;
     let window = main.kinetic_window()?;
     data.value(
         "kinetic_spread",
@@ -108,6 +109,29 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         "fig03_as_printed",
         "The same with the speeds as printed: cases 3, 6 and 7 have V* = 0.015, 0.010 and 0.015, and fall out of line.",
         curves(&printed),
+    );
+    Ok(())
+}
+
+/// Case 8 on seven other surfaces than that of all eight cases.
+fn other_surfaces(runner: &FigureRunner, main: &Run, data: &mut FigureData) -> Result<(), PaperError> {
+    let until = main.instant('E')?.time_star;
+    let cases = (2..=8).map(|seed| runner.case("table1/case8", &[&format!("friction.seed={seed}")]));
+    let runs = runner.run(cases.collect::<Result<_, _>>()?)?;
+    let rows = runs.iter().map(|run| {
+        let difference = |value| main.largest_difference(run, [0.0, until], value);
+        [
+            run.case.file.friction.seed.to_string(),
+            format!("{:.3}", difference(mu_star)),
+            format!("{:.1}", difference(sliding_percent)),
+        ]
+    });
+    data.table(
+        "fig03_surfaces",
+        "Case 8 on other random surfaces: largest difference from the first surface, which all curves of Fig. 3 have here, up \
+         to the end of the transition.",
+        ["surface", "difference of mu*", "difference of N* (%)"],
+        rows,
     );
     Ok(())
 }

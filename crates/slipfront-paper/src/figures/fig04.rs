@@ -29,8 +29,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         largest(on_each(&runs, first_slip_rank)?),
     );
     data.values(
-        "stress_left_after_slip_percent",
-        &on_each(&runs, |run| stress_left(runner, run))?,
+        "fall_at_slip_over_rise",
+        &on_each(&runs, |run| fall_over_rise(runner, run))?,
     );
     data.values("slipped_at_peak_percent", &on_each(&runs, slipped_at_peak)?);
     data.values("rest_slips_within_percent", &on_each(&runs, rest_slips_within)?);
@@ -38,10 +38,12 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         "sliding_jump_percent",
         &on_each(&runs, |run| Ok(run.instant('D')?.point.sliding_percent))?,
     );
-    data.values(
-        "stress_falls_from_d_to_e_percent",
-        &on_each(&runs, falls_from_d_to_e)?,
-    );
+    for (name, letter) in [
+        ("stress_falls_from_c_to_e_percent", 'C'),
+        ("stress_falls_from_d_to_e_percent", 'D'),
+    ] {
+        data.values(name, &on_each(&runs, |run| falls_until_e(run, letter))?);
+    }
     data.values(
         "kinetic_minimum_over_e",
         &on_each(&runs, |run| {
@@ -88,13 +90,14 @@ fn first_slip_rank(run: &Run) -> Result<f64, PaperError> {
     Ok(1.0 + mu_static.iter().filter(|&&mu| mu < mu_static[first]).count() as f64)
 }
 
-/// How much of the contact stress of the first block to slip is left soon after, %.
-fn stress_left(runner: &FigureRunner, run: &Run) -> Result<f64, PaperError> {
+/// How far the contact stress of the first block to slip falls in the 2 t* after its slip, over its rise in the 2 t* before.
+/// A wave goes over two blocks in that time: what falls is the block's own stress, not that of the slider.
+fn fall_over_rise(runner: &FigureRunner, run: &Run) -> Result<f64, PaperError> {
     let (first, block) = (run.first_slip()?, run.first_block()?);
-    let dt_star = run.case.time_plan.dt_star;
-    // Just before the slip, and in steps of 0.5 after it for ten times the travel of a wave over a block.
-    let mut times = vec![first - dt_star];
-    times.extend((1..=20).map(|k| first + 0.5 * f64::from(k)));
+    // The last step at which the block still holds.
+    let held = first - run.case.time_plan.dt_star;
+    let mut times = vec![held - 2.0, held];
+    times.extend((1..=4).map(|k| held + 0.5 * f64::from(k)));
     let seed = format!("friction.seed={}", run.case.file.friction.seed);
     let again = runner.run_one(seen_at(runner.case(CASE, &[&seed])?, &times))?;
     let stress = |(_, frame): &(String, Frame)| -> Result<f64, PaperError> {
@@ -102,10 +105,10 @@ fn stress_left(runner: &FigureRunner, run: &Run) -> Result<f64, PaperError> {
     };
     let stresses = again.record.frames.iter().map(stress);
     let stresses = stresses.collect::<Result<Vec<f64>, _>>()?;
-    let [before, after @ ..] = &stresses[..] else {
+    let [before, at, after @ ..] = &stresses[..] else {
         return Ok(f64::NAN);
     };
-    Ok(100.0 * smallest(after.iter().copied()) / before)
+    Ok((at - smallest(after.iter().copied())) / (at - before))
 }
 
 /// Blocks that have slipped by the time of the peak, %.
@@ -122,10 +125,10 @@ fn rest_slips_within(run: &Run) -> Result<f64, PaperError> {
     Ok(100.0 * (run.time_of_share(1.0)? - onset) / onset)
 }
 
-/// Blocks whose contact stress is lower at E than at D, %.
-fn falls_from_d_to_e(run: &Run) -> Result<f64, PaperError> {
+/// Blocks whose contact stress is lower at E than at an earlier instant, %.
+fn falls_until_e(run: &Run, letter: char) -> Result<f64, PaperError> {
     let stress = |letter| run.field(run.instant(letter)?, Field::ContactStress);
-    let (before, after) = (stress('D')?, stress('E')?);
+    let (before, after) = (stress(letter)?, stress('E')?);
     let lower = before.iter().zip(after).filter(|(before, after)| after < before);
     Ok(100.0 * (lower.count() as f64 / before.len() as f64))
 }

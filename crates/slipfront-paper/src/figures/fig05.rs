@@ -3,9 +3,10 @@
 use crate::drawing::stress_maps;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
-use crate::run::curves;
+use crate::run::{Run, curves, mu_star, sliding_percent};
 use crate::runner::FigureRunner;
 use crate::statistics::mean;
+use crate::sweep::Sweep;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig05")?;
@@ -29,6 +30,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
          friction after it (E).",
         stress_maps(maps, 3),
     );
+    whole_curves(runner, &sweep, runs, data)?;
     // Each surface against the mean of the largest size: scatter counts as much as bias, as for one run.
     let long = runner.study("fig05_long")?;
     for (sweep, quantity) in [(&sweep, "static_friction_star"), (&long, "kinetic_friction_star")] {
@@ -41,6 +43,43 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         data.values(&format!("{quantity}_error_5"), &small);
         data.values(&format!("{quantity}_error_25"), &middle);
         data.value(&format!("{quantity}_error_ratio"), mean(&middle) / mean(&small));
+    }
+    Ok(())
+}
+
+/// How far the curves of the smaller sizes are from the mean curve of the largest; `firsts` are the first surfaces.
+fn whole_curves(
+    runner: &FigureRunner,
+    sweep: &Sweep,
+    firsts: Vec<Run>,
+    data: &mut FigureData,
+) -> Result<(), PaperError> {
+    let mut sizes = Vec::new();
+    for (size, first) in firsts.into_iter().enumerate() {
+        let mut runs = vec![first];
+        runs.extend(runner.run(sweep.cases(&[size])?.split_off(1))?);
+        sizes.push(runs);
+    }
+    let [small, middle, large] = &sizes[..] else {
+        return Ok(());
+    };
+    for (name, value) in [
+        ("curve_error", mu_star as fn(&_) -> f64),
+        ("sliding_curve_error", sliding_percent),
+    ] {
+        let mean_curve = |time: f64| mean(&large.iter().map(|run| run.at(time, value)).collect::<Vec<_>>());
+        let errors = |runs: &[Run]| -> Vec<f64> {
+            let error = |run: &Run| {
+                let rows = run.record.rows.iter();
+                let squares = rows.map(|row| (value(&row.point) - mean_curve(row.time_star)).powi(2));
+                mean(&squares.collect::<Vec<_>>()).sqrt()
+            };
+            runs.iter().map(error).collect()
+        };
+        let (small, middle) = (errors(small), errors(middle));
+        data.values(&format!("{name}_5"), &small);
+        data.values(&format!("{name}_25"), &middle);
+        data.value(&format!("{name}_ratio"), mean(&middle) / mean(&small));
     }
     Ok(())
 }

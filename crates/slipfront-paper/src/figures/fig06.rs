@@ -73,13 +73,19 @@ fn material(sweep: &Sweep, data: &mut FigureData) {
     data.number("factor_of_young_modulus", named("E x 4"));
     data.number("factor_of_density", named("rho x 4"));
     let star = |name: &str| factor("onset_time_star", name);
-    data.number("onset_star_factor_of_young_modulus", star("E x 4"));
-    data.number("onset_star_factor_of_low_density", star("rho / 4"));
+    // sqrt(E/rho) doubled in two ways, and sqrt(E rho).
+    for (name, changes) in [
+        ("onset_star_factor_of_quotient", ["E x 4", "rho / 4"]),
+        ("onset_star_factor_of_product", ["E x 4", "rho x 4"]),
+    ] {
+        data.value(name, largest(changes.map(|change| star(change).value)));
+    }
     let load = [named("P x 2"), named("mu_s x 2")].map(|number| number.value);
     data.value("least_factor_of_load", smallest(load));
     data.number("factor_of_speed", named("V x 2"));
     // t* as printed has no l in it (D4): the same slider made of larger blocks would begin to slide later in it.
     data.number("factor_of_block_size", named("l x 2"));
+    data.number("onset_star_factor_of_block_size", star("l x 2"));
     let rows = names.iter().enumerate().map(|(k, name)| {
         [
             name.clone(),

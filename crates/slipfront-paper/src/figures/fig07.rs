@@ -5,7 +5,11 @@ use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::run::{Run, mu_star, on_each};
 use crate::runner::FigureRunner;
-use crate::statistics::{largest, range};
+use crate::statistics::{largest, range, smallest};
+use crate::sweep::Sweep;
+
+/// Difference of static friction that no longer counts: a tenth of the scatter from surface to surface, 0.015 (Fig. 12).
+const SAME: f64 = 0.0015;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig07")?;
@@ -23,25 +27,93 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     );
     let amplitudes = on_each(&runs, Run::kinetic_fluctuation)?;
     let amplitude = amplitudes[amplitudes.len() - 1];
+    let least = smallest(amplitudes.iter().copied());
     let slow = runner.run_one(runner.case("table1/case8", &[])?)?;
     data.value("fluctuation", amplitude);
     data.value("fluctuation_over_slow", amplitude / slow.kinetic_fluctuation()?);
+    data.value("least_fluctuation_over_slow", least / slow.kinetic_fluctuation()?);
     data.value(
         "fluctuation_spread_percent",
         100.0 * range(&amplitudes) / amplitude,
     );
     let until = finest.record.summary.onset_time_star + 2.5 / finest.case.groups.v_star;
-    let differences = runs
-        .iter()
-        .map(|run| run.largest_difference(finest, [0.0, until], mu_star));
-    data.value("difference_between_steps", largest(differences));
-    // D11: how far do fine steps lead from coarse ones, at low and at high speed?
-    let steps = runner.study("fig07_steps")?;
-    for (speed, name) in ["slow", "fast"].into_iter().enumerate() {
-        let statics: Vec<f64> = (0..steps.axis(1).len())
-            .flat_map(|step| steps.values(&[speed, step], "static_friction_star"))
-            .collect();
-        data.value(&format!("static_friction_spread_{name}"), range(&statics));
-    }
+    data.value(
+        "difference_between_steps",
+        paper.largest_difference(finest, [0.0, until], mu_star),
+    );
+    steps(&runner.study("fig07_steps")?, data);
+    literal(&runner.study("fig07_literal")?, data);
     Ok(())
+}
+
+/// Static friction in steps from coarse to fine, the paper's among them (Eq. 13), at several speeds (D11).
+fn steps(sweep: &Sweep, data: &mut FigureData) {
+    // At a speed: the steps and static friction in each, of which the first step is the paper's and the last the finest.
+    let [slow, fast] = [0.01, 0.2].map(|v| sweep.level(v));
+    let over_steps = |speed: usize, quantity: &str| -> Vec<f64> {
+        let steps = 0..sweep.axis(1).len();
+        steps
+            .map(|step| sweep.number(&[speed, step], quantity).value)
+            .collect()
+    };
+    let statics = |speed| over_steps(speed, "static_friction_star");
+    data.value("static_friction_spread_fast", range(&statics(fast)));
+    let errors = |speed| -> Vec<f64> {
+        let statics = statics(speed);
+        let finest = statics[statics.len() - 1];
+        statics.iter().map(|mu| (mu - finest).abs()).collect()
+    };
+    let of_paper_step = (0..sweep.axis(0).len()).map(|speed| errors(speed)[0]);
+    data.value("error_of_paper_step", largest(of_paper_step));
+    // How many of the paper's steps go into the coarsest step that gives the same static friction.
+    let same = over_steps(slow, "dt_star").into_iter().zip(errors(slow));
+    let same: Vec<f64> = same
+        .filter(|(_, error)| *error < SAME)
+        .map(|(dt, _)| dt)
+        .collect();
+    let paper_step = over_steps(slow, "dt_star")[0];
+    data.value("paper_steps_in_one_that_does", largest(same) / paper_step);
+}
+
+/// Eq. 4 as printed: the step in which kinetic friction is as the paper has it, about R*, at several speeds (D11).
+fn literal(sweep: &Sweep, data: &mut FigureData) {
+    let (speeds, steps) = (sweep.axis(0), sweep.axis(1));
+    let best: Vec<f64> = (0..speeds.len())
+        .map(|speed| {
+            let number = |step: usize, quantity: &str| sweep.number(&[speed, step], quantity).value;
+            let excess: Vec<f64> = (0..steps.len())
+                .map(|step| number(step, "kinetic_friction_star") - number(step, "r_star"))
+                .collect();
+            zero(&steps, &excess)
+        })
+        .collect();
+    data.value("literal_step_ratio", best[best.len() - 1] / best[0]);
+    let rows = speeds.iter().zip(&best);
+    data.table(
+        "fig07_literal",
+        "The step in which Eq. 4 as printed gives mu_k* = R* = 0.5, between steps from 0.05 to 0.3: smaller steps give more, \
+         larger ones less (D2, D11). Beside it Eq. 13.",
+        ["V*", "dt*", "(2/3) V*"],
+        rows.map(|(v, dt)| [v.to_string(), format!("{dt:.3}"), format!("{:.4}", 2.0 / 3.0 * v)]),
+    );
+}
+
+/// Where values that fall through zero do so, between two places; NaN if they do not.
+fn zero(places: &[f64], values: &[f64]) -> f64 {
+    let crossing = (1..values.len()).find(|&k| values[k - 1] > 0.0 && values[k] <= 0.0);
+    crossing.map_or(f64::NAN, |k| {
+        let share = values[k - 1] / (values[k - 1] - values[k]);
+        places[k - 1] + share * (places[k] - places[k - 1])
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_zero_lies_between_the_signs() {
+        assert_eq!(zero(&[0.1, 0.2, 0.4], &[0.3, 0.1, -0.1]), 0.2 + 0.5 * 0.2);
+        assert!(zero(&[0.1, 0.2], &[-0.1, -0.2]).is_nan());
+    }
 }

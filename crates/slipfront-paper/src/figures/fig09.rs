@@ -1,20 +1,28 @@
 //! Fig. 9: damping.
 
+use crate::drawing::Drawing;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
-use crate::run::{Run, curves, mu_star, on_each};
+use crate::number::values;
+use crate::run::{Run, mu_star, on_each};
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, range, rises, smallest};
 use crate::sweep::Sweep;
 
+/// The dampings that are drawn.
+const DRAWN: [f64; 6] = [0.0, 0.03, 0.1, 0.3, 1.0, 3.0];
+/// Rise of N* from one damping to the next, in % of the blocks, from which on it is called a jump. In stick-slip N* rises by
+/// less than 3 from each to the next.
+const JUMP: f64 = 5.0;
+
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig09")?;
-    let dampings = sweep.axis(0);
     let runs = runner.run(sweep.first_cases()?)?;
+    let drawn = DRAWN.map(|omega| runs[sweep.level(omega)].curve(&format!("\u{3a9}* = {omega}")));
     data.panel(
         "fig09",
         "Friction and sliding blocks for six dampings.",
-        curves(&runs, |k| format!("\u{3a9}* = {}", dampings[k])),
+        Drawing::Curves(drawn.into()),
     );
     let first_slip = smallest(on_each(&runs, Run::first_slip)?);
     // One step short of it: friction may differ from where the first block moves.
@@ -30,17 +38,34 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 /// The effect of damping on static and kinetic friction, on the number of sliding blocks and on the fluctuation of friction.
 fn friction(sweep: &Sweep, runs: &[Run], data: &mut FigureData) -> Result<(), PaperError> {
     let dampings = sweep.axis(0);
-    let statics = sweep.means(&[], "static_friction_star");
-    data.value("static_friction_spread", range(&statics));
-    let kinetics = sweep.means(&[], "kinetic_friction_star");
-    data.value("least_rise_of_kinetic_friction", smallest(rises(&kinetics)));
-    // With stick-slip and without it, each on its own.
-    let first_strong = dampings.partition_point(|&omega| omega < 1.0);
-    let (weak, strong) = kinetics.split_at(first_strong);
-    data.value(
-        "least_rise_within_regimes",
-        smallest([rises(weak), rises(strong)].concat()),
+    let [statics, kinetics, sliding] = [
+        "static_friction_star",
+        "kinetic_friction_star",
+        "sliding_percent_kinetic",
+    ]
+    .map(|quantity| sweep.numbers(&[], quantity));
+    let rows = (0..dampings.len()).map(|k| {
+        [
+            dampings[k].to_string(),
+            statics[k].shown(3),
+            kinetics[k].shown(3),
+            sliding[k].shown(1),
+        ]
+    });
+    data.table(
+        "fig09_damping",
+        "Friction and sliding blocks by damping, means of five surfaces.",
+        ["Omega*", "mu_s*", "mu_k*", "N* in the kinetic window (%)"],
+        rows,
     );
+    let [statics, kinetics, sliding] = [&statics, &kinetics, &sliding].map(|numbers| values(numbers));
+    let (one, first_strong) = (sweep.level(1.0), dampings.partition_point(|&omega| omega < 1.0));
+    data.value("static_friction_spread", range(&statics));
+    data.value("static_friction_spread_up_to_one", range(&statics[..=one]));
+    data.value("least_rise_of_kinetic_friction", smallest(rises(&kinetics)));
+    let pairs = rises(&kinetics).into_iter().zip(rises(&sliding));
+    let without_jump = pairs.filter(|(_, sliding)| *sliding < JUMP).map(|(rise, _)| rise);
+    data.value("least_rise_without_jump", smallest(without_jump));
     let sliding = (first_strong..dampings.len()).flat_map(|k| sweep.values(&[k], "sliding_percent_kinetic"));
     data.value("least_sliding_of_strong_percent", smallest(sliding));
     let fluctuations = on_each(&runs[first_strong..], Run::kinetic_fluctuation)?;

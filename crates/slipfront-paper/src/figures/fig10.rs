@@ -3,10 +3,13 @@
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
 use crate::number::Number;
-use crate::run::{Run, curves};
+use crate::run::{Run, curves, on_each};
 use crate::runner::FigureRunner;
 use crate::statistics::{largest, mean, rises};
-use crate::sweep::Sweep;
+
+/// Ends of the windows of time, from the end of the transition on, over which the kinetic friction of the lowest R* is averaged:
+/// that of the run, 8/V*, comes last.
+const WINDOW_ENDS: [f64; 6] = [150.0, 160.0, 180.0, 200.0, 220.0, 266.7];
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
     let sweep = runner.study("fig10")?;
@@ -33,45 +36,45 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
         "worst_excess_in_the_middle",
         largest(middle.map(|k| (kinetics[k] - ratios[k]).abs())),
     );
-    excess_of_lowest(runner, &sweep, data)
+    excess_of_lowest(runner, data)
 }
 
 /// Kinetic friction above R* at the lowest R*, by the window over which it is averaged.
-fn excess_of_lowest(
-    runner: &mut FigureRunner,
-    sweep: &Sweep,
-    data: &mut FigureData,
-) -> Result<(), PaperError> {
-    let ratio = sweep.axis(0)[0];
-    let excess = |mu: Vec<f64>| -> Vec<f64> { mu.iter().map(|mu| mu - ratio).collect() };
-    let usual = sweep.values(&[0], "kinetic_friction_star");
-    data.values("excess_of_lowest", &excess(usual));
-    // The first swing of friction after the onset, which dominates the figure.
-    let first_swing = |run: &Run| {
-        let onset = run.record.summary.onset_time_star;
-        mean(&run.friction_between(onset, onset + 2.5 / run.case.groups.v_star))
+fn excess_of_lowest(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
+    let runs = runner.run(runner.plan("fig10_windows")?.cases(&[])?)?;
+    let excess_in = |window: &dyn Fn(&Run) -> Result<[f64; 2], PaperError>| {
+        on_each(&runs, |run| {
+            let [from, until] = window(run)?;
+            Ok(mean(&run.friction_between(from, until)) - run.case.groups.r_star)
+        })
     };
-    let early = runner.run(sweep.cases(&[0])?)?.iter().map(first_swing).collect();
-    data.values("early_excess_of_lowest", &excess(early));
+    let mut windows = Vec::new();
+    for end in WINDOW_ENDS {
+        let excess = excess_in(&|run| Ok([run.instant('E')?.time_star, end]))?;
+        windows.push((format!("from E to t* = {end}"), excess));
+    }
+    let excess = excess_in(&Run::kinetic_window)?;
+    windows.push((
+        "from t_s* + 2.5/V* to 8/V*: as everywhere else here".to_owned(),
+        excess,
+    ));
     let long = runner.study("fig10_long")?.values(&[], "kinetic_friction_star");
-    data.values("long_excess_of_lowest", &excess(long));
-    let windows = [
-        (
-            "from t_s* to t_s* + 2.5/V*: the first swing",
-            "early_excess_of_lowest",
-        ),
-        (
-            "from t_s* + 2.5/V* to 8/V*: as everywhere else here",
-            "excess_of_lowest",
-        ),
-        ("from 12/V* to 60/V*", "long_excess_of_lowest"),
-    ];
-    let rows = windows.map(|(window, name)| [window.to_owned(), data.numbers[name].shown(3)]);
+    let excess = runs.iter().zip(long).map(|(run, mu)| mu - run.case.groups.r_star);
+    windows.push(("from 12/V* to 60/V*".to_owned(), excess.collect()));
+    let rows = windows.iter().map(|(window, excess)| {
+        let below = excess.iter().filter(|&&excess| excess < 0.0).count();
+        let below = format!("{below} of {}", excess.len());
+        [window.clone(), Number::of(excess).shown(3), below]
+    });
     data.table(
         "fig10_windows",
-        "Kinetic friction above R* at R* = 0.25, by the window over which it is averaged (D8).",
-        ["window", "mu_k* - R*"],
+        "Kinetic friction above R* at R* = 0.25, by the window over which it is averaged (D8), and on how many surfaces it is \
+         below R*. E, the end of the transition, is at t* = 87.",
+        ["window", "mu_k* - R*", "below R*"],
         rows,
     );
+    for (place, name) in [(2, "until_180"), (5, "until_the_end")] {
+        data.values(&format!("excess_of_lowest_{name}"), &windows[place].1);
+    }
     Ok(())
 }

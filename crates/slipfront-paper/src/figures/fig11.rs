@@ -74,7 +74,7 @@ fn draw(runner: &FigureRunner, main: &Run, data: &mut FigureData) -> Result<(), 
 }
 
 /// Blocks whose coefficient is below those of all their neighbours, the lowest first.
-fn minima(lattice: &Lattice, mu_static: &[f64]) -> Vec<usize> {
+pub(super) fn minima(lattice: &Lattice, mu_static: &[f64]) -> Vec<usize> {
     let mut minima: Vec<usize> = (0..mu_static.len())
         .filter(|&block| neighbours(lattice, block).all(|neighbour| mu_static[neighbour] > mu_static[block]))
         .collect();
@@ -91,18 +91,22 @@ pub(super) fn neighbours(lattice: &Lattice, block: usize) -> impl Iterator<Item 
         .filter_map(move |offset| lattice.neighbour(i, j, offset))
 }
 
-/// Of the places where slip begins before the peak, ahead of all blocks around them, the share that are local minima
-/// of mu_si, %.
-fn nucleations_at_minima(run: &Run) -> f64 {
-    let (lattice, surface) = (&run.case.model.lattice, &run.case.model.surface);
+/// The blocks where slip begins: they slip before the peak, ahead of all blocks around them.
+pub(super) fn starts(run: &Run) -> Vec<usize> {
+    let lattice = &run.case.model.lattice;
     let times = &run.record.first_slip_time_star;
-    let minima = minima(lattice, &surface.mu_static);
     let before_all = |block: usize| {
         neighbours(lattice, block).all(|other| times[other].is_nan() || times[other] > times[block])
     };
-    let starts: Vec<usize> = (0..times.len())
+    (0..times.len())
         .filter(|&block| times[block] <= run.record.summary.onset_time_star && before_all(block))
-        .collect();
+        .collect()
+}
+
+/// Of the places where slip begins, the share that are local minima of mu_si, %.
+fn nucleations_at_minima(run: &Run) -> f64 {
+    let minima = minima(&run.case.model.lattice, &run.case.model.surface.mu_static);
+    let starts = starts(run);
     let at_minima = starts.iter().filter(|block| minima.contains(block)).count();
     100.0 * at_minima as f64 / starts.len() as f64
 }

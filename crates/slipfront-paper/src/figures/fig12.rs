@@ -3,10 +3,11 @@
 use crate::drawing::{Drawing, measured};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
-use crate::number::values;
+use crate::number::{Number, values};
 use crate::run::{Run, on_each};
 use crate::runner::FigureRunner;
-use crate::statistics::{deviation, distances, farthest, largest, mean, range, ratios, rises};
+use crate::statistics::{deviation, distances, farthest, largest, mean, range, ratios, rises, smallest};
+use crate::sweep::Sweep;
 use slipfront_plot::Responses;
 
 /// Surfaces from which the paper takes each mean.
@@ -18,14 +19,11 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     let sweep = runner.study("fig12")?;
     let (spreads, speeds) = (sweep.axis(0), sweep.axis(1));
     let mut curves = Vec::new();
-    let (mut deviations, mut steps, mut limits) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut steps, mut limits, mut reductions) = (Vec::new(), Vec::new(), Vec::new());
     for (v, speed) in speeds.iter().enumerate() {
         let numbers = sweep.numbers(&[v], "static_friction_star");
-        for k in 0..spreads.len() {
-            let statics = sweep.values(&[k, v], "static_friction_star");
-            deviations.push(farthest(&statics, mean(&statics)));
-        }
         let means = values(&numbers);
+        reductions.push(100.0 * (1.0 - means[means.len() - 1] / means[0]));
         steps.extend(rises(&means));
         limits.push((means[0] - 1.0).abs());
         curves.push(measured(&speed.to_string(), &spreads, &numbers));
@@ -42,9 +40,9 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
             ..Responses::default()
         }),
     );
-    data.value("largest_deviation", largest(deviations));
     data.value("largest_rise", largest(steps));
     data.value("distance_of_limit", largest(limits));
+    data.value("least_reduction_percent", smallest(reductions));
     // On a smooth surface no block slips before the others.
     let run = runner.run_one(sweep.case(&[sweep.level(0.0), 0], 0)?)?;
     data.value("slip_times_apart", range(&run.slip_times()));
@@ -52,17 +50,60 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     kinetic(runner, data)
 }
 
-/// How often five surfaces are as close together as the paper's.
+/// How often five surfaces are as close together as the paper's, at every point of the figure with a spread.
 fn surfaces(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
-    let statics = runner
-        .study("fig12_surfaces")?
-        .values(&[], "static_friction_star");
-    let fives = statics.chunks_exact(SURFACES);
-    let count = fives.len() as f64;
-    let close = fives.filter(|five| farthest(five, mean(five)) < DEVIATION);
-    data.value("fives_within_percent", 100.0 * (close.count() as f64 / count));
-    data.value("standard_deviation", deviation(&statics));
+    let sweep = runner.study("fig12_surfaces")?;
+    let farthest_of = |five: &[f64]| farthest(five, mean(five));
+    let readings: [(&str, &str, Measure); 2] = [
+        ("fives_within", "the largest deviation", &farthest_of),
+        (
+            "fives_within_as_standard",
+            "the standard deviation",
+            &standard_deviation,
+        ),
+    ];
+    let mut rows = Vec::new();
+    for (name, reading, measure) in readings {
+        let [all, without_slowest] = [0, 1].map(|first| fives_within_percent(&sweep, first, measure));
+        data.value(&format!("{name}_percent"), all);
+        data.value(&format!("{name}_without_slowest_percent"), without_slowest);
+        rows.push([
+            reading.to_owned(),
+            format!("{all:.0}"),
+            format!("{without_slowest:.0}"),
+        ]);
+    }
+    data.table(
+        "fig12_fives",
+        "Of forty groups of five surfaces, the share in % that stay below 0.015 at all points of Fig. 12 with a spread, by what is \
+         read as their deviation.",
+        ["read as", "all 24 points", "18 points, without V* = 0.01"],
+        rows,
+    );
     Ok(())
+}
+
+/// A measure of how far five values scatter.
+type Measure<'a> = &'a dyn Fn(&[f64]) -> f64;
+
+/// The standard deviation of a sample, with n - 1 in the denominator.
+fn standard_deviation(sample: &[f64]) -> f64 {
+    let n = sample.len() as f64;
+    deviation(sample) * (n / (n - 1.0)).sqrt()
+}
+
+/// The share of fives whose scatter is below 0.015 at all points from this speed on, %.
+fn fives_within_percent(sweep: &Sweep, first_speed: usize, scatter: Measure) -> f64 {
+    let points = (0..sweep.axis(0).len())
+        .flat_map(|spread| (first_speed..sweep.axis(1).len()).map(move |speed| [spread, speed]));
+    let points = points.map(|point| sweep.values(&point, "static_friction_star"));
+    let points: Vec<Vec<f64>> = points.collect();
+    let fives = points[0].len() / SURFACES;
+    let within = |five: &usize| {
+        let of = |statics: &Vec<f64>| scatter(&statics[five * SURFACES..][..SURFACES]) < DEVIATION;
+        points.iter().all(of)
+    };
+    100.0 * (0..fives).filter(within).count() as f64 / fives as f64
 }
 
 /// The effect of sigma_k* on friction, on the onset and on the fluctuation of kinetic friction.
@@ -81,13 +122,38 @@ fn kinetic(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), Paper
         100.0 * change("onset_time_star") / onset,
     );
     data.value("first_slip_moved_by_sigma_k", change("first_slip_time_star"));
-    let long = runner.plan("fig12_fluctuations")?;
-    let mut means = Vec::new();
-    for k in 0..long.axis(0).len() {
-        let runs = runner.run(long.cases(&[k])?)?;
-        means.push(on_each(&runs, Run::kinetic_fluctuation)?);
+    fluctuations(runner, data)
+}
+
+/// The effect of sigma_k* on the fluctuation of kinetic friction, on a smooth surface and on a rough one.
+fn fluctuations(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
+    let sweep = runner.plan("fig12_fluctuations")?;
+    let (spreads, kinetic_spreads) = (sweep.axis(0), sweep.axis(1));
+    let names = ["smooth", "rough"];
+    let mut rows = Vec::new();
+    for (k, name) in names.into_iter().enumerate() {
+        let mut fluctuations = Vec::new();
+        for (l, kinetic) in kinetic_spreads.iter().enumerate() {
+            let values = on_each(&runner.run(sweep.cases(&[k, l])?)?, Run::kinetic_fluctuation)?;
+            rows.push([
+                spreads[k].to_string(),
+                kinetic.to_string(),
+                Number::of(&values).shown(3),
+            ]);
+            fluctuations.push(values);
+        }
+        let most = &fluctuations[fluctuations.len() - 1];
+        let factor = mean(&ratios(most, &fluctuations[0]));
+        data.value(
+            &format!("fluctuation_changed_percent_{name}"),
+            100.0 * (factor - 1.0).abs(),
+        );
     }
-    let [none, most] = &means[..] else { return Ok(()) };
-    data.values("fluctuation_factor_of_sigma_k", &ratios(most, none));
+    data.table(
+        "fig12_fluctuations",
+        "Standard deviation of mu* in the kinetic window of runs to t* = 1000.",
+        ["sigma_s*", "sigma_k*", "standard deviation"],
+        rows,
+    );
     Ok(())
 }

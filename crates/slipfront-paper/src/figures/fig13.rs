@@ -36,7 +36,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
             let lambda_square =
                 n * n * percent / (100.0 * 0.5 * TAU * (1.0 - f64::from(cavity.s) * cavity.w.powi(2)));
             let area = 0.5 * TAU * lambda_square * (1.0 - f64::from(cavity.s) * cavity.w.powi(2));
-            printed.push(100.0 * area / n / asked);
+            printed.push(100.0 * (area / n) / (asked / 100.0));
         }
     }
     data.panel(

@@ -3,7 +3,7 @@
 use crate::drawing::stress_maps;
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
-use crate::figures::fig11::neighbours;
+use crate::figures::fig11::{minima, neighbours};
 use crate::run::Run;
 use crate::runner::FigureRunner;
 use crate::statistics::{mean, range};
@@ -23,7 +23,11 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
             maps.push(again.stress_map(frame, &format!("{name}: {slipped:.0} % slipped"))?);
         }
         match name.as_str() {
-            "a" => data.value("nearness_of_first_slips", nearness(&run, 0.05)),
+            "a" => {
+                data.value("nearness_of_first_slips", nearness(&run, 0.05));
+                data.value("early_minima_percent", early_minima(&run));
+                data.value("asymmetry_of_rough_percent", asymmetry(&run));
+            }
             "b" => {
                 data.value("first_slips_at_the_rim_percent", first_at_rim(&run));
                 data.value("asymmetry_percent", asymmetry(&run));
@@ -69,6 +73,21 @@ fn nearness(run: &Run, share: f64) -> f64 {
     let mean_distance = |blocks: Vec<usize>| mean(&blocks.into_iter().map(distance).collect::<Vec<f64>>());
     let all = (0..textured.len()).filter(|&block| !textured[block]).collect();
     mean_distance(slipped(run, share).unwrap_or_default()) / mean_distance(all)
+}
+
+/// Of the local minima of mu_si, the share that slip for the first time before the mean of their neighbours do, %. Where fronts
+/// do not heed them it is one half.
+fn early_minima(run: &Run) -> f64 {
+    let model = &run.case.model;
+    let times = &run.record.first_slip_time_star;
+    let minima = minima(&model.lattice, &model.surface.mu_static);
+    let is_early = |&&block: &&usize| {
+        let around: Vec<f64> = neighbours(&model.lattice, block)
+            .map(|other| times[other])
+            .collect();
+        times[block] < mean(&around)
+    };
+    100.0 * minima.iter().filter(is_early).count() as f64 / minima.len() as f64
 }
 
 /// Of the blocks that slip at the very first, the share that touch the cavity, %.

@@ -3,9 +3,10 @@
 use crate::drawing::{Drawing, measured};
 use crate::error::PaperError;
 use crate::figure_data::FigureData;
+use crate::figures::fig11::starts;
 use crate::number::{Number, values};
 use crate::runner::FigureRunner;
-use crate::statistics::{largest, rises, smallest};
+use crate::statistics::{largest, mean, rises, smallest};
 use slipfront_plot::Responses;
 use slipfront_run::study::REDUCTION;
 
@@ -53,6 +54,30 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     data.value(
         "roughest_over_smooth",
         means[spreads.len() - 1][ten] / means[0][ten],
+    );
+    starting_points(runner, data)
+}
+
+/// Places where slip begins before the peak without a texture, by the spread of the local static coefficients.
+fn starting_points(runner: &FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
+    let sweep = runner.plan("fig15_starts")?;
+    let mut means = Vec::new();
+    let mut rows = Vec::new();
+    for (k, spread) in sweep.axis(0).iter().enumerate() {
+        let runs = runner.run(sweep.cases(&[k])?)?;
+        let counts: Vec<f64> = runs.iter().map(|run| starts(run).len() as f64).collect();
+        rows.push([spread.to_string(), Number::of(&counts).shown(0)]);
+        means.push(mean(&counts));
+    }
+    data.value("least_rise_of_starts", smallest(rises(&means)));
+    let rough = &means[sweep.level(0.05)..];
+    data.value("least_rise_of_starts_when_rough", smallest(rises(rough)));
+    data.table(
+        "fig15_starts",
+        "Places where slip begins before the peak of friction, ahead of all blocks around them, among 50 x 50 blocks without \
+         texture.",
+        ["sigma_s*", "starting points"],
+        rows,
     );
     Ok(())
 }

@@ -53,9 +53,19 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     );
     let means = values(&reductions);
     data.value("spread_percent", range(&means[1..]));
+    let is_exception = |name: &str| name == "triangle, sharp";
+    let others = means
+        .iter()
+        .zip(&names)
+        .skip(1)
+        .filter(|(_, name)| !is_exception(name));
+    let others: Vec<f64> = others.map(|(mean, _)| *mean).collect();
+    data.value("spread_without_sharp_triangle", range(&others));
     data.value("farthest_from_circle_percent", farthest(&means, means[0]));
     // Round and sharp stand in pairs after the circle.
     let pairs = means[1..].chunks_exact(2).map(|pair| (pair[1] - pair[0]).abs());
-    data.value("sharpness_percent", largest(pairs));
+    let pairs: Vec<f64> = pairs.collect();
+    data.value("sharpness_percent", largest(pairs.iter().copied()));
+    data.value("sharpness_beyond_triangle", largest(pairs[1..].iter().copied()));
     Ok(())
 }

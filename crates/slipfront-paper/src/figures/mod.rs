@@ -18,6 +18,7 @@ mod fig15;
 mod fig16;
 mod fig17;
 mod fig18;
+mod lattice;
 mod sensitivity;
 
 use crate::error::PaperError;
@@ -60,7 +61,7 @@ pub const FIGURES: [Figure; 20] = [
     Figure { name: "sensitivity", title: "Appendix: what the paper leaves open", measure: sensitivity::measure },
 ];
 
-/// The figures that a user names: `all`, `fig3` or `fig03`, `table1`, `sensitivity`.
+/// The figures that a user names: `all`, `fig3` or `fig03`, `table1`, `lattice`, `sensitivity`.
 ///
 /// # Errors
 /// [`PaperError::Figure`] names the first unknown one.

@@ -41,13 +41,14 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
 
     let place =
         |names: &[String], start: &str| names.iter().position(|name| name.starts_with(start)).unwrap_or(0);
-    let literal = place(&names, "friction: literal (Eq. 4 as printed), dt* = 0.02");
-    let kinetic = |k: usize| baseline.values(&[k], "kinetic_friction_star");
-    data.values("literal_kinetic_friction", &kinetic(literal));
     let reversal = place(&names, "friction: reversal");
     let statics = |k: usize| baseline.values(&[k], "static_friction_star");
-    let moved = distances(&statics(0), &statics(reversal));
-    data.value("reversal_moves_static_friction", largest(moved));
+    let moved_by = |k: usize| largest(distances(&statics(0), &statics(k)));
+    data.value("reversal_moves_static_friction", moved_by(reversal));
+    data.value(
+        "edges_move_static_friction",
+        moved_by(place(&names, "edges: periodic")),
+    );
     let reductions = texture.means(&[], REDUCTION);
     let shifted = (0..textured.len()).filter(|&k| textured[k].starts_with("centre"));
     data.value(

@@ -5,7 +5,7 @@ use base64::prelude::BASE64_STANDARD as BASE64;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::symbols::greek;
-use crate::claims::{ClaimResult, Verdict, count_verdicts};
+use crate::claims::{ClaimResult, NUMBERING, REVISED, Verdict};
 use crate::figure_data::{FigureData, Panel, Table};
 use crate::figures::Figure;
 use crate::paper::Paper;
@@ -32,7 +32,8 @@ pub(super) fn page(paper: &Paper, drawn: &[Vec<Picture>]) -> String {
                         h2 { "Claims" }
                         p {
                             "Intervals are 95 % confidence intervals of the mean over random surfaces. Numbers D1 to D12 are \
-                             the deviations from the paper's print that the documentation of the model explains."
+                             the deviations from the paper's print that the documentation of the model explains. "
+                            (NUMBERING) " " (REVISED)
                             @if !paper.results_by_paper_step.is_empty() {
                                 " Each claim was measured twice: with " (text(StepRule::Auto.formula()))
                                 ", and with the paper's " (text(StepRule::Paper.formula())) " (Eq. 13)."
@@ -55,7 +56,6 @@ pub(super) fn page(paper: &Paper, drawn: &[Vec<Picture>]) -> String {
 
 /// The title, the paper, and how many claims hold.
 fn header(paper: &Paper) -> Markup {
-    let [holds, conditioned, fails] = count_verdicts(&paper.results);
     let unexpected = paper.unexpected_verdicts().count();
     html! {
         header {
@@ -67,8 +67,7 @@ fn header(paper: &Paper) -> Markup {
                 ", measured with slipfront " (env!("CARGO_PKG_VERSION")) "."
             }
             p.count {
-                strong { (paper.results.len()) } " claims: " strong { (holds) } " hold, "
-                strong { (conditioned) } " hold with a condition, " strong { (fails) } " do not hold. "
+                (paper.tally()) ". "
                 @if unexpected == 0 { "Every verdict is the expected one." }
                 @else { strong { (unexpected) " verdicts are not the expected ones." } }
             }
@@ -100,6 +99,7 @@ fn claim_row(result: &ClaimResult, other: Option<&ClaimResult>) -> Markup {
                 (text(&claim.claim)) " "
                 a.place href={ "#" (claim.figure()) } { (claim.place) }
                 @if !claim.remark.is_empty() { p.remark { (text(&claim.remark)) } }
+                @if !claim.revised.is_empty() { p.remark { "Revised: " (text(&claim.revised)) } }
             }
             td class=(class(result.verdict)) {
                 (text(&result.verdict_in_full()))
@@ -135,6 +135,7 @@ fn class(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Holds => "verdict holds",
         Verdict::HoldsWithCondition => "verdict conditioned",
+        Verdict::Misprint => "verdict misprint",
         Verdict::DoesNotHold => "verdict fails",
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::symbols::greek;
-use crate::claims::ClaimResult;
+use crate::claims::{ClaimResult, NUMBERING, REVISED};
 use crate::figure_data::Panel;
 use crate::paper::Paper;
 use crate::step_rule::StepRule;
@@ -20,7 +20,7 @@ pub fn page(paper: &Paper) -> String {
          Criteria and expected verdicts stand in [crates/slipfront-paper/cases/claims.toml](../../crates/slipfront-paper/cases/claims.toml). Numbers D1 to D12 are\n\
          the [deviations from the paper's print](../model.md#deviations-from-the-papers-print). Intervals are 95 % confidence\n\
          intervals of the mean over five random surfaces. Measured with {}; the last column holds what the paper's own step,\n\
-         {}, gives in its place; {}.\n\n\
+         {}, gives in its place; {}. {NUMBERING} {REVISED}\n\n\
          {}.\n\n\
          | | claim | place | measured | holds if | verdict | paper's step |\n\
          |---:|---|---|---|---|---|---|\n",
@@ -32,10 +32,13 @@ pub fn page(paper: &Paper) -> String {
     for (k, result) in paper.results.iter().enumerate() {
         let claim = &result.claim;
         let other = paper.results_by_paper_step.get(k);
-        let remark = match claim.remark.as_str() {
+        let mut remark = match claim.remark.as_str() {
             "" => String::new(),
             remark => format!(" *{remark}*"),
         };
+        if !claim.revised.is_empty() {
+            remark += &format!(" *Revised: {}*", claim.revised);
+        }
         let cells = [
             claim.number.to_string(),
             format!("{}.{remark}", claim.claim),

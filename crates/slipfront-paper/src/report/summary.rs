@@ -14,7 +14,7 @@ pub fn summary(paper: &Paper) -> String {
             false => "  <- not as expected",
         };
         text += &format!(
-            "{:>3}  {:<22}  {:<18}  {}{deviation}{note}\n",
+            "{:>3}  {:<27}  {:<18}  {}{deviation}{note}\n",
             claim.number,
             verdict.words(),
             result.measured(),

@@ -32,6 +32,7 @@ pub(super) fn claims_csv(paper: &Paper) -> Result<Vec<u8>, PaperError> {
         "verdict_by_paper_step",
         "deviation",
         "remark",
+        "revised",
     ];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     for (index, result) in paper.results.iter().enumerate() {
@@ -56,6 +57,7 @@ pub(super) fn claims_csv(paper: &Paper) -> Result<Vec<u8>, PaperError> {
             other.map_or(String::new(), |other| other.verdict.words().to_owned()),
             claim.deviation.clone().unwrap_or_default(),
             claim.remark.clone(),
+            claim.revised.clone(),
         ]);
     }
     csv(rows.iter())

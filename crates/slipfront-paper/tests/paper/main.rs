@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use slipfront_paper::{FIGURES, Options, Paper};
+use slipfront_paper::{FIGURES, Options, Paper, Verdict};
 use slipfront_run::study::{Records, StudyError};
 
 fn options<'a>(folder: &'a Path, stop: &'a AtomicBool) -> Options<'a> {
@@ -87,6 +87,51 @@ fn every_verdict_is_the_expected_one_and_the_documentation_tells_it() {
     assert_eq!(told.len(), slipfront_paper::claims().unwrap().len());
 }
 
+/// Counts of claims in the documentation follow the list.
+#[test]
+fn the_documentation_counts_the_claims() {
+    let claims = slipfront_paper::claims().unwrap();
+    let all = claims.len();
+    let of = |verdict| claims.iter().filter(|claim| claim.expected == verdict).count();
+    let counted = Verdict::ALL.map(|verdict| verdict.counted(of(verdict)));
+    let pages = [
+        (
+            include_str!("../../../../docs/validation/paper.md"),
+            format!("{all} claims: {}.", counted.join(", ")),
+        ),
+        (
+            include_str!("../../../../README.md"),
+            format!("{all} of its claims"),
+        ),
+        (
+            include_str!("../../../../CHANGELOG.md"),
+            format!("{all} claims of the text"),
+        ),
+    ];
+    for (page, sentence) in pages {
+        assert!(page.contains(&sentence), "{sentence}");
+    }
+}
+
+/// Eq. 18 has N^2 where N is meant: the cavity is N = 2500 times as large.
+#[test]
+fn the_cavity_as_printed_is_too_large_by_the_number_of_blocks() {
+    let folder = tempfile::tempdir().unwrap();
+    let paper = run(&["fig13"], folder.path(), &AtomicBool::new(false)).unwrap();
+    let printed = paper
+        .results
+        .iter()
+        .find(|result| result.claim.number == 61)
+        .unwrap();
+    // Rounding of a few products.
+    assert!(
+        (printed.number.value / 100.0 - 2500.0).abs() < 1e-9,
+        "{}",
+        printed.measured()
+    );
+    assert_eq!(printed.verdict, Verdict::Misprint);
+}
+
 /// The rows of the claims table, each by its number.
 fn rows(page: &str) -> BTreeMap<u32, Vec<&str>> {
     let table = page.split("\n## ").next().unwrap_or_default();
@@ -155,7 +200,7 @@ fn figures_are_known_by_their_short_names_too() {
         .unwrap_err()
         .to_string();
     assert!(
-        error.starts_with("the paper has no `fig19`: take fig02, table1, fig03"),
+        error.starts_with("the paper has no `fig19`: take lattice, fig02, table1, fig03"),
         "{error}"
     );
 }
