@@ -4,8 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use slipfront_case::case::Case;
+use slipfront_case::case_file::CaseFile;
 
 use crate::failure::Failure;
+use crate::make_case::make_case;
+use crate::signals::Signals;
 
 /// The case file and the changes of it that the command line asks for.
 #[derive(Args)]
@@ -28,13 +31,16 @@ impl CaseArgs {
     }
 
     /// Reads the case, or takes the baseline that is embedded in the program.
-    pub(crate) fn load(self) -> Result<Case, Failure> {
+    pub(crate) fn load(self, signals: &Signals, quiet: bool) -> Result<Case, Failure> {
         let mut overrides = self.overrides;
         overrides.extend(self.seed.map(|seed| format!("friction.seed={seed}")));
-        match self.case {
-            Some(path) => Case::load(&path, &overrides),
-            None => Case::parse(include_str!("baseline.toml"), "baseline", &overrides),
-        }
-        .map_err(Failure::input)
+        make_case(signals, quiet, |watch| match self.case {
+            Some(path) => Case::load(&path, &overrides, watch),
+            None => {
+                let (text, name) = (include_str!("baseline.toml"), "baseline");
+                let file = CaseFile::parse(text, name, &overrides)?;
+                Case::to_run(file, name, Path::new(""), watch)
+            }
+        })
     }
 }

@@ -12,6 +12,7 @@ mod checkpoint_timer;
 mod commands;
 mod estimate_cost;
 mod failure;
+mod make_case;
 mod print;
 mod print_stderr;
 mod progress;

@@ -76,7 +76,7 @@ impl Sweep {
         // A plan that keeps its runs gives their cases with curves and fields.
         let mut plan = self.plan.clone();
         plan.settings.keep = RetainRuns::All;
-        let mut case = plan.case(run)?;
+        let mut case = plan.case(run, &mut |_| true)?;
         case.name = format!("{}, {}", plan.name, plan.describe(&plan.points[run.point]));
         // The largest contact stress of all, which maps are scaled by, may come late.
         case.time_plan.stop = Stop::at_step(case.time_plan.last_step);

@@ -8,6 +8,7 @@
 
 pub mod checkpoint;
 pub mod checksum;
+pub mod clock;
 pub mod error;
 pub mod fields;
 pub mod manifest;

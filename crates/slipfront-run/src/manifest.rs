@@ -11,8 +11,8 @@ use slipfront::{Kernel, simd_width};
 use thiserror::Error;
 
 use crate::names::{CASE, MANIFEST};
-use crate::program;
 use crate::resume_command::resume_command;
+use crate::{clock, program};
 use slipfront_case::case::Case;
 use slipfront_case::disk::{TEXT_MAX_BYTES, json, open_regular, read_limited};
 use slipfront_case::text::{single_line, truncated};
@@ -47,7 +47,7 @@ pub struct Manifest {
     pub started: String,
     /// When its last file was written, UTC.
     pub finished: String,
-    /// Seconds in between.
+    /// Seconds that it took, whatever was done to the clock meanwhile.
     pub wall_time_s: f64,
     /// BLAKE3 hash of `case.toml`, by which equal cases are told.
     #[serde(default)]
@@ -120,7 +120,7 @@ impl Manifest {
             platform: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
             started: started.to_string(),
             finished: finished.to_string(),
-            wall_time_s: finished.duration_since(started).as_secs_f64(),
+            wall_time_s: clock::since(started).as_secs_f64(),
             case_blake3: case_file.map_or(String::new(), |file| file.blake3.clone()),
             random: Random {
                 generator: "ChaCha8".to_owned(),

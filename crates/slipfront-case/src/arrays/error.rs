@@ -26,7 +26,8 @@ pub enum ArrayError {
     #[error("`{}` {problem}", path.display())]
     Contents { path: PathBuf, problem: String },
     #[error(
-        "the image `{}` has {width} x {height} pixels where at most {limit} pixels are read; scale it down",
+        "the image `{}` has {width} x {height} pixels where at most {limit} pixels are read, and at most {side_limit} along a \
+         side; scale it down",
         path.display()
     )]
     TooManyPixels {
@@ -34,9 +35,12 @@ pub enum ArrayError {
         width: u32,
         height: u32,
         limit: u64,
+        side_limit: u32,
     },
     #[error("cannot write `{}`: {source}; check that the folder exists, is writable and has room", path.display())]
     Write { path: PathBuf, source: io::Error },
+    #[error("stopped while a mask was read")]
+    Stopped,
 }
 
 /// An error about the contents of a file; the sentence goes on after its name.

@@ -3,20 +3,25 @@
 use std::io::{self, Cursor};
 use std::path::Path;
 
-use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, InterlaceInfo, Reader};
-use slipfront::surface::MaskImage;
+use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, Reader};
 
 use super::error::{ArrayError, broken, contents_error, extension, unknown_extension};
 use crate::disk::write_atomic;
 
 /// More pixels than any lattice has blocks.
 const PIXELS_MAX: u64 = 1 << 28;
+/// More pixels than any lattice has blocks along a side. A row, of which the decoder holds some, takes eight bytes for each.
+const SIDE_MAX: u32 = 1 << 20;
 /// An image file of more bytes than this is refused.
 pub(super) const FILE_MAX_BYTES: u64 = PIXELS_MAX;
 /// Deflate cannot pack more than about 1030 bytes into one.
 const DEFLATE_MAX_RATIO: u64 = 1040;
 
-/// The dark pixels of the bytes of a PNG image called `path`, of any colour type and depth.
+/// A mask for a lattice of `nx` x `ny` blocks of the bytes of a PNG image called `path`, of any colour type and depth.
+///
+/// The image is stretched over the slider, and a block is textured if the pixel at its centre is dark. Returns `nx * ny` values
+/// in row-major order, row j = 0 (the smallest y, the bottom of the image) first: no other pixel is kept. `watch` is told the
+/// share of the rows that have been read, and its error ends the work.
 ///
 /// A pixel is dark when its luminance, in 0 to 1, lies below `threshold`. The luminance is
 ///
@@ -28,8 +33,15 @@ const DEFLATE_MAX_RATIO: u64 = 1040;
 /// over white.
 ///
 /// # Errors
-/// [`ArrayError`] if the bytes are not those of a PNG image, corrupt, or have more than 2^28 pixels.
-pub fn mask_png(path: &Path, bytes: &[u8], threshold: f64) -> Result<MaskImage, ArrayError> {
+/// [`ArrayError`] if the bytes are not those of a PNG image, corrupt, or have more than 2^28 pixels, or more than 2^20 along
+/// a side.
+pub fn mask_png(
+    path: &Path,
+    bytes: &[u8],
+    threshold: f64,
+    [nx, ny]: [usize; 2],
+    watch: &mut dyn FnMut(f64) -> Result<(), ArrayError>,
+) -> Result<Vec<bool>, ArrayError> {
     let file_bytes = bytes.len() as u64;
     let unreadable = |source| decoding_error(path, source);
     let mut decoder = Decoder::new(Cursor::new(bytes));
@@ -38,12 +50,13 @@ pub fn mask_png(path: &Path, bytes: &[u8], threshold: f64) -> Result<MaskImage, 
     decoder.set_ignore_iccp_chunk(true);
     let info = decoder.read_header_info().map_err(unreadable)?;
     let pixels = u64::from(info.width) * u64::from(info.height);
-    if pixels > PIXELS_MAX {
+    if pixels > PIXELS_MAX || info.width.max(info.height) > SIDE_MAX {
         return Err(ArrayError::TooManyPixels {
             path: path.to_owned(),
             width: info.width,
             height: info.height,
             limit: PIXELS_MAX,
+            side_limit: SIDE_MAX,
         });
     }
     let packed_bytes = pixels * info.bits_per_pixel() as u64 / 8 / DEFLATE_MAX_RATIO;
@@ -58,7 +71,7 @@ pub fn mask_png(path: &Path, bytes: &[u8], threshold: f64) -> Result<MaskImage, 
     if reader.info().color_type == ColorType::Indexed {
         check_palette(path, reader.info().palette.as_deref())?;
     }
-    read_rows(reader, threshold).map_err(unreadable)
+    read_rows(path, reader, threshold, [nx, ny], watch)
 }
 
 /// The decoder takes a palette of any length and panics on one that is not made of 1 to 256 whole colours.
@@ -71,30 +84,74 @@ fn check_palette(path: &Path, palette: Option<&[u8]>) -> Result<(), ArrayError> 
     Err(broken(path, ".png", &detail))
 }
 
-/// Decodes row by row, so that only one byte per pixel is kept.
-fn read_rows(mut reader: Reader<Cursor<&[u8]>>, threshold: f64) -> Result<MaskImage, DecodingError> {
+/// Decodes row by row, and keeps what the centres of the blocks lie on.
+fn read_rows(
+    path: &Path,
+    mut reader: Reader<Cursor<&[u8]>>,
+    threshold: f64,
+    [nx, ny]: [usize; 2],
+    watch: &mut dyn FnMut(f64) -> Result<(), ArrayError>,
+) -> Result<Vec<bool>, ArrayError> {
     let (width, height) = (reader.info().width as usize, reader.info().height as usize);
     let (color, depth) = reader.output_color_type();
-    let mut dark = vec![0; width * height];
-    let mut rows_done = 0;
-    while let Some(row) = reader.next_interlaced_row()? {
-        let row_dark: Vec<u8> = row
-            .data()
-            .chunks_exact(color.samples() * if depth == BitDepth::Sixteen { 2 } else { 1 })
-            .map(|pixel| u8::from(luminance(pixel, color, depth) < threshold))
-            .collect();
-        match row.interlace() {
-            InterlaceInfo::Adam7(pass) => png::expand_interlaced_row(&mut dark, width, &row_dark, pass, 8),
-            InterlaceInfo::Null(_) => {
-                dark[rows_done * width..][..width].copy_from_slice(&row_dark);
-                rows_done += 1;
+    let pixel_bytes = color.samples() * if depth == BitDepth::Sixteen { 2 } else { 1 };
+    let lines = || lines(width, height, reader.info().interlaced);
+    let total = lines().count() as f64;
+    let mut lines = lines().enumerate();
+    // The pixel at the centre of each block, along a row from the left and along a column from the top.
+    let pixel = |block: usize, blocks: usize, pixels: usize| (2 * block + 1) * pixels / (2 * blocks);
+    let columns: Vec<usize> = (0..nx).map(|i| pixel(i, nx, width)).collect();
+    let rows: Vec<usize> = (0..ny).map(|j| pixel(j, ny, height)).collect();
+    let mut dark = vec![false; nx * ny];
+    while let Some(stored) = reader.next_row().map_err(|source| decoding_error(path, source))? {
+        let Some((done, line)) = lines.next() else { break };
+        watch(done as f64 / total)?;
+        let row_of_blocks = rows.partition_point(|&row| row < line.row);
+        for from_top in (row_of_blocks..ny).take_while(|&from_top| rows[from_top] == line.row) {
+            let blocks = &mut dark[(ny - 1 - from_top) * nx..][..nx];
+            for (block, &column) in blocks.iter_mut().zip(&columns) {
+                if let Some(at) = line.position(column) {
+                    let pixel = &stored.data()[at * pixel_bytes..][..pixel_bytes];
+                    *block = luminance(pixel, color, depth) < threshold;
+                }
             }
         }
     }
-    Ok(MaskImage {
-        width,
-        height,
-        dark: dark.into_iter().map(|byte| byte != 0).collect(),
+    Ok(dark)
+}
+
+/// Pixels of a row of the image that are stored one after the other.
+struct Line {
+    row: usize,
+    first: usize,
+    step: usize,
+}
+
+impl Line {
+    /// The position of the pixel of this column, if the line has it.
+    fn position(&self, column: usize) -> Option<usize> {
+        let behind = column.checked_sub(self.first)?;
+        behind.is_multiple_of(self.step).then_some(behind / self.step)
+    }
+}
+
+/// The lines of an image in the order in which they are stored: row by row, or in the seven passes of Adam7.
+fn lines(width: usize, height: usize, interlaced: bool) -> impl Iterator<Item = Line> {
+    /// First column and row, and steps between columns and rows.
+    const ADAM7: [[usize; 4]; 7] = [
+        [0, 0, 8, 8],
+        [4, 0, 8, 8],
+        [0, 4, 4, 8],
+        [2, 0, 4, 4],
+        [0, 2, 2, 4],
+        [1, 0, 2, 2],
+        [0, 1, 1, 2],
+    ];
+    let passes = if interlaced { &ADAM7[..] } else { &[[0, 0, 1, 1]] };
+    let passes = passes.iter().filter(move |[column, ..]| *column < width);
+    passes.flat_map(move |&[first, row, step, row_step]| {
+        let rows = (row..height).step_by(row_step);
+        rows.map(move |row| Line { row, first, step })
     })
 }
 
@@ -127,7 +184,7 @@ fn decoding_error(path: &Path, source: DecodingError) -> ArrayError {
 /// Writes a texture as a black and white PNG image: one pixel per block, textured = black.
 ///
 /// `textured` holds `nx * ny` values in row-major order, row j = 0 (the smallest y) first; the top row of the
-/// image is the largest y. [`mask_png`] gives the same mask back.
+/// image is the largest y. For the same lattice [`mask_png`] gives the same mask back.
 ///
 /// # Errors
 /// [`ArrayError`] if the name does not end in `.png`, `textured` has another length or the file cannot be written.

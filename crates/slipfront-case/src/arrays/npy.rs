@@ -46,7 +46,7 @@ pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<
         return Err(wrong_shape(path, header.shape(), nx, ny));
     }
     let wanted_bytes = data_start as u64 + number.size as u64 * nx as u64 * ny as u64;
-    if (bytes.len() as u64) < wanted_bytes {
+    if bytes.len() as u64 != wanted_bytes {
         let detail = format!(
             "it has {} bytes where its header asks for {wanted_bytes}",
             bytes.len()

@@ -5,8 +5,6 @@ use png::{BitDepth, ColorType, Encoder};
 use rstest::rstest;
 use tempfile::TempDir;
 
-use slipfront::surface::MaskImage;
-
 use super::*;
 
 /// A folder that is removed afterwards, and a file in it.
@@ -50,8 +48,11 @@ fn read_mask_npy(path: &Path, nx: usize, ny: usize) -> Result<Vec<bool>, ArrayEr
     mask_npy(path, &read_file(path, nx, ny)?, nx, ny)
 }
 
-fn read_mask_png(path: &Path, threshold: f64) -> Result<MaskImage, ArrayError> {
-    mask_png(path, &read_file(path, 25, 25)?, threshold)
+/// The mask for a lattice of as many blocks, its top row first.
+fn read_mask_png(path: &Path, threshold: f64, blocks: [usize; 2]) -> Result<Vec<bool>, ArrayError> {
+    let bytes = read_file(path, 25, 25)?;
+    let mask = mask_png(path, &bytes, threshold, blocks, &mut |_| Ok(()))?;
+    Ok(mask.chunks(blocks[0]).rev().flatten().copied().collect())
 }
 
 fn message(result: Result<impl std::fmt::Debug, ArrayError>) -> String {
@@ -272,7 +273,7 @@ fn paths_that_are_no_files() {
     fs::create_dir(&directory).unwrap();
     for text in [
         message(read_field(&directory, 3, 2)),
-        message(read_mask_png(&directory, 0.5)),
+        message(read_mask_png(&directory, 0.5, [2, 2])),
     ] {
         assert!(text.contains("is not a regular file"), "{text}");
     }
@@ -324,14 +325,9 @@ fn png_of_any_colour(
     #[case] transparency: Option<&[u8]>,
 ) {
     let (_folder, path) = file("mask.png", &png_bytes(color, depth, rows, transparency));
-    let image = read_mask_png(&path, 0.5).unwrap();
     assert_eq!(
-        image,
-        slipfront::surface::MaskImage {
-            width: 2,
-            height: 2,
-            dark: vec![false, true, true, false]
-        }
+        read_mask_png(&path, 0.5, [2, 2]).unwrap(),
+        [false, true, true, false]
     );
 }
 
@@ -340,10 +336,10 @@ fn png_threshold_is_exclusive() {
     let grey = png_bytes(ColorType::Grayscale, BitDepth::Eight, &[51, 51, 50, 52], None);
     let (_folder, path) = file("mask.png", &grey);
     assert_eq!(
-        read_mask_png(&path, 51.0 / 255.0).unwrap().dark,
+        read_mask_png(&path, 51.0 / 255.0, [2, 2]).unwrap(),
         [false, false, true, false]
     );
-    assert!(read_mask_png(&path, 1.0).unwrap().dark.iter().all(|dark| *dark));
+    assert_eq!(read_mask_png(&path, 1.0, [2, 2]).unwrap(), [true; 4]);
 }
 
 /// Five by seven grey pixels in the seven passes of Adam7.
@@ -357,12 +353,20 @@ const INTERLACED: [u8; 85] = [
 #[test]
 fn png_interlaced() {
     let (_folder, path) = file("mask.png", &INTERLACED);
-    let image = read_mask_png(&path, 0.5).unwrap();
-    assert_eq!((image.width, image.height), (5, 7));
-    for row in 0..7 {
-        for column in 0..5 {
-            let dark = (3 * row + 2 * column + row * column) % 5 < 2;
-            assert_eq!(image.dark[row * 5 + column], dark, "row {row}, column {column}");
+    let is_dark = |row: usize, column: usize| (3 * row + 2 * column + row * column) % 5 < 2;
+    // More blocks than pixels, as many, and fewer: each has the pixel at its centre.
+    for [nx, ny] in [[5, 7], [12, 30], [3, 2], [1, 1]] {
+        let mask = read_mask_png(&path, 0.5, [nx, ny]).unwrap();
+        for (row, column) in (0..ny).flat_map(|row| (0..nx).map(move |column| (row, column))) {
+            let pixel = |block: usize, blocks: usize, pixels: f64| {
+                ((block as f64 + 0.5) * pixels / blocks as f64) as usize
+            };
+            let dark = is_dark(pixel(row, ny, 7.0), pixel(column, nx, 5.0));
+            assert_eq!(
+                mask[row * nx + column],
+                dark,
+                "{nx} x {ny}: row {row}, column {column}"
+            );
         }
     }
 }
@@ -401,15 +405,16 @@ fn repair_checksums(png: &mut [u8]) {
 #[case(
     100_000,
     100_000,
-    "has 100000 x 100000 pixels where at most 268435456 pixels are read; scale it down"
+    "has 100000 x 100000 pixels where at most 268435456 pixels are read, and at most 1048576 along a side; scale it down"
 )]
 #[case(u32::MAX, 1, "has 4294967295 x 1 pixels")]
+#[case(1, (1 << 20) + 1, "and at most 1048576 along a side")]
 #[case(16_000, 16_000, "where its 16000 x 16000 pixels take at least")]
 #[case(0, 2, "is not a readable .png file")]
 #[case(2, 3, "does not have enough data")]
 fn png_that_claims_too_much(#[case] width: u32, #[case] height: u32, #[case] wanted: &str) {
     let (_folder, path) = file("mask.png", &png_claiming(width, height));
-    let text = message(read_mask_png(&path, 0.5));
+    let text = message(read_mask_png(&path, 0.5, [2, 2]));
     assert!(text.contains(wanted), "{text}");
 }
 
@@ -426,7 +431,7 @@ fn png_with_a_bad_palette(#[case] palette: &[u8], #[case] wanted: &str) {
     writer.write_image_data(&[0]).unwrap();
     writer.finish().unwrap();
     let (_folder, path) = file("mask.png", &bytes);
-    let text = message(read_mask_png(&path, 0.5));
+    let text = message(read_mask_png(&path, 0.5, [2, 2]));
     assert!(text.contains(wanted), "{text}");
 }
 
@@ -440,7 +445,7 @@ fn png_that_is_cut_short_or_something_else() {
         (b"GIF89a and the rest of it", "is not a readable .png file"),
     ] {
         let (_folder, path) = file("mask.png", bytes);
-        let text = message(read_mask_png(&path, 0.5));
+        let text = message(read_mask_png(&path, 0.5, [2, 2]));
         assert!(text.contains(wanted), "{text}");
     }
 }
@@ -464,7 +469,7 @@ fn files_longer_than_can_be_meant_are_not_read() {
     );
     assert!(text.contains(&wanted), "{text}");
     let (_folder, path) = stretched("mask.png", b"", (1 << 28) + 1);
-    let text = message(read_mask_png(&path, 0.5));
+    let text = message(read_mask_png(&path, 0.5, [2, 2]));
     assert!(
         text.contains("where an image takes at most 268435456; scale it down"),
         "{text}"
@@ -475,9 +480,14 @@ fn files_longer_than_can_be_meant_are_not_read() {
         text.contains("where 2 rows of 3 numbers take at most 10048;"),
         "{text}"
     );
-    // Of an array only as much is looked at as the lattice has blocks.
+    // What follows an array is part of none.
     let (_folder, path) = stretched("mu.npy", &field_npy(), 5000);
-    assert_eq!(read_field(&path, 3, 2).unwrap(), FIELD);
+    let text = message(read_field(&path, 3, 2));
+    let wanted = format!(
+        "it has 5000 bytes where its header asks for {}",
+        field_npy().len()
+    );
+    assert!(text.contains(&wanted), "{text}");
 }
 
 #[rstest]
@@ -489,10 +499,11 @@ fn masks_come_back_as_written(#[case] nx: usize, #[case] ny: usize) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mask.png");
     write_mask_png(&path, nx, ny, &textured).unwrap();
-    let image = read_mask_png(&path, 0.5).unwrap();
-    assert_eq!((image.width, image.height), (nx, ny));
-    let from_the_bottom: Vec<bool> = image.dark.chunks(nx).rev().flatten().copied().collect();
-    assert_eq!(from_the_bottom, textured);
+    let bytes = read_file(&path, nx, ny).unwrap();
+    assert_eq!(
+        mask_png(&path, &bytes, 0.5, [nx, ny], &mut |_| Ok(())).unwrap(),
+        textured
+    );
 }
 
 #[test]
@@ -577,7 +588,7 @@ fn damaged_files_are_refused_or_read() {
             }
             replace(&path, &bytes);
             if name.ends_with("png") {
-                let _ = read_mask_png(&path, 0.5);
+                let _ = read_mask_png(&path, 0.5, [2, 2]);
             } else {
                 let _ = read_field(&path, 3, 2);
             }

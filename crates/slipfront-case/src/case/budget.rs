@@ -75,18 +75,17 @@ pub struct Budget {
     maps: f64,
     /// Bytes of the files that the case reads, kept for their copies.
     pub(super) inputs: f64,
-    /// Bytes of masks, one a pixel or block, until they are laid over the lattice.
+    /// Bytes of masks, one a block, until they are laid over the lattice.
     pub(super) masks: f64,
     /// Whether the run resumes from a checkpoint.
     is_resumed: bool,
 }
 
 /// What takes memory or disk space.
-#[derive(Default)]
 struct Part {
     /// The key of the case that it is due to.
     key: &'static str,
-    what: String,
+    what: fn(&Budget) -> String,
     remedy: &'static str,
     /// Bytes in each [`Phase`].
     bytes: [f64; 5],
@@ -145,7 +144,7 @@ impl Budget {
         [
             Part {
                 key: "slider.blocks",
-                what: count(blocks as usize, "block"),
+                what: |budget| count(budget.blocks as usize, "block"),
                 remedy: "lower `slider.blocks`",
                 bytes: [
                     blocks * SURFACE,
@@ -158,11 +157,10 @@ impl Budget {
             },
             Part {
                 key: "output.snapshots",
-                what: format!(
-                    "{} of {}",
-                    count(frames as usize, "snapshot"),
-                    count(fields as usize, "field")
-                ),
+                what: |budget| {
+                    let (frames, fields) = (budget.frames as usize, budget.fields as usize);
+                    format!("{} of {}", count(frames, "snapshot"), count(fields, "field"))
+                },
                 remedy: "take fewer `output.snapshots`, name fewer `output.fields`, or raise `output.stride`",
                 bytes: [
                     0.0,
@@ -174,7 +172,7 @@ impl Budget {
             },
             Part {
                 key: "output.series",
-                what: format!("{} of the series", count(rows as usize, "row")),
+                what: |budget| format!("{} of the series", count(budget.rows as usize, "row")),
                 remedy: "raise `output.series`",
                 bytes: [
                     0.0,
@@ -186,8 +184,8 @@ impl Budget {
             },
             Part {
                 key: "texture",
-                what: "the files that it reads".to_owned(),
-                remedy: "scale them down",
+                what: |_| "the files that it reads".to_owned(),
+                remedy: "scale them down, or name fewer",
                 bytes: [inputs + self.masks, inputs, inputs, inputs, 0.0],
             },
         ]
@@ -335,10 +333,13 @@ impl Budget {
     /// The key that most bytes of a phase are due to, how many these are and for what, and the remedy.
     fn most(&self, phase: Phase) -> (&'static str, String, &'static str) {
         let bytes_of = |part: &Part| part.bytes[phase as usize];
-        let parts = self.parts().into_iter();
-        let most = parts.max_by(|a, b| bytes_of(a).total_cmp(&bytes_of(b)));
-        let most = most.unwrap_or_default();
-        let what = format!("{} of it for {}", byte_size(bytes_of(&most)), most.what);
+        let [mut most, others @ ..] = self.parts();
+        for part in others {
+            if bytes_of(&part) >= bytes_of(&most) {
+                most = part;
+            }
+        }
+        let what = format!("{} of it for {}", byte_size(bytes_of(&most)), (most.what)(self));
         (most.key, what, most.remedy)
     }
 }

@@ -19,10 +19,11 @@ pub(super) fn coefficients(
         let Some(written) = name(&mut file.friction).clone() else {
             return Ok(None);
         };
-        let (given, field) = inputs.read(file, key, &written, lattice, |given| {
-            arrays::field(&given.original, &given.bytes, lattice.nx, lattice.ny)
-        })?;
-        *name(&mut file.friction) = Some(inputs.keep(file, given)?);
+        let given = inputs.read(file, key, &written, lattice)?;
+        let field = arrays::field(&given.original, &given.bytes, lattice.nx, lattice.ny)
+            .map_err(|error| file.source.error(key, error.to_string()))?;
+        let kept = inputs.keep(file, given)?;
+        *name(&mut file.friction) = Some(inputs.kept[kept].name.clone());
         Ok(Some(field))
     };
     let mu_static = given("friction.mu_static_field", |friction| {

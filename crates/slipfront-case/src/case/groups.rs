@@ -28,6 +28,9 @@ const MAX_EPSILON: f64 = 0.5;
 const MIN_V_STAR: f64 = 1e-9;
 const MAX_V_STAR: f64 = 10.0;
 const MAX_OMEGA_STAR: f64 = 1000.0;
+/// Smallest unit of a displacement, speed or stress, in SI: fields are written in single precision, which ends at 1e-38, and
+/// have eight digits below their unit.
+const MIN_UNIT: f64 = 1e-30;
 
 impl Groups {
     /// The groups of a case file, refused when one is out of the range in which the model is valid.
@@ -40,6 +43,7 @@ impl Groups {
             );
             return Err(file.source.error("load.pressure", sentence));
         }
+        refuse_small_units(file, scales)?;
         let (key, v_star) = match &file.drive.speed {
             DriveSpeed::VStar(v_star) => ("drive.v_star", *v_star),
             DriveSpeed::Speed(speed) => ("drive.speed", speed.si() / scales.speed()),
@@ -63,6 +67,34 @@ impl Groups {
             epsilon,
         })
     }
+}
+
+/// Refuses units of results that are lost to the smallest numbers there are.
+fn refuse_small_units(file: &CaseFile, scales: &Scales) -> Result<(), CaseError> {
+    let units = [
+        ("displacement, P mu_s l/E,", scales.displacement(), "m"),
+        ("speed, P mu_s/sqrt(E rho),", scales.speed(), "m/s"),
+        ("stress, P mu_s,", scales.stress(), "Pa"),
+    ];
+    let Some((what, size, unit)) = units.into_iter().find(|(_, size, _)| *size < MIN_UNIT) else {
+        return Ok(());
+    };
+    let keys = [
+        "friction.mu_static",
+        "load.pressure",
+        "slider.block_size",
+        "slider.young_modulus",
+        "slider.density",
+    ];
+    let key = keys
+        .into_iter()
+        .find(|key| file.source.has(key))
+        .unwrap_or_default();
+    let sentence = format!(
+        "the unit of {what} is {size:.1e} {unit}, below {MIN_UNIT:e}, where results are lost to rounding: raise `mu_static` or \
+         `pressure`, and look at the units of `block_size`, `young_modulus` and `density`"
+    );
+    Err(file.source.error(key, sentence))
 }
 
 fn within(

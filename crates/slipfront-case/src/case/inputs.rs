@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use slipfront::Lattice;
 
 use super::budget::Budget;
-use crate::arrays::{self, ArrayError};
+use crate::arrays;
 use crate::case_file::{CaseError, CaseFile};
 
 /// A file that a case reads, kept so that the run folder can hold a copy.
@@ -45,40 +45,39 @@ pub(super) struct Inputs<'a> {
 }
 
 impl Inputs<'_> {
-    /// Reads a file that the case names, and what `parse` makes of it. It is read once, so that its copy holds what the case
-    /// was made of. It has its plain name until it is kept.
-    pub(super) fn read<T>(
+    /// Reads a file that the case names. It is read once, so that its copy holds what the case was made of. It has its plain name
+    /// until it is kept.
+    pub(super) fn read(
         &self,
         file: &CaseFile,
         key: &str,
         written: &str,
         lattice: &Lattice,
-        parse: impl FnOnce(&Input) -> Result<T, ArrayError>,
-    ) -> Result<(Input, T), CaseError> {
+    ) -> Result<Input, CaseError> {
         let original = self.folder.join(written);
         let name = original
             .file_name()
             .map(|name| name.to_string_lossy().into_owned());
-        let given = arrays::read_file(&original, lattice.nx, lattice.ny).map(|bytes| Input {
+        let bytes = arrays::read_file(&original, lattice.nx, lattice.ny);
+        Ok(Input {
             name: name.unwrap_or_else(|| "input".to_owned()),
+            bytes: bytes.map_err(|error| file.source.error(key, error.to_string()))?,
             original,
-            bytes,
-        });
-        let read = given.and_then(|given| parse(&given).map(|parsed| (given, parsed)));
-        read.map_err(|error| file.source.error(key, error.to_string()))
+        })
     }
 
-    /// Keeps the contents of a file that the case uses; gives the path of its copy in the run folder.
-    pub(super) fn keep(&mut self, file: &CaseFile, mut given: Input) -> Result<String, CaseError> {
-        let kept = |name: &str| self.kept.iter().find(|kept| kept.name == name);
-        let is_same = |name: &str| Some(kept(name)?.bytes == given.bytes);
-        let (name, is_kept) = name_of_copy(&given.name, is_same);
-        if !is_kept {
-            self.budget.inputs += given.bytes.len() as f64;
-            given.name.clone_from(&name);
-            self.kept.push(given);
-            self.budget.check_making(file)?;
+    /// Keeps the contents of a file that the case uses; gives its position among the kept ones.
+    pub(super) fn keep(&mut self, file: &CaseFile, mut given: Input) -> Result<usize, CaseError> {
+        let position = |name: &str| self.kept.iter().position(|kept| kept.name == name);
+        let is_same = |name: &str| Some(self.kept[position(name)?].bytes == given.bytes);
+        let (name, _) = name_of_copy(&given.name, is_same);
+        if let Some(position) = position(&name) {
+            return Ok(position);
         }
-        Ok(name)
+        self.budget.inputs += given.bytes.len() as f64;
+        given.name = name;
+        self.kept.push(given);
+        self.budget.check_making(file)?;
+        Ok(self.kept.len() - 1)
     }
 }

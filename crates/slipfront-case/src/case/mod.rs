@@ -15,4 +15,5 @@ pub use self::groups::Groups;
 pub use self::inputs::{Input, name_of_copy};
 pub use self::output::{MAX_MAPS, Output, Snapshots, VARIABLE_MAX_BYTES, check_fields, smallest_stride};
 pub use self::runnable::{Case, TextureReport};
+pub use self::textures::Watch;
 pub use self::time_plan::TimePlan;

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use slipfront::scales::damping;
-use slipfront::surface::{Load, mesh};
+use slipfront::surface::Load;
 use slipfront::{Drive, Lattice, Model, Scales, Surface};
 
 use super::budget::Budget;
@@ -12,7 +12,7 @@ use super::coefficients::coefficients;
 use super::groups::Groups;
 use super::inputs::{Input, Inputs};
 use super::output::{Output, check_fields};
-use super::textures::textures;
+use super::textures::{self, Watch};
 use super::time_plan::TimePlan;
 use crate::case_file::{CaseError, CaseFile};
 
@@ -52,18 +52,21 @@ pub struct TextureReport {
     pub meshed_percent: f64,
     /// Positions in the case file, from 0, of the textures that a free edge clips.
     pub clipped: Vec<usize>,
+    /// Positions of those that cover no block.
+    pub empty: Vec<usize>,
 }
 
 impl Case {
     /// Loads a case file and the files it names, which stand relative to it. A run that needs more
-    /// memory than there is gets refused before any array is allocated.
-    pub fn load(path: &Path, overrides: &[String]) -> Result<Self, CaseError> {
+    /// memory than there is gets refused before any array is allocated. `watch` is shown how its texture is laid over the
+    /// blocks.
+    pub fn load(path: &Path, overrides: &[String], watch: &mut Watch) -> Result<Self, CaseError> {
         let file = CaseFile::load(path, overrides)?;
         let name = path
             .file_stem()
             .map_or_else(|| "case".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let folder = path.parent().unwrap_or(Path::new(""));
-        Self::to_run(file, &name, folder)
+        Self::to_run(file, &name, folder, watch)
     }
 
     /// Makes a case of text, as [`load`](Self::load) does; the files it names stand in the working directory.
@@ -73,12 +76,14 @@ impl Case {
 
     /// Makes a case of text, as [`load`](Self::load) does; the files it names stand relative to `folder`.
     pub fn parse_in(text: &str, name: &str, folder: &Path, overrides: &[String]) -> Result<Self, CaseError> {
-        Self::to_run(CaseFile::parse(text, name, overrides)?, name, folder)
+        Self::to_run(CaseFile::parse(text, name, overrides)?, name, folder, &mut |_| {
+            true
+        })
     }
 
     /// Makes a case of a case file that was read already, to be run; the files it names stand relative to `folder`.
-    pub fn to_run(file: CaseFile, name: &str, folder: &Path) -> Result<Self, CaseError> {
-        let case = Self::make(file, name, folder, true)?;
+    pub fn to_run(file: CaseFile, name: &str, folder: &Path, watch: &mut Watch) -> Result<Self, CaseError> {
+        let case = Self::make(file, name, folder, true, watch)?;
         // Once more, with the files that it reads.
         case.budget.check_memory(&case.file, true)?;
         Ok(case)
@@ -86,11 +91,17 @@ impl Case {
 
     /// Makes a case of a case file; the files it names stand relative to `folder`. The memory for a run of it is not
     /// checked.
-    pub fn new(file: CaseFile, name: &str, folder: &Path) -> Result<Self, CaseError> {
-        Self::make(file, name, folder, false)
+    pub fn new(file: CaseFile, name: &str, folder: &Path, watch: &mut Watch) -> Result<Self, CaseError> {
+        Self::make(file, name, folder, false, watch)
     }
 
-    fn make(mut file: CaseFile, name: &str, folder: &Path, to_run: bool) -> Result<Self, CaseError> {
+    fn make(
+        mut file: CaseFile,
+        name: &str,
+        folder: &Path,
+        to_run: bool,
+        watch: &mut Watch,
+    ) -> Result<Self, CaseError> {
         let scales = Scales {
             block_size: file.slider.block_size.si(),
             young_modulus: file.slider.young_modulus.si(),
@@ -114,8 +125,7 @@ impl Case {
             kept: Vec::new(),
             budget,
         };
-        let (shapes, asked_percent) = textures(&mut file, &scales, &lattice, &mut inputs)?;
-        let meshed = mesh(&lattice, &shapes);
+        let (meshed, asked_percent) = textures::mesh(&mut file, &scales, &lattice, &mut inputs, watch)?;
         let coefficients = coefficients(&mut file, &groups, &lattice, &mut inputs)?;
         let negative_draws = coefficients.negative_draws;
         let load = match file.load.redistribute {
@@ -128,6 +138,7 @@ impl Case {
             asked_percent,
             meshed_percent: surface.texture_percent(),
             clipped: meshed.clipped,
+            empty: meshed.empty,
         };
         let drive = Drive::at_angle(groups.v_star, file.drive.direction);
         let model = Model::new(

@@ -1,6 +1,9 @@
-//! Textures of a case file as shapes in blocks.
+//! Textures of a case file as shapes in blocks, laid over them.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::path::Path;
+use std::sync::Arc;
 
 use slipfront::{Lattice, Scales, surface};
 
@@ -10,16 +13,21 @@ use crate::case_file::{CaseError, CaseFile};
 use crate::quantity::Length;
 use crate::{arrays, case_file};
 
-/// The shapes of all textures of a case file, and their area as asked for, % (see
+/// Told the share that is done of laying the texture over the blocks; `false` ends it.
+pub type Watch<'a> = dyn FnMut(f64) -> bool + 'a;
+
+/// The textured blocks, and the area of all textures as asked for, % (see
 /// [`TextureReport`](super::runnable::TextureReport)); masks are read.
-pub(super) fn textures(
+pub(super) fn mesh(
     file: &mut CaseFile,
     scales: &Scales,
     lattice: &Lattice,
     inputs: &mut Inputs,
-) -> Result<(Vec<surface::Texture>, Option<f64>), CaseError> {
+    watch: &mut Watch,
+) -> Result<(surface::Meshed, Option<f64>), CaseError> {
     let mut shapes = Vec::new();
     let mut asked = Some(0.0);
+    let mut masks = Masks::default();
     for index in 0..file.texture.len() {
         let (shape, percent) = match &file.texture[index] {
             case_file::Texture::Cavity(cavity) => cavity_in_blocks(cavity, scales, lattice),
@@ -29,19 +37,10 @@ pub(super) fn textures(
                 (surface::Texture::Polygon(points.collect()), None)
             }
             case_file::Texture::Mask(mask) => {
-                let key = format!("texture.{index}.file");
-                let parse = |given: &_| mask_of(given, mask.threshold, lattice);
-                let (given, shape) = inputs.read(file, &key, &mask.file, lattice, parse)?;
-                let pixels = match &shape {
-                    surface::Texture::Image(image) => image.dark.len(),
-                    _ => lattice.n_blocks(),
-                };
-                inputs.budget.masks += pixels as f64;
-                let copy = inputs.keep(file, given)?;
-                if let case_file::Texture::Mask(mask) = &mut file.texture[index] {
-                    mask.file = copy;
-                }
-                (shape, None)
+                let mask = mask.clone();
+                let (blocks, copy) = masks.read(file, index, &mask, lattice, inputs, watch)?;
+                file.texture[index] = case_file::Texture::Mask(case_file::Mask { file: copy, ..mask });
+                (surface::Texture::Blocks(blocks), None)
             }
         };
         within_reach(&shape, lattice)
@@ -49,7 +48,50 @@ pub(super) fn textures(
         shapes.push(shape);
         asked = asked.zip(percent).map(|(sum, percent)| sum + percent);
     }
-    Ok((shapes, asked))
+    let mut watch = |share| watch(share).then_some(()).ok_or(CaseError::Stopped);
+    Ok((surface::mesh_watched(lattice, &shapes, &mut watch)?, asked))
+}
+
+/// The masks of files, by their position among the inputs and the bits of the threshold: several textures may have one.
+#[derive(Default)]
+struct Masks(HashMap<(usize, u64), Arc<Vec<bool>>>);
+
+impl Masks {
+    /// The mask of a texture, and the path of the copy of its file in the run folder. Its memory is held against the budget
+    /// before it is decoded.
+    fn read(
+        &mut self,
+        file: &CaseFile,
+        index: usize,
+        mask: &case_file::Mask,
+        lattice: &Lattice,
+        inputs: &mut Inputs,
+        watch: &mut Watch,
+    ) -> Result<(Arc<Vec<bool>>, String), CaseError> {
+        let key = format!("texture.{index}.file");
+        let given = inputs.read(file, &key, &mask.file, lattice)?;
+        let kept = inputs.keep(file, given)?;
+        let copy = inputs.kept[kept].name.clone();
+        let entry = match self.0.entry((kept, mask.threshold.to_bits())) {
+            Entry::Occupied(known) => return Ok((Arc::clone(known.get()), copy)),
+            Entry::Vacant(entry) => entry,
+        };
+        inputs.budget.masks += lattice.n_blocks() as f64;
+        inputs.budget.check_making(file)?;
+        let Input { original, bytes, .. } = &inputs.kept[kept];
+        let blocks = [lattice.nx, lattice.ny];
+        let read = match is_array(original) {
+            true => arrays::mask_npy(original, bytes, lattice.nx, lattice.ny),
+            false => arrays::mask_png(original, bytes, mask.threshold, blocks, &mut |share| {
+                watch(share).then_some(()).ok_or(ArrayError::Stopped)
+            }),
+        };
+        let read = read.map_err(|error| match error {
+            ArrayError::Stopped => CaseError::Stopped,
+            error => file.source.error(&key, error.to_string()),
+        });
+        Ok((Arc::clone(entry.insert(Arc::new(read?))), copy))
+    }
 }
 
 /// How far a texture may reach, in slider lengths. Farther away it is a typing error, and on a periodic axis its position
@@ -62,7 +104,7 @@ fn within_reach(shape: &surface::Texture, lattice: &Lattice) -> Result<(), Strin
         surface::Texture::Cavity(cavity) => farthest(&cavity.center) + 2.0 * cavity.lambda,
         surface::Texture::Groove(groove) => groove.offset.abs() + groove.width,
         surface::Texture::Polygon(points) => farthest(points.as_flattened()),
-        surface::Texture::Image(_) | surface::Texture::Blocks(_) => 0.0,
+        surface::Texture::Blocks(_) => 0.0,
     };
     let slider = lattice.nx.max(lattice.ny) as f64;
     if reach <= REACH * slider {
@@ -134,15 +176,6 @@ fn groove_in_blocks(
         offset: scales.in_blocks(groove.offset.si()),
     };
     (surface::Texture::Groove(groove), Some(percent))
-}
-
-fn mask_of(given: &Input, threshold: f64, lattice: &Lattice) -> Result<surface::Texture, ArrayError> {
-    let (path, bytes) = (&given.original, &given.bytes);
-    Ok(if is_array(path) {
-        surface::Texture::Blocks(arrays::mask_npy(path, bytes, lattice.nx, lattice.ny)?)
-    } else {
-        surface::Texture::Image(arrays::mask_png(path, bytes, threshold)?)
-    })
 }
 
 /// Whether the file of a mask is an array, and not an image.

@@ -28,6 +28,8 @@ pub enum CaseError {
     Unwritable(#[from] toml::ser::Error),
     #[error(transparent)]
     Invalid(Box<Invalid>),
+    #[error("stopped while the texture was laid over the blocks; nothing was written")]
+    Stopped,
 }
 
 /// Something that is wrong with the contents of a case, and where.

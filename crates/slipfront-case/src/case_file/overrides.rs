@@ -84,6 +84,11 @@ impl Override {
         &self.text[self.key.clone()]
     }
 
+    /// The top-level table that it changes.
+    pub(super) fn table(&self) -> &str {
+        self.key().split('.').next().unwrap_or_default().trim()
+    }
+
     /// Applies the override to a parsed file; its text is added to the source.
     pub(super) fn apply<'i>(&'i self, root: &mut DeTable<'i>, source: &mut Source) -> Result<(), CaseError> {
         let start = source.add_override(&self.text);

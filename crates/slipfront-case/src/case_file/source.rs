@@ -68,6 +68,18 @@ impl Source {
         piece.unwrap_or_default()
     }
 
+    /// This source without the places of what stands in these top-level tables.
+    pub(super) fn without(&self, tables: &[&str]) -> Self {
+        let table = |key: &str| key.split('.').next().is_some_and(|table| tables.contains(&table));
+        let kept = self.places.iter().filter(|(key, _)| !table(key));
+        Self {
+            places: kept.map(|(key, place)| (key.clone(), place.clone())).collect(),
+            name: Arc::clone(&self.name),
+            file: Arc::clone(&self.file),
+            overrides: self.overrides.clone(),
+        }
+    }
+
     /// Notes the place of every value of a parsed file.
     pub fn note_places(&mut self, root: &DeTable<'_>) {
         note_table(&mut self.places, "", root);

@@ -1,6 +1,7 @@
 use std::fs;
 use std::path::Path;
 
+use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseFile;
 
 use super::{files, notes};
@@ -22,7 +23,9 @@ fn complaint(path: &Path) -> Option<String> {
     if expected.is_empty() {
         return Some(format!("{name} expects no error"));
     }
-    let Err(error) = CaseFile::parse(&text, "bad.toml", &notes(&text, "set")) else {
+    let file = CaseFile::parse(&text, "bad.toml", &notes(&text, "set"));
+    let case = file.and_then(|file| Case::new(file, "bad", Path::new(""), &mut |_| true));
+    let Err(error) = case else {
         return Some(format!("{name} was accepted"));
     };
     let message = error.to_string();

@@ -7,6 +7,7 @@ use crate::estimate_cost::seconds_per_step;
 use crate::failure::Failure;
 use crate::print::print;
 use crate::report;
+use crate::signals::Signals;
 
 /// Validate a case and print what it means and what it will cost
 #[derive(Args)]
@@ -20,7 +21,8 @@ pub(crate) struct Check {
 
 impl Check {
     pub(crate) fn execute(self) -> Result<(), Failure> {
-        let case = self.case.load()?;
+        let signals = Signals::catch().map_err(Failure::running)?;
+        let case = self.case.load(&signals, false)?;
         print(&report::physics(&case))?;
         let seconds = seconds_per_step(&case) * case.time_plan.last_step as f64;
         print(&report::cost(&case, seconds))

@@ -11,6 +11,7 @@ use crate::case_args::CaseArgs;
 use crate::failure::Failure;
 use crate::print::print_message;
 use crate::report;
+use crate::signals::Signals;
 
 /// Write the texture of a case as a mask: one pixel per block, textured ones black
 #[derive(Args)]
@@ -29,7 +30,8 @@ pub(crate) struct Texture {
 
 impl Texture {
     pub(crate) fn execute(self) -> Result<(), Failure> {
-        let case = self.case.load()?;
+        let signals = Signals::catch().map_err(Failure::running)?;
+        let case = self.case.load(&signals, false)?;
         let input = case
             .inputs
             .iter()

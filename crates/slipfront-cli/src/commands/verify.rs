@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
-use jiff::Timestamp;
 use slipfront_case::case::Case;
 use slipfront_case::number_format::count;
 use slipfront_case::text::truncated;
+use slipfront_run::clock;
 use slipfront_run::manifest::Manifest;
 use slipfront_run::program;
 use slipfront_run::results;
@@ -17,6 +17,7 @@ use slipfront_run::running::Running;
 use slipfront_run::verify::{Verdict, VerifyError, differences, inspect, is_study, verify, verify_run};
 
 use crate::failure::Failure;
+use crate::make_case::make_case;
 use crate::print::print;
 use crate::print_stderr::print_stderr;
 use crate::progress::run::RunProgress;
@@ -104,7 +105,7 @@ impl Verify {
 
     /// Runs the case of a folder again beside it, and adds what differs.
     fn repeat(&self, run: &Inspection, signals: &Signals, verdict: &mut Verdict) -> Result<(), Failure> {
-        let (started, folder) = (Timestamp::now(), run.path.as_path());
+        let (started, folder) = (clock::now(), run.path.as_path());
         let case = folder.join("case.toml");
         // A user may hand over a case through a pipe; in a folder of results it would be waited for.
         if !case.is_file() {
@@ -114,14 +115,13 @@ impl Verify {
             );
             return Err(Failure::input(anyhow::anyhow!(sentence)));
         }
-        let case = match &run.case {
-            Ok(file) => Case::to_run(file.clone(), "case", folder),
-            Err(CaseDefect::NotResolved(file)) => Case::to_run(*file.clone(), "case", folder),
+        let case = make_case(signals, self.quiet, |watch| match &run.case {
+            Ok(file) => Case::to_run(file.clone(), "case", folder, watch),
+            Err(CaseDefect::NotResolved(file)) => Case::to_run(*file.clone(), "case", folder, watch),
             // It says why there is none.
-            Err(CaseDefect::Unreadable(_) | CaseDefect::Invalid(_)) => Case::load(&case, &[]),
-        }
-        .map(Arc::new)
-        .map_err(Failure::input)?;
+            Err(CaseDefect::Unreadable(_) | CaseDefect::Invalid(_)) => Case::load(&case, &[], watch),
+        });
+        let case = Arc::new(case?);
         let again = tempfile::tempdir().map_err(|error| Failure::running(VerifyError::Temporary(error)))?;
         case.budget
             .check_disk(&case.file, again.path(), 0, false)

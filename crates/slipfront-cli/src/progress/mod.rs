@@ -1,6 +1,7 @@
-//! Progress on stderr: of a run, of a study, of the figures of the paper.
+//! Progress on stderr: of a texture, of a run, of a study, of the figures of the paper.
 
 pub(crate) mod display;
+pub(crate) mod mesh;
 pub(crate) mod paper;
 pub(crate) mod run;
 pub(crate) mod study;

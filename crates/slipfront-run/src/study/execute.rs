@@ -17,8 +17,9 @@ use super::study_results::{Progress, StudyResults};
 use crate::error::ResultsError;
 use crate::names::RUNS;
 use crate::run_folder::RunFolder;
-use crate::{results, running};
+use crate::{clock, results, running};
 use slipfront_case::case::Case;
+use slipfront_case::case_file::CaseError;
 
 /// Whether runs should be given up: after a signal, and when the study cannot go on.
 type IsStopped<'a> = dyn Fn() -> bool + Sync + 'a;
@@ -111,10 +112,14 @@ fn run_one(
     run: RunKey,
     is_stopped: &IsStopped,
 ) -> Result<Option<Outcome>, StudyError> {
-    let started = jiff::Timestamp::now();
+    let started = clock::now();
     // The point was valid when the study began. If it is not now, a file that it reads has changed: that ends the study and is
     // not recorded as a failure of the run.
-    let case = Arc::new(plan.case(run)?);
+    let case = match plan.case(run, &mut |_| !is_stopped()) {
+        Ok(case) => Arc::new(case),
+        Err(CaseError::Stopped) => return Ok(None),
+        Err(error) => return Err(error.into()),
+    };
     let Some(mut record) = running::run_unless(&case, is_stopped) else {
         return Ok(None);
     };

@@ -236,15 +236,15 @@ mod tests {
         let run = plan.runs(1).next().unwrap();
         let out = StudyFolder::open(&folder.path().join("out"), &file).unwrap();
         std::fs::write(&original, table(0.8)).unwrap();
-        let said = plan.case(run).unwrap_err().to_string();
+        let said = plan.case(run, &mut |_| true).unwrap_err().to_string();
         assert!(
             said.contains("no longer what it was when the study began"),
             "{said}"
         );
         let plan = plan.reading_copies(&out.study);
-        let case = plan.case(run).unwrap();
+        let case = plan.case(run, &mut |_| true).unwrap();
         assert_eq!(case.inputs[0].bytes, table(0.9).as_bytes());
         std::fs::write(folder.path().join("out/inputs/mu.csv"), table(0.7)).unwrap();
-        assert!(plan.case(run).is_err());
+        assert!(plan.case(run, &mut |_| true).is_err());
     }
 }

@@ -33,7 +33,7 @@ fn is_idle(plan: &Plan, axis: usize) -> bool {
             let mut levels = others.clone();
             levels[axis] = level;
             // A level that is no valid case is one of a part of the study that this process does not run.
-            plan.case_of(levels).ok().as_ref().map(digest)
+            plan.case_of(&levels).ok().as_ref().map(digest)
         };
         let first = digest(0);
         first.is_some() && (1..count).all(|level| digest(level) == first)

@@ -28,7 +28,7 @@ struct Measured<'a> {
     axes: &'a [Axis],
     quantity: &'static str,
     /// Mean and the ends of its interval, by the levels of a point; NaN where there is none.
-    values: HashMap<&'a [usize], [f64; 3]>,
+    values: HashMap<Vec<usize>, [f64; 3]>,
 }
 
 impl<'a> Measured<'a> {
@@ -40,7 +40,7 @@ impl<'a> Measured<'a> {
             [sample.map_or(f64::NAN, |sample| sample.mean), low, high]
         };
         let points = plan.points.iter().enumerate();
-        let values = points.map(|(position, point)| (point.levels.as_slice(), value(position)));
+        let values = points.map(|(position, point)| (plan.levels(point), value(position)));
         Self {
             axes: &plan.axes,
             quantity,

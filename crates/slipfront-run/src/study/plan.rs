@@ -12,8 +12,8 @@ use super::shard::Shard;
 use super::study_file::{Base, RetainRuns, Settings, StudyFile};
 use super::summary_values::REDUCTION;
 use crate::program;
-use slipfront_case::case::{Budget, Case, PROGRAM, check_fields};
-use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Override, ParsedCase, Snapshots};
+use slipfront_case::case::{Case, PROGRAM, Watch, check_fields};
+use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Override, ParsedCase, Snapshots, Source};
 use slipfront_case::machine::{available_memory, most_at_once};
 use slipfront_case::number_format::byte_size;
 use slipfront_case::text::display_path;
@@ -29,23 +29,22 @@ pub struct Plan {
     pub axes: Vec<Axis>,
     /// Every combination of levels, the last axis fastest.
     pub points: Vec<Point>,
+    /// What is known of the runs of the points, one for each role.
+    specs: Vec<RunSpec>,
+    warnings: Vec<Warning>,
     base: Base,
     reference: Option<Vec<Override>>,
 }
 
-/// A combination of levels.
-#[derive(Clone, Debug, PartialEq)]
+/// A combination of levels. There may be a million of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// Place in the whole study, from 0: the same in every shard.
     pub index: usize,
-    /// Level of each axis.
-    pub levels: Vec<usize>,
-    /// What is known of its runs, one for each role.
-    specs: Vec<RunSpec>,
 }
 
 /// What is known of the runs of a point before any is made.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct RunSpec {
     /// Seed of replicate 0.
     seed: u64,
@@ -54,49 +53,12 @@ struct RunSpec {
     /// Steps times blocks of a run, at most.
     block_steps: f64,
     n_blocks: usize,
-    budget: Budget,
-    /// Warnings about its case.
-    warnings: Vec<String>,
-    /// What differs between its replicates.
-    random: Random,
-}
-
-/// The coefficients that differ from seed to seed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Random {
-    /// The static ones at the least.
-    Static,
-    /// The kinetic ones alone.
-    KineticAlone,
-    /// None.
-    Nothing,
-}
-
-impl Random {
-    fn of(case: &Case) -> Self {
-        let (friction, groups) = (&case.file.friction, &case.groups);
-        if friction.mu_static_field.is_none() && groups.sigma_static_star > 0.0 {
-            Self::Static
-        } else if friction.mu_kinetic_field.is_none() && groups.sigma_kinetic_star * groups.r_star > 0.0 {
-            Self::KineticAlone
-        } else {
-            Self::Nothing
-        }
-    }
-
-    /// What a reader of intervals must know.
-    fn note(self) -> Option<&'static str> {
-        match self {
-            Self::Static => None,
-            Self::KineticAlone => Some(
-                "replicates differ in their kinetic coefficients alone, and intervals show no more than that: the static \
-                 ones are the same for every seed",
-            ),
-            Self::Nothing => {
-                Some("all replicates are the same run: no coefficient is random, and one replicate says all")
-            }
-        }
-    }
+    /// Memory of a run beside others, in bytes.
+    memory: f64,
+    /// Memory of its case alone, in bytes.
+    memory_of_case: f64,
+    /// Room for its files, in bytes.
+    disk: f64,
 }
 
 /// A warning about points of a study.
@@ -113,6 +75,9 @@ pub struct Warning {
 /// Cases of more blocks are made one at a time while planning: one for each thread might not fit into memory.
 const LARGE: u64 = 250_000;
 static MAKING_LARGE: Mutex<()> = Mutex::new(());
+
+/// Points whose cases are made before what is known of them is taken down.
+const POINTS_AT_ONCE: usize = 4096;
 
 /// A line of the records and a row of the tables.
 const RECORD_BYTES: f64 = 4096.0;
@@ -140,39 +105,54 @@ pub struct RunKey {
 impl Plan {
     /// Makes the points of all combinations of levels and the case of each; the first invalid one is named.
     pub fn new(file: &StudyFile, shard: Option<Shard>) -> Result<Self, StudyError> {
-        let mut points: Vec<Point> = (0..file.count_points()?)
+        let points = (0..file.count_points()?)
             .filter(|&index| shard.is_none_or(|shard| shard.holds(index)))
-            .map(|index| Point {
-                index,
-                levels: levels(&file.axes, index),
-                specs: Vec::new(),
-            })
+            .map(|index| Point { index })
             .collect();
         let mut plan = Self {
             name: file.name.clone(),
             settings: file.settings.clone(),
             axes: file.axes.clone(),
-            points: Vec::new(),
+            points,
+            specs: Vec::new(),
+            warnings: Vec::new(),
             base: file.base.clone(),
             reference: file.settings.reference.as_ref().map(axis::overrides),
         };
+        plan.make_specs()?;
+        Ok(plan)
+    }
+
+    /// Makes the cases of all points, and takes down what is known of their runs.
+    fn make_specs(&mut self) -> Result<(), StudyError> {
         let invalid = |point: Option<&Point>, source| {
-            let point = point.map_or_else(String::new, |point| plan.describe(point));
+            let point = point.map_or_else(String::new, |point| self.describe(point));
             StudyError::Point { point, source }
         };
-        let base = plan.base.parse();
-        let base = base.map_err(|error| invalid(points.first(), error))?;
-        let spec = |point, role| plan.spec(&base, point, role);
-        let specs = points
-            .par_iter()
-            .map(|point| plan.roles().map(|role| spec(point, role)).collect());
-        let specs: Vec<Result<Vec<RunSpec>, CaseError>> = specs.collect();
-        // In order, so that the first invalid point is named.
-        for (point, specs) in points.iter_mut().zip(specs) {
-            point.specs = specs.map_err(|error| invalid(Some(point), error))?;
+        let base = self.base.parse();
+        let mut base = base.map_err(|error| invalid(self.points.first(), error))?;
+        base.prepare();
+        let mut specs = Vec::with_capacity(self.points.len() * self.roles().count());
+        let mut warnings = Warnings::default();
+        for (chunk, points) in self.points.chunks(POINTS_AT_ONCE).enumerate() {
+            let made = points.par_iter().map(|point| {
+                let specs = self.roles().map(|role| self.spec(&base, point, role));
+                specs.collect()
+            });
+            let made: Vec<Result<Vec<_>, CaseError>> = made.collect();
+            // In order, so that the first invalid point is named.
+            for (position, (point, made)) in points.iter().zip(made).enumerate() {
+                let made = made.map_err(|error| invalid(Some(point), error))?;
+                warnings.add(
+                    chunk * POINTS_AT_ONCE + position,
+                    made.iter().flat_map(|(_, sentences)| sentences),
+                );
+                specs.extend(made.into_iter().map(|(spec, _)| spec));
+            }
         }
-        plan.points = points;
-        Ok(plan)
+        self.specs = specs;
+        self.warnings = warnings.found;
+        Ok(())
     }
 
     /// The roles of the runs of a point: the point itself, and its reference if the study has one.
@@ -197,8 +177,8 @@ impl Plan {
 
     /// The case file of replicate 0: the base with the overrides of the point's levels, and of the reference.
     fn case_file(&self, base: &ParsedCase, point: &Point, role: Role) -> Result<CaseFile, CaseError> {
-        let levels = self.axes.iter().zip(&point.levels);
-        let overrides = levels.flat_map(|(axis, &level)| &axis.levels[level].overrides);
+        let levels = self.axes.iter().zip(self.levels(point));
+        let overrides = levels.flat_map(|(axis, level)| &axis.levels[level].overrides);
         let mut overrides: Vec<&Override> = overrides.collect();
         if let (Some(reference), Role::Reference) = (&self.reference, role) {
             let replaces = |other: &Override, set: &Override| axis::replaces_key(other.key(), set.key());
@@ -209,69 +189,69 @@ impl Plan {
     }
 
     /// The case of a combination of levels, for a look at what it computes.
-    pub(super) fn case_of(&self, levels: Vec<usize>) -> Result<Case, CaseError> {
+    pub(super) fn case_of(&self, levels: &[usize]) -> Result<Case, CaseError> {
+        let axes = self.axes.iter().zip(levels);
         let point = Point {
-            index: 0,
-            levels,
-            specs: Vec::new(),
+            index: axes.fold(0, |index, (axis, level)| index * axis.levels.len() + level),
         };
-        self.trimmed(self.case_file(&self.base.parse()?, &point, Role::Point)?, "point")
+        let file = self.case_file(&self.base.parse()?, &point, Role::Point)?;
+        self.trimmed(file, "point", &mut |_| true)
     }
 
-    /// Makes the case of a point, and collects what is known of its runs.
-    fn spec(&self, base: &ParsedCase, point: &Point, role: Role) -> Result<RunSpec, CaseError> {
+    /// Makes the case of a point; gives what is known of its runs, and the warnings about it.
+    fn spec(
+        &self,
+        base: &ParsedCase,
+        point: &Point,
+        role: Role,
+    ) -> Result<(RunSpec, Vec<String>), CaseError> {
         let file = self.case_file(base, point, role)?;
+        self.check_seeds(&file)?;
         let blocks: u64 = file.slider.blocks.into_iter().map(u64::from).product();
         let _one_at_a_time = (blocks > LARGE).then(|| MAKING_LARGE.lock());
-        let case = self.trimmed(file, "point")?;
-        Ok(RunSpec {
+        let case = self.trimmed(file, "point", &mut |_| true)?;
+        let writes = self.settings.keep == RetainRuns::All;
+        let spec = RunSpec {
             seed: case.file.friction.seed,
             physics: physics(&case)?,
             block_steps: case.block_steps(),
             n_blocks: case.model.lattice.n_blocks(),
-            budget: case.budget,
-            random: Random::of(&case),
-            warnings: case.warnings(),
-        })
+            memory: case.budget.memory_beside_others(writes),
+            memory_of_case: case.budget.memory_of_case(),
+            disk: if writes { case.budget.disk() } else { 0.0 },
+        };
+        let mut warnings = case.warnings();
+        if role == Role::Point && self.settings.max_replicates() > 1 {
+            warnings.extend(note_on_replicates(&case).map(str::to_owned));
+        }
+        Ok((spec, warnings))
+    }
+
+    /// Refuses a seed from which the replicates would count beyond the largest one.
+    fn check_seeds(&self, file: &CaseFile) -> Result<(), CaseError> {
+        const MAX_SEED: u64 = i64::MAX.unsigned_abs();
+        let (seed, replicates) = (file.friction.seed, self.settings.max_replicates());
+        if seed + (replicates - 1) as u64 <= MAX_SEED {
+            return Ok(());
+        }
+        let sentence = format!(
+            "`friction.seed` = {seed} is too large for {replicates} replicates, which take the seeds from there on: the last must be \
+             at most {MAX_SEED}"
+        );
+        Err(file.source.error("friction.seed", sentence))
     }
 
     /// Warnings about the cases of the study, the first of each kind.
-    pub fn warnings(&self) -> Vec<Warning> {
-        let mut warnings: Vec<Warning> = Vec::new();
-        // Sentences of one kind differ in their figures.
-        let kind = |sentence: &str| sentence.replace(|c: char| c.is_ascii_digit() || c == '.', "");
-        let mut known: HashMap<String, usize> = HashMap::new();
-        for (position, point) in self.points.iter().enumerate() {
-            let of_runs = point
-                .specs
-                .iter()
-                .flat_map(|run| &run.warnings)
-                .map(String::as_str);
-            let is_repeated = self.settings.max_replicates() > 1;
-            let random = point.specs.first().filter(|_| is_repeated);
-            let random = random.and_then(|run| run.random.note());
-            let of_point = of_runs.chain(random).map(|one| (kind(one), one));
-            let of_point: BTreeMap<String, &str> = of_point.rev().collect();
-            for (kind, sentence) in of_point {
-                let at = *known.entry(kind).or_insert(warnings.len());
-                match warnings.get_mut(at) {
-                    Some(warning) => warning.points += 1,
-                    None => warnings.push(Warning {
-                        sentence: sentence.to_owned(),
-                        points: 1,
-                        first: position,
-                    }),
-                }
-            }
-        }
-        warnings
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
     }
 
     /// The case of a run, ready to run, unless a file that it reads has changed since the plan was made.
-    pub fn case(&self, run: RunKey) -> Result<Case, CaseError> {
+    /// `watch` is shown how its texture is laid over the blocks.
+    pub fn case(&self, run: RunKey, watch: &mut Watch) -> Result<Case, CaseError> {
         let mut file = self.case_file(&self.base.parse()?, &self.points[run.point], run.role)?;
         file.friction.seed = self.seed(run);
-        let case = self.trimmed(file, &self.folder_name(run))?;
+        let case = self.trimmed(file, &self.folder_name(run), watch)?;
         // Only files can have become others.
         if !case.inputs.is_empty() && physics(&case)? != self.spec_of(run).physics {
             let originals = case.inputs.iter().map(|input| display_path(&input.original));
@@ -299,14 +279,14 @@ impl Plan {
     }
 
     /// A case that records no more than the study keeps.
-    fn trimmed(&self, mut file: CaseFile, name: &str) -> Result<Case, CaseError> {
+    fn trimmed(&self, mut file: CaseFile, name: &str, watch: &mut Watch) -> Result<Case, CaseError> {
         let keeps_all = self.settings.keep == RetainRuns::All;
         if !keeps_all {
             // Fields and curves are not kept, and the numbers do not depend on them.
             file.output.snapshots = Snapshots::At(Vec::new());
             file.output.series = AutoOr::Auto;
         }
-        let mut case = Case::new(file, name, &self.base.folder)?;
+        let mut case = Case::new(file, name, &self.base.folder, watch)?;
         if keeps_all {
             check_fields(&case.file)?;
         } else {
@@ -316,12 +296,12 @@ impl Plan {
     }
 
     fn spec_of(&self, run: RunKey) -> &RunSpec {
-        &self.points[run.point].specs[usize::from(run.role == Role::Reference)]
+        &self.specs[run.point * self.roles().count() + usize::from(run.role == Role::Reference)]
     }
 
     /// Seed of a run. Replicates differ by their seed alone, so that replicate r has one surface at all points.
     pub fn seed(&self, run: RunKey) -> u64 {
-        self.spec_of(run).seed.wrapping_add(run.replicate as u64) & i64::MAX as u64
+        self.spec_of(run).seed + run.replicate as u64
     }
 
     /// Identifies a run by its physics and seed. Points share runs of one identity, such as their reference.
@@ -353,15 +333,14 @@ impl Plan {
 
     /// Memory in which cases were tried, and which the allocator keeps for others of their size, in bytes.
     fn planning(&self) -> f64 {
-        let made = |run| self.spec_of(run).budget.memory_of_case();
-        self.runs(1).map(made).fold(0.0, f64::max)
+        let made = self.specs.iter().map(|spec| spec.memory_of_case);
+        made.fold(0.0, f64::max)
     }
 
     /// The run that takes the most memory, and how much, in bytes.
     fn largest_run(&self) -> Option<(RunKey, f64)> {
-        let writes = self.settings.keep == RetainRuns::All;
         self.runs(1)
-            .map(|run| (run, self.spec_of(run).budget.memory_beside_others(writes)))
+            .map(|run| (run, self.spec_of(run).memory))
             .max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
@@ -400,11 +379,18 @@ impl Plan {
 
     /// Room that these runs will take on the disk, in bytes.
     pub fn disk(&self, runs: impl Iterator<Item = RunKey>) -> f64 {
-        let kept = |run| match self.settings.keep {
-            RetainRuns::All => self.spec_of(run).budget.disk(),
-            RetainRuns::None | RetainRuns::Failed => 0.0,
-        };
-        runs.map(|run| RECORD_BYTES + kept(run)).sum()
+        runs.map(|run| RECORD_BYTES + self.spec_of(run).disk).sum()
+    }
+
+    /// Level of each axis at a point.
+    pub fn levels(&self, point: &Point) -> Vec<usize> {
+        let mut index = point.index;
+        let mut levels = vec![0; self.axes.len()];
+        for (level, axis) in levels.iter_mut().zip(&self.axes).rev() {
+            *level = index % axis.levels.len();
+            index /= axis.levels.len();
+        }
+        levels
     }
 
     /// The levels of a point, as a reader would name it.
@@ -419,8 +405,8 @@ impl Plan {
 
     /// Columns of the axes, and their cells at a point.
     pub fn columns(&self, point: &Point) -> Vec<(&str, &str)> {
-        let levels = self.axes.iter().zip(&point.levels);
-        let columns = levels.flat_map(|(axis, &level)| axis.columns.iter().zip(&axis.levels[level].labels));
+        let levels = self.axes.iter().zip(self.levels(point));
+        let columns = levels.flat_map(|(axis, level)| axis.columns.iter().zip(&axis.levels[level].labels));
         let columns = columns.map(|(name, value)| (name.as_str(), value.as_str()));
         columns.collect()
     }
@@ -442,13 +428,36 @@ impl Plan {
     }
 }
 
+/// What a reader of the intervals over replicates, which differ by their seed alone, must know of what that changes.
+fn note_on_replicates(case: &Case) -> Option<&'static str> {
+    let (friction, groups) = (&case.file.friction, &case.groups);
+    if friction.mu_static_field.is_none() && groups.sigma_static_star > 0.0 {
+        None
+    } else if friction.mu_kinetic_field.is_none() && groups.sigma_kinetic_star * groups.r_star > 0.0 {
+        Some(
+            "replicates differ in their kinetic coefficients alone, and intervals show no more than that: the static ones \
+             are the same for every seed",
+        )
+    } else {
+        Some("all replicates are the same run: no coefficient is random, and one replicate says all")
+    }
+}
+
 /// Hash of all that decides the numbers of a run but its seed: the physics of the case, the contents of its files and the
 /// program; not the names of files, nor the output.
 fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
-    let mut file = case.file.clone();
-    file.friction.seed = 0;
     static DEFAULT: LazyLock<CaseFile> = LazyLock::new(CaseFile::default);
-    file.output.clone_from(&DEFAULT.output);
+    let mut file = CaseFile {
+        slider: case.file.slider.clone(),
+        load: case.file.load.clone(),
+        drive: case.file.drive.clone(),
+        friction: case.file.friction.clone(),
+        texture: case.file.texture.clone(),
+        time: case.file.time.clone(),
+        output: DEFAULT.output.clone(),
+        source: Source::default(),
+    };
+    file.friction.seed = 0;
     for name in file.files_mut() {
         let input = case.inputs.iter().find(|input| input.name == *name);
         let hash = input.map(|input| blake3::hash(&input.bytes).to_hex());
@@ -457,18 +466,37 @@ fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
     }
     let mut hasher = blake3::Hasher::new();
     hasher.update(program::this_build().as_bytes());
-    hasher.update(file.to_toml()?.as_bytes());
+    let text = serde_json::to_vec(&file);
+    hasher.update(&text.map_err(|error| CaseError::invalid(None, error.to_string()))?);
     Ok(hasher.finalize())
 }
 
-/// Levels of point `index`, the last axis fastest.
-fn levels(axes: &[Axis], mut index: usize) -> Vec<usize> {
-    let mut levels = vec![0; axes.len()];
-    for (level, axis) in levels.iter_mut().zip(axes).rev() {
-        *level = index % axis.levels.len();
-        index /= axis.levels.len();
+/// Warnings about the points so far.
+#[derive(Default)]
+struct Warnings {
+    found: Vec<Warning>,
+    /// Positions in `found` by kind.
+    known: HashMap<String, usize>,
+}
+
+impl Warnings {
+    /// Adds those of the point at this position.
+    fn add<'s>(&mut self, position: usize, sentences: impl DoubleEndedIterator<Item = &'s String>) {
+        // Sentences of one kind differ in their figures.
+        let kind = |sentence: &str| sentence.replace(|c: char| c.is_ascii_digit() || c == '.', "");
+        let of_point: BTreeMap<String, &String> = sentences.map(|one| (kind(one), one)).rev().collect();
+        for (kind, sentence) in of_point {
+            let at = *self.known.entry(kind).or_insert(self.found.len());
+            match self.found.get_mut(at) {
+                Some(warning) => warning.points += 1,
+                None => self.found.push(Warning {
+                    sentence: sentence.clone(),
+                    points: 1,
+                    first: position,
+                }),
+            }
+        }
     }
-    levels
 }
 
 #[cfg(test)]

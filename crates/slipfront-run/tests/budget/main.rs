@@ -129,7 +129,7 @@ fn what_is_said_is_what_is_taken() {
         let out = folder.path().join("out");
         let (taken, (memory, disk)) = peak(|| {
             let file = CaseFile::parse("", "case", &overrides).unwrap();
-            let case = Arc::new(Case::new(file, "case", folder.path()).unwrap());
+            let case = Arc::new(Case::new(file, "case", folder.path(), &mut |_| true).unwrap());
             let mut record = running::run(&case, 1).unwrap();
             let out = RunFolder::prepare(&out, false, &case.inputs).unwrap();
             results::write(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();

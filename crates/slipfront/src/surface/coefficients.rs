@@ -1,5 +1,7 @@
 //! Local friction coefficients: Gaussian draws (Eq. 1) from named random streams, or given block by block.
 
+use std::cell::RefCell;
+
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -44,14 +46,26 @@ impl Coefficients {
     pub fn draw(n_blocks: usize, mu_static: Distribution, mu_kinetic: Distribution, seed: u64) -> Self {
         let mut negative_draws = 0;
         let mut draw = |distribution: Distribution, stream: Stream| -> Vec<f64> {
-            standard_normals(seed, stream)
-                .take(n_blocks)
-                .map(|z| distribution.mean + distribution.deviation * z)
-                .map(|mu| {
-                    negative_draws += usize::from(mu < 0.0);
-                    mu.max(0.0)
-                })
-                .collect()
+            let coefficient = |z: f64| {
+                let mu = distribution.mean + distribution.deviation * z;
+                negative_draws += usize::from(mu < 0.0);
+                mu.max(0.0)
+            };
+            if n_blocks > MAX_KEPT {
+                return standard_normals(seed, stream)
+                    .take(n_blocks)
+                    .map(coefficient)
+                    .collect();
+            }
+            LAST_NORMALS.with_borrow_mut(|last| {
+                let (of_seed, normals) = &mut last[stream as usize];
+                if *of_seed != seed || normals.len() != n_blocks {
+                    normals.clear();
+                    normals.extend(standard_normals(seed, stream).take(n_blocks));
+                    *of_seed = seed;
+                }
+                normals.iter().copied().map(coefficient).collect()
+            })
         };
         let mu_static = draw(mu_static, Stream::MuStatic);
         let mu_kinetic = draw(mu_kinetic, Stream::MuKinetic);
@@ -75,6 +89,15 @@ impl Coefficients {
             negative_draws: 0,
         }
     }
+}
+
+/// Most blocks whose standard normals are kept.
+const MAX_KEPT: usize = 10_000;
+
+thread_local! {
+    /// The standard normals drawn last from each stream, and their seed: most of the cases of a study have the same.
+    static LAST_NORMALS: RefCell<[(u64, Vec<f64>); STREAMS.len()]> =
+        const { RefCell::new([(0, Vec::new()), (0, Vec::new())]) };
 }
 
 /// Standard normals by Box and Muller from two uniforms each, so that draw n always has the same position in the stream.

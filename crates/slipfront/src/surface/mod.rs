@@ -4,12 +4,13 @@
 //! contact; [`Surface::new`] makes the friction thresholds of all blocks from the three.
 
 mod coefficients;
+mod mesh;
+mod outline;
 mod texture;
 
 pub use coefficients::{Coefficients, Distribution, STREAMS};
-pub use texture::{
-    Cavity, Groove, MaskImage, Meshed, Orientation, Texture, cavity_lambda, cavity_percent, mesh,
-};
+pub use mesh::{Meshed, mesh, mesh_watched};
+pub use texture::{Cavity, Groove, Orientation, Texture, cavity_lambda, cavity_percent};
 
 use crate::error::SurfaceError;
 use crate::lattice::Lattice;

@@ -5,6 +5,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod meshes;
 
 use proptest::prelude::*;
 use slipfront::observe::Field;

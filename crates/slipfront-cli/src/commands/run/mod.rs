@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
-use jiff::Timestamp;
 use slipfront_case::case::Case;
 use slipfront_case::text::{display_path, shell_quoted};
 use slipfront_run::checkpoint::Checkpoints;
+use slipfront_run::clock;
 use slipfront_run::results;
 use slipfront_run::run_folder::OpenedFolder;
 use slipfront_run::run_folder::error::FolderError;
@@ -73,7 +73,7 @@ pub(crate) struct Run {
 
 impl Run {
     pub(crate) fn execute(self) -> Result<(), Failure> {
-        let started = Timestamp::now();
+        let started = clock::now();
         let options = RunOptions {
             threads: set_threads(self.threads)?,
             interval: self.checkpoint,
@@ -85,7 +85,7 @@ impl Run {
             return resume::resume(folder, self.previous, options);
         }
         let case_path = self.case.path().map(Path::to_owned);
-        let case = Arc::new(self.case.load()?);
+        let case = Arc::new(self.case.load(&options.signals, options.quiet)?);
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&case.name));
         refuse_to_replace(case_path.as_deref(), &case, &out)?;
         let folder = OpenedFolder::open(&out).map_err(Failure::input)?;

@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use jiff::Timestamp;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::checkpoint::{CheckpointError, Checkpoints, LoadedCheckpoint};
+use slipfront_run::clock;
 use slipfront_run::run_folder::OpenedFolder;
 use slipfront_run::run_folder::inspection::{Contents, Inspection};
 use slipfront_run::run_folder::unfinished::Unfinished;
@@ -17,6 +17,7 @@ use slipfront_run::verify::{VerifyError, expect_as_written};
 use super::complete::complete;
 use super::options::RunOptions;
 use crate::failure::Failure;
+use crate::make_case::make_case;
 use crate::print::{print, print_message};
 use crate::report;
 
@@ -29,7 +30,7 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
         Contents::Complete(Err(error)) => return Err(Failure::input(error.clone())),
         Contents::Empty | Contents::Foreign | Contents::Interrupted => {}
     }
-    let case = Arc::new(make_case(path, file.clone())?);
+    let case = Arc::new(case_to_resume(path, file.clone(), &options)?);
     let budget = case.budget.resumed();
     budget.check_memory(&case.file, true).map_err(Failure::input)?;
     let loaded = load(path, &case, previous)?;
@@ -39,7 +40,7 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
         .map_err(Failure::input)?;
     let (running, checkpoints, from) = match loaded {
         None => {
-            let checkpoints = Checkpoints::new(path, &case, Timestamp::now());
+            let checkpoints = Checkpoints::new(path, &case, clock::now());
             let running = Running::start(&case, options.threads);
             (running, checkpoints, "the start: it has no checkpoint".to_owned())
         }
@@ -67,13 +68,20 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
 /// The remedy where no checkpoint can be used.
 const ANEW: &str = "remove the checkpoints, and --resume begins from the start";
 
-fn make_case(path: &Path, file: CaseFile) -> Result<Case, Failure> {
+fn case_to_resume(path: &Path, file: CaseFile, options: &RunOptions) -> Result<Case, Failure> {
     // Results are named after their folder, not after the file in it.
     let folder = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
-    Case::to_run(file, &name, path).map_err(|error| {
-        let hint = "if the run was stopped before all its inputs were copied, begin it again with --force";
-        Failure::input(anyhow::anyhow!("{error}\n{hint}"))
+    let made = make_case(&options.signals, options.quiet, |watch| {
+        Case::to_run(file, &name, path, watch)
+    });
+    made.map_err(|failure| match failure {
+        Failure::Input(error) => {
+            let hint =
+                "if the run was stopped before all its inputs were copied, begin it again with --force";
+            Failure::input(anyhow::anyhow!("{error}\n{hint}"))
+        }
+        failure => failure,
     })
 }
 

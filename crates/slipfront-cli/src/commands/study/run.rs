@@ -188,7 +188,7 @@ fn dry_run(plan: &Plan, threads: usize) -> Result<String, Failure> {
         let rate = match rates.get(&n_blocks) {
             Some(&rate) => rate,
             None => {
-                let case = plan.case(run).map_err(Failure::input)?;
+                let case = plan.case(run, &mut |_| true).map_err(Failure::input)?;
                 let rate = n_blocks as f64 / seconds_per_step(&case);
                 rates.insert(n_blocks, rate);
                 rate

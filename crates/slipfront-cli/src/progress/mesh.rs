@@ -1,0 +1,51 @@
+//! Progress of a texture that is laid over the blocks.
+
+use std::time::{Duration, Instant};
+
+use super::display::{ProgressDisplay, time_left};
+
+/// Time before anything is shown: most textures take less.
+const PATIENCE: Duration = Duration::from_millis(500);
+/// Time between two looks at the display, of which there are millions.
+const PAUSE: Duration = Duration::from_millis(50);
+
+/// Shows which share of the texture is laid over the blocks, if that takes long.
+pub(crate) struct MeshProgress {
+    quiet: bool,
+    began: Instant,
+    next: Instant,
+    display: Option<ProgressDisplay>,
+}
+
+impl MeshProgress {
+    pub(crate) fn new(quiet: bool) -> Self {
+        let began = Instant::now();
+        Self {
+            quiet,
+            began,
+            next: began + PATIENCE,
+            display: None,
+        }
+    }
+
+    pub(crate) fn show(&mut self, share: f64) {
+        const ALL: u64 = 1000;
+        let now = Instant::now();
+        if now < self.next {
+            return;
+        }
+        self.next = now + PAUSE;
+        let (passed, done) = (self.began.elapsed(), (ALL as f64 * share) as u64);
+        let new = || ProgressDisplay::new("{wide_bar} {msg}", self.quiet);
+        self.display.get_or_insert_with(new).show(done, ALL, |_| {
+            let left = time_left(ALL - done, done, passed);
+            format!("{:3.0} % of the texture meshed{left}", 100.0 * share)
+        });
+    }
+
+    pub(crate) fn finish(&self) {
+        if let Some(display) = &self.display {
+            display.finish();
+        }
+    }
+}

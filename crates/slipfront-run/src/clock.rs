@@ -1,0 +1,20 @@
+//! The time, and how long something took, whatever is done to the clock of the machine meanwhile.
+
+use std::sync::LazyLock;
+use std::time::{Duration, Instant};
+
+use jiff::Timestamp;
+
+/// When this was asked first in this process: by the clock, and by what only goes on.
+static FIRST: LazyLock<(Timestamp, Instant)> = LazyLock::new(|| (Timestamp::now(), Instant::now()));
+
+/// The time, which only goes on in this process.
+pub fn now() -> Timestamp {
+    let (time, instant) = *FIRST;
+    time + instant.elapsed()
+}
+
+/// What has passed since `started`; nothing if the clock was set back since another process said so.
+pub fn since(started: Timestamp) -> Duration {
+    now().duration_since(started).try_into().unwrap_or_default()
+}

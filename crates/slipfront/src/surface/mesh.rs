@@ -1,0 +1,400 @@
+//! Which blocks are textured: those whose centre lies inside the outline of any texture. Outlines wrap around periodic axes
+//! and are clipped at free edges.
+
+use std::convert::Infallible;
+use std::ops::Range;
+
+use super::outline::{Crossing, Outlines, Sweep};
+use super::texture::{Groove, Texture};
+use crate::lattice::{Edges, Lattice};
+
+/// A texture on a lattice.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Meshed {
+    /// Textured blocks.
+    pub textured: Vec<bool>,
+    /// Indices of the textures that extend beyond a free edge and are clipped there.
+    pub clipped: Vec<usize>,
+    /// Indices of the textures that cover no block.
+    pub empty: Vec<usize>,
+}
+
+/// Marks the blocks covered by any of the textures.
+pub fn mesh(lattice: &Lattice, textures: &[Texture]) -> Meshed {
+    let Ok(meshed) = mesh_watched::<Infallible>(lattice, textures, &mut |_| Ok(()));
+    meshed
+}
+
+/// [`mesh`] of textures that may take long: `watch` is told the share that is done, row of blocks by row of blocks, and its
+/// error ends it.
+pub fn mesh_watched<E>(
+    lattice: &Lattice,
+    textures: &[Texture],
+    watch: &mut dyn FnMut(f64) -> Result<(), E>,
+) -> Result<Meshed, E> {
+    let rows_of_centers = |texture: &Texture| match texture {
+        Texture::Cavity(cavity) => cavity.array[1] as f64,
+        _ => 1.0,
+    };
+    let total: f64 = textures.iter().map(rows_of_centers).sum();
+    let mut done = 0.0;
+    let (mut clipped, mut empty) = (Vec::new(), Vec::new());
+    let mut mask = Mask {
+        lattice,
+        textured: vec![false; lattice.n_blocks()],
+        covers: false,
+    };
+    for (index, texture) in textures.iter().enumerate() {
+        mask.covers = false;
+        let mut watch_texture = |rows: f64| watch((done + rows) / total);
+        let is_clipped = match texture {
+            Texture::Cavity(cavity) => mask.cover(&cavity.outlines(lattice), &mut watch_texture)?,
+            Texture::Polygon(points) => mask.cover(&Outlines::polygon(points), &mut watch_texture)?,
+            Texture::Groove(groove) => mask.cover_strip(groove),
+            Texture::Blocks(blocks) => {
+                let pairs = mask.textured.iter_mut().zip(blocks.iter());
+                pairs.for_each(|(textured, block)| *textured |= block);
+                mask.covers = blocks.contains(&true);
+                false
+            }
+        };
+        done += rows_of_centers(texture);
+        clipped.extend(is_clipped.then_some(index));
+        empty.extend((!mask.covers).then_some(index));
+    }
+    Ok(Meshed {
+        textured: mask.textured,
+        clipped,
+        empty,
+    })
+}
+
+/// Crossings that are farther apart than this have the same order around every centre: coordinates of up to 10^7 blocks are
+/// rounded by 10^-9.
+const DISTINCT: f64 = 1e-6;
+
+/// The blocks that are textured so far.
+struct Mask<'a> {
+    lattice: &'a Lattice,
+    textured: Vec<bool>,
+    /// Whether the present texture covers any block.
+    covers: bool,
+}
+
+impl Mask<'_> {
+    /// Marks the blocks inside any of the outlines; gives whether one of these extends beyond a free edge.
+    fn cover<E>(
+        &mut self,
+        outlines: &Outlines,
+        watch: &mut dyn FnMut(f64) -> Result<(), E>,
+    ) -> Result<bool, E> {
+        let mut crossings = Vec::new();
+        for (done, &center) in outlines.centers[1].iter().enumerate() {
+            let [low, high] = outlines.bounds(1, center);
+            let rows = blocks_between(low, high, self.lattice.ny, self.lattice.edges[1]);
+            let mut sweep = outlines.at_height(center);
+            for row in rows.clone() {
+                watch(done as f64 + (row - rows.start) as f64 / rows.len() as f64)?;
+                sweep.intersect(row as f64 + 0.5, &mut crossings);
+                self.cover_row(row, &sweep, &mut crossings, &outlines.centers[0]);
+            }
+        }
+        let is_clipped = |axis: usize| {
+            let bounds = outlines
+                .outermost(axis)
+                .map(|center| outlines.bounds(axis, center));
+            self.is_beyond(axis, bounds.as_flattened())
+        };
+        Ok(is_clipped(0) || is_clipped(1))
+    }
+
+    /// Marks the blocks of a row inside any of the outlines around `centers`.
+    ///
+    /// Where neighbours overlap, their union is one interval from the first to the last of them: what remains to be done does
+    /// not grow with their number.
+    fn cover_row(&mut self, row: isize, sweep: &Sweep, crossings: &mut [Crossing], centers: &[f64]) {
+        let [first, .., last] = *centers else {
+            return self.cover_pairs(row, sweep, crossings, centers);
+        };
+        crossings.sort_by(|a, b| a.x(first).total_cmp(&b.x(first)));
+        let width = |pair: &[Crossing]| pair[1].x(first) - pair[0].x(first);
+        if !crossings.windows(2).all(|pair| width(pair) > DISTINCT) {
+            return self.cover_pairs(row, sweep, crossings, centers);
+        }
+        let spacing = (last - first) / (centers.len() - 1) as f64;
+        for pair in crossings.chunks_exact(2) {
+            // By a whole block, far more than rounding.
+            if width(pair) > spacing + 1.0 {
+                self.cover_interval(row, sweep, [(first, pair[0].x(first)), (last, pair[1].x(last))]);
+            } else {
+                self.cover_pairs(row, sweep, pair, centers);
+            }
+        }
+    }
+
+    /// Marks the blocks of a row between the crossings, centre after centre.
+    fn cover_pairs(&mut self, row: isize, sweep: &Sweep, crossings: &[Crossing], centers: &[f64]) {
+        let mut ends = Vec::with_capacity(crossings.len());
+        for &center in centers {
+            ends.clear();
+            ends.extend(crossings.iter().map(|crossing| crossing.x(center)));
+            ends.sort_by(f64::total_cmp);
+            for pair in ends.chunks_exact(2) {
+                self.cover_interval(row, sweep, [(center, pair[0]), (center, pair[1])]);
+            }
+        }
+    }
+
+    /// Marks the blocks of a row from where one outline is entered to where another, or the same, is left; each is given by x of
+    /// its centre and x of the crossing.
+    fn cover_interval(&mut self, row: isize, sweep: &Sweep, [enter, leave]: [(f64, f64); 2]) {
+        let Lattice { nx, edges, .. } = *self.lattice;
+        // Clipped afterwards: a block at a free edge may lie far inside.
+        let Range { mut start, mut end } = blocks_between(enter.1, leave.1, nx, Edges::Periodic);
+        let is_inside =
+            |column: isize, center: f64| sweep.contains(center, [column as f64 + 0.5, row as f64 + 0.5]);
+        while start < end && !is_inside(start, enter.0) {
+            start += 1;
+        }
+        while start < end && !is_inside(end - 1, leave.0) {
+            end -= 1;
+        }
+        if edges[0] == Edges::Free {
+            start = start.max(0);
+            end = end.min(nx as isize);
+        }
+        self.fill(row, start..end);
+    }
+
+    /// Marks the blocks of a groove; gives whether it extends beyond a free edge.
+    fn cover_strip(&mut self, groove: &Groove) -> bool {
+        let [[left, bottom], [right, top]] = groove.bounds(self.lattice);
+        let Lattice { nx, ny, edges } = *self.lattice;
+        for row in blocks_between(bottom, top, ny, edges[1]) {
+            if (bottom..top).contains(&(row as f64 + 0.5)) {
+                self.fill(row, blocks_between(left, right, nx, edges[0]));
+            }
+        }
+        self.is_beyond(0, &[left, right]) || self.is_beyond(1, &[bottom, top])
+    }
+
+    /// Whether any of these coordinates lies beyond a free edge.
+    fn is_beyond(&self, axis: usize, coordinates: &[f64]) -> bool {
+        let size = [self.lattice.nx, self.lattice.ny][axis] as f64;
+        let is_beyond = |at: &f64| at.is_finite() && !(0.0..=size).contains(at);
+        self.lattice.edges[axis] == Edges::Free && coordinates.iter().any(is_beyond)
+    }
+
+    /// Marks the blocks of a row, both counted on beyond periodic edges.
+    fn fill(&mut self, row: isize, columns: Range<isize>) {
+        let Lattice { nx, ny, .. } = *self.lattice;
+        self.covers |= !columns.is_empty();
+        // One turn around a periodic axis covers all columns of the row.
+        let count = columns.len().min(nx);
+        let from = columns.start.rem_euclid(nx as isize) as usize;
+        let row = &mut self.textured[row.rem_euclid(ny as isize) as usize * nx..][..nx];
+        row[from..nx.min(from + count)].fill(true);
+        row[..(from + count).saturating_sub(nx)].fill(true);
+    }
+}
+
+/// Blocks along one axis whose centre k + 1/2 lies in [from, to); outside the lattice only along a periodic axis.
+fn blocks_between(from: f64, to: f64, count: usize, edges: Edges) -> Range<isize> {
+    let (mut first, mut end) = ((from - 0.5).ceil(), (to - 0.5).ceil());
+    if from.is_infinite() || to.is_infinite() || edges == Edges::Free {
+        first = first.max(0.0);
+        end = end.min(count as f64);
+    }
+    first as isize..end.max(first) as isize
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::super::texture::{Cavity, Orientation, cavity_lambda};
+    use super::*;
+    use crate::vector_field::unit_vector;
+
+    fn count(lattice: &Lattice, texture: Texture) -> usize {
+        mesh(lattice, &[texture]).textured.iter().filter(|&&t| t).count()
+    }
+
+    fn cavity(s: u32, w: f64, percent: f64) -> Cavity {
+        let lambda = cavity_lambda(percent, 2500, s, w, 1);
+        Cavity {
+            center: [25.0, 25.0],
+            lambda,
+            s,
+            w,
+            across: false,
+            rotate: 0.0,
+            array: [1, 1],
+        }
+    }
+
+    #[test]
+    fn a_groove_of_ten_percent_is_rows_22_to_26() {
+        let lattice = Lattice::free(50, 50);
+        let groove = Groove {
+            orientation: Orientation::Across,
+            width: 5.0,
+            offset: 0.0,
+        };
+        let meshed = mesh(&lattice, &[Texture::Groove(groove)]);
+        for b in 0..2500 {
+            assert_eq!(meshed.textured[b], (22..=26).contains(&(b % 50)), "block {b}");
+        }
+        assert!(meshed.clipped.is_empty());
+    }
+
+    /// At these radii centres lie on the outline: 19, 21 and 35 are given exactly, and 35^2 = 28^2 + 21^2.
+    #[test]
+    fn the_mesh_of_a_circle_is_as_symmetric_as_the_circle() {
+        for (n, lambda) in [
+            (51, 19.0),
+            (51, 21.0),
+            (101, 35.0),
+            (101, 41.0),
+            (101, 49.0),
+            (50, 12.5),
+        ] {
+            let lattice = Lattice::free(n, n);
+            let circle = Cavity {
+                center: [0.5 * n as f64; 2],
+                lambda,
+                ..cavity(1, 0.0, 1.0)
+            };
+            let t = mesh(&lattice, &[Texture::Cavity(circle)]).textured;
+            for j in 0..n {
+                for i in 0..n {
+                    let here = t[lattice.block(i, j)];
+                    let mirrored = [(n - 1 - i, j), (i, n - 1 - j), (j, i)];
+                    let all = mirrored.iter().all(|&(i, j)| t[lattice.block(i, j)] == here);
+                    assert!(all, "lambda = {lambda}: block ({i}, {j})");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_shape_covers_what_eq_18_says() {
+        let lattice = Lattice::free(50, 50);
+        let shapes = [
+            (1, 0.0),
+            (1, 0.6),
+            (2, 0.5),
+            (2, 0.1),
+            (3, 1.0 / 3.0),
+            (4, 0.25),
+            (4, 0.05),
+            (1, -0.6),
+        ];
+        for (s, w) in shapes {
+            let blocks = count(&lattice, Texture::Cavity(cavity(s, w, 10.0)));
+            // The meshed area of a smooth outline of perimeter ~60 differs from 250 by a few blocks.
+            assert!(blocks.abs_diff(250) <= 8, "s = {s}, w = {w}: {blocks}");
+        }
+    }
+
+    #[test]
+    fn a_polygon_of_many_vertices_agrees_with_the_ellipse() {
+        let lattice = Lattice::free(50, 50);
+        let turned = Cavity {
+            rotate: 33.0,
+            center: [24.3, 26.1],
+            ..cavity(1, 0.4, 12.0)
+        };
+        let axis = unit_vector(33.0);
+        let points = (0..20_000)
+            .map(|k| {
+                let phi = TAU * f64::from(k) / 20_000.0;
+                let p = [turned.lambda * 1.4 * phi.cos(), turned.lambda * 0.6 * phi.sin()];
+                [
+                    24.3 + axis[0] * p[0] - axis[1] * p[1],
+                    26.1 + axis[1] * p[0] + axis[0] * p[1],
+                ]
+            })
+            .collect();
+        let ellipse = mesh(&lattice, &[Texture::Cavity(turned)]);
+        assert_eq!(ellipse, mesh(&lattice, &[Texture::Polygon(points)]));
+    }
+
+    #[test]
+    fn elongation_lies_along_x_and_across_turns_it() {
+        let lattice = Lattice::free(50, 50);
+        let along = mesh(&lattice, &[Texture::Cavity(cavity(1, 0.5, 10.0))]).textured;
+        let across = mesh(
+            &lattice,
+            &[Texture::Cavity(Cavity {
+                across: true,
+                ..cavity(1, 0.5, 10.0)
+            })],
+        )
+        .textured;
+        let width = |t: &[bool]| (0..50).filter(|&i| t[25 * 50 + i]).count();
+        assert!(width(&along) > 2 * width(&across));
+        assert!((0..2500).all(|b| along[b] == across[(b % 50) * 50 + b / 50]));
+    }
+
+    #[test]
+    fn free_edges_clip_and_periodic_ones_wrap() {
+        let corner = Cavity {
+            center: [0.0, 0.0],
+            ..cavity(1, 0.0, 4.0)
+        };
+        let free = mesh(&Lattice::free(50, 50), &[Texture::Cavity(corner)]);
+        let wrapped = mesh(
+            &Lattice::with_edges(50, 50, [Edges::Periodic; 2]),
+            &[Texture::Cavity(corner)],
+        );
+        let blocks = |m: &Meshed| m.textured.iter().filter(|&&t| t).count();
+        assert_eq!(free.clipped, [0]);
+        assert!(wrapped.clipped.is_empty());
+        assert_eq!(4 * blocks(&free), blocks(&wrapped));
+    }
+
+    #[test]
+    fn an_outline_larger_than_a_periodic_slider_covers_all_of_it() {
+        let lattice = Lattice::with_edges(25, 25, [Edges::Periodic; 2]);
+        for s in [1, 3] {
+            let large = Cavity {
+                center: [12.5, 12.5],
+                ..cavity(s, 0.2, 100.0)
+            };
+            assert_eq!(count(&lattice, Texture::Cavity(large)), 625, "s = {s}");
+        }
+    }
+
+    #[test]
+    fn an_array_covers_as_much_as_one() {
+        let lattice = Lattice::free(60, 60);
+        let lambda = cavity_lambda(20.0, 3600, 1, 0.0, 6);
+        let array = Cavity {
+            center: [30.0, 30.0],
+            lambda,
+            s: 1,
+            w: 0.0,
+            across: false,
+            rotate: 0.0,
+            array: [3, 2],
+        };
+        let meshed = mesh(&lattice, &[Texture::Cavity(array)]);
+        assert!(meshed.textured.iter().filter(|&&t| t).count().abs_diff(720) < 25);
+        assert!(meshed.textured[lattice.block(10, 15)] && meshed.textured[lattice.block(50, 45)]);
+    }
+
+    #[test]
+    fn a_star_is_hollow_by_the_even_odd_rule() {
+        let lattice = Lattice::free(40, 40);
+        let star: Vec<[f64; 2]> = (0..5)
+            .map(|k| {
+                let phi = TAU * f64::from(2 * k) / 5.0;
+                [20.0 + 19.0 * phi.cos(), 20.0 + 19.0 * phi.sin()]
+            })
+            .collect();
+        let meshed = mesh(&lattice, &[Texture::Polygon(star)]);
+        assert!(!meshed.textured[lattice.block(20, 20)]);
+        assert!(meshed.textured[lattice.block(33, 20)]);
+    }
+}

@@ -1,0 +1,215 @@
+//! Closed outlines that can be cut by a horizontal line, once or on a grid of centres.
+//!
+//! Where a line cuts an outline depends on the height of its centre alone, but for a shift along x. So the cut is found once for
+//! all outlines of a row of the grid, and each of its ends is placed with the rounding of an outline that stands there alone.
+
+/// Outlines of one shape, around every crossing of a grid of lines.
+pub(super) struct Outlines {
+    pub(super) shape: Shape,
+    /// x, then y, of the lines of the grid, in rising order.
+    pub(super) centers: [Vec<f64>; 2],
+}
+
+/// An outline around (0, 0).
+pub(super) enum Shape {
+    /// Its semi-axes, and the direction of the first of them.
+    Ellipse { semi_axes: [f64; 2], axis: [f64; 2] },
+    /// By the even-odd rule.
+    Polygon(Vec<Vertex>),
+}
+
+/// A coordinate less that of the centre, as two terms that are added to it one after the other.
+type Terms = [f64; 2];
+
+fn add([one, other]: Terms, center: f64) -> f64 {
+    center + one + other
+}
+
+/// A corner of a polygon.
+pub(super) struct Vertex {
+    pub(super) x: Terms,
+    pub(super) y: Terms,
+}
+
+impl Outlines {
+    /// A polygon that stands alone.
+    pub(super) fn polygon(points: &[[f64; 2]]) -> Self {
+        let vertex = |&[x, y]: &[f64; 2]| Vertex {
+            x: [x, 0.0],
+            y: [y, 0.0],
+        };
+        Self {
+            shape: Shape::Polygon(points.iter().map(vertex).collect()),
+            centers: [vec![0.0], vec![0.0]],
+        }
+    }
+
+    /// The first and the last line of the grid along an axis.
+    pub(super) fn outermost(&self, axis: usize) -> [f64; 2] {
+        let centers = &self.centers[axis];
+        [centers[0], centers[centers.len() - 1]]
+    }
+
+    /// Smallest and largest coordinate of the outline with this centre.
+    pub(super) fn bounds(&self, axis: usize, center: f64) -> [f64; 2] {
+        match &self.shape {
+            Shape::Ellipse {
+                semi_axes: [a, b],
+                axis: [c, s],
+            } => {
+                let [along_a, along_b] = if axis == 0 { [c, s] } else { [s, c] };
+                let half = ((a * along_a).powi(2) + (b * along_b).powi(2)).sqrt();
+                [center - half, center + half]
+            }
+            Shape::Polygon(vertices) => {
+                let terms = vertices.iter().map(|vertex| [vertex.x, vertex.y][axis]);
+                let coordinates = terms.map(|terms| add(terms, center));
+                coordinates.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
+                    [low.min(at), high.max(at)]
+                })
+            }
+        }
+    }
+
+    /// The outlines whose centres lie at this height, to be cut by lines from the lowest to the highest.
+    pub(super) fn at_height(&self, center: f64) -> Sweep<'_> {
+        let edges = match &self.shape {
+            Shape::Ellipse { .. } => Vec::new(),
+            Shape::Polygon(vertices) => edges(vertices, center),
+        };
+        Sweep {
+            shape: &self.shape,
+            center,
+            edges,
+            next: 0,
+            cut: Vec::new(),
+        }
+    }
+}
+
+/// An edge of a polygon between two heights.
+#[derive(Clone, Copy)]
+struct Edge {
+    from: Terms,
+    to: Terms,
+    from_y: f64,
+    to_y: f64,
+}
+
+impl Edge {
+    fn low(&self) -> f64 {
+        self.from_y.min(self.to_y)
+    }
+
+    fn high(&self) -> f64 {
+        self.from_y.max(self.to_y)
+    }
+}
+
+/// The edges of a polygon that a horizontal line can cut, the lowest first.
+fn edges(vertices: &[Vertex], center: f64) -> Vec<Edge> {
+    let previous = vertices.iter().cycle().skip(vertices.len().saturating_sub(1));
+    let edges = previous.zip(vertices).map(|(p, q)| Edge {
+        from: p.x,
+        to: q.x,
+        from_y: add(p.y, center),
+        to_y: add(q.y, center),
+    });
+    let mut edges: Vec<Edge> = edges.filter(|edge| edge.low() < edge.high()).collect();
+    edges.sort_by(|a, b| a.low().total_cmp(&b.low()));
+    edges
+}
+
+/// Outlines that are cut by one horizontal line after the other.
+pub(super) struct Sweep<'a> {
+    shape: &'a Shape,
+    /// y of the centres.
+    center: f64,
+    /// The edges of a polygon, the lowest first.
+    edges: Vec<Edge>,
+    /// The first of them that lies above the line.
+    next: usize,
+    /// Those that the line cuts.
+    cut: Vec<Edge>,
+}
+
+/// Where a horizontal line cuts an outline.
+#[derive(Clone, Copy)]
+pub(super) struct Crossing {
+    from: Terms,
+    to: Terms,
+    /// Share of the way from the one to the other.
+    share: f64,
+}
+
+impl Crossing {
+    /// x of the crossing with the outline around this x.
+    pub(super) fn x(&self, center: f64) -> f64 {
+        let (from, to) = (add(self.from, center), add(self.to, center));
+        from + self.share * (to - from)
+    }
+
+    fn at(x: Terms) -> Self {
+        Self {
+            from: x,
+            to: x,
+            share: 0.0,
+        }
+    }
+}
+
+impl Sweep<'_> {
+    /// Crossings with the line at `y`, which is above the lines before; an even number of them, in any order.
+    pub(super) fn intersect(&mut self, y: f64, crossings: &mut Vec<Crossing>) {
+        crossings.clear();
+        match self.shape {
+            Shape::Ellipse {
+                semi_axes: [a, b],
+                axis: [c, s],
+            } => {
+                // |(x, y) turned back, over the semi-axes| < 1 is a quadratic in x.
+                let dy = y - self.center;
+                let (p, q, r) = (c / a, s / b, dy * s / a);
+                let t = dy * c / b;
+                let square = p * p + q * q;
+                let half = p * r - q * t;
+                let root = half * half - square * (r * r + t * t - 1.0);
+                if root > 0.0 {
+                    let root = root.sqrt();
+                    let (enter, leave) = ((-half - root) / square, (-half + root) / square);
+                    // Slightly wider: `contains` decides about a centre that lies on the outline.
+                    let margin = 1e-9 * a.abs().max(b.abs());
+                    crossings.extend([[enter, -margin], [leave, margin]].map(Crossing::at));
+                }
+            }
+            Shape::Polygon(_) => {
+                let above = |edge: &&Edge| edge.low() <= y;
+                let reached = self.edges[self.next..].iter().take_while(above);
+                let before = self.cut.len();
+                self.cut.extend(reached);
+                self.next += self.cut.len() - before;
+                self.cut.retain(|edge| y < edge.high());
+                crossings.extend(self.cut.iter().map(|edge| Crossing {
+                    from: edge.from,
+                    to: edge.to,
+                    share: (y - edge.from_y) / (edge.to_y - edge.from_y),
+                }));
+            }
+        }
+    }
+
+    /// Whether a point between two crossings is inside the outline around this x. An ellipse excludes its outline and is tested
+    /// by a formula that rounds symmetrically, so that its mesh is as symmetric as the ellipse; polygons are half-open.
+    pub(super) fn contains(&self, center: f64, [x, y]: [f64; 2]) -> bool {
+        match self.shape {
+            Shape::Ellipse {
+                semi_axes: [a, b],
+                axis: [c, s],
+            } => {
+                let (dx, dy) = (x - center, y - self.center);
+                ((dx * c + dy * s) / a).powi(2) + ((dy * c - dx * s) / b).powi(2) < 1.0
+            }
+            Shape::Polygon(_) => true,
+        }
+    }
+}
