@@ -19,8 +19,8 @@ pub fn page(paper: &Paper) -> String {
          ```console\n$ slipfront paper --docs docs/validation\n```\n\n\
          Criteria and expected verdicts stand in [crates/slipfront-paper/cases/claims.toml](../../crates/slipfront-paper/cases/claims.toml). Numbers D1 to D12 are\n\
          the [deviations from the paper's print](../model.md#deviations-from-the-papers-print). Intervals are 95 % confidence\n\
-         intervals of the mean over five random surfaces. Measured with {}; the last column holds what the paper's own step,\n\
-         {}, gives in its place; {}. {NUMBERING} {REVISED}\n\n\
+         intervals of the mean over random surfaces, five where nothing else is said. Measured with {}; the last column holds what\n\
+         the paper's own step, {}, gives in its place; {}.\n\n{NUMBERING}\n{REVISED}\n\n\
          {}.\n\n\
          | | claim | place | measured | holds if | verdict | paper's step |\n\
          |---:|---|---|---|---|---|---|\n",
