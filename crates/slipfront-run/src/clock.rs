@@ -18,3 +18,18 @@ pub fn now() -> Timestamp {
 pub fn since(started: Timestamp) -> Duration {
     now().duration_since(started).try_into().unwrap_or_default()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_takes_less_than_no_time() {
+        let started = now();
+        assert!(since(started) >= since(now()));
+        // A run that was begun an hour ahead of this clock.
+        let hour = Duration::from_secs(3600);
+        assert_eq!(since(started + hour), Duration::ZERO);
+        assert!(since(started - hour) >= hour);
+    }
+}

@@ -47,7 +47,7 @@ pub struct Manifest {
     pub started: String,
     /// When its last file was written, UTC.
     pub finished: String,
-    /// Seconds that it took, whatever was done to the clock meanwhile.
+    /// Seconds in between, whatever was done to the clock of the machine meanwhile.
     pub wall_time_s: f64,
     /// BLAKE3 hash of `case.toml`, by which equal cases are told.
     #[serde(default)]

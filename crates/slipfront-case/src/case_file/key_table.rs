@@ -104,21 +104,28 @@ impl Section {
 
     /// Gives a table the defaults of the keys that it lacks, unless their partner stands there.
     pub(super) fn fill_in(&self, table: &mut DeTable<'_>) {
-        for key in self.keys {
+        let defaults = DEFAULTS.get(self.name).map_or(&[][..], Vec::as_slice);
+        for (key, value) in self.keys.iter().zip(defaults) {
+            let Some(value) = value else { continue };
             let names = [Some(key.name), key.partner];
-            let is_given = names.into_iter().flatten().any(|name| table.contains_key(name));
-            if let (false, Some(value)) = (is_given, DEFAULTS.get(key.default)) {
+            if !names.into_iter().flatten().any(|name| table.contains_key(name)) {
                 table.insert(Spanned::new(0..0, Cow::Borrowed(key.name)), value.clone());
             }
         }
     }
 }
 
-/// The values of the defaults by their texts. They are parsed once, since a study makes many cases.
-static DEFAULTS: LazyLock<HashMap<&str, Spanned<DeValue<'static>>>> = LazyLock::new(|| {
-    let keys = SECTIONS.iter().flat_map(|section| section.keys);
+/// The defaults of the keys of a section, in their order.
+type Defaults = Vec<Option<Spanned<DeValue<'static>>>>;
+
+/// The defaults of all sections by their names. They are parsed once, since a study makes many cases.
+static DEFAULTS: LazyLock<HashMap<&str, Defaults>> = LazyLock::new(|| {
     // A key without a default has an empty text, which is no value.
-    keys.filter_map(|key| Some((key.default, DeValue::parse(key.default).ok()?)))
+    let default = |key: &Key| DeValue::parse(key.default).ok();
+    let defaults = |section: &Section| section.keys.iter().map(default).collect();
+    let sections = SECTIONS.iter();
+    sections
+        .map(|section| (section.name, defaults(section)))
         .collect()
 });
 

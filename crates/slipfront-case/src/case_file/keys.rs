@@ -4,7 +4,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::CaseError;
-use super::key_table::{SECTIONS, Section, TEXTURE, partners};
+use super::key_table::{SECTIONS, TEXTURE, partners};
 use super::source::Source;
 use super::synonyms::advice_on;
 
@@ -61,11 +61,8 @@ pub fn exclude_each_other(one: &str, other: &str) -> bool {
 
 /// Refuses a table that holds both keys of a pair.
 pub(super) fn refuse_both(root: &DeTable<'_>, source: &Source) -> Result<(), CaseError> {
-    let keys_of = |section: &'static Section| section.keys.iter().map(|key| (section.table(), key));
-    for (table, key) in SECTIONS.iter().flat_map(keys_of) {
-        let Some(second) = key.partner else { continue };
-        let first = key.name;
-        let tables: Vec<&DeTable<'_>> = match root.get(table).map(Spanned::get_ref) {
+    for section in &SECTIONS {
+        let tables: Vec<&DeTable<'_>> = match root.get(section.table()).map(Spanned::get_ref) {
             Some(DeValue::Table(keys)) => vec![keys],
             Some(DeValue::Array(values)) => values
                 .iter()
@@ -73,17 +70,21 @@ pub(super) fn refuse_both(root: &DeTable<'_>, source: &Source) -> Result<(), Cas
                 .collect(),
             _ => continue,
         };
-        let spans = |keys: &DeTable<'_>| {
-            let span = |name| keys.get_key_value(name).map(|(key, _)| key.span());
-            span(first).zip(span(second))
-        };
-        if let Some((one, other)) = tables.into_iter().find_map(spans) {
-            let later = if one.start > other.start { one } else { other };
-            let sentence = format!(
-                "`{first}` and `{second}` in {} set the same thing: keep one of them",
-                header(table)
-            );
-            return Err(source.error_at(later, sentence));
+        for key in section.keys {
+            let Some(second) = key.partner else { continue };
+            let first = key.name;
+            let spans = |keys: &&DeTable<'_>| {
+                let span = |name| keys.get_key_value(name).map(|(key, _)| key.span());
+                span(first).zip(span(second))
+            };
+            if let Some((one, other)) = tables.iter().find_map(spans) {
+                let later = if one.start > other.start { one } else { other };
+                let sentence = format!(
+                    "`{first}` and `{second}` in {} set the same thing: keep one of them",
+                    header(section.table())
+                );
+                return Err(source.error_at(later, sentence));
+            }
         }
     }
     Ok(())

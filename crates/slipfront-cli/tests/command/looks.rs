@@ -92,13 +92,48 @@ fn check_warns_where_the_model_leaves_its_validity() {
     ] {
         assert!(said.contains(words), "{words:?} is missing:\n{said}");
     }
-    // A texture that the blocks cannot show, and coefficients that are not what mu_static says.
-    let fine = "texture.0={shape=\"cavity\",coverage=50,array=[1000,1000]}";
-    let said = unwrapped(&workspace.succeed(&format!("check small.toml --set {fine}")));
-    assert!(
-        said.contains("covers 0.00 % of the blocks instead of 50.00 %"),
-        "{said}"
+    // Textures that the blocks cannot show, or that lie beside them.
+    for texture in [
+        "coverage=50,array=[1000,1000]",
+        "lambda=\"1e-30m\"",
+        "lambda=\"2um\",center=[\"-9um\",\"0um\"]",
+    ] {
+        let said = unwrapped(&workspace.succeed(&format!(
+            "check small.toml --set texture.0={{shape=\"cavity\",{texture}}}"
+        )));
+        assert!(
+            said.contains("texture 1 covers no block: it lies off the slider"),
+            "{said}"
+        );
+        assert_eq!(said.matches("note:").count(), 2, "{said}");
+    }
+    let said = unwrapped(&workspace.succeed(
+        "check small.toml --set texture.0={shape=\"cavity\",coverage=60} --set texture.1={shape=\"cavity\",coverage=60}",
+    ));
+    assert!(said.contains("% of the blocks instead of 120.00 %"), "{said}");
+    // Friction that does not fall when a block slips, and coefficients that are not what is said of them.
+    for (set, means) in [
+        ("r_star=1", "1.0000, is not below the static one, 1.0000"),
+        ("r_star=10", "10.0000, is not below the static one, 1.0000"),
+        ("mu_kinetic=1.5", "1.5000, is not below the static one, 1.0000"),
+    ] {
+        let said = unwrapped(&workspace.succeed(&format!("check small.toml --set friction.{set}")));
+        assert!(
+            said.contains(&format!("the mean kinetic coefficient, {means}")),
+            "{said}"
+        );
+    }
+    workspace.write("mu_k.csv", "5,5,5\n5,5,5\n");
+    let said = unwrapped(
+        &workspace
+            .succeed("check small.toml --set slider.blocks=[3,2] --set friction.mu_kinetic_field=mu_k.csv"),
     );
+    for words in [
+        "the given kinetic coefficients have a mean of 5.0000, R* mu_static is 0.5000",
+        "the mean kinetic coefficient, 5.0000, is not below the static one, 1.0000",
+    ] {
+        assert!(said.contains(words), "{words:?} is missing:\n{said}");
+    }
     workspace.write("mu.csv", "0.4,0.5,0.6\n0.4,0.5,0.6\n");
     let given = "check small.toml --set slider.blocks=[3,2] --set friction.mu_static_field=mu.csv";
     let said = unwrapped(&workspace.succeed(given));

@@ -1,7 +1,36 @@
 //! `slipfront texture`: a mask written and read back is the same texture.
 
 use crate::fixtures::{MASKED, SMALL};
+use crate::support::process::{send, stderr, wait_for_signal_handlers};
 use crate::support::workspace::Workspace;
+
+/// An array that takes minutes to mesh: a million outlines wind around a small slider many times.
+const LONG: &str = "slider = { blocks = [200, 200], edges = ['periodic', 'periodic'] }\n[[texture]]\nshape = 'cavity'\n\
+                    s = 64\nw = 0.015\nlambda = '9 mm'\narray = [1000, 1000]\n";
+
+/// Before, it went on to the end, and a second signal killed it without a word.
+#[cfg(unix)]
+#[test]
+fn a_signal_ends_a_texture_that_takes_long() {
+    let workspace = Workspace::small();
+    workspace.write("long.toml", LONG);
+    for command in [
+        "check long.toml",
+        "run long.toml",
+        "texture long.toml -o long.png",
+    ] {
+        let child = workspace.start(command);
+        wait_for_signal_handlers(&child);
+        send(&child, "-INT");
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "{command}: {}", stderr(&output));
+        assert_eq!(
+            stderr(&output),
+            "error: stopped while the texture was laid over the blocks; nothing was written\n"
+        );
+    }
+    assert_eq!(workspace.files(".").len(), 2);
+}
 
 #[test]
 fn a_mask_read_back_is_the_same_texture() {

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
-use std::sync::{LazyLock, Mutex};
+use std::sync::Mutex;
 
 use rayon::prelude::*;
 
@@ -13,7 +13,7 @@ use super::study_file::{Base, RetainRuns, Settings, StudyFile};
 use super::summary_values::REDUCTION;
 use crate::program;
 use slipfront_case::case::{Case, PROGRAM, Watch, check_fields};
-use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Override, ParsedCase, Snapshots, Source};
+use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Override, ParsedCase, Snapshots};
 use slipfront_case::machine::{available_memory, most_at_once};
 use slipfront_case::number_format::byte_size;
 use slipfront_case::text::display_path;
@@ -446,17 +446,7 @@ fn note_on_replicates(case: &Case) -> Option<&'static str> {
 /// Hash of all that decides the numbers of a run but its seed: the physics of the case, the contents of its files and the
 /// program; not the names of files, nor the output.
 fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
-    static DEFAULT: LazyLock<CaseFile> = LazyLock::new(CaseFile::default);
-    let mut file = CaseFile {
-        slider: case.file.slider.clone(),
-        load: case.file.load.clone(),
-        drive: case.file.drive.clone(),
-        friction: case.file.friction.clone(),
-        texture: case.file.texture.clone(),
-        time: case.file.time.clone(),
-        output: DEFAULT.output.clone(),
-        source: Source::default(),
-    };
+    let mut file = case.file.clone();
     file.friction.seed = 0;
     for name in file.files_mut() {
         let input = case.inputs.iter().find(|input| input.name == *name);
@@ -466,7 +456,16 @@ fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
     }
     let mut hasher = blake3::Hasher::new();
     hasher.update(program::this_build().as_bytes());
-    let text = serde_json::to_vec(&file);
+    let CaseFile {
+        slider,
+        load,
+        drive,
+        friction,
+        texture,
+        time,
+        ..
+    } = &file;
+    let text = serde_json::to_vec(&(slider, load, drive, friction, texture, time));
     hasher.update(&text.map_err(|error| CaseError::invalid(None, error.to_string()))?);
     Ok(hasher.finalize())
 }

@@ -140,6 +140,21 @@ fn what_is_said_is_what_is_taken() {
         std::fs::remove_dir_all(out).unwrap();
     }
     study(folder.path());
+    masks(folder.path());
+}
+
+/// Textures of one image take the room of one mask of the lattice.
+fn masks(folder: &Path) {
+    let text = "[[texture]]\nshape = 'mask'\nfile = 'mask.png'\n".repeat(40);
+    let before = LIVE.load(Ordering::Relaxed) as f64;
+    let (taken, case) = peak(|| {
+        let file = CaseFile::parse(&text, "case", &[]).unwrap();
+        Case::new(file, "case", folder, &mut |_| true).unwrap()
+    });
+    assert_eq!((case.texture.meshed_percent, case.inputs.len()), (48.0, 1));
+    // A sixteenth of the pixels of the image, one byte each: the decoder, the file and its copy are in it.
+    let taken = taken - before;
+    assert!(taken < 1e6, "{taken} bytes for 625 blocks");
 }
 
 /// Bytes of all files below a folder.

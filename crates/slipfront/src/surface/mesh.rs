@@ -42,6 +42,7 @@ pub fn mesh_watched<E>(
     let mut mask = Mask {
         lattice,
         textured: vec![false; lattice.n_blocks()],
+        full: vec![false; lattice.ny],
         covers: false,
     };
     for (index, texture) in textures.iter().enumerate() {
@@ -77,6 +78,8 @@ const DISTINCT: f64 = 1e-6;
 struct Mask<'a> {
     lattice: &'a Lattice,
     textured: Vec<bool>,
+    /// Rows that one outline, or overlapping ones, cover from edge to edge.
+    full: Vec<bool>,
     /// Whether the present texture covers any block.
     covers: bool,
 }
@@ -95,6 +98,9 @@ impl Mask<'_> {
             let mut sweep = outlines.at_height(center);
             for row in rows.clone() {
                 watch(done as f64 + (row - rows.start) as f64 / rows.len() as f64)?;
+                if self.covers && self.full[row.rem_euclid(self.lattice.ny as isize) as usize] {
+                    continue;
+                }
                 sweep.intersect(row as f64 + 0.5, &mut crossings);
                 self.cover_row(row, &sweep, &mut crossings, &outlines.centers[0]);
             }
@@ -192,7 +198,9 @@ impl Mask<'_> {
         // One turn around a periodic axis covers all columns of the row.
         let count = columns.len().min(nx);
         let from = columns.start.rem_euclid(nx as isize) as usize;
-        let row = &mut self.textured[row.rem_euclid(ny as isize) as usize * nx..][..nx];
+        let row = row.rem_euclid(ny as isize) as usize;
+        self.full[row] |= count == nx;
+        let row = &mut self.textured[row * nx..][..nx];
         row[from..nx.min(from + count)].fill(true);
         row[..(from + count).saturating_sub(nx)].fill(true);
     }
@@ -396,5 +404,28 @@ mod tests {
         let meshed = mesh(&lattice, &[Texture::Polygon(star)]);
         assert!(!meshed.textured[lattice.block(20, 20)]);
         assert!(meshed.textured[lattice.block(33, 20)]);
+    }
+
+    #[test]
+    fn who_watches_sees_the_share_rise_and_can_end_it() {
+        let lattice = Lattice::free(50, 50);
+        let array = Texture::Cavity(Cavity {
+            array: [2, 3],
+            ..cavity(3, 0.2, 2.0)
+        });
+        let textures = [array.clone(), array];
+        let mut shares = Vec::new();
+        let watched = mesh_watched::<Infallible>(&lattice, &textures, &mut |share| {
+            shares.push(share);
+            Ok(())
+        });
+        assert_eq!(watched, Ok(mesh(&lattice, &textures)));
+        assert!(shares.is_sorted() && shares[0] == 0.0 && *shares.last().unwrap() > 0.9);
+        let mut asked = 0;
+        let stopped = mesh_watched(&lattice, &textures, &mut |_| {
+            asked += 1;
+            if asked < 10 { Ok(()) } else { Err("enough") }
+        });
+        assert_eq!((stopped, asked), (Err("enough"), 10));
     }
 }

@@ -17,6 +17,12 @@ fn bad_studies_are_refused_with_a_sentence() {
             "the axis of `shape` is empty",
         ),
         (axis("zip = {}"), "is empty"),
+        // The second replicate would have the seed 0.
+        (
+            "base.slider.blocks = [4, 4]\nbase.friction.seed = 9223372036854775807\nstudy.replicates = 2"
+                .to_owned(),
+            "`friction.seed` = 9223372036854775807 is too large for 2 replicates",
+        ),
         (
             axis("key = 'drive.v_star'"),
             "needs one of `list`, `linspace` and `logspace`",
