@@ -12,11 +12,19 @@ pub const UNFINISHED: &str = ".slipfront";
 
 /// Writes a file atomically: as a temporary file in its folder, which is then renamed, or removed after an error.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    write_atomic_with(path, |file| file.write_all(bytes))
+}
+
+/// Writes a file atomically that need not be in memory as a whole.
+pub fn write_atomic_with(
+    path: &Path,
+    fill: impl FnOnce(&mut File) -> std::io::Result<()>,
+) -> std::io::Result<()> {
     let folder = path
         .parent()
         .filter(|parent| !parent.as_os_str().is_empty())
         .unwrap_or(Path::new("."));
-    write_temp(folder, |file| file.write_all(bytes))?.persist(path)?;
+    write_temp(folder, fill)?.persist(path)?;
     Ok(())
 }
 

@@ -1,10 +1,81 @@
-//! The number of threads of this process.
+//! The pool of threads of this process.
+
+use std::hint::black_box;
+use std::io::ErrorKind;
+use std::sync::mpsc::channel;
+use std::sync::{Arc, Mutex};
+use std::thread::{Builder, available_parallelism};
+
+use rayon::{ThreadBuilder, ThreadPoolBuilder};
+use slipfront_case::machine::threads_that_fit;
 
 use crate::failure::Failure;
+use crate::print_stderr::print_stderr;
 
-/// Sets the number of threads of this process, by default one per core, and returns it.
+/// Makes the pool of threads of this process and returns their number: by default one per core, and never more. Where the
+/// system refuses some there are fewer, at least the present one.
 pub(crate) fn set_threads(threads: Option<u16>) -> Result<usize, Failure> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from));
-    pool.build_global().map_err(Failure::running)?;
-    Ok(rayon::current_num_threads())
+    let started = start_pool(threads, 0)?;
+    Ok(started.max(1))
+}
+
+/// The same for a command that starts as many threads beside the pool, to run cases on them.
+pub(crate) fn set_worker_threads(threads: Option<u16>) -> Result<usize, Failure> {
+    match start_pool(threads, 1)? {
+        0 => Err(Failure::running(anyhow::anyhow!(
+            "runs take threads of their own, which the system refuses: raise the limit on processes (`ulimit -u`) or on \
+             addresses (`ulimit -v`)"
+        ))),
+        started => Ok(started),
+    }
+}
+
+/// Makes the pool and returns the number of its threads, each of which needs room for `others`; 0 if the present thread does
+/// all of its work.
+fn start_pool(threads: Option<u16>, others: usize) -> Result<usize, Failure> {
+    let cores = available_parallelism().map_or(1, usize::from);
+    let asked = threads.map_or(cores, usize::from);
+    let wanted = threads_that_fit(asked.min(cores), others);
+    let mut why = match wanted < asked.min(cores) {
+        true => "the limit on addresses (`ulimit -v`) has no room for more".to_owned(),
+        false => "this machine offers no more".to_owned(),
+    };
+    // They are started before the pool, which could not be made if one of its threads were refused.
+    let (hand_over, works) = channel::<ThreadBuilder>();
+    let works = Arc::new(Mutex::new(works));
+    let (settled, has_settled) = channel();
+    let mut started = 0;
+    while started < wanted {
+        let (works, settled) = (Arc::clone(&works), settled.clone());
+        let wait_and_work = move || {
+            // The first piece of memory gives a thread its arena, which limits of addresses count.
+            drop(black_box(Box::new(0_u8)));
+            let _ = settled.send(());
+            let work = works.lock().ok().and_then(|works| works.recv().ok());
+            if let Some(work) = work {
+                work.run();
+            }
+        };
+        if let Err(error) = Builder::new().spawn(wait_and_work) {
+            why = format!("the system refuses more: {error}");
+            break;
+        }
+        let _ = has_settled.recv();
+        started += 1;
+    }
+    if started < asked {
+        print_stderr(&format!(
+            "note: {} of {asked} threads are used, since {why}",
+            started.max(1)
+        ));
+    }
+    let pool = ThreadPoolBuilder::new().num_threads(started.max(1));
+    if started == 0 {
+        pool.use_current_thread().build_global()
+    } else {
+        pool.spawn_handler(|thread| hand_over.send(thread).map_err(|_| ErrorKind::BrokenPipe.into()))
+            .build_global()
+    }
+    .map_err(Failure::running)?;
+    Ok(started)
 }

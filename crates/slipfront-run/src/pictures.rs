@@ -8,7 +8,7 @@ use {
     crate::summary::{Summary, read_summary},
     rayon::prelude::*,
     slipfront::observe::Field,
-    slipfront_case::case::MAX_MAPS,
+    slipfront_case::case::{MAX_MAPS, memory_to_draw},
     slipfront_plot::{self as plot, FrictionCurve, Instant, Kinetic, Picture, StressMap, StressMaps},
     std::path::{Path, PathBuf},
 };
@@ -50,6 +50,19 @@ impl RunPicture {
     pub fn files(&self) -> [String; 2] {
         ["svg", "png"].map(|ending| format!("{}.{ending}", self.name))
     }
+}
+
+/// Memory in which the friction curves of these run folders are drawn, or all pictures of a single one, in bytes.
+#[cfg(feature = "plot")]
+pub fn memory(folders: &[PathBuf]) -> Result<f64, ResultsError> {
+    let (mut cells, mut maps, mut rows) = (0, 0, 0.0);
+    for folder in folders {
+        rows += series::estimate_rows(&folder.join(SERIES))?;
+    }
+    if let [folder] = folders {
+        (cells, maps) = fields::count_maps(&folder.join(FIELDS), MAX_MAPS)?;
+    }
+    Ok(memory_to_draw(cells as f64, maps as f64, rows))
 }
 
 /// Draws the pictures of a run folder from its files, which must be there and undamaged.

@@ -89,6 +89,24 @@ pub(crate) fn finish(table: csv::Writer<Vec<u8>>) -> Result<Vec<u8>, csv::Error>
     table.into_inner().map_err(|error| error.into_error().into())
 }
 
+/// The number of rows of a series by its length, if all are as long as the first: later ones have more digits, so that it is
+/// an upper bound.
+pub fn estimate_rows(path: &Path) -> Result<f64, SeriesError> {
+    const BEGINNING_BYTES: u64 = 1 << 16;
+    let estimate = || {
+        let file = open_limited(path, u64::MAX)?;
+        let length = file.get_ref().metadata()?.len();
+        let mut beginning = Vec::new();
+        file.take(BEGINNING_BYTES).read_to_end(&mut beginning)?;
+        let rows = beginning.iter().filter(|byte| **byte == b'\n').count();
+        Ok(length as f64 * rows as f64 / beginning.len().max(1) as f64)
+    };
+    estimate().map_err(|error: std::io::Error| SeriesError {
+        path: path.to_owned(),
+        source: error.into(),
+    })
+}
+
 /// Reads a series back.
 pub fn read_csv(path: &Path) -> Result<Vec<SeriesRow>, SeriesError> {
     let read = || rows_of(open_limited(path, u64::MAX)?);

@@ -219,6 +219,7 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
             return Ok(verdict);
         }
     };
+    plan.check_memory(0)?;
     let temporary = tempfile::tempdir().map_err(VerifyError::Temporary)?;
     let mut again = StudyFolder::open(temporary.path(), &file)?;
     again.records.merge(folder)?;

@@ -44,9 +44,12 @@ const SERIES_ROW: f64 = 13.0 * NUMBER;
 /// Stretches of the history of mu* and their copies while an uncertainty is sought.
 const HISTORY: f64 = 1024.0 * 1024.0;
 
+/// A row of the series while it is drawn: as both pictures read it, and as the points of the curves.
+const DRAWN_ROW: f64 = 2.0 * SERIES_ROW + 3.0 * NUMBER;
+
 /// Primitives and pixels of the picture of the friction, and of the one of the stress. They do not depend on the
 /// lattice: more than 256 cells along a side are averaged (measured: 6.8 and 6.6 MB).
-const PICTURE: f64 = 7.0 * 1024.0 * 1024.0;
+pub const PICTURE: f64 = 7.0 * 1024.0 * 1024.0;
 /// Both pictures as SVG and PNG, the summary and the manifest (measured: at most 0.7 MB).
 const PICTURE_FILES: f64 = 2e6;
 
@@ -177,7 +180,7 @@ impl Budget {
                 bytes: [
                     0.0,
                     grown(rows) * row + grown(rows * ROW_TEXT),
-                    grown(rows) * (row + 2.0 * SERIES_ROW + 3.0 * NUMBER),
+                    grown(rows) * (row + DRAWN_ROW),
                     rows * ROW_TEXT,
                     rows * row,
                 ],
@@ -342,6 +345,12 @@ impl Budget {
         let what = format!("{} of it for {}", byte_size(bytes_of(&most)), (most.what)(self));
         (most.key, what, most.remedy)
     }
+}
+
+/// Memory in which the pictures of a finished run are drawn from its files, in bytes: of the blocks that are kept, the maps
+/// that are drawn and the rows of the series.
+pub fn memory_to_draw(cells: f64, maps: f64, rows: f64) -> f64 {
+    HEAP * (cells * (DECODED + maps * VALUE) + grown(rows) * DRAWN_ROW + 2.0 * PICTURE)
 }
 
 /// Elements for which a vector has room that grew to `length` by doubling.

@@ -10,7 +10,7 @@ mod textures;
 mod time_plan;
 mod warnings;
 
-pub use self::budget::{Budget, PROGRAM};
+pub use self::budget::{Budget, PICTURE, PROGRAM, memory_to_draw};
 pub use self::groups::Groups;
 pub use self::inputs::{Input, name_of_copy};
 pub use self::output::{MAX_MAPS, Output, Snapshots, VARIABLE_MAX_BYTES, check_fields, smallest_stride};

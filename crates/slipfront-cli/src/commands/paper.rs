@@ -12,7 +12,7 @@ use crate::failure::Failure;
 use crate::print::print_message;
 use crate::progress::paper::PaperProgress;
 use crate::signals::Signals;
-use crate::threads::set_threads;
+use crate::threads::set_worker_threads;
 
 /// Run the figures and tables of the paper again, and judge its claims one by one
 #[derive(Args)]
@@ -45,7 +45,7 @@ pub(crate) struct Paper {
 
 impl Paper {
     pub(crate) fn execute(self) -> Result<(), Failure> {
-        let threads = set_threads(self.threads)?;
+        let threads = set_worker_threads(self.threads)?;
         let figures = slipfront_paper::figures(&self.figures).map_err(Failure::input)?;
         if let Some(docs) = &self.docs {
             refuse_foreign(docs)?;

@@ -3,7 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use slipfront_case::case::PROGRAM;
 use slipfront_case::disk::{is_same, read_limited, write_atomic};
+use slipfront_case::machine::available_of;
+use slipfront_case::number_format::byte_size;
 use slipfront_plot::Picture;
 use slipfront_run::names::MANIFEST;
 use slipfront_run::pictures;
@@ -12,6 +15,7 @@ use slipfront_run::verify::{expect_as_written, inspect};
 
 use crate::failure::Failure;
 use crate::print::print_message;
+use crate::threads::set_threads;
 
 /// Draw the pictures of a run again, or the friction curves of several runs over each other
 #[derive(Args)]
@@ -32,6 +36,7 @@ pub(crate) struct Plot {
 
 impl Plot {
     pub(crate) fn execute(self) -> Result<(), Failure> {
+        set_threads(None)?;
         let mut runs = Vec::new();
         for folder in &self.folders {
             expect_results(folder)?;
@@ -39,6 +44,7 @@ impl Plot {
             expect_as_written(&run, |name| pictures::DRAWN_FROM.contains(&name)).map_err(Failure::input)?;
             runs.push(run);
         }
+        expect_memory(&self.folders)?;
         let (out, drawn) = match self.folders.as_slice() {
             [folder] => (folder.clone(), pictures::draw(folder).map_err(Failure::input)?),
             folders => {
@@ -80,6 +86,21 @@ impl Plot {
         print_message(&written);
         Ok(())
     }
+}
+
+/// Refuses pictures for which there is no memory.
+fn expect_memory(folders: &[PathBuf]) -> Result<(), Failure> {
+    let needed = PROGRAM + pictures::memory(folders).map_err(Failure::input)?;
+    let available = available_of(needed, 0);
+    if needed <= available {
+        return Ok(());
+    }
+    Err(Failure::input(anyhow::anyhow!(
+        "these pictures take about {} of memory where {} are available to this process: give it more, in a queue for \
+         example with `--mem`",
+        byte_size(needed),
+        byte_size(available)
+    )))
 }
 
 fn expect_results(folder: &Path) -> Result<(), Failure> {

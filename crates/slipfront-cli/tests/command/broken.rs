@@ -1,5 +1,6 @@
 //! Runs that cannot end well: diverged, interrupted, on a full disk, with nobody left to read what they say.
 
+use std::collections::BTreeSet;
 use std::process::{Command, Stdio};
 
 use crate::fixtures::RUN_FILES;
@@ -103,6 +104,91 @@ fn a_full_stdout_stops_no_work() {
         );
     }
     workspace.assert_same_run("whole", "b");
+}
+
+/// Whatever a process may take: a sentence, or less work at once, and never an abort.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_limit_of_addresses_ends_nothing_in_an_abort() {
+    let workspace = Workspace::small();
+    workspace.write(
+        "study.toml",
+        "base.slider.blocks = [2, 2]\nbase.time.duration_star = 1\n[[axes]]\nkey = 'drive.v_star'\n\
+         linspace = [0.1, 0.2, 40]\n[[axes]]\nkey = 'drive.direction'\nlinspace = [0, 45, 30]\n",
+    );
+    workspace.succeed("run small.toml -o a");
+    workspace.succeed("study study.toml --quiet -o whole");
+    let mut statuses = BTreeSet::new();
+    for mib in [32, 48, 96, 256, 1024] {
+        for line in [
+            "plot a -o drawn --force",
+            "verify whole",
+            "verify a",
+            "study merge whole -o merged --quiet",
+            "study study.toml -o again --quiet",
+            "run small.toml --quiet -o b --force",
+        ] {
+            let script = format!("ulimit -v {}; exec {} {line}", 1024 * mib, program());
+            let output = workspace.shell(&script);
+            let (said, status) = (stderr(&output), output.status.code());
+            assert!(
+                matches!(status, Some(0..=2)),
+                "{line}, {mib} MiB: {status:?} {said}"
+            );
+            assert!(!said.contains("panicked"), "{line}, {mib} MiB: {said}");
+            assert_eq!(
+                status != Some(0),
+                said.contains("error: "),
+                "{line}, {mib} MiB: {said}"
+            );
+            statuses.insert((mib, status));
+        }
+    }
+    // Some were refused, and with a GiB nothing was.
+    assert!(statuses.contains(&(32, Some(2))), "{statuses:?}");
+    let of_a_gib: Vec<_> = statuses.iter().filter(|(mib, _)| *mib == 1024).collect();
+    assert_eq!(of_a_gib, [&(1024, Some(0))]);
+}
+
+/// No more threads than cores, whatever is asked for, and fewer where the system refuses some.
+#[cfg(target_os = "linux")]
+#[test]
+fn threads_that_cannot_be_had_are_done_without() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o a");
+    let output = workspace.output("run small.toml --quiet --threads 65535 -o many");
+    let said = stderr(&output);
+    assert!(output.status.success(), "{said}");
+    assert!(
+        said.starts_with("note: ") && said.contains(" of 65535 threads are used"),
+        "{said}"
+    );
+    workspace.assert_same_run("a", "many");
+    let mut process = workspace.process("plot a -o drawn");
+    let output = process.env("RAYON_NUM_THREADS", "99999").output().unwrap();
+    assert!(output.status.success() && stderr(&output).is_empty());
+    // A user who has no other process and may have one: to become it takes rights that few have, and nothing is tested then.
+    let anyone = "chmod 777 . && cp -R a of-anyone && chmod -R a+rwX of-anyone";
+    assert!(workspace.shell(anyone).status.success());
+    let as_other = "setpriv --reuid 64321 --clear-groups prlimit --nproc=1";
+    if !workspace.shell(&format!("{as_other} true")).status.success() {
+        return;
+    }
+    // Where the program lies, that user may not look.
+    std::fs::copy(program(), workspace.path("slipfront")).unwrap();
+    for (line, status) in [
+        ("plot of-anyone -o drawn-by-one", 0),
+        ("verify of-anyone", 0),
+        ("run small.toml --quiet -o run-by-one", 0),
+        ("study study.toml -o study-by-one", 1),
+    ] {
+        workspace.write("study.toml", "base.slider.blocks = [2, 2]\n");
+        let output = workspace.shell(&format!("{as_other} ./slipfront {line}"));
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(status), "{line}: {said}");
+        assert!(said.contains("the system refuses"), "{line}: {said}");
+    }
+    workspace.assert_same_run("a", "run-by-one");
 }
 
 #[cfg(unix)]

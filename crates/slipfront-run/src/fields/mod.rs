@@ -11,7 +11,7 @@ mod read;
 mod write;
 
 pub use frame::{FieldFrame, FieldsData, FieldsError, FieldsFile, StaticFields, thin};
-pub use read::{read_fields, read_maps};
+pub use read::{count_maps, read_fields, read_maps};
 pub use write::write_fields;
 
 #[cfg(test)]

@@ -40,6 +40,15 @@ pub fn read_maps(path: &Path, field: Field, most: usize) -> Result<FieldsData, F
     read().map_err(|error| in_words(error, path))
 }
 
+/// Blocks of a map and the number of maps that [`read_maps`] reads.
+pub fn count_maps(path: &Path, most: usize) -> Result<(usize, usize), FieldsError> {
+    let count = || {
+        let file = NetCdf3Reader::open(path)?;
+        Ok((file.dimension(X)? * file.dimension(Y)?, file.records.min(most)))
+    };
+    count().map_err(|error| in_words(error, path))
+}
+
 fn in_words(error: NetCdfError, path: &Path) -> FieldsError {
     let path = path.to_owned();
     match error {

@@ -63,6 +63,7 @@ impl OpenedFolder {
             // Another process may have made it since.
             self = Self::open(&path)?;
         }
+        let is_complete = matches!(self.inspection.contents, Contents::Complete(_));
         let listed = match self.inspection.contents {
             Contents::Empty => Vec::new(),
             Contents::Complete(Err(error)) if force => return Err(error.into()),
@@ -77,8 +78,10 @@ impl OpenedFolder {
         refuse_unmanaged(&path, names.chain(inputs), &managed, &listed)?;
         let mut folder = RunFolder::begin(path, self.lock)?;
         folder.new = true;
-        // Once the manifest is gone, nothing else says whose they are.
-        folder.list(&listed)?;
+        if is_complete {
+            // Once the manifest is gone, nothing else says whose they are.
+            folder.list(&listed)?;
+        }
         remove_files(&folder.path, managed)?;
         Ok(folder)
     }

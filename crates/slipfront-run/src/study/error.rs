@@ -46,6 +46,11 @@ pub enum StudyError {
         available: String,
     },
     #[error(
+        "the tables and pictures of the study take about {needed} of memory where {available} are available to this \
+        process: give it more, in a queue for example with `--mem`"
+    )]
+    ResultsMemory { needed: String, available: String },
+    #[error(
         "the runs still to be done take about {needed} where {free} are free in {path}: keep fewer run folders \
         (`study.keep`), or choose another folder with --out"
     )]
@@ -91,8 +96,6 @@ pub enum StudyError {
     Foreign { first: PathBuf, other: PathBuf },
     #[error("the shard `{given}` cannot be: {why}; write i/n with i from 1 to n, such as 2/8, or `slurm`")]
     Shard { given: String, why: String },
-    #[error("cannot write a table of the study: {0}")]
-    Table(#[from] csv::Error),
     #[cfg(feature = "plot")]
     #[error("cannot draw {name}: {source}")]
     Picture { name: String, source: PictureError },

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 use std::fs::File;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::error::StudyError;
@@ -18,7 +19,7 @@ use crate::names::{CASE, FIGURE_CACHE, RECORDS, RUNS, TABLES};
 use crate::run_folder::copy::copy_run;
 use crate::run_folder::error::FolderError;
 use slipfront_case::disk::{
-    TEXT_MAX_BYTES, is_empty, is_folder, open_limited, read_limited, remove_if_there, write_atomic,
+    TEXT_MAX_BYTES, is_empty, is_folder, open_limited, read_limited, remove_if_there, write_atomic_with,
     write_temp,
 };
 use slipfront_case::machine::free_disk;
@@ -80,7 +81,7 @@ impl StudyFolder {
                 let _ = remove_if_there(&folder.path.join(table));
             }
         }
-        folder.write(STUDY, text.as_bytes())?;
+        folder.write(STUDY, |file| file.write_all(text.as_bytes()))?;
         Ok(folder)
     }
 
@@ -90,10 +91,14 @@ impl StudyFolder {
     }
 
     /// Writes a file atomically.
-    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), StudyError> {
+    fn write(
+        &self,
+        name: &str,
+        fill: impl FnOnce(&mut File) -> std::io::Result<()>,
+    ) -> Result<(), StudyError> {
         let path = self.path.join(name);
         let folder = path.parent().unwrap_or(&self.path);
-        let written = std::fs::create_dir_all(folder).and_then(|()| write_atomic(&path, bytes));
+        let written = std::fs::create_dir_all(folder).and_then(|()| write_atomic_with(&path, fill));
         written.map_err(|source| StudyError::Write { path, source })
     }
 
@@ -169,16 +174,19 @@ impl StudyFolder {
 /// Writes the tables and pictures of a study to its folder, and removes its pictures of earlier results.
 pub fn write(plan: &Plan, results: &StudyResults, folder: &StudyFolder) -> Result<(), StudyError> {
     let [runs, points] = TABLES;
-    folder.write(runs, &tables::runs(plan, results)?)?;
-    folder.write(points, &tables::points(plan, results)?)?;
+    folder.write(runs, |file| Ok(tables::runs(plan, results, file)?))?;
+    folder.write(points, |file| Ok(tables::points(plan, results, file)?))?;
     #[cfg_attr(not(feature = "plot"), expect(unused_mut, reason = "nothing is drawn"))]
     let mut drawn: HashSet<String> = HashSet::new();
     #[cfg(feature = "plot")]
-    for (name, picture) in pictures::draw(plan, results)? {
-        folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
-        folder.write(&format!("{name}.png"), &picture.png)?;
+    pictures::draw(plan, results, |name, picture| {
+        folder.write(&format!("{name}.svg"), |file| {
+            file.write_all(picture.svg.as_bytes())
+        })?;
+        folder.write(&format!("{name}.png"), |file| file.write_all(&picture.png))?;
         drawn.insert(name);
-    }
+        Ok(())
+    })?;
     folder.remove_pictures(picture_plan::names(&plan.axes).filter(|name| !drawn.contains(name)));
     Ok(())
 }

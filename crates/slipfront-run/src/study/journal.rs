@@ -102,7 +102,10 @@ impl Records {
         self.damaged += lines.damaged;
         let mut records = lines.records;
         records.retain(|record| !self.results.contains_key(&record.id));
-        self.append(&records)?;
+        // Their lines need not be in memory all at once.
+        for some in records.chunks(LINES_AT_ONCE) {
+            self.append(some)?;
+        }
         Ok(records.len())
     }
 }
@@ -141,6 +144,9 @@ fn open_locked(path: &Path, folder: &Path) -> Result<File, StudyError> {
     }
     Ok(file)
 }
+
+/// Records whose lines are written at once: each time waits for the disk.
+const LINES_AT_ONCE: usize = 1000;
 
 /// The longest line of a record file: hundreds of times what a run takes.
 const LINE_MAX_BYTES: u64 = 1 << 20;

@@ -8,19 +8,40 @@ use super::axis::{Axis, Spacing};
 use super::error::StudyError;
 use super::labels::{symbol, title};
 use super::picture_plan::{PictureKind, PlannedPicture, QUANTITIES, combinations, planned};
-use super::plan::Plan;
+use super::plan::{PICTURES_AT_ONCE, Plan};
 use super::study_results::StudyResults;
 use slipfront_plot::{
     Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Response, Responses,
 };
 
-/// Draws the pictures of a study, each with the name of its files.
-pub(super) fn draw(plan: &Plan, results: &StudyResults) -> Result<Vec<(String, Picture)>, StudyError> {
-    let of_quantity = |quantity: &&'static str| Measured::of(plan, results, quantity).draw();
-    // The error of the first is told, whichever fails first.
-    let drawn: Vec<_> = QUANTITIES.par_iter().map(of_quantity).collect();
-    let drawn: Vec<_> = drawn.into_iter().collect::<Result<_, _>>()?;
-    Ok(drawn.concat())
+/// Draws the pictures of a study and hands each on with the name of its files. No more are in memory at once than there is
+/// room for in the budget.
+pub(super) fn draw(
+    plan: &Plan,
+    results: &StudyResults,
+    mut hand_on: impl FnMut(String, Picture) -> Result<(), StudyError>,
+) -> Result<(), StudyError> {
+    for quantity in QUANTITIES {
+        let measured = Measured::of(plan, results, quantity);
+        // Runs that stop at the onset have no kinetic friction, and a study without a reference has no reduction.
+        if measured.values.values().all(|[mean, ..]| mean.is_nan()) {
+            continue;
+        }
+        for some in planned(&plan.axes, quantity).chunks(PICTURES_AT_ONCE) {
+            let drawn: Vec<_> = some
+                .par_iter()
+                .map(|picture| measured.draw(&picture.kind))
+                .collect();
+            for (PlannedPicture { name, .. }, drawn) in some.iter().zip(drawn) {
+                let name = name.clone();
+                match drawn {
+                    Ok(picture) => hand_on(name, picture)?,
+                    Err(source) => return Err(StudyError::Picture { name, source }),
+                }
+            }
+        }
+    }
+    Ok(())
 }
 
 /// A quantity at every point of a study.
@@ -48,23 +69,12 @@ impl<'a> Measured<'a> {
         }
     }
 
-    fn draw(&self) -> Result<Vec<(String, Picture)>, StudyError> {
-        // Runs that stop at the onset have no kinetic friction, and a study without a reference has no reduction.
-        if self.values.values().all(|[mean, ..]| mean.is_nan()) {
-            return Ok(Vec::new());
+    fn draw(&self, kind: &PictureKind) -> Result<Picture, PictureError> {
+        match kind {
+            PictureKind::Bars => self.bars(),
+            PictureKind::Curves { x, fixed, varied } => self.curves(*x, fixed, varied),
+            PictureKind::Map { x, y } => self.map(*x, *y),
         }
-        let draw = |PlannedPicture { name, kind }| {
-            let picture = match kind {
-                PictureKind::Bars => self.bars(),
-                PictureKind::Curves { x, fixed, varied } => self.curves(x, &fixed, &varied),
-                PictureKind::Map { x, y } => self.map(x, y),
-            };
-            match picture {
-                Ok(picture) => Ok((name, picture)),
-                Err(source) => Err(StudyError::Picture { name, source }),
-            }
-        };
-        planned(self.axes, self.quantity).into_iter().map(draw).collect()
     }
 
     /// The values at the point with these levels; NaN if the point is part of another shard.

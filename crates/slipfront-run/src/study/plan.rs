@@ -12,9 +12,9 @@ use super::shard::Shard;
 use super::study_file::{Base, RetainRuns, Settings, StudyFile};
 use super::summary_values::REDUCTION;
 use crate::program;
-use slipfront_case::case::{Case, PROGRAM, Watch, check_fields};
+use slipfront_case::case::{Case, PICTURE, PROGRAM, Watch, check_fields};
 use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Override, ParsedCase, Snapshots};
-use slipfront_case::machine::{available_memory, most_at_once};
+use slipfront_case::machine::available_of;
 use slipfront_case::number_format::byte_size;
 use slipfront_case::text::display_path;
 
@@ -81,6 +81,12 @@ const POINTS_AT_ONCE: usize = 4096;
 
 /// A line of the records and a row of the tables.
 const RECORD_BYTES: f64 = 4096.0;
+
+/// What a run leaves in memory: its identity and its numbers, in the records, in the results and for the pictures.
+const RESULT_BYTES: f64 = 2048.0;
+
+/// Pictures of the study that are drawn at once.
+pub(super) const PICTURES_AT_ONCE: usize = 2;
 
 /// The purpose of a run of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -324,11 +330,19 @@ impl Plan {
         (spec.block_steps, spec.n_blocks)
     }
 
-    /// Memory of `threads` runs at once, if they are the largest, in bytes.
+    /// Memory of `threads` runs at once, if they are the largest, or of the pictures of the study if these take more, beside
+    /// the results of all runs, in bytes.
     pub fn memory(&self, threads: usize) -> f64 {
         let runs = self.runs(self.settings.max_replicates()).take(threads).count();
         let largest = self.largest_run().map_or(0.0, |(_, bytes)| bytes);
-        PROGRAM + self.planning() + runs as f64 * largest
+        let pictures = PICTURES_AT_ONCE as f64 * PICTURE;
+        PROGRAM + self.planning() + self.results() + pictures.max(runs as f64 * largest)
+    }
+
+    /// Memory of the results of all runs, with the fewest replicates, in bytes.
+    fn results(&self) -> f64 {
+        let runs = self.points.len() * self.settings.min_replicates() * self.roles().count();
+        runs as f64 * RESULT_BYTES
     }
 
     /// Memory in which cases were tried, and which the allocator keeps for others of their size, in bytes.
@@ -344,12 +358,10 @@ impl Plan {
             .max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Refuses as many runs at once as there is no memory for, and says how many there is memory for.
+    /// Refuses as many runs at once as there is no memory for, and says how many there is memory for; with no runs, what
+    /// tables and pictures take is held against the memory alone.
     pub fn check_memory(&self, threads: usize) -> Result<(), StudyError> {
-        let available = available_memory().unwrap_or(f64::INFINITY);
-        // A process may be given less than the machine has.
-        let given = most_at_once(self.memory(threads).min(available));
-        self.compare_memory(threads, given)
+        self.compare_memory(threads, available_of(self.memory(threads), threads))
     }
 
     fn compare_memory(&self, threads: usize, available: f64) -> Result<(), StudyError> {
@@ -360,9 +372,16 @@ impl Plan {
         if needed <= available {
             return Ok(());
         }
-        let fit = ((available - PROGRAM - self.planning()) / largest).max(0.0) as usize;
+        let beside = PROGRAM + self.planning() + self.results();
+        let fit = ((available - beside) / largest).max(0.0) as usize;
+        let results = self.memory(0);
+        let too_large = results > available;
         let available = byte_size(available);
         Err(match fit {
+            _ if too_large => StudyError::ResultsMemory {
+                needed: byte_size(results),
+                available,
+            },
             0 => StudyError::PointMemory {
                 point: self.describe(&self.points[run.point]),
                 needed: byte_size(largest),
@@ -524,7 +543,7 @@ mod tests {
     /// Runs at once count with the largest of them, and not with more than there are.
     #[test]
     fn threads_are_held_against_the_memory() {
-        let text = "[study]\nreplicates = 2\n[[axes]]\nkey = 'slider.blocks'\nlist = [[4, 4], [300, 300]]";
+        let text = "[study]\nreplicates = 2\n[[axes]]\nkey = 'slider.blocks'\nlist = [[4, 4], [800, 800]]";
         let file = StudyFile::parse(text, "study.toml", "study", Path::new("")).unwrap();
         let plan = Plan::new(&file, None).unwrap();
         let one = plan.memory(2) - plan.memory(1);
@@ -545,14 +564,14 @@ mod tests {
             .unwrap_err()
             .to_string();
         assert!(
-            said.contains("slider.blocks = [300, 300]") && said.contains("lower `slider.blocks`"),
+            said.contains("slider.blocks = [800, 800]") && said.contains("lower `slider.blocks`"),
             "{said}"
         );
         // Every run that is kept holds the five fields of six instants until they are written.
         let kept = text.replace("replicates = 2", "replicates = 2\nkeep = 'all'");
         let kept = StudyFile::parse(&kept, "study.toml", "study", Path::new("")).unwrap();
         let kept = Plan::new(&kept, None).unwrap();
-        let fields = 6.0 * 5.0 * 300.0 * 300.0 * size_of::<f32>() as f64;
+        let fields = 6.0 * 5.0 * 800.0 * 800.0 * size_of::<f32>() as f64;
         assert!(kept.memory(1) > plan.memory(1) + fields);
         let disk = |plan: &Plan| plan.disk(plan.runs(2));
         assert!(disk(&kept) > 100.0 * disk(&plan));

@@ -1,15 +1,15 @@
 //! `runs.csv`, with a row for each run, and `points.csv`, with the statistics of each quantity at each point.
 
-use super::error::StudyError;
+use std::io::Write;
+
 use super::plan::{Plan, Role};
 use super::study_results::StudyResults;
 use super::summary_values::{AFTER_AXES, BEFORE_AXES, Quantity, REDUCTION, STATISTICS, known};
-use crate::series;
 
 /// `runs.csv`: for each run, references included, the levels of its point, the seed, whether it failed and why, and every
 /// number of its summary.
-pub(super) fn runs(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, StudyError> {
-    let mut table = csv::Writer::from_writer(Vec::new());
+pub(super) fn runs(plan: &Plan, results: &StudyResults, to: impl Write) -> csv::Result<()> {
+    let mut table = csv::Writer::from_writer(to);
     let quantities = quantities(plan);
     let names = quantities.iter().map(|(name, _)| *name);
     let before = BEFORE_AXES.into_iter().chain(axis_columns(plan));
@@ -41,7 +41,7 @@ pub(super) fn runs(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, Study
         }
         table.write_record(row)?;
     }
-    Ok(series::finish(table)?)
+    Ok(table.flush()?)
 }
 
 /// The quantities that the tables of a study have: a reduction only against a reference.
@@ -55,8 +55,8 @@ fn quantities(plan: &Plan) -> Vec<(&'static str, Quantity)> {
 
 /// `points.csv`: for each point and quantity the number of values, their mean, standard deviation, confidence
 /// interval of the mean, smallest and largest; reductions are paired by seed.
-pub(super) fn points(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, StudyError> {
-    let mut table = csv::Writer::from_writer(Vec::new());
+pub(super) fn points(plan: &Plan, results: &StudyResults, to: impl Write) -> csv::Result<()> {
+    let mut table = csv::Writer::from_writer(to);
     table.write_record(["point"].into_iter().chain(axis_columns(plan)).chain(STATISTICS))?;
     let quantities = quantities(plan);
     for (position, point) in plan.points.iter().enumerate() {
@@ -82,7 +82,7 @@ pub(super) fn points(plan: &Plan, results: &StudyResults) -> Result<Vec<u8>, Stu
             table.write_record(row)?;
         }
     }
-    Ok(series::finish(table)?)
+    Ok(table.flush()?)
 }
 
 /// Columns of all axes.

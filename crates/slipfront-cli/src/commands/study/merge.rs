@@ -9,6 +9,7 @@ use slipfront_run::study::{Plan, StudyFolder, collect, is_study, refuse_foreign,
 use super::run::finish;
 use crate::failure::Failure;
 use crate::print_stderr::print_stderr;
+use crate::threads::set_threads;
 
 /// Unite the shards of a study: their records, tables and pictures; may be repeated
 #[derive(Args)]
@@ -26,12 +27,14 @@ pub(crate) struct Merge {
 
 impl Merge {
     pub(crate) fn execute(self) -> Result<(), Failure> {
+        set_threads(None)?;
         let mut folders = self.shards.clone();
         // Merging may be repeated: the folder then holds a study, which must be the one that the shards belong to.
         folders.extend(is_study(&self.out).then(|| self.out.clone()));
         refuse_foreign(&folders).map_err(Failure::input)?;
         let study = study_of(&self.shards[0]).map_err(Failure::input)?;
         let plan = Plan::new(&study, None).map_err(Failure::input)?;
+        plan.check_memory(0).map_err(Failure::input)?;
         let mut folder = StudyFolder::open(&self.out, &study).map_err(Failure::input)?;
         let mut taken = 0;
         for shard in &self.shards {

@@ -16,7 +16,7 @@ use crate::print_stderr::print_stderr;
 use crate::progress::study::StudyProgress;
 use crate::report;
 use crate::signals::Signals;
-use crate::threads::set_threads;
+use crate::threads::{set_threads, set_worker_threads};
 use crate::wrap::for_stderr;
 
 #[derive(Args)]
@@ -61,7 +61,10 @@ pub(super) fn refuse_large(file: &StudyFile, confirmed: bool) -> Result<(), Fail
 
 impl StudyRun {
     pub(crate) fn execute(self) -> Result<(), Failure> {
-        let threads = set_threads(self.threads)?;
+        let threads = match self.dry_run {
+            true => set_threads(self.threads)?,
+            false => set_worker_threads(self.threads)?,
+        };
         let Some(path) = self.study else {
             return Err(Failure::input(anyhow::anyhow!("name a study file")));
         };

@@ -9,6 +9,7 @@ use slipfront_run::study::{Plan, StudyFile};
 use super::run::refuse_large;
 use crate::failure::Failure;
 use crate::print::print;
+use crate::threads::set_threads;
 
 /// Print a batch script for Slurm: few tasks, each using all cores of its node, that can be requeued
 #[derive(Args)]
@@ -29,6 +30,7 @@ pub(crate) struct Slurm {
 
 impl Slurm {
     pub(crate) fn execute(self) -> Result<(), Failure> {
+        set_threads(None)?;
         let study = StudyFile::load(&self.study).map_err(Failure::input)?;
         refuse_large(&study, self.yes)?;
         // An invalid study is refused here, not by a task that has waited in the queue.

@@ -123,7 +123,8 @@ fn what_the_system_does_not_give_is_refused_before_it_begins() {
     let workspace = Workspace::with_study(
         "base.slider.blocks = [1500, 1500]\nbase.time.duration_star = 1\nstudy.replicates = 1",
     );
-    let output = limited(&workspace, "-v 200000", "--threads 1 -o out");
+    // There is room for a thread, and not for the blocks.
+    let output = limited(&workspace, "-v 400000", "--threads 1 -o out");
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     assert!(
         stderr(&output).contains("are available to this process: lower `slider.blocks`"),
