@@ -103,7 +103,9 @@ fn expected_by(message: &str) -> Option<&str> {
         .any(|start| message.starts_with(start));
     match is_about_type {
         true => message.rsplit_once(", expected ").map(|(_, expected)| expected),
-        false => message.strip_prefix("expected "),
+        false => message
+            .strip_prefix("expected ")
+            .or_else(|| message.strip_prefix("wanted ")),
     }
 }
 
@@ -137,25 +139,32 @@ fn takes(key: &Key, message: &str) -> Option<String> {
     })
 }
 
-/// What else may help with a value as it was `written`: a number needs no quotes, and a key with a unit may have a partner
-/// without, and the other way round.
+/// What else may help with a value as it was `written`: a number needs no quotes and a point, not a comma, and a key with a unit
+/// may have a partner without, and the other way round. Else a number has its remark.
 fn hint(key: &Key, section: Option<&Section>, written: &str) -> String {
     let partner = key.partner.and_then(|name| section?.key(name));
     let quantity = |key: &Key| matches!(key.kind, Kind::Quantity { .. });
     let inside = written.trim_matches(['"', '\'']);
     let is_number = inside.parse::<f64>().is_ok();
+    let begins_as_number = inside.starts_with(|c: char| c.is_ascii_digit());
+    let with_point = inside.replace(',', ".");
     match (key.kind, partner) {
+        (Kind::Number { .. }, _) if begins_as_number && !is_number && with_point.parse::<f64>().is_ok() => {
+            format!("; the decimal sign is a point: {with_point}")
+        }
         (Kind::Number { .. } | Kind::Whole { .. }, _) if is_number && inside != written => {
             "; write it without quotes".to_owned()
         }
         (Kind::Number { .. }, Some(partner))
-            if quantity(partner) && inside.starts_with(|c: char| c.is_ascii_digit()) =>
+            if quantity(partner) && begins_as_number && inside.ends_with(char::is_alphabetic) =>
         {
             format!("; with a unit, the key is `{}`", partner.name)
         }
-        (Kind::Quantity { .. }, Some(partner)) if !quantity(partner) && written.is_empty() => {
+        // Its partner is the same thing without a unit, as `v_star` of `speed`, or another one, as `coverage` of `lambda`.
+        (Kind::Quantity { .. }, Some(partner)) if partner.name.ends_with("_star") && written.is_empty() => {
             format!("; without a unit, the key is `{}`", partner.name)
         }
+        (Kind::Number { remark, .. }, _) => format!("; {remark}"),
         _ => String::new(),
     }
 }
