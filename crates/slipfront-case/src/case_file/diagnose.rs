@@ -9,6 +9,29 @@ use super::keys;
 use super::source::Source;
 use crate::text::truncated;
 
+/// What the parser says of common slips, by how its message begins, and what a user needs to know of them.
+const GRAMMAR: [(&str, &str); 7] = [
+    (
+        "string values must be quoted",
+        "a text must stand in quotes, such as \"100 kPa\"",
+    ),
+    (
+        "invalid boolean",
+        "a word must stand in quotes, unless it is true or false",
+    ),
+    ("invalid mantissa", "a number begins with a digit, such as 0.03"),
+    (
+        "invalid basic string, expected `\"`",
+        "the quotes of a text are not closed",
+    ),
+    (
+        "unexpected key or value",
+        "one value stands behind `=`; a list stands in [ ] and a text in quotes",
+    ),
+    ("key with no value", "a key and its value are joined by `=`"),
+    ("invalid key-value pair", "a line is `key = value` or `[table]`"),
+];
+
 /// An error of TOML's grammar in text that begins at `offset` of the source.
 pub fn syntax_error(source: &Source, offset: usize, error: &toml::de::Error) -> CaseError {
     let span = error.span().unwrap_or(0..0);
@@ -19,9 +42,9 @@ pub fn syntax_error(source: &Source, offset: usize, error: &toml::de::Error) -> 
             "duplicate key `{}`: it is already set in this table",
             source.slice(span.clone())
         )
-    } else if message.starts_with("invalid boolean") {
-        "this is not valid TOML: a word must stand in quotes, unless it is true or false".to_owned()
     } else {
+        let plain = GRAMMAR.iter().find(|(start, _)| message.starts_with(start));
+        let message = plain.map_or(message.as_str(), |(_, plain)| *plain);
         format!("this is not valid TOML: {message}")
     };
     source.error_at(span, sentence)

@@ -154,6 +154,10 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
         "values",
         "the levels of an axis are its list, linspace or logspace",
     ),
+    (
+        "simulation",
+        "the length of a run and its step stand in [time], what it writes in [output]",
+    ),
     ("temperature", "the model has no temperature"),
 ];
 
