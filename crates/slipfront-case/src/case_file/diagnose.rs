@@ -196,9 +196,9 @@ fn hint(key: &Key, section: Option<&Section>, written: &str) -> String {
 fn in_plain_words(expected: &str) -> String {
     const WORDS: [(&str, &str); 9] = [
         ("f64", "a number"),
-        ("u32", "a whole number, 0 or more"),
-        ("u64", "a whole number, 0 or more"),
-        ("usize", "a whole number, 0 or more"),
+        ("u32", "a whole number, not negative"),
+        ("u64", "a whole number, not negative"),
+        ("usize", "a whole number, not negative"),
         ("a boolean", "true or false"),
         ("a string", "a text in quotes"),
         ("string or table", "a word in quotes"),

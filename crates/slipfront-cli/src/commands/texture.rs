@@ -56,6 +56,10 @@ impl Texture {
                 error => Failure::running(error),
             },
         )?;
-        print(&format!("{}\n{}\n", report::texture(&case), self.out.display()))
+        let covered = match case.file.texture.is_empty() {
+            true => "the case has no texture: every pixel is white".to_owned(),
+            false => report::texture(&case),
+        };
+        print(&format!("{covered}\n{}\n", self.out.display()))
     }
 }
