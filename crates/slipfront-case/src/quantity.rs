@@ -547,6 +547,9 @@ fn find_symbol(symbol: &str) -> Option<(Dimension, i32)> {
 /// What to write in place of an unknown `symbol` among the `factors` of a unit: the nearest unit that makes the whole one of
 /// the `wanted` dimension, or else what units there are.
 fn advice_on(symbol: &str, factors: &[(&str, i32)], wanted: Dimension, example: &str) -> String {
+    if symbol.starts_with(',') {
+        return "the decimal sign is a point".to_owned();
+    }
     // What the other factors leave to the unknown one; none if there are several unknown ones.
     let is_unknown = |&&(other, _): &&(&str, i32)| find_symbol(other).is_none();
     let unknown: Vec<&(&str, i32)> = factors.iter().filter(is_unknown).collect();

@@ -20,8 +20,8 @@ pub(crate) struct CaseArgs {
     #[arg(long = "set", value_name = "KEY=VALUE")]
     overrides: Vec<String>,
     /// Seed of the random friction coefficients: short for --set friction.seed=N
-    #[arg(long, value_name = "N")]
-    seed: Option<u64>,
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    seed: Option<String>,
 }
 
 impl CaseArgs {

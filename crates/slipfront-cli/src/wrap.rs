@@ -34,11 +34,16 @@ pub(crate) fn for_stderr(text: &str) -> String {
 }
 
 /// A line broken between words into lines of at most `columns` characters, if no word is longer. Lines after the first are
-/// indented.
+/// indented. A command in backquotes is one word, so that it can be copied.
 fn wrapped(line: &str, columns: usize) -> String {
     const INDENT: &str = "\n      ";
     let (mut text, mut used) = (String::new(), 0);
-    for word in line.split(' ') {
+    let mut is_quoted = false;
+    let words = line.split(|c| {
+        is_quoted ^= c == '`';
+        c == ' ' && !is_quoted
+    });
+    for word in words {
         let width = word.chars().count();
         if used > 0 && used + 1 + width > columns {
             text += INDENT;
@@ -62,6 +67,11 @@ mod tests {
         assert_eq!(wrapped("note: short", 80), "note: short");
         let long = "note: one two three four";
         assert_eq!(wrapped(long, 13), "note: one two\n      three\n      four");
+        let command = "go on by `slipfront run --resume a`, or not";
+        assert_eq!(
+            wrapped(command, 30),
+            "go on by\n      `slipfront run --resume a`,\n      or not"
+        );
         let endless = "x".repeat(20);
         assert_eq!(wrapped(&endless, 10), endless);
         let words = "word ".repeat(100);

@@ -9,6 +9,29 @@ use super::keys;
 use super::source::Source;
 use crate::text::truncated;
 
+/// What the parser says of common slips, by how its message begins, and what a user needs to know of them.
+const GRAMMAR: [(&str, &str); 7] = [
+    (
+        "string values must be quoted",
+        "a text must stand in quotes, such as \"100 kPa\"",
+    ),
+    (
+        "invalid boolean",
+        "a word must stand in quotes, unless it is true or false",
+    ),
+    ("invalid mantissa", "a number begins with a digit, such as 0.03"),
+    (
+        "invalid basic string, expected `\"`",
+        "the quotes of a text are not closed",
+    ),
+    (
+        "unexpected key or value",
+        "one value stands behind `=`; a list stands in [ ] and a text in quotes",
+    ),
+    ("key with no value", "a key and its value are joined by `=`"),
+    ("invalid key-value pair", "a line is `key = value` or `[table]`"),
+];
+
 /// An error of TOML's grammar in text that begins at `offset` of the source.
 pub fn syntax_error(source: &Source, offset: usize, error: &toml::de::Error) -> CaseError {
     let span = error.span().unwrap_or(0..0);
@@ -19,9 +42,9 @@ pub fn syntax_error(source: &Source, offset: usize, error: &toml::de::Error) -> 
             "duplicate key `{}`: it is already set in this table",
             source.slice(span.clone())
         )
-    } else if message.starts_with("invalid boolean") {
-        "this is not valid TOML: a word must stand in quotes, unless it is true or false".to_owned()
     } else {
+        let plain = GRAMMAR.iter().find(|(start, _)| message.starts_with(start));
+        let message = plain.map_or(message.as_str(), |(_, plain)| *plain);
         format!("this is not valid TOML: {message}")
     };
     source.error_at(span, sentence)
@@ -103,7 +126,9 @@ fn expected_by(message: &str) -> Option<&str> {
         .any(|start| message.starts_with(start));
     match is_about_type {
         true => message.rsplit_once(", expected ").map(|(_, expected)| expected),
-        false => message.strip_prefix("expected "),
+        false => message
+            .strip_prefix("expected ")
+            .or_else(|| message.strip_prefix("wanted ")),
     }
 }
 
@@ -137,25 +162,32 @@ fn takes(key: &Key, message: &str) -> Option<String> {
     })
 }
 
-/// What else may help with a value as it was `written`: a number needs no quotes, and a key with a unit may have a partner
-/// without, and the other way round.
+/// What else may help with a value as it was `written`: a number needs no quotes and a point, not a comma, and a key with a unit
+/// may have a partner without, and the other way round. Else a number has its remark.
 fn hint(key: &Key, section: Option<&Section>, written: &str) -> String {
     let partner = key.partner.and_then(|name| section?.key(name));
     let quantity = |key: &Key| matches!(key.kind, Kind::Quantity { .. });
     let inside = written.trim_matches(['"', '\'']);
     let is_number = inside.parse::<f64>().is_ok();
+    let begins_as_number = inside.starts_with(|c: char| c.is_ascii_digit());
+    let with_point = inside.replace(',', ".");
     match (key.kind, partner) {
+        (Kind::Number { .. }, _) if begins_as_number && !is_number && with_point.parse::<f64>().is_ok() => {
+            format!("; the decimal sign is a point: {with_point}")
+        }
         (Kind::Number { .. } | Kind::Whole { .. }, _) if is_number && inside != written => {
             "; write it without quotes".to_owned()
         }
         (Kind::Number { .. }, Some(partner))
-            if quantity(partner) && inside.starts_with(|c: char| c.is_ascii_digit()) =>
+            if quantity(partner) && begins_as_number && inside.ends_with(char::is_alphabetic) =>
         {
             format!("; with a unit, the key is `{}`", partner.name)
         }
-        (Kind::Quantity { .. }, Some(partner)) if !quantity(partner) && written.is_empty() => {
+        // Its partner is the same thing without a unit, as `v_star` of `speed`, or another one, as `coverage` of `lambda`.
+        (Kind::Quantity { .. }, Some(partner)) if partner.name.ends_with("_star") && written.is_empty() => {
             format!("; without a unit, the key is `{}`", partner.name)
         }
+        (Kind::Number { remark, .. }, _) => format!("; {remark}"),
         _ => String::new(),
     }
 }
@@ -164,9 +196,9 @@ fn hint(key: &Key, section: Option<&Section>, written: &str) -> String {
 fn in_plain_words(expected: &str) -> String {
     const WORDS: [(&str, &str); 9] = [
         ("f64", "a number"),
-        ("u32", "a whole number, 0 or more"),
-        ("u64", "a whole number, 0 or more"),
-        ("usize", "a whole number, 0 or more"),
+        ("u32", "a whole number, not negative"),
+        ("u64", "a whole number, not negative"),
+        ("usize", "a whole number, not negative"),
         ("a boolean", "true or false"),
         ("a string", "a text in quotes"),
         ("string or table", "a word in quotes"),

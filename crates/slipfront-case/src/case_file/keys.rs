@@ -11,6 +11,9 @@ use super::synonyms::advice_on;
 /// The longest name that is compared with the known ones, in bytes.
 const MAX_NAME: usize = 100;
 
+/// The shortest word that names a longer one of which it is a part, such as "stress" of "contact_stress_star", in bytes.
+const MIN_PART: usize = 4;
+
 /// The names of the tables, in the order of the design.
 pub const TABLES: [&str; 7] = ["slider", "load", "drive", "friction", "texture", "time", "output"];
 
@@ -103,7 +106,7 @@ pub fn unknown(key: &str, header: &str, known: &[&str]) -> String {
 }
 
 /// The sentence about a key or table that the file as a whole does not have.
-pub(super) fn unknown_table(key: &str) -> String {
+pub fn unknown_table(key: &str) -> String {
     if let Some(home) = home_of(key) {
         return format!("`{key}` stands outside its table: it belongs in {home}");
     }
@@ -152,5 +155,12 @@ pub(super) fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
         .iter()
         .map(|key| (strsim::damerau_levenshtein(word, key), *key));
     let (distance, key) = distances.min()?;
-    (distance <= (key.len() / 3).max(1)).then_some(key)
+    let mut around = known
+        .iter()
+        .filter(|key| word.len() >= MIN_PART && key.contains(word));
+    match (around.next(), around.next()) {
+        _ if distance <= (key.len() / 3).max(1) => Some(key),
+        (Some(only), None) => Some(only),
+        _ => None,
+    }
 }

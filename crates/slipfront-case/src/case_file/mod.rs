@@ -31,7 +31,7 @@ pub use file::{CaseFile, ParsedCase};
 pub use key_table::{Bounds, Key, Kind, SECTIONS, Section, Title, names_a_file, title_of};
 pub use keys::{
     STUDY_TABLES, TABLES as CASE_TABLES, exclude_each_other, header_below, partners_of,
-    unknown as unknown_key,
+    unknown as unknown_key, unknown_table as unknown_case_table,
 };
 pub use load::read_text;
 pub use motion::{Drive, DriveSpeed, Friction, KineticFriction, Load};

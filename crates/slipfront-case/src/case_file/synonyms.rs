@@ -150,6 +150,14 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
         "a cavity stands at `center`, a groove at `offset` from the middle",
     ),
     ("pitch", "cavities at equal distances are an `array` = [4, 4]"),
+    (
+        "values",
+        "the levels of an axis are its list, linspace or logspace",
+    ),
+    (
+        "simulation",
+        "the length of a run and its step stand in [time], what it writes in [output]",
+    ),
     ("temperature", "the model has no temperature"),
 ];
 

@@ -150,6 +150,7 @@ fn suggestions_are_of_the_wanted_dimension() {
     assert!(error::<kind::Pressure>("3 lbf").contains("is a force"));
     assert!(error::<kind::Speed>("3 m/x").contains("write it as in \"0.0949 mm/s\""));
     assert!(error::<kind::Pressure>("1 N/mm2").ends_with("did you mean `mm^2`?"));
+    assert!(error::<kind::Speed>("1,5 mm/s").ends_with("the decimal sign is a point"));
     assert!(error::<kind::Pressure>("1 N/mm3").contains("write it as in"));
     assert!(error::<kind::Pressure>("1 kPaa").ends_with("did you mean `kPa`?"));
     // `ps` is no pressure; of `mN` and `ms` the second is a time.

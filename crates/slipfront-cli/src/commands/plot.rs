@@ -11,7 +11,7 @@ use slipfront_plot::Picture;
 use slipfront_run::names::MANIFEST;
 use slipfront_run::pictures;
 use slipfront_run::run_folder::inspection::Inspection;
-use slipfront_run::verify::{expect_as_written, inspect};
+use slipfront_run::verify::{expect_as_written, inspect, is_study};
 
 use crate::failure::Failure;
 use crate::print::print_message;
@@ -113,6 +113,10 @@ fn expect_results(folder: &Path) -> Result<(), Failure> {
     let path = folder.join("summary.json");
     let sentence = match path.try_exists() {
         Ok(true) => return Ok(()),
+        Ok(false) if is_study(folder) => format!(
+            "{} is the folder of a study, which holds its pictures: plot takes folders of runs",
+            folder.display()
+        ),
         Ok(false) => format!(
             "{} holds no summary.json: name the folder of a run that is finished",
             folder.display()

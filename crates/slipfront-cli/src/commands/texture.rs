@@ -58,7 +58,11 @@ impl Texture {
                 error => Failure::running(error),
             },
         )?;
-        print_message(&format!("{}\n{}\n", report::texture(&case), self.out.display()));
+        let covered = match case.file.texture.is_empty() {
+            true => "the case has no texture: every pixel is white".to_owned(),
+            false => report::texture(&case),
+        };
+        print_message(&format!("{covered}\n{}\n", self.out.display()));
         Ok(())
     }
 }

@@ -1,5 +1,6 @@
 //! Progress of the figures of the paper.
 
+use slipfront_case::number_format::count;
 use slipfront_paper::{Stage, StepRule};
 
 use super::display::ProgressDisplay;
@@ -22,7 +23,7 @@ impl PaperProgress {
         };
         self.0.move_bar(stage.done as u64, stage.total as u64, || {
             let runs = stage.study.map_or(String::new(), |study| {
-                format!(", {} of {} runs", study.done, study.total)
+                format!(", {} of {}", study.done, count(study.total, "run"))
             });
             format!("{}{step}{runs}", stage.figure.name)
         });

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use slipfront_case::number_format::count;
 use slipfront_run::study::Progress;
 
 use super::display::{ProgressDisplay, time_left};
@@ -40,7 +41,11 @@ fn text(now: &Progress, passed: Duration) -> String {
         here => format!("  {}", rate(here as f64 / passed.as_secs_f64())),
     };
     let left = time_left((now.total - now.done) as u64, now.here as u64, passed);
-    format!("{} of {} runs{rate}{left}{failed}{worst}", now.done, now.total)
+    format!(
+        "{} of {}{rate}{left}{failed}{worst}",
+        now.done,
+        count(now.total, "run")
+    )
 }
 
 /// A rate in the unit in which it is a number that can be read.

@@ -29,7 +29,6 @@ fn wrong_usage_is_bad_input() {
         "rum",
         "run --sed 3",
         "run --threads 0",
-        "run --seed -1",
         "texture small.toml",
         "plot",
     ] {
@@ -212,6 +211,12 @@ fn a_forgotten_subcommand_and_a_misspelt_file_are_understood() {
     ] {
         let said = workspace.fail(line, 2);
         assert!(said.contains(meant), "{line}: {said}");
+    }
+    // A seed is held against its key.
+    for seed in ["-1", "soon"] {
+        let said = workspace.fail(&format!("run small.toml --seed {seed}"), 2);
+        let expected = format!("`friction.seed` is {seed}: it must be a whole number from 0 to");
+        assert!(said.contains(&expected), "{said}");
     }
     // Words that are neither stay what they are.
     assert!(workspace.fail("rum", 2).contains("unrecognized subcommand"));

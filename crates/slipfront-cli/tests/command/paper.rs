@@ -23,6 +23,8 @@ fn figures_are_made_judged_and_reported() {
             "{text}"
         );
         assert!(text.contains("report.html"));
+        let headings: Vec<&str> = text.lines().next().unwrap().split_whitespace().collect();
+        assert_eq!(headings, ["no.", "verdict", "measured", "claim"]);
     }
     for name in [
         "fig13.svg",

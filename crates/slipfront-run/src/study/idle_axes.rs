@@ -1,6 +1,8 @@
 //! Axes along which a study does not vary what is computed: the dimensionless model and its time plan are the same at every
 //! level. Pressure, stiffness and density alone do that, since they set units only, as long as the drive has a V*.
 
+use std::cell::LazyCell;
+
 use slipfront::observe::KineticStart;
 use slipfront_case::case::Case;
 
@@ -20,27 +22,40 @@ const UNITS_OF_SPEED: [&str; 4] = [
 ];
 
 /// A sentence for each axis that changes nothing: the axis and the remedy.
+///
+/// An axis changes nothing if all its levels are one model, both at the first levels of the other axes and at the last ones. Where
+/// an axis changes something, its second level shows it.
 pub fn idle_axes(plan: &Plan) -> Vec<String> {
-    let idle = (0..plan.axes.len()).filter(|&axis| is_idle(plan, axis));
+    let first = vec![0; plan.axes.len()];
+    let last = plan.axes.iter().map(|axis| axis.levels.len() - 1).collect();
+    let corners = [first, last].map(|levels: Vec<usize>| {
+        let digest = LazyCell::new({
+            let levels = levels.clone();
+            || digest_at(plan, levels)
+        });
+        (levels, digest)
+    });
+    let is_idle = |axis: usize| {
+        let count = plan.axes[axis].levels.len();
+        let is_same_from = |(corner, digest): &(Vec<usize>, LazyCell<Option<blake3::Hash>, _>)| {
+            let others = (0..count).filter(|&level| level != corner[axis]);
+            let mut digests = others.map(|level| {
+                let mut levels = corner.clone();
+                levels[axis] = level;
+                digest_at(plan, levels)
+            });
+            digest.is_some() && digests.all(|other| other == **digest)
+        };
+        count > 1 && corners.iter().all(is_same_from)
+    };
+    let idle = (0..plan.axes.len()).filter(|&axis| is_idle(axis));
     idle.map(|axis| sentence(&plan.axes[axis])).collect()
 }
 
-/// Whether all levels of an axis are one model, both at the first levels of the other axes and at the last ones.
-fn is_idle(plan: &Plan, axis: usize) -> bool {
-    let count = plan.axes[axis].levels.len();
-    let is_same_from = |others: Vec<usize>| {
-        let digest = |level: usize| {
-            let mut levels = others.clone();
-            levels[axis] = level;
-            // A level that is no valid case is one of a part of the study that this process does not run.
-            plan.case_of(&levels).ok().as_ref().map(digest)
-        };
-        let first = digest(0);
-        first.is_some() && (1..count).all(|level| digest(level) == first)
-    };
-    let first = vec![0; plan.axes.len()];
-    let last: Vec<usize> = plan.axes.iter().map(|axis| axis.levels.len() - 1).collect();
-    count > 1 && is_same_from(first) && is_same_from(last)
+/// Hash of what is computed at these levels; none where they are no valid case, which a part of a study need not notice of a point
+/// that it does not run.
+fn digest_at(plan: &Plan, levels: Vec<usize>) -> Option<blake3::Hash> {
+    plan.case_of(&levels).ok().as_ref().map(digest)
 }
 
 /// Hash of all that the kernel and the observers use of a case. Numbers are rounded to 24 bits, since units that cancel leave

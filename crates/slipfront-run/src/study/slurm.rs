@@ -1,5 +1,6 @@
 //! A batch script for Slurm: an array of tasks, each of which runs a shard on all cores of a node.
 
+use slipfront_case::number_format::count;
 use slipfront_case::text::shell_quoted;
 
 /// The contents of a batch script.
@@ -21,10 +22,10 @@ pub struct Batch {
 pub fn script(batch: &Batch) -> String {
     let [command, study, out] = [&batch.command, &batch.study, &batch.out].map(|word| shell_quoted(word));
     let name = batch.name.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
-    let tasks = batch.tasks;
+    let (tasks, all) = (batch.tasks, count(batch.tasks, "task"));
     format!(
         r#"#!/bin/bash
-# {tasks} tasks, each a part of the points of the study on a node of its own. Submit this file with `sbatch`, and
+# {all}, each a part of the points of the study on a node of its own. Submit this file with `sbatch`, and
 # add what your cluster asks for there, such as --time and --account. A task that is killed or requeued goes on
 # where it was: finished runs are recorded and never repeated. When all are done, unite them:
 #

@@ -13,7 +13,7 @@ use super::input_copies::{self, Copy};
 use super::summary_values::{REDUCTION, is_column, known};
 use slipfront_case::case_file::{
     CASE_TABLES, CaseError, ParsedCase, STUDY_TABLES, Source, Tables, header_below, limit_nesting, names_of,
-    read_text, syntax_error, unknown_key,
+    read_text, syntax_error, unknown_case_table, unknown_key,
 };
 
 /// A study file.
@@ -367,6 +367,10 @@ fn refuse_conflicts(axes: &[Axis], source: &Source) -> Result<(), CaseError> {
     let (mut columns, mut keys) = (HashSet::new(), BTreeSet::new());
     for (k, axis) in axes.iter().enumerate() {
         let refuse = |sentence: String| Err(source.error(&format!("axes.{k}"), sentence));
+        let has_table = |key: &&str| key.contains('.') || CASE_TABLES.contains(key);
+        if let Some(key) = axis.keys().into_iter().find(|key| !has_table(key)) {
+            return refuse(unknown_case_table(key));
+        }
         for column in &axis.columns {
             if is_column(column) {
                 return refuse(format!(
