@@ -108,7 +108,8 @@ impl Manifest {
         threads: usize,
     ) -> Self {
         let case_file = files.iter().find(|file| file.name == CASE);
-        let finished = jiff::Timestamp::now();
+        // The clock may have been set back since another process began the run.
+        let finished = clock::now().max(started);
         Self {
             version: program::VERSION.to_owned(),
             revision: program::REVISION.map(str::to_owned),
@@ -120,7 +121,7 @@ impl Manifest {
             platform: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
             started: started.to_string(),
             finished: finished.to_string(),
-            wall_time_s: clock::since(started).as_secs_f64(),
+            wall_time_s: finished.duration_since(started).as_secs_f64(),
             case_blake3: case_file.map_or(String::new(), |file| file.blake3.clone()),
             random: Random {
                 generator: "ChaCha8".to_owned(),

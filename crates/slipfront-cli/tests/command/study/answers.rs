@@ -287,8 +287,8 @@ fn what_deserves_a_word_is_said_once() {
     );
     for line in ["study study.toml --dry-run", "study study.toml -o out"] {
         let said = unwrapped(&workspace.succeed(line));
-        let note = "texture 1 covers no block: it lies off the slider, or between the centres of blocks; look at its size and \
-                    place (at the point texture.0.coverage = 0.2)";
+        let note = "of the blocks instead of 0.20 %: it is clipped, overlaps, or is too fine for the blocks \
+                    (at the point texture.0.coverage = 0.2)";
         assert_eq!(said.matches(note).count(), 1, "{said}");
         // Both levels cover the same blocks, which is said where nothing has run yet.
         let idle = said.contains("the axis of `texture.0.coverage` changes nothing");
