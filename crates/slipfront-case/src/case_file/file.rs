@@ -80,13 +80,15 @@ impl CaseFile {
         Self::parse(&text, &path.display().to_string(), overrides)
     }
 
-    /// Every file that the case names, relative to the case file.
-    pub fn files_mut(&mut self) -> impl Iterator<Item = &mut String> {
-        let masks = self.texture.iter_mut().filter_map(|texture| match texture {
+    /// Every file that these tables of a case name, relative to the case file.
+    pub fn files_mut<'a>(
+        friction: &'a mut Friction,
+        texture: &'a mut [Texture],
+    ) -> impl Iterator<Item = &'a mut String> {
+        let masks = texture.iter_mut().filter_map(|texture| match texture {
             Texture::Mask(mask) => Some(&mut mask.file),
             _ => None,
         });
-        let friction = &mut self.friction;
         let fields = [&mut friction.mu_static_field, &mut friction.mu_kinetic_field];
         masks.chain(fields.into_iter().flatten())
     }

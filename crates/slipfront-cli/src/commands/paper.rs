@@ -23,7 +23,7 @@ use crate::threads::set_worker_threads;
 
 Exit status 0 says that every verdict is the expected one, 1 that one is not.")]
 pub(crate) struct Paper {
-    /// Figures: fig2 ... fig18, table1, lattice, sensitivity, or all; those finished in the folder are reported in any case
+    /// Figures: fig1 ... fig18, table1, sensitivity, or all; those finished in the folder are reported in any case
     #[arg(value_name = "FIGURE")]
     figures: Vec<String>,
     /// Folder for the results; what an earlier call there has finished is not run again

@@ -465,16 +465,6 @@ fn note_on_replicates(case: &Case) -> Option<&'static str> {
 /// Hash of all that decides the numbers of a run but its seed: the physics of the case, the contents of its files and the
 /// program; not the names of files, nor the output.
 fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
-    let mut file = case.file.clone();
-    file.friction.seed = 0;
-    for name in file.files_mut() {
-        let input = case.inputs.iter().find(|input| input.name == *name);
-        let hash = input.map(|input| blake3::hash(&input.bytes).to_hex());
-        let ending = name.rsplit('.').next().unwrap_or_default();
-        *name = format!("{}.{ending}", hash.unwrap_or_default());
-    }
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(program::this_build().as_bytes());
     let CaseFile {
         slider,
         load,
@@ -483,9 +473,21 @@ fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
         texture,
         time,
         ..
-    } = &file;
-    let text = serde_json::to_vec(&(slider, load, drive, friction, texture, time));
-    hasher.update(&text.map_err(|error| CaseError::invalid(None, error.to_string()))?);
+    } = &case.file;
+    let (mut friction, mut texture) = (friction.clone(), texture.clone());
+    friction.seed = 0;
+    for name in CaseFile::files_mut(&mut friction, &mut texture) {
+        let input = case.inputs.iter().find(|input| input.name == *name);
+        let hash = input.map(|input| blake3::hash(&input.bytes).to_hex());
+        let ending = name.rsplit('.').next().unwrap_or_default();
+        *name = format!("{}.{ending}", hash.unwrap_or_default());
+    }
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(program::this_build().as_bytes());
+    let mut text = Vec::with_capacity(1024);
+    serde_json::to_writer(&mut text, &(slider, load, drive, friction, texture, time))
+        .map_err(|error| CaseError::invalid(None, error.to_string()))?;
+    hasher.update(&text);
     Ok(hasher.finalize())
 }
 
@@ -530,8 +532,9 @@ mod tests {
             let text =
                 format!("base.slider.blocks = [25, 25]\nbase.friction = {{ {keys} }}\nstudy.replicates = 2");
             let file = StudyFile::parse(&text, "study.toml", "study", Path::new("")).unwrap();
-            let warnings = Plan::new(&file, None).unwrap().warnings();
-            warnings.into_iter().map(|warning| warning.sentence).collect()
+            let plan = Plan::new(&file, None).unwrap();
+            let sentences = plan.warnings().iter().map(|warning| &warning.sentence);
+            sentences.cloned().collect()
         };
         assert!(notes("").is_empty());
         assert!(notes("sigma_kinetic_star = 0").is_empty());
