@@ -152,10 +152,27 @@ impl<'t> ParsedCase<'t> {
         })
     }
 
-    /// Reads the case without overrides, so that [`with`](Self::with) reads no more than the tables that they change: worth it
-    /// where many cases are made.
-    pub fn prepare(&mut self) {
-        self.plain = self.with(&[]).ok();
+    /// This case with these overrides, as the base of many cases: it is read here, so that [`with`](Self::with) reads no more
+    /// than the tables that are changed further.
+    ///
+    /// # Errors
+    /// [`CaseError::Invalid`] for an override that does not fit; what is wrong with the case is told by `with`.
+    pub fn prepared<'a>(&'a self, overrides: &[&'a Override]) -> Result<ParsedCase<'a>, CaseError> {
+        let mut prepared = ParsedCase {
+            root: self.root.clone(),
+            source: self.source.clone(),
+            plain: None,
+        };
+        for change in overrides {
+            change.apply(&mut prepared.root, &mut prepared.source)?;
+        }
+        prepared.plain = prepared.with(&[]).ok();
+        Ok(prepared)
+    }
+
+    /// The case that was read when this base was [prepared](Self::prepared), if it is valid.
+    pub fn plain(&self) -> Option<&CaseFile> {
+        self.plain.as_ref()
     }
 
     /// The case with these overrides, one after the other.

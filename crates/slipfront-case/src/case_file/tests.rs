@@ -26,9 +26,8 @@ fn the_table_has_the_keys_of_the_structs() {
 fn tables_that_no_override_changes_are_read_once() {
     let text = "drive.v_star = 0.05\n[slider]\nblocks = [50, 40]\n[time]\nduration_star = 50\n[[texture]]\nshape = 'groove'\n\
                 coverage = 10\n[[texture]]\nshape = 'cavity'\nlambda = '2 um'\n";
-    let mut prepared = ParsedCase::parse(text, "case").unwrap();
-    prepared.prepare();
     let plain = ParsedCase::parse(text, "case").unwrap();
+    let prepared = plain.prepared(&[]).unwrap();
     for sets in [
         "",
         "drive.v_star=0.1",

@@ -1,6 +1,7 @@
 //! The plan of a study: its points, and what each run of a point is.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::ops::Range;
 use std::sync::Mutex;
 
@@ -12,7 +13,8 @@ use super::shard::Shard;
 use super::study_file::{Base, RetainRuns, Settings, StudyFile};
 use super::summary_values::REDUCTION;
 use crate::program;
-use slipfront_case::case::{Case, PICTURE, PROGRAM, Watch, check_fields};
+use serde::Serialize;
+use slipfront_case::case::{Case, Input, PICTURE, PROGRAM, Watch, check_fields};
 use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Override, ParsedCase, Snapshots};
 use slipfront_case::machine::available_of;
 use slipfront_case::number_format::byte_size;
@@ -79,6 +81,9 @@ static MAKING_LARGE: Mutex<()> = Mutex::new(());
 /// Points whose cases are made before what is known of them is taken down.
 const POINTS_AT_ONCE: usize = 4096;
 
+/// Points in a row whose cases are made from one base.
+const POINTS_OF_A_BASE: usize = 64;
+
 /// A line of the records and a row of the tables.
 const RECORD_BYTES: f64 = 4096.0;
 
@@ -136,29 +141,63 @@ impl Plan {
             StudyError::Point { point, source }
         };
         let base = self.base.parse();
-        let mut base = base.map_err(|error| invalid(self.points.first(), error))?;
-        base.prepare();
-        let mut specs = Vec::with_capacity(self.points.len() * self.roles().count());
+        let base = base.map_err(|error| invalid(self.points.first(), error))?;
+        let (slow, length) = self.slow_axes();
+        let roles = self.roles().count();
+        let mut specs = Vec::with_capacity(self.points.len() * roles);
         let mut warnings = Warnings::default();
         for (chunk, points) in self.points.chunks(POINTS_AT_ONCE).enumerate() {
-            let made = points.par_iter().map(|point| {
-                let specs = self.roles().map(|role| self.spec(&base, point, role));
-                specs.collect()
-            });
-            let made: Vec<Result<Vec<_>, CaseError>> = made.collect();
+            let rows = points.chunk_by(|a, b| a.index / length == b.index / length);
+            let rows: Vec<&[Point]> = rows.flat_map(|row| row.chunks(POINTS_OF_A_BASE)).collect();
+            let made: Vec<Vec<_>> = rows
+                .par_iter()
+                .map(|row| self.specs_of_row(&base, row, slow))
+                .collect();
             // In order, so that the first invalid point is named.
-            for (position, (point, made)) in points.iter().zip(made).enumerate() {
-                let made = made.map_err(|error| invalid(Some(point), error))?;
-                warnings.add(
-                    chunk * POINTS_AT_ONCE + position,
-                    made.iter().flat_map(|(_, sentences)| sentences),
-                );
-                specs.extend(made.into_iter().map(|(spec, _)| spec));
+            for (run, made) in made.into_iter().flatten().enumerate() {
+                let position = chunk * POINTS_AT_ONCE + run / roles;
+                let (spec, sentences) = made.map_err(|error| invalid(Some(&self.points[position]), error))?;
+                warnings.add(position, sentences);
+                specs.push(spec);
             }
         }
         self.specs = specs;
         self.warnings = warnings.found;
         Ok(())
+    }
+
+    /// How many of the first axes keep their levels over so many points in a row, of which a base can be made.
+    fn slow_axes(&self) -> (usize, usize) {
+        let (mut slow, mut length) = (self.axes.len(), 1);
+        while slow > 0 && length < POINTS_OF_A_BASE {
+            slow -= 1;
+            length *= self.axes[slow].levels.len();
+        }
+        (slow, length)
+    }
+
+    /// What is known of the runs of points with the same levels of the first `slow` axes, and the warnings about them.
+    fn specs_of_row(
+        &self,
+        base: &ParsedCase,
+        row: &[Point],
+        slow: usize,
+    ) -> Vec<Result<(RunSpec, Vec<String>), CaseError>> {
+        let bases = self.roles().map(|role| {
+            let overrides = self.overrides(&row[0], role, 0..slow);
+            Ok((role, Prepared::new(base.prepared(&overrides)?)?))
+        });
+        let bases = match bases.collect::<Result<Vec<_>, CaseError>>() {
+            Ok(bases) => bases,
+            // It is that of the first of them.
+            Err(error) => return vec![Err(error)],
+        };
+        let specs = |point| {
+            bases
+                .iter()
+                .map(move |(role, base)| self.spec(base, point, *role, slow))
+        };
+        row.iter().flat_map(specs).collect()
     }
 
     /// The roles of the runs of a point: the point itself, and its reference if the study has one.
@@ -181,17 +220,26 @@ impl Plan {
         }
     }
 
-    /// The case file of replicate 0: the base with the overrides of the point's levels, and of the reference.
-    fn case_file(&self, base: &ParsedCase, point: &Point, role: Role) -> Result<CaseFile, CaseError> {
-        let levels = self.axes.iter().zip(self.levels(point));
-        let overrides = levels.flat_map(|(axis, level)| &axis.levels[level].overrides);
+    /// The overrides of a point's levels of these axes, and of the reference after those of the last one.
+    fn overrides(&self, point: &Point, role: Role, axes: Range<usize>) -> Vec<&Override> {
+        let levels = self.levels(point);
+        let overrides = axes
+            .clone()
+            .flat_map(|axis| &self.axes[axis].levels[levels[axis]].overrides);
         let mut overrides: Vec<&Override> = overrides.collect();
         if let (Some(reference), Role::Reference) = (&self.reference, role) {
             let replaces = |other: &Override, set: &Override| axis::replaces_key(other.key(), set.key());
             overrides.retain(|set| !reference.iter().any(|other| replaces(other, set)));
-            overrides.extend(reference);
+            if axes.end == self.axes.len() {
+                overrides.extend(reference);
+            }
         }
-        base.with(&overrides)
+        overrides
+    }
+
+    /// The case file of replicate 0: the base with the overrides of the point's levels, and of the reference.
+    fn case_file(&self, base: &ParsedCase, point: &Point, role: Role) -> Result<CaseFile, CaseError> {
+        base.with(&self.overrides(point, role, 0..self.axes.len()))
     }
 
     /// The case of a combination of levels, for a look at what it computes.
@@ -207,11 +255,13 @@ impl Plan {
     /// Makes the case of a point; gives what is known of its runs, and the warnings about it.
     fn spec(
         &self,
-        base: &ParsedCase,
+        base: &Prepared,
         point: &Point,
         role: Role,
+        slow: usize,
     ) -> Result<(RunSpec, Vec<String>), CaseError> {
-        let file = self.case_file(base, point, role)?;
+        let overrides = self.overrides(point, role, slow..self.axes.len());
+        let file = base.case.with(&overrides)?;
         self.check_seeds(&file)?;
         let blocks: u64 = file.slider.blocks.into_iter().map(u64::from).product();
         let _one_at_a_time = (blocks > LARGE).then(|| MAKING_LARGE.lock());
@@ -219,7 +269,7 @@ impl Plan {
         let writes = self.settings.keep == RetainRuns::All;
         let spec = RunSpec {
             seed: case.file.friction.seed,
-            physics: physics(&case)?,
+            physics: physics(&case, base.known())?,
             block_steps: case.block_steps(),
             n_blocks: case.model.lattice.n_blocks(),
             memory: case.budget.memory_beside_others(writes),
@@ -259,7 +309,7 @@ impl Plan {
         file.friction.seed = self.seed(run);
         let case = self.trimmed(file, &self.folder_name(run), watch)?;
         // Only files can have become others.
-        if !case.inputs.is_empty() && physics(&case)? != self.spec_of(run).physics {
+        if !case.inputs.is_empty() && physics(&case, None)? != self.spec_of(run).physics {
             let originals = case.inputs.iter().map(|input| display_path(&input.original));
             let names: Vec<String> = originals.collect();
             let sentence = format!(
@@ -462,58 +512,102 @@ fn note_on_replicates(case: &Case) -> Option<&'static str> {
     }
 }
 
+/// A base of points, with what identifies the tables that they leave as they are.
+struct Prepared<'a> {
+    case: ParsedCase<'a>,
+    texts: Option<[Vec<u8>; 6]>,
+}
+
+impl<'a> Prepared<'a> {
+    fn new(case: ParsedCase<'a>) -> Result<Self, CaseError> {
+        let texts = case.plain().map(|plain| texts(plain, &[], None));
+        Ok(Self {
+            texts: texts.transpose()?,
+            case,
+        })
+    }
+
+    /// The case of the base, and what identifies its tables.
+    fn known(&self) -> Option<(&CaseFile, &[Vec<u8>; 6])> {
+        self.case.plain().zip(self.texts.as_ref())
+    }
+}
+
 /// Hash of all that decides the numbers of a run but its seed: the physics of the case, the contents of its files and the
-/// program; not the names of files, nor the output.
-fn physics(case: &Case) -> Result<blake3::Hash, CaseError> {
-    let CaseFile {
-        slider,
-        load,
-        drive,
-        friction,
-        texture,
-        time,
-        ..
-    } = &case.file;
-    let (mut friction, mut texture) = (friction.clone(), texture.clone());
-    friction.seed = 0;
-    for name in CaseFile::files_mut(&mut friction, &mut texture) {
-        let input = case.inputs.iter().find(|input| input.name == *name);
+/// program; not the names of files, nor the output. Tables that are as in a `known` case are not written again.
+fn physics(case: &Case, known: Option<(&CaseFile, &[Vec<u8>; 6])>) -> Result<blake3::Hash, CaseError> {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(program::this_build().as_bytes());
+    // What identifies a file follows from its contents.
+    let known = known.filter(|_| case.inputs.is_empty());
+    for text in texts(&case.file, &case.inputs, known)? {
+        hasher.update(&text);
+    }
+    Ok(hasher.finalize())
+}
+
+/// The tables of a case that decide its numbers, with the contents of files in place of their names, and without the seed.
+fn texts(
+    file: &CaseFile,
+    inputs: &[Input],
+    known: Option<(&CaseFile, &[Vec<u8>; 6])>,
+) -> Result<[Vec<u8>; 6], CaseError> {
+    fn text<T: Serialize + PartialEq>(
+        table: &T,
+        known: Option<(&T, &Vec<u8>)>,
+    ) -> Result<Vec<u8>, CaseError> {
+        match known {
+            Some((same, text)) if same == table => Ok(text.clone()),
+            _ => serde_json::to_vec(table).map_err(|error| CaseError::invalid(None, error.to_string())),
+        }
+    }
+    let contents = |name: &mut String| {
+        let input = inputs.iter().find(|input| input.name == *name);
         let hash = input.map(|input| blake3::hash(&input.bytes).to_hex());
         let ending = name.rsplit('.').next().unwrap_or_default();
         *name = format!("{}.{ending}", hash.unwrap_or_default());
-    }
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(program::this_build().as_bytes());
-    let mut text = Vec::with_capacity(1024);
-    serde_json::to_writer(&mut text, &(slider, load, drive, friction, texture, time))
-        .map_err(|error| CaseError::invalid(None, error.to_string()))?;
-    hasher.update(&text);
-    Ok(hasher.finalize())
+    };
+    let (mut friction, mut texture) = (file.friction.clone(), file.texture.clone());
+    friction.seed = 0;
+    CaseFile::files_mut(&mut friction, &mut texture).for_each(contents);
+    Ok([
+        text(&file.slider, known.map(|(file, texts)| (&file.slider, &texts[0])))?,
+        text(&file.load, known.map(|(file, texts)| (&file.load, &texts[1])))?,
+        text(&file.drive, known.map(|(file, texts)| (&file.drive, &texts[2])))?,
+        text(&friction, None)?,
+        text(&texture, None)?,
+        text(&file.time, known.map(|(file, texts)| (&file.time, &texts[5])))?,
+    ])
 }
 
 /// Warnings about the points so far.
 #[derive(Default)]
 struct Warnings {
     found: Vec<Warning>,
-    /// Positions in `found` by kind.
-    known: HashMap<String, usize>,
+    /// Place in `found` by kind, and the last point that it is about.
+    known: HashMap<String, (usize, usize)>,
 }
 
 impl Warnings {
-    /// Adds those of the point at this position.
-    fn add<'s>(&mut self, position: usize, sentences: impl DoubleEndedIterator<Item = &'s String>) {
-        // Sentences of one kind differ in their figures.
-        let kind = |sentence: &str| sentence.replace(|c: char| c.is_ascii_digit() || c == '.', "");
-        let of_point: BTreeMap<String, &String> = sentences.map(|one| (kind(one), one)).rev().collect();
-        for (kind, sentence) in of_point {
-            let at = *self.known.entry(kind).or_insert(self.found.len());
-            match self.found.get_mut(at) {
-                Some(warning) => warning.points += 1,
-                None => self.found.push(Warning {
-                    sentence: sentence.clone(),
-                    points: 1,
-                    first: position,
-                }),
+    /// Adds those of a run of the point at this position.
+    fn add(&mut self, position: usize, sentences: Vec<String>) {
+        for sentence in sentences {
+            // Sentences of one kind differ in their figures.
+            let kind = sentence.replace(|c: char| c.is_ascii_digit() || c == '.', "");
+            match self.known.entry(kind) {
+                Entry::Occupied(mut known) => {
+                    let (at, last) = known.get_mut();
+                    self.found[*at].points += usize::from(*last != position);
+                    *last = position;
+                }
+                Entry::Vacant(unknown) => {
+                    unknown.insert((self.found.len(), position));
+                    self.found.push(Warning {
+                        sentence,
+                        points: 1,
+                        first: position,
+                    });
+                }
             }
         }
     }
