@@ -12,6 +12,12 @@ use slipfront_case::machine::threads_that_fit;
 use crate::failure::Failure;
 use crate::print_stderr::print_stderr;
 
+/// A number of threads or tasks on the command line.
+pub(crate) fn count_from_one(text: &str) -> Result<u16, String> {
+    let count = text.parse().ok().filter(|&count| count > 0);
+    count.ok_or_else(|| "it must be a whole number from 1 to 65535".to_owned())
+}
+
 /// Makes the pool of threads of this process and returns their number: by default one per core, and never more. Where the
 /// system refuses some there are fewer, at least the present one.
 pub(crate) fn set_threads(threads: Option<u16>) -> Result<usize, Failure> {

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use slipfront::Scales;
 
 use crate::case_file::{CaseError, CaseFile, Damping, DriveSpeed, KineticFriction};
+use crate::number_format::four_digits;
 
 /// The dimensionless groups on which the model depends (Eq. 11).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,8 +92,9 @@ fn refuse_small_units(file: &CaseFile, scales: &Scales) -> Result<(), CaseError>
         .find(|key| file.source.has(key))
         .unwrap_or_default();
     let sentence = format!(
-        "the unit of {what} is {size:.1e} {unit}, below {MIN_UNIT:e}, where results are lost to rounding: raise `mu_static` or \
-         `pressure`, and look at the units of `block_size`, `young_modulus` and `density`"
+        "the unit of {what} is {} {unit}, below {MIN_UNIT:e}, where results are lost to rounding: raise `mu_static` or \
+         `pressure`, and look at the units of `block_size`, `young_modulus` and `density`",
+        four_digits(size)
     );
     Err(file.source.error(key, sentence))
 }

@@ -12,7 +12,7 @@ use crate::failure::Failure;
 use crate::print::print_message;
 use crate::progress::paper::PaperProgress;
 use crate::signals::Signals;
-use crate::threads::set_worker_threads;
+use crate::threads::{count_from_one, set_worker_threads};
 
 /// Run the figures and tables of the paper again, and judge its claims one by one
 #[derive(Args)]
@@ -30,7 +30,7 @@ pub(crate) struct Paper {
     #[arg(short, long, value_name = "DIR", default_value = "results/paper")]
     out: PathBuf,
     /// Most runs at once [default: one per core]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
     /// Show neither progress nor claims
     #[arg(short, long)]

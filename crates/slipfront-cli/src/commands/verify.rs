@@ -22,7 +22,7 @@ use crate::print::print;
 use crate::print_stderr::print_stderr;
 use crate::progress::run::RunProgress;
 use crate::signals::Signals;
-use crate::threads::set_threads;
+use crate::threads::{count_from_one, set_threads};
 use crate::wrap;
 
 /// Check that results are what was written: every file of a run against its manifest, a study against its records
@@ -42,7 +42,7 @@ pub(crate) struct Verify {
     #[arg(long)]
     rerun: bool,
     /// Most threads to use [default: one per core]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
     /// Say only what is wrong
     #[arg(short, long)]

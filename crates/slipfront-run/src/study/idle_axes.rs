@@ -31,7 +31,7 @@ pub fn idle_axes(plan: &Plan) -> Vec<String> {
     let corners = [first, last].map(|levels: Vec<usize>| {
         let digest = LazyCell::new({
             let levels = levels.clone();
-            || digest_at(plan, levels)
+            move || digest_at(plan, &levels)
         });
         (levels, digest)
     });
@@ -42,7 +42,7 @@ pub fn idle_axes(plan: &Plan) -> Vec<String> {
             let mut digests = others.map(|level| {
                 let mut levels = corner.clone();
                 levels[axis] = level;
-                digest_at(plan, levels)
+                digest_at(plan, &levels)
             });
             digest.is_some() && digests.all(|other| other == **digest)
         };
@@ -54,8 +54,8 @@ pub fn idle_axes(plan: &Plan) -> Vec<String> {
 
 /// Hash of what is computed at these levels; none where they are no valid case, which a part of a study need not notice of a point
 /// that it does not run.
-fn digest_at(plan: &Plan, levels: Vec<usize>) -> Option<blake3::Hash> {
-    plan.case_of(&levels).ok().as_ref().map(digest)
+fn digest_at(plan: &Plan, levels: &[usize]) -> Option<blake3::Hash> {
+    plan.case_of(levels).ok().as_ref().map(digest)
 }
 
 /// Hash of all that the kernel and the observers use of a case. Numbers are rounded to 24 bits, since units that cancel leave

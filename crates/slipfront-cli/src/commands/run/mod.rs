@@ -25,7 +25,7 @@ use crate::failure::Failure;
 use crate::print::print_message;
 use crate::report;
 use crate::signals::Signals;
-use crate::threads::set_threads;
+use crate::threads::{count_from_one, set_threads};
 
 /// Run a case: print its physics, show progress, write results and pictures
 #[derive(Args)]
@@ -61,7 +61,7 @@ pub(crate) struct Run {
     #[arg(long, requires = "resume")]
     previous: bool,
     /// Most threads to use [default: one per core]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
     /// Show neither physics nor progress nor summary
     #[arg(short, long)]

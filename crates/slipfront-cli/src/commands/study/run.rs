@@ -16,7 +16,7 @@ use crate::print_stderr::print_stderr;
 use crate::progress::study::StudyProgress;
 use crate::report;
 use crate::signals::Signals;
-use crate::threads::{set_threads, set_worker_threads};
+use crate::threads::{count_from_one, set_threads, set_worker_threads};
 use crate::wrap::for_stderr;
 
 #[derive(Args)]
@@ -28,7 +28,7 @@ pub(crate) struct StudyRun {
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Most runs at once [default: one per core]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = count_from_one)]
     threads: Option<u16>,
     /// Show neither progress nor tables
     #[arg(short, long)]

@@ -9,7 +9,7 @@ use slipfront_run::study::{Plan, StudyFile};
 use super::run::refuse_large;
 use crate::failure::Failure;
 use crate::print::print;
-use crate::threads::set_threads;
+use crate::threads::{count_from_one, set_threads};
 
 /// Print a batch script for Slurm: few tasks, each using all cores of its node, that can be requeued
 #[derive(Args)]
@@ -18,7 +18,7 @@ pub(crate) struct Slurm {
     #[arg(value_name = "STUDY.toml")]
     study: PathBuf,
     /// Number of tasks, each on a node of its own
-    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = count_from_one)]
     tasks: u16,
     /// Folder for the results of all tasks [default: results/ and the name of the study]
     #[arg(short, long, value_name = "DIR")]
