@@ -1,7 +1,5 @@
 //! The plan of a study: its points, and what each run of a point is.
 
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use std::ops::Range;
 use std::sync::Mutex;
 
@@ -9,12 +7,12 @@ use rayon::prelude::*;
 
 use super::axis::{self, Axis};
 use super::error::StudyError;
+use super::identity::{Prepared, physics};
+use super::plan_warnings::{Warning, Warnings, note_on_replicates};
 use super::shard::Shard;
 use super::study_file::{Base, RetainRuns, Settings, StudyFile};
 use super::summary_values::REDUCTION;
-use crate::program;
-use serde::Serialize;
-use slipfront_case::case::{Case, Input, PICTURE, PROGRAM, Watch, check_fields};
+use slipfront_case::case::{Case, PICTURE, PROGRAM, Watch, check_fields};
 use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Override, ParsedCase, Snapshots};
 use slipfront_case::machine::available_of;
 use slipfront_case::number_format::byte_size;
@@ -61,17 +59,6 @@ struct RunSpec {
     memory_of_case: f64,
     /// Room for its files, in bytes.
     disk: f64,
-}
-
-/// A warning about points of a study.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Warning {
-    /// The warning.
-    pub sentence: String,
-    /// Number of points.
-    pub points: usize,
-    /// Position of the first of them in the plan.
-    pub first: usize,
 }
 
 /// Cases of more blocks are made one at a time while planning: one for each thread might not fit into memory.
@@ -494,122 +481,6 @@ impl Plan {
                 role,
             })
         })
-    }
-}
-
-/// What a reader of the intervals over replicates, which differ by their seed alone, must know of what that changes.
-fn note_on_replicates(case: &Case) -> Option<&'static str> {
-    let (friction, groups) = (&case.file.friction, &case.groups);
-    if friction.mu_static_field.is_none() && groups.sigma_static_star > 0.0 {
-        None
-    } else if friction.mu_kinetic_field.is_none() && groups.sigma_kinetic_star * groups.r_star > 0.0 {
-        Some(
-            "replicates differ in their kinetic coefficients alone, and intervals show no more than that: the static ones \
-             are the same for every seed",
-        )
-    } else {
-        Some("all replicates are the same run: no coefficient is random, and one replicate says all")
-    }
-}
-
-/// A base of points, with what identifies the tables that they leave as they are.
-struct Prepared<'a> {
-    case: ParsedCase<'a>,
-    texts: Option<[Vec<u8>; 6]>,
-}
-
-impl<'a> Prepared<'a> {
-    fn new(case: ParsedCase<'a>) -> Result<Self, CaseError> {
-        let texts = case.plain().map(|plain| texts(plain, &[], None));
-        Ok(Self {
-            texts: texts.transpose()?,
-            case,
-        })
-    }
-
-    /// The case of the base, and what identifies its tables.
-    fn known(&self) -> Option<(&CaseFile, &[Vec<u8>; 6])> {
-        self.case.plain().zip(self.texts.as_ref())
-    }
-}
-
-/// Hash of all that decides the numbers of a run but its seed: the physics of the case, the contents of its files and the
-/// program; not the names of files, nor the output. Tables that are as in a `known` case are not written again.
-fn physics(case: &Case, known: Option<(&CaseFile, &[Vec<u8>; 6])>) -> Result<blake3::Hash, CaseError> {
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(program::this_build().as_bytes());
-    // What identifies a file follows from its contents.
-    let known = known.filter(|_| case.inputs.is_empty());
-    for text in texts(&case.file, &case.inputs, known)? {
-        hasher.update(&text);
-    }
-    Ok(hasher.finalize())
-}
-
-/// The tables of a case that decide its numbers, with the contents of files in place of their names, and without the seed.
-fn texts(
-    file: &CaseFile,
-    inputs: &[Input],
-    known: Option<(&CaseFile, &[Vec<u8>; 6])>,
-) -> Result<[Vec<u8>; 6], CaseError> {
-    fn text<T: Serialize + PartialEq>(
-        table: &T,
-        known: Option<(&T, &Vec<u8>)>,
-    ) -> Result<Vec<u8>, CaseError> {
-        match known {
-            Some((same, text)) if same == table => Ok(text.clone()),
-            _ => serde_json::to_vec(table).map_err(|error| CaseError::invalid(None, error.to_string())),
-        }
-    }
-    let contents = |name: &mut String| {
-        let input = inputs.iter().find(|input| input.name == *name);
-        let hash = input.map(|input| blake3::hash(&input.bytes).to_hex());
-        let ending = name.rsplit('.').next().unwrap_or_default();
-        *name = format!("{}.{ending}", hash.unwrap_or_default());
-    };
-    let (mut friction, mut texture) = (file.friction.clone(), file.texture.clone());
-    friction.seed = 0;
-    CaseFile::files_mut(&mut friction, &mut texture).for_each(contents);
-    Ok([
-        text(&file.slider, known.map(|(file, texts)| (&file.slider, &texts[0])))?,
-        text(&file.load, known.map(|(file, texts)| (&file.load, &texts[1])))?,
-        text(&file.drive, known.map(|(file, texts)| (&file.drive, &texts[2])))?,
-        text(&friction, None)?,
-        text(&texture, None)?,
-        text(&file.time, known.map(|(file, texts)| (&file.time, &texts[5])))?,
-    ])
-}
-
-/// Warnings about the points so far.
-#[derive(Default)]
-struct Warnings {
-    found: Vec<Warning>,
-    /// Place in `found` by kind, and the last point that it is about.
-    known: HashMap<String, (usize, usize)>,
-}
-
-impl Warnings {
-    /// Adds those of a run of the point at this position.
-    fn add(&mut self, position: usize, sentences: Vec<String>) {
-        for sentence in sentences {
-            // Sentences of one kind differ in their figures.
-            let kind = sentence.replace(|c: char| c.is_ascii_digit() || c == '.', "");
-            match self.known.entry(kind) {
-                Entry::Occupied(mut known) => {
-                    let (at, last) = known.get_mut();
-                    self.found[*at].points += usize::from(*last != position);
-                    *last = position;
-                }
-                Entry::Vacant(unknown) => {
-                    unknown.insert((self.found.len(), position));
-                    self.found.push(Warning {
-                        sentence,
-                        points: 1,
-                        first: position,
-                    });
-                }
-            }
-        }
     }
 }
 
