@@ -76,5 +76,6 @@ replay! {
     summary
     series
     manifest
+    journal
     plot
 }

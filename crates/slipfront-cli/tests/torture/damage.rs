@@ -530,6 +530,7 @@ fn of_checkpoints() {
     };
     for (name, most) in [
         ("out/.slipfront/checkpoint.bin", cases(8, 3_000)),
+        ("out/.slipfront/journal.jsonl", cases(3, 500)),
         ("out/case.toml", cases(4, 1_000)),
         ("out/inputs/mask.png", cases(2, 500)),
     ] {

@@ -19,8 +19,8 @@ pub(super) fn result_files() -> impl Iterator<Item = String> {
 }
 
 /// The files of an earlier run in a folder, in the order in which they may be removed: the manifest first, so that the
-/// folder does not look complete, and of the others the case last, by which it is known as that of a run. They are those that are `listed` and still as they are listed, whatever has become of
-/// the others, and what stands in the hidden subfolder.
+/// folder does not look complete, and of the others the case last, by which it is known as that of a run. They are those that
+/// are `listed` and still as they are listed, whatever has become of the others, and what stands in the hidden subfolder.
 pub(super) fn managed_files(folder: &Path, listed: &[ManifestFile]) -> Vec<String> {
     let mut names = listed_names(folder, listed);
     names.retain(|name| is_as_listed(folder, name, listed).unwrap_or(false));

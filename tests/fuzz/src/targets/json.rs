@@ -1,4 +1,4 @@
-//! The JSON files of a run folder: the summary, and the manifest with its checksum.
+//! The JSON files of a run folder: the summary, the manifest with its checksum, and the journal of a run that is not complete.
 
 use slipfront_run::manifest::{Manifest, ManifestFile, Random};
 use slipfront_run::run_folder::RunFolder;
@@ -36,6 +36,22 @@ pub(crate) const MANIFEST: Target = Target {
     name: "manifest",
     check: check_manifest,
     generated: manifests,
+    files: &[],
+    dictionary: Some("json.dict"),
+    max_bytes: 8192,
+    memory: Memory {
+        bytes: 1 << 20,
+        per_byte: 256,
+    },
+    mutations: 500,
+    repetitions: 40,
+};
+
+/// The journal of a run that is not complete, in a folder whose files are replaced.
+pub(crate) const JOURNAL: Target = Target {
+    name: "journal",
+    check: check_journal,
+    generated: journals,
     files: &[],
     dictionary: Some("json.dict"),
     max_bytes: 8192,
@@ -98,12 +114,16 @@ fn check_summary(input: &[u8]) {
     }
 }
 
-fn manifests() -> Vec<Vec<u8>> {
-    let file = |name: &str, bytes: &[u8]| ManifestFile {
+/// A file as a manifest or a journal lists it.
+fn file(name: &str, bytes: &[u8]) -> ManifestFile {
+    ManifestFile {
         name: name.to_owned(),
         bytes: bytes.len() as u64,
         blake3: blake3::hash(bytes).to_hex().to_string(),
-    };
+    }
+}
+
+fn manifests() -> Vec<Vec<u8>> {
     let whole = Manifest {
         version: "0.1.0".to_owned(),
         revision: Some("0123abc".to_owned()),
@@ -204,6 +224,48 @@ fn manifest(bytes: &[u8]) {
         ) => {
             readable(&error);
             assert_eq!(std::fs::read(case).unwrap(), CASE);
+        }
+        Err(error) => panic!("{error}"),
+    }
+    assert_eq!(std::fs::read(beside).unwrap(), b"kept");
+}
+
+fn journals() -> Vec<Vec<u8>> {
+    let lines = |files: &[ManifestFile]| -> Vec<u8> {
+        let line = |file| serde_json::to_string(file).unwrap() + "\n";
+        files.iter().map(line).collect::<String>().into_bytes()
+    };
+    let (case, summary) = (file("case.toml", CASE), file("summary.json", FINISHED));
+    vec![
+        lines(&[case.clone(), summary.clone(), file("../keep", b"kept")]),
+        lines(&[
+            case,
+            file("summary.json", b"other"),
+            file("inputs/../../keep", b"kept"),
+        ]),
+        lines(&[summary]),
+    ]
+}
+
+const FINISHED: &[u8] = b"{}\n";
+
+/// Whatever a journal lists, no file outside of its folder is touched, and none in it that is not listed as it is.
+fn check_journal(input: &[u8]) {
+    let folder = scratch::folder("journals/run");
+    let beside = scratch::file("journals/keep", b"kept");
+    let summary = scratch::file("journals/run/summary.json", FINISHED);
+    scratch::file("journals/run/case.toml", CASE);
+    scratch::file("journals/run/.slipfront/journal.jsonl", input);
+    Inspection::of(&folder).unwrap().managed_bytes().unwrap();
+    match RunFolder::prepare(&folder, true, &[]) {
+        Ok(_) => {
+            let hash = file("", FINISHED).blake3;
+            let is_listed = input.windows(hash.len()).any(|bytes| bytes == hash.as_bytes());
+            assert!(is_listed && !summary.exists());
+        }
+        Err(error @ (FolderError::Foreign { .. } | FolderError::Edited { .. })) => {
+            readable(&error);
+            assert_eq!(std::fs::read(summary).unwrap(), FINISHED);
         }
         Err(error) => panic!("{error}"),
     }

@@ -15,7 +15,7 @@ mod study;
 use crate::Target;
 
 /// All targets, in the order in which a run reads and writes their files.
-pub const TARGETS: [Target; 15] = [
+pub const TARGETS: [Target; 16] = [
     case::CASE_FILE,
     case::CASE,
     study::STUDY_FILE,
@@ -30,5 +30,6 @@ pub const TARGETS: [Target; 15] = [
     json::SUMMARY,
     series::SERIES,
     json::MANIFEST,
+    json::JOURNAL,
     plot::PLOT,
 ];
