@@ -2,7 +2,7 @@
 
 use crate::color_image::Image;
 use crate::geometry::{Align, Area, Point};
-use crate::style::{BLACK, Rgb, TICK_LENGTH, WHITE, WIDTH_FRAME};
+use crate::style::{BLACK, Rgb, TICK_LENGTH, WHITE, WIDTH_FRAME, WIDTH_MARK};
 use crate::text::{Text, width};
 
 pub(crate) struct Canvas {
@@ -86,6 +86,13 @@ impl Canvas {
 
     pub(crate) fn polygon(&mut self, points: Vec<Point>, colour: Rgb, opacity: f64) {
         self.add(Primitive::Polygon(points), colour, opacity);
+    }
+
+    /// Adds an area with its edge.
+    pub(crate) fn edged_area(&mut self, mut points: Vec<Point>, colour: Rgb, opacity: f64, edge: Rgb) {
+        self.polygon(points.clone(), colour, opacity);
+        points.extend(points.first().copied());
+        self.polyline(points, WIDTH_MARK, edge);
     }
 
     /// Draws the edge of a rectangle.

@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::canvas::Canvas;
-use crate::geometry::{Align, Point};
+use crate::geometry::Align;
 use crate::picture::{Picture, PictureError};
-use crate::style::{BLACK, COLUMN_WIDTH, CURVES, MARGIN, SIZE_TICK, WIDTH_MARK};
+use crate::style::{BLACK, COLUMN_WIDTH, CURVES, MARGIN, SIZE_TICK};
 use crate::text::Text;
 
 const COLUMNS: usize = 3;
@@ -55,10 +55,7 @@ pub fn shapes(shapes: &[Shape]) -> Result<Picture, PictureError> {
                 .points
                 .iter()
                 .map(|[px, py]| (x + scale * px, y - scale * py));
-            let mut points: Vec<Point> = points.collect();
-            canvas.polygon(points.clone(), CURVES[0], 0.25);
-            points.extend(points.first().copied());
-            canvas.polyline(points, WIDTH_MARK, CURVES[0]);
+            canvas.edged_area(points.collect(), CURVES[0], 0.25, CURVES[0]);
             let label = Text::shortened(&shape.label, SIZE_TICK, room + GAP);
             let baseline = top + height + f64::from(SIZE_TICK);
             canvas.text(&label, (x, baseline), Align::Middle, BLACK);

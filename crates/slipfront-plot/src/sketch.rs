@@ -6,7 +6,7 @@ use crate::canvas::Canvas;
 use crate::geometry::{Align, Point};
 use crate::picture::{Picture, PictureError};
 use crate::style::{
-    BLACK, BLANK, COLUMN_WIDTH, CURVES, GREY, MARGIN, Rgb, SIZE_LABEL, WIDTH_CURVE, WIDTH_FRAME, WIDTH_MARK,
+    BLACK, BLANK, COLUMN_WIDTH, CURVES, GREY, MARGIN, SIZE_LABEL, WIDTH_CURVE, WIDTH_FRAME, WIDTH_MARK,
 };
 use crate::text::Text;
 
@@ -84,14 +84,9 @@ pub fn sketch(sketch: &Sketch) -> Result<Picture, PictureError> {
 }
 
 fn draw(canvas: &mut Canvas, style: StrokeStyle, mut points: Vec<Point>) {
-    let mut area = |colour: Rgb, opacity: f64, edge: Rgb| {
-        canvas.polygon(points.clone(), colour, opacity);
-        points.extend(points.first().copied());
-        canvas.polyline(std::mem::take(&mut points), WIDTH_MARK, edge);
-    };
     match style {
-        StrokeStyle::Area => area(CURVES[0], 0.25, CURVES[0]),
-        StrokeStyle::Body => area(BLANK, 1.0, BLACK),
+        StrokeStyle::Area => canvas.edged_area(points, CURVES[0], 0.25, CURVES[0]),
+        StrokeStyle::Body => canvas.edged_area(points, BLANK, 1.0, BLACK),
         StrokeStyle::Line(colour) => canvas.polyline(points, WIDTH_CURVE, CURVES[colour % CURVES.len()]),
         StrokeStyle::Thin => canvas.polyline(points, WIDTH_FRAME, GREY),
         StrokeStyle::Arrow => {

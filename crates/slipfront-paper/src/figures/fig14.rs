@@ -26,7 +26,6 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
             "a" => {
                 data.value("nearness_of_first_slips", nearness(&run, 0.05));
                 data.value("early_minima_percent", early_minima(&run));
-                data.value("asymmetry_of_rough_percent", asymmetry(&run));
             }
             "b" => {
                 data.value("first_slips_at_the_rim_percent", first_at_rim(&run));

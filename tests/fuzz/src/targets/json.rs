@@ -52,15 +52,7 @@ pub(crate) const JOURNAL: Target = Target {
     name: "journal",
     check: check_journal,
     generated: journals,
-    files: &[],
-    dictionary: Some("json.dict"),
-    max_bytes: 8192,
-    memory: Memory {
-        bytes: 1 << 20,
-        per_byte: 256,
-    },
-    mutations: 500,
-    repetitions: 40,
+    ..MANIFEST
 };
 
 /// A summary with a value for every key.
