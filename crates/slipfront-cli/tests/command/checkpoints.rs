@@ -41,8 +41,7 @@ fn slow_workspace() -> Workspace {
 fn stopped(workspace: &Workspace, line: &str, folder: &str, times: usize) {
     let mut line = line.to_owned();
     for _ in 0..times {
-        let child = workspace.start(&line);
-        wait_for_signal_handlers(&child);
+        let child = workspace.start_run(&line);
         sleep(Duration::from_millis(60));
         send(&child, "-INT");
         let output = child.wait_with_output().unwrap();
@@ -66,8 +65,7 @@ fn stopped_any_number_of_times_it_writes_the_same_bytes(
     let mut line = format!("run {case} -o stopped");
     loop {
         // Any number of threads, each time another one.
-        let child = workspace.start(&format!("{line} --threads {}", 1 + stops % 3));
-        wait_for_signal_handlers(&child);
+        let child = workspace.start_run(&format!("{line} --threads {}", 1 + stops % 3));
         sleep(Duration::from_millis(40 + 37 * (stops % 4)));
         try_send(&child, signal);
         let output = child.wait_with_output().unwrap();
@@ -95,8 +93,7 @@ fn stopped_any_number_of_times_it_writes_the_same_bytes(
 #[case("-XCPU", 152)]
 fn a_warning_of_the_queue_stops_it(#[case] signal: &str, #[case] status: i32) {
     let workspace = slow_workspace();
-    let child = workspace.start("run slow.toml --quiet -o warned");
-    wait_for_signal_handlers(&child);
+    let child = workspace.start_run("run slow.toml -o warned");
     send(&child, signal);
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(status), "{}", stderr(&output));
@@ -333,8 +330,7 @@ fn a_checkpoint_that_is_not_whole_or_not_its_own_is_refused() {
     // A damaged one does not take the place of the one before, however often the run is stopped.
     workspace.write("halted/.slipfront/checkpoint.bin", &latest[..n / 2]);
     let before = workspace.read("halted/.slipfront/checkpoint-previous.bin");
-    let child = workspace.start("run --resume halted --previous");
-    wait_for_signal_handlers(&child);
+    let child = workspace.start_run("run --resume halted --previous");
     send(&child, "-INT");
     assert_eq!(child.wait_with_output().unwrap().status.code(), Some(130));
     assert!(workspace.read("halted/.slipfront/checkpoint-previous.bin") == before);

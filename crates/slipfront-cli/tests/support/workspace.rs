@@ -1,6 +1,7 @@
 //! A temporary folder in which the command is run.
 
 use std::collections::BTreeMap;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Output, Stdio};
 
@@ -127,6 +128,17 @@ impl Workspace {
         let mut process = self.process(line);
         process.stdout(Stdio::null()).stderr(Stdio::piped());
         process.spawn().unwrap()
+    }
+
+    /// Starts `run` and waits until it prints the physics of its case: from then on a signal stops it with a checkpoint, and no
+    /// longer while its texture is laid over the blocks.
+    pub(crate) fn start_run(&self, line: &str) -> Child {
+        let mut process = self.process(line);
+        process.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = process.spawn().unwrap();
+        let mut first = [0];
+        child.stdout.as_mut().unwrap().read_exact(&mut first).unwrap();
+        child
     }
 
     /// Runs a script of the shell.
