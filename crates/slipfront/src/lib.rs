@@ -23,6 +23,7 @@
 //! ```
 
 pub mod checkpoint;
+pub mod communicator;
 pub mod exact_solutions;
 pub mod kernel;
 pub mod lattice;
@@ -42,6 +43,7 @@ mod stop;
 mod vector_field;
 
 pub use checkpoint::Checkpoint;
+pub use communicator::Communicator;
 pub use error::{RunError, SurfaceError};
 pub use friction::FrictionLaw;
 pub use kernel::{Execution, Kernel, simd_width};
