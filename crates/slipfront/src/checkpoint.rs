@@ -9,6 +9,7 @@ use std::fmt::Formatter;
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
+use crate::fixed_point::Window;
 use crate::kernel::totals::Totals;
 use crate::measure::Peak;
 use crate::state::State;
@@ -61,9 +62,30 @@ pub(crate) struct StrainBound {
     pub(crate) growth: f64,
     /// Highest speed after the latest sweep.
     pub(crate) speed: f64,
+    /// Ranges of the displacements along x and y, for their sums.
+    pub(crate) windows: [Window; 2],
 }
 
 impl StrainBound {
+    /// Moves the windows that no longer hold all displacements; whether there were such.
+    pub(crate) fn move_windows(&mut self) -> bool {
+        let mut moved = false;
+        for axis in 0..2 {
+            let [low, high] = self.range(axis);
+            if !self.windows[axis].contains(low, high) {
+                self.windows[axis] = Window::around(low, high);
+                moved = true;
+            }
+        }
+        moved
+    }
+
+    /// Lowest and highest displacement along an axis.
+    pub(crate) fn range(&self, axis: usize) -> [f64; 2] {
+        let [high, low] = [self.extent[2 * axis], -self.extent[2 * axis + 1]];
+        [low - self.growth, high + self.growth]
+    }
+
     /// Largest possible `|eps s|/d^2` of a spring, with `s = (r^2 - d^2)/eps`.
     pub(crate) fn max_strain(&self, epsilon: f64) -> f64 {
         let [right, left, top, bottom] = self.extent;

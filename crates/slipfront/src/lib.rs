@@ -32,6 +32,7 @@ pub mod scales;
 pub mod surface;
 
 mod error;
+mod fixed_point;
 mod friction;
 mod measure;
 mod model;

@@ -10,6 +10,7 @@ use super::block::{Block, Field};
 use super::engine::Engine;
 use super::totals::{StoredEnergy, Totals};
 use crate::checkpoint::{Checkpoint, StrainBound};
+use crate::fixed_point;
 use crate::friction::{BlockState, FrictionLaw, Integrator, Law, Literal, Projection, Reversal};
 use crate::lattice::{Bond, Edges, Lattice};
 use crate::model::Model;
@@ -139,8 +140,8 @@ impl Reference {
         let [lx, ly] = components(&self.forces.lattice, n);
         let [fx, fy] = components(&self.forces.friction, n);
         let (textured, slides) = (&model.surface.textured[..n], &self.forces.slides[..n]);
-        let sum = |[x, y]: [&[f64]; 2]| [reductions::sum(n, |b| x[b]), reductions::sum(n, |b| y[b])];
-        let squares = |[x, y]: [&[f64]; 2]| reductions::sum(n, |b| x[b] * x[b] + y[b] * y[b]);
+        let sum = |[x, y]: [&[f64]; 2]| [fixed_point::sum(n, |b| x[b]), fixed_point::sum(n, |b| y[b])];
+        let squares = |[x, y]: [&[f64]; 2]| fixed_point::sum(n, |b| x[b] * x[b] + y[b] * y[b]);
         let (vx, vy) = (|b: usize| 0.5 * (bx[b] + ax[b]), |b: usize| 0.5 * (by[b] + ay[b]));
         let slipping = slides.iter().zip(textured);
         let stress_square = reductions::largest(n, |b| {
@@ -150,10 +151,10 @@ impl Reference {
         self.stress_square_max = self.stress_square_max.max(stress_square);
         Totals {
             displacement: sum([ux, uy]),
-            velocity: [reductions::sum(n, vx), reductions::sum(n, vy)],
+            velocity: [fixed_point::sum(n, vx), fixed_point::sum(n, vy)],
             velocity_after: sum([ax, ay]),
-            velocity_square: reductions::sum(n, |b| vx(b) * vx(b) + vy(b) * vy(b)),
-            friction_power: reductions::sum(n, |b| fx[b] * vx(b) + fy[b] * vy(b)),
+            velocity_square: fixed_point::sum(n, |b| vx(b) * vx(b) + vy(b) * vy(b)),
+            friction_power: fixed_point::sum(n, |b| fx[b] * vx(b) + fy[b] * vy(b)),
             n_sliding: slides.iter().filter(|&&slides| slides).count(),
             n_slipping: slipping
                 .filter(|&(slides, textured)| *slides && !textured)
@@ -161,7 +162,7 @@ impl Reference {
             stored_energy: energies.then(|| {
                 let [x, y] = model.drive.position(time_star);
                 let stretch_square =
-                    reductions::sum(n, |b| (x - ux[b]) * (x - ux[b]) + (y - uy[b]) * (y - uy[b]));
+                    fixed_point::sum(n, |b| (x - ux[b]) * (x - ux[b]) + (y - uy[b]) * (y - uy[b]));
                 StoredEnergy {
                     kinetic: 0.25 * (squares([bx, by]) + squares([ax, ay])),
                     lattice: lattice_energy(&model.lattice, &self.state.displacement, model.epsilon),
@@ -422,7 +423,7 @@ fn lattice_energy(lattice: &Lattice, u: &VectorField, epsilon: f64) -> f64 {
         };
         let along = neighbour.map_or(0.0, |neighbour| {
             let block = lattice.block(first, j);
-            reductions::sum(inside, |k| energy(bond, block + k, neighbour + k))
+            fixed_point::sum(inside, |k| energy(bond, block + k, neighbour + k))
         });
         along + beyond.unwrap_or(0.0)
     };

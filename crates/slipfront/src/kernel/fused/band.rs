@@ -3,17 +3,18 @@
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use fearless_simd::{Simd, SimdBase, f64x8};
+use fearless_simd::{Simd, SimdBase, f64x8, i64x8};
 
 use super::aligned::{Aligned, Vectors};
 use super::blocks::{
-    ChunksMut, FrictionLoop, LatticeLoop, Step, Sums, friction, lattice_forces, spring, stretch_square,
-    upward_springs,
+    ChunksMut, FrictionLoop, LatticeLoop, Step, Sums, friction, lattice_forces, spring, upward_springs,
 };
 use super::layout::{Layout, TILE};
+use super::quanta::Quanta;
 use super::rest::{RestingTile, steps_until_slip};
 use super::springs::Geometry;
 use super::vector::{LANES, Vec2x8, load, load_vec2, splat};
+use crate::fixed_point::FixedPoint;
 use crate::friction::Integrator;
 use crate::lattice::Bond;
 use crate::model::Model;
@@ -22,7 +23,7 @@ use crate::state::State;
 /// A tile after its latest sweep.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tile {
-    pub(super) sums: Sums<f64>,
+    pub(super) sums: Sums<i64, f64>,
     /// Whether an element of it moves, ghosts included.
     pub(super) moving: bool,
     /// The first step at which a block of it may slip if nothing around it moves; 0 if unknown.
@@ -255,7 +256,14 @@ impl Band {
     /// One step of the scheduled tiles: displacements to t_n, forces there, velocities to t_n + dt/2. The halos contain the
     /// displacements at t_n of the elements around the band.
     #[inline(always)]
-    pub(super) fn sweep<S: Simd, G: Geometry>(&mut self, simd: S, geometry: G, step: Step, energies: bool) {
+    pub(super) fn sweep<S: Simd, G: Geometry>(
+        &mut self,
+        simd: S,
+        geometry: G,
+        step: Step,
+        quanta: &Quanta,
+        energies: bool,
+    ) {
         // Springs lead to elements a row and a block ahead, which must have moved before.
         let n_tiles = self.tiles.len();
         let ahead = self.tiles_ahead().min(n_tiles);
@@ -275,9 +283,9 @@ impl Band {
             }
             if task.active {
                 if energies || task.newly_resting {
-                    self.tile::<S, G, true>(simd, geometry, step, t, &mut scratch);
+                    self.tile::<S, G, true>(simd, geometry, step, quanta, t, &mut scratch);
                 } else {
-                    self.tile::<S, G, false>(simd, geometry, step, t, &mut scratch);
+                    self.tile::<S, G, false>(simd, geometry, step, quanta, t, &mut scratch);
                 }
             }
             if task.newly_resting && self.tiles[t].sums.sliding == 0 {
@@ -368,14 +376,17 @@ impl Band {
         simd: S,
         geometry: G,
         step: Step,
+        quanta: &Quanta,
         t: usize,
         scratch: &mut Scratch,
     ) {
         let mut sums = Sums::zero(simd);
-        self.lattice_forces::<S, G, ENERGY>(simd, geometry, t, scratch, &mut sums.lattice_energy);
-        self.friction::<S, ENERGY>(simd, step, t, scratch, &mut sums);
+        let energy = (quanta.lattice_energy, &mut sums.lattice_energy);
+        self.lattice_forces::<S, G, ENERGY>(simd, geometry, t, scratch, energy);
+        self.friction::<S, ENERGY>(simd, step, quanta, t, scratch, &mut sums);
+        let vectors = self.elements(t).len() / LANES;
         let tile = &mut self.tiles[t];
-        tile.sums = sums.totals();
+        tile.sums = sums.totals::<ENERGY>(quanta, vectors);
         tile.moving = tile.sums.sliding > 0;
         tile.active_from_step = 0;
     }
@@ -388,7 +399,7 @@ impl Band {
         geometry: G,
         t: usize,
         scratch: &mut Scratch,
-        energy: &mut f64x8<S>,
+        (quantum, energy): (FixedPoint, &mut i64x8<S>),
     ) {
         let elements = self.elements(t);
         let start = self.halo + elements.start;
@@ -415,7 +426,7 @@ impl Band {
                 ],
                 force: chunks_mut(&mut scratch.lattice, first - start, n),
             };
-            lattice_forces::<S, G, ENERGY>(simd, geometry, arrays, &mut west, energy);
+            lattice_forces::<S, G, ENERGY>(simd, geometry, arrays, &mut west, quantum, energy);
         }
     }
 
@@ -425,9 +436,10 @@ impl Band {
         &mut self,
         simd: S,
         step: Step,
+        quanta: &Quanta,
         t: usize,
         scratch: &mut Scratch,
-        sums: &mut Sums<f64x8<S>>,
+        sums: &mut Sums<i64x8<S>, f64x8<S>>,
     ) {
         let elements = self.elements(t);
         let (start, n) = (self.halo + elements.start, elements.len());
@@ -458,7 +470,7 @@ impl Band {
             removed_fraction: scratch.removed_fraction[..n].as_chunks_mut().0,
             prefetched,
         };
-        friction::<S, ENERGY>(simd, step, arrays, sums);
+        friction::<S, ENERGY>(simd, step, quanta, arrays, sums);
     }
 
     /// Springs to the east of the eight elements from `first` on.
@@ -501,20 +513,6 @@ impl Band {
             }
             self.tiles[t].extent = extent;
             self.tiles[t].extent_is_old = false;
-        }
-    }
-
-    /// Updates the squared stretches of the drive springs in the tiles that the sweep to this step has skipped; in all tiles if
-    /// there was no sweep.
-    #[inline(always)]
-    pub(super) fn update_skipped_stretch<S: Simd>(&mut self, simd: S, step: Step, swept: bool) {
-        for t in 0..self.tiles.len() {
-            if !(swept && self.tasks[t].active) {
-                let elements = self.elements(t);
-                let displacement = chunks(&self.displacement, self.halo + elements.start, elements.len());
-                let blocks = &self.blocks[elements.start / LANES..elements.end / LANES];
-                self.tiles[t].sums.stretch_square = stretch_square(simd, step, displacement, blocks);
-            }
         }
     }
 

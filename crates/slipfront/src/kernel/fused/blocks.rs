@@ -2,14 +2,16 @@
 //!
 //! Each of these is a loop of its own: processors overlap more iterations of short loops than of a long one.
 
-use fearless_simd::{Simd, SimdBase, SimdFloat, f64x8};
+use fearless_simd::{Bytes, Simd, SimdBase, SimdFloat, f64x8, i64x8};
 
 use super::aligned::CacheLines;
+use super::quanta::Quanta;
 use super::springs::Geometry;
 use super::vector::{
     LANES, Vec2x8, add, bits, dot, is_zero, lane_max, lane_sum, load, load_vec2, mask, or_zero, scale,
     select, shift_in, splat, square, subtract,
 };
+use crate::fixed_point::FixedPoint;
 use crate::friction::Integrator;
 use crate::lattice::Bond;
 use crate::model::{Drive, Model};
@@ -81,13 +83,19 @@ pub(super) fn spring<S: Simd, G: Geometry>(
     zero_missing(simd, present, geometry.force(simd, bond, subtract(there, here)))
 }
 
-/// Zero where a bit of `present` is 0. Few vectors have such bits, so that without AVX-512 the test is cheaper than the mask.
+/// Zero where a bit of `present` is 0.
 #[inline(always)]
 fn zero_missing<S: Simd>(simd: S, present: u8, a: Vec2x8<S>) -> Vec2x8<S> {
+    or_else(simd, present, a, [splat(simd, 0.0); 2])
+}
+
+/// `other` where a bit of `present` is 0. Few vectors have such bits, so that without AVX-512 the test is cheaper than the mask.
+#[inline(always)]
+fn or_else<S: Simd>(simd: S, present: u8, a: Vec2x8<S>, other: Vec2x8<S>) -> Vec2x8<S> {
     if present == u8::MAX {
         a
     } else {
-        or_zero(simd, mask(simd, present), a)
+        select(mask(simd, present), a, other)
     }
 }
 
@@ -141,7 +149,8 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
     geometry: G,
     arrays: LatticeLoop,
     west: &mut Vec2x8<S>,
-    energy: &mut f64x8<S>,
+    quantum: FixedPoint,
+    energy: &mut i64x8<S>,
 ) {
     let [fx, fy] = arrays.force;
     let n = fx.len();
@@ -176,7 +185,8 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
             let straight = square(east) + square(north);
             let diagonal = square(north_east) + square(north_west);
             let energies = straight + splat(simd, 2.0) * diagonal;
-            *energy += zero_missing(simd, blocks[c], [energies, energies])[0];
+            let energies = zero_missing(simd, blocks[c], [energies, energies])[0];
+            *energy += integers(energies, splat(simd, quantum.shift()));
         }
     }
     *west = before;
@@ -217,94 +227,120 @@ pub(super) struct FrictionLoop<'a> {
     pub(super) prefetched: [CacheLines; 6],
 }
 
-/// Sums over the blocks of a tile. While the tile is swept `T` is one number for each of eight lanes.
+/// Sums over the blocks of a tile, as integers of type `I` in their [`Quanta`], and maxima. While the tile is swept, both are one
+/// number for each of eight lanes.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Sums<T> {
-    /// `sum u`.
-    pub(super) displacement: [T; 2],
+pub(super) struct Sums<I, M, N = u32> {
+    /// `sum u - c`, with the centre c of the window.
+    pub(super) displacement: [I; 2],
     /// `sum v(t + dt/2)`.
-    pub(super) velocity: [T; 2],
+    pub(super) velocity: [I; 2],
     /// `sum (v(t - dt/2) + v(t + dt/2))^2`.
-    pub(super) motion_square: T,
-    /// `sum F_f . (v(t - dt/2) + v(t + dt/2))`.
-    pub(super) friction_work: T,
-    /// Largest `tau_c^2` of a block in contact.
-    pub(super) stress_square: T,
-    /// Square of the highest speed, ghosts included.
-    pub(super) speed_square: T,
+    pub(super) motion_square: I,
+    /// `sum -F_f . (v(t - dt/2) + v(t + dt/2))`.
+    pub(super) friction_work: I,
     /// Energy of the springs times `2 k_1`, at steps at which energies are needed.
-    pub(super) lattice_energy: T,
+    pub(super) lattice_energy: I,
     /// `sum v(t - dt/2)^2 + v(t + dt/2)^2`, at steps at which energies are needed.
-    pub(super) velocity_squares: T,
-    /// `sum (V t - u)^2`, at steps at which energies are needed.
-    pub(super) stretch_square: T,
+    pub(super) velocity_squares: I,
+    /// `sum (u - c)^2`, at steps at which energies are needed.
+    pub(super) displacement_square: I,
+    /// Largest `tau_c^2` of a block in contact.
+    pub(super) stress_square: M,
+    /// Square of the highest speed, ghosts included.
+    pub(super) speed_square: M,
     /// Number of blocks that slide.
-    pub(super) sliding: u32,
+    pub(super) sliding: N,
     /// Number of sliding blocks that are in contact.
-    pub(super) slipping: u32,
+    pub(super) slipping: N,
 }
 
-impl<S: Simd> Sums<f64x8<S>> {
+impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
     #[inline(always)]
     pub(super) fn zero(simd: S) -> Self {
-        let zero = splat(simd, 0.0);
+        let (zero, none) = (i64x8::splat(simd, 0), splat(simd, 0.0));
         Self {
             displacement: [zero; 2],
             velocity: [zero; 2],
             motion_square: zero,
             friction_work: zero,
-            stress_square: zero,
-            speed_square: zero,
             lattice_energy: zero,
             velocity_squares: zero,
-            stretch_square: zero,
+            displacement_square: zero,
+            stress_square: none,
+            speed_square: none,
             sliding: 0,
             slipping: 0,
         }
     }
 
+    /// Of all lanes, after so many vectors.
     #[inline(always)]
-    pub(super) fn totals(&self) -> Sums<f64> {
+    pub(super) fn totals<const ENERGY: bool>(&self, quanta: &Quanta, vectors: usize) -> Sums<i64, f64> {
+        let sum = |lanes, quantum: FixedPoint| lane_sum(lanes).wrapping_sub(added_bits(quantum, vectors));
+        let energy = |lanes, quantum| if ENERGY { sum(lanes, quantum) } else { 0 };
+        let [x, y] = quanta.displacement;
         Sums {
-            displacement: self.displacement.map(lane_sum),
-            velocity: self.velocity.map(lane_sum),
-            motion_square: lane_sum(self.motion_square),
-            friction_work: lane_sum(self.friction_work),
+            displacement: [
+                sum(self.displacement[0], x.differences()),
+                sum(self.displacement[1], y.differences()),
+            ],
+            velocity: [
+                sum(self.velocity[0], quanta.velocity),
+                sum(self.velocity[1], quanta.velocity),
+            ],
+            motion_square: sum(self.motion_square, quanta.motion_square),
+            friction_work: sum(self.friction_work, quanta.friction_work),
+            lattice_energy: energy(self.lattice_energy, quanta.lattice_energy),
+            velocity_squares: energy(self.velocity_squares, quanta.motion_square),
+            displacement_square: energy(self.displacement_square, quanta.displacement_square),
             stress_square: lane_max(self.stress_square),
             speed_square: lane_max(self.speed_square),
-            lattice_energy: lane_sum(self.lattice_energy),
-            velocity_squares: lane_sum(self.velocity_squares),
-            stretch_square: lane_sum(self.stretch_square),
             sliding: self.sliding,
             slipping: self.slipping,
         }
     }
 }
 
-/// Stretch of the drive springs, `V t - u`.
+impl Sums<i128, f64, u64> {
+    /// Takes a tile into account.
+    pub(super) fn include(&mut self, tile: &Sums<i64, f64>) {
+        for axis in 0..2 {
+            self.displacement[axis] += i128::from(tile.displacement[axis]);
+            self.velocity[axis] += i128::from(tile.velocity[axis]);
+        }
+        self.motion_square += i128::from(tile.motion_square);
+        self.friction_work += i128::from(tile.friction_work);
+        self.lattice_energy += i128::from(tile.lattice_energy);
+        self.velocity_squares += i128::from(tile.velocity_squares);
+        self.displacement_square += i128::from(tile.displacement_square);
+        self.stress_square = self.stress_square.max(tile.stress_square);
+        self.speed_square = self.speed_square.max(tile.speed_square);
+        self.sliding += u64::from(tile.sliding);
+        self.slipping += u64::from(tile.slipping);
+    }
+}
+
+/// The multiples of a quantum nearest to eight numbers, plus the bits of `shift`: see [`FixedPoint::shift`].
 #[inline(always)]
-fn drive_stretch<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
-    let [x, y] = step.drive_position;
-    subtract([splat(simd, x), splat(simd, y)], u)
+fn integers<S: Simd>(numbers: f64x8<S>, shift: f64x8<S>) -> i64x8<S> {
+    (numbers + shift).bitcast()
+}
+
+/// What [`integers`] of so many vectors has added to the multiples themselves.
+fn added_bits(quantum: FixedPoint, vectors: usize) -> i64 {
+    ((vectors * LANES) as i64).wrapping_mul(quantum.shift().to_bits() as i64)
 }
 
 /// Eq. 2: `F_s = k_s (V t - u)`, with any constant force.
 #[inline(always)]
 pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
-    let [x, y] = step.drive.constant_force;
-    let spring = scale(splat(simd, step.drive.k_drive), drive_stretch(simd, step, u));
-    add(spring, [splat(simd, x), splat(simd, y)])
-}
-
-/// `sum (V t - u)^2` over blocks, in the order of the sweep.
-#[inline(always)]
-pub(super) fn stretch_square<S: Simd>(simd: S, step: Step, displacement: [Chunks; 2], blocks: &[u8]) -> f64 {
-    let mut sum = splat(simd, 0.0);
-    for (c, &present) in blocks.iter().enumerate() {
-        let square = square(drive_stretch(simd, step, load_vec2(simd, displacement, c)));
-        sum += zero_missing(simd, present, [square, square])[0];
-    }
-    lane_sum(sum)
+    let ([x, y], [fx, fy]) = (step.drive_position, step.drive.constant_force);
+    let stretch = subtract([splat(simd, x), splat(simd, y)], u);
+    add(
+        scale(splat(simd, step.drive.k_drive), stretch),
+        [splat(simd, fx), splat(simd, fy)],
+    )
 }
 
 /// The first part of the friction law: drive (Eq. 2), damping (Eq. 5), and the velocity without friction.
@@ -343,8 +379,9 @@ fn free_motion<S: Simd>(simd: S, step: Step, arrays: &mut FrictionLoop) {
 pub(super) fn friction<S: Simd, const ENERGY: bool>(
     simd: S,
     step: Step,
+    quanta: &Quanta,
     mut arrays: FrictionLoop,
-    sums: &mut Sums<f64x8<S>>,
+    sums: &mut Sums<i64x8<S>, f64x8<S>>,
 ) {
     free_motion(simd, step, &mut arrays);
     let [vx, vy] = arrays.velocity;
@@ -360,6 +397,12 @@ pub(super) fn friction<S: Simd, const ENERGY: bool>(
     let (moving, slipped) = (&mut arrays.moving[..n], &mut arrays.slipped[..n]);
     let first_slip = &mut arrays.first_slip[..n];
     let zero = splat(simd, 0.0);
+    let windows = quanta.displacement;
+    let in_window = [splat(simd, windows[0].shift()), splat(simd, windows[1].shift())];
+    let centres = [splat(simd, windows[0].centre()), splat(simd, windows[1].centre())];
+    let velocity_shift = splat(simd, quanta.velocity.shift());
+    let motion_shift = splat(simd, quanta.motion_square.shift());
+    let work_shift = splat(simd, quanta.friction_work.shift());
     for c in 0..n {
         for lines in arrays.prefetched {
             lines.prefetch(c);
@@ -374,6 +417,11 @@ pub(super) fn friction<S: Simd, const ENERGY: bool>(
         let sticks = is_zero(simd, before) & square(force).simd_le(load(simd, &static_limit_squares[c]));
         let remaining = splat(simd, 1.0) - removed_fraction;
         let slides = !sticks & remaining.simd_gt(zero);
+        let sliding = bits(simd, slides);
+        moving[c] = sliding;
+        let slips = sliding & in_contact[c];
+        sums.sliding += sliding.count_ones();
+        sums.slipping += slips.count_ones();
         let after = or_zero(simd, slides, scale(remaining, free));
         after[0].store_array(&mut vx[c]);
         after[1].store_array(&mut vy[c]);
@@ -384,29 +432,26 @@ pub(super) fn friction<S: Simd, const ENERGY: bool>(
             free,
         );
         let against = select(slides, kinetic, force);
-        let displacement = load_vec2(simd, u, c);
         let both = zero_missing(simd, blocks[c], add(before, after));
-        sums.displacement = add(sums.displacement, zero_missing(simd, blocks[c], displacement));
-        sums.velocity = add(sums.velocity, after);
-        sums.motion_square += square(both);
-        sums.friction_work -= dot(against, both);
+        let displacement = or_else(simd, blocks[c], load_vec2(simd, u, c), centres);
+        sums.displacement[0] += integers(displacement[0], in_window[0]);
+        sums.displacement[1] += integers(displacement[1], in_window[1]);
+        sums.velocity[0] += integers(after[0], velocity_shift);
+        sums.velocity[1] += integers(after[1], velocity_shift);
+        sums.motion_square += integers(square(both), motion_shift);
+        sums.friction_work += integers(dot(against, both), work_shift);
         sums.speed_square = sums.speed_square.max(square(after));
         // Eq. 10; for a stuck block F_f + F_c = -F_s to the last bit.
         let stress = select(slides, subtract(lattice, kinetic), drive);
         let stress = zero_missing(simd, in_contact[c], stress);
         sums.stress_square = sums.stress_square.max(square(stress));
         if ENERGY {
-            let stretch_square = square(drive_stretch(simd, step, displacement));
-            let squares = zero_missing(simd, blocks[c], [square(before) + square(after), stretch_square]);
-            sums.velocity_squares += squares[0];
-            sums.stretch_square += squares[1];
+            let squares = zero_missing(simd, blocks[c], [square(before) + square(after), zero])[0];
+            sums.velocity_squares += integers(squares, motion_shift);
+            let squares = square(subtract(displacement, centres));
+            let shift = splat(simd, quanta.displacement_square.shift());
+            sums.displacement_square += integers(squares, shift);
         }
-
-        let slides = bits(slides);
-        moving[c] = slides;
-        let slips = slides & in_contact[c];
-        sums.sliding += slides.count_ones();
-        sums.slipping += slips.count_ones();
         mark_first_slips(slips, &mut slipped[c], &mut first_slip[c], step.time_star);
     }
 }

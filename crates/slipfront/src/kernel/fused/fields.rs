@@ -1,13 +1,14 @@
 //! What a sweep does not keep, found again from displacements and velocities, by the exact spring law whatever formula the sweep
 //! used: the forces on one block, and one field of all blocks, tile after tile, with the same bits.
 
-use fearless_simd::{Simd, SimdBase, SimdFloat};
+use fearless_simd::{Simd, SimdBase, SimdFloat, i64x8};
 
 use super::band::{Band, Scratch, chunks};
 use super::blocks::{Step, pull};
 use super::layout::{Layout, TILE};
 use super::springs::SquareRoot;
-use super::vector::{LANES, add, bits, is_zero, load, load_vec2, scale, select, splat, square};
+use super::vector::{LANES, add, bits, is_zero, load, load_vec2, scale, select, square};
+use crate::fixed_point::FixedPoint;
 use crate::kernel::block::{Block, Field};
 use crate::lattice::Bond;
 use crate::model::Model;
@@ -88,7 +89,7 @@ pub(super) fn read_rows<S: Simd>(
                     let epsilon = model.epsilon;
                     let geometry = SquareRoot { epsilon };
                     band.upward(simd, geometry, &mut scratch, from, springs_end);
-                    let energy = &mut splat(simd, 0.0);
+                    let energy = (FixedPoint::new(0.0), &mut i64x8::splat(simd, 0));
                     band.lattice_forces::<S, SquareRoot, false>(simd, geometry, t, &mut scratch, energy);
                     let mut forces = [[0.0; LANES]; TILE / LANES];
                     if band.tiles[t].moving {
@@ -156,7 +157,7 @@ fn stresses<S: Simd>(
         let [x, y] = add(pull(simd, step, load_vec2(simd, displacements, c)), lattice);
         let mut force = [-x, -y];
         let stuck = is_zero(simd, velocity);
-        if bits(stuck) != u8::MAX {
+        if bits(simd, stuck) != u8::MAX {
             let per_velocity = load(simd, stress) / square(velocity).sqrt();
             force = select(stuck, force, scale(-per_velocity, velocity));
         }

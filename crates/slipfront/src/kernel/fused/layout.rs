@@ -10,8 +10,7 @@ use std::ops::Range;
 use super::vector::LANES;
 use crate::lattice::{Edges, Lattice};
 
-/// Number of elements in a tile, which is skipped and summed as a whole: sums over blocks are sums over tiles of sums over
-/// eight lanes, for any number of threads.
+/// Number of elements in a tile, which is scheduled as a whole.
 pub(super) const TILE: usize = 256;
 
 /// Least number of elements in a row: a vector must not contain two blocks that a spring to the next row joins.
@@ -39,6 +38,11 @@ impl Layout {
     /// Number of elements, up to the end of the last row.
     pub(super) fn len(&self) -> usize {
         self.lattice.ny * self.stride
+    }
+
+    /// Number of blocks.
+    pub(super) fn n_blocks(&self) -> usize {
+        self.lattice.n_blocks()
     }
 
     /// Number of tiles. The last is shorter; only its last vector is filled up with elements that are no blocks.

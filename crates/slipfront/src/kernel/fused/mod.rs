@@ -17,6 +17,7 @@ mod band;
 mod blocks;
 mod fields;
 mod layout;
+mod quanta;
 mod rest;
 mod springs;
 mod vector;
@@ -27,10 +28,12 @@ mod tests;
 use fearless_simd::{Level, dispatch};
 
 use self::band::Band;
-use self::blocks::Step;
+use self::blocks::{Step, Sums};
 use self::layout::Layout;
+use self::quanta::Quanta;
 use self::springs::{Series, SquareRoot};
 use crate::checkpoint::{Checkpoint, StrainBound};
+use crate::fixed_point::{self, Window};
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
 use crate::kernel::totals::{StoredEnergy, Totals};
@@ -71,7 +74,9 @@ pub(crate) struct Fused {
     swept_step: Option<u64>,
     /// How the latest sweep computed springs.
     springs: Option<Springs>,
-    /// Sums of the latest sweep.
+    /// Sums of the latest sweep, and their quanta.
+    sums: Option<(Sums<i128, f64, u64>, Quanta)>,
+    /// The same as numbers.
     totals: Totals,
     strain_bound: StrainBound,
     /// Largest strains for the short and for the long series.
@@ -100,7 +105,7 @@ impl Fused {
             .flat_map(|band| &band.tiles)
             .map(|tile| tile.sums.speed_square)
             .fold(0.0, f64::max);
-        let sum = |v: &[f64]| v.iter().sum();
+        let sum = |v: &[f64]| fixed_point::sum(v.len(), |b| v[b]);
         let totals = Totals {
             velocity_after: state.map_or([0.0; 2], |state| [sum(&state.velocity.x), sum(&state.velocity.y)]),
             ..Totals::default()
@@ -116,11 +121,13 @@ impl Fused {
             active_from_step: 0,
             swept_step: None,
             springs: None,
+            sums: None,
             totals,
             strain_bound: StrainBound {
                 extent: [f64::NEG_INFINITY; 4],
                 growth: 0.0,
                 speed: speed_square.sqrt(),
+                windows: [Window::around(0.0, 0.0); 2],
             },
             strain_limits: [Series::<3>::strain_limit(), Series::<7>::strain_limit()],
             stress_square_max: 0.0,
@@ -155,9 +162,9 @@ impl Fused {
         }
     }
 
-    /// How to compute springs in a step, by the bound on all strains. It must be called at every step, swept or not, so that
-    /// skipping does not change the choice.
-    fn choose_springs(&mut self, model: &Model, step: &Step) -> Springs {
+    /// How to compute springs in a step, by the bound on all strains, and whether sums have other quanta than before. It must be
+    /// called at every step, swept or not, so that skipping does not change the choice.
+    fn choose_springs(&mut self, model: &Model, step: &Step) -> (Springs, bool) {
         if step.number.is_multiple_of(EXTENT_INTERVAL) {
             let mut extent = [f64::NEG_INFINITY; 4];
             for_each_band(&mut self.bands, &Band::measure_extents);
@@ -170,13 +177,14 @@ impl Fused {
         }
         self.strain_bound.growth += 2.0 * step.move_dt * self.strain_bound.speed;
         let strain = self.strain_bound.max_strain(model.epsilon);
-        if strain <= self.strain_limits[0] {
+        let springs = if strain <= self.strain_limits[0] {
             Springs::ShortSeries
         } else if strain <= self.strain_limits[1] {
             Springs::LongSeries
         } else {
             Springs::SquareRoot
-        }
+        };
+        (springs, self.strain_bound.move_windows())
     }
 
     /// Decides what is done with every tile in the sweep to step `number`. All are swept if the formula of springs has changed.
@@ -280,47 +288,53 @@ impl Fused {
     }
 
     /// Sums over the lattice, from those over the tiles after a sweep.
-    fn sum_tiles(&mut self) {
-        let before = self.totals.velocity_after;
-        let (mut totals, mut speed_square, mut active_from_step) = (Totals::default(), 0.0_f64, u64::MAX);
+    fn sum_tiles(&mut self, quanta: &Quanta) {
+        let (mut sums, mut active_from_step) = (Sums::<i128, f64, u64>::default(), u64::MAX);
         for tile in self.bands.iter().flat_map(|band| &band.tiles) {
-            let sums = &tile.sums;
-            for axis in 0..2 {
-                totals.displacement[axis] += sums.displacement[axis];
-                totals.velocity_after[axis] += sums.velocity[axis];
-            }
-            totals.velocity_square += 0.25 * sums.motion_square;
-            totals.friction_power += 0.5 * sums.friction_work;
-            totals.n_sliding += sums.sliding as usize;
-            totals.n_slipping += sums.slipping as usize;
-            speed_square = speed_square.max(sums.speed_square);
-            self.stress_square_max = self.stress_square_max.max(sums.stress_square);
+            sums.include(&tile.sums);
             active_from_step = active_from_step.min(if tile.moving { 0 } else { tile.active_from_step });
         }
-        let after = totals.velocity_after;
-        totals.velocity = [0.5 * (before[0] + after[0]), 0.5 * (before[1] + after[1])];
-        (self.totals, self.strain_bound.speed, self.active_from_step) =
-            (totals, speed_square.sqrt(), active_from_step);
+        self.stress_square_max = self.stress_square_max.max(sums.stress_square);
+        self.active_from_step = active_from_step;
+        self.strain_bound.speed = sums.speed_square.sqrt();
+        let (before, after) = (
+            self.totals.velocity_after,
+            sums.velocity.map(|sum| quanta.velocity.value(sum)),
+        );
+        let n_blocks = self.layout.n_blocks() as f64;
+        let displacement = |axis: usize| {
+            let window = quanta.displacement[axis];
+            n_blocks * window.centre() + window.differences().value(sums.displacement[axis])
+        };
+        self.totals = Totals {
+            displacement: [displacement(0), displacement(1)],
+            velocity: [0.5 * (before[0] + after[0]), 0.5 * (before[1] + after[1])],
+            velocity_after: after,
+            velocity_square: 0.25 * quanta.motion_square.value(sums.motion_square),
+            friction_power: -0.5 * quanta.friction_work.value(sums.friction_work),
+            n_sliding: sums.sliding as usize,
+            n_slipping: sums.slipping as usize,
+            stored_energy: None,
+        };
+        self.sums = Some((sums, *quanta));
     }
 
-    /// Energies stored at the present step.
-    fn stored_energy(&mut self, step: Step) -> StoredEnergy {
-        // The drive springs of skipped tiles stretch, too.
-        let (level, swept) = (self.level, self.swept_step == Some(step.number));
-        for_each_band(&mut self.bands, &|band| {
-            dispatch!(level, simd => band.update_skipped_stretch(simd, step, swept));
-        });
-        let (mut velocity_squares, mut lattice, mut stretch_square) = (0.0, 0.0, 0.0);
-        for tile in self.bands.iter().flat_map(|band| &band.tiles) {
-            velocity_squares += tile.sums.velocity_squares;
-            lattice += tile.sums.lattice_energy;
-            stretch_square += tile.sums.stretch_square;
+    /// Energies stored at the present step, if there was a sweep.
+    fn stored_energy(&self, step: Step) -> Option<StoredEnergy> {
+        let (sums, quanta) = self.sums.as_ref()?;
+        let n_blocks = self.layout.n_blocks() as f64;
+        // sum (V t - u)^2 over both axes, from the sums of u - c and of its square.
+        let mut stretch_square = quanta.displacement_square.value(sums.displacement_square);
+        for (axis, window) in quanta.displacement.iter().enumerate() {
+            let position = step.drive_position[axis] - window.centre();
+            let mean = window.differences().value(sums.displacement[axis]) / n_blocks;
+            stretch_square += n_blocks * position * (position - 2.0 * mean);
         }
-        StoredEnergy {
-            kinetic: 0.25 * velocity_squares,
-            lattice: lattice / (2.0 * K_STRAIGHT),
-            drive_springs: 0.5 * step.drive.k_drive * stretch_square,
-        }
+        Some(StoredEnergy {
+            kinetic: 0.25 * quanta.motion_square.value(sums.velocity_squares),
+            lattice: quanta.lattice_energy.value(sums.lattice_energy) / (2.0 * K_STRAIGHT),
+            drive_springs: 0.5 * step.drive.k_drive * stretch_square.max(0.0),
+        })
     }
 }
 
@@ -331,23 +345,25 @@ impl Engine for Fused {
             // At the start displacements are those of t_0 already.
             step.move_dt = 0.0;
         }
-        let springs = self.choose_springs(model, &step);
-        // Skipped tiles keep the energy of their springs. After a change of formula it must be found anew, to have the same bits.
-        let springs_changed = self.springs != Some(springs);
+        let (springs, windows_moved) = self.choose_springs(model, &step);
+        // Skipped tiles keep their sums and the energy of their springs. After a change of quanta or formula they must be found
+        // anew, to have the same bits.
+        let springs_changed = windows_moved || self.springs != Some(springs);
         if !self.skips || springs_changed || number >= self.active_from_step {
             self.schedule_tiles(number, springs_changed);
             self.record_skipped_stress_maxima(model, number);
             self.fill_halos(step.move_dt);
-            let level = self.level;
+            let (level, quanta) = (self.level, Quanta::new(&step, &self.strain_bound));
             for_each_band(&mut self.bands, &|band| {
-                sweep(level, band, model.epsilon, step, springs, energies);
+                sweep(level, band, model.epsilon, step, &quanta, springs, energies);
             });
             self.copy_ghosts();
             (self.swept_step, self.springs) = (Some(number), Some(springs));
-            self.sum_tiles();
+            self.sum_tiles(&quanta);
         }
+        let stored_energy = if energies { self.stored_energy(step) } else { None };
         Totals {
-            stored_energy: energies.then(|| self.stored_energy(step)),
+            stored_energy,
             ..self.totals
         }
     }
@@ -414,16 +430,24 @@ fn for_each_band(bands: &mut [Band], work: &(impl Fn(&mut Band) + Sync)) {
 }
 
 /// Takes a band through a step with the vector instructions of `level`.
-fn sweep(level: Level, band: &mut Band, epsilon: f64, step: Step, springs: Springs, energies: bool) {
+fn sweep(
+    level: Level,
+    band: &mut Band,
+    epsilon: f64,
+    step: Step,
+    quanta: &Quanta,
+    springs: Springs,
+    energies: bool,
+) {
     match springs {
         Springs::ShortSeries => {
-            dispatch!(level, simd => band.sweep(simd, Series::<3> { epsilon }, step, energies));
+            dispatch!(level, simd => band.sweep(simd, Series::<3> { epsilon }, step, quanta, energies));
         }
         Springs::LongSeries => {
-            dispatch!(level, simd => band.sweep(simd, Series::<7> { epsilon }, step, energies));
+            dispatch!(level, simd => band.sweep(simd, Series::<7> { epsilon }, step, quanta, energies));
         }
         Springs::SquareRoot => {
-            dispatch!(level, simd => band.sweep(simd, SquareRoot { epsilon }, step, energies));
+            dispatch!(level, simd => band.sweep(simd, SquareRoot { epsilon }, step, quanta, energies));
         }
     }
 }

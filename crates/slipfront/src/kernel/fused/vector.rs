@@ -1,9 +1,9 @@
-//! Plane vectors of eight blocks at a time, and sums that do not depend on the processor.
+//! Plane vectors of eight blocks at a time.
 //!
 //! Every function is `#[inline(always)]`, so that it is compiled for the vector width of its caller. Multiplications and
 //! additions are never fused, so that all widths give the same bits.
 
-use fearless_simd::{Select, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use fearless_simd::{Select, Simd, SimdBase, SimdMask, f64x8, i64x8, mask64x8};
 
 /// Blocks in a vector, on every processor.
 pub(super) const LANES: usize = 8;
@@ -32,9 +32,16 @@ pub(super) fn mask<S: Simd>(simd: S, bits: u8) -> mask64x8<S> {
     mask64x8::from_bitmask(simd, u64::from(bits))
 }
 
+/// One bit per lane. Where a vector is two registers, their masks are narrowed to one: compilers make a longer way of joining the
+/// bits of both.
 #[inline(always)]
-pub(super) fn bits<S: Simd>(mask: mask64x8<S>) -> u8 {
-    mask.to_bitmask() as u8
+pub(super) fn bits<S: Simd>(simd: S, mask: mask64x8<S>) -> u8 {
+    if <S::f64s as SimdBase<S>>::LEN == LANES / 2 {
+        let (low, high) = simd.split_mask64x8(mask);
+        simd.narrow_mask64x4(low, high).to_bitmask() as u8
+    } else {
+        mask.to_bitmask() as u8
+    }
 }
 
 #[inline(always)]
@@ -86,11 +93,17 @@ pub(super) fn shift_in<S: Simd>(before: Vec2x8<S>, a: Vec2x8<S>) -> Vec2x8<S> {
     [before[0].slide::<7>(a[0]), before[1].slide::<7>(a[1])]
 }
 
-/// Sum of the eight numbers, in pairs.
+/// Sum of the eight integers, modulo 2^64.
 #[inline(always)]
-pub(super) fn lane_sum<S: Simd>(v: f64x8<S>) -> f64 {
+pub(super) fn lane_sum<S: Simd>(v: i64x8<S>) -> i64 {
     let [a, b, c, d, e, f, g, h] = v.to_array();
-    ((a + e) + (c + g)) + ((b + f) + (d + h))
+    let pairs = [
+        a.wrapping_add(e),
+        c.wrapping_add(g),
+        b.wrapping_add(f),
+        d.wrapping_add(h),
+    ];
+    pairs.into_iter().fold(0, i64::wrapping_add)
 }
 
 /// Largest of the eight numbers.

@@ -1,0 +1,191 @@
+//! Sums that do not depend on the order in which they are added.
+//!
+//! Numbers of a known size become integers, multiples of a quantum, and integers add up exactly: in any order, over any number
+//! of lanes, tiles, threads and ranks the sum has the same bits. Each term is rounded to the nearest multiple of the quantum,
+//! by at most `2^-52` of the largest size that it might have.
+
+use serde::{Deserialize, Serialize};
+
+use crate::reductions;
+
+/// Numbers of at most a given size as multiples of a quantum, which is a power of two.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct FixedPoint {
+    /// The power of two above the bound. NaN if there is no bound, so that all sums are NaN.
+    limit: f64,
+}
+
+/// Largest bound: quanta and what is added to them must stay finite.
+const MAX_BOUND: f64 = 1e300;
+
+/// Sizes below are not told apart, so that quanta do not underflow.
+const MIN_BOUND: f64 = 1e-270;
+
+/// Quanta in the largest number.
+const QUANTA: f64 = (1_u64 << 51) as f64;
+
+/// Most integers that can be added without overflow of 64 bits.
+pub(crate) const MAX_TERMS: usize = 1 << 11;
+
+impl FixedPoint {
+    /// For numbers of at most `bound` in size.
+    pub(crate) fn new(bound: f64) -> Self {
+        let exponent = bound.max(MIN_BOUND).to_bits() & f64::INFINITY.to_bits();
+        Self {
+            limit: if bound <= MAX_BOUND {
+                2.0 * f64::from_bits(exponent)
+            } else {
+                f64::NAN
+            },
+        }
+    }
+
+    /// The power of two above the bound.
+    pub(crate) fn limit(self) -> f64 {
+        self.limit
+    }
+
+    /// `1.5 2^52` quanta. What is added to it is rounded to a multiple of the quantum, and the bits of the sum are those of this
+    /// number plus the multiple.
+    pub(crate) fn shift(self) -> f64 {
+        3.0 * self.limit
+    }
+
+    /// The multiple of the quantum nearest to `x`.
+    #[inline(always)]
+    pub(crate) fn integer(self, x: f64) -> i64 {
+        let shift = self.shift();
+        (x + shift).to_bits().wrapping_sub(shift.to_bits()) as i64
+    }
+
+    /// What a sum of integers stands for, rounded to the nearest double.
+    pub(crate) fn value(self, sum: i128) -> f64 {
+        sum as f64 * (self.limit / QUANTA)
+    }
+}
+
+/// Numbers of a range that may lie far from zero, as differences from its centre.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Window {
+    centre: f64,
+    differences: FixedPoint,
+}
+
+impl Window {
+    /// Least difference between the ends of the range for which a window is made: displacements differ by more as soon as
+    /// blocks slide.
+    const MIN_RANGE: f64 = 1e-9;
+
+    /// A window of at least twice the range from `low` to `high`, which lies in its middle.
+    pub(crate) fn around(low: f64, high: f64) -> Self {
+        let differences = FixedPoint::new((high - low).max(Self::MIN_RANGE));
+        let grid = differences.limit() / 8.0;
+        Self {
+            centre: ((low + high) / 2.0 / grid).round() * grid,
+            differences,
+        }
+    }
+
+    /// Whether all numbers from `low` to `high` can be converted.
+    pub(crate) fn contains(&self, low: f64, high: f64) -> bool {
+        let [first, last] = [-1.0, 1.0].map(|side| self.centre + side * self.differences.limit());
+        first <= low && high <= last
+    }
+
+    /// The middle of the window.
+    pub(crate) fn centre(&self) -> f64 {
+        self.centre
+    }
+
+    /// Differences from the centre.
+    pub(crate) fn differences(&self) -> FixedPoint {
+        self.differences
+    }
+
+    /// What is added to a number, to find the nearest multiple for its difference from the centre in the bits of the sum: see
+    /// [`FixedPoint::shift`].
+    pub(crate) fn shift(&self) -> f64 {
+        self.differences.shift() - self.centre
+    }
+}
+
+/// Sum of `term(k)` over `0..n`, the same for any order of the terms.
+#[inline(always)]
+pub(crate) fn sum(n: usize, term: impl Fn(usize) -> f64) -> f64 {
+    // A term that is no number makes the bound infinite.
+    let size = |term: f64| if term.is_nan() { f64::INFINITY } else { term.abs() };
+    let fixed_point = FixedPoint::new(reductions::largest(n, |k| size(term(k))));
+    let mut sum = 0;
+    for first in (0..n).step_by(MAX_TERMS) {
+        let terms = first..n.min(first + MAX_TERMS);
+        sum += i128::from(terms.map(|k| fixed_point.integer(term(k))).sum::<i64>());
+    }
+    fixed_point.value(sum)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn small_integers_are_added_exactly() {
+        for n in 0..40 {
+            assert_eq!(sum(n, |k| k as f64), (n * n.saturating_sub(1) / 2) as f64, "{n}");
+        }
+        assert_eq!(sum(10_000, |_| -0.25), -2500.0);
+        assert_eq!(sum(3, |k| [1e300, 1.0, -1e300][k]), 0.0);
+    }
+
+    #[test]
+    fn without_a_bound_there_is_no_sum() {
+        for bad in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN, 1e305] {
+            assert!(sum(5, |k| if k == 3 { bad } else { 1.0 }).is_nan(), "{bad}");
+        }
+        assert!(FixedPoint::new(f64::NAN).value(1).is_nan());
+    }
+
+    #[test]
+    fn windows_far_from_zero_keep_every_bit() {
+        let (low, high) = (1000.0, 1001.5);
+        let window = Window::around(low, high);
+        assert!(
+            window.contains(low, high) && window.contains(999.5, 1002.0) && !window.contains(998.0, 1001.0)
+        );
+        for k in 0..1000 {
+            let u = low + (high - low) * f64::from(k) / 1000.0;
+            let bits = (u + window.shift()).to_bits();
+            let integer = bits.wrapping_sub(window.differences().shift().to_bits()) as i64;
+            let difference = window.differences().value(i128::from(integer));
+            assert_eq!(window.centre() + difference, u);
+        }
+    }
+
+    proptest! {
+        /// Numbers of all sizes up to the bound, the bound included: any order and any partition gives the same bits, with an
+        /// error of at most half a quantum per term.
+        #[test]
+        fn any_partition_gives_the_same_bits(
+            terms in prop::collection::vec((-1.0..=1.0_f64, -60..=0_i32), 1..200),
+            bound in prop_oneof![Just(1.0), 1e-250..1e250_f64],
+            cut in 0..200_usize,
+            stride in 1..7_usize,
+        ) {
+            let terms: Vec<f64> = terms.into_iter().map(|(x, e)| x * 2_f64.powi(e) * bound).chain([bound, -bound]).collect();
+            let n = terms.len();
+            let fixed_point = FixedPoint::new(bound);
+            let integer = |k: usize| i128::from(fixed_point.integer(terms[k]));
+            let whole: i128 = (0..n).map(integer).sum();
+            let cut = cut.min(n);
+            let parts = (cut..n).map(integer).sum::<i128>() + (0..cut).rev().map(integer).sum::<i128>();
+            prop_assert_eq!(whole, parts);
+            let strided: i128 = (0..stride).map(|from| (from..n).step_by(stride).map(integer).sum::<i128>()).sum();
+            prop_assert_eq!(whole, strided);
+            prop_assert_eq!(fixed_point.value(whole).to_bits(), sum(n, |k| terms[n - 1 - k]).to_bits());
+            for (k, &term) in terms.iter().enumerate() {
+                prop_assert!((fixed_point.value(integer(k)) - term).abs() <= fixed_point.limit() / QUANTA / 2.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! The quanta of all sums over blocks: see [`FixedPoint`]. They follow from bounds on what is summed, and these from the extent of
+//! displacements and the highest speed, which every rank and thread knows.
+
+use super::blocks::Step;
+use crate::checkpoint::StrainBound;
+use crate::fixed_point::{FixedPoint, Window};
+use crate::lattice::{K_DIAGONAL, K_STRAIGHT};
+
+/// Quanta of the sums in a sweep.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quanta {
+    /// Of `u - c`, for each axis; c is the centre of the window.
+    pub(super) displacement: [Window; 2],
+    /// Of `(u - c)^2`.
+    pub(super) displacement_square: FixedPoint,
+    /// Of `v`.
+    pub(super) velocity: FixedPoint,
+    /// Of squares of sums of two velocities.
+    pub(super) motion_square: FixedPoint,
+    /// Of products of a force and a sum of two velocities.
+    pub(super) friction_work: FixedPoint,
+    /// Of squares of spring forces.
+    pub(super) lattice_energy: FixedPoint,
+}
+
+/// Rounding in the bounds and in what they bound.
+const MARGIN: f64 = 1.0 + 1e-6;
+
+impl Quanta {
+    pub(super) fn new(step: &Step, bound: &StrainBound) -> Self {
+        let [x, y] = bound.windows.map(|window| window.differences().limit());
+        // Displacements of two blocks differ by the width of the window at most.
+        let spring_force = K_STRAIGHT * 2.0 * (x + y);
+        let speed = highest_speed(step, bound);
+        Self {
+            displacement: bound.windows,
+            displacement_square: FixedPoint::new(MARGIN * (x * x + y * y)),
+            velocity: FixedPoint::new(speed),
+            motion_square: FixedPoint::new(MARGIN * 4.0 * speed * speed),
+            // Friction stops a block at most.
+            friction_work: FixedPoint::new(MARGIN * step.integrator.velocity_to_force * 2.0 * speed * speed),
+            // Two straight springs, and two diagonal ones of half their stiffness that count twice.
+            lattice_energy: FixedPoint::new(MARGIN * 3.0 * spring_force * spring_force),
+        }
+    }
+}
+
+/// A bound on all speeds half a step after `step`: they change at most as without friction.
+fn highest_speed(step: &Step, bound: &StrainBound) -> f64 {
+    let mut force = 0.0;
+    for axis in 0..2 {
+        let [low, high] = bound.range(axis);
+        let position = step.drive_position[axis];
+        let stretch = (position - low).abs().max((position - high).abs());
+        // The force of a spring is at most its stiffness times the difference of the displacements of its ends.
+        force += 4.0 * (K_STRAIGHT + K_DIAGONAL) * (high - low)
+            + step.drive.k_drive * stretch
+            + step.drive.constant_force[axis].abs();
+    }
+    MARGIN * (bound.speed + step.integrator.force_to_velocity * force)
+}
