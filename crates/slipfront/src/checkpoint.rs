@@ -9,7 +9,7 @@ use std::fmt::Formatter;
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::fixed_point::Window;
+use crate::fixed_point::{FixedPoint, Window};
 use crate::kernel::totals::Totals;
 use crate::measure::Peak;
 use crate::state::State;
@@ -23,8 +23,8 @@ pub struct Checkpoint<N = BlockNumbers> {
     pub(crate) peak: Peak,
     /// Largest square of a contact stress so far.
     pub(crate) stress_square_max: f64,
-    /// What the fused kernel chooses its spring formula by; none of the reference kernel.
-    pub(crate) strain_bound: Option<StrainBound>,
+    /// Of the fused kernel.
+    pub(crate) motion_bounds: Option<MotionBounds>,
     /// At t_n.
     pub(crate) displacement: [N; 2],
     /// Half a step after t_n; half a step before it of the reference kernel, which evaluates t_n again.
@@ -51,24 +51,59 @@ impl Checkpoint {
     }
 }
 
-/// An upper bound on the strain of every spring, by which the fused kernel chooses how to compute spring forces: it bounds all
-/// differences of displacement by the extent of the displacements when they were last measured, and by the
-/// highest speeds since then. Part of a checkpoint, so that a resumed run chooses the same formula at every step.
+/// Upper bounds on displacements, on the differences of displacement between the ends of springs, and on speeds: those when they
+/// were last measured, and by how much they may have grown since. By them the fused kernel chooses how to compute spring forces,
+/// and the quanta of its sums. Part of a checkpoint, so that a resumed run chooses the same at every step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct StrainBound {
+pub(crate) struct MotionBounds {
     /// Largest u_x, -u_x, u_y, -u_y at the latest measurement.
     pub(crate) extent: [f64; 4],
-    /// By how much differences of displacement may have grown since.
+    /// Largest difference of u_x and of u_y between the ends of a spring, likewise.
+    pub(crate) difference: [f64; 2],
+    /// By how much two displacements may have moved apart since.
     pub(crate) growth: f64,
     /// Highest speed after the latest sweep.
     pub(crate) speed: f64,
     /// Ranges of the displacements along x and y, for their sums.
     pub(crate) windows: [Window; 2],
+    /// Differences of displacement between the ends of a spring, x and y together, for the sum of their energies.
+    pub(crate) spring_range: FixedPoint,
 }
 
-impl StrainBound {
-    /// Moves the windows that no longer hold all displacements; whether there were such.
-    pub(crate) fn move_windows(&mut self) -> bool {
+impl Default for MotionBounds {
+    /// At rest without displacement; not measured yet.
+    fn default() -> Self {
+        Self {
+            extent: [f64::NEG_INFINITY; 4],
+            difference: [0.0; 2],
+            growth: 0.0,
+            speed: 0.0,
+            windows: [Window::around(0.0, 0.0); 2],
+            spring_range: FixedPoint::new(0.0),
+        }
+    }
+}
+
+impl MotionBounds {
+    /// Lowest and highest displacement along an axis.
+    pub(crate) fn range(&self, axis: usize) -> [f64; 2] {
+        let [high, low] = [self.extent[2 * axis], -self.extent[2 * axis + 1]];
+        [low - self.growth, high + self.growth]
+    }
+
+    /// Largest difference of displacement along an axis between the ends of a spring.
+    pub(crate) fn spring_difference(&self, axis: usize) -> f64 {
+        self.difference[axis] + self.growth
+    }
+
+    /// Largest possible `|eps s|/d^2` of a spring, with `s = (r^2 - d^2)/eps`.
+    pub(crate) fn max_strain(&self, epsilon: f64) -> f64 {
+        let (ex, ey) = (self.spring_difference(0), self.spring_difference(1));
+        epsilon * (2.0 * (ex + ey) + epsilon * (ex * ex + ey * ey))
+    }
+
+    /// Moves the ranges of sums that no longer hold all numbers; whether there were such.
+    pub(crate) fn move_ranges(&mut self) -> bool {
         let mut moved = false;
         for axis in 0..2 {
             let [low, high] = self.range(axis);
@@ -77,22 +112,17 @@ impl StrainBound {
                 moved = true;
             }
         }
+        let difference = self.spring_difference(0) + self.spring_difference(1);
+        if moved || !(difference <= self.spring_range.limit()) {
+            self.spring_range = FixedPoint::new(difference.max(MIN_SPRING_RANGE));
+            moved = true;
+        }
         moved
     }
-
-    /// Lowest and highest displacement along an axis.
-    pub(crate) fn range(&self, axis: usize) -> [f64; 2] {
-        let [high, low] = [self.extent[2 * axis], -self.extent[2 * axis + 1]];
-        [low - self.growth, high + self.growth]
-    }
-
-    /// Largest possible `|eps s|/d^2` of a spring, with `s = (r^2 - d^2)/eps`.
-    pub(crate) fn max_strain(&self, epsilon: f64) -> f64 {
-        let [right, left, top, bottom] = self.extent;
-        let (ex, ey) = (right + left + self.growth, top + bottom + self.growth);
-        epsilon * (2.0 * (ex + ey) + epsilon * (ex * ex + ey * ey))
-    }
 }
+
+/// Springs of blocks that slide are stretched by more.
+const MIN_SPRING_RANGE: f64 = 1e-9;
 
 /// One value of every block, read back. Memory is reserved for values as they arrive, whatever length the data claims, and
 /// by an eighth at a time: doubling could ask for more than a large lattice leaves free.

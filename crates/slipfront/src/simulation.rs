@@ -95,7 +95,7 @@ impl Simulation {
             totals: self.totals,
             peak: self.peak,
             stress_square_max: self.engine.stress_square_max(&self.model, self.step),
-            strain_bound: self.engine.strain_bound(),
+            motion_bounds: self.engine.motion_bounds(),
             displacement: [
                 column(|engine, b| engine.motion(b)[0][0]),
                 column(|engine, b| engine.motion(b)[0][1]),

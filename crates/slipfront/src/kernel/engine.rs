@@ -2,7 +2,7 @@
 
 use super::block::{Block, Field};
 use super::totals::Totals;
-use crate::checkpoint::StrainBound;
+use crate::checkpoint::MotionBounds;
 use crate::model::Model;
 
 /// A kernel with the state of all blocks. `number` is that of the present step, unless a function advances to it.
@@ -33,8 +33,8 @@ pub(crate) trait Engine: Send + Sync {
     /// Largest square of a contact stress of a block in contact at any step so far.
     fn stress_square_max(&self, model: &Model, number: u64) -> f64;
 
-    /// What a checkpoint keeps for the choice of spring formulas, by a kernel that makes such a choice.
-    fn strain_bound(&self) -> Option<StrainBound>;
+    /// Bounds that a checkpoint keeps, of a kernel that has any.
+    fn motion_bounds(&self) -> Option<MotionBounds>;
 
     /// Velocity of block `b` as a checkpoint keeps it.
     fn checkpoint_velocity(&self, b: usize) -> [f64; 2];

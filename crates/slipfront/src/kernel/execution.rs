@@ -74,7 +74,7 @@ impl Execution {
         if !checkpoint.has_blocks(model.lattice.n_blocks()) {
             return None;
         }
-        match (self.kernel.for_law(model.law), checkpoint.strain_bound) {
+        match (self.kernel.for_law(model.law), checkpoint.motion_bounds) {
             (Kernel::Fused, Some(bound)) => {
                 let kernel = Fused::resume(model, dt_star, checkpoint, bound, self.threads, self.skips);
                 Some(Box::new(kernel))

@@ -9,7 +9,7 @@ use fearless_simd::{Level, dispatch};
 use super::block::{Block, Field};
 use super::engine::Engine;
 use super::totals::{StoredEnergy, Totals};
-use crate::checkpoint::{Checkpoint, StrainBound};
+use crate::checkpoint::{Checkpoint, MotionBounds};
 use crate::fixed_point;
 use crate::friction::{BlockState, FrictionLaw, Integrator, Law, Literal, Projection, Reversal};
 use crate::lattice::{Bond, Edges, Lattice};
@@ -226,7 +226,7 @@ impl Engine for Reference {
         self.stress_square_max
     }
 
-    fn strain_bound(&self) -> Option<StrainBound> {
+    fn motion_bounds(&self) -> Option<MotionBounds> {
         None
     }
 

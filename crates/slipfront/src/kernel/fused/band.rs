@@ -7,13 +7,14 @@ use fearless_simd::{Simd, SimdBase, f64x8, i64x8};
 
 use super::aligned::{Aligned, Vectors};
 use super::blocks::{
-    ChunksMut, FrictionLoop, LatticeLoop, Step, Sums, friction, lattice_forces, spring, upward_springs,
+    ChunksMut, FrictionLoop, LatticeLoop, Step, Sums, friction, lattice_forces, or_else, spring,
+    upward_springs, zero_missing,
 };
-use super::layout::{Layout, TILE};
+use super::layout::{Layout, TILE, mark_vectors};
 use super::quanta::Quanta;
-use super::rest::{RestingTile, steps_until_slip};
+use super::rest::{RestingVector, steps_until_slip};
 use super::springs::Geometry;
-use super::vector::{LANES, Vec2x8, load, load_vec2, splat};
+use super::vector::{LANES, Vec2x8, lane_max, load, load_vec2, splat, subtract};
 use crate::fixed_point::FixedPoint;
 use crate::friction::Integrator;
 use crate::lattice::Bond;
@@ -26,25 +27,33 @@ pub(super) struct Tile {
     pub(super) sums: Sums<i64, f64>,
     /// Whether an element of it moves, ghosts included.
     pub(super) moving: bool,
+    /// Whether the steps and energies of its vectors are known, so that vectors of it can be swept alone.
+    pub(super) settled: bool,
     /// The first step at which a block of it may slip if nothing around it moves; 0 if unknown.
     pub(super) active_from_step: u64,
     /// Largest u_x, -u_x, u_y, -u_y of its blocks at the latest measurement.
     pub(super) extent: [f64; 4],
-    /// Whether it has moved since.
-    pub(super) extent_is_old: bool,
+    /// Largest difference of u_x and of u_y between its blocks and their neighbours, likewise.
+    pub(super) difference: [f64; 2],
+    /// Whether any of them has moved since.
+    pub(super) displacements_are_old: bool,
 }
 
-/// What is to be done with a tile in a sweep.
+/// What is to be done with a tile in a sweep. A mask has one bit per vector.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct TileTask {
-    /// It is swept: one of its blocks or a neighbour moves, or one of its blocks may slip.
-    pub(super) active: bool,
-    /// It is swept after having been skipped.
-    pub(super) was_skipped: bool,
+    /// The vectors that are swept: one of their blocks or a neighbour moves, or one of their blocks may slip.
+    pub(super) active: u32,
+    /// Those of them that were skipped at the step before.
+    pub(super) was_skipped: u32,
+    /// Vectors with a moving block or a neighbour of one.
+    pub(super) touched: u32,
+    /// The active vectors are few, and are swept one by one.
+    pub(super) sparse: bool,
+    /// All are swept, and few are touched: from now on they can be swept one by one, or not at all.
+    pub(super) settles: bool,
     /// Its springs to the next row are needed, by itself or by a tile to the north.
     pub(super) needs_springs: bool,
-    /// Nothing moves in it or next to it: it can be skipped from now on until a block slips.
-    pub(super) newly_resting: bool,
 }
 
 /// Consecutive tiles with all that one thread needs to take them through a step.
@@ -74,19 +83,23 @@ pub(super) struct Band {
     /// t* of the first slip in contact.
     pub(super) first_slip: Aligned,
     /// Which elements have a neighbour to the east, to the west, and in the next row; with the front halo.
-    masks: [Vec<u8>; 3],
+    pub(super) masks: [Vec<u8>; 3],
     /// Which elements are blocks.
-    blocks: Vec<u8>,
+    pub(super) blocks: Vec<u8>,
     /// Which elements are blocks in contact.
     in_contact: Vec<u8>,
     /// Which elements move, ghosts included.
-    moving: Vec<u8>,
+    pub(super) moving: Vec<u8>,
     /// Which blocks in contact have ever slid.
     slipped: Vec<u8>,
+    /// The first step at which a block of each vector may slip; 0 of a touched one. Known in settled tiles.
+    pub(super) active_from_step: Vec<u64>,
+    /// Energy of the springs of each vector, as in [`Sums`]. Known in settled tiles.
+    pub(super) lattice_energy: Vec<i64>,
     /// Locked while fields are read; a sweep, which nothing runs beside, takes it without.
     scratch: Mutex<Scratch>,
     /// Elements from a row to the next.
-    stride: usize,
+    pub(super) stride: usize,
 }
 
 /// What is found on the way through the tiles; nothing of it is needed later.
@@ -154,6 +167,8 @@ impl Band {
             in_contact: bytes(),
             moving: bytes(),
             slipped: bytes(),
+            active_from_step: vec![0; len / LANES],
+            lattice_energy: vec![0; len / LANES],
             scratch: Mutex::new(Scratch {
                 upward: [(); 3].map(|()| Vectors::zeros(ring)),
                 lattice: Vectors::zeros(TILE),
@@ -176,7 +191,7 @@ impl Band {
             if !model.surface.textured[b] {
                 band.in_contact[k / LANES] |= bit;
             }
-            band.tiles[k / TILE].extent_is_old = true;
+            band.tiles[k / TILE].displacements_are_old = true;
             if let Some(state) = state {
                 let v = state.velocity.at(b);
                 band.displacement.set(halo + k, state.displacement.at(b));
@@ -202,7 +217,7 @@ impl Band {
     /// a checkpoint includes the skipped tiles.
     pub(super) fn resume(&mut self, layout: &Layout, first_slip: &[f64]) {
         for task in &mut self.tasks {
-            task.active = true;
+            task.active = u32::MAX;
         }
         for k in 0..self.len {
             let time = layout.block(self.first + k).map_or(f64::NAN, |b| first_slip[b]);
@@ -216,6 +231,12 @@ impl Band {
         t * TILE..((t + 1) * TILE).min(self.len)
     }
 
+    /// Vectors of the band's tile `t`.
+    pub(super) fn vectors(&self, t: usize) -> Range<usize> {
+        let elements = self.elements(t);
+        elements.start / LANES..elements.end / LANES
+    }
+
     /// Records whether an element moves.
     pub(super) fn set_moving(&mut self, k: usize, moves: bool) {
         let bit = 1 << (k % LANES);
@@ -227,22 +248,24 @@ impl Band {
         }
     }
 
-    /// Marks all tiles that contain a moving element or a neighbour of one.
-    pub(super) fn mark_moving_neighbours(&self, layout: &Layout, has_moving_neighbour: &mut [bool]) {
+    /// Marks all vectors that contain a moving element or a neighbour of one.
+    pub(super) fn mark_touched(&self, layout: &Layout, touched: &mut [u32]) {
+        let mut mark = |from: usize, to: usize| {
+            let pieces = layout.around(self.first + from, self.first + to);
+            pieces.for_each(|piece| mark_vectors(touched, piece));
+        };
         for t in (0..self.tiles.len()).filter(|&t| self.tiles[t].moving) {
             let elements = self.elements(t);
-            let mut mark = |from: usize, to: usize| {
-                let (first, last) = (self.first + from, self.first + to - 1);
-                layout
-                    .tiles_around(first, last)
-                    .for_each(|tile| has_moving_neighbour[tile] = true);
-            };
             if self.tiles[t].sums.sliding > MAX_MARKED_BLOCKS {
-                mark(elements.start, elements.end);
+                mark(elements.start, elements.end - 1);
                 continue;
             }
-            for k in elements.step_by(LANES).filter(|k| self.moving[k / LANES] != 0) {
-                mark(k, k + LANES);
+            for v in self.vectors(t).filter(|&v| self.moving[v] != 0) {
+                let (first, last) = (
+                    self.moving[v].trailing_zeros(),
+                    7 - self.moving[v].leading_zeros(),
+                );
+                mark(v * LANES + first as usize, v * LANES + last as usize);
             }
         }
     }
@@ -268,29 +291,40 @@ impl Band {
         let n_tiles = self.tiles.len();
         let ahead = self.tiles_ahead().min(n_tiles);
         for t in 0..ahead {
-            self.advance(simd, t, step.move_dt);
+            self.advance(simd, step, quanta, t);
         }
         let mut scratch = std::mem::take(self.scratch());
-        self.upward(simd, geometry, &mut scratch, self.below(self.halo), self.halo);
+        if self.tasks[..ahead].iter().any(|task| task.needs_springs) {
+            self.upward(simd, geometry, &mut scratch, self.below(self.halo), self.halo);
+        }
         for t in 0..n_tiles {
             if t + ahead < n_tiles {
-                self.advance(simd, t + ahead, step.move_dt);
+                self.advance(simd, step, quanta, t + ahead);
             }
             let (task, elements) = (self.tasks[t], self.elements(t));
             if task.needs_springs {
                 let (from, to) = (self.halo + elements.start, self.halo + elements.end);
                 self.upward(simd, geometry, &mut scratch, from, to);
             }
-            if task.active {
-                if energies || task.newly_resting {
-                    self.tile::<S, G, true>(simd, geometry, step, quanta, t, &mut scratch);
-                } else {
-                    self.tile::<S, G, false>(simd, geometry, step, quanta, t, &mut scratch);
-                }
+            if task.active == 0 {
+                continue;
             }
-            if task.newly_resting && self.tiles[t].sums.sliding == 0 {
-                let steps = self.steps_until_slip(simd, step, t, &scratch);
-                self.tiles[t].active_from_step = step.number.saturating_add(steps.max(1));
+            if task.sparse {
+                self.sparse_tile(simd, geometry, step, quanta, t, &mut scratch);
+            } else if energies || task.settles {
+                self.tile::<S, G, true>(simd, geometry, step, quanta, t, &mut scratch);
+            } else {
+                self.tile::<S, G, false>(simd, geometry, step, quanta, t, &mut scratch);
+            }
+            if task.settles {
+                self.settle(simd, geometry, step, quanta, t, &scratch);
+            }
+            if task.was_skipped != 0 {
+                // The step of largest stress was the last that was skipped, or the first, which the sweep before has measured: at
+                // the present one the block may slide already.
+                let before = self.resting_stress_square(t, task.was_skipped, &step.before());
+                let stress_square = &mut self.tiles[t].sums.stress_square;
+                *stress_square = stress_square.max(before);
             }
         }
         *self.scratch() = scratch;
@@ -310,18 +344,21 @@ impl Band {
 
     /// Eq. 8: `u += dt v` in a tile that moves.
     #[inline(always)]
-    fn advance<S: Simd>(&mut self, simd: S, t: usize, move_dt: f64) {
+    fn advance<S: Simd>(&mut self, simd: S, step: Step, quanta: &Quanta, t: usize) {
         if !self.tiles[t].moving {
             return;
         }
-        self.tiles[t].extent_is_old = true;
+        if self.tasks[t].sparse {
+            self.advance_vectors(simd, step, quanta, t);
+            return;
+        }
         let elements = self.elements(t);
         let (from, to) = (self.halo + elements.start, self.halo + elements.end);
         let ux = self.displacement.x[from..to].as_chunks_mut().0;
         let uy = self.displacement.y[from..to].as_chunks_mut().0;
         let vx = self.velocity.x[elements.clone()].as_chunks().0;
         let vy = self.velocity.y[elements].as_chunks().0;
-        let dt = splat(simd, move_dt);
+        let dt = splat(simd, step.move_dt);
         for (((ux, uy), vx), vy) in ux.iter_mut().zip(uy).zip(vx).zip(vy) {
             (load(simd, ux) + dt * load(simd, vx)).store_array(ux);
             (load(simd, uy) + dt * load(simd, vy)).store_array(uy);
@@ -383,11 +420,12 @@ impl Band {
         let mut sums = Sums::zero(simd);
         let energy = (quanta.lattice_energy, &mut sums.lattice_energy);
         self.lattice_forces::<S, G, ENERGY>(simd, geometry, t, scratch, energy);
-        self.friction::<S, ENERGY>(simd, step, quanta, t, scratch, &mut sums);
-        let vectors = self.elements(t).len() / LANES;
+        self.friction::<S, ENERGY>(simd, step, quanta, self.elements(t), scratch, &mut sums);
+        let vectors = self.vectors(t).len();
         let tile = &mut self.tiles[t];
         tile.sums = sums.totals::<ENERGY>(quanta, vectors);
         tile.moving = tile.sums.sliding > 0;
+        tile.settled = false;
         tile.active_from_step = 0;
     }
 
@@ -430,18 +468,17 @@ impl Band {
         }
     }
 
-    /// Eqs. 2 and 4-7 in a tile.
+    /// Eqs. 2 and 4-7 of some elements of a tile, whose lattice forces are at the beginning of the scratch array.
     #[inline(always)]
-    fn friction<S: Simd, const ENERGY: bool>(
+    pub(super) fn friction<S: Simd, const ENERGY: bool>(
         &mut self,
         simd: S,
         step: Step,
         quanta: &Quanta,
-        t: usize,
+        elements: Range<usize>,
         scratch: &mut Scratch,
         sums: &mut Sums<i64x8<S>, f64x8<S>>,
     ) {
-        let elements = self.elements(t);
         let (start, n) = (self.halo + elements.start, elements.len());
         let next = elements.start + TILE;
         let moving_next = next + self.tiles_ahead() * TILE;
@@ -482,49 +519,92 @@ impl Band {
         spring(simd, geometry, &Bond::EAST, has_east, here, there)
     }
 
-    /// For how many steps a tile at rest can be skipped; its lattice forces are those of the present sweep.
+    /// For how many steps vector `v` at rest can be skipped; its lattice forces are at `place` in the scratch array.
     #[inline(always)]
-    fn steps_until_slip<S: Simd>(&self, simd: S, step: Step, t: usize, scratch: &Scratch) -> u64 {
-        let elements = self.elements(t);
-        let n = elements.len();
-        let blocks = RestingTile {
-            displacement: chunks(&self.displacement, self.halo + elements.start, n),
-            lattice: chunks(&scratch.lattice, 0, n),
-            static_limit_squares: self.static_limit_squares[elements.clone()].as_chunks().0,
-            kinetic_impulses: self.kinetic_impulses[elements].as_chunks().0,
+    pub(super) fn steps_until_slip<S: Simd>(
+        &self,
+        simd: S,
+        step: Step,
+        v: usize,
+        scratch: &Scratch,
+        place: usize,
+    ) -> u64 {
+        let k = v * LANES;
+        let blocks = RestingVector {
+            displacement: load_vec2(simd, chunks(&self.displacement, self.halo + k, LANES), 0),
+            lattice: load_vec2(simd, chunks(&scratch.lattice, place, LANES), 0),
+            static_limit_square: load(simd, &self.static_limit_squares[k..].as_chunks().0[0]),
+            kinetic_impulse: load(simd, &self.kinetic_impulses[k..].as_chunks().0[0]),
         };
         steps_until_slip(simd, &step, &blocks)
     }
 
-    /// Measures the extent of displacements in the tiles that have moved since the latest measurement.
-    pub(super) fn measure_extents(&mut self) {
+    /// Measures displacements and their differences along springs, in the tiles in or next to which anything has moved since the
+    /// latest measurement.
+    #[inline(always)]
+    pub(super) fn measure_displacements<S: Simd>(&mut self, simd: S) {
         for t in 0..self.tiles.len() {
-            if !self.tiles[t].extent_is_old {
+            if !self.tiles[t].displacements_are_old {
                 continue;
             }
-            let mut extent = [f64::NEG_INFINITY; 4];
-            for k in self.elements(t) {
-                if self.blocks[k / LANES] >> (k % LANES) & 1 == 1 {
-                    let [x, y] = self.displacement.at(self.halo + k);
-                    for (most, value) in extent.iter_mut().zip([x, -x, y, -y]) {
-                        *most = most.max(value);
-                    }
+            let none = splat(simd, f64::NEG_INFINITY);
+            let (mut extent, mut difference) = ([none; 4], [splat(simd, 0.0); 2]);
+            for v in self.vectors(t) {
+                let here = self.halo + v * LANES;
+                let u = load_vec2(simd, chunks(&self.displacement, here, LANES), 0);
+                let [x, y] = or_else(simd, self.blocks[v], u, [none; 2]);
+                let [left, down] = or_else(simd, self.blocks[v], [-u[0], -u[1]], [none; 2]);
+                extent[0] = extent[0].max(x);
+                extent[1] = extent[1].max(left);
+                extent[2] = extent[2].max(y);
+                extent[3] = extent[3].max(down);
+                for (present, there) in self.springs_of(v) {
+                    let there = load_vec2(simd, chunks(&self.displacement, there, LANES), 0);
+                    let [x, y] = zero_missing(simd, present, subtract(there, u));
+                    difference[0] = difference[0].max(x.abs());
+                    difference[1] = difference[1].max(y.abs());
                 }
             }
-            self.tiles[t].extent = extent;
-            self.tiles[t].extent_is_old = false;
+            let tile = &mut self.tiles[t];
+            let [right, left, up, down] = extent;
+            tile.extent = [lane_max(right), lane_max(left), lane_max(up), lane_max(down)];
+            tile.difference = [lane_max(difference[0]), lane_max(difference[1])];
+            tile.displacements_are_old = false;
         }
     }
 
-    /// Largest `tau_c^2` of the blocks in contact of a tile in which nothing moves.
-    pub(super) fn resting_stress_square(&self, t: usize, step: &Step) -> f64 {
+    /// The springs of vector `v` to the east, north, north-east and north-west: which are present, and where their other ends are.
+    #[inline(always)]
+    pub(super) fn springs_of(&self, v: usize) -> [(u8, usize); 4] {
+        let here = self.halo + v * LANES;
+        let [has_east, has_west, has_north] = &self.masks;
+        let (east, west, north) = (
+            has_east[here / LANES],
+            has_west[here / LANES],
+            has_north[here / LANES],
+        );
+        let above = here + self.stride;
+        [
+            (east, here + 1),
+            (north, above),
+            (north & east, above + 1),
+            (north & west, above - 1),
+        ]
+    }
+
+    /// Largest `tau_c^2` of the blocks in contact of those vectors of a tile in which nothing moves.
+    pub(super) fn resting_stress_square(&self, t: usize, vectors: u32, step: &Step) -> f64 {
         let mut most = 0.0_f64;
-        for k in self.elements(t) {
-            if self.in_contact[k / LANES] >> (k % LANES) & 1 == 1 {
-                let [x, y] = step
-                    .drive
-                    .force(self.displacement.at(self.halo + k), step.time_star);
-                most = most.max(x * x + y * y);
+        for (bit, v) in self.vectors(t).enumerate() {
+            if vectors >> bit & 1 == 0 {
+                continue;
+            }
+            for k in v * LANES..(v + 1) * LANES {
+                if self.in_contact[v] >> (k % LANES) & 1 == 1 {
+                    let u = self.displacement.at(self.halo + k);
+                    let [x, y] = step.drive.force(u, step.time_star);
+                    most = most.max(x * x + y * y);
+                }
             }
         }
         most
@@ -571,7 +651,7 @@ pub(super) fn chunks(vectors: &Vectors, from: usize, n: usize) -> [&[[f64; LANES
 }
 
 #[inline(always)]
-fn chunks_mut(vectors: &mut Vectors, from: usize, n: usize) -> [ChunksMut<'_>; 2] {
+pub(super) fn chunks_mut(vectors: &mut Vectors, from: usize, n: usize) -> [ChunksMut<'_>; 2] {
     [
         vectors.x[from..from + n].as_chunks_mut().0,
         vectors.y[from..from + n].as_chunks_mut().0,

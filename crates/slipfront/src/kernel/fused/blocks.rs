@@ -50,6 +50,18 @@ impl Step {
             integrator: Integrator::new(model.damping, dt_star),
         }
     }
+
+    /// The step before this one, of which there must be one.
+    pub(super) fn before(&self) -> Self {
+        let number = self.number - 1;
+        let time_star = number as f64 * self.dt_star;
+        Self {
+            number,
+            time_star,
+            drive_position: self.drive.position(time_star),
+            ..*self
+        }
+    }
 }
 
 /// x and y of a quantity of the springs to the next row: north, north-east and north-west.
@@ -85,13 +97,13 @@ pub(super) fn spring<S: Simd, G: Geometry>(
 
 /// Zero where a bit of `present` is 0.
 #[inline(always)]
-fn zero_missing<S: Simd>(simd: S, present: u8, a: Vec2x8<S>) -> Vec2x8<S> {
+pub(super) fn zero_missing<S: Simd>(simd: S, present: u8, a: Vec2x8<S>) -> Vec2x8<S> {
     or_else(simd, present, a, [splat(simd, 0.0); 2])
 }
 
 /// `other` where a bit of `present` is 0. Few vectors have such bits, so that without AVX-512 the test is cheaper than the mask.
 #[inline(always)]
-fn or_else<S: Simd>(simd: S, present: u8, a: Vec2x8<S>, other: Vec2x8<S>) -> Vec2x8<S> {
+pub(super) fn or_else<S: Simd>(simd: S, present: u8, a: Vec2x8<S>, other: Vec2x8<S>) -> Vec2x8<S> {
     if present == u8::MAX {
         a
     } else {
@@ -181,15 +193,64 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
         x.store_array(&mut fx[c]);
         y.store_array(&mut fy[c]);
         if ENERGY {
-            // (k/2) extension^2 = F^2/(2k), and k_1 = 2 k_2.
-            let straight = square(east) + square(north);
-            let diagonal = square(north_east) + square(north_west);
-            let energies = straight + splat(simd, 2.0) * diagonal;
-            let energies = zero_missing(simd, blocks[c], [energies, energies])[0];
-            *energy += integers(energies, splat(simd, quantum.shift()));
+            let springs = [east, north, north_east, north_west];
+            *energy += spring_energies(simd, springs, blocks[c], quantum);
         }
     }
     *west = before;
+}
+
+/// Energy times `2 k_1` of the springs of eight blocks to the east, north, north-east and north-west: see [`integers`].
+#[inline(always)]
+fn spring_energies<S: Simd>(
+    simd: S,
+    [east, north, north_east, north_west]: [Vec2x8<S>; 4],
+    blocks: u8,
+    quantum: FixedPoint,
+) -> i64x8<S> {
+    // (k/2) extension^2 = F^2/(2k), and k_1 = 2 k_2.
+    let straight = square(east) + square(north);
+    let diagonal = square(north_east) + square(north_west);
+    let energies = straight + splat(simd, 2.0) * diagonal;
+    let energies = zero_missing(simd, blocks, [energies, energies])[0];
+    integers(energies, splat(simd, quantum.shift()))
+}
+
+/// Sum of [`spring_energies`] over a vector.
+#[inline(always)]
+pub(super) fn vector_energy<S: Simd>(
+    simd: S,
+    springs: [Vec2x8<S>; 4],
+    blocks: u8,
+    quantum: FixedPoint,
+) -> i64 {
+    integer_sum(spring_energies(simd, springs, blocks, quantum), quantum, 1)
+}
+
+/// What eight blocks add to the sums of `u - c` and `(u - c)^2`.
+#[inline(always)]
+pub(super) fn displacement_sums<S: Simd>(
+    simd: S,
+    u: Vec2x8<S>,
+    blocks: u8,
+    quanta: &Quanta,
+) -> ([i64; 2], i64) {
+    let [x, y] = quanta.displacement;
+    let centres = [splat(simd, x.centre()), splat(simd, y.centre())];
+    let u = or_else(simd, blocks, u, centres);
+    let lanes = [
+        integers(u[0], splat(simd, x.shift())),
+        integers(u[1], splat(simd, y.shift())),
+    ];
+    let sums = [
+        integer_sum(lanes[0], x.differences(), 1),
+        integer_sum(lanes[1], y.differences(), 1),
+    ];
+    let squares = integers(
+        square(subtract(u, centres)),
+        splat(simd, quanta.displacement_square.shift()),
+    );
+    (sums, integer_sum(squares, quanta.displacement_square, 1))
 }
 
 #[inline(always)]
@@ -277,28 +338,33 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
     /// Of all lanes, after so many vectors.
     #[inline(always)]
     pub(super) fn totals<const ENERGY: bool>(&self, quanta: &Quanta, vectors: usize) -> Sums<i64, f64> {
-        let sum = |lanes, quantum: FixedPoint| lane_sum(lanes).wrapping_sub(added_bits(quantum, vectors));
-        let energy = |lanes, quantum| if ENERGY { sum(lanes, quantum) } else { 0 };
         let [x, y] = quanta.displacement;
-        Sums {
+        let mut sums = Sums {
             displacement: [
-                sum(self.displacement[0], x.differences()),
-                sum(self.displacement[1], y.differences()),
+                integer_sum(self.displacement[0], x.differences(), vectors),
+                integer_sum(self.displacement[1], y.differences(), vectors),
             ],
             velocity: [
-                sum(self.velocity[0], quanta.velocity),
-                sum(self.velocity[1], quanta.velocity),
+                integer_sum(self.velocity[0], quanta.velocity, vectors),
+                integer_sum(self.velocity[1], quanta.velocity, vectors),
             ],
-            motion_square: sum(self.motion_square, quanta.motion_square),
-            friction_work: sum(self.friction_work, quanta.friction_work),
-            lattice_energy: energy(self.lattice_energy, quanta.lattice_energy),
-            velocity_squares: energy(self.velocity_squares, quanta.motion_square),
-            displacement_square: energy(self.displacement_square, quanta.displacement_square),
+            motion_square: integer_sum(self.motion_square, quanta.motion_square, vectors),
+            friction_work: integer_sum(self.friction_work, quanta.friction_work, vectors),
+            lattice_energy: 0,
+            velocity_squares: 0,
+            displacement_square: 0,
             stress_square: lane_max(self.stress_square),
             speed_square: lane_max(self.speed_square),
             sliding: self.sliding,
             slipping: self.slipping,
+        };
+        if ENERGY {
+            sums.lattice_energy = integer_sum(self.lattice_energy, quanta.lattice_energy, vectors);
+            sums.velocity_squares = integer_sum(self.velocity_squares, quanta.motion_square, vectors);
+            sums.displacement_square =
+                integer_sum(self.displacement_square, quanta.displacement_square, vectors);
         }
+        sums
     }
 }
 
@@ -327,9 +393,11 @@ fn integers<S: Simd>(numbers: f64x8<S>, shift: f64x8<S>) -> i64x8<S> {
     (numbers + shift).bitcast()
 }
 
-/// What [`integers`] of so many vectors has added to the multiples themselves.
-fn added_bits(quantum: FixedPoint, vectors: usize) -> i64 {
-    ((vectors * LANES) as i64).wrapping_mul(quantum.shift().to_bits() as i64)
+/// Sum of the multiples of a quantum in [`integers`] of so many vectors.
+#[inline(always)]
+fn integer_sum<S: Simd>(lanes: i64x8<S>, quantum: FixedPoint, vectors: usize) -> i64 {
+    let added = ((vectors * LANES) as i64).wrapping_mul(quantum.shift().to_bits() as i64);
+    lane_sum(lanes).wrapping_sub(added)
 }
 
 /// Eq. 2: `F_s = k_s (V t - u)`, with any constant force.

@@ -13,6 +13,9 @@ use crate::lattice::{Edges, Lattice};
 /// Number of elements in a tile, which is scheduled as a whole.
 pub(super) const TILE: usize = 256;
 
+/// Number of vectors in a tile: one bit each of a `u32`.
+pub(super) const VECTORS: usize = TILE / LANES;
+
 /// Least number of elements in a row: a vector must not contain two blocks that a spring to the next row joins.
 const MIN_ROW_ELEMENTS: usize = 16;
 
@@ -131,40 +134,55 @@ impl Layout {
         bits
     }
 
-    /// Tiles that contain the elements from `from` to `to`. Elements before the first row or after the last are left out, or
-    /// taken from the other end if the axis is periodic.
-    pub(super) fn tiles(&self, from: isize, to: isize) -> impl Iterator<Item = usize> + use<> {
+    /// The elements from `from` to `to`, each piece with where it begins. Those before the first row or after the last are left out,
+    /// or taken from the other end if the axis is periodic.
+    pub(super) fn pieces(
+        &self,
+        from: isize,
+        to: isize,
+    ) -> impl Iterator<Item = (isize, Range<usize>)> + use<> {
         let (n, periodic) = (self.len() as isize, self.is_periodic_along_y());
-        let mut element = from;
+        let mut first = from;
         std::iter::from_fn(move || {
             loop {
-                if element > to {
+                if first > to {
                     return None;
                 }
-                let inside = (0..n).contains(&element);
-                let wrapped = if inside { element } else { element.rem_euclid(n) };
-                let tile = wrapped as usize / TILE;
-                let end = (((tile + 1) * TILE) as isize).min(n);
-                element += end - wrapped;
-                if inside || periodic {
-                    return Some(tile);
+                let wrapped = first.rem_euclid(n);
+                let end = (first - wrapped + n).min(to + 1);
+                let piece = wrapped as usize..(wrapped + end - first) as usize;
+                let start = std::mem::replace(&mut first, end);
+                if wrapped == start || periodic {
+                    return Some((start, piece));
                 }
             }
         })
     }
 
-    /// Tiles that contain the elements from `first` to `last` or neighbours of them.
-    pub(super) fn tiles_around(&self, first: usize, last: usize) -> impl Iterator<Item = usize> + use<> {
+    /// The elements from `first` to `last` and their neighbours.
+    pub(super) fn around(&self, first: usize, last: usize) -> impl Iterator<Item = Range<usize>> + use<> {
         let (layout, stride) = (*self, self.stride as isize);
         [-stride, 0, stride]
             .into_iter()
-            .flat_map(move |row| layout.tiles(first as isize + row - 1, last as isize + row + 1))
+            .flat_map(move |row| layout.pieces(first as isize + row - 1, last as isize + row + 1))
+            .map(|(_, piece)| piece)
     }
 
     /// Tiles that contain the southern neighbours of the elements from `first` to `last`.
     pub(super) fn tiles_below(&self, first: usize, last: usize) -> impl Iterator<Item = usize> + use<> {
         let below = self.stride as isize;
-        self.tiles(first as isize - below - 1, last as isize - below + 1)
+        self.pieces(first as isize - below - 1, last as isize - below + 1)
+            .flat_map(|(_, piece)| piece.start / TILE..=(piece.end - 1) / TILE)
+    }
+}
+
+/// Sets the bits of the vectors that contain the elements of a piece: one mask per tile, one bit per vector.
+pub(super) fn mark_vectors(masks: &mut [u32], piece: Range<usize>) {
+    let (first, last) = (piece.start / LANES, (piece.end - 1) / LANES);
+    for tile in first / VECTORS..=last / VECTORS {
+        let from = first.saturating_sub(tile * VECTORS);
+        let to = (last - tile * VECTORS).min(VECTORS - 1);
+        masks[tile] |= (u32::MAX << from) & (u32::MAX >> (VECTORS - 1 - to));
     }
 }
 
@@ -172,21 +190,28 @@ impl Layout {
 mod tests {
     use super::*;
 
-    /// Tiles around the ghosts of the blocks from `first` to `last`.
-    fn ghosts_around(layout: &Layout, first: usize, last: usize) -> Vec<usize> {
-        if !layout.has_ghosts() {
-            return Vec::new();
+    /// Vectors around the elements of a vector, and around the ghosts of its blocks.
+    fn vectors_around(layout: &Layout, vector: usize) -> Vec<u32> {
+        let mut masks = vec![0; layout.n_tiles()];
+        let (first, last) = (vector * LANES, vector * LANES + LANES - 1);
+        let mut mark = |first, last| {
+            layout
+                .around(first, last)
+                .for_each(|piece| mark_vectors(&mut masks, piece));
+        };
+        mark(first, last);
+        if layout.has_ghosts() {
+            let copies = (0..layout.rows()).flat_map(|j| layout.ghosts_of_row(j));
+            copies
+                .filter(|(_, copied)| (first..=last).contains(copied))
+                .for_each(|(ghost, _)| mark(ghost, ghost));
         }
-        let copies = (0..layout.rows()).flat_map(|j| layout.ghosts_of_row(j));
-        copies
-            .filter(|(_, copied)| (first..=last).contains(copied))
-            .flat_map(|(ghost, _)| layout.tiles_around(ghost, ghost))
-            .collect()
+        masks
     }
 
     /// Compared with the neighbours that the lattice itself knows.
     #[test]
-    fn neighbouring_tiles_hold_all_neighbouring_blocks() {
+    fn neighbouring_vectors_hold_all_neighbouring_blocks() {
         use Edges::{Free, Periodic};
         for edges in [
             [Free, Free],
@@ -197,11 +222,12 @@ mod tests {
             for (nx, ny) in [(5, 7), (25, 40), (50, 50), (300, 5), (700, 4), (3, 400), (254, 5)] {
                 let lattice = Lattice::with_edges(nx, ny, edges);
                 let layout = Layout::new(&lattice);
-                for tile in 0..layout.n_tiles() {
-                    let last = ((tile + 1) * TILE).min(layout.len()) - 1;
-                    let mut neighbours: Vec<usize> = layout.tiles_around(tile * TILE, last).collect();
-                    neighbours.extend(ghosts_around(&layout, tile * TILE, last));
-                    for element in tile * TILE..((tile + 1) * TILE).min(layout.len()) {
+                for vector in 0..layout.len().div_ceil(LANES) {
+                    let masks = vectors_around(&layout, vector);
+                    let is_marked =
+                        |element: usize| masks[element / TILE] >> (element % TILE / LANES) & 1 == 1;
+                    for element in vector * LANES..((vector + 1) * LANES).min(layout.len()) {
+                        assert!(is_marked(element));
                         let Some(b) = layout.block(element) else { continue };
                         let (i, j) = lattice.column_row(b);
                         for (di, dj) in [
@@ -215,12 +241,17 @@ mod tests {
                             (1, 1),
                         ] {
                             if let Some(other) = lattice.neighbour(i, j, [di, dj]) {
-                                let other = layout.element_of(other) / TILE;
-                                assert!(neighbours.contains(&other), "{nx}x{ny} {edges:?} {tile} {other}");
+                                let other = layout.element_of(other);
+                                assert!(is_marked(other), "{nx}x{ny} {edges:?} {vector} {other}");
                             }
                         }
                     }
-                    assert!(neighbours.contains(&tile));
+                    let marked: u32 = masks.iter().map(|mask| mask.count_ones()).sum();
+                    // Three rows of at most three vectors, twice with ghosts, and those that a wrap divides.
+                    assert!(
+                        marked <= 24,
+                        "{marked} vectors around {vector} of {nx}x{ny} {edges:?}"
+                    );
                 }
             }
         }

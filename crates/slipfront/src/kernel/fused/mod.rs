@@ -19,21 +19,25 @@ mod fields;
 mod layout;
 mod quanta;
 mod rest;
+mod sparse;
 mod springs;
 mod vector;
 
 #[cfg(test)]
 mod tests;
 
+use std::ops::Range;
+
 use fearless_simd::{Level, dispatch};
 
-use self::band::Band;
+use self::band::{Band, TileTask};
 use self::blocks::{Step, Sums};
-use self::layout::Layout;
+use self::layout::{Layout, TILE, VECTORS};
 use self::quanta::Quanta;
 use self::springs::{Series, SquareRoot};
-use crate::checkpoint::{Checkpoint, StrainBound};
-use crate::fixed_point::{self, Window};
+use self::vector::LANES;
+use crate::checkpoint::{Checkpoint, MotionBounds};
+use crate::fixed_point;
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
 use crate::kernel::totals::{StoredEnergy, Totals};
@@ -41,8 +45,14 @@ use crate::lattice::K_STRAIGHT;
 use crate::model::Model;
 use crate::state::State;
 
-/// Steps between two measurements of the extent of displacements; in between it is bounded.
-const EXTENT_INTERVAL: u64 = 16;
+/// Steps between two measurements of displacements and their differences; in between they are bounded.
+const MEASUREMENT_INTERVAL: u64 = 16;
+
+/// Most vectors of a tile that are swept one by one: more cost more than the whole tile.
+const MAX_SPARSE_VECTORS: u32 = 14;
+
+/// Most touched vectors of a tile after whose sweep its vectors are swept one by one.
+const MAX_SETTLING_VECTORS: u32 = 9;
 
 /// How spring forces are computed in a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,8 +74,8 @@ pub(crate) struct Fused {
     level: Level,
     /// Whether tiles at rest are skipped.
     skips: bool,
-    /// For every tile, whether one of its blocks or a neighbour of one moves.
-    has_moving_neighbour: Vec<bool>,
+    /// For every tile, which of its vectors have a moving block or a neighbour of one.
+    touched: Vec<u32>,
     /// For every tile, whether a tile in the sweep needs its springs.
     needs_springs: Vec<bool>,
     /// The first step at which a block may slip, if nothing moves.
@@ -78,7 +88,7 @@ pub(crate) struct Fused {
     sums: Option<(Sums<i128, f64, u64>, Quanta)>,
     /// The same as numbers.
     totals: Totals,
-    strain_bound: StrainBound,
+    motion_bounds: MotionBounds,
     /// Largest strains for the short and for the long series.
     strain_limits: [f64; 2],
     stress_square_max: f64,
@@ -116,24 +126,22 @@ impl Fused {
             bands,
             level: Level::new(),
             skips,
-            has_moving_neighbour: vec![false; n_tiles],
+            touched: vec![0; n_tiles],
             needs_springs: vec![false; n_tiles],
             active_from_step: 0,
             swept_step: None,
             springs: None,
             sums: None,
             totals,
-            strain_bound: StrainBound {
-                extent: [f64::NEG_INFINITY; 4],
-                growth: 0.0,
+            motion_bounds: MotionBounds {
                 speed: speed_square.sqrt(),
-                windows: [Window::around(0.0, 0.0); 2],
+                ..MotionBounds::default()
             },
             strain_limits: [Series::<3>::strain_limit(), Series::<7>::strain_limit()],
             stress_square_max: 0.0,
         };
-        kernel.copy_ghosts();
-        kernel.fill_halos(0.0);
+        kernel.copy_ghosts(true);
+        kernel.fill_halos(0.0, true);
         kernel
     }
 
@@ -143,7 +151,7 @@ impl Fused {
         model: &Model,
         dt_star: f64,
         mut checkpoint: Checkpoint,
-        strain_bound: StrainBound,
+        motion_bounds: MotionBounds,
         threads: usize,
         skips: bool,
     ) -> Self {
@@ -157,7 +165,7 @@ impl Fused {
             totals: checkpoint.totals,
             stress_square_max: checkpoint.stress_square_max,
             swept_step: Some(checkpoint.step),
-            strain_bound,
+            motion_bounds,
             ..kernel
         }
     }
@@ -165,18 +173,25 @@ impl Fused {
     /// How to compute springs in a step, by the bound on all strains, and whether sums have other quanta than before. It must be
     /// called at every step, swept or not, so that skipping does not change the choice.
     fn choose_springs(&mut self, model: &Model, step: &Step) -> (Springs, bool) {
-        if step.number.is_multiple_of(EXTENT_INTERVAL) {
-            let mut extent = [f64::NEG_INFINITY; 4];
-            for_each_band(&mut self.bands, &Band::measure_extents);
+        let bounds = &mut self.motion_bounds;
+        if step.number.is_multiple_of(MEASUREMENT_INTERVAL) {
+            let level = self.level;
+            for_each_band(
+                &mut self.bands,
+                &|band| dispatch!(level, simd => band.measure_displacements(simd)),
+            );
+            (bounds.extent, bounds.difference, bounds.growth) = ([f64::NEG_INFINITY; 4], [0.0; 2], 0.0);
             for tile in self.bands.iter().flat_map(|band| &band.tiles) {
-                for (most, value) in extent.iter_mut().zip(tile.extent) {
+                for (most, value) in bounds.extent.iter_mut().zip(tile.extent) {
+                    *most = most.max(value);
+                }
+                for (most, value) in bounds.difference.iter_mut().zip(tile.difference) {
                     *most = most.max(value);
                 }
             }
-            (self.strain_bound.extent, self.strain_bound.growth) = (extent, 0.0);
         }
-        self.strain_bound.growth += 2.0 * step.move_dt * self.strain_bound.speed;
-        let strain = self.strain_bound.max_strain(model.epsilon);
+        bounds.growth += 2.0 * step.move_dt * bounds.speed;
+        let strain = self.motion_bounds.max_strain(model.epsilon);
         let springs = if strain <= self.strain_limits[0] {
             Springs::ShortSeries
         } else if strain <= self.strain_limits[1] {
@@ -184,34 +199,49 @@ impl Fused {
         } else {
             Springs::SquareRoot
         };
-        (springs, self.strain_bound.move_windows())
+        (springs, self.motion_bounds.move_ranges())
     }
 
-    /// Decides what is done with every tile in the sweep to step `number`. All are swept if the formula of springs has changed.
-    fn schedule_tiles(&mut self, number: u64, springs_changed: bool) {
+    /// Decides what is done with every tile in the sweep to step `number`. All are swept if the sums that skipped tiles keep are of
+    /// no more use.
+    fn schedule_tiles(&mut self, number: u64, anew: bool) {
         let begins = self.swept_step.is_none();
         let follows = self.swept_step.is_some_and(|swept| swept + 1 == number);
         let Self {
             layout,
             bands,
-            has_moving_neighbour,
+            touched,
             needs_springs,
             ..
         } = self;
-        has_moving_neighbour.fill(false);
+        touched.fill(0);
         needs_springs.fill(false);
         for band in bands.iter() {
-            band.mark_moving_neighbours(layout, has_moving_neighbour);
+            band.mark_touched(layout, touched);
         }
         for band in bands.iter_mut() {
             for t in 0..band.tiles.len() {
-                let moved = has_moving_neighbour[band.first_tile + t];
-                let (tile, task) = (&band.tiles[t], &mut band.tasks[t]);
-                let rested = !(begins || follows && task.active);
-                task.active = !self.skips || springs_changed || moved || tile.active_from_step <= number;
-                task.was_skipped = task.active && rested;
-                task.newly_resting = self.skips && task.active && !moved;
-                if task.active {
+                let all = u32::MAX >> (VECTORS - band.vectors(t).len());
+                let (tile, before) = (band.tiles[t], band.tasks[t].active);
+                let mut task = TileTask {
+                    active: all,
+                    touched: touched[band.first_tile + t] & all,
+                    ..TileTask::default()
+                };
+                if task.touched != 0 {
+                    band.tiles[t].displacements_are_old = true;
+                }
+                let few = task.touched.count_ones() <= MAX_SETTLING_VECTORS;
+                if self.skips && !anew && tile.settled {
+                    task.active = task.touched;
+                    if tile.active_from_step <= number {
+                        task.active |= band.vectors_that_may_slip(t, number);
+                    }
+                    task.sparse = task.active.count_ones() <= MAX_SPARSE_VECTORS;
+                }
+                if !task.sparse {
+                    task.active = all;
+                    task.settles = self.skips && few;
                     let elements = band.elements(t);
                     let (first, last) = (band.first + elements.start, band.first + elements.end - 1);
                     needs_springs[band.first_tile + t] = true;
@@ -219,6 +249,12 @@ impl Fused {
                         .tiles_below(first, last)
                         .for_each(|tile| needs_springs[tile] = true);
                 }
+                task.was_skipped = match (begins, follows) {
+                    (true, _) => 0,
+                    (_, true) => task.active & !before,
+                    _ => task.active,
+                };
+                band.tasks[t] = task;
             }
         }
         for band in bands.iter_mut() {
@@ -228,38 +264,39 @@ impl Fused {
         }
     }
 
-    /// Contact stresses of the tiles that were skipped up to the step before `number`. They are largest at the first skipped
-    /// step, which the sweep before has measured, or at the last: at the next step the block with the largest may slide
-    /// already.
-    fn record_skipped_stress_maxima(&mut self, model: &Model, number: u64) {
-        for band in &self.bands {
-            for t in (0..band.tiles.len()).filter(|&t| band.tasks[t].was_skipped) {
-                let step = Step::new(model, number - 1, self.dt_star);
-                self.stress_square_max = self.stress_square_max.max(band.resting_stress_square(t, &step));
+    /// Displacements beyond the ends of every band, as they will be after moving by `move_dt`: of `all` elements, or of those that
+    /// move. Those beyond a free edge stay zero: no spring leads there.
+    fn fill_halos(&mut self, move_dt: f64, all: bool) {
+        if self.bands.len() == 1 && !self.layout.is_periodic_along_y() {
+            return;
+        }
+        let halo = self.bands[0].halo as isize;
+        for b in 0..self.bands.len() {
+            let first = self.bands[b].first as isize;
+            // The last vector of a band may extend beyond the last row.
+            let end = first + self.bands[b].len.min(self.layout.len() - self.bands[b].first) as isize;
+            let after_halo = first + self.bands[b].len as isize + halo;
+            for (from, to) in [(first - halo, first), (end, after_halo)] {
+                for (start, elements) in self.layout.pieces(from, to - 1) {
+                    self.fill_halo(b, (start - first + halo) as usize, elements, move_dt, all);
+                }
             }
         }
     }
 
-    /// Displacements beyond the ends of every band, as they will be after moving by `move_dt`. Those beyond a free edge stay
-    /// zero: no spring leads there.
-    fn fill_halos(&mut self, move_dt: f64) {
-        if self.bands.len() == 1 && !self.layout.is_periodic_along_y() {
-            return;
-        }
-        let (n, halo) = (self.layout.len() as isize, self.bands[0].halo);
-        for b in 0..self.bands.len() {
-            let (first, len) = (self.bands[b].first as isize, self.bands[b].len);
-            // The last vector of a band may extend beyond the last row.
-            let rows = len.min(self.layout.len() - self.bands[b].first);
-            for k in (0..halo).chain(halo + rows..halo + len + halo) {
-                let element = first + k as isize - halo as isize;
-                let wrapped = element.rem_euclid(n);
-                if wrapped == element || self.layout.is_periodic_along_y() {
-                    let (other, at) = self.locate(wrapped as usize);
-                    let u = self.bands[other].advanced(at, move_dt);
-                    self.bands[b].displacement.set(k, u);
+    /// Displacements of some elements to band `b`, from index `k` on.
+    fn fill_halo(&mut self, b: usize, mut k: usize, elements: Range<usize>, move_dt: f64, all: bool) {
+        let mut element = elements.start;
+        while element < elements.end {
+            let (other, at) = self.locate(element);
+            let n = (LANES - at % LANES).min(elements.end - element);
+            if all || self.bands[other].moving[at / LANES] != 0 {
+                for offset in 0..n {
+                    let u = self.bands[other].advanced(at + offset, move_dt);
+                    self.bands[b].displacement.set(k + offset, u);
                 }
             }
+            (element, k) = (element + n, k + n);
         }
     }
 
@@ -269,16 +306,20 @@ impl Fused {
         (band, element - self.bands[band].first)
     }
 
-    /// Copies displacements and velocities to the ghosts from their blocks.
-    fn copy_ghosts(&mut self) {
+    /// Copies displacements and velocities to the ghosts from their blocks: from `all`, or from those that were swept.
+    fn copy_ghosts(&mut self, all: bool) {
         if !self.layout.has_ghosts() {
             return;
         }
         for j in 0..self.layout.rows() {
             for (ghost, copied) in self.layout.ghosts_of_row(j) {
-                let ((from, at), (to, k)) = (self.locate(copied), self.locate(ghost));
+                let (from, at) = self.locate(copied);
                 let band = &self.bands[from];
+                if !all && band.tasks[at / TILE].active >> (at % TILE / LANES) & 1 == 0 {
+                    continue;
+                }
                 let (u, v) = (band.displacement.at(band.halo + at), band.velocity.at(at));
+                let (to, k) = self.locate(ghost);
                 let band = &mut self.bands[to];
                 band.displacement.set(band.halo + k, u);
                 band.velocity.set(k, v);
@@ -296,7 +337,7 @@ impl Fused {
         }
         self.stress_square_max = self.stress_square_max.max(sums.stress_square);
         self.active_from_step = active_from_step;
-        self.strain_bound.speed = sums.speed_square.sqrt();
+        self.motion_bounds.speed = sums.speed_square.sqrt();
         let (before, after) = (
             self.totals.velocity_after,
             sums.velocity.map(|sum| quanta.velocity.value(sum)),
@@ -351,13 +392,12 @@ impl Engine for Fused {
         let springs_changed = windows_moved || self.springs != Some(springs);
         if !self.skips || springs_changed || number >= self.active_from_step {
             self.schedule_tiles(number, springs_changed);
-            self.record_skipped_stress_maxima(model, number);
-            self.fill_halos(step.move_dt);
-            let (level, quanta) = (self.level, Quanta::new(&step, &self.strain_bound));
+            self.fill_halos(step.move_dt, false);
+            let (level, quanta) = (self.level, Quanta::new(&step, &self.motion_bounds));
             for_each_band(&mut self.bands, &|band| {
                 sweep(level, band, model.epsilon, step, &quanta, springs, energies);
             });
-            self.copy_ghosts();
+            self.copy_ghosts(false);
             (self.swept_step, self.springs) = (Some(number), Some(springs));
             self.sum_tiles(&quanta);
         }
@@ -400,16 +440,22 @@ impl Engine for Fused {
         let step = Step::new(model, number, self.dt_star);
         let mut square = self.stress_square_max;
         for band in &self.bands {
-            let is_skipped = |&t: &usize| self.swept_step != Some(number) || !band.tasks[t].active;
-            for t in (0..band.tiles.len()).filter(is_skipped) {
-                square = square.max(band.resting_stress_square(t, &step));
+            for (t, task) in band.tasks.iter().enumerate() {
+                let skipped = if self.swept_step == Some(number) {
+                    !task.active
+                } else {
+                    u32::MAX
+                };
+                if skipped != 0 {
+                    square = square.max(band.resting_stress_square(t, skipped, &step));
+                }
             }
         }
         square
     }
 
-    fn strain_bound(&self) -> Option<StrainBound> {
-        Some(self.strain_bound)
+    fn motion_bounds(&self) -> Option<MotionBounds> {
+        Some(self.motion_bounds)
     }
 
     fn checkpoint_velocity(&self, b: usize) -> [f64; 2] {

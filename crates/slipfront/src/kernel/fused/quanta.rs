@@ -2,7 +2,7 @@
 //! displacements and the highest speed, which every rank and thread knows.
 
 use super::blocks::Step;
-use crate::checkpoint::StrainBound;
+use crate::checkpoint::MotionBounds;
 use crate::fixed_point::{FixedPoint, Window};
 use crate::lattice::{K_DIAGONAL, K_STRAIGHT};
 
@@ -23,17 +23,16 @@ pub(super) struct Quanta {
     pub(super) lattice_energy: FixedPoint,
 }
 
-/// Rounding in the bounds and in what they bound.
+/// Rounding in the bounds and in what they bounds.
 const MARGIN: f64 = 1.0 + 1e-6;
 
 impl Quanta {
-    pub(super) fn new(step: &Step, bound: &StrainBound) -> Self {
-        let [x, y] = bound.windows.map(|window| window.differences().limit());
-        // Displacements of two blocks differ by the width of the window at most.
-        let spring_force = K_STRAIGHT * 2.0 * (x + y);
-        let speed = highest_speed(step, bound);
+    pub(super) fn new(step: &Step, bounds: &MotionBounds) -> Self {
+        let [x, y] = bounds.windows.map(|window| window.differences().limit());
+        let spring_force = K_STRAIGHT * bounds.spring_range.limit();
+        let speed = highest_speed(step, bounds);
         Self {
-            displacement: bound.windows,
+            displacement: bounds.windows,
             displacement_square: FixedPoint::new(MARGIN * (x * x + y * y)),
             velocity: FixedPoint::new(speed),
             motion_square: FixedPoint::new(MARGIN * 4.0 * speed * speed),
@@ -46,16 +45,16 @@ impl Quanta {
 }
 
 /// A bound on all speeds half a step after `step`: they change at most as without friction.
-fn highest_speed(step: &Step, bound: &StrainBound) -> f64 {
+fn highest_speed(step: &Step, bounds: &MotionBounds) -> f64 {
     let mut force = 0.0;
     for axis in 0..2 {
-        let [low, high] = bound.range(axis);
+        let [low, high] = bounds.range(axis);
         let position = step.drive_position[axis];
         let stretch = (position - low).abs().max((position - high).abs());
         // The force of a spring is at most its stiffness times the difference of the displacements of its ends.
-        force += 4.0 * (K_STRAIGHT + K_DIAGONAL) * (high - low)
+        force += 4.0 * (K_STRAIGHT + K_DIAGONAL) * bounds.spring_difference(axis)
             + step.drive.k_drive * stretch
             + step.drive.constant_force[axis].abs();
     }
-    MARGIN * (bound.speed + step.integrator.force_to_velocity * force)
+    MARGIN * (bounds.speed + step.integrator.force_to_velocity * force)
 }

@@ -8,18 +8,18 @@
 //! t = (sqrt(a^2 + c (T^2 - F^2)) - a)/c
 //! ```
 
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f64x8};
 
-use super::blocks::{Chunks, Step, pull};
-use super::vector::{add, dot, lane_max, load, load_vec2, splat, square};
+use super::blocks::{Step, pull};
+use super::vector::{Vec2x8, add, dot, lane_max, splat, square};
 
-/// Blocks of a tile in which nothing moves.
-pub(super) struct RestingTile<'a> {
-    pub(super) displacement: [Chunks<'a>; 2],
+/// Eight blocks in and around which nothing moves.
+pub(super) struct RestingVector<S: Simd> {
+    pub(super) displacement: Vec2x8<S>,
     /// `F_c`.
-    pub(super) lattice: [Chunks<'a>; 2],
-    pub(super) static_limit_squares: Chunks<'a>,
-    pub(super) kinetic_impulses: Chunks<'a>,
+    pub(super) lattice: Vec2x8<S>,
+    pub(super) static_limit_square: f64x8<S>,
+    pub(super) kinetic_impulse: f64x8<S>,
 }
 
 /// Number of steps from `step` until the first of the blocks can slip, or somewhat less.
@@ -27,7 +27,7 @@ pub(super) struct RestingTile<'a> {
 /// With a drive at an angle it is zero if one component of the drive force on a block shrinks while the other grows. So the
 /// contact stress of a skipped block is always largest at the first or at the last skipped step.
 #[inline(always)]
-pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingTile) -> u64 {
+pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingVector<S>) -> u64 {
     let drive = &step.drive;
     let [bx, by] = drive.direction.map(|d| drive.k_drive * drive.v_star * d);
     let growth_square = bx * bx + by * by;
@@ -37,30 +37,26 @@ pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingTi
     let growth = [splat(simd, bx), splat(simd, by)];
     let c = splat(simd, growth_square);
     let zero = splat(simd, 0.0);
-    let mut soonest = splat(simd, f64::NEG_INFINITY);
-    for k in 0..blocks.static_limit_squares.len() {
-        let drive = pull(simd, *step, load_vec2(simd, blocks.displacement, k));
-        let force = add(drive, load_vec2(simd, blocks.lattice, k));
-        let kinetic_force =
-            load(simd, &blocks.kinetic_impulses[k]) * splat(simd, step.integrator.velocity_to_force);
-        let threshold_square = load(simd, &blocks.static_limit_squares[k]).max(kinetic_force * kinetic_force);
-        let a = dot(force, growth);
-        let room = threshold_square - square(force);
-        let time = ((a * a + c * room).sqrt() - a) / c;
-        let grows = if bx != 0.0 && by != 0.0 {
-            (drive[0] * growth[0]).simd_ge(zero) & (drive[1] * growth[1]).simd_ge(zero)
-        } else {
-            room.simd_ge(zero)
-        };
-        // At the threshold, or if rounding makes the root NaN, the block may slip at once.
-        let time = (grows & room.simd_ge(zero) & time.simd_ge(zero)).select(time, zero);
-        soonest = soonest.max(-time);
-    }
+    let drive = pull(simd, *step, blocks.displacement);
+    let force = add(drive, blocks.lattice);
+    let kinetic_force = blocks.kinetic_impulse * splat(simd, step.integrator.velocity_to_force);
+    let threshold_square = blocks.static_limit_square.max(kinetic_force * kinetic_force);
+    let a = dot(force, growth);
+    let room = threshold_square - square(force);
+    let time = ((a * a + c * room).sqrt() - a) / c;
+    let grows = if bx != 0.0 && by != 0.0 {
+        (drive[0] * growth[0]).simd_ge(zero) & (drive[1] * growth[1]).simd_ge(zero)
+    } else {
+        room.simd_ge(zero)
+    };
+    // At the threshold, or if rounding makes the root NaN, the block may slip at once.
+    let time = (grows & room.simd_ge(zero) & time.simd_ge(zero)).select(time, zero);
+    let soonest = -lane_max(-time);
     // Forces have rounding errors of some units of their last place: the result is shortened by the time in which the load
     // grows by that, and by two steps for the rounding of the root and of the division.
     let distance = step.drive_position[0].abs() + step.drive_position[1].abs();
     let noise = 1e-13 * (1.0 + step.drive.k_drive * distance) / growth_square.sqrt();
-    let steps = (-lane_max(soonest) * (1.0 - 1e-9) - noise) / step.dt_star - 2.0;
+    let steps = (soonest * (1.0 - 1e-9) - noise) / step.dt_star - 2.0;
     // The conversion saturates: at zero if negative, at the largest integer if too large.
     steps as u64
 }

@@ -1,0 +1,211 @@
+//! Tiles in which little moves: vectors of eight blocks are swept alone, with the same bits as in a sweep of the whole tile.
+//!
+//! A vector is swept if one of its blocks or a neighbour of one moves, or if one of its blocks may slip. It computes all eight
+//! springs of its blocks itself. Sums over the tile are integers, so that they can be kept up to date by differences.
+
+use fearless_simd::{Simd, SimdBase};
+
+use super::band::{Band, Scratch, chunks, chunks_mut};
+use super::blocks::{Step, Sums, displacement_sums, spring, vector_energy};
+use super::layout::VECTORS;
+use super::quanta::Quanta;
+use super::springs::Geometry;
+use super::vector::{LANES, Vec2x8, add, load, load_vec2, splat, subtract};
+use crate::lattice::Bond;
+
+impl Band {
+    /// The vectors of a settled tile whose blocks may slip at step `number`.
+    pub(super) fn vectors_that_may_slip(&self, t: usize, number: u64) -> u32 {
+        let steps = self.active_from_step[self.vectors(t)].iter();
+        steps
+            .enumerate()
+            .fold(0, |mask, (v, &step)| mask | u32::from(step <= number) << v)
+    }
+
+    /// Eq. 8 in the moving vectors of a tile.
+    #[inline(always)]
+    pub(super) fn advance_vectors<S: Simd>(&mut self, simd: S, step: Step, quanta: &Quanta, t: usize) {
+        let dt = splat(simd, step.move_dt);
+        for v in self.vectors(t) {
+            if self.moving[v] == 0 {
+                continue;
+            }
+            let k = v * LANES;
+            let velocity = load_vec2(simd, chunks(&self.velocity, k, LANES), 0);
+            let [x, y] = chunks_mut(&mut self.displacement, self.halo + k, LANES);
+            let before = [load(simd, &x[0]), load(simd, &y[0])];
+            let after = [before[0] + dt * velocity[0], before[1] + dt * velocity[1]];
+            after[0].store_array(&mut x[0]);
+            after[1].store_array(&mut y[0]);
+            let blocks = self.blocks[v];
+            let (old, old_square) = displacement_sums(simd, before, blocks, quanta);
+            let (new, new_square) = displacement_sums(simd, after, blocks, quanta);
+            let sums = &mut self.tiles[t].sums;
+            for axis in 0..2 {
+                sums.displacement[axis] += new[axis] - old[axis];
+            }
+            sums.displacement_square += new_square - old_square;
+        }
+    }
+
+    /// Forces and velocities of the active vectors of a settled tile.
+    #[inline(always)]
+    pub(super) fn sparse_tile<S: Simd, G: Geometry>(
+        &mut self,
+        simd: S,
+        geometry: G,
+        step: Step,
+        quanta: &Quanta,
+        t: usize,
+        scratch: &mut Scratch,
+    ) {
+        let task = self.tasks[t];
+        let mut sums = Sums::zero(simd);
+        let mut lattice_energy = self.tiles[t].sums.lattice_energy;
+        let mut active = task.active;
+        while active != 0 {
+            let bit = active & active.wrapping_neg();
+            let v = t * VECTORS + active.trailing_zeros() as usize;
+            active ^= bit;
+            let energy = self.vector_forces(simd, geometry, quanta, v, scratch);
+            lattice_energy += energy - std::mem::replace(&mut self.lattice_energy[v], energy);
+            self.friction::<S, true>(simd, step, quanta, v * LANES..(v + 1) * LANES, scratch, &mut sums);
+            let rests = task.touched & bit == 0 && self.moving[v] == 0;
+            self.active_from_step[v] = self.first_active_step(simd, step, v, scratch, 0, rests);
+        }
+        let soonest = self.soonest_active_step(t);
+        let tile = &mut self.tiles[t];
+        let kept = tile.sums;
+        tile.sums = Sums {
+            displacement: kept.displacement,
+            displacement_square: kept.displacement_square,
+            lattice_energy,
+            ..sums.totals::<true>(quanta, task.active.count_ones() as usize)
+        };
+        tile.moving = tile.sums.sliding > 0;
+        tile.active_from_step = soonest;
+    }
+
+    /// Finds what is needed to sweep vectors of a tile alone, after a sweep of all of it.
+    #[inline(always)]
+    pub(super) fn settle<S: Simd, G: Geometry>(
+        &mut self,
+        simd: S,
+        geometry: G,
+        step: Step,
+        quanta: &Quanta,
+        t: usize,
+        scratch: &Scratch,
+    ) {
+        let touched = self.tasks[t].touched;
+        for (place, v) in self.vectors(t).enumerate() {
+            let rests = touched >> place & 1 == 0 && self.moving[v] == 0;
+            self.active_from_step[v] = self.first_active_step(simd, step, v, scratch, place * LANES, rests);
+            let springs = self.own_springs(simd, geometry, v);
+            self.lattice_energy[v] = vector_energy(simd, springs, self.blocks[v], quanta.lattice_energy);
+        }
+        self.tiles[t].active_from_step = self.soonest_active_step(t);
+        self.tiles[t].settled = true;
+    }
+
+    /// The first step after this one at which a block of vector `v` may slip, or 0 unless it rests.
+    #[inline(always)]
+    fn first_active_step<S: Simd>(
+        &self,
+        simd: S,
+        step: Step,
+        v: usize,
+        scratch: &Scratch,
+        place: usize,
+        rests: bool,
+    ) -> u64 {
+        if !rests {
+            return 0;
+        }
+        let steps = self.steps_until_slip(simd, step, v, scratch, place);
+        step.number.saturating_add(steps.max(1))
+    }
+
+    fn soonest_active_step(&self, t: usize) -> u64 {
+        let steps = self.active_from_step[self.vectors(t)].iter().copied();
+        steps.min().unwrap_or(u64::MAX)
+    }
+
+    /// Displacements of the eight elements from `first` on, counted from the front halo.
+    #[inline(always)]
+    fn displacement_at<S: Simd>(&self, simd: S, first: usize) -> Vec2x8<S> {
+        load_vec2(simd, chunks(&self.displacement, first, LANES), 0)
+    }
+
+    /// Force of the springs along `bond` of the eight elements from `first` on, whose other ends begin at `there`.
+    #[inline(always)]
+    fn springs_between<S: Simd, G: Geometry>(
+        &self,
+        simd: S,
+        geometry: G,
+        bond: &Bond,
+        (present, there): (u8, usize),
+        first: usize,
+    ) -> Vec2x8<S> {
+        let (here, there) = (
+            self.displacement_at(simd, first),
+            self.displacement_at(simd, there),
+        );
+        spring(simd, geometry, bond, present, here, there)
+    }
+
+    /// Springs of eight blocks to the east, north, north-east and north-west.
+    #[inline(always)]
+    fn own_springs<S: Simd, G: Geometry>(&self, simd: S, geometry: G, v: usize) -> [Vec2x8<S>; 4] {
+        let here = self.halo + v * LANES;
+        let [east, north, north_east, north_west] = self.springs_of(v);
+        [
+            self.springs_between(simd, geometry, &Bond::EAST, east, here),
+            self.springs_between(simd, geometry, &Bond::NORTH, north, here),
+            self.springs_between(simd, geometry, &Bond::NORTH_EAST, north_east, here),
+            self.springs_between(simd, geometry, &Bond::NORTH_WEST, north_west, here),
+        ]
+    }
+
+    /// Eq. 3 for eight blocks, to the beginning of the scratch array; gives the energy of their springs.
+    #[inline(always)]
+    fn vector_forces<S: Simd, G: Geometry>(
+        &self,
+        simd: S,
+        geometry: G,
+        quanta: &Quanta,
+        v: usize,
+        scratch: &mut Scratch,
+    ) -> i64 {
+        let own = self.own_springs(simd, geometry, v);
+        let here = self.halo + v * LANES;
+        let below = here - self.stride;
+        let [has_east, has_west, has_north] = &self.masks;
+        let south_west = bits_from(has_north, below - 1) & bits_from(has_east, below - 1);
+        let south_east = bits_from(has_north, below + 1) & bits_from(has_west, below + 1);
+        let (west, south) = (bits_from(has_east, here - 1), bits_from(has_north, below));
+        let west = self.springs_between(simd, geometry, &Bond::EAST, (west, here), here - 1);
+        let south = self.springs_between(simd, geometry, &Bond::NORTH, (south, here), below);
+        let south_west =
+            self.springs_between(simd, geometry, &Bond::NORTH_EAST, (south_west, here), below - 1);
+        let south_east =
+            self.springs_between(simd, geometry, &Bond::NORTH_WEST, (south_east, here), below + 1);
+        let [east, north, north_east, north_west] = own;
+        let [x, y] = add(
+            add(subtract(east, west), subtract(north, south)),
+            add(subtract(north_east, south_west), subtract(north_west, south_east)),
+        );
+        let [fx, fy] = chunks_mut(&mut scratch.lattice, 0, LANES);
+        x.store_array(&mut fx[0]);
+        y.store_array(&mut fy[0]);
+        vector_energy(simd, own, self.blocks[v], quanta.lattice_energy)
+    }
+}
+
+/// Bits of a mask for the eight elements from `element` on.
+#[inline(always)]
+fn bits_from(mask: &[u8], element: usize) -> u8 {
+    let v = element / LANES;
+    let next = mask.get(v + 1).copied().unwrap_or(0);
+    (u16::from_le_bytes([mask[v], next]) >> (element % LANES)) as u8
+}
