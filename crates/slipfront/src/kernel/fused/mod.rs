@@ -30,7 +30,7 @@ use self::band::Band;
 use self::blocks::Step;
 use self::layout::Layout;
 use self::springs::{Series, SquareRoot};
-use crate::checkpoint::{Checkpoint, StrainBound};
+use crate::checkpoint::{BlockColumn, Checkpoint, StrainBound};
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
 use crate::kernel::totals::{StoredEnergy, Totals};
@@ -132,27 +132,35 @@ impl Fused {
 
     /// Continues from a checkpoint. Every tile is swept at the next step, also those that could be skipped: both give the same
     /// bits. The step of the checkpoint counts as one in which all tiles were swept.
-    pub(crate) fn resume(
+    pub(crate) fn resume<E>(
         model: &Model,
         dt_star: f64,
-        mut checkpoint: Checkpoint,
+        checkpoint: &Checkpoint,
         strain_bound: StrainBound,
         threads: usize,
         skips: bool,
-    ) -> Self {
-        let state = checkpoint.take_state();
-        let mut kernel = Self::new(model, dt_star, Some(&state), threads, skips);
-        drop(state);
+        mut read: impl FnMut(BlockColumn, usize, &mut [f64]) -> Result<(), E>,
+    ) -> Result<Self, E> {
+        let mut kernel = Self::new(model, dt_star, None, threads, skips);
+        BlockColumn::for_each_part(model.lattice.n_blocks(), |column, first, values| {
+            read(column, first, values)?;
+            for band in &mut kernel.bands {
+                band.set_column(&kernel.layout, column, first, values);
+            }
+            Ok(())
+        })?;
         for band in &mut kernel.bands {
-            band.resume(&kernel.layout, &checkpoint.first_slip.0);
+            band.resume();
         }
-        Self {
+        kernel.copy_ghosts();
+        kernel.fill_halos(0.0);
+        Ok(Self {
             totals: checkpoint.totals,
             stress_square_max: checkpoint.stress_square_max,
             swept_step: Some(checkpoint.step),
             strain_bound,
             ..kernel
-        }
+        })
     }
 
     /// How to compute springs in a step, by the bound on all strains. It must be called at every step, swept or not, so that
