@@ -108,17 +108,15 @@ impl Simulation {
     ) -> Result<(), E> {
         let engine = &*self.engine;
         BlockColumn::for_each_part(self.model.lattice.n_blocks(), |column, first, values| {
-            let mut fill = |value: &dyn Fn(usize) -> f64| {
-                for (b, to) in (first..).zip(&mut *values) {
-                    *to = value(b);
-                }
+            let value = |b: usize| match column {
+                BlockColumn::DisplacementX => engine.motion(b)[0][0],
+                BlockColumn::DisplacementY => engine.motion(b)[0][1],
+                BlockColumn::VelocityX => engine.checkpoint_velocity(b)[0],
+                BlockColumn::VelocityY => engine.checkpoint_velocity(b)[1],
+                BlockColumn::FirstSlip => engine.first_slip(b),
             };
-            match column {
-                BlockColumn::DisplacementX => fill(&|b| engine.motion(b)[0][0]),
-                BlockColumn::DisplacementY => fill(&|b| engine.motion(b)[0][1]),
-                BlockColumn::VelocityX => fill(&|b| engine.checkpoint_velocity(b)[0]),
-                BlockColumn::VelocityY => fill(&|b| engine.checkpoint_velocity(b)[1]),
-                BlockColumn::FirstSlip => fill(&|b| engine.first_slip(b)),
+            for (b, to) in (first..).zip(&mut *values) {
+                *to = value(b);
             }
             write(column, first, values)
         })
