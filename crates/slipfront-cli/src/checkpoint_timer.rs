@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::{Duration, Instant};
 
+use slipfront::communicator::Alone;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::resume_command::resume_command;
 use slipfront_run::running::Running;
@@ -82,7 +83,7 @@ impl CheckpointTimer {
         } else if asked || self.due.is_some_and(|due| Instant::now() >= due) {
             let began = Instant::now();
             let step = running.snapshot().step;
-            match self.checkpoints.save(running) {
+            match self.checkpoints.save(running, &Alone) {
                 Ok(()) if asked => {
                     let seconds = began.elapsed().as_secs_f64();
                     progress.note(&format!("saved a checkpoint of step {step} in {seconds:.2} s"));
@@ -113,7 +114,7 @@ impl CheckpointTimer {
             let sentence = format!("{stopped}; nothing is saved, since --checkpoint is off");
             return Failure::stopped(&self.signals, anyhow::anyhow!(sentence));
         }
-        match self.checkpoints.save(running) {
+        match self.checkpoints.save(running, &Alone) {
             Ok(()) => {
                 let sentence = format!(
                     "{stopped}, which is saved: `{}` goes on",

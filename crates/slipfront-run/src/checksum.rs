@@ -1,55 +1,67 @@
 //! Checksums (BLAKE3), by which changed and damaged files are noticed.
 //!
-//! A checksummed file is its contents followed by the hash of a context and of the contents. The context is what the
-//! contents are valid for, such as a build of the program; it is not written.
+//! A checksummed file is its contents followed by a hash. That of a small file is one of a context and of the contents; the
+//! context is what the contents are valid for, such as a build of the program, and is not written. That of a large file is one
+//! of the hashes of its pieces, which several ranks find together.
 
-use std::io::{Read, Write};
+use std::io::{ErrorKind, Read, Seek, SeekFrom};
 
 use blake3::{Hash, Hasher, OUT_LEN};
+use slipfront::Communicator;
 
-/// A writer that hashes what is written through it.
-#[derive(Debug)]
-pub struct HashingWriter<W> {
-    inner: W,
-    hasher: Hasher,
-}
+use crate::ranks::agree;
 
-impl<W: Write> HashingWriter<W> {
-    /// Nothing written yet.
-    pub fn new(inner: W) -> Self {
-        let hasher = Hasher::new();
-        Self { inner, hasher }
-    }
+/// Bytes of a piece; the last may be shorter.
+const PIECE: u64 = 4 << 20;
 
-    /// Writes the checksum of all that was written.
-    pub fn finish(mut self) -> std::io::Result<()> {
-        self.inner.write_all(self.hasher.finalize().as_bytes())
-    }
-}
+/// Pieces whose hashes are in memory at once, in 2 MiB.
+const PIECES_AT_ONCE: u64 = 1 << 16;
 
-impl<W: Write> Write for HashingWriter<W> {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        let written = self.inner.write(bytes)?;
-        self.hasher.update(&bytes[..written]);
-        Ok(written)
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        self.inner.flush()
-    }
-}
-
-/// The number of bytes before the checksum of a file of `length` bytes, read from its start; none if the checksum does
-/// not fit.
-pub fn verify_reader(mut reader: impl Read, length: u64) -> std::io::Result<Option<u64>> {
-    let Some(contents) = length.checked_sub(OUT_LEN as u64) else {
-        return Ok(None);
-    };
+/// The hash of the hashes of all pieces of the first `length` bytes of a file, of which every rank reads its share.
+///
+/// # Errors
+/// When one of the ranks cannot read its share.
+pub fn hash_of_pieces(
+    file: &mut (impl Read + Seek),
+    length: u64,
+    communicator: &dyn Communicator,
+) -> std::io::Result<Hash> {
+    let (rank, ranks) = (communicator.rank() as u64, communicator.size() as u64);
+    let n_pieces = length.div_ceil(PIECE);
     let mut hasher = Hasher::new();
-    hasher.update_reader(reader.by_ref().take(contents))?;
-    let mut checksum = Vec::new();
-    reader.read_to_end(&mut checksum)?;
-    Ok((hasher.finalize().as_bytes() == checksum.as_slice()).then_some(contents))
+    for first in (0..n_pieces).step_by(PIECES_AT_ONCE as usize) {
+        let n = PIECES_AT_ONCE.min(n_pieces - first);
+        // Those of other ranks are zero, so that the sum over the ranks has all of them.
+        let mut words = vec![[0; OUT_LEN / size_of::<i64>()]; n as usize];
+        let mut hash_own = || {
+            for piece in n * rank / ranks..n * (rank + 1) / ranks {
+                let begin = (first + piece) * PIECE;
+                let hash = hash_range(file, begin, PIECE.min(length - begin))?;
+                let (bytes, _) = hash.as_bytes().as_chunks();
+                for (word, bytes) in words[piece as usize].iter_mut().zip(bytes) {
+                    *word = i64::from_le_bytes(*bytes);
+                }
+            }
+            Ok(())
+        };
+        agree(communicator, hash_own())?;
+        communicator.sum(words.as_flattened_mut());
+        for word in words.as_flattened() {
+            hasher.update(&word.to_le_bytes());
+        }
+    }
+    Ok(hasher.finalize())
+}
+
+/// Hash of a part of a file.
+fn hash_range(file: &mut (impl Read + Seek), begin: u64, length: u64) -> std::io::Result<Hash> {
+    file.seek(SeekFrom::Start(begin))?;
+    let mut hasher = Hasher::new();
+    hasher.update_reader(file.take(length))?;
+    if hasher.count() < length {
+        return Err(ErrorKind::UnexpectedEof.into());
+    }
+    Ok(hasher.finalize())
 }
 
 /// Contents with their checksum.
@@ -69,26 +81,44 @@ fn hash(context: &[u8], contents: &[u8]) -> Hash {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Cursor;
+
+    use slipfront::communicator::Alone;
+
     use super::*;
+    use crate::test_ranks::on_ranks;
 
     #[test]
-    fn both_ways_write_and_verify_one_layout() {
-        let mut file = Vec::new();
-        let mut writer = HashingWriter::new(&mut file);
-        writer.write_all(b"contents").unwrap();
-        writer.finish().unwrap();
-        assert_eq!(file, with_checksum(b"", b"contents"));
+    fn a_small_file_is_verified_as_it_was_written() {
+        let file = with_checksum(b"", b"contents");
         assert_eq!(verified(b"", &file), Some(&b"contents"[..]));
         assert_eq!(verified(b"another context", &file), None);
-        assert_eq!(verify_reader(&file[..], file.len() as u64).unwrap(), Some(8));
         for cut in 0..file.len() {
             assert_eq!(verified(b"", &file[..cut]), None, "{cut}");
-            assert_eq!(verify_reader(&file[..cut], cut as u64).unwrap(), None, "{cut}");
         }
         for place in 0..file.len() {
             let mut flipped = file.clone();
             flipped[place] ^= 1;
             assert_eq!(verified(b"", &flipped), None, "{place}");
         }
+    }
+
+    /// Files that end at, before and behind the end of a piece, held against the hash of the hashes of the pieces.
+    #[test]
+    fn any_number_of_ranks_finds_the_same_hash_of_pieces() {
+        let piece = PIECE as usize;
+        let file: Vec<u8> = (0..3 * piece).map(|byte| (byte % 251) as u8).collect();
+        for length in [0, 1, piece - 1, piece, piece + 1, 2 * piece + 5, 3 * piece] {
+            let pieces = file[..length].chunks(piece);
+            let hashes: Vec<u8> = pieces.flat_map(|piece| *blake3::hash(piece).as_bytes()).collect();
+            for ranks in [1, 2, 3, 7] {
+                let found = on_ranks(ranks, |communicator| {
+                    hash_of_pieces(&mut Cursor::new(&file), length as u64, communicator).unwrap()
+                });
+                assert_eq!(found, vec![blake3::hash(&hashes); ranks], "{length} {ranks}");
+            }
+        }
+        let longer = hash_of_pieces(&mut Cursor::new(&file), file.len() as u64 + 1, &Alone);
+        assert_eq!(longer.unwrap_err().kind(), ErrorKind::UnexpectedEof);
     }
 }

@@ -9,12 +9,14 @@
 pub mod checkpoint;
 pub mod checksum;
 pub mod clock;
+pub mod columns;
 pub mod error;
 pub mod fields;
 pub mod manifest;
 pub mod names;
 pub mod pictures;
 pub mod program;
+mod ranks;
 pub mod results;
 pub mod resume_command;
 pub mod run_folder;
@@ -23,3 +25,6 @@ pub mod series;
 pub mod study;
 pub mod summary;
 pub mod verify;
+
+#[cfg(test)]
+mod test_ranks;

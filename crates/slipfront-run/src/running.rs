@@ -1,13 +1,15 @@
 //! [`Case`] -> [`Record`]: one run with all observers that its files need.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use slipfront::checkpoint::BlockNumbers;
+use slipfront::checkpoint::BlockColumn;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{CurveRow, Frame, Frames, Instants, Schedule, Scheduled};
 use slipfront::{Checkpoint, Execution, RunError, Simulation, Snapshot, Stop, StopReason};
 
+use crate::columns::Columns;
 use crate::fields::FieldFrame;
 use crate::summary::{Summary, SummaryObservers};
 use slipfront_case::case::{Case, Output, Snapshots};
@@ -63,11 +65,18 @@ enum Fields {
     Frames(Frames),
 }
 
-/// All that a run needs to go on later, written down as [`Running::state`].
+/// What a run needs to go on later beside the numbers of its blocks, written down as [`Running::state`].
 #[derive(Debug, Serialize, Deserialize)]
-pub struct RunState<N = BlockNumbers, O = Observers> {
-    simulation: Checkpoint<N>,
+pub struct RunState<O = Observers> {
+    simulation: Checkpoint,
     observers: O,
+}
+
+impl RunState {
+    /// The numbers of blocks that belong to it.
+    pub fn columns(&self, case: &Case) -> [Columns; 2] {
+        self.observers.columns(case)
+    }
 }
 
 fn execution(case: &Case, threads: usize) -> Execution {
@@ -105,13 +114,29 @@ impl Observers {
 
     /// Whether they can be those of a run of this case after `step` steps.
     fn belong_to(&self, case: &Case, step: u64) -> bool {
-        let (new, lattice) = (Self::new(case, case.time_plan.last_step), &case.model.lattice);
+        let new = Self::new(case, case.time_plan.last_step);
         let fields = match (&self.fields, &new.fields) {
-            (Fields::Instants(old), Fields::Instants(new)) => old.is_consistent_with(new, lattice, step),
-            (Fields::Frames(old), Fields::Frames(new)) => old.is_consistent_with(new, lattice, step),
+            (Fields::Instants(old), Fields::Instants(new)) => old.is_consistent_with(new, step),
+            (Fields::Frames(old), Fields::Frames(new)) => old.is_consistent_with(new, step),
             _ => false,
         };
         fields && self.summary.is_consistent_with(&new.summary, step)
+    }
+
+    /// The numbers of blocks that a checkpoint keeps: those of the simulation, and those of every field of every frame.
+    fn columns(&self, case: &Case) -> [Columns; 2] {
+        let (lattice, stride) = (&case.model.lattice, case.output.stride);
+        let columns = |count: usize, stride: usize, number_bytes: usize| Columns {
+            count: count as u64,
+            rows: lattice.ny.div_ceil(stride) as u64,
+            row_length: lattice.nx.div_ceil(stride) as u64,
+            number_bytes: number_bytes as u64,
+        };
+        let fields = self.fields.frames().len() * case.output.fields.len();
+        [
+            columns(BlockColumn::ALL.len(), 1, size_of::<f64>()),
+            columns(fields, stride, size_of::<f32>()),
+        ]
     }
 
     fn scheduled(&mut self, snapshots: &Snapshots) -> Vec<Scheduled<'_>> {
@@ -128,6 +153,38 @@ impl Observers {
         scheduled
     }
 }
+
+impl Fields {
+    /// The frames that are held at present, in a fixed order.
+    fn frames(&self) -> Vec<&Frame> {
+        match self {
+            Self::Instants(instants) => instants.frames().collect(),
+            Self::Frames(frames) => frames.frames.iter().collect(),
+        }
+    }
+
+    /// The same frames, to fill them again.
+    fn frames_mut(&mut self) -> Vec<&mut Frame> {
+        match self {
+            Self::Instants(instants) => instants.frames_mut().collect(),
+            Self::Frames(frames) => frames.frames.iter_mut().collect(),
+        }
+    }
+}
+
+/// Rows of the lattice that this process holds.
+fn own_rows(case: &Case) -> Range<usize> {
+    0..case.model.lattice.ny
+}
+
+/// Those rows among every `stride`-th of the lattice, counted among these.
+fn own_rows_of_fields(case: &Case) -> Range<usize> {
+    let (rows, stride) = (own_rows(case), case.output.stride);
+    rows.start.div_ceil(stride)..rows.end.div_ceil(stride)
+}
+
+/// Numbers of a field that are written and read at once.
+const PART: usize = 1 << 17;
 
 impl Running {
     /// Begins a run on at most `threads` threads.
@@ -151,19 +208,63 @@ impl Running {
         }
     }
 
-    /// Goes on with a run where its state was written down; none if the state is not one of this case.
-    pub fn resume(case: &Arc<Case>, threads: usize, state: RunState) -> Option<Self> {
-        let (step, observers) = (state.simulation.step, state.observers);
-        if step > case.time_plan.last_step || !observers.belong_to(case, step) {
-            return None;
+    /// Goes on with a run where its state was written down; none if the state is not one of this case. `read` is given a place
+    /// in the columns of the state and room for the bytes from there on.
+    ///
+    /// # Errors
+    /// Those of `read`.
+    pub fn resume<E>(
+        case: &Arc<Case>,
+        threads: usize,
+        state: RunState,
+        mut read: impl FnMut(u64, &mut [u8]) -> Result<(), E>,
+    ) -> Result<Option<Self>, E> {
+        let (checkpoint, mut observers) = (state.simulation, state.observers);
+        if checkpoint.step > case.time_plan.last_step || !observers.belong_to(case, checkpoint.step) {
+            return Ok(None);
         }
+        let [blocks, fields] = observers.columns(case);
+        let mut bytes = Vec::new();
+        let first_row = own_rows(case).start;
         let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
-        Some(Self {
+        let execution = execution(case, threads);
+        let simulation =
+            Simulation::resume(model, dt_star, &checkpoint, execution, |column, first, values| {
+                bytes.resize(size_of_val(values), 0);
+                read(blocks.offset(column as usize, first_row, first), &mut bytes)?;
+                for (value, bytes) in values.iter_mut().zip(bytes.as_chunks().0) {
+                    *value = f64::from_le_bytes(*bytes);
+                }
+                Ok(())
+            })?;
+        let Some(simulation) = simulation else {
+            return Ok(None);
+        };
+        let (rows, begin) = (
+            own_rows_of_fields(case),
+            blocks.offset(blocks.count as usize, 0, 0),
+        );
+        let mut column = 0;
+        for frame in observers.fields.frames_mut() {
+            for _ in &case.output.fields {
+                let mut field = vec![0.0; rows.len() * fields.row_length as usize];
+                for (part, values) in field.chunks_mut(PART).enumerate() {
+                    bytes.resize(size_of_val(values), 0);
+                    read(begin + fields.offset(column, rows.start, part * PART), &mut bytes)?;
+                    for (value, bytes) in values.iter_mut().zip(bytes.as_chunks().0) {
+                        *value = f32::from_le_bytes(*bytes);
+                    }
+                }
+                frame.values.push(field);
+                column += 1;
+            }
+        }
+        Ok(Some(Self {
             case: Arc::clone(case),
             stop: case.time_plan.stop,
-            simulation: Simulation::resume(model, dt_star, state.simulation, execution(case, threads))?,
+            simulation,
             observers,
-        })
+        }))
     }
 
     /// At most `steps` steps; why the run ended, if it did. An error says that it diverges.
@@ -190,12 +291,50 @@ impl Running {
         &self.case
     }
 
-    /// All that the run needs to go on later, to be written down.
+    /// What the run needs to go on later beside its [columns](Self::write_columns), to be written down.
     pub fn state(&self) -> impl Serialize + '_ {
         RunState {
             simulation: self.simulation.checkpoint(),
             observers: &self.observers,
         }
+    }
+
+    /// The numbers of blocks that belong to the state.
+    pub fn columns(&self) -> [Columns; 2] {
+        self.observers.columns(&self.case)
+    }
+
+    /// Gives the numbers of the rows that are held here to `write`, which is given a place in the columns and the bytes from there
+    /// on.
+    ///
+    /// # Errors
+    /// Those of `write`.
+    pub fn write_columns<E>(&self, mut write: impl FnMut(u64, &[u8]) -> Result<(), E>) -> Result<(), E> {
+        let [blocks, fields] = self.columns();
+        let mut bytes = Vec::new();
+        let first_row = own_rows(&self.case).start;
+        self.simulation.write_columns(|column, first, values| {
+            bytes.resize(size_of_val(values), 0);
+            for (value, bytes) in values.iter().zip(bytes.as_chunks_mut().0) {
+                *bytes = value.to_le_bytes();
+            }
+            write(blocks.offset(column as usize, first_row, first), &bytes)
+        })?;
+        let (row, begin) = (
+            own_rows_of_fields(&self.case).start,
+            blocks.offset(blocks.count as usize, 0, 0),
+        );
+        let frames = self.observers.fields.frames().into_iter();
+        for (column, field) in frames.flat_map(|frame| &frame.values).enumerate() {
+            for (part, values) in field.chunks(PART).enumerate() {
+                bytes.resize(size_of_val(values), 0);
+                for (value, bytes) in values.iter().zip(bytes.as_chunks_mut().0) {
+                    *bytes = value.to_le_bytes();
+                }
+                write(begin + fields.offset(column, row, part * PART), &bytes)?;
+            }
+        }
+        Ok(())
     }
 
     /// What the run leaves behind, once it has ended.

@@ -1,22 +1,19 @@
 //! What a run needs to continue later with the same bits.
 //!
-//! A checkpoint holds the state of every block in the order of the lattice, so that it does not depend on how the kernel
-//! lays out its arrays, on the number of threads or on the SIMD width. Everything else that a kernel keeps is found again
-//! by its next sweep.
+//! A checkpoint is small. Beside it stand the columns: numbers of every block in the order of the lattice, so that they do not
+//! depend on how the kernel lays out its arrays, on the number of threads or ranks, or on the SIMD width. They are handed over
+//! part by part, and nothing of the size of the lattice is copied. Everything else that a kernel keeps is found again by its
+//! next sweep.
 
-use std::fmt::Formatter;
-
-use serde::de::{SeqAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 
 use crate::fixed_point::{FixedPoint, Window};
 use crate::kernel::totals::Totals;
 use crate::measure::Peak;
-use crate::state::State;
 
-/// A run between two steps. `N` is one value per block: [`BlockNumbers`] when read back.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Checkpoint<N = BlockNumbers> {
+/// A run between two steps, without the numbers of its blocks: these are its [`BlockColumn`]s.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Checkpoint {
     /// Number of steps done.
     pub step: u64,
     pub(crate) totals: Totals,
@@ -25,29 +22,50 @@ pub struct Checkpoint<N = BlockNumbers> {
     pub(crate) stress_square_max: f64,
     /// Of the fused kernel.
     pub(crate) motion_bounds: Option<MotionBounds>,
-    /// At t_n.
-    pub(crate) displacement: [N; 2],
-    /// Half a step after t_n; half a step before it of the reference kernel, which evaluates t_n again.
-    pub(crate) velocity: [N; 2],
-    /// t* of the first slip; NaN for a block that has not slipped.
-    pub(crate) first_slip: N,
 }
 
-impl Checkpoint {
-    /// Whether it is one of a lattice of `n` blocks.
-    pub(crate) fn has_blocks(&self, n: usize) -> bool {
-        let all = self.displacement.iter().chain(&self.velocity);
-        all.chain([&self.first_slip]).all(|column| column.0.len() == n)
-    }
+/// A number that is kept of every block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BlockColumn {
+    /// u_x at t_n.
+    DisplacementX,
+    /// u_y at t_n.
+    DisplacementY,
+    /// v_x half a step after t_n; half a step before it of the reference kernel, which evaluates t_n again.
+    VelocityX,
+    /// v_y at the same time.
+    VelocityY,
+    /// t* of the first slip; NaN for a block that has not slipped.
+    FirstSlip,
+}
 
-    /// Takes displacements and velocities out of it.
-    pub(crate) fn take_state(&mut self) -> State {
-        let take =
-            |columns: &mut [BlockNumbers; 2]| columns.each_mut().map(|c| std::mem::take(&mut c.0)).into();
-        State {
-            displacement: take(&mut self.displacement),
-            velocity: take(&mut self.velocity),
+impl BlockColumn {
+    /// All columns, in the order in which they are handed over.
+    pub const ALL: [Self; 5] = [
+        Self::DisplacementX,
+        Self::DisplacementY,
+        Self::VelocityX,
+        Self::VelocityY,
+        Self::FirstSlip,
+    ];
+
+    /// Number of blocks in a part.
+    const PART: usize = 1 << 16;
+
+    /// Takes all columns of `n_blocks` blocks part by part through `work`, which is given the column, the first block, and room
+    /// for the values. The first error ends it.
+    pub(crate) fn for_each_part<E>(
+        n_blocks: usize,
+        mut work: impl FnMut(Self, usize, &mut [f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut values = vec![0.0; n_blocks.min(Self::PART)];
+        for column in Self::ALL {
+            for first in (0..n_blocks).step_by(Self::PART) {
+                let len = Self::PART.min(n_blocks - first);
+                work(column, first, &mut values[..len])?;
+            }
         }
+        Ok(())
     }
 }
 
@@ -124,33 +142,106 @@ impl MotionBounds {
 /// Springs of blocks that slide are stretched by more.
 const MIN_SPRING_RANGE: f64 = 1e-9;
 
-/// One value of every block, read back. Memory is reserved for values as they arrive, whatever length the data claims, and
-/// by an eighth at a time: doubling could ask for more than a large lattice leaves free.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct BlockNumbers(pub(crate) Vec<f64>);
+#[cfg(test)]
+mod tests {
+    use std::convert::Infallible;
 
-impl<'de> Deserialize<'de> for BlockNumbers {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct BlockNumbersVisitor;
-        impl<'de> Visitor<'de> for BlockNumbersVisitor {
-            type Value = Vec<f64>;
+    use rstest::rstest;
 
-            fn expecting(&self, formatter: &mut Formatter) -> std::fmt::Result {
-                formatter.write_str("one number per block")
-            }
+    use super::*;
+    use crate::surface::{Coefficients, Distribution, Load};
+    use crate::{Drive, Edges, Execution, FrictionLaw, Kernel, Lattice, Model, Simulation, Surface, scales};
 
-            fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<Vec<f64>, A::Error> {
-                const MIN_RESERVED: usize = 1 << 13;
-                let mut numbers = Vec::new();
-                while let Some(number) = sequence.next_element()? {
-                    if numbers.len() == numbers.capacity() {
-                        numbers.reserve_exact(MIN_RESERVED.max(numbers.len() / 8));
-                    }
-                    numbers.push(number);
-                }
-                Ok(numbers)
-            }
+    /// Blocks that slip one after the other.
+    fn model(lattice: Lattice) -> Model {
+        let n = lattice.n_blocks();
+        let [mu_static, mu_kinetic] = [1.0, 0.5].map(|mean| Distribution { mean, deviation: 0.3 });
+        let drawn = Coefficients::draw(n, mu_static, mu_kinetic, 7);
+        let surface = Surface::new(drawn, vec![false; n], Load::Redistributed, 1.0).unwrap();
+        let (drive, law) = (Drive::at_angle(0.5, 25.0), FrictionLaw::Projection);
+        Model::new(lattice, surface, drive, scales::damping(0.1), 1e-6, law)
+    }
+
+    /// The bits of all columns.
+    fn columns(simulation: &Simulation) -> [Vec<u64>; 5] {
+        let mut columns: [Vec<u64>; 5] = Default::default();
+        let Ok(()) = simulation.write_columns(|column, first, values| {
+            let bits = &mut columns[column as usize];
+            assert_eq!(bits.len(), first, "{column:?}");
+            bits.extend(values.iter().map(|value| value.to_bits()));
+            Ok::<(), Infallible>(())
+        });
+        columns
+    }
+
+    /// More blocks than are handed over at once, in parts that end within rows and at their ends, and within bands.
+    #[rstest]
+    #[case(300, 300, Edges::Free)]
+    #[case(1, 70_000, Edges::Free)]
+    #[case(70_001, 3, Edges::Periodic)]
+    fn columns_of_many_blocks_are_handed_over(
+        #[case] nx: usize,
+        #[case] ny: usize,
+        #[case] edges: Edges,
+        #[values((Kernel::Fused, 1), (Kernel::Fused, 3), (Kernel::Reference, 1))] by: (Kernel, usize),
+    ) {
+        let (kernel, threads) = by;
+        let execution = Execution {
+            kernel,
+            threads,
+            ..Execution::default()
+        };
+        let model = model(Lattice::with_edges(nx, ny, [edges; 2]));
+        let mut plain = Simulation::with_execution(model.clone(), 0.1, None, execution);
+        while plain.snapshot().totals.n_slipping < 100 {
+            plain.step();
         }
-        deserializer.deserialize_seq(BlockNumbersVisitor).map(Self)
+        let saved = columns(&plain);
+        let read = |column: BlockColumn, first: usize, values: &mut [f64]| {
+            for (value, bits) in values.iter_mut().zip(&saved[column as usize][first..]) {
+                *value = f64::from_bits(*bits);
+            }
+            Ok::<(), Infallible>(())
+        };
+        let Ok(resumed) = Simulation::resume(model, 0.1, &plain.checkpoint(), execution, read);
+        let mut resumed = resumed.unwrap();
+        assert!(columns(&resumed) == saved, "before the next step");
+        for _ in 0..3 {
+            plain.step();
+            resumed.step();
+            assert!(
+                columns(&resumed) == columns(&plain),
+                "step {}",
+                plain.checkpoint().step
+            );
+            assert_eq!(resumed.checkpoint(), plain.checkpoint());
+        }
+    }
+
+    #[test]
+    fn an_error_of_the_reader_ends_it_at_once() {
+        let model = model(Lattice::free(6, 5));
+        for kernel in [Kernel::Fused, Kernel::Reference] {
+            let execution = Execution {
+                kernel,
+                ..Execution::default()
+            };
+            let simulation = Simulation::with_execution(model.clone(), 0.1, None, execution);
+            let mut calls = 0;
+            let resumed = Simulation::resume(
+                model.clone(),
+                0.1,
+                &simulation.checkpoint(),
+                execution,
+                |column, _, _| {
+                    calls += 1;
+                    match column {
+                        BlockColumn::VelocityX => Err("the disk fails"),
+                        _ => Ok(()),
+                    }
+                },
+            );
+            assert_eq!((resumed.err(), calls), (Some("the disk fails"), 3));
+        }
     }
 }

@@ -2,9 +2,7 @@
 
 use std::sync::Arc;
 
-use serde::{Serialize, Serializer};
-
-use crate::checkpoint::Checkpoint;
+use crate::checkpoint::{BlockColumn, Checkpoint};
 use crate::error::RunError;
 use crate::kernel::engine::Engine;
 use crate::kernel::execution::Execution;
@@ -60,17 +58,22 @@ impl Simulation {
     }
 
     /// A run that continues from a checkpoint with the same bits as if it had not been stopped, computed as `execution`
-    /// says. None if the checkpoint is that of another lattice or another kernel.
-    pub fn resume(
+    /// says. `read` is given a column, a block and room for the values of the blocks from there on. None if the checkpoint is
+    /// that of another kernel.
+    ///
+    /// # Errors
+    /// Those of `read`.
+    pub fn resume<E>(
         model: impl Into<Arc<Model>>,
         dt_star: f64,
-        checkpoint: Checkpoint,
+        checkpoint: &Checkpoint,
         execution: Execution,
-    ) -> Option<Self> {
+        read: impl FnMut(BlockColumn, usize, &mut [f64]) -> Result<(), E>,
+    ) -> Result<Option<Self>, E> {
         let model = model.into();
         let (step, totals, peak) = (checkpoint.step, checkpoint.totals, checkpoint.peak);
-        let engine = execution.resume(&model, dt_star, checkpoint)?;
-        Some(Self {
+        let engine = execution.resume(&model, dt_star, checkpoint, read)?;
+        Ok(engine.map(|engine| Self {
             point: CurvePoint::measure(&model, &totals, step as f64 * dt_star),
             model,
             dt_star,
@@ -79,33 +82,44 @@ impl Simulation {
             totals,
             peak,
             observed: true,
-        })
+        }))
     }
 
-    /// What [`Simulation::resume`] needs, to be serialized. Taken between two calls of [`Simulation::advance`], it belongs
-    /// together with what the observers have recorded by then.
-    pub fn checkpoint(&self) -> Checkpoint<impl Serialize> {
-        let column = |value| BlockColumn {
-            engine: &*self.engine,
-            n_blocks: self.model.lattice.n_blocks(),
-            value,
-        };
+    /// What [`Simulation::resume`] needs beside the [columns](Self::write_columns). Taken between two calls of
+    /// [`Simulation::advance`], it belongs together with what the observers have recorded by then.
+    pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
             step: self.step,
             totals: self.totals,
             peak: self.peak,
             stress_square_max: self.engine.stress_square_max(&self.model, self.step),
             motion_bounds: self.engine.motion_bounds(),
-            displacement: [
-                column(|engine, b| engine.motion(b)[0][0]),
-                column(|engine, b| engine.motion(b)[0][1]),
-            ],
-            velocity: [
-                column(|engine, b| engine.checkpoint_velocity(b)[0]),
-                column(|engine, b| engine.checkpoint_velocity(b)[1]),
-            ],
-            first_slip: column(|engine, b| engine.first_slip(b)),
         }
+    }
+
+    /// The numbers of all blocks that [`Simulation::resume`] reads, part by part: `write` is given the column, the first block,
+    /// and the values.
+    ///
+    /// # Errors
+    /// Those of `write`.
+    pub fn write_columns<E>(
+        &self,
+        mut write: impl FnMut(BlockColumn, usize, &[f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let engine = &*self.engine;
+        BlockColumn::for_each_part(self.model.lattice.n_blocks(), |column, first, values| {
+            let value = |b: usize| match column {
+                BlockColumn::DisplacementX => engine.motion(b)[0][0],
+                BlockColumn::DisplacementY => engine.motion(b)[0][1],
+                BlockColumn::VelocityX => engine.checkpoint_velocity(b)[0],
+                BlockColumn::VelocityY => engine.checkpoint_velocity(b)[1],
+                BlockColumn::FirstSlip => engine.first_slip(b),
+            };
+            for (b, to) in (first..).zip(&mut *values) {
+                *to = value(b);
+            }
+            write(column, first, values)
+        })
     }
 
     /// Steps until `stop`, showing every instant to the observers that are due, the last one included.
@@ -232,19 +246,5 @@ impl Simulation {
             j,
             value,
         })
-    }
-}
-
-/// One value of every block, in the order of the lattice. The values are read as they are serialized, so that a checkpoint needs
-/// no memory of its own.
-struct BlockColumn<'a> {
-    engine: &'a dyn Engine,
-    n_blocks: usize,
-    value: fn(&dyn Engine, usize) -> f64,
-}
-
-impl Serialize for BlockColumn<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq((0..self.n_blocks).map(|b| (self.value)(self.engine, b)))
     }
 }

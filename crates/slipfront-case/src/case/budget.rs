@@ -27,8 +27,6 @@ const FUSED: f64 = 7.0 * NUMBER + 2.0;
 const REFERENCE: f64 = 23.0 * NUMBER + FLAG;
 /// A block in a checkpoint: two vectors, a time.
 const SAVED: f64 = 5.0 * NUMBER;
-/// Room for what is read of it, which grows by an eighth at a time.
-const ROOM_TO_READ: f64 = 1.125;
 
 /// A value of a field.
 const VALUE: f64 = size_of::<f32>() as f64;
@@ -225,9 +223,8 @@ impl Budget {
         self.total(Phase::Making)
     }
 
-    /// The budget of the run when it resumes from a checkpoint, which is in memory until the kernel has taken it over.
+    /// The budget of the run when it resumes from a checkpoint, which the kernel takes over without a copy.
     pub fn resumed(mut self) -> Self {
-        self.kernel += ROOM_TO_READ * SAVED;
         self.is_resumed = true;
         self
     }

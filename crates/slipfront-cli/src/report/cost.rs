@@ -48,23 +48,16 @@ fn scales(case: &Case) -> String {
 
 fn resources(case: &Case, seconds: f64) -> String {
     let budget = &case.budget;
-    let (memory, resumed) = (budget.memory(), budget.resumed().memory());
     let available = available_memory().map_or(String::new(), |there| {
         format!(" of {} available", byte_size(there))
     });
-    // Of a small run, pictures take the most in any case.
-    let to_resume = if resumed > memory {
-        format!("; {} to go on from a checkpoint", byte_size(resumed))
-    } else {
-        String::new()
-    };
     format!(
         "cost              {:.3e} block-steps, {} on this machine\n\
-         memory            {}{available}{to_resume}\n\
+         memory            {}{available}\n\
          disk              {}, the snapshots {} of it; {} more for checkpoints while it runs\n",
         case.block_steps(),
         duration(seconds),
-        byte_size(memory),
+        byte_size(budget.memory()),
         byte_size(budget.disk()),
         byte_size(budget.disk_of_snapshots()),
         byte_size(budget.disk_of_checkpoints())

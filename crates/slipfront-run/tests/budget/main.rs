@@ -8,9 +8,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use png::{BitDepth, ColorType, Encoder};
+use slipfront::communicator::Alone;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseFile;
+use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::run_folder::RunFolder;
+use slipfront_run::run_folder::unfinished::Unfinished;
+use slipfront_run::running::Running;
 use slipfront_run::study::{Plan, Records, StudyFile};
 use slipfront_run::{results, running, study};
 
@@ -139,8 +143,50 @@ fn what_is_said_is_what_is_taken() {
         assert_room(sets, disk, &out);
         std::fs::remove_dir_all(out).unwrap();
     }
+    checkpoints(folder.path());
     study(folder.path());
     masks(folder.path());
+}
+
+/// A run that goes on from a checkpoint, and saves the next one, takes no more than one that begins.
+fn checkpoints(folder: &Path) {
+    for sets in [
+        "slider.blocks=[600,600];time.duration_star=1;output.snapshots=[]",
+        "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1}",
+    ] {
+        let overrides: Vec<String> = sets.split(';').map(str::to_owned).collect();
+        // `Case::parse` would reserve the memory of a run, to see whether it is available.
+        let made = || {
+            let file = CaseFile::parse("", "case", &overrides).unwrap();
+            Arc::new(Case::new(file, "case", folder, &mut |_| true).unwrap())
+        };
+        let out = folder.join("saved");
+        std::fs::create_dir(&out).unwrap();
+        Unfinished::of(&out).create().unwrap();
+        let save = |case: &Case, running: &Running| {
+            let mut checkpoints = Checkpoints::new(&out, case, jiff::Timestamp::UNIX_EPOCH);
+            checkpoints.save(running, &Alone).unwrap();
+        };
+        let case = made();
+        let mut running = Running::start(&case, 1);
+        running.advance(case.time_plan.last_step - 1).unwrap();
+        save(&case, &running);
+        drop((case, running));
+        // The fonts of the pictures before, which a run has not yet when it goes on.
+        let before = LIVE.load(Ordering::Relaxed) as f64;
+        let (taken, said) = peak(|| {
+            let case = made();
+            let loaded = Checkpoints::load(&out, &case, false, &Alone).unwrap().unwrap();
+            let running = loaded.resume(&case, 1, &Alone).unwrap().unwrap();
+            save(&case, &running);
+            case.budget.memory()
+        });
+        let taken = taken - before;
+        assert_honest(&format!("to go on with {sets}"), said, taken);
+        let room = made().budget.disk_of_checkpoints() / 3.0;
+        assert_room(sets, room, &out);
+        std::fs::remove_dir_all(out).unwrap();
+    }
 }
 
 /// Textures of one image take the room of one mask of the lattice.

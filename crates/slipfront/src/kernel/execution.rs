@@ -5,7 +5,7 @@ use fearless_simd::Level;
 use super::engine::Engine;
 use super::fused::Fused;
 use super::reference::Reference;
-use crate::checkpoint::Checkpoint;
+use crate::checkpoint::{BlockColumn, Checkpoint};
 use crate::friction::FrictionLaw;
 use crate::model::Model;
 use crate::state::State;
@@ -64,23 +64,25 @@ impl Execution {
         }
     }
 
-    /// A kernel that continues from a checkpoint; none if it is that of another lattice or kernel.
-    pub(crate) fn resume(
+    /// A kernel that continues from a checkpoint and its columns; none if it is that of another kernel.
+    pub(crate) fn resume<E>(
         self,
         model: &Model,
         dt_star: f64,
-        checkpoint: Checkpoint,
-    ) -> Option<Box<dyn Engine>> {
-        if !checkpoint.has_blocks(model.lattice.n_blocks()) {
-            return None;
-        }
+        checkpoint: &Checkpoint,
+        read: impl FnMut(BlockColumn, usize, &mut [f64]) -> Result<(), E>,
+    ) -> Result<Option<Box<dyn Engine>>, E> {
         match (self.kernel.for_law(model.law), checkpoint.motion_bounds) {
             (Kernel::Fused, Some(bound)) => {
-                let kernel = Fused::resume(model, dt_star, checkpoint, bound, self.threads, self.skips);
-                Some(Box::new(kernel))
+                let kernel =
+                    Fused::resume(model, dt_star, checkpoint, bound, self.threads, self.skips, read)?;
+                Ok(Some(Box::new(kernel)))
             }
-            (Kernel::Reference, None) => Some(Box::new(Reference::resume(model, dt_star, checkpoint))),
-            _ => None,
+            (Kernel::Reference, None) => {
+                let kernel = Reference::resume(model, dt_star, checkpoint, read)?;
+                Ok(Some(Box::new(kernel)))
+            }
+            _ => Ok(None),
         }
     }
 }

@@ -9,7 +9,7 @@ use fearless_simd::{Level, dispatch};
 use super::block::{Block, Field};
 use super::engine::Engine;
 use super::totals::{StoredEnergy, Totals};
-use crate::checkpoint::{Checkpoint, MotionBounds};
+use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::fixed_point;
 use crate::friction::{BlockState, FrictionLaw, Integrator, Law, Literal, Projection, Reversal};
 use crate::lattice::{Bond, Edges, Lattice};
@@ -72,15 +72,31 @@ impl Reference {
     }
 
     /// Continues from a checkpoint: its instant is evaluated again to find forces, friction and velocities.
-    pub(crate) fn resume(model: &Model, dt_star: f64, mut checkpoint: Checkpoint) -> Self {
-        let state = checkpoint.take_state();
+    pub(crate) fn resume<E>(
+        model: &Model,
+        dt_star: f64,
+        checkpoint: &Checkpoint,
+        mut read: impl FnMut(BlockColumn, usize, &mut [f64]) -> Result<(), E>,
+    ) -> Result<Self, E> {
+        let n = model.lattice.n_blocks();
         let mut kernel = Self {
-            first_slip: checkpoint.first_slip.0,
             stress_square_max: checkpoint.stress_square_max,
-            ..Self::new(model, dt_star, state)
+            ..Self::new(model, dt_star, State::at_rest(n))
         };
+        BlockColumn::for_each_part(n, |column, first, values| {
+            let array = match column {
+                BlockColumn::DisplacementX => &mut kernel.state.displacement.x,
+                BlockColumn::DisplacementY => &mut kernel.state.displacement.y,
+                BlockColumn::VelocityX => &mut kernel.state.velocity.x,
+                BlockColumn::VelocityY => &mut kernel.state.velocity.y,
+                BlockColumn::FirstSlip => &mut kernel.first_slip,
+            };
+            read(column, first, values)?;
+            array[first..][..values.len()].copy_from_slice(values);
+            Ok(())
+        })?;
         kernel.step(model, checkpoint.step, false);
-        kernel
+        Ok(kernel)
     }
 
     #[inline(always)]

@@ -18,7 +18,9 @@ pub struct Frame {
     pub time_star: f64,
     /// mu* and N*.
     pub point: CurvePoint,
-    /// One array per field, row by row from y = 0, every `stride`-th block of each axis from the first on.
+    /// One array per field, row by row from y = 0, every `stride`-th block of each axis from the first on. They are as large as
+    /// the lattice: who serializes a frame writes them down beside it.
+    #[serde(skip)]
     pub values: Vec<Vec<f32>>,
 }
 
@@ -35,12 +37,6 @@ impl Selection {
     /// Number of recorded blocks along x and along y.
     fn counts(&self, lattice: &Lattice) -> [usize; 2] {
         [lattice.nx, lattice.ny].map(|n| n.div_ceil(self.stride))
-    }
-
-    /// Whether a frame holds the selected fields of this lattice.
-    pub(crate) fn matches(&self, frame: &Frame, lattice: &Lattice) -> bool {
-        let [nx, ny] = self.counts(lattice);
-        frame.values.len() == self.fields.len() && frame.values.iter().all(|values| values.len() == nx * ny)
     }
 
     /// The selected fields at this instant.
@@ -91,13 +87,10 @@ impl Frames {
         }
     }
 
-    /// Whether this can be the recording that began as `new`, on this lattice, and was called up to `step`.
-    pub fn is_consistent_with(&self, new: &Self, lattice: &Lattice, step: u64) -> bool {
+    /// Whether this can be the recording that began as `new` and was called up to `step`.
+    pub fn is_consistent_with(&self, new: &Self, step: u64) -> bool {
         let steps = self.frames.iter().map(|frame| frame.step);
-        let mut frames = self.frames.iter();
-        self.selection == new.selection
-            && steps.chain([step + 1]).is_sorted_by(|one, next| one < next)
-            && frames.all(|frame| self.selection.matches(frame, lattice))
+        self.selection == new.selection && steps.chain([step + 1]).is_sorted_by(|one, next| one < next)
     }
 }
 

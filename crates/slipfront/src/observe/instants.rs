@@ -10,7 +10,6 @@ use super::frames::{Frame, Selection};
 use super::observer::Observer;
 use super::summary::KineticStart;
 use crate::error::RunError;
-use crate::lattice::Lattice;
 use crate::snapshot::Snapshot;
 
 /// Letters of the instants.
@@ -50,13 +49,22 @@ impl Instants {
         }
     }
 
-    /// Whether this can be the recording that began as `new`, on this lattice, and was called up to `step`.
-    pub fn is_consistent_with(&self, new: &Self, lattice: &Lattice, step: u64) -> bool {
+    /// Whether this can be the recording that began as `new` and was called up to `step`.
+    pub fn is_consistent_with(&self, new: &Self, step: u64) -> bool {
         let same_settings = self.selection == new.selection
             && self.kinetic == new.kinetic
             && self.end_time_star == new.end_time_star;
-        let mut frames = self.frames.iter().flatten();
-        same_settings && frames.all(|frame| frame.step <= step && self.selection.matches(frame, lattice))
+        same_settings && self.frames().all(|frame| frame.step <= step)
+    }
+
+    /// The frames that it holds at present, candidates included.
+    pub fn frames(&self) -> impl Iterator<Item = &Frame> {
+        self.frames.iter().flatten()
+    }
+
+    /// The same frames, to fill them again.
+    pub fn frames_mut(&mut self) -> impl Iterator<Item = &mut Frame> {
+        self.frames.iter_mut().flatten()
     }
 
     /// The instants that the run had, in the order of their letters. Without a transition there is no D and E, nor

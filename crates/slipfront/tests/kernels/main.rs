@@ -6,6 +6,9 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+use std::convert::Infallible;
+
+use slipfront::checkpoint::BlockColumn;
 use slipfront::{Edges, Execution, Kernel, Lattice, Model, Simulation, Stop};
 
 /// The kernel of the simulations that the common helpers make.
@@ -43,6 +46,25 @@ fn has_room(blocks: [usize; 2], edges: [Edges; 2]) -> bool {
     (0..2).all(|axis| edges[axis] == Edges::Free || blocks[axis] >= Lattice::MIN_PERIODIC)
 }
 
+/// A simulation that continues from a checkpoint of this one, if it is one of the same kernel.
+fn resumed(simulation: &Simulation, model: &Model, dt_star: f64, execution: Execution) -> Option<Simulation> {
+    let bytes = postcard::to_stdvec(&simulation.checkpoint()).unwrap();
+    let checkpoint = postcard::from_bytes(&bytes).unwrap();
+    let mut columns: [Vec<f64>; 5] = Default::default();
+    let Ok(()) = simulation.write_columns(|column, first, values| {
+        let saved = &mut columns[column as usize];
+        assert_eq!(saved.len(), first, "{column:?}");
+        saved.extend(values);
+        Ok::<(), Infallible>(())
+    });
+    let read = |column: BlockColumn, first: usize, values: &mut [f64]| {
+        values.copy_from_slice(&columns[column as usize][first..][..values.len()]);
+        Ok::<(), Infallible>(())
+    };
+    let Ok(resumed) = Simulation::resume(model.clone(), dt_star, &checkpoint, execution, read);
+    resumed
+}
+
 /// A simulation that continues from a checkpoint of this one.
 fn stopped_and_resumed(
     simulation: &Simulation,
@@ -50,9 +72,7 @@ fn stopped_and_resumed(
     dt_star: f64,
     execution: Execution,
 ) -> Simulation {
-    let bytes = postcard::to_stdvec(&simulation.checkpoint()).unwrap();
-    let checkpoint = postcard::from_bytes(&bytes).unwrap();
-    Simulation::resume(model.clone(), dt_star, checkpoint, execution).unwrap()
+    resumed(simulation, model, dt_star, execution).unwrap()
 }
 
 mod against_reference;

@@ -1,13 +1,17 @@
-//! Checkpoints of runs: a header, the state and a checksum over both.
+//! Checkpoints of runs: a header, columns, the state and a checksum over all.
 
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock};
 
 use jiff::Timestamp;
+use serde_json::Value;
 use slipfront::StopReason;
+use slipfront::communicator::Alone;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::checkpoint::Checkpoints;
+use slipfront_run::checksum::hash_of_pieces;
 use slipfront_run::names::CHECKPOINT;
 use slipfront_run::run_folder::unfinished::Unfinished;
 use slipfront_run::running::Running;
@@ -16,7 +20,7 @@ use crate::checks::readable;
 use crate::{Memory, Target, scratch};
 
 /// The first byte chooses one of [`CASES`]. The rest is read as it is, then with the right checksum, then with the right header
-/// as well; a run is resumed from what can be read.
+/// as well, but for the columns that it tells; a run is resumed from what can be read.
 pub(crate) const CHECKPOINTS: Target = Target {
     name: "checkpoint",
     check: checkpoint,
@@ -74,7 +78,7 @@ fn latest(folder: &Path) -> PathBuf {
 fn save(folder: &Path, running: &Running) -> Vec<u8> {
     Unfinished::of(folder).create().unwrap();
     Checkpoints::new(folder, running.case(), Timestamp::UNIX_EPOCH)
-        .save(running)
+        .save(running, &Alone)
         .unwrap();
     std::fs::read(latest(folder)).unwrap()
 }
@@ -87,19 +91,26 @@ fn checkpoint(input: &[u8]) {
     resume(case, file);
     let without_checksum = &file[..file.len().saturating_sub(blake3::OUT_LEN)];
     resume(case, &with_checksum(without_checksum));
-    // The state under the right header.
+    // Columns and state under the right header, with its own numbers of columns, if it has any.
     let folder = scratch::folder("checkpoint");
     let whole = save(&folder, &Running::start(case, 1));
     let length = |bytes: &[u8]| bytes.iter().position(|&byte| byte == b'\n').map(|at| at + 1);
-    let header = &whole[..length(&whole).unwrap()];
+    let mut header: Value = serde_json::from_slice(&whole[..length(&whole).unwrap()]).unwrap();
     let begin = length(file).unwrap_or(0);
-    let state = without_checksum.get(begin..).unwrap_or_default();
-    resume(case, &with_checksum(&[header, state].concat()));
+    if let Ok(Value::Object(mut own)) = serde_json::from_slice(&file[..begin])
+        && let Some(columns) = own.remove("columns")
+    {
+        header["columns"] = columns;
+    }
+    let header = format!("{header}\n");
+    let rest = without_checksum.get(begin..).unwrap_or_default();
+    resume(case, &with_checksum(&[header.as_bytes(), rest].concat()));
 }
 
 /// Appends the checksum.
 fn with_checksum(bytes: &[u8]) -> Vec<u8> {
-    [bytes, blake3::hash(bytes).as_bytes()].concat()
+    let hash = hash_of_pieces(&mut Cursor::new(bytes), bytes.len() as u64, &Alone).unwrap();
+    [bytes, hash.as_bytes()].concat()
 }
 
 /// Resumes a run if the file can be read, and demands that what it then saves can be read again.
@@ -107,11 +118,11 @@ fn resume(case: &Arc<Case>, file: &[u8]) {
     let folder = scratch::folder("checkpoint");
     Unfinished::of(&folder).create().unwrap();
     std::fs::write(latest(&folder), file).unwrap();
-    let saved = match Checkpoints::load(&folder, case, false) {
-        Ok(saved) => saved.unwrap(),
+    let loaded = match Checkpoints::load(&folder, case, false, &Alone) {
+        Ok(loaded) => loaded.unwrap(),
         Err(error) => return readable(&error),
     };
-    let Some(mut running) = Running::resume(case, 1, saved.state) else {
+    let Some(mut running) = loaded.resume(case, 1, &Alone).unwrap() else {
         return;
     };
     match running.advance(STEPS) {
@@ -120,8 +131,8 @@ fn resume(case: &Arc<Case>, file: &[u8]) {
             // A run that has ended is not resumed.
             if ended.is_none() {
                 let bytes = save(&folder, &running);
-                let again = Checkpoints::load(&folder, case, false).unwrap().unwrap();
-                let resumed = Running::resume(case, 1, again.state).unwrap();
+                let again = Checkpoints::load(&folder, case, false, &Alone).unwrap();
+                let resumed = again.unwrap().resume(case, 1, &Alone).unwrap().unwrap();
                 assert_eq!(save(&folder, &resumed), bytes);
             }
             let record = running.record(ended.unwrap_or(StopReason::End));

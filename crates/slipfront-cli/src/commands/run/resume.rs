@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use slipfront::communicator::Alone;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::checkpoint::{CheckpointError, Checkpoints, LoadedCheckpoint};
@@ -46,8 +47,10 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
         }
         Some(loaded) => {
             let checkpoints = Checkpoints::after(path, &case, &loaded);
-            let from = format!("step {} of {}", loaded.step, case.time_plan.last_step);
-            let running = Running::resume(&case, options.threads, loaded.state).ok_or_else(|| {
+            let from = format!("step {} of {}", loaded.step(), case.time_plan.last_step);
+            let resumed = loaded.resume(&case, options.threads, &Alone);
+            let resumed = resumed.map_err(|error| refused(&error, path, &case, previous))?;
+            let running = resumed.ok_or_else(|| {
                 let sentence = "is not one of a run of its case";
                 Failure::input(anyhow::anyhow!(
                     "the checkpoint in {} {sentence}; {ANEW}",
@@ -121,27 +124,30 @@ fn report_complete(run: &Inspection, options: &RunOptions) -> Result<(), Failure
 
 /// The checkpoint to go on from, if the run has saved one.
 fn load(path: &Path, case: &Case, previous: bool) -> Result<Option<LoadedCheckpoint>, Failure> {
-    match Checkpoints::load(path, case, previous) {
+    match Checkpoints::load(path, case, previous, &Alone) {
         Ok(None) if previous => {
             let sentence = "holds no checkpoint before the latest one";
             Err(Failure::input(anyhow::anyhow!("{} {sentence}", path.display())))
         }
         Ok(loaded) => Ok(loaded),
-        Err(error) => {
-            let remedy = remedy(&error, path, case, previous);
-            Err(Failure::input(anyhow::anyhow!("{error}; {remedy}")))
-        }
+        Err(error) => Err(refused(&error, path, case, previous)),
     }
+}
+
+/// A checkpoint that cannot be used, with the remedy.
+fn refused(error: &CheckpointError, path: &Path, case: &Case, previous: bool) -> Failure {
+    let remedy = remedy(error, path, case, previous);
+    Failure::input(anyhow::anyhow!("{error}; {remedy}"))
 }
 
 /// The remedy when a checkpoint is refused.
 fn remedy(error: &CheckpointError, path: &Path, case: &Case, previous: bool) -> String {
     match error {
         CheckpointError::Damaged { .. } | CheckpointError::Unreadable { .. } if !previous => {
-            match Checkpoints::load(path, case, true) {
+            match Checkpoints::load(path, case, true, &Alone) {
                 Ok(Some(loaded)) => format!(
                     "the one before it, of step {}, is whole: add --previous to go on from there",
-                    loaded.step
+                    loaded.step()
                 ),
                 _ => format!("no whole one is kept beside it: {ANEW}"),
             }

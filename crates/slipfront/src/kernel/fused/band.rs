@@ -15,6 +15,7 @@ use super::quanta::Quanta;
 use super::rest::{RestingVector, steps_until_slip};
 use super::springs::Geometry;
 use super::vector::{LANES, Vec2x8, lane_max, load, load_vec2, splat, subtract};
+use crate::checkpoint::BlockColumn;
 use crate::fixed_point::FixedPoint;
 use crate::friction::Integrator;
 use crate::lattice::Bond;
@@ -213,16 +214,39 @@ impl Band {
         self.scratch.get_mut().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Continues from a checkpoint with these first slips, as if every tile had just been swept: the largest contact stress of
-    /// a checkpoint includes the skipped tiles.
-    pub(super) fn resume(&mut self, layout: &Layout, first_slip: &[f64]) {
+    /// Takes over the values of a column of a checkpoint, from block `first` on, as far as these blocks are its own.
+    pub(super) fn set_column(&mut self, layout: &Layout, column: BlockColumn, first: usize, values: &[f64]) {
+        let last = first + values.len() - 1;
+        let from = layout.element_of(first).max(self.first);
+        let to = (layout.element_of(last) + 1).min(self.first + self.len);
+        let array = match column {
+            BlockColumn::DisplacementX => &mut self.displacement.x[self.halo..],
+            BlockColumn::DisplacementY => &mut self.displacement.y[self.halo..],
+            BlockColumn::VelocityX => &mut self.velocity.x,
+            BlockColumn::VelocityY => &mut self.velocity.y,
+            BlockColumn::FirstSlip => &mut self.first_slip,
+        };
+        for (_, _, part) in layout.rows_among(from..to) {
+            let element = from + part.start;
+            let own = &mut array[element - self.first..][..part.len()];
+            if let Some(b) = layout.block(element) {
+                own.copy_from_slice(&values[b - first..][..part.len()]);
+            }
+        }
+    }
+
+    /// Continues from a checkpoint of which all columns are set, as if every tile had just been swept: the largest contact
+    /// stress of a checkpoint includes the skipped tiles.
+    pub(super) fn resume(&mut self) {
         for task in &mut self.tasks {
             task.active = u32::MAX;
         }
         for k in 0..self.len {
-            let time = layout.block(self.first + k).map_or(f64::NAN, |b| first_slip[b]);
-            self.first_slip[k] = time;
-            self.slipped[k / LANES] |= u8::from(!time.is_nan()) << (k % LANES);
+            let v = self.velocity.at(k);
+            self.set_moving(k, v != [0.0, 0.0]);
+            let speed_square = &mut self.tiles[k / TILE].sums.speed_square;
+            *speed_square = speed_square.max(v[0] * v[0] + v[1] * v[1]);
+            self.slipped[k / LANES] |= u8::from(!self.first_slip[k].is_nan()) << (k % LANES);
         }
     }
 

@@ -36,7 +36,7 @@ use self::layout::{Layout, TILE, VECTORS};
 use self::quanta::Quanta;
 use self::springs::{Series, SquareRoot};
 use self::vector::LANES;
-use crate::checkpoint::{Checkpoint, MotionBounds};
+use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::fixed_point;
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
@@ -147,27 +147,35 @@ impl Fused {
 
     /// Continues from a checkpoint. Every tile is swept at the next step, also those that could be skipped: both give the same
     /// bits. The step of the checkpoint counts as one in which all tiles were swept.
-    pub(crate) fn resume(
+    pub(crate) fn resume<E>(
         model: &Model,
         dt_star: f64,
-        mut checkpoint: Checkpoint,
+        checkpoint: &Checkpoint,
         motion_bounds: MotionBounds,
         threads: usize,
         skips: bool,
-    ) -> Self {
-        let state = checkpoint.take_state();
-        let mut kernel = Self::new(model, dt_star, Some(&state), threads, skips);
-        drop(state);
+        mut read: impl FnMut(BlockColumn, usize, &mut [f64]) -> Result<(), E>,
+    ) -> Result<Self, E> {
+        let mut kernel = Self::new(model, dt_star, None, threads, skips);
+        BlockColumn::for_each_part(model.lattice.n_blocks(), |column, first, values| {
+            read(column, first, values)?;
+            for band in &mut kernel.bands {
+                band.set_column(&kernel.layout, column, first, values);
+            }
+            Ok(())
+        })?;
         for band in &mut kernel.bands {
-            band.resume(&kernel.layout, &checkpoint.first_slip.0);
+            band.resume();
         }
-        Self {
+        kernel.copy_ghosts(true);
+        kernel.fill_halos(0.0, true);
+        Ok(Self {
             totals: checkpoint.totals,
             stress_square_max: checkpoint.stress_square_max,
             swept_step: Some(checkpoint.step),
             motion_bounds,
             ..kernel
-        }
+        })
     }
 
     /// How to compute springs in a step, by the bound on all strains, and whether sums have other quanta than before. It must be

@@ -1,0 +1,32 @@
+//! Why a run cannot go on from a checkpoint.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// How the file is laid out. A program reads no other layout.
+pub(super) const LAYOUT: u32 = 2;
+
+/// Why a run cannot go on from a checkpoint.
+#[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum CheckpointError {
+    #[error("cannot read {path}: {source}")]
+    Unreadable { path: PathBuf, source: std::io::Error },
+    #[error("{path} is damaged: {why}")]
+    Damaged { path: PathBuf, why: &'static str },
+    #[error(
+        "{path} has layout {found}, and this version reads layout {LAYOUT}: resume with the version that wrote it"
+    )]
+    Layout { path: PathBuf, found: u32 },
+    #[error(
+        "{path} was written by {found}, and this is {here}, which may not give the same bits: resume with that version"
+    )]
+    Program {
+        path: PathBuf,
+        found: String,
+        here: &'static str,
+    },
+    #[error("{path} belongs to another case than the case.toml and inputs beside it")]
+    Case { path: PathBuf },
+}

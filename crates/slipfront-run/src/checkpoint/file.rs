@@ -1,0 +1,216 @@
+//! The file of a checkpoint.
+//!
+//! A line of JSON tells whose checkpoint it is, and how large the columns are that follow it: raw little-endian numbers in the
+//! order of the whole lattice, each at a place that this line tells, so that every rank writes and reads those of its own rows.
+//! Behind them stand the state in postcard's binary form, and the checksum of all that.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, BufWriter, Error, ErrorKind, Read, Seek, SeekFrom, Write};
+use std::path::Path;
+
+use blake3::OUT_LEN;
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+use slipfront::Communicator;
+use slipfront_case::disk::{open_regular, remove_if_there};
+use slipfront_case::text::truncated;
+
+use super::error::{CheckpointError, LAYOUT};
+use crate::checksum::hash_of_pieces;
+use crate::columns::Columns;
+use crate::program;
+use crate::ranks::agree;
+use crate::running::{RunState, Running};
+
+/// Longest first line.
+const HEADER_MAX_BYTES: u64 = 4096;
+
+/// The first line.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Header {
+    slipfront_checkpoint: u32,
+    program: String,
+    case_blake3: String,
+    pub(super) step: u64,
+    pub(super) started: Timestamp,
+    pub(super) columns: [Columns; 2],
+}
+
+/// Of a first line whatever version wrote it.
+#[derive(Deserialize)]
+struct Layout {
+    slipfront_checkpoint: u32,
+}
+
+/// A file whose checksum fits.
+#[derive(Debug)]
+pub(super) struct VerifiedFile {
+    pub(super) header: Header,
+    pub(super) state: RunState,
+    file: File,
+    /// Bytes before the columns.
+    begin: u64,
+}
+
+impl Header {
+    /// That of a run whose case has this hash, and which began at `started`.
+    pub(super) fn new(case_blake3: &str, started: Timestamp, running: &Running) -> Self {
+        Self {
+            slipfront_checkpoint: LAYOUT,
+            program: program::this_build().to_owned(),
+            case_blake3: case_blake3.to_owned(),
+            step: running.snapshot().step,
+            started,
+            columns: running.columns(),
+        }
+    }
+
+    /// Bytes of a file up to the end of the columns, of which `begin` are before them; none if there are too many to count.
+    fn columns_end(&self, begin: u64) -> Option<u64> {
+        let [blocks, fields] = self.columns.map(|columns| columns.bytes());
+        begin.checked_add(blocks?)?.checked_add(fields?)
+    }
+}
+
+/// Writes a checkpoint to a new file, each rank its own rows, and forces it to the disk.
+pub(super) fn write(
+    path: &Path,
+    header: &Header,
+    running: &Running,
+    communicator: &dyn Communicator,
+) -> std::io::Result<()> {
+    let is_first = communicator.rank() == 0;
+    let mut line = serde_json::to_vec(header)?;
+    line.push(b'\n');
+    let begin = line.len() as u64;
+    let end = header.columns_end(begin).ok_or(ErrorKind::FileTooLarge)?;
+    let begun = match is_first {
+        true => write_line_and_state(path, &line, end, running),
+        false => Ok(0),
+    };
+    let mut length = [agree(communicator, begun)? as i64];
+    communicator.sum(&mut length);
+    let length = length[0] as u64;
+    let mut file = agree(communicator, write_columns(path, begin, running))?;
+    let checksum = hash_of_pieces(&mut file, length, communicator)?;
+    let mut finish = || {
+        if is_first {
+            file.seek(SeekFrom::Start(length))?;
+            file.write_all(checksum.as_bytes())?;
+        }
+        file.sync_all()
+    };
+    agree(communicator, finish())
+}
+
+/// Makes the file with all but its columns and its checksum, the state from byte `end` on, and gives its length.
+fn write_line_and_state(path: &Path, line: &[u8], end: u64, running: &Running) -> std::io::Result<u64> {
+    // One that a killed program has left, whatever it leads to.
+    remove_if_there(path)?;
+    let mut writer = BufWriter::with_capacity(1 << 20, File::create_new(path)?);
+    writer.write_all(line)?;
+    writer.seek(SeekFrom::Start(end))?;
+    // Postcard drops the system's error of a failed write; `flush` gives it again.
+    let written = postcard::to_io(&running.state(), &mut writer).map(|_| ());
+    writer.flush()?;
+    written.map_err(Error::other)?;
+    writer.stream_position()
+}
+
+/// Writes the columns of the rows that this rank holds.
+fn write_columns(path: &Path, begin: u64, running: &Running) -> std::io::Result<File> {
+    let mut file = File::options().read(true).write(true).open(path)?;
+    running.write_columns(|offset, bytes| {
+        file.seek(SeekFrom::Start(begin + offset))?;
+        file.write_all(bytes)
+    })?;
+    Ok(file)
+}
+
+/// Reads a checkpoint of the case with this hash, all but its columns, whose bytes are held against the checksum.
+pub(super) fn read(
+    path: &Path,
+    case_blake3: &str,
+    communicator: &dyn Communicator,
+) -> Result<VerifiedFile, CheckpointError> {
+    let owned = || path.to_owned();
+    let unreadable = |source| CheckpointError::Unreadable {
+        path: owned(),
+        source,
+    };
+    let damaged = |why| CheckpointError::Damaged { path: owned(), why };
+    let (mut file, line, length) = agree(communicator, open(path)).map_err(unreadable)?;
+    let unknown = || damaged("its first line is not that of a checkpoint");
+    let Layout { slipfront_checkpoint } = serde_json::from_slice(&line).map_err(|_| unknown())?;
+    if slipfront_checkpoint != LAYOUT {
+        let (path, found) = (owned(), slipfront_checkpoint);
+        return Err(CheckpointError::Layout { path, found });
+    }
+    let header: Header = serde_json::from_slice(&line).map_err(|_| unknown())?;
+    // Nothing is made of bytes before they are known to be those that were written.
+    let wrong = || damaged("its checksum does not fit");
+    let contents = length.checked_sub(OUT_LEN as u64).ok_or_else(wrong)?;
+    let hash = hash_of_pieces(&mut file, contents, communicator).map_err(unreadable)?;
+    let mut checksum = [0; OUT_LEN];
+    let read = file
+        .seek(SeekFrom::Start(contents))
+        .and_then(|_| file.read_exact(&mut checksum));
+    agree(communicator, read).map_err(unreadable)?;
+    if hash.as_bytes() != &checksum {
+        return Err(wrong());
+    }
+    let here = program::this_build();
+    if header.program != here {
+        let (path, found) = (owned(), truncated(&header.program));
+        return Err(CheckpointError::Program { path, found, here });
+    }
+    if header.case_blake3 != case_blake3 {
+        return Err(CheckpointError::Case { path: owned() });
+    }
+    let begin = line.len() as u64;
+    let end = header.columns_end(begin).filter(|&end| end <= contents);
+    let end = end.ok_or_else(|| damaged("it does not hold the columns that its first line tells"))?;
+    let state = agree(communicator, read_state(&file, end, contents));
+    let state = state.map_err(|error| match error.kind() {
+        ErrorKind::InvalidData => damaged("it holds no state of a run"),
+        _ => unreadable(error),
+    })?;
+    Ok(VerifiedFile {
+        state,
+        header,
+        file,
+        begin,
+    })
+}
+
+/// A file with its first line and its length.
+fn open(path: &Path) -> std::io::Result<(File, Vec<u8>, u64)> {
+    let file = open_regular(path)?;
+    let length = file.metadata()?.len();
+    let mut line = Vec::new();
+    BufReader::new((&file).take(HEADER_MAX_BYTES)).read_until(b'\n', &mut line)?;
+    Ok((file, line, length))
+}
+
+/// The state that takes all bytes from `begin` to `end`; an error of [`ErrorKind::InvalidData`] if there is none.
+fn read_state(mut file: &File, begin: u64, end: u64) -> std::io::Result<RunState> {
+    file.seek(SeekFrom::Start(begin))?;
+    let mut body = BufReader::with_capacity(1 << 16, file).take(end - begin);
+    // Room for one number at a time.
+    let mut number = [0; 16];
+    let state = postcard::from_io((&mut body, &mut number)).map(|(state, _)| state);
+    let state = state.ok().filter(|_| body.limit() == 0);
+    state.ok_or_else(|| ErrorKind::InvalidData.into())
+}
+
+impl VerifiedFile {
+    /// The state, and a reader of bytes of the columns.
+    pub(super) fn into_parts(self) -> (RunState, impl FnMut(u64, &mut [u8]) -> std::io::Result<()>) {
+        let (mut file, begin) = (self.file, self.begin);
+        let read = move |offset, bytes: &mut [u8]| {
+            file.seek(SeekFrom::Start(begin + offset))?;
+            file.read_exact(bytes)
+        };
+        (self.state, read)
+    }
+}

@@ -1,0 +1,327 @@
+//! Checkpoints of a run in its folder: what it needs to go on after it was stopped, with the same bytes in every file.
+//!
+//! A file takes its name when it is whole; the one before it is kept beside it. Any number of ranks writes the same bytes, each
+//! its own rows, and goes on from what any other number has written.
+
+mod error;
+mod file;
+
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use jiff::Timestamp;
+use slipfront::Communicator;
+use slipfront_case::case::Case;
+use slipfront_case::disk::{remove_if_there, sync_folder};
+
+pub use self::error::CheckpointError;
+use self::file::{Header, VerifiedFile};
+use crate::names::{CHECKPOINT, PREVIOUS};
+use crate::ranks::agree;
+use crate::run_folder::unfinished::Unfinished;
+use crate::running::Running;
+
+/// A checkpoint as it was read.
+#[derive(Debug)]
+pub struct LoadedCheckpoint {
+    path: PathBuf,
+    file: VerifiedFile,
+    /// Whether it is the latest, and not the one before.
+    latest: bool,
+}
+
+impl LoadedCheckpoint {
+    /// The step after which it was saved.
+    pub fn step(&self) -> u64 {
+        self.file.header.step
+    }
+
+    /// The run that goes on from it; none if it is not one of a run of this case.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Unreadable`].
+    pub fn resume(
+        self,
+        case: &Arc<Case>,
+        threads: usize,
+        communicator: &dyn Communicator,
+    ) -> Result<Option<Running>, CheckpointError> {
+        // Nothing is allocated for columns that the file does not hold.
+        if self.file.state.columns(case) != self.file.header.columns {
+            return Ok(None);
+        }
+        let (state, read) = self.file.into_parts();
+        agree(communicator, Running::resume(case, threads, state, read)).map_err(|source| {
+            let path = self.path;
+            CheckpointError::Unreadable { path, source }
+        })
+    }
+}
+
+/// Saves the checkpoints of one run.
+#[derive(Debug)]
+pub struct Checkpoints {
+    folder: Unfinished,
+    case_blake3: String,
+    started: Timestamp,
+    /// Whether the latest checkpoint there is known to be whole.
+    latest_is_whole: bool,
+    /// Step of the latest one that was saved or gone on from.
+    saved_step: Option<u64>,
+}
+
+impl Checkpoints {
+    /// Those of a run of `case` in `folder` that begins at `started`.
+    pub fn new(folder: &Path, case: &Case, started: Timestamp) -> Self {
+        Self {
+            folder: Unfinished::of(folder),
+            case_blake3: hash_of(case),
+            started,
+            latest_is_whole: false,
+            saved_step: None,
+        }
+    }
+
+    /// Those of a run that goes on from a checkpoint.
+    pub fn after(folder: &Path, case: &Case, saved: &LoadedCheckpoint) -> Self {
+        Self {
+            latest_is_whole: saved.latest,
+            saved_step: Some(saved.step()),
+            ..Self::new(folder, case, saved.file.header.started)
+        }
+    }
+
+    /// The step from which the run would go on, if any was saved.
+    pub fn saved_step(&self) -> Option<u64> {
+        self.saved_step
+    }
+
+    /// When the run began.
+    pub fn started(&self) -> Timestamp {
+        self.started
+    }
+
+    /// Saves the state of the run. The checkpoint that was the latest is kept as the one before, unless it is damaged;
+    /// whatever happens, one of the two is whole.
+    pub fn save(&mut self, running: &Running, communicator: &dyn Communicator) -> std::io::Result<()> {
+        let header = Header::new(&self.case_blake3, self.started, running);
+        let is_first = communicator.rank() == 0;
+        let temporary = self.folder.temporary().join(CHECKPOINT);
+        let written = file::write(&temporary, &header, running, communicator);
+        let placed = written.and_then(|()| match is_first {
+            true => self.put_in_place(&temporary),
+            false => Ok(()),
+        });
+        if placed.is_err() && is_first {
+            // The error that is told is the first one.
+            let _ = remove_if_there(&temporary);
+        }
+        agree(communicator, placed)?;
+        self.saved_step = Some(header.step);
+        Ok(())
+    }
+
+    /// Makes a whole checkpoint the latest.
+    fn put_in_place(&mut self, whole: &Path) -> std::io::Result<()> {
+        let [latest, previous] = [CHECKPOINT, PREVIOUS].map(|name| self.folder.path().join(name));
+        if std::mem::take(&mut self.latest_is_whole) {
+            match std::fs::rename(&latest, &previous) {
+                Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
+        }
+        std::fs::rename(whole, &latest)?;
+        self.latest_is_whole = true;
+        sync_folder(self.folder.path())
+    }
+
+    /// Reads the latest checkpoint of a run folder, or the one before it; none if there is none. Where a kill has left
+    /// only the one before, that is the latest.
+    pub fn load(
+        folder: &Path,
+        case: &Case,
+        previous: bool,
+        communicator: &dyn Communicator,
+    ) -> Result<Option<LoadedCheckpoint>, CheckpointError> {
+        for name in [CHECKPOINT, PREVIOUS].into_iter().skip(usize::from(previous)) {
+            let path = Unfinished::of(folder).path().join(name);
+            // A link with nothing at its end must be refused, and not taken for no checkpoint.
+            if path.symlink_metadata().is_ok() {
+                let file = file::read(&path, &hash_of(case), communicator)?;
+                let latest = name == CHECKPOINT;
+                return Ok(Some(LoadedCheckpoint { path, file, latest }));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// Hash of a case and of the files that it reads, by which equal cases are told.
+fn hash_of(case: &Case) -> String {
+    let mut hasher = blake3::Hasher::new();
+    // A case that was loaded can be written.
+    hasher.update(case.file.to_toml().unwrap_or_default().as_bytes());
+    for input in &case.inputs {
+        hasher.update(&(input.bytes.len() as u64).to_le_bytes());
+        hasher.update(&input.bytes);
+    }
+    hasher.finalize().to_hex().to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use slipfront::communicator::Alone;
+
+    use super::*;
+    use crate::test_ranks::on_ranks;
+
+    fn case() -> Arc<Case> {
+        let text = "slider.blocks = [60, 50]\ntime.duration_star = 20\ndrive.v_star = 0.2\n\
+                    output.snapshots = { every = 1.0 }\noutput.stride = 3\n";
+        Arc::new(Case::parse(text, "case", &[]).unwrap())
+    }
+
+    /// A run that has recorded some frames.
+    fn advanced(case: &Arc<Case>) -> Running {
+        let mut running = Running::start(case, 1);
+        running.advance(case.time_plan.last_step / 2).unwrap();
+        running
+    }
+
+    fn checkpoints(folder: &Path, case: &Case) -> Checkpoints {
+        Unfinished::of(folder).create().unwrap();
+        Checkpoints::new(folder, case, Timestamp::UNIX_EPOCH)
+    }
+
+    fn latest(folder: &Path) -> Vec<u8> {
+        std::fs::read(Unfinished::of(folder).path().join(CHECKPOINT)).unwrap()
+    }
+
+    #[test]
+    fn any_number_of_ranks_saves_the_same_bytes_and_goes_on() {
+        let case = case();
+        let running = advanced(&case);
+        let alone = tempfile::tempdir().unwrap();
+        checkpoints(alone.path(), &case).save(&running, &Alone).unwrap();
+        for ranks in [2, 3] {
+            let folder = tempfile::tempdir().unwrap();
+            checkpoints(folder.path(), &case);
+            let steps = on_ranks(ranks, |communicator| {
+                let mut checkpoints = Checkpoints::new(folder.path(), &case, Timestamp::UNIX_EPOCH);
+                for _ in 0..2 {
+                    checkpoints.save(&running, communicator).unwrap();
+                }
+                let loaded = Checkpoints::load(folder.path(), &case, false, communicator);
+                let resumed = loaded.unwrap().unwrap().resume(&case, 1, communicator);
+                resumed.unwrap().unwrap().snapshot().step
+            });
+            assert_eq!(steps, vec![running.snapshot().step; ranks]);
+            assert!(latest(folder.path()) == latest(alone.path()), "{ranks} ranks");
+        }
+    }
+
+    #[test]
+    fn where_one_rank_fails_all_do_and_the_latest_is_kept() {
+        let case = case();
+        let [folder, gone] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+        checkpoints(folder.path(), &case)
+            .save(&advanced(&case), &Alone)
+            .unwrap();
+        let before = latest(folder.path());
+        let begun = Running::start(&case, 1);
+        for failing in 0..3 {
+            // One of them has lost the disk.
+            let seen = |rank: usize| {
+                if rank == failing {
+                    gone.path()
+                } else {
+                    folder.path()
+                }
+            };
+            let errors = on_ranks(3, |communicator| {
+                let seen = seen(communicator.rank());
+                let mut checkpoints = Checkpoints::new(seen, &case, Timestamp::UNIX_EPOCH);
+                checkpoints.save(&begun, communicator).unwrap_err().to_string()
+            });
+            for (rank, error) in errors.iter().enumerate() {
+                let is_own = rank == failing;
+                assert_eq!(error == "another rank has failed", !is_own, "{rank}: {error}");
+            }
+            assert!(latest(folder.path()) == before);
+            let temporary = Unfinished::of(folder.path()).temporary();
+            assert_eq!(std::fs::read_dir(temporary).unwrap().count(), 0);
+        }
+    }
+
+    /// The places of all numbers of blocks, and what is read back from there, as bits: numbers may be NaN.
+    #[test]
+    fn columns_stand_where_the_first_line_tells() {
+        let case = case();
+        let running = advanced(&case);
+        let folder = tempfile::tempdir().unwrap();
+        checkpoints(folder.path(), &case).save(&running, &Alone).unwrap();
+        let file = latest(folder.path());
+        let begin = file.iter().position(|&byte| byte == b'\n').unwrap() + 1;
+        let line: serde_json::Value = serde_json::from_slice(&file[..begin]).unwrap();
+        let number = |which: usize, key: &str| line["columns"][which][key].as_u64().unwrap() as usize;
+        let shape = |which| ["count", "rows", "row_length", "number_bytes"].map(|key| number(which, key));
+        let [frames, fields] = [shape(1)[0] / 5, 5];
+        assert!(frames > 3);
+        assert_eq!(
+            [shape(0), shape(1)],
+            [[5, 50, 60, 8], [frames * fields, 17, 20, 4]]
+        );
+        let n = 60 * 50;
+        let (columns, rest) = file[begin..].split_at(5 * n * 8);
+        for b in 0..n {
+            let u = running.snapshot().block(b).displacement;
+            for axis in 0..2 {
+                let bytes = &columns[(axis * n + b) * 8..][..8];
+                assert_eq!(bytes, u[axis].to_le_bytes());
+            }
+        }
+        let record = running.record(slipfront::StopReason::End);
+        let values = record
+            .frames
+            .iter()
+            .flat_map(|(_, frame)| frame.values.iter().flatten());
+        let bytes: Vec<u8> = values.flat_map(|value| value.to_le_bytes()).collect();
+        assert!(rest.starts_with(&bytes));
+    }
+
+    /// What a damaged first line claims is neither believed nor allocated.
+    #[test]
+    fn wrong_counts_are_refused() {
+        let case = case();
+        let folder = tempfile::tempdir().unwrap();
+        checkpoints(folder.path(), &case)
+            .save(&advanced(&case), &Alone)
+            .unwrap();
+        let file = latest(folder.path());
+        let begin = file.iter().position(|&byte| byte == b'\n').unwrap();
+        let line: serde_json::Value = serde_json::from_slice(&file[..begin]).unwrap();
+        let body = &file[begin..file.len() - blake3::OUT_LEN];
+        for which in 0..2 {
+            for key in ["count", "rows", "row_length", "number_bytes"] {
+                let right = line["columns"][which][key].as_u64().unwrap();
+                for wrong in [0, right - 1, right + 1, 1 << 40, u64::MAX] {
+                    let mut changed = line.clone();
+                    changed["columns"][which][key] = wrong.into();
+                    let contents = [&serde_json::to_vec(&changed).unwrap(), body].concat();
+                    let checksum = blake3::hash(blake3::hash(&contents).as_bytes());
+                    let path = Unfinished::of(folder.path()).path().join(CHECKPOINT);
+                    std::fs::write(path, [&contents, &checksum.as_bytes()[..]].concat()).unwrap();
+                    let went_on = match Checkpoints::load(folder.path(), &case, false, &Alone) {
+                        Err(CheckpointError::Damaged { .. }) => false,
+                        loaded => {
+                            let loaded = loaded.unwrap().unwrap();
+                            loaded.resume(&case, 1, &Alone).unwrap().is_some()
+                        }
+                    };
+                    assert!(!went_on, "{key} {wrong}");
+                }
+            }
+        }
+    }
+}
