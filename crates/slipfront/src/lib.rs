@@ -25,6 +25,7 @@
 pub mod checkpoint;
 pub mod communicator;
 pub mod exact_solutions;
+pub mod fixed_point;
 pub mod kernel;
 pub mod lattice;
 pub mod observe;
