@@ -43,7 +43,7 @@ pub fn write(
 pub fn write_case(case: &Case, folder: &mut RunFolder) -> Result<(), ResultsError> {
     folder.write(CASE, case.file.to_toml()?.as_bytes())?;
     for input in &case.inputs {
-        folder.write(&input.name, &input.bytes)?;
+        folder.copy(input)?;
     }
     Ok(folder.sync()?)
 }

@@ -27,6 +27,20 @@ pub trait Communicator: Send + Sync {
     fn sum(&self, values: &mut [i64]);
 }
 
+/// The text that one of the ranks has, on all of them; what the others have is not looked at.
+pub fn text_of(communicator: &dyn Communicator, rank: usize, text: &str) -> String {
+    let own = if communicator.rank() == rank { text } else { "" };
+    let mut length = [own.len() as i64];
+    communicator.sum(&mut length);
+    let mut words = vec![0; length[0] as usize];
+    for (word, byte) in words.iter_mut().zip(own.bytes()) {
+        *word = i64::from(byte);
+    }
+    communicator.sum(&mut words);
+    let bytes: Vec<u8> = words.into_iter().map(|word| word as u8).collect();
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
 /// The one rank of a lattice that is not divided.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Alone;
