@@ -410,6 +410,8 @@ fn grown(length: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use slipfront::communicator::Threads;
+
     use super::*;
     use crate::case::Case;
 
@@ -451,7 +453,61 @@ mod tests {
             for word in ["where 190.7 MiB are available"].iter().chain(&words) {
                 assert!(refused.contains(word), "{word}: {refused}");
             }
+            assert!(!refused.contains("rank"), "{refused}");
         }
+    }
+
+    /// Four ranks, two of them on this machine.
+    #[test]
+    fn ranks_share_what_a_run_takes() {
+        let overrides = ["slider.blocks=[2000,2000]", "output.snapshots={every=20}"].map(str::to_owned);
+        let made = |communicator: &Threads, on_node| {
+            let ranks = Ranks {
+                communicator,
+                on_node,
+            };
+            let file = CaseFile::parse("", "case", &overrides).unwrap();
+            Case::to_run_on_ranks(file, "case", Path::new(""), &mut |_| true, ranks).unwrap()
+        };
+        let alone = case(&["slider.blocks=[2000,2000]", "output.snapshots={every=20}"]).budget;
+        let cases = Threads::run(4, |communicator| made(communicator, 2));
+        // What is there once for every process: the numbers that do not belong to blocks.
+        let beside = |phase: Phase| {
+            let mut none = alone;
+            (none.blocks, none.cells, none.all_cells) = (0.0, 0.0, 0.0);
+            none.total(phase)
+        };
+        for phase in [Phase::Making, Phase::Running] {
+            let shared: f64 = cases
+                .iter()
+                .map(|case| case.budget.total(phase) - beside(phase))
+                .sum();
+            assert_eq!(shared, alone.total(phase) - beside(phase), "{phase:?}");
+        }
+        let budget = cases[0].budget;
+        for phase in [Phase::Files, Phase::Checkpoint] {
+            assert_eq!(budget.total(phase), alone.total(phase), "{phase:?}");
+        }
+        // While it draws, the other one has what it ran with.
+        let drawing = budget.of_rank(Phase::Drawing) + budget.of_rank(Phase::Running);
+        assert_eq!(budget.on_node(Phase::Drawing), drawing);
+        let needed = budget.on_node(budget.largest(true));
+        assert_eq!(refusal(&cases[0], &budget, 0.0, Some(needed)), None);
+        assert_eq!(refusal(&cases[0], &budget, 1e6, Some(needed - 2e6)), None);
+        let refused = refusal(&cases[0], &budget, 1e6, Some(needed - 3e6)).unwrap();
+        for word in [
+            " of memory per rank (",
+            &format!(", {} for the 2 ranks of this machine, where ", byte_size(needed)),
+            ", or share it among more machines",
+        ] {
+            assert!(refused.contains(word), "{word}: {refused}");
+        }
+        let spread = Threads::run(4, |communicator| made(communicator, 1));
+        let refused = refusal(&spread[3], &spread[3].budget, 0.0, Some(1e6)).unwrap();
+        assert!(
+            refused.contains(" of memory per rank (") && !refused.contains("ranks"),
+            "{refused}"
+        );
     }
 
     /// The case itself is in memory when its run is judged.

@@ -18,7 +18,6 @@ use super::textures::{self, Watch};
 use super::time_plan::TimePlan;
 use crate::arrays::Slab;
 use crate::case_file::{CaseError, CaseFile};
-use crate::number_format::count;
 
 /// A case that can be run. It is valid by construction.
 #[derive(Debug)]
@@ -236,8 +235,9 @@ impl Numbers {
         let n_ranks = ranks.communicator.size();
         if n_ranks > lattice.ny {
             let sentence = format!(
-                "{n_ranks} ranks have {} to share, and each takes one or more: take fewer ranks, or more blocks along y",
-                count(lattice.ny, "row of blocks")
+                "there are more ranks ({n_ranks}) than rows of blocks ({}), of which each takes at least one: take fewer ranks, \
+                 or more blocks along y",
+                lattice.ny
             );
             return Err(file.source.error("slider.blocks", sentence));
         }
