@@ -1,5 +1,6 @@
 //! Files that a case reads.
 
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -59,21 +60,21 @@ impl NamedFiles {
         lattice: &Lattice,
         ranks: &Ranks,
     ) -> Result<Self, CaseError> {
+        let mut digests: HashMap<PathBuf, Digest> = HashMap::new();
         let mut found = Self {
             originals: Vec::new(),
             digests: Vec::new(),
         };
         for (key, name) in CaseFile::files_mut(&mut file.friction, &mut file.texture) {
             let original = folder.join(&*name);
-            let known = found.originals.iter().position(|known| *known == original);
-            let digest = match known {
-                Some(known) => found.digests[known],
+            let digest = match digests.get(&original) {
+                Some(known) => *known,
                 None if ranks.communicator.rank() == 0 => {
-                    let digest = digest(&original, lattice);
-                    digest.map_err(|error| file.source.error(&key, error.to_string()))?
+                    digest(&original, lattice).map_err(|error| file.source.error(&key, error.to_string()))?
                 }
                 None => Digest::default(),
             };
+            digests.insert(original.clone(), digest);
             found.originals.push(original);
             found.digests.push(digest);
         }

@@ -127,10 +127,10 @@ impl Case {
         let lattice = Lattice::with_edges(nx, ny, file.slider.edges);
         let rows = lattice.rows_of(ranks.communicator);
         // Nothing is allocated before all ranks have looked at the memory that they share.
-        let planned = Numbers::of(&file, &lattice, &rows, &ranks, to_run)
-            .and_then(|numbers| Ok((numbers, NamedFiles::find(&mut file, folder, &lattice, &ranks)?)));
+        let planned = Derived::of(&file, &lattice, &rows, &ranks, to_run)
+            .and_then(|derived| Ok((derived, NamedFiles::find(&mut file, folder, &lattice, &ranks)?)));
         let (
-            Numbers {
+            Derived {
                 scales,
                 groups,
                 time_plan,
@@ -206,8 +206,8 @@ impl Case {
     }
 }
 
-/// What follows from the numbers of a case alone.
-struct Numbers {
+/// What follows from a case file without the files that it names.
+struct Derived {
     scales: Scales,
     groups: Groups,
     time_plan: TimePlan,
@@ -215,7 +215,7 @@ struct Numbers {
     budget: Budget,
 }
 
-impl Numbers {
+impl Derived {
     /// Refuses numbers out of the range of the model, and what there is no memory for.
     fn of(
         file: &CaseFile,
