@@ -35,8 +35,7 @@ impl Whole {
         ranks.largest(&mut extremes);
 
         let fixed = [0, 1].map(|k| FixedPoint::of_bound(extremes[k]));
-        let integers = [0, 1].map(|k| arrays[k].iter().map(move |mu| i128::from(fixed[k].integer(*mu))));
-        let [[a, b], [c, d]] = integers.map(|integers| split(integers.sum()));
+        let [[a, b], [c, d]] = [0, 1].map(|k| split(fixed[k].sum(arrays[k])));
         let counts = [textured.len(), n_contact, coefficients.negative_draws];
         let [n_blocks, n_contact, negative_draws] = counts.map(|count| count as i64);
         let mut sums = [n_blocks, n_contact, negative_draws, a, b, c, d];
