@@ -13,7 +13,7 @@ use thiserror::Error;
 use crate::names::{CASE, MANIFEST};
 use crate::resume_command::resume_command;
 use crate::{clock, program};
-use slipfront_case::case::Case;
+use slipfront_case::case::{Case, Input};
 use slipfront_case::disk::{TEXT_MAX_BYTES, json, open_regular, read_limited};
 use slipfront_case::text::{single_line, truncated};
 
@@ -189,6 +189,15 @@ impl ManifestFile {
         let mut hasher = blake3::Hasher::new();
         hasher.update_reader(open_regular(&folder.join(name))?)?;
         Ok(Self::hashed(name, &hasher))
+    }
+
+    /// The copy of a file that the case reads.
+    pub(crate) fn of_input(input: &Input) -> Self {
+        Self {
+            name: input.name.clone(),
+            bytes: input.length,
+            blake3: input.hash.to_hex().to_string(),
+        }
     }
 
     /// One of this name whose bytes have been hashed.

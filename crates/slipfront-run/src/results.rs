@@ -43,7 +43,7 @@ pub fn write(
 pub fn write_case(case: &Case, folder: &mut RunFolder) -> Result<(), ResultsError> {
     folder.write(CASE, case.file.to_toml()?.as_bytes())?;
     for input in &case.inputs {
-        folder.write(&input.name, &input.bytes)?;
+        folder.copy(input)?;
     }
     Ok(folder.sync()?)
 }
@@ -72,4 +72,38 @@ fn write_fields(case: &Case, record: &mut Record, folder: &RunFolder) -> Result<
         frames: &frames,
     };
     fields::write_fields(&folder.temporary(), &folder.path().join(FIELDS), &file)
+}
+
+#[cfg(test)]
+mod tests {
+    use slipfront_case::case_file::CaseFile;
+
+    use super::*;
+
+    /// A copy holds what the case was made of, or there is none.
+    #[test]
+    fn a_file_that_has_changed_since_is_not_copied() {
+        let folder = tempfile::tempdir().unwrap();
+        let table = folder.path().join("mu.csv");
+        std::fs::write(&table, "1,1\n1,1\n").unwrap();
+        let text = "slider.blocks = [2, 2]\nfriction.mu_static_field = 'mu.csv'";
+        let file = CaseFile::parse(text, "case", &[]).unwrap();
+        let case = Case::new(file, "case", folder.path(), &mut |_| true).unwrap();
+        let write = |name: &str| {
+            let out = folder.path().join(name);
+            let mut run = RunFolder::prepare(&out, false, &case.inputs).unwrap();
+            (write_case(&case, &mut run), out.join("inputs/mu.csv"))
+        };
+        let (written, copy) = write("one");
+        written.unwrap();
+        assert_eq!(std::fs::read(copy).unwrap(), std::fs::read(&table).unwrap());
+        std::fs::write(&table, "1,1\n1,2\n").unwrap();
+        let (written, copy) = write("other");
+        let said = written.unwrap_err().to_string();
+        assert!(
+            said.contains("mu.csv is no longer what it was when the case was made"),
+            "{said}"
+        );
+        assert!(!copy.exists());
+    }
 }

@@ -188,7 +188,7 @@ impl SummaryObservers {
             dt_star: case.time_plan.dt_star,
             steps,
             seed: case.file.friction.seed,
-            negative_draws: case.negative_draws,
+            negative_draws: case.model.surface.negative_draws(),
             energy_error: energies.error(),
             work_j: energies.work * energy,
             friction_loss_j: energies.friction_loss * energy,

@@ -25,7 +25,7 @@ const MIN_BOUND: f64 = 1e-270;
 const QUANTA: f64 = (1_u64 << 51) as f64;
 
 /// Most integers that can be added without overflow of 64 bits.
-pub(crate) const MAX_TERMS: usize = 1 << 11;
+const MAX_TERMS: usize = 1 << 11;
 
 impl FixedPoint {
     /// For numbers of at most `bound` in size.
@@ -56,6 +56,17 @@ impl FixedPoint {
     pub(crate) fn integer(self, x: f64) -> i64 {
         let shift = self.shift();
         (x + shift).to_bits().wrapping_sub(shift.to_bits()) as i64
+    }
+
+    /// Sum of the integers of `term(k)` over `0..n`.
+    #[inline(always)]
+    pub(crate) fn sum(self, n: usize, term: impl Fn(usize) -> f64) -> i128 {
+        let mut sum = 0;
+        for first in (0..n).step_by(MAX_TERMS) {
+            let terms = first..n.min(first + MAX_TERMS);
+            sum += i128::from(terms.map(|k| self.integer(term(k))).sum::<i64>());
+        }
+        sum
     }
 
     /// What a sum of integers stands for, rounded to the nearest double.
@@ -115,12 +126,23 @@ pub(crate) fn sum(n: usize, term: impl Fn(usize) -> f64) -> f64 {
     // A term that is no number makes the bound infinite.
     let size = |term: f64| if term.is_nan() { f64::INFINITY } else { term.abs() };
     let fixed_point = FixedPoint::new(reductions::largest(n, |k| size(term(k))));
-    let mut sum = 0;
-    for first in (0..n).step_by(MAX_TERMS) {
-        let terms = first..n.min(first + MAX_TERMS);
-        sum += i128::from(terms.map(|k| fixed_point.integer(term(k))).sum::<i64>());
-    }
-    fixed_point.value(sum)
+    fixed_point.value(fixed_point.sum(n, term))
+}
+
+/// Bits of a sum in the lower of its two words.
+const LOW_BITS: u32 = 40;
+
+/// A sum of integers as two words, each of which may be added over up to 2^23 ranks: [`join`] makes the sum of them.
+///
+/// The sum over all ranks has 2^102 as its bound, the integers of 2^51 numbers.
+pub(crate) fn split(sum: i128) -> [i64; 2] {
+    let low = sum & ((1 << LOW_BITS) - 1);
+    [low as i64, (sum >> LOW_BITS) as i64]
+}
+
+/// The sum whose words, or sums of words, these are: see [`split`].
+pub(crate) fn join([low, high]: [i64; 2]) -> i128 {
+    (i128::from(high) << LOW_BITS) + i128::from(low)
 }
 
 #[cfg(test)]
@@ -136,6 +158,15 @@ mod tests {
         }
         assert_eq!(sum(10_000, |_| -0.25), -2500.0);
         assert_eq!(sum(3, |k| [1e300, 1.0, -1e300][k]), 0.0);
+    }
+
+    /// More than a word holds.
+    #[test]
+    fn long_sums_do_not_overflow() {
+        for x in [1.0, -1.0] {
+            let n = 3 * MAX_TERMS + 5;
+            assert_eq!(sum(n, |_| x), x * n as f64);
+        }
     }
 
     #[test]
@@ -178,8 +209,8 @@ mod tests {
             let integer = |k: usize| i128::from(fixed_point.integer(terms[k]));
             let whole: i128 = (0..n).map(integer).sum();
             let cut = cut.min(n);
-            let parts = (cut..n).map(integer).sum::<i128>() + (0..cut).rev().map(integer).sum::<i128>();
-            prop_assert_eq!(whole, parts);
+            let [one, other] = [(cut..n).map(integer).sum(), (0..cut).rev().map(integer).sum()].map(split);
+            prop_assert_eq!(whole, join([one[0] + other[0], one[1] + other[1]]));
             let strided: i128 = (0..stride).map(|from| (from..n).step_by(stride).map(integer).sum::<i128>()).sum();
             prop_assert_eq!(whole, strided);
             prop_assert_eq!(fixed_point.value(whole).to_bits(), sum(n, |k| terms[n - 1 - k]).to_bits());

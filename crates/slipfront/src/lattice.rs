@@ -4,8 +4,11 @@
 //! ((i + 1/2), (j + 1/2)) in units of the block size. The [`kernel`](crate::kernel) reads the springs from here.
 
 use std::f64::consts::SQRT_2;
+use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
+
+use crate::communicator::Communicator;
 
 /// Stiffness of a spring to a straight neighbour, `k_1 = (3/4) E l`, in units of `E l`.
 pub const K_STRAIGHT: f64 = 0.75;
@@ -79,6 +82,23 @@ impl Lattice {
     /// Index of block (i, j).
     pub fn block(&self, i: usize, j: usize) -> usize {
         j * self.nx + i
+    }
+
+    /// The rows that a rank holds: consecutive ones, as many as the others hold or one more, rank 0 the lowest.
+    ///
+    /// ```
+    /// use slipfront::Lattice;
+    /// use slipfront::communicator::Alone;
+    /// assert_eq!(Lattice::free(5, 7).rows_of(&Alone), 0..7);
+    /// ```
+    pub fn rows_of(&self, rank: &dyn Communicator) -> Range<usize> {
+        let first = |rank_number: usize| self.ny * rank_number / rank.size();
+        first(rank.rank())..first(rank.rank() + 1)
+    }
+
+    /// Indices of the blocks of some rows.
+    pub fn blocks_of(&self, rows: &Range<usize>) -> Range<usize> {
+        rows.start * self.nx..rows.end * self.nx
     }
 
     /// Column and row of the block with index `b`.

@@ -1,5 +1,7 @@
 //! What never changes in a run: lattice, surface, drive, damping and friction law.
 
+use std::ops::Range;
+
 use crate::friction::FrictionLaw;
 use crate::lattice::{K_DRIVE, Lattice};
 use crate::surface::Surface;
@@ -54,9 +56,11 @@ impl Drive {
 /// The slider with its surface and drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
-    /// Blocks and springs.
+    /// Blocks and springs, all of them.
     pub lattice: Lattice,
-    /// Friction of every block.
+    /// The rows that this process holds: all, unless it is one rank of several.
+    pub rows: Range<usize>,
+    /// Friction of every block of these rows.
     pub surface: Surface,
     /// How it is pulled.
     pub drive: Drive,
@@ -78,13 +82,27 @@ impl Model {
         epsilon: f64,
         law: FrictionLaw,
     ) -> Self {
+        Self::of_rows(lattice, 0..lattice.ny, surface, drive, damping, epsilon, law)
+    }
+
+    /// The model of a rank that holds these `rows` of the lattice, for which the surface must be made.
+    pub fn of_rows(
+        lattice: Lattice,
+        rows: Range<usize>,
+        surface: Surface,
+        drive: Drive,
+        damping: f64,
+        epsilon: f64,
+        law: FrictionLaw,
+    ) -> Self {
         assert_eq!(
-            lattice.n_blocks(),
+            lattice.blocks_of(&rows).len(),
             surface.n_blocks(),
-            "the surface belongs to another lattice"
+            "the surface belongs to another lattice, or to other rows"
         );
         Self {
             lattice,
+            rows,
             surface,
             drive,
             damping,
@@ -99,9 +117,7 @@ impl Model {
     /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V*
     /// ```
     pub fn steady_level(&self) -> f64 {
-        let n = self.surface.n_blocks();
-        let friction = (0..n).map(|b| self.surface.kinetic_force(b)).sum::<f64>() / n as f64;
-        friction + self.damping * self.drive.v_star
+        self.surface.mean_kinetic_force() + self.damping * self.drive.v_star
     }
 
     /// Time of the first slip of a block in contact on a surface without texture, exact:

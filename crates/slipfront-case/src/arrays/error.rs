@@ -43,6 +43,16 @@ pub enum ArrayError {
     Stopped,
 }
 
+impl ArrayError {
+    /// What the system says of a file that is read.
+    pub(super) fn read(path: &Path) -> impl Fn(io::Error) -> Self {
+        move |source| Self::Read {
+            path: path.to_owned(),
+            source,
+        }
+    }
+}
+
 /// An error about the contents of a file; the sentence goes on after its name.
 pub(super) fn contents_error(path: &Path, problem: String) -> ArrayError {
     let path = path.to_owned();
@@ -63,25 +73,6 @@ pub(super) fn value_error(path: &Path, value: &str, at: [usize; 2], wanted: &str
         "has {value} in row {row}, column {column} (both counted from 0), where {wanted} is wanted; correct this value"
     );
     contents_error(path, problem)
-}
-
-/// Refuses an array of `nx` columns for the first of its values that is wrong.
-pub(super) fn refuse_value(
-    path: &Path,
-    values: &[f64],
-    nx: usize,
-    wanted: &str,
-    is_wrong: impl Fn(f64) -> bool,
-) -> Result<(), ArrayError> {
-    match values.iter().position(|value| is_wrong(*value)) {
-        Some(at) => Err(value_error(
-            path,
-            &values[at].to_string(),
-            [at / nx, at % nx],
-            wanted,
-        )),
-        None => Ok(()),
-    }
 }
 
 /// The extension in lower case, empty if there is none.

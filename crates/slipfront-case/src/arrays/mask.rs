@@ -1,10 +1,11 @@
 //! Masks as PNG images: dark pixels are texture.
 
-use std::io::{self, Cursor};
+use std::io::{self, BufRead, ErrorKind, Seek, SeekFrom};
 use std::path::Path;
 
 use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, Reader};
 
+use super::Slab;
 use super::error::{ArrayError, broken, contents_error, extension, unknown_extension};
 use crate::disk::write_atomic;
 
@@ -17,11 +18,11 @@ pub(super) const FILE_MAX_BYTES: u64 = PIXELS_MAX;
 /// Deflate cannot pack more than about 1030 bytes into one.
 const DEFLATE_MAX_RATIO: u64 = 1040;
 
-/// A mask for a lattice of `nx` x `ny` blocks of the bytes of a PNG image called `path`, of any colour type and depth.
+/// A mask for some rows of a lattice of `nx` x `ny` blocks, of a PNG image called `path`, of any colour type and depth.
 ///
-/// The image is stretched over the slider, and a block is textured if the pixel at its centre is dark. Returns `nx * ny` values
-/// in row-major order, row j = 0 (the smallest y, the bottom of the image) first: no other pixel is kept. `watch` is told the
-/// share of the rows that have been read, and its error ends the work.
+/// The image is stretched over the slider, and a block is textured if the pixel at its centre is dark. Returns the values in
+/// row-major order, the smallest y (the bottom of the image) first: no other pixel is kept, though all are read. `watch` is
+/// told the share of the rows of the image that have been read, and its error ends the work.
 ///
 /// A pixel is dark when its luminance, in 0 to 1, lies below `threshold`. The luminance is
 ///
@@ -33,18 +34,19 @@ const DEFLATE_MAX_RATIO: u64 = 1040;
 /// over white.
 ///
 /// # Errors
-/// [`ArrayError`] if the bytes are not those of a PNG image, corrupt, or have more than 2^28 pixels, or more than 2^20 along
-/// a side.
+/// [`ArrayError`] if the file is not a PNG image, corrupt, or has more than 2^28 pixels, or more than 2^20 along a side.
 pub fn mask_png(
     path: &Path,
-    bytes: &[u8],
+    source: &mut (impl BufRead + Seek),
     threshold: f64,
-    [nx, ny]: [usize; 2],
+    slab: &Slab,
     watch: &mut dyn FnMut(f64) -> Result<(), ArrayError>,
 ) -> Result<Vec<bool>, ArrayError> {
-    let file_bytes = bytes.len() as u64;
+    let read_error = ArrayError::read(path);
+    let file_bytes = source.seek(SeekFrom::End(0)).map_err(&read_error)?;
+    source.rewind().map_err(&read_error)?;
     let unreadable = |source| decoding_error(path, source);
-    let mut decoder = Decoder::new(Cursor::new(bytes));
+    let mut decoder = Decoder::new(source);
     decoder.set_transformations(png::Transformations::EXPAND);
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);
@@ -71,7 +73,7 @@ pub fn mask_png(
     if reader.info().color_type == ColorType::Indexed {
         check_palette(path, reader.info().palette.as_deref())?;
     }
-    read_rows(path, reader, threshold, [nx, ny], watch)
+    read_rows(path, reader, threshold, slab, watch)
 }
 
 /// The decoder takes a palette of any length and panics on one that is not made of 1 to 256 whole colours.
@@ -87,9 +89,9 @@ fn check_palette(path: &Path, palette: Option<&[u8]>) -> Result<(), ArrayError> 
 /// Decodes row by row, and keeps what the centres of the blocks lie on.
 fn read_rows(
     path: &Path,
-    mut reader: Reader<Cursor<&[u8]>>,
+    mut reader: Reader<impl BufRead + Seek>,
     threshold: f64,
-    [nx, ny]: [usize; 2],
+    slab: &Slab,
     watch: &mut dyn FnMut(f64) -> Result<(), ArrayError>,
 ) -> Result<Vec<bool>, ArrayError> {
     let (width, height) = (reader.info().width as usize, reader.info().height as usize);
@@ -100,15 +102,21 @@ fn read_rows(
     let mut lines = lines().enumerate();
     // The pixel at the centre of each block, along a row from the left and along a column from the top.
     let pixel = |block: usize, blocks: usize, pixels: usize| (2 * block + 1) * pixels / (2 * blocks);
+    let Slab { nx, ny, ref rows } = *slab;
     let columns: Vec<usize> = (0..nx).map(|i| pixel(i, nx, width)).collect();
-    let rows: Vec<usize> = (0..ny).map(|j| pixel(j, ny, height)).collect();
-    let mut dark = vec![false; nx * ny];
+    // The rows of blocks from the top, as those of the image are stored.
+    let from_top: Vec<usize> = rows
+        .clone()
+        .rev()
+        .map(|j| pixel(ny - 1 - j, ny, height))
+        .collect();
+    let mut dark = vec![false; slab.n_blocks()];
     while let Some(stored) = reader.next_row().map_err(|source| decoding_error(path, source))? {
         let Some((done, line)) = lines.next() else { break };
         watch(done as f64 / total)?;
-        let row_of_blocks = rows.partition_point(|&row| row < line.row);
-        for from_top in (row_of_blocks..ny).take_while(|&from_top| rows[from_top] == line.row) {
-            let blocks = &mut dark[(ny - 1 - from_top) * nx..][..nx];
+        let first = from_top.partition_point(|&row| row < line.row);
+        for k in (first..from_top.len()).take_while(|&k| from_top[k] == line.row) {
+            let blocks = &mut dark[(from_top.len() - 1 - k) * nx..][..nx];
             for (block, &column) in blocks.iter_mut().zip(&columns) {
                 if let Some(at) = line.position(column) {
                     let pixel = &stored.data()[at * pixel_bytes..][..pixel_bytes];
@@ -176,6 +184,9 @@ fn luminance(pixel: &[u8], color: ColorType, depth: BitDepth) -> f64 {
 
 fn decoding_error(path: &Path, source: DecodingError) -> ArrayError {
     match source {
+        DecodingError::IoError(source) if source.kind() != ErrorKind::UnexpectedEof => {
+            ArrayError::read(path)(source)
+        }
         DecodingError::IoError(_) => broken(path, ".png", "it ends before the last pixel"),
         other => broken(path, ".png", other.to_string().trim_end_matches('.')),
     }

@@ -1,38 +1,55 @@
 //! The `.npy` files of numpy: the header through `npyz`, the numbers here.
 
+use std::io::{BufRead, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 
-use super::error::{ArrayError, broken, contents_error, refuse_value};
+use super::Slab;
+use super::error::{ArrayError, broken, contents_error, value_error};
 use crate::text::truncated;
 
 /// Numpy itself refuses longer headers.
-pub(super) const HEADER_MAX_BYTES: usize = 10_000;
+pub(super) const HEADER_MAX_BYTES: u64 = 10_000;
 /// Deepest nesting of brackets in a header: a dict of a list of tuples with a shape. numpy nests no deeper for numbers.
 const HEADER_MAX_NESTING: usize = 4;
 /// All numbers of a header together: their product then fits into 64 bits, whatever the radix they are written in.
 const HEADER_MAX_DIGITS: usize = 18;
 
-/// A mask of the bytes of a `.npy` file called `path`, of shape (ny, nx): 1 or true = textured, 0 or false = not.
+/// A mask for some rows of a `.npy` file called `path`, of shape (ny, nx): 1 or true = textured, 0 or false = not.
 ///
-/// Any real, integer or boolean type is accepted, in either byte and memory order. Returns `nx * ny` values in
-/// row-major order, row j = 0 (the smallest y) first.
+/// Any real, integer or boolean type is accepted, in either byte and memory order. Returns the values in row-major order, the
+/// smallest y first.
 ///
 /// # Errors
-/// [`ArrayError`] if the bytes are not those of a `.npy` file, of another shape, or have another value:
+/// [`ArrayError`] if the file is not a `.npy` file, of another shape, or has another value:
 /// a picture or a height map says nothing unambiguous about what is textured.
-pub fn mask_npy(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<bool>, ArrayError> {
-    let values = values(path, bytes, nx, ny)?;
-    refuse_value(path, &values, nx, "0 or 1, 1 being textured,", |value| {
-        ![0.0, 1.0].contains(&value)
-    })?;
+pub fn mask_npy(
+    path: &Path,
+    source: &mut (impl BufRead + Seek),
+    slab: &Slab,
+) -> Result<Vec<bool>, ArrayError> {
+    let wanted = "0 or 1, 1 being textured,";
+    let values = values(path, source, slab, wanted, |value| ![0.0, 1.0].contains(&value))?;
     Ok(values.iter().map(|value| *value == 1.0).collect())
 }
 
-/// An array of shape (ny, nx) in row-major order; the values may be anything, NaN included.
-pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<f64>, ArrayError> {
-    let (header, data_start) = read_header(bytes, path)?;
+/// The rows of a slab of an array of shape (ny, nx), in row-major order.
+pub(super) fn values(
+    path: &Path,
+    source: &mut (impl BufRead + Seek),
+    slab: &Slab,
+    wanted: &str,
+    is_wrong: impl Fn(f64) -> bool,
+) -> Result<Vec<f64>, ArrayError> {
+    let Slab { nx, ny, ref rows } = *slab;
+    let read_error = ArrayError::read(path);
+    let length = source.seek(SeekFrom::End(0)).map_err(&read_error)?;
+    source.rewind().map_err(&read_error)?;
+    let mut head = Vec::new();
+    let first = source.take(HEADER_MAX_BYTES).read_to_end(&mut head);
+    first.map_err(&read_error)?;
+    let (header, data_start) = read_header(&head, path)?;
 
     let number = Number::of(&header.dtype()).ok_or_else(|| {
         let problem = format!(
@@ -46,33 +63,53 @@ pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<
         return Err(wrong_shape(path, header.shape(), nx, ny));
     }
     let wanted_bytes = data_start as u64 + number.size as u64 * nx as u64 * ny as u64;
-    if bytes.len() as u64 != wanted_bytes {
-        let detail = format!(
-            "it has {} bytes where its header asks for {wanted_bytes}",
-            bytes.len()
-        );
+    if length != wanted_bytes {
+        let detail = format!("it has {length} bytes where its header asks for {wanted_bytes}");
         return Err(broken(path, ".npy", &detail));
     }
 
-    let mut values = vec![0.0; nx * ny];
-    let numbers = bytes[data_start..].chunks_exact(number.size).take(nx * ny);
-    for (stored, bytes) in numbers.enumerate() {
-        let at = match header.order() {
-            Order::C => stored,
-            Order::Fortran => (stored % ny) * nx + stored / ny,
-        };
-        values[at] = number.decode(bytes);
+    // Numbers that stand one after the other: all of the slab, or its part of each column.
+    let (n_runs, run, from_run_to_run, step) = match header.order() {
+        Order::C => (1, slab.n_blocks(), 0, 1),
+        Order::Fortran => (nx, rows.len(), ny - rows.len(), nx),
+    };
+    let before = match header.order() {
+        Order::C => rows.start * nx,
+        Order::Fortran => rows.start,
+    };
+    let bytes = |numbers: usize| numbers as u64 * number.size as u64;
+    let start = SeekFrom::Start(data_start as u64 + bytes(before));
+    source.seek(start).map_err(&read_error)?;
+    let mut values = vec![0.0; slab.n_blocks()];
+    let mut piece = [0; 8192];
+    for first in 0..n_runs {
+        let mut done = 0;
+        while done < run {
+            let count = (run - done).min(piece.len() / number.size);
+            let stored = &mut piece[..count * number.size];
+            source.read_exact(stored).map_err(&read_error)?;
+            for (k, stored) in stored.chunks_exact(number.size).enumerate() {
+                values[first + (done + k) * step] = number.decode(stored);
+            }
+            done += count;
+        }
+        source
+            .seek_relative(bytes(from_run_to_run).cast_signed())
+            .map_err(&read_error)?;
+    }
+    if let Some(at) = values.iter().position(|value| is_wrong(*value)) {
+        let place = [rows.start + at / nx, at % nx];
+        return Err(value_error(path, &values[at].to_string(), place, wanted));
     }
     Ok(values)
 }
 
-/// Reads the header; returns it with the number of bytes before the data.
+/// Reads the header from the first bytes of a file; returns it with the number of bytes before the data.
 ///
 /// `npyz` reserves what the header asks for, recurses without bound and overflows on the product of an absurd
 /// shape, hence the checks on the bytes before it sees them.
-fn read_header(bytes: &[u8], path: &Path) -> Result<(NpyHeader, usize), ArrayError> {
+fn read_header(head: &[u8], path: &Path) -> Result<(NpyHeader, usize), ArrayError> {
     let refuse = |detail: &str| broken(path, ".npy", detail);
-    let head = &bytes[..bytes.len().min(HEADER_MAX_BYTES)];
     if !head.starts_with(b"\x93NUMPY") {
         return Err(refuse("it does not begin with the signature of numpy"));
     }

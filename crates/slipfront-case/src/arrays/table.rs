@@ -1,9 +1,11 @@
 //! Tables of numbers as text (`.csv`).
 
+use std::io::{BufRead, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use csv::{ReaderBuilder, Trim};
+use csv::{ErrorKind, ReaderBuilder, StringRecord, Trim};
 
+use super::Slab;
 use super::error::{ArrayError, broken, contents_error, value_error};
 
 /// Comment lines are searched for the separator up to this total length.
@@ -11,50 +13,87 @@ pub(super) const PREAMBLE_MAX_BYTES: u64 = 1 << 20;
 /// A number with its separator and blanks, and its share of comments: numpy's longest takes 25.
 pub(super) const NUMBER_MAX_BYTES: u64 = 64;
 
-/// `ny` lines of `nx` numbers in row-major order; the values may be anything that is written as a number.
-pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<Vec<f64>, ArrayError> {
-    let separator = separator(bytes);
-    let table = ReaderBuilder::new()
+/// The rows of a slab of `ny` lines of `nx` numbers. The lines before are counted, those behind not read.
+pub(super) fn values(
+    path: &Path,
+    source: &mut (impl BufRead + Seek),
+    slab: &Slab,
+    wanted: &str,
+    is_wrong: impl Fn(f64) -> bool,
+) -> Result<Vec<f64>, ArrayError> {
+    let Slab { nx, ny, ref rows } = *slab;
+    let read_error = ArrayError::read(path);
+    let length = source.seek(SeekFrom::End(0)).map_err(&read_error)?;
+    source.rewind().map_err(&read_error)?;
+    let mut preamble = Vec::new();
+    let first = source.take(PREAMBLE_MAX_BYTES).read_to_end(&mut preamble);
+    first.map_err(&read_error)?;
+    source.rewind().map_err(&read_error)?;
+    let separator = separator(&preamble);
+    let mut table = ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
         .comment(Some(b'#'))
         .trim(Trim::All)
         .delimiter(separator)
-        .from_reader(bytes);
+        .from_reader(source);
 
     // A number and what separates it from the next take two bytes at the least.
-    let mut values = Vec::with_capacity((nx * ny).min(bytes.len() / 2 + 1));
+    let mut values = Vec::with_capacity(slab.n_blocks().min(length as usize / 2 + 1));
+    let mut record = StringRecord::new();
     let mut row = 0;
-    for record in table.into_records() {
-        let record = record.map_err(|source| broken(path, ".csv", &source.to_string()))?;
-        let line = record.position().map_or(0, csv::Position::line);
+    // Whoever reads the last row sees that there is no other.
+    while row < rows.end || rows.end == ny {
+        let is_there = table.read_record(&mut record).map_err(|error| {
+            let detail = error.to_string();
+            match error.into_kind() {
+                ErrorKind::Io(source) => read_error(source),
+                _ => broken(path, ".csv", &detail),
+            }
+        })?;
+        if !is_there {
+            break;
+        }
         // Numbers in columns are padded with several blanks.
-        let fields = record.iter();
-        let fields: Vec<&str> = fields
-            .filter(|field| separator != b' ' || !field.is_empty())
-            .collect();
+        let fields = || {
+            record
+                .iter()
+                .filter(|field| separator != b' ' || !field.is_empty())
+        };
         // The csv crate gives an empty record for a comment that ends the file without a line break.
-        if matches!(fields.as_slice(), [] | [""]) {
+        if fields().nth(1).is_none() && fields().all(str::is_empty) {
             continue;
         }
         if row == ny {
             let found = format!("more than {ny} lines of numbers");
             return Err(wrong_shape(path, &found, nx, ny));
         }
-        if fields.len() != nx {
-            let found = format!("{} numbers in line {line}", fields.len());
-            return Err(wrong_shape(path, &found, nx, ny));
-        }
-        for (column, field) in fields.iter().enumerate() {
-            let value = field.parse().map_err(|_| {
-                let field = format!("`{}`", excerpt(field));
-                value_error(path, &field, [row, column], "a number with a decimal point")
-            });
-            values.push(value?);
+        if rows.contains(&row) {
+            let found = fields().count();
+            if found != nx {
+                let line = record.position().map_or(0, csv::Position::line);
+                return Err(wrong_shape(
+                    path,
+                    &format!("{found} numbers in line {line}"),
+                    nx,
+                    ny,
+                ));
+            }
+            for (column, field) in fields().enumerate() {
+                let at = [row, column];
+                let value = field.parse().map_err(|_| {
+                    let field = format!("`{}`", excerpt(field));
+                    value_error(path, &field, at, "a number with a decimal point")
+                })?;
+                if is_wrong(value) {
+                    return Err(value_error(path, &value.to_string(), at, wanted));
+                }
+                values.push(value);
+            }
         }
         row += 1;
     }
-    if row < ny {
+    if row < rows.end {
         return Err(wrong_shape(path, &format!("{row} lines of numbers"), nx, ny));
     }
     Ok(values)
@@ -63,8 +102,7 @@ pub(super) fn values(path: &Path, bytes: &[u8], nx: usize, ny: usize) -> Result<
 /// What separates the numbers of the first line that is no comment: a semicolon, a tab, a comma or a blank.
 ///
 /// The semicolon comes before the comma, so that a decimal comma is reported as such and not as a wrong shape.
-fn separator(bytes: &[u8]) -> u8 {
-    let preamble = &bytes[..bytes.len().min(PREAMBLE_MAX_BYTES as usize)];
+fn separator(preamble: &[u8]) -> u8 {
     let mut lines = preamble.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
     let numbers = lines.find(|line| !line.is_empty() && !line.starts_with(b"#"));
     let separators = [b';', b'\t', b',', b' '];

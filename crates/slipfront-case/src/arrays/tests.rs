@@ -1,4 +1,6 @@
+use std::fmt::Debug;
 use std::fs;
+use std::io::BufReader;
 use std::path::PathBuf;
 
 use png::{BitDepth, ColorType, Encoder};
@@ -40,19 +42,51 @@ fn field_npy() -> Vec<u8> {
     npy_bytes("'<f8'", "False", "(2, 3)", &f64_bytes(&FIELD))
 }
 
+fn open(path: &Path, nx: usize, ny: usize) -> Result<BufReader<File>, ArrayError> {
+    Ok(BufReader::new(open_file(path, nx, ny)?))
+}
+
+/// What is read of all rows at once. Every division of the rows among several ranks, the lowest of which tells its error, gives
+/// the same.
+fn read<T: PartialEq + Debug>(
+    nx: usize,
+    ny: usize,
+    read: impl Fn(&Slab) -> Result<Vec<T>, ArrayError>,
+) -> Result<Vec<T>, ArrayError> {
+    let whole = read(&Slab::whole(nx, ny));
+    for ranks in 2..=ny {
+        let rows = |rank: usize| ny * rank / ranks..ny * (rank + 1) / ranks;
+        let parts = (0..ranks).map(|rank| {
+            read(&Slab {
+                nx,
+                ny,
+                rows: rows(rank),
+            })
+        });
+        let joined: Result<Vec<Vec<T>>, ArrayError> = parts.collect();
+        match (&whole, joined) {
+            (Ok(whole), Ok(joined)) => assert_eq!(*whole, joined.into_iter().flatten().collect::<Vec<T>>()),
+            (Err(whole), Err(first)) => assert_eq!(whole.to_string(), first.to_string()),
+            (whole, joined) => panic!("{whole:?} of all rows, {joined:?} of {ranks} ranks"),
+        }
+    }
+    whole
+}
+
 fn read_field(path: &Path, nx: usize, ny: usize) -> Result<Vec<f64>, ArrayError> {
-    field(path, &read_file(path, nx, ny)?, nx, ny)
+    read(nx, ny, |slab| field(path, &mut open(path, nx, ny)?, slab))
 }
 
 fn read_mask_npy(path: &Path, nx: usize, ny: usize) -> Result<Vec<bool>, ArrayError> {
-    mask_npy(path, &read_file(path, nx, ny)?, nx, ny)
+    read(nx, ny, |slab| mask_npy(path, &mut open(path, nx, ny)?, slab))
 }
 
 /// The mask for a lattice of as many blocks, its top row first.
-fn read_mask_png(path: &Path, threshold: f64, blocks: [usize; 2]) -> Result<Vec<bool>, ArrayError> {
-    let bytes = read_file(path, 25, 25)?;
-    let mask = mask_png(path, &bytes, threshold, blocks, &mut |_| Ok(()))?;
-    Ok(mask.chunks(blocks[0]).rev().flatten().copied().collect())
+fn read_mask_png(path: &Path, threshold: f64, [nx, ny]: [usize; 2]) -> Result<Vec<bool>, ArrayError> {
+    let mask = read(nx, ny, |slab| {
+        mask_png(path, &mut open(path, 25, 25)?, threshold, slab, &mut |_| Ok(()))
+    })?;
+    Ok(mask.chunks(nx).rev().flatten().copied().collect())
 }
 
 fn message(result: Result<impl std::fmt::Debug, ArrayError>) -> String {
@@ -178,6 +212,42 @@ fn npy_that_is_cut_short_or_something_else() {
         let (_folder, path) = file("mu.npy", bytes);
         let text = message(read_field(&path, 3, 2));
         assert!(text.contains(wanted), "{text}");
+    }
+}
+
+/// More numbers than are decoded at once, along both axes.
+#[test]
+fn arrays_of_any_size_are_read_by_their_rows() {
+    let (nx, ny) = (37, 1100);
+    let value = |row: usize, column: usize| (row * 64 + column) as f64;
+    let rows = || (0..ny).flat_map(|row| (0..nx).map(move |column| (row, column)));
+    let wanted: Vec<f64> = rows().map(|(row, column)| value(row, column)).collect();
+    let columns = (0..nx).flat_map(|column| (0..ny).map(move |row| (row, column)));
+    let by_columns: Vec<f64> = columns.map(|(row, column)| value(row, column)).collect();
+    let shape = format!("({ny}, {nx})");
+    let lines: Vec<String> = wanted
+        .chunks(nx)
+        .map(|row| row.iter().map(ToString::to_string).collect::<Vec<_>>().join(","))
+        .collect();
+    let files = [
+        ("c.npy", npy_bytes("'<f8'", "False", &shape, &f64_bytes(&wanted))),
+        (
+            "f.npy",
+            npy_bytes("'<f8'", "True", &shape, &f64_bytes(&by_columns)),
+        ),
+        (
+            "t.csv",
+            format!("# mu\n\n{}\n\n", lines.join("\n#\n")).into_bytes(),
+        ),
+    ];
+    for (name, bytes) in files {
+        let (_folder, path) = file(name, &bytes);
+        for rows in [0..ny, 0..1, 1..2, 300..1099, ny - 1..ny, 5..5] {
+            let values = &wanted[rows.start * nx..rows.end * nx];
+            let slab = Slab { nx, ny, rows };
+            let read = field(&path, &mut open(&path, nx, ny).unwrap(), &slab).unwrap();
+            assert_eq!(read, values, "{name}: {slab:?}");
+        }
     }
 }
 
@@ -499,11 +569,10 @@ fn masks_come_back_as_written(#[case] nx: usize, #[case] ny: usize) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mask.png");
     write_mask_png(&path, nx, ny, &textured).unwrap();
-    let bytes = read_file(&path, nx, ny).unwrap();
-    assert_eq!(
-        mask_png(&path, &bytes, 0.5, [nx, ny], &mut |_| Ok(())).unwrap(),
-        textured
-    );
+    let mask = read(nx, ny, |slab| {
+        mask_png(&path, &mut open(&path, nx, ny)?, 0.5, slab, &mut |_| Ok(()))
+    });
+    assert_eq!(mask.unwrap(), textured);
 }
 
 #[test]

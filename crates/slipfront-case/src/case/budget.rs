@@ -1,14 +1,18 @@
 //! Memory and disk space that a run needs, estimated before it begins and compared with what the machine has.
 //!
 //! [`Budget::parts`] is the table of what takes how much. Memory is that of the largest of three phases: a case is made, it is
-//! run and its results are written, its pictures are drawn.
+//! run and its results are written, its pictures are drawn. Of several ranks each takes memory for its own rows, and those of a
+//! machine share what it has.
 
+use std::ops::Range;
 use std::path::Path;
 
 use slipfront::observe::{CurveRow, Field, Frame};
-use slipfront::{FrictionLaw, Kernel, Lattice};
+use slipfront::{Kernel, Lattice};
 
 use super::output::{MAX_MAPS, Output, Snapshots};
+use super::ranks::Ranks;
+use super::textures::count_masks;
 use super::time_plan::TimePlan;
 use crate::case_file::{CaseError, CaseFile};
 use crate::machine::{available_memory, can_be_had, free_disk};
@@ -64,20 +68,29 @@ const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
 /// Memory and disk space that a run needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
+    /// Blocks of the rows that this process holds.
     blocks: f64,
     /// Bytes of the kernel per block.
     kernel: f64,
-    /// Blocks that are kept of a field.
+    /// Those of them that are kept of a field.
     cells: f64,
+    /// Blocks of the whole lattice.
+    all_blocks: f64,
+    /// Those that are kept of a field.
+    all_cells: f64,
+    /// Whether the lattice is shared by several ranks.
+    is_shared: bool,
+    /// Ranks on this machine.
+    ranks_on_node: f64,
     frames: f64,
     fields: f64,
     rows: f64,
     /// Maps that are drawn.
     maps: f64,
-    /// Bytes of the files that the case reads, kept for their copies.
+    /// Bytes of the files that the case reads, of which there will be copies.
     pub(super) inputs: f64,
-    /// Bytes of masks, one a block, until they are laid over the lattice.
-    pub(super) masks: f64,
+    /// Masks that are in memory at once, until they are laid over the lattice.
+    masks: f64,
     /// Whether the run resumes from a checkpoint.
     is_resumed: bool,
 }
@@ -98,17 +111,25 @@ enum Phase {
     Making,
     /// What writing files takes for the blocks is less than the kernel's share.
     Running,
-    /// Both pictures at once.
+    /// Both pictures at once, by the first of several ranks.
     Drawing,
     Files,
-    /// Blocks, snapshots and rows as they stand in memory.
+    /// Blocks, snapshots and rows as they stand in memory, of all ranks.
     Checkpoint,
 }
 
 impl Budget {
-    /// The budget of a run, from the parameters of its case alone.
-    pub(super) fn new(lattice: &Lattice, law: FrictionLaw, time_plan: &TimePlan, output: &Output) -> Self {
-        let kept = |blocks: usize| blocks.div_ceil(output.stride) as f64;
+    /// The budget of a run, from the parameters of its case alone, for a process that holds these rows.
+    pub(super) fn new(
+        lattice: &Lattice,
+        rows: &Range<usize>,
+        ranks: &Ranks,
+        file: &CaseFile,
+        time_plan: &TimePlan,
+        output: &Output,
+    ) -> Self {
+        let kept = |blocks: usize| blocks.div_ceil(output.stride);
+        let kept_rows = kept(rows.end) - kept(rows.start);
         let last_step = time_plan.last_step;
         let frames = match &output.snapshots {
             Snapshots::Instants => 6.0,
@@ -116,12 +137,16 @@ impl Budget {
             Snapshots::Every(every) => (last_step / every + 1) as f64,
         };
         Self {
-            blocks: lattice.nx as f64 * lattice.ny as f64,
-            kernel: match Kernel::Fused.for_law(law) {
+            blocks: lattice.nx as f64 * rows.len() as f64,
+            cells: kept(lattice.nx) as f64 * kept_rows as f64,
+            all_blocks: lattice.nx as f64 * lattice.ny as f64,
+            all_cells: kept(lattice.nx) as f64 * kept(lattice.ny) as f64,
+            is_shared: ranks.communicator.size() > 1,
+            ranks_on_node: ranks.on_node as f64,
+            kernel: match Kernel::Fused.for_law(file.friction.law) {
                 Kernel::Fused => FUSED,
                 Kernel::Reference => REFERENCE,
             },
-            cells: kept(lattice.nx) * kept(lattice.ny),
             frames,
             fields: output.fields.len() as f64,
             rows: (last_step / output.series_stride) as f64 + 2.0,
@@ -130,17 +155,17 @@ impl Budget {
                 false => 0.0,
             },
             inputs: 0.0,
-            masks: 0.0,
+            masks: count_masks(file) as f64,
             is_resumed: false,
         }
     }
 
     /// What takes how many bytes in each phase.
     fn parts(&self) -> [Part; 4] {
-        let (blocks, cells, inputs) = (self.blocks, self.cells, self.inputs);
+        let (blocks, all_cells) = (self.blocks, self.all_cells);
         let (frames, fields, rows) = (self.frames, self.fields, self.rows);
         let frame = size_of::<Frame>() as f64 + fields * size_of::<Vec<f32>>() as f64;
-        let snapshots = frames * fields * cells * VALUE + grown(frames) * frame;
+        let snapshots = |cells: f64| frames * fields * cells * VALUE + grown(frames) * frame;
         let row = size_of::<CurveRow>() as f64;
         [
             Part {
@@ -151,9 +176,9 @@ impl Budget {
                     blocks * SURFACE,
                     blocks * (SURFACE + self.kernel),
                     // With the time of its first slip.
-                    blocks * (SURFACE + NUMBER) + cells * DECODED,
-                    cells * STATICS_ON_DISK,
-                    blocks * SAVED,
+                    blocks * (SURFACE + NUMBER) + all_cells * DECODED,
+                    all_cells * STATICS_ON_DISK,
+                    self.all_blocks * SAVED,
                 ],
             },
             Part {
@@ -165,10 +190,10 @@ impl Budget {
                 remedy: "take fewer `output.snapshots`, name fewer `output.fields`, or raise `output.stride`",
                 bytes: [
                     0.0,
-                    snapshots,
-                    self.maps * cells * VALUE,
-                    frames * (fields * cells * VALUE + 4.0 * NUMBER),
-                    snapshots,
+                    snapshots(self.cells),
+                    self.maps * all_cells * VALUE,
+                    frames * (fields * all_cells * VALUE + 4.0 * NUMBER),
+                    snapshots(all_cells),
                 ],
             },
             Part {
@@ -187,7 +212,7 @@ impl Budget {
                 key: "texture",
                 what: |_| "the files that it reads".to_owned(),
                 remedy: "scale them down, or name fewer",
-                bytes: [inputs + self.masks, inputs, inputs, inputs, 0.0],
+                bytes: [self.masks * blocks * FLAG, 0.0, 0.0, self.inputs, 0.0],
             },
         ]
     }
@@ -204,11 +229,25 @@ impl Budget {
     fn largest(&self, writes: bool) -> Phase {
         let phases = [Phase::Making, Phase::Running, Phase::Drawing];
         let phases = phases.into_iter().take(if writes { 3 } else { 2 });
-        let most = phases.max_by(|a, b| self.total(*a).total_cmp(&self.total(*b)));
+        let most = phases.max_by(|a, b| self.on_node(*a).total_cmp(&self.on_node(*b)));
         most.unwrap_or(Phase::Running)
     }
 
-    /// Memory of a run with its files and pictures, in bytes.
+    /// Bytes of a rank in a phase.
+    fn of_rank(&self, phase: Phase) -> f64 {
+        PROGRAM + HEAP * self.total(phase)
+    }
+
+    /// Bytes of all ranks of this machine in a phase. While one draws, the others have at most what they ran with.
+    fn on_node(&self, phase: Phase) -> f64 {
+        let others = match phase {
+            Phase::Drawing => Phase::Running,
+            phase => phase,
+        };
+        self.of_rank(phase) + (self.ranks_on_node - 1.0) * self.of_rank(others)
+    }
+
+    /// Memory of a run with its files and pictures, in bytes; of each rank if there are several.
     pub fn memory(&self) -> f64 {
         PROGRAM + self.memory_beside_others(true)
     }
@@ -254,14 +293,14 @@ impl Budget {
     }
 
     /// Refuses a run, or to resume one, that needs more memory than there is; what a case takes is there already if it is
-    /// `made`.
+    /// `made`, by all ranks.
     pub fn check_memory(&self, file: &CaseFile, made: bool) -> Result<(), CaseError> {
         let made = if made { self.total(Phase::Making) } else { 0.0 };
         let phase = self.largest(true);
         self.compare_memory(file, "a run of this case", phase, made, available_memory())
     }
 
-    /// `had` is what has been taken of the memory already, `available` what there is beside it.
+    /// `had` is what each rank has taken of the memory already, `available` what there is beside it.
     fn compare_memory(
         &self,
         file: &CaseFile,
@@ -270,10 +309,11 @@ impl Budget {
         had: f64,
         available: Option<f64>,
     ) -> Result<(), CaseError> {
-        let needed = PROGRAM + HEAP * self.total(phase);
+        let (needed, on_node) = (self.of_rank(phase), self.on_node(phase));
+        let available = available.map(|available| available + self.ranks_on_node * had);
         let bound = match available {
-            Some(available) if needed > available + had => {
-                format!("{} are available", byte_size(available + had))
+            Some(available) if on_node > available => {
+                format!("{} are available", byte_size(available))
             }
             _ if !can_be_had(needed - had) => "the system gives less at once (see `ulimit -v`)".to_owned(),
             _ => return Ok(()),
@@ -287,8 +327,18 @@ impl Budget {
             ),
             false => (whose, remedy),
         };
+        let (each, or) = match self.is_shared {
+            true => (" per rank", ", or share it among more machines"),
+            false => ("", ""),
+        };
+        let together = match self.ranks_on_node {
+            1.0 => String::new(),
+            ranks => format!(", {} for the {ranks} ranks of this machine,", byte_size(on_node)),
+        };
         let needed = byte_size(needed);
-        let sentence = format!("{whose} takes about {needed} of memory ({most}) where {bound}: {remedy}");
+        let sentence = format!(
+            "{whose} takes about {needed} of memory{each} ({most}){together} where {bound}: {remedy}{or}"
+        );
         Err(file.source.error(key, sentence))
     }
 
@@ -357,6 +407,8 @@ fn grown(length: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use slipfront::communicator::Threads;
+
     use super::*;
     use crate::case::Case;
 
@@ -398,7 +450,61 @@ mod tests {
             for word in ["where 190.7 MiB are available"].iter().chain(&words) {
                 assert!(refused.contains(word), "{word}: {refused}");
             }
+            assert!(!refused.contains("rank"), "{refused}");
         }
+    }
+
+    /// Four ranks, two of them on this machine.
+    #[test]
+    fn ranks_share_what_a_run_takes() {
+        let overrides = ["slider.blocks=[2000,2000]", "output.snapshots={every=20}"].map(str::to_owned);
+        let made = |communicator: &Threads, on_node| {
+            let ranks = Ranks {
+                communicator,
+                on_node,
+            };
+            let file = CaseFile::parse("", "case", &overrides).unwrap();
+            Case::to_run_on_ranks(file, "case", Path::new(""), &mut |_| true, ranks).unwrap()
+        };
+        let alone = case(&["slider.blocks=[2000,2000]", "output.snapshots={every=20}"]).budget;
+        let cases = Threads::run(4, |communicator| made(communicator, 2));
+        // What is there once for every process: the numbers that do not belong to blocks.
+        let beside = |phase: Phase| {
+            let mut none = alone;
+            (none.blocks, none.cells, none.all_cells) = (0.0, 0.0, 0.0);
+            none.total(phase)
+        };
+        for phase in [Phase::Making, Phase::Running] {
+            let shared: f64 = cases
+                .iter()
+                .map(|case| case.budget.total(phase) - beside(phase))
+                .sum();
+            assert_eq!(shared, alone.total(phase) - beside(phase), "{phase:?}");
+        }
+        let budget = cases[0].budget;
+        for phase in [Phase::Files, Phase::Checkpoint] {
+            assert_eq!(budget.total(phase), alone.total(phase), "{phase:?}");
+        }
+        // While it draws, the other one has what it ran with.
+        let drawing = budget.of_rank(Phase::Drawing) + budget.of_rank(Phase::Running);
+        assert_eq!(budget.on_node(Phase::Drawing), drawing);
+        let needed = budget.on_node(budget.largest(true));
+        assert_eq!(refusal(&cases[0], &budget, 0.0, Some(needed)), None);
+        assert_eq!(refusal(&cases[0], &budget, 1e6, Some(needed - 2e6)), None);
+        let refused = refusal(&cases[0], &budget, 1e6, Some(needed - 3e6)).unwrap();
+        for word in [
+            " of memory per rank (",
+            &format!(", {} for the 2 ranks of this machine, where ", byte_size(needed)),
+            ", or share it among more machines",
+        ] {
+            assert!(refused.contains(word), "{word}: {refused}");
+        }
+        let spread = Threads::run(4, |communicator| made(communicator, 1));
+        let refused = refusal(&spread[3], &spread[3].budget, 0.0, Some(1e6)).unwrap();
+        assert!(
+            refused.contains(" of memory per rank (") && !refused.contains("ranks"),
+            "{refused}"
+        );
     }
 
     /// The case itself is in memory when its run is judged.

@@ -1,22 +1,29 @@
 //! Files that a case reads.
 
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
+use blake3::Hasher;
 use slipfront::Lattice;
 
-use super::budget::Budget;
-use crate::arrays;
+use super::ranks::Ranks;
+use crate::arrays::{self, ArrayError, Slab};
 use crate::case_file::{CaseError, CaseFile};
 
-/// A file that a case reads, kept so that the run folder can hold a copy.
+/// A file that a case reads, and of which the run folder holds a copy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
     /// Path of its copy in the run folder.
     pub name: String,
-    /// Path that it was read from.
+    /// Path that it is read from.
     pub original: PathBuf,
-    /// Its contents.
-    pub bytes: Vec<u8>,
+    /// Its length in bytes.
+    pub length: u64,
+    /// Hash of its contents, taken before the case was made of them: a copy that is made afterwards and has the same one holds
+    /// what the case was made of.
+    pub hash: blake3::Hash,
 }
 
 /// Names the copy of a file in the folder `inputs/` after its plain name; files of one name and different contents are
@@ -36,48 +43,114 @@ pub fn name_of_copy(plain: &str, is_same: impl Fn(&str) -> Option<bool>) -> (Str
     (name, false)
 }
 
-/// Files read so far, and the budget of the case with them.
-pub(super) struct Inputs<'a> {
-    /// The folder that the names of files are relative to.
-    pub(super) folder: &'a Path,
-    pub(super) kept: Vec<Input>,
-    pub(super) budget: Budget,
+/// Length and hash of a file as integers.
+type Digest = [i64; 5];
+
+/// Files that a case names, relative to a folder, with their digests; those of rank 0 alone are known.
+pub(super) struct NamedFiles {
+    originals: Vec<PathBuf>,
+    digests: Vec<Digest>,
 }
 
-impl Inputs<'_> {
-    /// Reads a file that the case names. It is read once, so that its copy holds what the case was made of. It has its plain name
-    /// until it is kept.
-    pub(super) fn read(
+impl NamedFiles {
+    /// Finds the files; rank 0 reads them as a whole.
+    pub(super) fn find(
+        file: &mut CaseFile,
+        folder: &Path,
+        lattice: &Lattice,
+        ranks: &Ranks,
+    ) -> Result<Self, CaseError> {
+        let mut digests: HashMap<PathBuf, Digest> = HashMap::new();
+        let mut found = Self {
+            originals: Vec::new(),
+            digests: Vec::new(),
+        };
+        for (key, name) in CaseFile::files_mut(&mut file.friction, &mut file.texture) {
+            let original = folder.join(&*name);
+            let digest = match digests.get(&original) {
+                Some(known) => *known,
+                None if ranks.communicator.rank() == 0 => {
+                    digest(&original, lattice).map_err(|error| file.source.error(&key, error.to_string()))?
+                }
+                None => Digest::default(),
+            };
+            digests.insert(original.clone(), digest);
+            found.originals.push(original);
+            found.digests.push(digest);
+        }
+        Ok(found)
+    }
+
+    /// Tells all ranks the digests, and replaces the names in the case by those of copies. Files of equal contents and names
+    /// are one.
+    pub(super) fn share(mut self, file: &mut CaseFile, ranks: &Ranks) -> Vec<Input> {
+        ranks.communicator.sum(self.digests.as_flattened_mut());
+        let mut inputs: Vec<Input> = Vec::new();
+        let names = CaseFile::files_mut(&mut file.friction, &mut file.texture).map(|(_, name)| name);
+        for ((original, digest), written) in self.originals.into_iter().zip(self.digests).zip(names) {
+            let [length, hash @ ..] = digest;
+            let mut bytes = [0; blake3::OUT_LEN];
+            for (bytes, word) in bytes.chunks_exact_mut(8).zip(hash) {
+                bytes.copy_from_slice(&word.to_le_bytes());
+            }
+            let hash = blake3::Hash::from_bytes(bytes);
+            let plain = original.file_name().map(|name| name.to_string_lossy());
+            let plain = plain.unwrap_or("input".into());
+            let is_same = |name: &str| Some(inputs.iter().find(|input| input.name == name)?.hash == hash);
+            let (name, is_kept) = name_of_copy(&plain, is_same);
+            written.clone_from(&name);
+            if !is_kept {
+                inputs.push(Input {
+                    name,
+                    original,
+                    length: length.cast_unsigned(),
+                    hash,
+                });
+            }
+        }
+        inputs
+    }
+}
+
+fn digest(path: &Path, lattice: &Lattice) -> Result<Digest, ArrayError> {
+    let file = arrays::open_file(path, lattice.nx, lattice.ny)?;
+    let mut hasher = Hasher::new();
+    hasher.update_reader(file).map_err(|source| ArrayError::Read {
+        path: path.to_owned(),
+        source,
+    })?;
+    let mut digest = Digest::default();
+    digest[0] = hasher.count().cast_signed();
+    let hash = hasher.finalize();
+    for (word, bytes) in digest[1..].iter_mut().zip(hash.as_bytes().as_chunks::<8>().0) {
+        *word = i64::from_le_bytes(*bytes);
+    }
+    Ok(digest)
+}
+
+/// The files that a case reads, and the rows that are wanted of them.
+pub(super) struct Inputs {
+    pub(super) files: Vec<Input>,
+    pub(super) slab: Slab,
+}
+
+impl Inputs {
+    /// Reads the file that has this name in the case, which `key` gives it.
+    pub(super) fn read<T>(
         &self,
         file: &CaseFile,
         key: &str,
-        written: &str,
-        lattice: &Lattice,
-    ) -> Result<Input, CaseError> {
-        let original = self.folder.join(written);
-        let name = original
-            .file_name()
-            .map(|name| name.to_string_lossy().into_owned());
-        let bytes = arrays::read_file(&original, lattice.nx, lattice.ny);
-        Ok(Input {
-            name: name.unwrap_or_else(|| "input".to_owned()),
-            bytes: bytes.map_err(|error| file.source.error(key, error.to_string()))?,
-            original,
+        name: &str,
+        read: impl FnOnce(&Path, &mut BufReader<File>, &Slab) -> Result<T, ArrayError>,
+    ) -> Result<T, CaseError> {
+        let original = self.files.iter().find(|input| input.name == name);
+        let original = original.map_or(Path::new(name), |input| &input.original);
+        let Slab { nx, ny, .. } = self.slab;
+        let opened = arrays::open_file(original, nx, ny);
+        let read = opened.and_then(|opened| read(original, &mut BufReader::new(opened), &self.slab));
+        read.map_err(|error| match error {
+            ArrayError::Stopped => CaseError::Stopped,
+            error => file.source.error(key, error.to_string()),
         })
-    }
-
-    /// Keeps the contents of a file that the case uses; gives its position among the kept ones.
-    pub(super) fn keep(&mut self, file: &CaseFile, mut given: Input) -> Result<usize, CaseError> {
-        let position = |name: &str| self.kept.iter().position(|kept| kept.name == name);
-        let is_same = |name: &str| Some(self.kept[position(name)?].bytes == given.bytes);
-        let (name, _) = name_of_copy(&given.name, is_same);
-        if let Some(position) = position(&name) {
-            return Ok(position);
-        }
-        self.budget.inputs += given.bytes.len() as f64;
-        given.name = name;
-        self.kept.push(given);
-        self.budget.check_making(file)?;
-        Ok(self.kept.len() - 1)
     }
 }

@@ -1,19 +1,22 @@
 //! A case that can be run.
 
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
 use slipfront::scales::damping;
 use slipfront::surface::Load;
-use slipfront::{Drive, Lattice, Model, Scales, Surface};
+use slipfront::{Communicator, Drive, Lattice, Model, Scales, Surface};
 
 use super::budget::Budget;
 use super::coefficients::coefficients;
 use super::groups::Groups;
-use super::inputs::{Input, Inputs};
+use super::inputs::{Input, Inputs, NamedFiles};
 use super::output::{Output, check_fields};
+use super::ranks::Ranks;
 use super::textures::{self, Watch};
 use super::time_plan::TimePlan;
+use crate::arrays::Slab;
 use crate::case_file::{CaseError, CaseFile};
 
 /// A case that can be run. It is valid by construction.
@@ -29,12 +32,10 @@ pub struct Case {
     pub scales: Scales,
     /// Dimensionless groups.
     pub groups: Groups,
-    /// The slider and its surface.
+    /// The slider, and the surface of the rows that this process holds: all, unless it is one rank of several.
     pub model: Arc<Model>,
     /// Texture as asked and as meshed.
     pub texture: TextureReport,
-    /// Negative draws of the coefficients that were set to 0.
-    pub negative_draws: usize,
     /// Duration and steps.
     pub time_plan: TimePlan,
     /// Which results are written.
@@ -61,12 +62,23 @@ impl Case {
     /// memory than there is gets refused before any array is allocated. `watch` is shown how its texture is laid over the
     /// blocks.
     pub fn load(path: &Path, overrides: &[String], watch: &mut Watch) -> Result<Self, CaseError> {
-        let file = CaseFile::load(path, overrides)?;
+        Self::load_on_ranks(path, overrides, watch, Ranks::ALONE)
+    }
+
+    /// [`load`](Self::load) on all `ranks` at once: each makes the surface of its own rows, and knows the rest of the case. If
+    /// one fails, all give the same error.
+    pub fn load_on_ranks(
+        path: &Path,
+        overrides: &[String],
+        watch: &mut Watch,
+        ranks: Ranks,
+    ) -> Result<Self, CaseError> {
+        let file = ranks.agree(CaseFile::load(path, overrides))?;
         let name = path
             .file_stem()
             .map_or_else(|| "case".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let folder = path.parent().unwrap_or(Path::new(""));
-        Self::to_run(file, &name, folder, watch)
+        Self::to_run_on_ranks(file, &name, folder, watch, ranks)
     }
 
     /// Makes a case of text, as [`load`](Self::load) does; the files it names stand in the working directory.
@@ -83,16 +95,24 @@ impl Case {
 
     /// Makes a case of a case file that was read already, to be run; the files it names stand relative to `folder`.
     pub fn to_run(file: CaseFile, name: &str, folder: &Path, watch: &mut Watch) -> Result<Self, CaseError> {
-        let case = Self::make(file, name, folder, true, watch)?;
-        // Once more, with the files that it reads.
-        case.budget.check_memory(&case.file, true)?;
-        Ok(case)
+        Self::to_run_on_ranks(file, name, folder, watch, Ranks::ALONE)
+    }
+
+    /// [`to_run`](Self::to_run) on all `ranks` at once, as [`load_on_ranks`](Self::load_on_ranks) does.
+    pub fn to_run_on_ranks(
+        file: CaseFile,
+        name: &str,
+        folder: &Path,
+        watch: &mut Watch,
+        ranks: Ranks,
+    ) -> Result<Self, CaseError> {
+        Self::make(file, name, folder, true, watch, ranks)
     }
 
     /// Makes a case of a case file; the files it names stand relative to `folder`. The memory for a run of it is not
     /// checked.
     pub fn new(file: CaseFile, name: &str, folder: &Path, watch: &mut Watch) -> Result<Self, CaseError> {
-        Self::make(file, name, folder, false, watch)
+        Self::make(file, name, folder, false, watch, Ranks::ALONE)
     }
 
     fn make(
@@ -101,48 +121,59 @@ impl Case {
         folder: &Path,
         to_run: bool,
         watch: &mut Watch,
+        ranks: Ranks,
     ) -> Result<Self, CaseError> {
-        let scales = Scales {
-            block_size: file.slider.block_size.si(),
-            young_modulus: file.slider.young_modulus.si(),
-            density: file.slider.density.si(),
-            pressure: file.load.pressure.si(),
-            mu_static_mean: file.friction.mu_static,
-        };
-        let groups = Groups::of(&file, &scales)?;
         let [nx, ny] = file.slider.blocks.map(|count| count as usize);
         let lattice = Lattice::with_edges(nx, ny, file.slider.edges);
-        let time_plan = TimePlan::of(&file, &scales, &groups)?;
-        let output = Output::of(&file, &time_plan)?;
-        let budget = Budget::new(&lattice, file.friction.law, &time_plan, &output);
-        if to_run {
-            budget.check_memory(&file, false)?;
-            check_fields(&file)?;
-        }
-        budget.check_making(&file)?;
-        let mut inputs = Inputs {
-            folder,
-            kept: Vec::new(),
-            budget,
+        let rows = lattice.rows_of(ranks.communicator);
+        // Nothing is allocated before all ranks have looked at the memory that they share.
+        let planned = Derived::of(&file, &lattice, &rows, &ranks, to_run)
+            .and_then(|derived| Ok((derived, NamedFiles::find(&mut file, folder, &lattice, &ranks)?)));
+        let (
+            Derived {
+                scales,
+                groups,
+                time_plan,
+                output,
+                mut budget,
+            },
+            named,
+        ) = ranks.agree(planned)?;
+        let inputs = Inputs {
+            files: named.share(&mut file, &ranks),
+            slab: Slab {
+                nx,
+                ny,
+                rows: rows.clone(),
+            },
         };
-        let (meshed, asked_percent) = textures::mesh(&mut file, &scales, &lattice, &mut inputs, watch)?;
-        let coefficients = coefficients(&mut file, &groups, &lattice, &mut inputs)?;
-        let negative_draws = coefficients.negative_draws;
+        budget.inputs = inputs.files.iter().map(|input| input.length as f64).sum();
+
+        let made = textures::mesh(&file, &scales, &lattice, &inputs, watch)
+            .and_then(|meshed| Ok((meshed, coefficients(&file, &groups, &lattice, &inputs)?)));
+        let ((meshed, asked_percent), coefficients) = ranks.agree(made)?;
         let load = match file.load.redistribute {
             true => Load::Redistributed,
             false => Load::Kept,
         };
-        let surface = Surface::new(coefficients, meshed.textured, load, scales.mu_static_mean)
-            .map_err(|error| file.source.error("texture", error.to_string()))?;
+        let surface = Surface::of_ranks(
+            coefficients,
+            meshed.textured,
+            load,
+            scales.mu_static_mean,
+            ranks.communicator,
+        )
+        .map_err(|error| file.source.error("texture", error.to_string()))?;
         let texture = TextureReport {
             asked_percent,
             meshed_percent: surface.texture_percent(),
             clipped: meshed.clipped,
-            empty: meshed.empty,
+            empty: empty_on_all(&meshed.empty, file.texture.len(), ranks.communicator),
         };
         let drive = Drive::at_angle(groups.v_star, file.drive.direction);
-        let model = Model::new(
+        let model = Model::of_rows(
             lattice,
+            rows,
             surface,
             drive,
             damping(groups.omega_star),
@@ -152,13 +183,12 @@ impl Case {
         Ok(Self {
             name: name.to_owned(),
             file,
-            budget: inputs.budget,
-            inputs: inputs.kept,
+            budget,
+            inputs: inputs.files,
             scales,
             groups,
             model: Arc::new(model),
             texture,
-            negative_draws,
             time_plan,
             output,
         })
@@ -174,4 +204,69 @@ impl Case {
         const BLOCK_STEPS: u64 = 200_000;
         (BLOCK_STEPS / self.model.lattice.n_blocks() as u64).max(1)
     }
+}
+
+/// What follows from a case file without the files that it names.
+struct Derived {
+    scales: Scales,
+    groups: Groups,
+    time_plan: TimePlan,
+    output: Output,
+    budget: Budget,
+}
+
+impl Derived {
+    /// Refuses numbers out of the range of the model, and what there is no memory for.
+    fn of(
+        file: &CaseFile,
+        lattice: &Lattice,
+        rows: &Range<usize>,
+        ranks: &Ranks,
+        to_run: bool,
+    ) -> Result<Self, CaseError> {
+        let scales = Scales {
+            block_size: file.slider.block_size.si(),
+            young_modulus: file.slider.young_modulus.si(),
+            density: file.slider.density.si(),
+            pressure: file.load.pressure.si(),
+            mu_static_mean: file.friction.mu_static,
+        };
+        let groups = Groups::of(file, &scales)?;
+        let n_ranks = ranks.communicator.size();
+        if n_ranks > lattice.ny {
+            let sentence = format!(
+                "there are more ranks ({n_ranks}) than rows of blocks ({}), of which each takes at least one: take fewer ranks, \
+                 or more blocks along y",
+                lattice.ny
+            );
+            return Err(file.source.error("slider.blocks", sentence));
+        }
+        let time_plan = TimePlan::of(file, &scales, &groups)?;
+        let output = Output::of(file, &time_plan)?;
+        let budget = Budget::new(lattice, rows, ranks, file, &time_plan, &output);
+        if to_run {
+            budget.check_memory(file, false)?;
+            check_fields(file)?;
+        }
+        budget.check_making(file)?;
+        Ok(Self {
+            scales,
+            groups,
+            time_plan,
+            output,
+            budget,
+        })
+    }
+}
+
+/// The textures out of `n_textures` that cover no block of any rank, of those that cover none of this one.
+fn empty_on_all(empty: &[usize], n_textures: usize, communicator: &dyn Communicator) -> Vec<usize> {
+    let mut covers = vec![1.0; n_textures];
+    for &texture in empty {
+        covers[texture] = 0.0;
+    }
+    communicator.largest(&mut covers);
+    (0..n_textures)
+        .filter(|&texture| covers[texture] == 0.0)
+        .collect()
 }

@@ -1,35 +1,35 @@
 //! Textures of a case file as shapes in blocks, laid over them.
 
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;
 
 use slipfront::{Lattice, Scales, surface};
 
-use super::inputs::{Input, Inputs};
+use super::inputs::Inputs;
 use crate::arrays::ArrayError;
-use crate::case_file::{CaseError, CaseFile};
+use crate::case_file::{CaseError, CaseFile, Mask};
 use crate::quantity::Length;
 use crate::{arrays, case_file};
 
 /// Told the share that is done of laying the texture over the blocks; `false` ends it.
 pub type Watch<'a> = dyn FnMut(f64) -> bool + 'a;
 
-/// The textured blocks, and the area of all textures as asked for, % (see
+/// The textured blocks of the rows that this rank holds, and the area of all textures as asked for, % (see
 /// [`TextureReport`](super::runnable::TextureReport)); masks are read.
 pub(super) fn mesh(
-    file: &mut CaseFile,
+    file: &CaseFile,
     scales: &Scales,
     lattice: &Lattice,
-    inputs: &mut Inputs,
+    inputs: &Inputs,
     watch: &mut Watch,
 ) -> Result<(surface::Meshed, Option<f64>), CaseError> {
     let mut shapes = Vec::new();
     let mut asked = Some(0.0);
     let mut masks = Masks::default();
-    for index in 0..file.texture.len() {
-        let (shape, percent) = match &file.texture[index] {
+    for (index, texture) in file.texture.iter().enumerate() {
+        let (shape, percent) = match texture {
             case_file::Texture::Cavity(cavity) => cavity_in_blocks(cavity, scales, lattice),
             case_file::Texture::Groove(groove) => groove_in_blocks(groove, scales, lattice),
             case_file::Texture::Polygon(polygon) => {
@@ -37,9 +37,7 @@ pub(super) fn mesh(
                 (surface::Texture::Polygon(points.collect()), None)
             }
             case_file::Texture::Mask(mask) => {
-                let mask = mask.clone();
-                let (blocks, copy) = masks.read(file, index, &mask, lattice, inputs, watch)?;
-                file.texture[index] = case_file::Texture::Mask(case_file::Mask { file: copy, ..mask });
+                let blocks = masks.read(file, index, mask, inputs, watch)?;
                 (surface::Texture::Blocks(blocks), None)
             }
         };
@@ -49,48 +47,54 @@ pub(super) fn mesh(
         asked = asked.zip(percent).map(|(sum, percent)| sum + percent);
     }
     let mut watch = |share| watch(share).then_some(()).ok_or(CaseError::Stopped);
-    Ok((surface::mesh_watched(lattice, &shapes, &mut watch)?, asked))
+    let meshed = surface::mesh_watched(lattice, &inputs.slab.rows, &shapes, &mut watch)?;
+    Ok((meshed, asked))
 }
 
-/// The masks of files, by their position among the inputs and the bits of the threshold: several textures may have one.
-#[derive(Default)]
-struct Masks(HashMap<(usize, u64), Arc<Vec<bool>>>);
+/// What tells the masks of a case apart: file, and bits of the threshold. Several textures may have one.
+type MaskKey<'a> = (&'a str, u64);
 
-impl Masks {
-    /// The mask of a texture, and the path of the copy of its file in the run folder. Its memory is held against the budget
-    /// before it is decoded.
+fn key_of(mask: &Mask) -> MaskKey<'_> {
+    (&mask.file, mask.threshold.to_bits())
+}
+
+/// How many masks a case has in memory at once.
+pub(super) fn count_masks(file: &CaseFile) -> usize {
+    let masks = file.texture.iter().filter_map(|texture| match texture {
+        case_file::Texture::Mask(mask) => Some(key_of(mask)),
+        _ => None,
+    });
+    masks.collect::<HashSet<_>>().len()
+}
+
+/// The masks that have been read.
+#[derive(Default)]
+struct Masks<'a>(HashMap<MaskKey<'a>, Arc<Vec<bool>>>);
+
+impl<'a> Masks<'a> {
+    /// The mask of a texture.
     fn read(
         &mut self,
         file: &CaseFile,
         index: usize,
-        mask: &case_file::Mask,
-        lattice: &Lattice,
-        inputs: &mut Inputs,
+        mask: &'a Mask,
+        inputs: &Inputs,
         watch: &mut Watch,
-    ) -> Result<(Arc<Vec<bool>>, String), CaseError> {
-        let key = format!("texture.{index}.file");
-        let given = inputs.read(file, &key, &mask.file, lattice)?;
-        let kept = inputs.keep(file, given)?;
-        let copy = inputs.kept[kept].name.clone();
-        let entry = match self.0.entry((kept, mask.threshold.to_bits())) {
-            Entry::Occupied(known) => return Ok((Arc::clone(known.get()), copy)),
+    ) -> Result<Arc<Vec<bool>>, CaseError> {
+        let entry = match self.0.entry(key_of(mask)) {
+            Entry::Occupied(known) => return Ok(Arc::clone(known.get())),
             Entry::Vacant(entry) => entry,
         };
-        inputs.budget.masks += lattice.n_blocks() as f64;
-        inputs.budget.check_making(file)?;
-        let Input { original, bytes, .. } = &inputs.kept[kept];
-        let blocks = [lattice.nx, lattice.ny];
-        let read = match is_array(original) {
-            true => arrays::mask_npy(original, bytes, lattice.nx, lattice.ny),
-            false => arrays::mask_png(original, bytes, mask.threshold, blocks, &mut |share| {
-                watch(share).then_some(()).ok_or(ArrayError::Stopped)
-            }),
-        };
-        let read = read.map_err(|error| match error {
-            ArrayError::Stopped => CaseError::Stopped,
-            error => file.source.error(&key, error.to_string()),
+        let key = format!("texture.{index}.file");
+        let read = inputs.read(file, &key, &mask.file, |path, source, slab| {
+            match is_array(path) {
+                true => arrays::mask_npy(path, source, slab),
+                false => arrays::mask_png(path, source, mask.threshold, slab, &mut |share| {
+                    watch(share).then_some(()).ok_or(ArrayError::Stopped)
+                }),
+            }
         });
-        Ok((Arc::clone(entry.insert(Arc::new(read?))), copy))
+        Ok(Arc::clone(entry.insert(Arc::new(read?))))
     }
 }
 

@@ -100,7 +100,7 @@ impl Case {
 
     fn friction_warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
-        let negative = self.negative_draws;
+        let negative = self.model.surface.negative_draws();
         if negative > 0 {
             warnings.push(format!(
                 "{} of the friction coefficients {} set to 0",
@@ -109,12 +109,11 @@ impl Case {
             ));
         }
         let (friction, surface) = (&self.file.friction, &self.model.surface);
-        let mean = |coefficients: &[f64]| coefficients.iter().sum::<f64>() / surface.n_contact() as f64;
         let (mu_static, r_star) = (self.scales.mu_static_mean, self.groups.r_star);
         let mut means = [mu_static, r_star * mu_static];
         let differs = |mean: f64, expected: f64| (mean - expected).abs() > LARGE_MISMATCH * expected;
         if friction.mu_static_field.is_some() {
-            means[0] = mean(&surface.mu_static);
+            means[0] = surface.mean_static_coefficient();
             if differs(means[0], mu_static) {
                 warnings.push(format!(
                     "the given static coefficients have a mean of {:.4}, mu_static is {mu_static}: what is starred is relative to \
@@ -125,7 +124,7 @@ impl Case {
         }
         if friction.mu_kinetic_field.is_some() {
             let expected = means[1];
-            means[1] = mean(&surface.mu_kinetic);
+            means[1] = surface.mean_kinetic_coefficient();
             if differs(means[1], expected) {
                 warnings.push(format!(
                     "the given kinetic coefficients have a mean of {:.4}, R* mu_static is {expected:.4}: the run takes the given \

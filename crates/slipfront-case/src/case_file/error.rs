@@ -30,6 +30,9 @@ pub enum CaseError {
     Invalid(Box<Invalid>),
     #[error("stopped while the texture was laid over the blocks; nothing was written")]
     Stopped,
+    /// In the words of the rank that has found it.
+    #[error("{0}")]
+    OnOtherRank(String),
 }
 
 /// Something that is wrong with the contents of a case, and where.

@@ -80,17 +80,22 @@ impl CaseFile {
         Self::parse(&text, &path.display().to_string(), overrides)
     }
 
-    /// Every file that these tables of a case name, relative to the case file.
+    /// Every file that these tables of a case name, relative to the case file, and the key that names it.
     pub fn files_mut<'a>(
         friction: &'a mut Friction,
         texture: &'a mut [Texture],
-    ) -> impl Iterator<Item = &'a mut String> {
-        let masks = texture.iter_mut().filter_map(|texture| match texture {
-            Texture::Mask(mask) => Some(&mut mask.file),
+    ) -> impl Iterator<Item = (String, &'a mut String)> {
+        let masks = texture.iter_mut().enumerate();
+        let masks = masks.filter_map(|(index, texture)| match texture {
+            Texture::Mask(mask) => Some((format!("texture.{index}.file"), &mut mask.file)),
             _ => None,
         });
-        let fields = [&mut friction.mu_static_field, &mut friction.mu_kinetic_field];
-        masks.chain(fields.into_iter().flatten())
+        let fields = [
+            ("friction.mu_static_field", &mut friction.mu_static_field),
+            ("friction.mu_kinetic_field", &mut friction.mu_kinetic_field),
+        ];
+        let fields = fields.into_iter();
+        masks.chain(fields.filter_map(|(key, name)| Some((key.to_owned(), name.as_mut()?))))
     }
 
     /// Checks every bound that needs nothing but the file. [`parse`](Self::parse) has done so already.

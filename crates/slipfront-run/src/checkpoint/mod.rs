@@ -163,8 +163,7 @@ fn hash_of(case: &Case) -> String {
     // A case that was loaded can be written.
     hasher.update(case.file.to_toml().unwrap_or_default().as_bytes());
     for input in &case.inputs {
-        hasher.update(&(input.bytes.len() as u64).to_le_bytes());
-        hasher.update(&input.bytes);
+        hasher.update(input.hash.as_bytes());
     }
     hasher.finalize().to_hex().to_string()
 }

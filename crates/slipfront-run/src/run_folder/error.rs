@@ -61,6 +61,11 @@ pub enum FolderError {
         display_path(path)
     )]
     Changed { path: PathBuf },
+    #[error(
+        "{} is no longer what it was when the case was made: run it again, and leave this file as it is meanwhile",
+        display_path(path)
+    )]
+    InputChanged { path: PathBuf },
     #[error("cannot read {}: {source}", display_path(path))]
     Read { path: PathBuf, source: std::io::Error },
 }

@@ -15,7 +15,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use slipfront_case::case::{Case, Input};
-use slipfront_case::disk::{sync_folder, write_temp};
+use slipfront_case::disk::{open_regular, sync_folder, write_temp};
 use tempfile::TempPath;
 
 use self::contents::{managed_files, refuse_unmanaged, remove_files, result_files};
@@ -101,16 +101,12 @@ impl OpenedFolder {
         folder.unfinished.clear_temporary().map_err(unwritable)?;
         // A case that was loaded can be written.
         let text = case.file.to_toml().unwrap_or_default();
-        let inputs = case
-            .inputs
-            .iter()
-            .map(|input| (input.name.as_str(), &*input.bytes));
-        for (name, bytes) in [(CASE, text.as_bytes())].into_iter().chain(inputs) {
-            let mut hasher = blake3::Hasher::new();
-            folder
-                .written
-                .push(ManifestFile::hashed(name, hasher.update(bytes)));
-        }
+        let mut hasher = blake3::Hasher::new();
+        let written = ManifestFile::hashed(CASE, hasher.update(text.as_bytes()));
+        folder.written.push(written);
+        folder
+            .written
+            .extend(case.inputs.iter().map(ManifestFile::of_input));
         folder.sync()?;
         Ok(folder)
     }
@@ -186,21 +182,43 @@ impl RunFolder {
         self.unfinished.temporary()
     }
 
+    /// Copies a file that the case reads, where no foreign file stands in its place.
+    ///
+    /// # Errors
+    /// When it is no longer what the case was made of, or cannot be read or written.
+    pub(crate) fn copy(&mut self, input: &Input) -> Result<(), FolderError> {
+        let path = self.path.join(&input.name);
+        let failed = |source| FolderError::Copy {
+            from: input.original.clone(),
+            to: path.clone(),
+            source,
+        };
+        let mut original = open_regular(&input.original).map_err(failed)?;
+        let file = write_temp(&self.temporary(), |to| std::io::copy(&mut original, to).map(drop));
+        let file = file.map_err(failed)?;
+        let copied = hash_temp(&file, &input.name).map_err(FolderError::write(&path))?;
+        if copied != ManifestFile::of_input(input) {
+            let path = input.original.clone();
+            return Err(FolderError::InputChanged { path });
+        }
+        self.place_listed(copied, file)
+    }
+
     /// Makes a finished temporary file one of the run: it is listed in the journal, and then takes its name, where no
     /// foreign file stands in its place.
     pub(crate) fn place(&mut self, name: &str, file: TempPath) -> Result<(), FolderError> {
-        let path = self.path.join(name);
+        let listed = hash_temp(&file, name).map_err(FolderError::write(&self.path.join(name)))?;
+        self.place_listed(listed, file)
+    }
+
+    fn place_listed(&mut self, listed: ManifestFile, file: TempPath) -> Result<(), FolderError> {
+        let path = self.path.join(&listed.name);
         if path.symlink_metadata().is_ok() {
             return Err(FolderError::Foreign { path });
         }
         if let Some(parent) = path.parent() {
             std::fs::create_dir_all(parent).map_err(FolderError::write(parent))?;
         }
-        let hashed = File::open(&file).and_then(|file| {
-            let mut hasher = blake3::Hasher::new();
-            Ok(ManifestFile::hashed(name, hasher.update_reader(file)?))
-        });
-        let listed = hashed.map_err(FolderError::write(&path))?;
         self.list(std::slice::from_ref(&listed))?;
         self.written.push(listed);
         let placed = file.persist(&path).map_err(|error| error.error);
@@ -245,6 +263,15 @@ impl RunFolder {
         // The run is complete whether it can be removed or not.
         let _ = self.unfinished.remove();
     }
+}
+
+/// A temporary file as one of this name.
+fn hash_temp(file: &Path, name: &str) -> std::io::Result<ManifestFile> {
+    let mut hasher = blake3::Hasher::new();
+    Ok(ManifestFile::hashed(
+        name,
+        hasher.update_reader(File::open(file)?)?,
+    ))
 }
 
 /// Locks a folder for one process. Some file systems of clusters have no locks, and some systems none of folders: the run

@@ -58,9 +58,9 @@ fn texts(
             _ => serde_json::to_vec(table).map_err(|error| CaseError::invalid(None, error.to_string())),
         }
     }
-    let contents = |name: &mut String| {
+    let contents = |(_, name): (String, &mut String)| {
         let input = inputs.iter().find(|input| input.name == *name);
-        let hash = input.map(|input| blake3::hash(&input.bytes).to_hex());
+        let hash = input.map(|input| input.hash.to_hex());
         let ending = name.rsplit('.').next().unwrap_or_default();
         *name = format!("{}.{ending}", hash.unwrap_or_default());
     };

@@ -8,8 +8,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use png::{BitDepth, ColorType, Encoder};
-use slipfront::communicator::Alone;
-use slipfront_case::case::Case;
+use slipfront::communicator::{Alone, Threads};
+use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::run_folder::RunFolder;
@@ -146,6 +146,41 @@ fn what_is_said_is_what_is_taken() {
     checkpoints(folder.path());
     study(folder.path());
     masks(folder.path());
+    ranks(folder.path());
+}
+
+/// Ranks that make a case together take no more than a process that makes it alone, but for the buffers of those who read.
+fn ranks(folder: &Path) {
+    let text = "slider.blocks = [400, 400]\nfriction = { mu_static_field = 'mu.npy', mu_kinetic_field = 'mu.npy' }\n\
+                texture = [{ shape = 'mask', file = 'mask.png' }, { shape = 'mask', file = 'mask.npy' }]";
+    let make = |ranks: Ranks| {
+        let file = CaseFile::parse(text, "case", &[]).unwrap();
+        Case::to_run_on_ranks(file, "case", folder, &mut |_| true, ranks).unwrap()
+    };
+    let before = LIVE.load(Ordering::Relaxed) as f64;
+    let (alone, _) = peak(|| make(Ranks::ALONE));
+    let on_ranks = |size: usize| {
+        let (taken, _) = peak(|| {
+            Threads::run(size, |communicator| {
+                make(Ranks {
+                    communicator,
+                    on_node: size,
+                })
+            })
+        });
+        taken - before
+    };
+    let (alone, one, four) = (alone - before, on_ranks(1), on_ranks(4));
+    // The decoder of an image, the reader of a file and the texts of a case, which hardly grow with the lattice.
+    let buffers = 256.0 * 1024.0;
+    assert!(
+        four <= alone + 4.0 * buffers,
+        "{four} bytes of four ranks, {alone} of one process"
+    );
+    assert!(
+        (one - alone).abs() < buffers,
+        "{one} bytes of one rank, {alone} of one process"
+    );
 }
 
 /// A run that goes on from a checkpoint, and saves the next one, takes no more than one that begins.

@@ -1,6 +1,7 @@
 //! Local friction coefficients: Gaussian draws (Eq. 1) from named random streams, or given block by block.
 
 use std::cell::RefCell;
+use std::ops::Range;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -44,6 +45,16 @@ impl Coefficients {
     /// The standard normals depend on `seed` and the index of the block alone; mean and deviation shift and scale them.
     /// Negative values become 0 and are counted.
     pub fn draw(n_blocks: usize, mu_static: Distribution, mu_kinetic: Distribution, seed: u64) -> Self {
+        Self::draw_blocks(0..n_blocks, mu_static, mu_kinetic, seed)
+    }
+
+    /// Draws `mu_si` and `mu_ki` as [`draw`](Self::draw) does, for these blocks of a lattice alone.
+    pub fn draw_blocks(
+        blocks: Range<usize>,
+        mu_static: Distribution,
+        mu_kinetic: Distribution,
+        seed: u64,
+    ) -> Self {
         let mut negative_draws = 0;
         let mut draw = |distribution: Distribution, stream: Stream| -> Vec<f64> {
             let coefficient = |z: f64| {
@@ -51,20 +62,18 @@ impl Coefficients {
                 negative_draws += usize::from(mu < 0.0);
                 mu.max(0.0)
             };
-            if n_blocks > MAX_KEPT {
-                return standard_normals(seed, stream)
-                    .take(n_blocks)
-                    .map(coefficient)
-                    .collect();
+            let normals = || standard_normals(seed, stream, blocks.start).take(blocks.len());
+            if blocks.len() > MAX_KEPT {
+                return normals().map(coefficient).collect();
             }
             LAST_NORMALS.with_borrow_mut(|last| {
-                let (of_seed, normals) = &mut last[stream as usize];
-                if *of_seed != seed || normals.len() != n_blocks {
-                    normals.clear();
-                    normals.extend(standard_normals(seed, stream).take(n_blocks));
-                    *of_seed = seed;
+                let (of_seed, of_blocks, kept) = &mut last[stream as usize];
+                if *of_seed != seed || *of_blocks != blocks {
+                    kept.clear();
+                    kept.extend(normals());
+                    (*of_seed, *of_blocks) = (seed, blocks.clone());
                 }
-                normals.iter().copied().map(coefficient).collect()
+                kept.iter().copied().map(coefficient).collect()
             })
         };
         let mu_static = draw(mu_static, Stream::MuStatic);
@@ -94,19 +103,26 @@ impl Coefficients {
 /// Most blocks whose standard normals are kept.
 const MAX_KEPT: usize = 10_000;
 
+/// Standard normals, with the seed and the blocks that they are drawn for.
+type Kept = (u64, Range<usize>, Vec<f64>);
+
 thread_local! {
-    /// The standard normals drawn last from each stream, and their seed: most of the cases of a study have the same.
-    static LAST_NORMALS: RefCell<[(u64, Vec<f64>); STREAMS.len()]> =
-        const { RefCell::new([(0, Vec::new()), (0, Vec::new())]) };
+    /// The standard normals drawn last from each stream: most of the cases of a study have the same.
+    static LAST_NORMALS: RefCell<[Kept; STREAMS.len()]> =
+        const { RefCell::new([(0, 0..0, Vec::new()), (0, 0..0, Vec::new())]) };
 }
 
-/// Standard normals by Box and Muller from two uniforms each, so that draw n always has the same position in the stream.
-/// Sine and logarithm are those of `libm`, with the same bits on every machine.
-fn standard_normals(seed: u64, stream: Stream) -> impl Iterator<Item = f64> {
+/// Words of 32 bits that a standard normal takes from its stream: two uniforms of two words.
+const WORDS_PER_DRAW: u128 = 4;
+
+/// Standard normals from draw `first` on, by Box and Muller from two uniforms each, so that draw n always has the same position
+/// in the stream. Sine and logarithm are those of `libm`, with the same bits on every machine.
+fn standard_normals(seed: u64, stream: Stream, first: usize) -> impl Iterator<Item = f64> {
     let mut key = [0; 32];
     key[..8].copy_from_slice(&seed.to_le_bytes());
     let mut rng = ChaCha8Rng::from_seed(key);
     rng.set_stream(stream as u64);
+    rng.set_word_pos(WORDS_PER_DRAW * first as u128);
     std::iter::repeat_with(move || {
         const UNIT: f64 = 1.0 / (1u64 << 53) as f64;
         let radius = (-2.0 * libm::log(((rng.next_u64() >> 11) + 1) as f64 * UNIT)).sqrt();
@@ -179,11 +195,41 @@ mod tests {
         );
     }
 
+    /// Draws of some blocks are a part of those of all, whether these are kept or not, and wherever the generator, which makes
+    /// 64 words at a time, begins.
+    #[test]
+    fn parts_of_a_lattice_draw_what_the_whole_does() {
+        let wide = Distribution {
+            mean: 0.1,
+            deviation: 0.1,
+        };
+        for n in [1000, 3 * MAX_KEPT] {
+            let whole = Coefficients::draw(n, wide, KINETIC, 5);
+            for cuts in [
+                vec![0, n],
+                vec![0, 1, 16, 17, 333, n],
+                vec![0, n / 3, n / 3, n - 1, n],
+            ] {
+                let parts = cuts
+                    .windows(2)
+                    .map(|cut| Coefficients::draw_blocks(cut[0]..cut[1], wide, KINETIC, 5));
+                let mut joined = Coefficients::given(Vec::new(), Vec::new());
+                for part in parts {
+                    joined.mu_static.extend(part.mu_static);
+                    joined.mu_kinetic.extend(part.mu_kinetic);
+                    joined.negative_draws += part.negative_draws;
+                }
+                assert!(joined.negative_draws > 0);
+                assert_eq!(joined, whole, "{cuts:?}");
+            }
+        }
+    }
+
     /// Pinned: a change of these numbers changes every surface ever published with a seed.
     #[test]
     fn the_first_draws_of_seed_one_never_change() {
-        let z: Vec<f64> = standard_normals(1, Stream::MuStatic).take(3).collect();
-        let k: Vec<f64> = standard_normals(1, Stream::MuKinetic).take(3).collect();
+        let z: Vec<f64> = standard_normals(1, Stream::MuStatic, 0).take(3).collect();
+        let k: Vec<f64> = standard_normals(1, Stream::MuKinetic, 0).take(3).collect();
         assert_eq!(z, PINNED_STATIC);
         assert_eq!(k, PINNED_KINETIC);
     }

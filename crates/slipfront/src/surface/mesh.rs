@@ -1,5 +1,5 @@
 //! Which blocks are textured: those whose centre lies inside the outline of any texture. Outlines wrap around periodic axes
-//! and are clipped at free edges.
+//! and are clipped at free edges. A rank meshes its own rows and no others.
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -11,24 +11,25 @@ use crate::lattice::{Edges, Lattice};
 /// A texture on a lattice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Meshed {
-    /// Textured blocks.
+    /// Textured blocks of the rows that were meshed.
     pub textured: Vec<bool>,
     /// Indices of the textures that extend beyond a free edge and are clipped there.
     pub clipped: Vec<usize>,
-    /// Indices of the textures that cover no block.
+    /// Indices of the textures that cover no block of these rows.
     pub empty: Vec<usize>,
 }
 
 /// Marks the blocks covered by any of the textures.
 pub fn mesh(lattice: &Lattice, textures: &[Texture]) -> Meshed {
-    let Ok(meshed) = mesh_watched::<Infallible>(lattice, textures, &mut |_| Ok(()));
+    let Ok(meshed) = mesh_watched::<Infallible>(lattice, &(0..lattice.ny), textures, &mut |_| Ok(()));
     meshed
 }
 
-/// [`mesh`] of textures that may take long: `watch` is told the share that is done, row of blocks by row of blocks, and its
-/// error ends it.
+/// [`mesh`] of some rows, with textures that may take long: `watch` is told the share that is done, row of blocks by row of
+/// blocks, and its error ends it.
 pub fn mesh_watched<E>(
     lattice: &Lattice,
+    rows: &Range<usize>,
     textures: &[Texture],
     watch: &mut dyn FnMut(f64) -> Result<(), E>,
 ) -> Result<Meshed, E> {
@@ -41,8 +42,9 @@ pub fn mesh_watched<E>(
     let (mut clipped, mut empty) = (Vec::new(), Vec::new());
     let mut mask = Mask {
         lattice,
-        textured: vec![false; lattice.n_blocks()],
-        full: vec![false; lattice.ny],
+        rows,
+        textured: vec![false; lattice.blocks_of(rows).len()],
+        full: vec![false; rows.len()],
         covers: false,
     };
     for (index, texture) in textures.iter().enumerate() {
@@ -77,10 +79,12 @@ const DISTINCT: f64 = 1e-6;
 /// The blocks that are textured so far.
 struct Mask<'a> {
     lattice: &'a Lattice,
+    /// The rows that are meshed.
+    rows: &'a Range<usize>,
     textured: Vec<bool>,
-    /// Rows that one outline, or overlapping ones, cover from edge to edge.
+    /// Those that one outline, or overlapping ones, cover from edge to edge.
     full: Vec<bool>,
-    /// Whether the present texture covers any block.
+    /// Whether the present texture covers any block of these rows.
     covers: bool,
 }
 
@@ -97,8 +101,11 @@ impl Mask<'_> {
             let rows = blocks_between(low, high, self.lattice.ny, self.lattice.edges[1]);
             let mut sweep = outlines.at_height(center);
             for row in rows.clone() {
+                let Some(meshed_row) = self.meshed_row(row) else {
+                    continue;
+                };
                 watch(done as f64 + (row - rows.start) as f64 / rows.len() as f64)?;
-                if self.covers && self.full[row.rem_euclid(self.lattice.ny as isize) as usize] {
+                if self.covers && self.full[meshed_row] {
                     continue;
                 }
                 sweep.intersect(row as f64 + 0.5, &mut crossings);
@@ -191,14 +198,20 @@ impl Mask<'_> {
         self.lattice.edges[axis] == Edges::Free && coordinates.iter().any(is_beyond)
     }
 
+    /// The position of a row, counted on beyond periodic edges, among those that are meshed.
+    fn meshed_row(&self, row: isize) -> Option<usize> {
+        let row = row.rem_euclid(self.lattice.ny as isize) as usize;
+        self.rows.contains(&row).then(|| row - self.rows.start)
+    }
+
     /// Marks the blocks of a row, both counted on beyond periodic edges.
     fn fill(&mut self, row: isize, columns: Range<isize>) {
-        let Lattice { nx, ny, .. } = *self.lattice;
+        let Some(row) = self.meshed_row(row) else { return };
+        let nx = self.lattice.nx;
         self.covers |= !columns.is_empty();
         // One turn around a periodic axis covers all columns of the row.
         let count = columns.len().min(nx);
         let from = columns.start.rem_euclid(nx as isize) as usize;
-        let row = row.rem_euclid(ny as isize) as usize;
         self.full[row] |= count == nx;
         let row = &mut self.textured[row * nx..][..nx];
         row[from..nx.min(from + count)].fill(true);
@@ -415,14 +428,14 @@ mod tests {
         });
         let textures = [array.clone(), array];
         let mut shares = Vec::new();
-        let watched = mesh_watched::<Infallible>(&lattice, &textures, &mut |share| {
+        let watched = mesh_watched::<Infallible>(&lattice, &(0..50), &textures, &mut |share| {
             shares.push(share);
             Ok(())
         });
         assert_eq!(watched, Ok(mesh(&lattice, &textures)));
         assert!(shares.is_sorted() && shares[0] == 0.0 && *shares.last().unwrap() > 0.9);
         let mut asked = 0;
-        let stopped = mesh_watched(&lattice, &textures, &mut |_| {
+        let stopped = mesh_watched(&lattice, &(0..50), &textures, &mut |_| {
             asked += 1;
             if asked < 10 { Ok(()) } else { Err("enough") }
         });

@@ -1,17 +1,21 @@
 //! The sliding surface: local friction coefficients, texture and load of every block.
 //!
 //! [`Coefficients`] are drawn or given, [`mesh`] finds the textured blocks, and the [`Load`] is distributed over the blocks in
-//! contact; [`Surface::new`] makes the friction thresholds of all blocks from the three.
+//! contact; [`Surface::new`] makes the friction thresholds of all blocks from the three, [`Surface::of_ranks`] those of the
+//! blocks that a rank holds.
 
 mod coefficients;
 mod mesh;
 mod outline;
 mod texture;
+mod whole;
 
 pub use coefficients::{Coefficients, Distribution, STREAMS};
 pub use mesh::{Meshed, mesh, mesh_watched};
 pub use texture::{Cavity, Groove, Orientation, Texture, cavity_lambda, cavity_percent};
 
+use self::whole::Whole;
+use crate::communicator::{Alone, Communicator};
 use crate::error::SurfaceError;
 use crate::lattice::Lattice;
 
@@ -26,20 +30,17 @@ pub enum Load {
 
 impl Load {
     /// Normal force on a block in contact in units of `P l^2`.
-    fn normal_force_per_block(self, textured: &[bool]) -> Result<f64, SurfaceError> {
-        let n_blocks = textured.len();
-        let n_contact = textured.iter().filter(|&&t| !t).count();
-        if n_contact == 0 {
-            return Err(SurfaceError::NoContact { n_blocks });
-        }
-        Ok(match self {
-            Load::Redistributed => n_blocks as f64 / n_contact as f64,
+    fn normal_force_per_block(self, whole: &Whole) -> f64 {
+        match self {
+            Load::Redistributed => whole.n_blocks as f64 / whole.n_contact as f64,
             Load::Kept => 1.0,
-        })
+        }
     }
 }
 
-/// Friction of every block; arrays have one value per block.
+/// Friction of every block; arrays have one value per block that this process holds.
+///
+/// Its methods on the whole surface tell what the arrays were when it was made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
     /// Whether a block lies over a texture and so has no contact with the substrate.
@@ -48,6 +49,7 @@ pub struct Surface {
     pub mu_static: Vec<f64>,
     /// Local kinetic coefficients `mu_ki`; 0 over a texture.
     pub mu_kinetic: Vec<f64>,
+    whole: Whole,
     /// Normal force on a block in contact, in units of `P l^2`.
     normal_force_per_block: f64,
     /// The scale of all forces, `mu_s`.
@@ -64,26 +66,38 @@ impl Surface {
         load: Load,
         mu_static_mean: f64,
     ) -> Result<Self, SurfaceError> {
-        let Coefficients {
-            mut mu_static,
-            mut mu_kinetic,
-            ..
-        } = coefficients;
+        Self::of_ranks(coefficients, textured, load, mu_static_mean, &Alone)
+    }
+
+    /// [`new`](Self::new) of the blocks that this rank holds, called by all `ranks` of a lattice at once. What depends on the
+    /// whole surface has the same bits on all of them, however many they are.
+    pub fn of_ranks(
+        mut coefficients: Coefficients,
+        textured: Vec<bool>,
+        load: Load,
+        mu_static_mean: f64,
+        ranks: &dyn Communicator,
+    ) -> Result<Self, SurfaceError> {
         assert_eq!(
-            mu_static.len(),
+            coefficients.mu_static.len(),
             textured.len(),
             "coefficients and texture belong to different lattices"
         );
-        let normal_force_per_block = load.normal_force_per_block(&textured)?;
         for b in (0..textured.len()).filter(|&b| textured[b]) {
-            mu_static[b] = 0.0;
-            mu_kinetic[b] = 0.0;
+            coefficients.mu_static[b] = 0.0;
+            coefficients.mu_kinetic[b] = 0.0;
+        }
+        let whole = Whole::find(&coefficients, &textured, ranks);
+        if whole.n_contact == 0 {
+            let n_blocks = whole.n_blocks;
+            return Err(SurfaceError::NoContact { n_blocks });
         }
         Ok(Self {
             textured,
-            mu_static,
-            mu_kinetic,
-            normal_force_per_block,
+            mu_static: coefficients.mu_static,
+            mu_kinetic: coefficients.mu_kinetic,
+            normal_force_per_block: load.normal_force_per_block(&whole),
+            whole,
             mu_static_mean,
         })
     }
@@ -92,10 +106,13 @@ impl Surface {
     /// is 1 in the model of the paper.
     pub fn uniform(lattice: &Lattice, mu_static: f64, mu_kinetic: f64) -> Self {
         let n = lattice.n_blocks();
+        let textured = vec![false; n];
+        let coefficients = Coefficients::given(vec![mu_static; n], vec![mu_kinetic; n]);
         Self {
-            textured: vec![false; n],
-            mu_static: vec![mu_static; n],
-            mu_kinetic: vec![mu_kinetic; n],
+            whole: Whole::find(&coefficients, &textured, &Alone),
+            textured,
+            mu_static: coefficients.mu_static,
+            mu_kinetic: coefficients.mu_kinetic,
             normal_force_per_block: 1.0,
             mu_static_mean: 1.0,
         }
@@ -135,27 +152,49 @@ impl Surface {
         }
     }
 
-    /// Number of blocks.
+    /// Number of blocks that this process holds.
     pub fn n_blocks(&self) -> usize {
         self.textured.len()
     }
 
-    /// Number of blocks that touch the substrate.
+    /// Number of blocks of the whole surface that touch the substrate.
     pub fn n_contact(&self) -> usize {
-        self.textured.iter().filter(|&&t| !t).count()
+        self.whole.n_contact
     }
 
-    /// Textured share of the area as meshed, `A*` in % (Eq. 15).
+    /// Negative draws of coefficients of the whole surface that were set to 0, static and kinetic together.
+    pub fn negative_draws(&self) -> usize {
+        self.whole.negative_draws
+    }
+
+    /// Textured share of the whole surface as meshed, `A*` in % (Eq. 15).
     pub fn texture_percent(&self) -> f64 {
-        100.0 * (self.n_blocks() - self.n_contact()) as f64 / self.n_blocks() as f64
+        let Whole {
+            n_blocks, n_contact, ..
+        } = self.whole;
+        100.0 * (n_blocks - n_contact) as f64 / n_blocks as f64
     }
 
-    /// The smallest force that makes a block in contact slip: `min_i max(mu_si, mu_ki) F_n,i` (D12).
+    /// Mean of `mu_si` over all blocks in contact.
+    pub fn mean_static_coefficient(&self) -> f64 {
+        self.whole.sum_static / self.whole.n_contact as f64
+    }
+
+    /// Mean of `mu_ki` over all blocks in contact.
+    pub fn mean_kinetic_coefficient(&self) -> f64 {
+        self.whole.sum_kinetic / self.whole.n_contact as f64
+    }
+
+    /// Mean kinetic friction over all blocks, textured ones included: `mean(mu_ki F_n,i)` in units of `P mu_s l^2`.
+    pub fn mean_kinetic_force(&self) -> f64 {
+        let sum = self.whole.sum_kinetic / self.mu_static_mean * self.normal_force_per_block;
+        sum / self.whole.n_blocks as f64
+    }
+
+    /// The smallest force that makes a block in contact slip: `min_i max(mu_si, mu_ki) F_n,i` over the whole surface (D12).
     pub fn min_slip_threshold(&self) -> f64 {
-        (0..self.n_blocks())
-            .filter(|&b| !self.textured[b])
-            .map(|b| self.static_limit(b).max(self.kinetic_force(b)))
-            .fold(f64::INFINITY, f64::min)
+        // Rounding keeps the order of numbers, so that these are the bits of the smallest of all thresholds.
+        self.whole.min_coefficient / self.mu_static_mean * self.normal_force_per_block
     }
 }
 

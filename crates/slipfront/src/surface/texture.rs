@@ -18,7 +18,7 @@ pub enum Texture {
     Groove(Groove),
     /// Any polygon, by the even-odd rule.
     Polygon(Vec<[f64; 2]>),
-    /// Block by block, row by row from y = 0; several textures may be the same mask.
+    /// Block by block of the rows that are meshed, row by row in rising y; several textures may be the same mask.
     Blocks(Arc<Vec<bool>>),
 }
 

@@ -1,6 +1,8 @@
 //! Helpers of all test binaries: a slider described by the dimensionless groups of the paper.
 #![allow(dead_code)] // Each binary uses its own part of this.
 
+use std::ops::Range;
+
 use slipfront::observe::{Curve, CurveRow, Kinetic, KineticHistory, KineticStart, Observer, Peak, Scheduled};
 use slipfront::surface::{
     Cavity, Coefficients, Distribution, Groove, Load, Orientation, Texture, cavity_lambda, mesh,
@@ -90,12 +92,16 @@ impl Slider {
     }
 
     pub(crate) fn coefficients(&self) -> Coefficients {
+        self.coefficients_of(0..self.lattice().n_blocks())
+    }
+
+    pub(crate) fn coefficients_of(&self, blocks: Range<usize>) -> Coefficients {
         let gauss = |mean: f64, star: f64| Distribution {
             mean,
             deviation: star * mean,
         };
-        Coefficients::draw(
-            self.lattice().n_blocks(),
+        Coefficients::draw_blocks(
+            blocks,
             gauss(1.0, self.sigma_static_star),
             gauss(self.r_star, self.sigma_kinetic_star),
             self.seed,

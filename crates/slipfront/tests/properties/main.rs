@@ -6,6 +6,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod meshes;
+mod ranks;
 
 use proptest::prelude::*;
 use slipfront::observe::Field;

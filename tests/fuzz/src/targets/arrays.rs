@@ -1,10 +1,11 @@
 //! Arrays and images that a case names.
 
+use std::io::Cursor;
 use std::path::Path;
 
 use png::{BitDepth, ColorType, Encoder};
 use slipfront_case::arrays;
-use slipfront_case::arrays::{mask_npy, write_mask_png};
+use slipfront_case::arrays::{ArrayError, Slab, mask_npy, write_mask_png};
 
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
@@ -164,9 +165,27 @@ fn images() -> Vec<Vec<u8>> {
     images
 }
 
+/// What is read of all rows at once is what is read row by row, of which the first error counts.
+fn read<T>(read: impl Fn(&Slab) -> Result<Vec<T>, ArrayError>) -> Result<Vec<T>, ArrayError>
+where
+    T: PartialEq + std::fmt::Debug,
+{
+    let whole = read(&Slab::whole(NX, NY));
+    let row = |row: usize| Slab {
+        rows: row..row + 1,
+        ..Slab::whole(NX, NY)
+    };
+    let by_rows = (0..NY).map(|j| read(&row(j))).collect::<Result<Vec<_>, _>>();
+    let by_rows = by_rows.map(|rows| rows.into_iter().flatten().collect::<Vec<_>>());
+    let said = |read: &Result<Vec<T>, ArrayError>| read.as_ref().err().map(ToString::to_string);
+    assert_eq!(said(&whole), said(&by_rows));
+    assert_eq!(whole.as_ref().ok(), by_rows.as_ref().ok());
+    whole
+}
+
 /// Coefficients are finite and not negative, and keep their bits when written and read again.
 fn field(name: &str, input: &[u8]) {
-    let values = match arrays::field(Path::new(name), input, NX, NY) {
+    let values = match read(|slab| arrays::field(Path::new(name), &mut Cursor::new(input), slab)) {
         Ok(values) => values,
         Err(error) => return readable(&error),
     };
@@ -181,14 +200,20 @@ fn field(name: &str, input: &[u8]) {
                 .join(",")
         })
         .collect();
-    let again = arrays::field(Path::new("again.csv"), rows.join("\n").as_bytes(), NX, NY).unwrap();
+    let text = rows.join("\n");
+    let again = arrays::field(
+        Path::new("again.csv"),
+        &mut Cursor::new(text),
+        &Slab::whole(NX, NY),
+    )
+    .unwrap();
     let bits = |values: &[f64]| -> Vec<u64> { values.iter().map(|value| value.to_bits()).collect() };
     assert_eq!(bits(&again), bits(&values));
 }
 
 fn npy(input: &[u8]) {
     field("field.npy", input);
-    match mask_npy(Path::new("field.npy"), input, NX, NY) {
+    match read(|slab| mask_npy(Path::new("field.npy"), &mut Cursor::new(input), slab)) {
         Ok(mask) => assert_eq!(mask.len(), NX * NY),
         Err(error) => readable(&error),
     }
@@ -205,7 +230,10 @@ fn mask_png(input: &[u8]) {
 }
 
 fn mask(input: &[u8]) {
-    let read = |bytes: &[u8]| arrays::mask_png(Path::new("mask.png"), bytes, 0.5, [NX, NY], &mut |_| Ok(()));
+    let read = |bytes: &[u8]| {
+        let path = Path::new("mask.png");
+        read(|slab| arrays::mask_png(path, &mut Cursor::new(bytes), 0.5, slab, &mut |_| Ok(())))
+    };
     let mask = match read(input) {
         Ok(mask) => mask,
         Err(error) => return readable(&error),

@@ -1,0 +1,93 @@
+//! The ranks that make a case together.
+
+use slipfront::Communicator;
+use slipfront::communicator::{Alone, text_of};
+
+use crate::case_file::CaseError;
+
+/// The ranks that make a case together, each its own rows.
+#[derive(Clone, Copy)]
+pub struct Ranks<'a> {
+    /// By which they talk.
+    pub communicator: &'a dyn Communicator,
+    /// How many of them run on this machine and share its memory.
+    pub on_node: usize,
+}
+
+impl Ranks<'static> {
+    /// A process that makes a case alone.
+    pub const ALONE: Self = Self {
+        communicator: &Alone,
+        on_node: 1,
+    };
+}
+
+impl Ranks<'_> {
+    /// What this rank has found, if none has failed; else an error on all of them: that of the lowest rank that has one, or
+    /// that they were stopped.
+    pub fn agree<T>(&self, found: Result<T, CaseError>) -> Result<T, CaseError> {
+        let rank = self.communicator.rank();
+        let is_stopped = matches!(found, Err(CaseError::Stopped));
+        let failed = if found.is_err() {
+            -(rank as f64)
+        } else {
+            f64::NEG_INFINITY
+        };
+        let mut most = [f64::from(u8::from(is_stopped)), failed];
+        self.communicator.largest(&mut most);
+        let [stopped, failed] = most;
+        if stopped > 0.0 {
+            return Err(CaseError::Stopped);
+        }
+        if failed == f64::NEG_INFINITY {
+            return found;
+        }
+        let first = -failed as usize;
+        let own = found.err();
+        let text = own.as_ref().map(ToString::to_string).unwrap_or_default();
+        let text = text_of(self.communicator, first, &text);
+        Err(own
+            .filter(|_| rank == first)
+            .unwrap_or(CaseError::OnOtherRank(text)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use slipfront::communicator::Threads;
+
+    use super::*;
+
+    #[test]
+    fn the_first_error_is_told_by_all() {
+        let long = "e\u{301}\n".repeat(100);
+        let outcome = |rank: usize, failing: &[usize], stopped: Option<usize>| {
+            if stopped == Some(rank) {
+                return Err(CaseError::Stopped);
+            }
+            match failing.contains(&rank) {
+                true => Err(CaseError::invalid(None, format!("{rank} {long}"))),
+                false => Ok(rank),
+            }
+        };
+        let agreed = |failing: &[usize], stopped| -> Vec<Result<usize, String>> {
+            Threads::run(5, |communicator| {
+                let ranks = Ranks {
+                    communicator,
+                    on_node: 5,
+                };
+                let agreed = ranks.agree(outcome(communicator.rank(), failing, stopped));
+                agreed.map_err(|error| error.to_string())
+            })
+        };
+        assert_eq!(agreed(&[], None), (0..5).map(Ok).collect::<Vec<_>>());
+        for (failing, first) in [(&[0][..], 0), (&[4], 4), (&[3, 2], 2), (&[0, 1, 2, 3, 4], 0)] {
+            let said = outcome(first, &[first], None).unwrap_err().to_string();
+            assert_eq!(agreed(failing, None), vec![Err(said); 5]);
+        }
+        assert_eq!(
+            agreed(&[1], Some(3)),
+            vec![Err(CaseError::Stopped.to_string()); 5]
+        );
+    }
+}
