@@ -11,7 +11,7 @@ use super::budget::Budget;
 use super::coefficients::coefficients;
 use super::groups::Groups;
 use super::inputs::{Input, Inputs};
-use super::output::{Output, check_fields};
+use super::output::Output;
 use super::textures::{self, Watch};
 use super::time_plan::TimePlan;
 use crate::case_file::{CaseError, CaseFile};
@@ -117,7 +117,6 @@ impl Case {
         let budget = Budget::new(&lattice, file.friction.law, &time_plan, &output);
         if to_run {
             budget.check_memory(&file, false)?;
-            check_fields(&file)?;
         }
         budget.check_making(&file)?;
         let mut inputs = Inputs {

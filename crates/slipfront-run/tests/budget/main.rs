@@ -12,7 +12,7 @@ use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::study::{Plan, Records, StudyFile};
-use slipfront_run::{results, running, study};
+use slipfront_run::{pictures, results, running, study};
 
 /// The system's allocator, counting bytes of all threads.
 struct Counting;
@@ -141,6 +141,29 @@ fn what_is_said_is_what_is_taken() {
     }
     study(folder.path());
     masks(folder.path());
+    pictures_of_a_large_lattice(folder.path());
+}
+
+/// Maps are averaged while they are read: what that takes does not depend on the lattice.
+fn pictures_of_a_large_lattice(folder: &Path) {
+    let sets = [
+        "slider.blocks=[1500,1200]",
+        "time.duration_star=1",
+        "output.snapshots=[0,0.2,0.4,0.6,0.8,1]",
+    ];
+    let file = CaseFile::parse("", "case", &sets.map(str::to_owned)).unwrap();
+    let case = Arc::new(Case::new(file, "case", folder, &mut |_| true).unwrap());
+    let mut record = running::run(&case, 1).unwrap();
+    let out = folder.join("out");
+    let prepared = RunFolder::prepare(&out, false, &case.inputs).unwrap();
+    results::write(&case, &mut record, prepared, jiff::Timestamp::now(), 1).unwrap();
+    drop((case, record));
+    let before = LIVE.load(Ordering::Relaxed) as f64;
+    let (taken, drawn) = peak(|| pictures::draw(&out).unwrap());
+    assert_eq!(drawn.len(), 2);
+    let said = pictures::memory(std::slice::from_ref(&out)).unwrap();
+    assert_honest("pictures of a large lattice", said, taken - before);
+    std::fs::remove_dir_all(out).unwrap();
 }
 
 /// Textures of one image take the room of one mask of the lattice.
