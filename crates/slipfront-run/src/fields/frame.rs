@@ -137,8 +137,8 @@ impl FieldsFile<'_> {
     }
 }
 
-/// The contents of a `fields.nc`; every array is thinned to `columns() * rows()` values, unless it was reduced further while
-/// it was read, and row-major.
+/// The contents of a `fields.nc`; every array is row-major and thinned to `columns() * rows()` values, unless it was reduced
+/// further or some rows alone were read.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct FieldsData {
     /// Number of blocks along x, before thinning.

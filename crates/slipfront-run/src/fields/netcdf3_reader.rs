@@ -4,6 +4,7 @@
 use std::collections::HashSet;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::Path;
 
 use slipfront_case::disk::open_regular;
@@ -123,16 +124,17 @@ impl NetCdf3Reader {
         }
     }
 
-    /// The values of a variable over exactly these dimensions: all of them, or those of one record if the first
-    /// dimension is the record dimension.
+    /// The values of a variable over exactly these dimensions that lie in `part`, which counts those of the whole variable,
+    /// or of one record of it if the first dimension is the record dimension.
     pub(super) fn values(
         &mut self,
         name: &str,
         dimensions: &[&str],
         record: usize,
+        part: Range<u64>,
     ) -> Result<Vec<f64>, NetCdfError> {
         let mut values = Vec::new();
-        self.read(name, dimensions, record, |piece| values.extend(piece))?;
+        self.read(name, dimensions, record, part, |piece| values.extend(piece))?;
         Ok(values)
     }
 
@@ -142,6 +144,7 @@ impl NetCdf3Reader {
         name: &str,
         dimensions: &[&str],
         record: usize,
+        part: Range<u64>,
         mut take: impl FnMut(&[f64]),
     ) -> Result<(), NetCdfError> {
         let is_meant = |variable: &&Variable| variable.name == name && self.is_over(variable, dimensions);
@@ -163,11 +166,13 @@ impl NetCdf3Reader {
             let there = self.file_bytes;
             return broken(format!("it has {there} bytes where `{name}` ends at byte {end}"));
         }
-        let piece = (PIECE * variable.kind.bytes()) as u64;
+        let value = variable.kind.bytes() as u64;
+        let [from, to] = [part.start, part.end].map(|at| start + at.min(bytes / value) * value);
+        let piece = PIECE as u64 * value;
         let (mut data, mut values) = (Vec::new(), Vec::new());
-        self.file.seek(SeekFrom::Start(start))?;
-        for first in (start..end).step_by(piece as usize) {
-            data.resize(piece.min(end - first) as usize, 0);
+        self.file.seek(SeekFrom::Start(from))?;
+        for first in (from..to).step_by(piece as usize) {
+            data.resize(piece.min(to - first) as usize, 0);
             self.file.read_exact(&mut data)?;
             values.clear();
             values.extend(variable.kind.decode(&data));

@@ -1,5 +1,6 @@
 //! Reading what `write_fields` has written.
 
+use std::ops::Range;
 use std::path::Path;
 
 use slipfront::observe::Field;
@@ -9,21 +10,35 @@ use slipfront_case::text;
 use super::frame::*;
 use super::netcdf3_reader::{NetCdf3Reader, NetCdfError, broken};
 
+/// All values of a variable.
+const WHOLE: Range<u64> = 0..u64::MAX;
+
 /// Reads a `fields.nc` that [`write_fields`](super::write_fields) has written. Variables that slipfront does not know are
 /// skipped.
 pub fn read_fields(path: &Path) -> Result<FieldsData, FieldsError> {
+    read_rows(path, 0..usize::MAX)
+}
+
+/// The same for these rows of the file alone, as far as it has them, counted from y = 0: of a file that is larger than the memory.
+pub fn read_rows(path: &Path, rows: Range<usize>) -> Result<FieldsData, FieldsError> {
     let read = || {
         let mut file = NetCdf3Reader::open(path)?;
         let all: Vec<usize> = (0..file.records).collect();
-        let data = read_chosen::<Vec<f32>>(&mut file, |_| true, &all)?;
+        let data = read_chosen::<Vec<f32>>(&mut file, |_| true, &all, &rows)?;
+        let part = values_of(&rows, data.columns());
         Ok(FieldsData {
-            mu_static: file.values(MU_STATIC, &[Y, X], 0)?,
-            mu_kinetic: file.values(MU_KINETIC, &[Y, X], 0)?,
-            first_slip_time_star: file.values(FIRST_SLIP, &[Y, X], 0)?,
+            mu_static: file.values(MU_STATIC, &[Y, X], 0, part.clone())?,
+            mu_kinetic: file.values(MU_KINETIC, &[Y, X], 0, part.clone())?,
+            first_slip_time_star: file.values(FIRST_SLIP, &[Y, X], 0, part)?,
             ..data
         })
     };
     read().map_err(|error| in_words(error, path))
+}
+
+fn values_of(rows: &Range<usize>, columns: usize) -> Range<u64> {
+    let [start, end] = [rows.start, rows.end].map(|row| (row as u64).saturating_mul(columns as u64));
+    start..end
 }
 
 /// What is kept of the values of a field or of the texture while they are read, row after row.
@@ -63,7 +78,7 @@ pub fn read_maps<R: Reduction>(path: &Path, field: Field, most: usize) -> Result
         let shown = records.min(most);
         let spread = (0..shown).map(|k| k * (records - 1) / (shown - 1).max(1));
         let spread: Vec<usize> = spread.collect();
-        read_chosen::<R>(&mut file, |name| name == field, &spread)
+        read_chosen::<R>(&mut file, |name| name == field, &spread, &(0..usize::MAX))
     };
     read().map_err(|error| in_words(error, path))
 }
@@ -84,6 +99,7 @@ fn read_chosen<R: Reduction>(
     file: &mut NetCdf3Reader,
     chosen: impl Fn(Field) -> bool,
     records: &[usize],
+    rows: &Range<usize>,
 ) -> Result<FieldsData, NetCdfError> {
     let [nx, ny] = counts(file, BLOCKS)?;
     let [stride] = counts(file, STRIDE)?;
@@ -109,10 +125,10 @@ fn read_chosen<R: Reduction>(
         .collect();
     let frames = records
         .iter()
-        .map(|&record| read_frame::<R>(file, &names, record));
+        .map(|&record| read_frame::<R>(file, &names, record, rows));
     let frames = frames.collect::<Result<_, _>>()?;
     let flag = |value: f64| if value == 0.0 { 0.0 } else { 1.0 };
-    let textured = read_reduced::<R>(file, TEXTURED, &[Y, X], 0, flag)?;
+    let textured = read_reduced::<R>(file, TEXTURED, &[Y, X], 0, rows, flag)?;
     Ok(FieldsData {
         nx,
         ny,
@@ -130,18 +146,24 @@ fn read_frame<R: Reduction>(
     file: &mut NetCdf3Reader,
     names: &[Field],
     record: usize,
+    rows: &Range<usize>,
 ) -> Result<FieldFrame, NetCdfError> {
-    let time_star = only(TIME_STAR, &file.values(TIME_STAR, &[TIME], record)?)?;
-    let step = only(STEP, &file.values(STEP, &[TIME], record)?)? as u64;
-    let label = file.values(LABEL, &[TIME, LABEL_LENGTH], record)?;
+    let time_star = only(TIME_STAR, &file.values(TIME_STAR, &[TIME], record, WHOLE)?)?;
+    let step = only(STEP, &file.values(STEP, &[TIME], record, WHOLE)?)? as u64;
+    let label = file.values(LABEL, &[TIME, LABEL_LENGTH], record, WHOLE)?;
     let label = label.iter().map(|byte| *byte as u8);
     let label: Vec<u8> = label.take_while(|byte| *byte != 0).collect();
     let mut values = Vec::with_capacity(names.len());
     for name in names {
         let name = field_info(*name).name;
-        values.push(read_reduced::<R>(file, name, &[TIME, Y, X], record, |value| {
-            value as f32
-        })?);
+        values.push(read_reduced::<R>(
+            file,
+            name,
+            &[TIME, Y, X],
+            record,
+            rows,
+            |value| value as f32,
+        )?);
     }
     Ok(FieldFrame {
         time_star,
@@ -151,16 +173,18 @@ fn read_frame<R: Reduction>(
     })
 }
 
-/// What is kept of a variable of one value per block.
+/// What is kept of some rows of a variable of one value per block.
 fn read_reduced<R: Reduction>(
     file: &mut NetCdf3Reader,
     name: &str,
     dimensions: &[&str],
     record: usize,
+    rows: &Range<usize>,
     value: impl Fn(f64) -> f32,
 ) -> Result<Vec<f32>, NetCdfError> {
-    let mut reduced = R::of(file.dimension(X)?, file.dimension(Y)?);
-    file.read(name, dimensions, record, |piece| {
+    let (columns, there) = (file.dimension(X)?, file.dimension(Y)?);
+    let mut reduced = R::of(columns, rows.end.min(there).saturating_sub(rows.start));
+    file.read(name, dimensions, record, values_of(rows, columns), |piece| {
         reduced.add(piece.iter().map(|&number| value(number)));
     })?;
     Ok(reduced.finish())

@@ -148,6 +148,7 @@ fn what_is_said_is_what_is_taken() {
 fn pictures_of_a_large_lattice(folder: &Path) {
     let sets = [
         "slider.blocks=[1500,1200]",
+        "output.fields=['contact_stress_star']",
         "time.duration_star=1",
         "output.snapshots=[0,0.2,0.4,0.6,0.8,1]",
     ];
