@@ -19,7 +19,7 @@ fn value(array: usize, row: usize, column: usize) -> f64 {
 }
 
 fn is_textured(row: usize, column: usize) -> bool {
-    (row + column) % 3 == 0
+    (row + column).is_multiple_of(3)
 }
 
 /// NaN in places.

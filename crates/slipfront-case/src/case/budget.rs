@@ -32,6 +32,10 @@ const ROOM_TO_READ: f64 = 1.125;
 
 /// A value of a field.
 const VALUE: f64 = size_of::<f32>() as f64;
+/// Most cells of a map, into which blocks are averaged while it is read: 256 along a side.
+const CELLS: f64 = 256.0 * 256.0;
+/// Whether a cell is textured, and the sum and the count of its blocks while a field is read.
+const AVERAGED: f64 = FLAG + NUMBER + VALUE;
 /// What never changes in the file, where textured takes 16 bits.
 const STATICS_ON_DISK: f64 = 2.0 + 3.0 * NUMBER;
 
@@ -48,9 +52,6 @@ const DRAWN_ROW: f64 = 2.0 * SERIES_ROW + 3.0 * NUMBER;
 /// Primitives and pixels of the picture of the friction, and of the one of the stress. They do not depend on the
 /// lattice: more than 256 cells along a side are averaged (measured: 6.8 and 6.6 MB).
 pub const PICTURE: f64 = 7.0 * 1024.0 * 1024.0;
-/// The cells of one picture of the stress, at most 256 along a side: of one map a sum and a count while it is read, the
-/// means of all of them, and the texture.
-const MAPS: f64 = 256.0 * 256.0 * (NUMBER + VALUE + MAX_MAPS as f64 * VALUE + FLAG);
 /// Both pictures as SVG and PNG, the summary and the manifest (measured: at most 0.7 MB).
 const PICTURE_FILES: f64 = 2e6;
 
@@ -75,8 +76,8 @@ pub struct Budget {
     frames: f64,
     fields: f64,
     rows: f64,
-    /// Whether maps of the stress are drawn.
-    has_maps: bool,
+    /// Maps that are drawn.
+    maps: f64,
     /// Bytes of the files that the case reads, kept for their copies.
     pub(super) inputs: f64,
     /// Bytes of masks, one a block, until they are laid over the lattice.
@@ -128,7 +129,10 @@ impl Budget {
             frames,
             fields: output.fields.len() as f64,
             rows: (last_step / output.series_stride) as f64 + 2.0,
-            has_maps: output.fields.contains(&Field::ContactStress) && frames > 0.0,
+            maps: match output.fields.contains(&Field::ContactStress) {
+                true => frames.min(MAX_MAPS as f64),
+                false => 0.0,
+            },
             inputs: 0.0,
             masks: 0.0,
             is_resumed: false,
@@ -139,6 +143,7 @@ impl Budget {
     fn parts(&self) -> [Part; 4] {
         let (blocks, cells, inputs) = (self.blocks, self.cells, self.inputs);
         let (frames, fields, rows) = (self.frames, self.fields, self.rows);
+        let drawn = cells.min(CELLS);
         let frame = size_of::<Frame>() as f64 + fields * size_of::<Vec<f32>>() as f64;
         let snapshots = frames * fields * cells * VALUE + grown(frames) * frame;
         let row = size_of::<CurveRow>() as f64;
@@ -151,7 +156,7 @@ impl Budget {
                     blocks * SURFACE,
                     blocks * (SURFACE + self.kernel),
                     // With the time of its first slip.
-                    blocks * (SURFACE + NUMBER),
+                    blocks * (SURFACE + NUMBER) + drawn * AVERAGED,
                     cells * STATICS_ON_DISK,
                     blocks * SAVED,
                 ],
@@ -166,7 +171,7 @@ impl Budget {
                 bytes: [
                     0.0,
                     snapshots,
-                    0.0,
+                    self.maps * drawn * VALUE,
                     frames * (fields * cells * VALUE + 4.0 * NUMBER),
                     snapshots,
                 ],
@@ -194,11 +199,7 @@ impl Budget {
 
     /// Bytes of a phase, with those that no key of a case changes.
     fn total(&self, phase: Phase) -> f64 {
-        let pictures = if self.has_maps {
-            2.0 * PICTURE + MAPS
-        } else {
-            PICTURE
-        };
+        let pictures = if self.maps > 0.0 { 2.0 * PICTURE } else { PICTURE };
         let fixed = [0.0, HISTORY, pictures, PICTURE_FILES, HISTORY];
         let parts = self.parts();
         parts.iter().map(|part| part.bytes[phase as usize]).sum::<f64>() + fixed[phase as usize]
@@ -351,7 +352,7 @@ impl Budget {
 
 /// Memory in which the pictures of a finished run are drawn from its files, in bytes, with so many rows of the series.
 pub fn memory_to_draw(rows: f64) -> f64 {
-    HEAP * (grown(rows) * DRAWN_ROW + 2.0 * PICTURE + MAPS)
+    HEAP * (CELLS * (AVERAGED + MAX_MAPS as f64 * VALUE) + grown(rows) * DRAWN_ROW + 2.0 * PICTURE)
 }
 
 /// Elements for which a vector has room that grew to `length` by doubling.
