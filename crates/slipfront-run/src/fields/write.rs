@@ -62,7 +62,7 @@ impl<'a> FieldsWriter<'a> {
         })
     }
 
-    /// Writes all but the values of blocks.
+    /// Writes all but the values of blocks, which may be there already.
     pub fn create(&self, output: impl Write + Seek) -> io::Result<()> {
         let file = self.file;
         let mut output = BufWriter::with_capacity(BUFFER, output);
@@ -118,9 +118,10 @@ impl<'a> FieldsWriter<'a> {
                     let is_named = |field: &Field| field_info(*field).name == name;
                     let field = file.names.iter().position(is_named);
                     let values = field.and_then(|field| file.frames.get(place.record)?.values.get(field));
+                    // Coordinates, and what a record says of its instant, are no values of blocks.
+                    let Some(values) = values else { continue };
                     let one_nan = |value: &f32| if value.is_nan() { f32::NAN } else { *value };
-                    let values = values.into_iter().flatten().map(one_nan);
-                    write_at(&mut output, place, before, values)?;
+                    write_at(&mut output, place, before, values.iter().map(one_nan))?;
                 }
             }
         }
