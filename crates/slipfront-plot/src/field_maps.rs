@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::canvas::Canvas;
+use crate::cell_means::CellMeans;
 use crate::frame::{BAR_MIN_HEIGHT, BAR_WIDTH, bar_room, colour_bar};
 use crate::geometry::{Align, Area, Point};
 use crate::lattice_map::{Cells, TITLE_ROOM, block_count, check_length, draw_titles, place, rimmed_line};
@@ -106,7 +107,16 @@ fn check(map: &FieldMap) -> Result<(), PictureError> {
 }
 
 fn draw_map(canvas: &mut Canvas, map: &FieldMap, area: Area, range: [f64; 2]) {
-    Cells::of(map.nx, map.ny, &map.textured).draw(canvas, area, &map.values, range);
+    let (nx, ny) = (map.nx, map.ny);
+    // A group of blocks counts as textured if most of them are.
+    let flags = map
+        .textured
+        .iter()
+        .map(|&textured| if textured { 1.0 } else { 0.0 });
+    let shares = CellMeans::of(nx, ny, flags);
+    let textured: Vec<bool> = shares.into_iter().map(|share| share > 0.5).collect();
+    let means = CellMeans::of(nx, ny, map.values.iter().copied());
+    Cells::of(nx, ny, &textured).draw(canvas, area, &means, range);
     for &[i, j] in &map.marks {
         let centre = ((i as f64 + 0.5) / map.nx as f64, (j as f64 + 0.5) / map.ny as f64);
         draw_mark(canvas, place(area, centre));
@@ -190,7 +200,7 @@ mod tests {
         );
         assert_eq!(
             error(&|m| m.maps[0].values.push(0.0)),
-            "map `2 x 3`, values, has 7 values, but the lattice has 6 blocks"
+            "map `2 x 3`, values, has 7 values where 6 are wanted"
         );
     }
 }

@@ -9,6 +9,7 @@ mod axis;
 mod bars;
 mod canvas;
 mod category_axis;
+mod cell_means;
 mod color_image;
 mod export;
 mod field_maps;
@@ -38,6 +39,7 @@ mod text;
 mod ticks;
 
 pub use bars::{Bar, BarChart, BarGroup, bars};
+pub use cell_means::CellMeans;
 pub use field_maps::{FieldMap, FieldMaps, field_maps};
 pub use friction::friction;
 pub use friction_curve::{FrictionCurve, Instant, Kinetic};

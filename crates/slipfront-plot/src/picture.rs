@@ -35,7 +35,7 @@ pub enum PictureError {
     Lattice { nx: usize, ny: usize },
     #[error("a block size of {0} m cannot be drawn")]
     BlockSize(String),
-    #[error("{what} has {found} values, but the lattice has {expected} blocks")]
+    #[error("{what} has {found} values where {expected} are wanted")]
     Blocks {
         what: String,
         found: usize,

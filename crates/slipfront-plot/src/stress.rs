@@ -2,6 +2,7 @@
 
 use crate::axis::Axis;
 use crate::canvas::Canvas;
+use crate::cell_means::CellMeans;
 use crate::frame::{
     BAR_MIN_HEIGHT, BAR_WIDTH, LOWER_ROOM, bar_room, colour_bar, left_room, left_side, lower_side,
 };
@@ -36,7 +37,7 @@ pub struct StressMap {
     pub time_star: f64,
     /// mu* at that time; not written if NaN.
     pub mu_star: f64,
-    /// `tau_c*` of every block, shape (ny, nx), row 0 at y = 0; NaN is left blank.
+    /// Mean `tau_c*` of every [cell](CellMeans), row by row from y = 0; NaN is left blank.
     pub values: Vec<f32>,
 }
 
@@ -49,7 +50,7 @@ pub struct StressMaps {
     pub ny: usize,
     /// Edge of a block, in metres.
     pub block_size: f64,
-    /// True for every textured block, shape (ny, nx).
+    /// True for every [cell](CellMeans) of which most is textured, row by row from y = 0.
     pub textured: Vec<bool>,
     /// The maps, in the order in which they are drawn.
     pub maps: Vec<StressMap>,
@@ -58,9 +59,7 @@ pub struct StressMaps {
 /// Draws the maps in one row (in more, if there are more than six), at most as wide as a journal's text (175
 /// mm), all on one colour scale from 0 to 1, the textured area outlined.
 ///
-/// A lattice of more than 256 blocks along a side is averaged in groups of blocks, blank ones left out; a
-/// group counts as textured if most of its blocks are. A lattice more than six times as long as wide is drawn
-/// as if it were six times.
+/// A lattice more than six times as long as wide is drawn as if it were six times.
 ///
 /// # Errors
 ///
@@ -90,7 +89,9 @@ pub fn stress(maps: &StressMaps) -> Result<Picture, PictureError> {
 }
 
 fn check(maps: &StressMaps) -> Result<(), PictureError> {
-    let expected = block_count(maps.nx, maps.ny)?;
+    block_count(maps.nx, maps.ny)?;
+    let [columns, rows] = CellMeans::cells(maps.nx, maps.ny);
+    let expected = columns * rows;
     if !(maps.block_size > 0.0 && maps.block_size < 1e9) {
         return Err(PictureError::BlockSize(maps.block_size.to_string()));
     }
@@ -226,11 +227,11 @@ mod tests {
             label: ["A", "B", "C", "D", "E", "F", "G"][index].to_string(),
             time_star: 12.34 * index as f64,
             mu_star: 0.5,
-            values: (0..nx * ny)
-                .map(|block| block as f32 / (nx * ny) as f32)
-                .collect(),
+            values: CellMeans::of(nx, ny, (0..nx * ny).map(|block| block as f32 / (nx * ny) as f32)),
         };
-        let textured = (0..nx * ny).map(|block| block % nx == nx / 2 && nx > 2).collect();
+        let [columns, rows] = CellMeans::cells(nx, ny);
+        let is_textured = |cell: usize| cell % columns == columns / 2 && columns > 2;
+        let textured = (0..columns * rows).map(is_textured).collect();
         StressMaps {
             nx,
             ny,
@@ -301,11 +302,11 @@ mod tests {
         assert_eq!(error(&|m| m.maps.clear()), "there is no map to draw");
         assert_eq!(
             error(&|m| m.textured.clear()),
-            "the texture has 0 values, but the lattice has 6 blocks"
+            "the texture has 0 values where 6 are wanted"
         );
         assert_eq!(
             error(&|m| m.maps[0].values.push(0.0)),
-            "map `A` has 7 values, but the lattice has 6 blocks"
+            "map `A` has 7 values where 6 are wanted"
         );
     }
 

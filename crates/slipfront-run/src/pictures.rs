@@ -3,13 +3,15 @@
 #[cfg(feature = "plot")]
 use {
     crate::error::ResultsError,
-    crate::fields::{self, FieldFrame},
+    crate::fields::{self, FieldFrame, Reduction},
     crate::series,
     crate::summary::{Summary, read_summary},
     rayon::prelude::*,
     slipfront::observe::Field,
     slipfront_case::case::{MAX_MAPS, memory_to_draw},
-    slipfront_plot::{self as plot, FrictionCurve, Instant, Kinetic, Picture, StressMap, StressMaps},
+    slipfront_plot::{
+        self as plot, CellMeans, FrictionCurve, Instant, Kinetic, Picture, StressMap, StressMaps,
+    },
     std::path::{Path, PathBuf},
 };
 
@@ -55,14 +57,11 @@ impl RunPicture {
 /// Memory in which the friction curves of these run folders are drawn, or all pictures of a single one, in bytes.
 #[cfg(feature = "plot")]
 pub fn memory(folders: &[PathBuf]) -> Result<f64, ResultsError> {
-    let (mut cells, mut maps, mut rows) = (0, 0, 0.0);
+    let mut rows = 0.0;
     for folder in folders {
         rows += series::estimate_rows(&folder.join(SERIES))?;
     }
-    if let [folder] = folders {
-        (cells, maps) = fields::count_maps(&folder.join(FIELDS), MAX_MAPS)?;
-    }
-    Ok(memory_to_draw(cells as f64, maps as f64, rows))
+    Ok(memory_to_draw(rows))
 }
 
 /// Draws the pictures of a run folder from its files, which must be there and undamaged.
@@ -126,10 +125,26 @@ pub fn marked_curve(label: String, summary: &Summary) -> FrictionCurve {
     }
 }
 
+/// Maps are read as the means that are drawn, so that they take no more memory for a larger lattice.
+#[cfg(feature = "plot")]
+impl Reduction for CellMeans {
+    fn of(columns: usize, rows: usize) -> Self {
+        Self::new(columns, rows)
+    }
+
+    fn add(&mut self, values: impl Iterator<Item = f32>) {
+        self.add(values);
+    }
+
+    fn finish(self) -> Vec<f32> {
+        self.finish()
+    }
+}
+
 /// Draws the stress maps of a run; none if it kept no contact stress.
 #[cfg(feature = "plot")]
 fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
-    let fields = fields::read_maps(&folder.join(FIELDS), Field::ContactStress, MAX_MAPS)?;
+    let fields = fields::read_maps::<CellMeans>(&folder.join(FIELDS), Field::ContactStress, MAX_MAPS)?;
     if fields.names.is_empty() || fields.frames.is_empty() {
         return Ok(None);
     }

@@ -59,6 +59,7 @@ fn write_fields(case: &Case, record: &mut Record, folder: &RunFolder) -> Result<
     let file = FieldsFile {
         nx: case.model.lattice.nx,
         ny: case.model.lattice.ny,
+        rows: 0..case.model.lattice.ny,
         stride: case.output.stride,
         block_size: case.scales.block_size,
         time_unit_s: case.scales.time(),

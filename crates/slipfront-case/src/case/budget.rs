@@ -34,8 +34,10 @@ const SAVED: f64 = 5.0 * NUMBER;
 
 /// A value of a field.
 const VALUE: f64 = size_of::<f32>() as f64;
-/// The texture read back, and a field while it is decoded by way of doubles.
-const DECODED: f64 = FLAG + VALUE + NUMBER;
+/// Most cells of a map, into which blocks are averaged while it is read: 256 along a side.
+const CELLS: f64 = 256.0 * 256.0;
+/// Whether a cell is textured, and the sum and the count of its blocks while a field is read.
+const AVERAGED: f64 = FLAG + NUMBER + VALUE;
 /// What never changes in the file, where textured takes 16 bits.
 const STATICS_ON_DISK: f64 = 2.0 + 3.0 * NUMBER;
 
@@ -164,6 +166,7 @@ impl Budget {
     fn parts(&self) -> [Part; 4] {
         let (blocks, all_cells) = (self.blocks, self.all_cells);
         let (frames, fields, rows) = (self.frames, self.fields, self.rows);
+        let drawn = all_cells.min(CELLS);
         let frame = size_of::<Frame>() as f64 + fields * size_of::<Vec<f32>>() as f64;
         let snapshots = |cells: f64| frames * fields * cells * VALUE + grown(frames) * frame;
         let row = size_of::<CurveRow>() as f64;
@@ -176,7 +179,7 @@ impl Budget {
                     blocks * SURFACE,
                     blocks * (SURFACE + self.kernel),
                     // With the time of its first slip.
-                    blocks * (SURFACE + NUMBER) + all_cells * DECODED,
+                    blocks * (SURFACE + NUMBER) + drawn * AVERAGED,
                     all_cells * STATICS_ON_DISK,
                     self.all_blocks * SAVED,
                 ],
@@ -191,7 +194,7 @@ impl Budget {
                 bytes: [
                     0.0,
                     snapshots(self.cells),
-                    self.maps * all_cells * VALUE,
+                    self.maps * drawn * VALUE,
                     frames * (fields * all_cells * VALUE + 4.0 * NUMBER),
                     snapshots(all_cells),
                 ],
@@ -394,10 +397,9 @@ impl Budget {
     }
 }
 
-/// Memory in which the pictures of a finished run are drawn from its files, in bytes: of the blocks that are kept, the maps
-/// that are drawn and the rows of the series.
-pub fn memory_to_draw(cells: f64, maps: f64, rows: f64) -> f64 {
-    HEAP * (cells * (DECODED + maps * VALUE) + grown(rows) * DRAWN_ROW + 2.0 * PICTURE)
+/// Memory in which the pictures of a finished run are drawn from its files, in bytes, with so many rows of the series.
+pub fn memory_to_draw(rows: f64) -> f64 {
+    HEAP * (CELLS * (AVERAGED + MAX_MAPS as f64 * VALUE) + grown(rows) * DRAWN_ROW + 2.0 * PICTURE)
 }
 
 /// Elements for which a vector has room that grew to `length` by doubling.

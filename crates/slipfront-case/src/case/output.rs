@@ -33,9 +33,6 @@ pub enum Snapshots {
 /// Most maps in the picture of the stress: of more snapshots, six spread over the run are shown.
 pub const MAX_MAPS: usize = 6;
 
-/// Largest size of a variable of `fields.nc`, or of one record of it, in bytes: the limit of 64-bit offset files.
-pub const VARIABLE_MAX_BYTES: usize = i32::MAX as usize - 3;
-
 /// Most rows of the series unless the case sets a spacing.
 const SERIES_ROWS: u64 = 20_000;
 
@@ -79,44 +76,5 @@ impl Output {
             stride: file.output.stride as usize,
             series_stride,
         })
-    }
-}
-
-/// The smallest stride, not below `stride`, with which a field of `nx` x `ny` blocks fits into one variable.
-pub fn smallest_stride(nx: usize, ny: usize, stride: usize) -> usize {
-    let blocks = |stride| nx.div_ceil(stride).saturating_mul(ny.div_ceil(stride));
-    let fits = |stride: &usize| blocks(*stride).saturating_mul(size_of::<f64>()) <= VARIABLE_MAX_BYTES;
-    (stride..).find(fits).unwrap_or(usize::MAX)
-}
-
-/// Refuses a case whose fields are too large for their file.
-pub fn check_fields(file: &CaseFile) -> Result<(), CaseError> {
-    let [nx, ny] = file.slider.blocks.map(|count| count as usize);
-    let stride = file.output.stride as usize;
-    let needed = smallest_stride(nx, ny, stride);
-    if needed == stride {
-        return Ok(());
-    }
-    let sentence = format!(
-        "one field of {nx} x {ny} blocks takes more than the 2 GiB that the format of fields.nc holds: set \
-         `output.stride` to {needed} or more"
-    );
-    Err(file.source.error("output.stride", sentence))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn fields_that_no_file_holds_are_refused_before_the_run() {
-        let check = |text: &str| check_fields(&CaseFile::parse(text, "case.toml", &[]).unwrap());
-        let large = "[slider]\nblocks = [40000, 20000]\n[output]\nstride =";
-        assert!(check(&format!("{large} 2")).is_ok());
-        let said = check(&format!("{large} 1")).unwrap_err().to_string();
-        assert!(
-            said.contains("case.toml:4:10: ") && said.contains("set `output.stride` to 2 or more"),
-            "{said}"
-        );
     }
 }

@@ -12,7 +12,7 @@ use super::budget::Budget;
 use super::coefficients::coefficients;
 use super::groups::Groups;
 use super::inputs::{Input, Inputs, NamedFiles};
-use super::output::{Output, check_fields};
+use super::output::Output;
 use super::ranks::Ranks;
 use super::textures::{self, Watch};
 use super::time_plan::TimePlan;
@@ -246,7 +246,6 @@ impl Derived {
         let budget = Budget::new(lattice, rows, ranks, file, &time_plan, &output);
         if to_run {
             budget.check_memory(file, false)?;
-            check_fields(file)?;
         }
         budget.check_making(file)?;
         Ok(Self {

@@ -1,6 +1,7 @@
 //! What a fields file holds, the names of it there, and why it cannot be written or read.
 
 use std::io;
+use std::ops::Range;
 use std::path::PathBuf;
 
 use slipfront::Scales;
@@ -23,7 +24,7 @@ pub(super) const STRIDE: &str = "stride";
 pub(super) const BLOCK_SIZE: &str = "block_size_m";
 pub(super) const TIME_UNIT: &str = "time_unit_s";
 
-/// What never changes in a run, block by block: `nx * ny` values each, row-major, row j = 0 first, not thinned.
+/// What never changes in a run, block by block: row-major, the lowest row first, not thinned.
 #[derive(Debug, Clone, Copy)]
 pub struct StaticFields<'a> {
     /// Whether the block is texture.
@@ -84,14 +85,16 @@ impl FieldFrame {
     }
 }
 
-/// All that goes into `fields.nc`.
-#[derive(Debug, Clone, Copy)]
+/// All that goes into `fields.nc`, or of blocks what a process holds of it that shares the lattice with others.
+#[derive(Debug, Clone)]
 pub struct FieldsFile<'a> {
     /// Number of blocks along x, before thinning.
     pub nx: usize,
     /// Number of blocks along y, before thinning.
     pub ny: usize,
-    /// Every n-th block is kept, in both directions, from block 0 on.
+    /// The rows of blocks whose values are here, before thinning: `0..ny` unless the lattice is shared.
+    pub rows: Range<usize>,
+    /// Every n-th block is kept, in both directions, from block 0 of the lattice on.
     pub stride: usize,
     /// Edge of a block, in m.
     pub block_size: f64,
@@ -99,13 +102,43 @@ pub struct FieldsFile<'a> {
     pub time_unit_s: f64,
     /// The fields that every frame holds, each at most once.
     pub names: &'a [Field],
-    /// What never changes.
+    /// What never changes, of these rows.
     pub statics: StaticFields<'a>,
-    /// The instants, in order of time; NetCDF wants each time once. There may be none.
+    /// The instants, in order of time, each with the values of these rows; NetCDF wants each time once. There may be none.
     pub frames: &'a [FieldFrame],
 }
 
-/// The contents of a `fields.nc`; every array is thinned to `columns() * rows()` values and row-major.
+impl FieldsFile<'_> {
+    /// Number of values along x in the file.
+    pub(super) fn kept_columns(&self) -> usize {
+        self.nx.div_ceil(self.stride)
+    }
+
+    /// Number of values along y in the file.
+    pub(super) fn kept_rows(&self) -> usize {
+        self.ny.div_ceil(self.stride)
+    }
+
+    /// The rows of the file that are here.
+    pub(super) fn kept_here(&self) -> Range<usize> {
+        self.rows.start.div_ceil(self.stride)..self.rows.end.div_ceil(self.stride)
+    }
+
+    /// What the file keeps of values of the blocks that are here.
+    pub(super) fn keep<T: Copy>(&self, values: &[T]) -> impl Iterator<Item = T> {
+        let skipped = (self.kept_here().start * self.stride - self.rows.start) * self.nx;
+        thin(values.get(skipped..).unwrap_or_default(), self.nx, self.stride)
+    }
+
+    /// NetCDF has no length 0, so that empty labels take one byte.
+    pub(super) fn label_length(&self) -> usize {
+        let lengths = self.frames.iter().map(|frame| frame.label.len());
+        lengths.max().unwrap_or(0).max(1)
+    }
+}
+
+/// The contents of a `fields.nc`; every array is row-major and thinned to `columns() * rows()` values, unless it was reduced
+/// further or some rows alone were read.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct FieldsData {
     /// Number of blocks along x, before thinning.
@@ -151,12 +184,12 @@ impl FieldsData {
 ///
 /// ```
 /// # use slipfront_run::fields::thin;
-/// assert_eq!(thin(&[0, 1, 2, 10, 11, 12, 20, 21, 22], 3, 2), [0, 2, 20, 22]);
+/// assert!(thin(&[0, 1, 2, 10, 11, 12, 20, 21, 22], 3, 2).eq([0, 2, 20, 22]));
 /// ```
-pub fn thin<T: Copy>(values: &[T], nx: usize, stride: usize) -> Vec<T> {
+pub fn thin<T: Copy>(values: &[T], nx: usize, stride: usize) -> impl Iterator<Item = T> {
     let stride = stride.max(1);
     let rows = values.chunks(nx.max(1)).step_by(stride);
-    rows.flat_map(|row| row.iter().step_by(stride)).copied().collect()
+    rows.flat_map(move |row| row.iter().step_by(stride)).copied()
 }
 
 /// Why `fields.nc` cannot be written or read: one sentence that ends with the remedy.
@@ -171,16 +204,6 @@ pub enum FieldsError {
         what: String,
         found: usize,
         wanted: usize,
-    },
-    #[error(
-        "cannot write `{path}`: one field of {columns} x {rows} values takes more than the 2 GiB that the format holds; \
-         set `output.stride` to {stride} or more"
-    )]
-    TooLarge {
-        path: PathBuf,
-        columns: usize,
-        rows: usize,
-        stride: usize,
     },
     #[error("cannot write `{path}`: {source}; check that the folder exists, is writable and has room")]
     Write { path: PathBuf, source: io::Error },

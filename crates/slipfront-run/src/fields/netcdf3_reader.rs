@@ -1,14 +1,18 @@
-//! The NetCDF-3 format, read only.
-//!
-//! The reader of `netcdf3` reserves what a header asks for before it looks for the bytes, so that one damaged
-//! byte can end the process. Here every number of a header is held against the bytes that are left.
+//! The NetCDF-3 format, read only: every number of a header is held against the bytes that are left before memory is
+//! reserved for what it counts.
 
 use std::collections::HashSet;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::Path;
 
 use slipfront_case::disk::open_regular;
+
+use super::netcdf3::{ATTRIBUTES, DIMENSIONS, Form, Kind, VARIABLES};
+
+/// Values that are read at once.
+const PIECE: usize = 1 << 14;
 
 /// Headers of fields files take a few kilobytes.
 const HEADER_MAX_BYTES: u64 = 1 << 20;
@@ -53,40 +57,6 @@ struct Variable {
     offset: u64,
 }
 
-/// How a number is stored, big-endian.
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    Byte,
-    Char,
-    Short,
-    Int,
-    Float,
-    Double,
-}
-
-impl Kind {
-    fn bytes(self) -> usize {
-        match self {
-            Kind::Byte | Kind::Char => 1,
-            Kind::Short => 2,
-            Kind::Int | Kind::Float => 4,
-            Kind::Double => 8,
-        }
-    }
-
-    fn decode(self, bytes: &[u8]) -> Vec<f64> {
-        let number = |bytes: &[u8]| match (self, bytes) {
-            (Kind::Byte, [a]) => f64::from(i8::from_be_bytes([*a])),
-            (Kind::Short, [a, b]) => f64::from(i16::from_be_bytes([*a, *b])),
-            (Kind::Int, [a, b, c, d]) => f64::from(i32::from_be_bytes([*a, *b, *c, *d])),
-            (Kind::Float, [a, b, c, d]) => f64::from(f32::from_be_bytes([*a, *b, *c, *d])),
-            (Kind::Double, [a, b, c, d, e, f, g, h]) => f64::from_be_bytes([*a, *b, *c, *d, *e, *f, *g, *h]),
-            (_, bytes) => bytes.first().copied().map_or(0.0, f64::from),
-        };
-        bytes.chunks_exact(self.bytes()).map(number).collect()
-    }
-}
-
 impl NetCdf3Reader {
     /// Opens a file and reads its header.
     pub(super) fn open(path: &Path) -> Result<NetCdf3Reader, NetCdfError> {
@@ -94,19 +64,16 @@ impl NetCdf3Reader {
         let file_bytes = file.metadata()?.len();
         let mut bytes = Vec::new();
         file.by_ref().take(HEADER_MAX_BYTES).read_to_end(&mut bytes)?;
-        let mut header = Header { rest: &bytes };
-        if header.take(4)? != b"CDF\x02" {
-            return broken("it does not begin like NetCDF-3 with 64-bit offsets");
-        }
-        let records = header.number()? as usize;
-        let dimensions = header.list(0x0a, 8, |header| {
+        let mut header = Header::begin(&bytes)?;
+        let records = header.count()?;
+        let dimensions = header.list(DIMENSIONS, 8, |header| {
             Ok(Dimension {
                 name: header.name()?,
-                length: header.number()? as usize,
+                length: header.count()?,
             })
         })?;
-        let attributes = header.list(0x0c, 12, Header::attribute)?;
-        let variables = header.list(0x0b, 28, |header| header.variable(dimensions.len()))?;
+        let attributes = header.list(ATTRIBUTES, 12, Header::attribute)?;
+        let variables = header.list(VARIABLES, 28, |header| header.variable(dimensions.len()))?;
         each_once(dimensions.iter().map(|dimension| &dimension.name))?;
         each_once(variables.iter().map(|variable| &variable.name))?;
         let mut reader = NetCdf3Reader {
@@ -157,14 +124,29 @@ impl NetCdf3Reader {
         }
     }
 
-    /// The values of a variable over exactly these dimensions: all of them, or those of one record if the first
-    /// dimension is the record dimension.
+    /// The values of a variable over exactly these dimensions that lie in `part`, which counts those of the whole variable,
+    /// or of one record of it if the first dimension is the record dimension.
     pub(super) fn values(
         &mut self,
         name: &str,
         dimensions: &[&str],
         record: usize,
+        part: Range<u64>,
     ) -> Result<Vec<f64>, NetCdfError> {
+        let mut values = Vec::new();
+        self.read(name, dimensions, record, part, |piece| values.extend(piece))?;
+        Ok(values)
+    }
+
+    /// Hands these values over piece by piece, so that they need not be in memory at once.
+    pub(super) fn read(
+        &mut self,
+        name: &str,
+        dimensions: &[&str],
+        record: usize,
+        part: Range<u64>,
+        mut take: impl FnMut(&[f64]),
+    ) -> Result<(), NetCdfError> {
         let is_meant = |variable: &&Variable| variable.name == name && self.is_over(variable, dimensions);
         let Some(variable) = self.variables.iter().find(is_meant) else {
             return broken(format!("it has no variable `{name}({})`", dimensions.join(", ")));
@@ -184,10 +166,19 @@ impl NetCdf3Reader {
             let there = self.file_bytes;
             return broken(format!("it has {there} bytes where `{name}` ends at byte {end}"));
         }
-        let mut data = vec![0; bytes as usize];
-        self.file.seek(SeekFrom::Start(start))?;
-        self.file.read_exact(&mut data)?;
-        Ok(variable.kind.decode(&data))
+        let value = variable.kind.bytes() as u64;
+        let [from, to] = [part.start, part.end].map(|at| start + at.min(bytes / value) * value);
+        let piece = PIECE as u64 * value;
+        let (mut data, mut values) = (Vec::new(), Vec::new());
+        self.file.seek(SeekFrom::Start(from))?;
+        for first in (from..to).step_by(piece as usize) {
+            data.resize(piece.min(to - first) as usize, 0);
+            self.file.read_exact(&mut data)?;
+            values.clear();
+            values.extend(variable.kind.decode(&data));
+            take(&values);
+        }
+        Ok(())
     }
 
     fn is_over(&self, variable: &Variable, dimensions: &[&str]) -> bool {
@@ -225,10 +216,19 @@ fn absurd(variable: &str) -> NetCdfError {
 
 /// The bytes of a header that are still to be read.
 struct Header<'a> {
+    form: Form,
     rest: &'a [u8],
 }
 
 impl<'a> Header<'a> {
+    fn begin(bytes: &'a [u8]) -> Result<Self, NetCdfError> {
+        let of_form = |form: Form| Some((form, bytes.strip_prefix(form.magic())?));
+        match [Form::Offset64, Form::Data64].into_iter().find_map(of_form) {
+            Some((form, rest)) => Ok(Self { form, rest }),
+            None => broken("it does not begin like NetCDF-3 with 64-bit offsets or data"),
+        }
+    }
+
     fn take(&mut self, bytes: usize) -> Result<&'a [u8], NetCdfError> {
         let Some((taken, rest)) = self.rest.split_at_checked(bytes) else {
             return broken("its header is corrupt or cut short");
@@ -244,13 +244,25 @@ impl<'a> Header<'a> {
         Ok(taken)
     }
 
-    fn number(&mut self) -> Result<u32, NetCdfError> {
-        let bytes = self.take(4)?.iter();
-        Ok(bytes.fold(0, |number, byte| number << 8 | u32::from(*byte)))
+    fn number(&mut self, bytes: usize) -> Result<u64, NetCdfError> {
+        let bytes = self.take(bytes)?.iter();
+        Ok(bytes.fold(0, |number, byte| number << 8 | u64::from(*byte)))
+    }
+
+    /// A tag or a type.
+    fn code(&mut self) -> Result<u32, NetCdfError> {
+        Ok(self.number(4)? as u32)
+    }
+
+    /// A length, a number of elements, an index.
+    fn count(&mut self) -> Result<usize, NetCdfError> {
+        let count = self.number(self.form.count_bytes())?;
+        // A machine of 32 bits could not hold what has more.
+        usize::try_from(count).or_else(|_| broken(format!("its header counts {count} of something")))
     }
 
     fn name(&mut self) -> Result<String, NetCdfError> {
-        let bytes = self.number()? as usize;
+        let bytes = self.count()?;
         Ok(String::from_utf8_lossy(self.padded(bytes)?).into_owned())
     }
 
@@ -261,7 +273,7 @@ impl<'a> Header<'a> {
         element_bytes: usize,
         element: impl Fn(&mut Self) -> Result<T, NetCdfError>,
     ) -> Result<Vec<T>, NetCdfError> {
-        let (found, count) = (self.number()?, self.number()? as usize);
+        let (found, count) = (self.code()?, self.count()?);
         let known = found == tag || (found == 0 && count == 0);
         if !known || count > self.rest.len() / element_bytes {
             return broken("its header is corrupt or cut short");
@@ -270,28 +282,24 @@ impl<'a> Header<'a> {
     }
 
     fn kind(&mut self) -> Result<Kind, NetCdfError> {
-        Ok(match self.number()? {
-            1 => Kind::Byte,
-            2 => Kind::Char,
-            3 => Kind::Short,
-            4 => Kind::Int,
-            5 => Kind::Float,
-            6 => Kind::Double,
-            code => return broken(format!("its header names the unknown type {code}")),
-        })
+        let code = self.code()?;
+        match Kind::of(code) {
+            Some(kind) => Ok(kind),
+            None => broken(format!("its header names the unknown type {code}")),
+        }
     }
 
     fn attribute(&mut self) -> Result<(String, Vec<f64>), NetCdfError> {
         let name = self.name()?;
         let kind = self.kind()?;
-        let count = self.number()? as usize;
+        let count = self.count()?;
         let values = kind.decode(self.padded(count.saturating_mul(kind.bytes()))?);
-        Ok((name, values))
+        Ok((name, values.collect()))
     }
 
     fn variable(&mut self, dimensions_known: usize) -> Result<Variable, NetCdfError> {
         let name = self.name()?;
-        let count = self.number()? as usize;
+        let count = self.count()?;
         if count > dimensions_known {
             return broken(format!(
                 "`{name}` has {count} dimensions where {dimensions_known} are known"
@@ -299,17 +307,17 @@ impl<'a> Header<'a> {
         }
         let mut dimensions = Vec::new();
         for _ in 0..count {
-            let id = self.number()? as usize;
+            let id = self.count()?;
             if id >= dimensions_known {
                 return broken(format!("`{name}` has a dimension that is not known"));
             }
             dimensions.push(id);
         }
-        self.list(0x0c, 12, Header::attribute)?;
+        self.list(ATTRIBUTES, 12, Header::attribute)?;
         let kind = self.kind()?;
         // The size stands here too; it follows from the dimensions.
-        self.number()?;
-        let offset = u64::from(self.number()?) << 32 | u64::from(self.number()?);
+        self.count()?;
+        let offset = self.number(8)?;
         Ok(Variable {
             name,
             dimensions,

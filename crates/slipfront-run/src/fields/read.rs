@@ -1,5 +1,6 @@
 //! Reading what `write_fields` has written.
 
+use std::ops::Range;
 use std::path::Path;
 
 use slipfront::observe::Field;
@@ -9,44 +10,77 @@ use slipfront_case::text;
 use super::frame::*;
 use super::netcdf3_reader::{NetCdf3Reader, NetCdfError, broken};
 
+/// All values of a variable.
+const WHOLE: Range<u64> = 0..u64::MAX;
+
 /// Reads a `fields.nc` that [`write_fields`](super::write_fields) has written. Variables that slipfront does not know are
 /// skipped.
 pub fn read_fields(path: &Path) -> Result<FieldsData, FieldsError> {
+    read_rows(path, 0..usize::MAX)
+}
+
+/// The same for these rows of the file alone, as far as it has them, counted from y = 0: of a file that is larger than the memory.
+pub fn read_rows(path: &Path, rows: Range<usize>) -> Result<FieldsData, FieldsError> {
     let read = || {
         let mut file = NetCdf3Reader::open(path)?;
         let all: Vec<usize> = (0..file.records).collect();
-        let data = read_chosen(&mut file, |_| true, &all)?;
+        let data = read_chosen::<Vec<f32>>(&mut file, |_| true, &all, &rows)?;
+        let part = values_of(&rows, data.columns());
         Ok(FieldsData {
-            mu_static: file.values(MU_STATIC, &[Y, X], 0)?,
-            mu_kinetic: file.values(MU_KINETIC, &[Y, X], 0)?,
-            first_slip_time_star: file.values(FIRST_SLIP, &[Y, X], 0)?,
+            mu_static: file.values(MU_STATIC, &[Y, X], 0, part.clone())?,
+            mu_kinetic: file.values(MU_KINETIC, &[Y, X], 0, part.clone())?,
+            first_slip_time_star: file.values(FIRST_SLIP, &[Y, X], 0, part)?,
             ..data
         })
     };
     read().map_err(|error| in_words(error, path))
 }
 
+fn values_of(rows: &Range<usize>, columns: usize) -> Range<u64> {
+    let [start, end] = [rows.start, rows.end].map(|row| (row as u64).saturating_mul(columns as u64));
+    start..end
+}
+
+/// What is kept of the values of a field or of the texture while they are read, row after row.
+pub trait Reduction {
+    /// Nothing yet of an array with rows of this many values, and this many rows.
+    fn of(columns: usize, rows: usize) -> Self;
+
+    /// Takes the next values in.
+    fn add(&mut self, values: impl Iterator<Item = f32>);
+
+    /// What is kept.
+    fn finish(self) -> Vec<f32>;
+}
+
+/// All values.
+impl Reduction for Vec<f32> {
+    fn of(_: usize, _: usize) -> Self {
+        Self::new()
+    }
+
+    fn add(&mut self, values: impl Iterator<Item = f32>) {
+        self.extend(values);
+    }
+
+    fn finish(self) -> Vec<f32> {
+        self
+    }
+}
+
 /// Reads what a picture of one field takes, however long the file is: this field alone, at no more than `most`
-/// instants spread over the run, and of what never changes the texture alone.
-pub fn read_maps(path: &Path, field: Field, most: usize) -> Result<FieldsData, FieldsError> {
+/// instants spread over the run, and of what never changes the texture alone, all [reduced](Reduction) while they are
+/// read. What is reduced counts as texture if its mean does by more than a half.
+pub fn read_maps<R: Reduction>(path: &Path, field: Field, most: usize) -> Result<FieldsData, FieldsError> {
     let read = || {
         let mut file = NetCdf3Reader::open(path)?;
         let records = file.records;
         let shown = records.min(most);
         let spread = (0..shown).map(|k| k * (records - 1) / (shown - 1).max(1));
         let spread: Vec<usize> = spread.collect();
-        read_chosen(&mut file, |name| name == field, &spread)
+        read_chosen::<R>(&mut file, |name| name == field, &spread, &(0..usize::MAX))
     };
     read().map_err(|error| in_words(error, path))
-}
-
-/// Blocks of a map and the number of maps that [`read_maps`] reads.
-pub fn count_maps(path: &Path, most: usize) -> Result<(usize, usize), FieldsError> {
-    let count = || {
-        let file = NetCdf3Reader::open(path)?;
-        Ok((file.dimension(X)? * file.dimension(Y)?, file.records.min(most)))
-    };
-    count().map_err(|error| in_words(error, path))
 }
 
 fn in_words(error: NetCdfError, path: &Path) -> FieldsError {
@@ -61,10 +95,11 @@ fn in_words(error: NetCdfError, path: &Path) -> FieldsError {
 }
 
 /// Some fields at some instants, and the texture; the other arrays are left empty.
-fn read_chosen(
+fn read_chosen<R: Reduction>(
     file: &mut NetCdf3Reader,
     chosen: impl Fn(Field) -> bool,
     records: &[usize],
+    rows: &Range<usize>,
 ) -> Result<FieldsData, NetCdfError> {
     let [nx, ny] = counts(file, BLOCKS)?;
     let [stride] = counts(file, STRIDE)?;
@@ -88,9 +123,12 @@ fn read_chosen(
         .filter_map(field_named)
         .filter(|name| chosen(*name) && !records.is_empty())
         .collect();
-    let frames = records.iter().map(|&record| read_frame(file, &names, record));
+    let frames = records
+        .iter()
+        .map(|&record| read_frame::<R>(file, &names, record, rows));
     let frames = frames.collect::<Result<_, _>>()?;
-    let textured = file.values(TEXTURED, &[Y, X], 0)?;
+    let flag = |value: f64| if value == 0.0 { 0.0 } else { 1.0 };
+    let textured = read_reduced::<R>(file, TEXTURED, &[Y, X], 0, rows, flag)?;
     Ok(FieldsData {
         nx,
         ny,
@@ -98,22 +136,34 @@ fn read_chosen(
         block_size,
         time_unit_s,
         names,
-        textured: textured.iter().map(|value| *value != 0.0).collect(),
+        textured: textured.iter().map(|share| *share > 0.5).collect(),
         frames,
         ..FieldsData::default()
     })
 }
 
-fn read_frame(file: &mut NetCdf3Reader, names: &[Field], record: usize) -> Result<FieldFrame, NetCdfError> {
-    let time_star = only(TIME_STAR, &file.values(TIME_STAR, &[TIME], record)?)?;
-    let step = only(STEP, &file.values(STEP, &[TIME], record)?)? as u64;
-    let label = file.values(LABEL, &[TIME, LABEL_LENGTH], record)?;
+fn read_frame<R: Reduction>(
+    file: &mut NetCdf3Reader,
+    names: &[Field],
+    record: usize,
+    rows: &Range<usize>,
+) -> Result<FieldFrame, NetCdfError> {
+    let time_star = only(TIME_STAR, &file.values(TIME_STAR, &[TIME], record, WHOLE)?)?;
+    let step = only(STEP, &file.values(STEP, &[TIME], record, WHOLE)?)? as u64;
+    let label = file.values(LABEL, &[TIME, LABEL_LENGTH], record, WHOLE)?;
     let label = label.iter().map(|byte| *byte as u8);
     let label: Vec<u8> = label.take_while(|byte| *byte != 0).collect();
     let mut values = Vec::with_capacity(names.len());
     for name in names {
-        let field = file.values(field_info(*name).name, &[TIME, Y, X], record)?;
-        values.push(field.iter().map(|value| *value as f32).collect());
+        let name = field_info(*name).name;
+        values.push(read_reduced::<R>(
+            file,
+            name,
+            &[TIME, Y, X],
+            record,
+            rows,
+            |value| value as f32,
+        )?);
     }
     Ok(FieldFrame {
         time_star,
@@ -121,6 +171,23 @@ fn read_frame(file: &mut NetCdf3Reader, names: &[Field], record: usize) -> Resul
         step,
         values,
     })
+}
+
+/// What is kept of some rows of a variable of one value per block.
+fn read_reduced<R: Reduction>(
+    file: &mut NetCdf3Reader,
+    name: &str,
+    dimensions: &[&str],
+    record: usize,
+    rows: &Range<usize>,
+    value: impl Fn(f64) -> f32,
+) -> Result<Vec<f32>, NetCdfError> {
+    let (columns, there) = (file.dimension(X)?, file.dimension(Y)?);
+    let mut reduced = R::of(columns, rows.end.min(there).saturating_sub(rows.start));
+    file.read(name, dimensions, record, values_of(rows, columns), |piece| {
+        reduced.add(piece.iter().map(|&number| value(number)));
+    })?;
+    Ok(reduced.finish())
 }
 
 /// A global attribute of N positive numbers.

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use super::write::write_to;
 use slipfront::observe::Field;
 
 use super::*;
@@ -70,6 +69,7 @@ impl Lattice {
         FieldsFile {
             nx: NX,
             ny: NY,
+            rows: 0..NY,
             stride,
             block_size,
             time_unit_s,
@@ -93,7 +93,7 @@ fn frames(names: &[Field], stride: usize) -> Vec<FieldFrame> {
             label: labels[frame].to_owned(),
             step: 167 * (frame as u64 + 1),
             values: (0..names.len())
-                .map(|name| thin(&field(10 * frame + name), NX, stride))
+                .map(|name| thin(&field(10 * frame + name), NX, stride).collect())
                 .collect(),
         })
         .collect()
@@ -140,13 +140,11 @@ fn what_is_written_is_read() {
         assert_eq!((data.block_size, data.time_unit_s), (1e-6, 3.162e-10));
         assert_eq!(data.columns() * data.rows(), data.mu_static.len());
         assert_eq!(data.names, Field::ALL);
-        assert_eq!(data.textured, thin(&lattice.textured, NX, stride));
-        assert_eq!(data.mu_static, thin(&lattice.mu_static, NX, stride));
-        assert_eq!(data.mu_kinetic, thin(&lattice.mu_kinetic, NX, stride));
-        assert!(same(
-            &data.first_slip_time_star,
-            &thin(&lattice.first_slip, NX, stride)
-        ));
+        assert!(thin(&lattice.textured, NX, stride).eq(data.textured));
+        assert!(thin(&lattice.mu_static, NX, stride).eq(data.mu_static));
+        assert!(thin(&lattice.mu_kinetic, NX, stride).eq(data.mu_kinetic));
+        let first_slip: Vec<f64> = thin(&lattice.first_slip, NX, stride).collect();
+        assert!(same(&data.first_slip_time_star, &first_slip));
         assert_eq!(data.frames, frames);
     }
 }
@@ -164,7 +162,7 @@ fn maps_are_one_field_at_a_few_instants() {
         (3, vec![0, 1, 2]),
         (9, vec![0, 1, 2]),
     ] {
-        let maps = read_maps(&path, Field::Traction, most).unwrap();
+        let maps = read_maps::<Vec<f32>>(&path, Field::Traction, most).unwrap();
         assert_eq!(maps.names, [Field::Traction]);
         assert_eq!(maps.textured, lattice.textured);
         let wanted = instants
@@ -173,17 +171,18 @@ fn maps_are_one_field_at_a_few_instants() {
         let found = maps.frames.iter().map(|frame| (frame.step, &frame.values[0]));
         assert!(found.eq(wanted), "{most}");
     }
-    assert!(read_maps(&path, Field::VelocityX, 6).unwrap().names.is_empty());
+    let maps = read_maps::<Vec<f32>>(&path, Field::VelocityX, 6).unwrap();
+    assert!(maps.names.is_empty());
 }
 
 #[test]
 fn thinning_starts_at_block_0() {
     let blocks: Vec<usize> = (0..15).collect();
-    assert_eq!(thin(&blocks, 5, 1), blocks);
-    assert_eq!(thin(&blocks, 5, 2), [0, 2, 4, 10, 12, 14]);
-    assert_eq!(thin(&blocks, 5, 3), [0, 3]);
-    assert_eq!(thin(&blocks, 5, 100), [0]);
-    assert!(thin::<f64>(&[], 0, 0).is_empty());
+    assert!(thin(&blocks, 5, 1).eq(0..15));
+    assert!(thin(&blocks, 5, 2).eq([0, 2, 4, 10, 12, 14]));
+    assert!(thin(&blocks, 5, 3).eq([0, 3]));
+    assert!(thin(&blocks, 5, 100).eq([0]));
+    assert_eq!(thin::<f64>(&[], 0, 0).count(), 0);
 }
 
 #[test]
@@ -245,20 +244,45 @@ fn arrays_of_another_length_are_refused() {
         assert!(!path.exists());
     };
     let file = lattice.file(1, &names, &good);
-    refused(&FieldsFile { nx: 0, ..file }, "x has 0 values where 1 are wanted");
-    refused(&FieldsFile { stride: 0, ..file }, "`output.stride` has 0 values");
     refused(
-        &FieldsFile { nx: 6, ..file },
+        &FieldsFile {
+            nx: 0,
+            ..file.clone()
+        },
+        "x has 0 values where 1 are wanted",
+    );
+    refused(
+        &FieldsFile {
+            rows: 1..4,
+            ..file.clone()
+        },
+        "the rows up to the last has 4 values where 3 are wanted",
+    );
+    refused(
+        &FieldsFile {
+            stride: 0,
+            ..file.clone()
+        },
+        "`output.stride` has 0 values",
+    );
+    refused(
+        &FieldsFile {
+            nx: 6,
+            ..file.clone()
+        },
         "textured has 15 values where 18 are wanted",
     );
     refused(
-        &FieldsFile { stride: 2, ..file },
+        &FieldsFile {
+            stride: 2,
+            ..file.clone()
+        },
         "traction has 15 values where 6 are wanted",
     );
     refused(
         &FieldsFile {
             names: &names[..1],
-            ..file
+            ..file.clone()
         },
         "a frame has 2 values where 1 are wanted",
     );
@@ -267,29 +291,20 @@ fn arrays_of_another_length_are_refused() {
         ..file.statics
     };
     refused(
-        &FieldsFile { statics, ..file },
+        &FieldsFile {
+            statics,
+            ..file.clone()
+        },
         "mu_kinetic has 14 values where 15 are wanted",
     );
     let twice = [Field::Sliding, Field::Sliding];
     refused(
         &FieldsFile {
             names: &twice,
-            ..file
+            ..file.clone()
         },
-        "VariableAlreadyExists(\"sliding\")",
+        "the list of fields has 2 values where 1 are wanted",
     );
-}
-
-#[test]
-fn fields_beyond_the_format_are_refused_with_the_stride_to_set() {
-    let text = super::write::check_size(&PathBuf::from("fields.nc"), 40_000, 20_000, 1)
-        .unwrap_err()
-        .to_string();
-    assert!(text.contains("one field of 40000 x 20000 values"), "{text}");
-    assert!(text.ends_with("set `output.stride` to 2 or more"), "{text}");
-    assert!(super::write::check_size(&PathBuf::from("fields.nc"), 40_000, 20_000, 2).is_ok());
-    assert!(super::write::check_size(&PathBuf::from("fields.nc"), 16_384, 16_383, 1).is_ok());
-    assert!(super::write::check_size(&PathBuf::from("fields.nc"), 16_384, 16_384, 1).is_err());
 }
 
 /// An output that is full after some bytes, or that fails when it is flushed.
@@ -327,37 +342,26 @@ fn a_full_disk_is_reported_wherever_it_happens() {
     let lattice = lattice();
     let frames = frames(&Field::ALL, 1);
     let file = lattice.file(1, &Field::ALL, &frames);
-    let whole = write_to(Cursor::new(Vec::new()), &file).unwrap().into_inner();
-    for room in 0..whole.len() as u64 {
-        let full = Full {
-            output: Cursor::new(Vec::new()),
+    let writer = FieldsWriter::new(Path::new("fields.nc"), &file).unwrap();
+    let write_to = |room: u64, flushes: bool| {
+        let output = Cursor::new(Vec::new());
+        let mut full = Full {
+            output,
             room,
-            flushes: true,
+            flushes,
         };
-        let error = write_to(full, &file).map(|_| room).unwrap_err();
+        writer.create(&mut full)?;
+        writer.write_rows(&mut full)?;
+        Ok(full.output.into_inner())
+    };
+    let whole = write_to(u64::MAX, true).unwrap();
+    for room in 0..whole.len() as u64 {
+        let error: std::io::Error = write_to(room, true).unwrap_err();
         assert_eq!(error.to_string(), "no space left", "with room for {room} bytes");
     }
     let room = whole.len() as u64;
-    let enough = Full {
-        output: Cursor::new(Vec::new()),
-        room,
-        flushes: true,
-    };
-    assert_eq!(
-        write_to(enough, &file)
-            .map(|full| full.output.into_inner())
-            .unwrap(),
-        whole
-    );
-    let stuck = Full {
-        output: Cursor::new(Vec::new()),
-        room,
-        flushes: false,
-    };
-    assert_eq!(
-        write_to(stuck, &file).map(|_| ()).unwrap_err().to_string(),
-        "no flush"
-    );
+    assert_eq!(write_to(room, true).unwrap(), whole);
+    assert_eq!(write_to(room, false).unwrap_err().to_string(), "no flush");
 }
 
 #[test]
@@ -544,4 +548,79 @@ fn damaged_files_are_refused_or_read() {
         replace(&path, &bytes);
         let _ = read_fields(&path);
     }
+}
+
+/// Processes that hold some rows each write the same bytes as one that holds all, in whatever order they do.
+#[test]
+fn rows_that_are_written_apart_give_the_same_file() {
+    let lattice = lattice();
+    let names = [Field::Sliding, Field::Traction];
+    for stride in [1, 2, 3] {
+        let frames = frames(&names, stride);
+        let file = lattice.file(stride, &names, &frames);
+        let (_folder, path) = folder();
+        write(&path, &file).unwrap();
+        let whole = fs::read(&path).unwrap();
+        for ends in [vec![0, 1, 2, 3], vec![0, 2, 3], vec![0, 0, 3], vec![0, 3]] {
+            let mut apart = Cursor::new(Vec::new());
+            for rows in ends.windows(2).rev() {
+                let blocks = rows[0] * NX..rows[1] * NX;
+                let kept = rows[0].div_ceil(stride)..rows[1].div_ceil(stride);
+                let columns = NX.div_ceil(stride);
+                let mut frames = frames.clone();
+                for values in frames.iter_mut().flat_map(|frame| &mut frame.values) {
+                    *values = values[kept.start * columns..kept.end * columns].to_vec();
+                }
+                let part = FieldsFile {
+                    rows: rows[0]..rows[1],
+                    statics: StaticFields {
+                        textured: &lattice.textured[blocks.clone()],
+                        mu_static: &lattice.mu_static[blocks.clone()],
+                        mu_kinetic: &lattice.mu_kinetic[blocks.clone()],
+                        first_slip_time_star: &lattice.first_slip[blocks],
+                    },
+                    frames: &frames,
+                    ..file.clone()
+                };
+                let writer = FieldsWriter::new(&path, &part).unwrap();
+                // Any of them may create it, at any time.
+                if rows[1] == NY {
+                    writer.create(&mut apart).unwrap();
+                }
+                writer.write_rows(&mut apart).unwrap();
+            }
+            assert!(apart.into_inner() == whole, "rows {ends:?}, stride {stride}");
+        }
+    }
+}
+
+/// The bytes of files of all kinds, the same in every version: with and without instants and fields, labels of other
+/// lengths, and an odd number of flags, which is filled up.
+#[test]
+fn the_bytes_of_a_file_are_pinned() {
+    let lattice = lattice();
+    let hash = |file: &FieldsFile| {
+        let (_folder, path) = folder();
+        write(&path, file).unwrap();
+        let mut bytes = fs::read(&path).unwrap();
+        // The version of the package stands in the file.
+        let version = concat!("slipfront ", env!("CARGO_PKG_VERSION")).as_bytes();
+        let at = bytes.windows(version.len()).position(|found| found == version);
+        bytes[at.unwrap()..][..version.len()].fill(b'.');
+        blake3::hash(&bytes).to_hex()[..16].to_owned()
+    };
+    let found =
+        [1, 2, 9].map(|stride| hash(&lattice.file(stride, &Field::ALL, &frames(&Field::ALL, stride))));
+    let bare = [&frames(&[], 1)[..], &[]].map(|frames| hash(&lattice.file(1, &[], frames)));
+    let found = [&found[..], &bare[..]].concat();
+    assert_eq!(
+        found,
+        [
+            "d1d3832f7c6044f2",
+            "d1c28f39bc0f60cd",
+            "831a49d7ab46808e",
+            "b935366d81b68de1",
+            "397a708906e813d5"
+        ]
+    );
 }

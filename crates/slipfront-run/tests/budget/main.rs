@@ -16,7 +16,7 @@ use slipfront_run::run_folder::RunFolder;
 use slipfront_run::run_folder::unfinished::Unfinished;
 use slipfront_run::running::Running;
 use slipfront_run::study::{Plan, Records, StudyFile};
-use slipfront_run::{results, running, study};
+use slipfront_run::{pictures, results, running, study};
 
 /// The system's allocator, counting bytes of all threads.
 struct Counting;
@@ -147,6 +147,7 @@ fn what_is_said_is_what_is_taken() {
     study(folder.path());
     masks(folder.path());
     ranks(folder.path());
+    pictures_of_a_large_lattice(folder.path());
 }
 
 /// Ranks that make a case together take no more than a process that makes it alone, but for the buffers of those who read.
@@ -222,6 +223,29 @@ fn checkpoints(folder: &Path) {
         assert_room(sets, room, &out);
         std::fs::remove_dir_all(out).unwrap();
     }
+}
+
+/// Maps are averaged while they are read: what that takes does not depend on the lattice.
+fn pictures_of_a_large_lattice(folder: &Path) {
+    let sets = [
+        "slider.blocks=[1500,1200]",
+        "output.fields=['contact_stress_star']",
+        "time.duration_star=1",
+        "output.snapshots=[0,0.2,0.4,0.6,0.8,1]",
+    ];
+    let file = CaseFile::parse("", "case", &sets.map(str::to_owned)).unwrap();
+    let case = Arc::new(Case::new(file, "case", folder, &mut |_| true).unwrap());
+    let mut record = running::run(&case, 1).unwrap();
+    let out = folder.join("out");
+    let prepared = RunFolder::prepare(&out, false, &case.inputs).unwrap();
+    results::write(&case, &mut record, prepared, jiff::Timestamp::now(), 1).unwrap();
+    drop((case, record));
+    let before = LIVE.load(Ordering::Relaxed) as f64;
+    let (taken, drawn) = peak(|| pictures::draw(&out).unwrap());
+    assert_eq!(drawn.len(), 2);
+    let said = pictures::memory(std::slice::from_ref(&out)).unwrap();
+    assert_honest("pictures of a large lattice", said, taken - before);
+    std::fs::remove_dir_all(out).unwrap();
 }
 
 /// Textures of one image take the room of one mask of the lattice.

@@ -1,0 +1,193 @@
+//! The header of a NetCDF-3 file, as it is written, and where the values stand behind it.
+
+use super::netcdf3::{ATTRIBUTES, DIMENSIONS, Form, Kind, Number, VARIABLES};
+
+/// Most bytes of a variable, or of one record of it, in a file with 64-bit offsets. The format has room for twice as many,
+/// but not every reader: some keep the number with a sign.
+const OFFSET64_MAX_BYTES: u64 = i32::MAX as u64 - 3;
+
+/// What stands in a file, without the values of its variables.
+pub(super) struct Definition {
+    /// Number of records.
+    pub(super) records: usize,
+    /// Names and lengths; a length of 0 marks the dimension of the records, which comes first where it occurs.
+    pub(super) dimensions: Vec<(&'static str, usize)>,
+    pub(super) attributes: Vec<Attribute>,
+    pub(super) variables: Vec<Variable>,
+}
+
+/// A name with some numbers, or a text.
+pub(super) struct Attribute {
+    name: &'static str,
+    kind: Kind,
+    count: usize,
+    bytes: Vec<u8>,
+}
+
+impl Attribute {
+    pub(super) fn numbers<T: Number>(name: &'static str, values: &[T]) -> Self {
+        let bytes = values.iter().flat_map(|value| value.encode().as_ref().to_vec());
+        Self {
+            name,
+            kind: T::KIND,
+            count: values.len(),
+            bytes: bytes.collect(),
+        }
+    }
+
+    pub(super) fn text(name: &'static str, text: &str) -> Self {
+        Self::numbers(name, text.as_bytes())
+    }
+}
+
+pub(super) struct Variable {
+    pub(super) name: &'static str,
+    /// Indices into the dimensions.
+    pub(super) dimensions: Vec<usize>,
+    pub(super) kind: Kind,
+    pub(super) attributes: Vec<Attribute>,
+}
+
+/// The bytes of a header, and the places of what it defines.
+pub(super) struct Header {
+    pub(super) bytes: Vec<u8>,
+    /// In the order of the file: first the variables without records, then record after record.
+    pub(super) places: Vec<Place>,
+}
+
+/// Where the values of a variable stand, or those of one record of it.
+pub(super) struct Place {
+    pub(super) variable: &'static str,
+    /// Number of the record; 0 for a variable without records.
+    pub(super) record: usize,
+    pub(super) offset: u64,
+    /// Bytes behind the values that fill up a multiple of four.
+    pub(super) padding: usize,
+}
+
+impl Definition {
+    /// Lays the file out.
+    pub(super) fn header(&self) -> Header {
+        let sizes = self.variables.iter().map(|variable| self.bytes_at_once(variable));
+        let form = match sizes.max() {
+            Some(bytes) if bytes > OFFSET64_MAX_BYTES => Form::Data64,
+            _ => Form::Offset64,
+        };
+        // The offsets do not change how long the header is.
+        let length = self.encode(form, |_| 0).len() as u64;
+        let mut offset = length;
+        let mut places = Vec::new();
+        let records = (0..self.records).map(|record| (true, record));
+        for (has_records, record) in [(false, 0)].into_iter().chain(records) {
+            let stored = self.variables.iter();
+            for variable in stored.filter(|variable| self.has_records(variable) == has_records) {
+                let (bytes, padded) = (self.bytes_at_once(variable), self.padded_bytes(variable));
+                places.push(Place {
+                    variable: variable.name,
+                    record,
+                    offset,
+                    padding: (padded - bytes) as usize,
+                });
+                offset += padded;
+            }
+        }
+        let first = |variable: &Variable| {
+            let mut places = places.iter();
+            let place = places.find(|place| place.variable == variable.name);
+            place.map_or(offset, |place| place.offset)
+        };
+        Header {
+            bytes: self.encode(form, first),
+            places,
+        }
+    }
+
+    fn has_records(&self, variable: &Variable) -> bool {
+        let first = variable.dimensions.first();
+        first.is_some_and(|index| self.dimensions[*index].1 == 0)
+    }
+
+    /// Bytes of a whole variable or of one record of it.
+    fn bytes_at_once(&self, variable: &Variable) -> u64 {
+        let lengths = variable
+            .dimensions
+            .iter()
+            .map(|index| self.dimensions[*index].1.max(1) as u64);
+        lengths.product::<u64>() * variable.kind.bytes() as u64
+    }
+
+    fn padded_bytes(&self, variable: &Variable) -> u64 {
+        self.bytes_at_once(variable).next_multiple_of(4)
+    }
+
+    fn encode(&self, form: Form, offset: impl Fn(&Variable) -> u64) -> Vec<u8> {
+        let mut bytes = Encoder {
+            form,
+            bytes: form.magic().to_vec(),
+        };
+        bytes.count(self.records);
+        bytes.list(DIMENSIONS, &self.dimensions, |bytes, (name, length)| {
+            bytes.text(name);
+            bytes.count(*length);
+        });
+        bytes.attributes(&self.attributes);
+        bytes.list(VARIABLES, &self.variables, |bytes, variable| {
+            bytes.text(variable.name);
+            bytes.count(variable.dimensions.len());
+            for index in &variable.dimensions {
+                bytes.count(*index);
+            }
+            bytes.attributes(&variable.attributes);
+            bytes.number(variable.kind as u32);
+            bytes.count(self.padded_bytes(variable) as usize);
+            bytes.bytes.extend(offset(variable).to_be_bytes());
+        });
+        bytes.bytes
+    }
+}
+
+/// The bytes of a header that are there.
+struct Encoder {
+    form: Form,
+    bytes: Vec<u8>,
+}
+
+impl Encoder {
+    fn number(&mut self, number: u32) {
+        self.bytes.extend(number.to_be_bytes());
+    }
+
+    /// What has 32 bits in one form fits, because no larger variable is written in it.
+    fn count(&mut self, count: usize) {
+        let bytes = (count as u64).to_be_bytes();
+        self.bytes.extend(&bytes[bytes.len() - self.form.count_bytes()..]);
+    }
+
+    /// Zeros up to a multiple of four behind all bytes before.
+    fn pad(&mut self) {
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+    }
+
+    fn text(&mut self, text: &str) {
+        self.count(text.len());
+        self.bytes.extend(text.as_bytes());
+        self.pad();
+    }
+
+    fn list<T>(&mut self, tag: u32, elements: &[T], element: impl Fn(&mut Self, &T)) {
+        // An empty list has no tag.
+        self.number(if elements.is_empty() { 0 } else { tag });
+        self.count(elements.len());
+        elements.iter().for_each(|one| element(self, one));
+    }
+
+    fn attributes(&mut self, attributes: &[Attribute]) {
+        self.list(ATTRIBUTES, attributes, |bytes, attribute| {
+            bytes.text(attribute.name);
+            bytes.number(attribute.kind as u32);
+            bytes.count(attribute.count);
+            bytes.bytes.extend(&attribute.bytes);
+            bytes.pad();
+        });
+    }
+}
