@@ -131,7 +131,9 @@ impl MotionBounds {
             }
         }
         let difference = self.spring_difference(0) + self.spring_difference(1);
-        if moved || !(difference <= self.spring_range.limit()) {
+        // Not so of numbers that are none, either.
+        let is_within = difference <= self.spring_range.limit();
+        if moved || !is_within {
             self.spring_range = FixedPoint::new(difference.max(MIN_SPRING_RANGE));
             moved = true;
         }

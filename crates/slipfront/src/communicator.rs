@@ -4,7 +4,7 @@
 //! maximum or a sum of integers, so that it does not depend on how many they are.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 /// The connection of a rank with the others.
@@ -66,12 +66,13 @@ impl Communicator for Alone {
 }
 
 /// One of several ranks that are threads of this process: what a lattice of many machines does can be tried on one.
+#[derive(Clone)]
 pub struct Threads {
     rank: usize,
     /// To each rank, this one included.
     to: Vec<Sender<Vec<u64>>>,
     /// From each rank. Only the thread of this rank listens.
-    from: Vec<Mutex<Receiver<Vec<u64>>>>,
+    from: Vec<Arc<Mutex<Receiver<Vec<u64>>>>>,
 }
 
 impl Threads {
@@ -91,7 +92,7 @@ impl Threads {
             for from in 0..size {
                 let (sender, receiver) = channel();
                 ranks[from].to.push(sender);
-                ranks[to].from.push(Mutex::new(receiver));
+                ranks[to].from.push(Arc::new(Mutex::new(receiver)));
             }
         }
         let work = &work;

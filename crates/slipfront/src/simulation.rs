@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::checkpoint::{BlockColumn, Checkpoint};
+use crate::communicator::{Alone, Communicator};
 use crate::error::RunError;
 use crate::kernel::engine::Engine;
 use crate::kernel::execution::Execution;
@@ -20,6 +21,7 @@ pub struct Simulation {
     dt_star: f64,
     step: u64,
     engine: Box<dyn Engine>,
+    communicator: Arc<dyn Communicator>,
     totals: Totals,
     point: CurvePoint,
     peak: Peak,
@@ -40,8 +42,23 @@ impl Simulation {
         state: Option<State>,
         execution: Execution,
     ) -> Self {
+        Self::on_ranks(model, dt_star, state, execution, Arc::new(Alone))
+    }
+
+    /// The same of a lattice that several ranks share, which all call this and then the same functions. Each has a model of its
+    /// own rows, the state of their blocks and its connection with the others.
+    ///
+    /// # Panics
+    /// If there are several ranks and the reference kernel is to compute the run.
+    pub fn on_ranks(
+        model: impl Into<Arc<Model>>,
+        dt_star: f64,
+        state: Option<State>,
+        execution: Execution,
+        communicator: Arc<dyn Communicator>,
+    ) -> Self {
         let model = model.into();
-        let mut engine = execution.begin(&model, dt_star, state);
+        let mut engine = execution.begin(&model, dt_star, state, Arc::clone(&communicator));
         let totals = engine.step(&model, 0, true);
         let mut simulation = Self {
             peak: Peak::new(model.steady_level()),
@@ -49,6 +66,7 @@ impl Simulation {
             dt_star,
             step: 0,
             engine,
+            communicator,
             totals,
             point: CurvePoint::default(),
             observed: false,
@@ -70,15 +88,31 @@ impl Simulation {
         execution: Execution,
         read: impl FnMut(BlockColumn, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<Option<Self>, E> {
+        Self::resume_on_ranks(model, dt_star, checkpoint, execution, Arc::new(Alone), read)
+    }
+
+    /// The same on each of several ranks, for the blocks of its rows.
+    ///
+    /// # Errors
+    /// Those of `read`.
+    pub fn resume_on_ranks<E>(
+        model: impl Into<Arc<Model>>,
+        dt_star: f64,
+        checkpoint: &Checkpoint,
+        execution: Execution,
+        communicator: Arc<dyn Communicator>,
+        read: impl FnMut(BlockColumn, usize, &mut [f64]) -> Result<(), E>,
+    ) -> Result<Option<Self>, E> {
         let model = model.into();
         let (step, totals, peak) = (checkpoint.step, checkpoint.totals, checkpoint.peak);
-        let engine = execution.resume(&model, dt_star, checkpoint, read)?;
+        let engine = execution.resume(&model, dt_star, checkpoint, Arc::clone(&communicator), read)?;
         Ok(engine.map(|engine| Self {
             point: CurvePoint::measure(&model, &totals, step as f64 * dt_star),
             model,
             dt_star,
             step,
             engine,
+            communicator,
             totals,
             peak,
             observed: true,
@@ -107,7 +141,7 @@ impl Simulation {
         mut write: impl FnMut(BlockColumn, usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
         let engine = &*self.engine;
-        BlockColumn::for_each_part(self.model.lattice.n_blocks(), |column, first, values| {
+        BlockColumn::for_each_part(self.model.surface.n_blocks(), |column, first, values| {
             let value = |b: usize| match column {
                 BlockColumn::DisplacementX => engine.motion(b)[0][0],
                 BlockColumn::DisplacementY => engine.motion(b)[0][1],
@@ -196,6 +230,7 @@ impl Simulation {
             peak: self.peak,
             last: false,
             engine: &*self.engine,
+            communicator: &*self.communicator,
         }
     }
 
@@ -206,7 +241,7 @@ impl Simulation {
 
     /// Displacements now, velocities half a step later.
     pub fn state(&self) -> State {
-        let n = self.model.lattice.n_blocks();
+        let n = self.model.surface.n_blocks();
         let mut state = State::at_rest(n);
         for b in 0..n {
             let [[ux, uy], [vx, vy]] = self.engine.motion(b);
@@ -232,12 +267,22 @@ impl Simulation {
         if self.point.mu_star.is_finite() && self.point.mu_lateral_star.is_finite() {
             return Ok(());
         }
-        let bad = (0..self.model.lattice.n_blocks()).find_map(|b| {
+        let first = self.model.lattice.blocks_of(&self.model.rows).start;
+        let bad = (0..self.model.surface.n_blocks()).find_map(|b| {
             let [u, _] = self.engine.motion(b);
             let value = u.into_iter().find(|u| !u.is_finite())?;
-            Some((b, value))
+            Some((first + b, value))
         });
-        let (block, value) = bad.unwrap_or((0, self.point.mu_star));
+        // The first of all ranks tells its value.
+        let mut lowest = [bad.map_or(f64::NEG_INFINITY, |(block, _)| -(block as f64))];
+        self.communicator.largest(&mut lowest);
+        let own = bad.filter(|(block, _)| -(*block as f64) == lowest[0]);
+        let mut bits = [own.map_or(0, |(_, value)| value.to_bits() as i64)];
+        self.communicator.sum(&mut bits);
+        let (block, value) = match lowest[0] {
+            f64::NEG_INFINITY => (0, self.point.mu_star),
+            block => (-block as usize, f64::from_bits(bits[0] as u64)),
+        };
         let (i, j) = self.model.lattice.column_row(block);
         Err(RunError::NotFinite {
             step: self.step,

@@ -1,5 +1,6 @@
 //! What observers see of a run.
 
+use crate::communicator::Communicator;
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
 use crate::kernel::totals::{StoredEnergy, Totals};
@@ -25,6 +26,7 @@ pub struct Snapshot<'a> {
     /// Whether the run ends here.
     pub last: bool,
     pub(crate) engine: &'a dyn Engine,
+    pub(crate) communicator: &'a dyn Communicator,
 }
 
 /// Changes of mu* below this are taken for rounding errors.
@@ -44,7 +46,7 @@ impl Snapshot<'_> {
     /// If there is not one value per block.
     pub fn read_field(&self, field: Field, values: &mut [f32]) {
         let lattice = &self.model.lattice;
-        assert_eq!(values.len(), lattice.n_blocks(), "one value per block");
+        assert_eq!(values.len(), self.model.surface.n_blocks(), "one value per block");
         self.read_rows(field, 1, |j, i, part| {
             let first = lattice.block(i, j);
             values[first..first + part.len()].copy_from_slice(part);
@@ -71,14 +73,17 @@ impl Snapshot<'_> {
 
     /// When each block first slid while in contact, t*; NaN where none has.
     pub fn first_slip_time_star(&self) -> Vec<f64> {
-        let blocks = 0..self.model.lattice.n_blocks();
+        let blocks = 0..self.model.surface.n_blocks();
         blocks.map(|b| self.engine.first_slip(b)).collect()
     }
 
-    /// When the first block slid while in contact, t*.
+    /// When the first block of all ranks slid while in contact, t*.
     pub fn earliest_first_slip(&self) -> Option<f64> {
         let times = self.first_slip_time_star().into_iter();
-        times.filter(|time| !time.is_nan()).reduce(f64::min)
+        let earliest = times.filter(|time| !time.is_nan()).reduce(f64::min);
+        let mut latest_negative = [earliest.map_or(f64::NEG_INFINITY, |time| -time)];
+        self.communicator.largest(&mut latest_negative);
+        latest_negative[0].is_finite().then_some(-latest_negative[0])
     }
 
     /// mu* at the next step, which the velocities of the blocks already determine up to rounding.

@@ -1,11 +1,14 @@
 //! Which kernel computes a run, and on how many threads.
 
+use std::sync::Arc;
+
 use fearless_simd::Level;
 
 use super::engine::Engine;
 use super::fused::Fused;
 use super::reference::Reference;
 use crate::checkpoint::{BlockColumn, Checkpoint};
+use crate::communicator::Communicator;
 use crate::friction::FrictionLaw;
 use crate::model::Model;
 use crate::state::State;
@@ -31,6 +34,9 @@ pub struct Execution {
     pub skips: bool,
 }
 
+/// Why several ranks cannot share a lattice.
+const NOT_DIVIDED: &str = "the reference kernel divides no lattice among ranks";
+
 impl Kernel {
     /// The kernel that computes a friction law when this one is asked for.
     pub fn for_law(self, law: FrictionLaw) -> Self {
@@ -51,13 +57,21 @@ impl Kernel {
 
 impl Execution {
     /// A kernel that begins in a given state, or at rest.
-    pub(crate) fn begin(self, model: &Model, dt_star: f64, state: Option<State>) -> Box<dyn Engine> {
+    pub(crate) fn begin(
+        self,
+        model: &Model,
+        dt_star: f64,
+        state: Option<State>,
+        communicator: Arc<dyn Communicator>,
+    ) -> Box<dyn Engine> {
         match self.kernel.for_law(model.law) {
             Kernel::Fused => {
-                let kernel = Fused::new(model, dt_star, state.as_ref(), self.threads, self.skips);
+                let (threads, skips) = (self.threads, self.skips);
+                let kernel = Fused::new(model, dt_star, state.as_ref(), threads, skips, communicator);
                 Box::new(kernel)
             }
             Kernel::Reference => {
+                assert_eq!(communicator.size(), 1, "{NOT_DIVIDED}");
                 let state = state.unwrap_or_else(|| State::at_rest(model.lattice.n_blocks()));
                 Box::new(Reference::new(model, dt_star, state))
             }
@@ -70,15 +84,26 @@ impl Execution {
         model: &Model,
         dt_star: f64,
         checkpoint: &Checkpoint,
+        communicator: Arc<dyn Communicator>,
         read: impl FnMut(BlockColumn, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<Option<Box<dyn Engine>>, E> {
         match (self.kernel.for_law(model.law), checkpoint.motion_bounds) {
-            (Kernel::Fused, Some(bound)) => {
-                let kernel =
-                    Fused::resume(model, dt_star, checkpoint, bound, self.threads, self.skips, read)?;
+            (Kernel::Fused, Some(_)) => {
+                let (threads, skips) = (self.threads, self.skips);
+                let kernel = Fused::resume(
+                    model,
+                    dt_star,
+                    checkpoint,
+                    bound,
+                    threads,
+                    skips,
+                    communicator,
+                    read,
+                )?;
                 Ok(Some(Box::new(kernel)))
             }
             (Kernel::Reference, None) => {
+                assert_eq!(communicator.size(), 1, "{NOT_DIVIDED}");
                 let kernel = Reference::resume(model, dt_star, checkpoint, read)?;
                 Ok(Some(Box::new(kernel)))
             }

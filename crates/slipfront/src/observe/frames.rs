@@ -1,12 +1,14 @@
 //! Fields over the lattice, recorded at chosen steps.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use super::observer::Observer;
 use crate::error::RunError;
 use crate::kernel::block::Field;
-use crate::lattice::Lattice;
 use crate::measure::CurvePoint;
+use crate::model::Model;
 use crate::snapshot::Snapshot;
 
 /// Fields of one instant.
@@ -34,19 +36,23 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// Number of recorded blocks along x and along y.
-    fn counts(&self, lattice: &Lattice) -> [usize; 2] {
-        [lattice.nx, lattice.ny].map(|n| n.div_ceil(self.stride))
+    /// Number of recorded blocks along x, and which recorded rows are those of the rows of a model.
+    fn counts(&self, model: &Model) -> (usize, Range<usize>) {
+        let [nx, first, end] = [model.lattice.nx, model.rows.start, model.rows.end];
+        (
+            nx.div_ceil(self.stride),
+            first.div_ceil(self.stride)..end.div_ceil(self.stride),
+        )
     }
 
     /// The selected fields at this instant.
     pub fn capture(&self, now: &Snapshot) -> Frame {
-        let [nx, ny] = self.counts(&now.model.lattice);
+        let (nx, rows) = self.counts(now.model);
         let mut frame = Frame {
             step: 0,
             time_star: 0.0,
             point: now.point,
-            values: vec![vec![0.0; nx * ny]; self.fields.len()],
+            values: vec![vec![0.0; nx * rows.len()]; self.fields.len()],
         };
         self.capture_into(now, &mut frame);
         frame
@@ -55,11 +61,12 @@ impl Selection {
     /// Overwrites a frame of the same selection, without allocating.
     pub(crate) fn capture_into(&self, now: &Snapshot, frame: &mut Frame) {
         (frame.step, frame.time_star, frame.point) = (now.step, now.time_star, now.point);
-        let [nx, _] = self.counts(&now.model.lattice);
+        let (nx, rows) = self.counts(now.model);
         for (&field, values) in self.fields.iter().zip(&mut frame.values) {
             now.read_rows(field, self.stride, |j, i, part| {
                 let skipped = i.next_multiple_of(self.stride) - i;
-                let first = j / self.stride * nx + (i + skipped) / self.stride;
+                let row = (now.model.rows.start + j) / self.stride - rows.start;
+                let first = row * nx + (i + skipped) / self.stride;
                 let read = part.iter().skip(skipped).step_by(self.stride);
                 for (value, &read) in values[first..].iter_mut().zip(read) {
                     *value = read;

@@ -1,15 +1,16 @@
 //! Helpers of all test binaries: a slider described by the dimensionless groups of the paper.
 #![allow(dead_code)] // Each binary uses its own part of this.
 
+use std::convert::Infallible;
 use std::ops::Range;
 
 use slipfront::observe::{Curve, CurveRow, Kinetic, KineticHistory, KineticStart, Observer, Peak, Scheduled};
 use slipfront::surface::{
-    Cavity, Coefficients, Distribution, Groove, Load, Orientation, Texture, cavity_lambda, mesh,
+    Cavity, Coefficients, Distribution, Groove, Load, Orientation, Texture, cavity_lambda, mesh, mesh_watched,
 };
 use slipfront::{
-    Drive, Edges, Execution, FrictionLaw, Lattice, Model, Simulation, State, Stop, Surface, VectorField,
-    scales,
+    Communicator, Drive, Edges, Execution, FrictionLaw, Lattice, Model, Simulation, State, Stop, Surface,
+    VectorField, scales,
 };
 
 /// A slider at rest, stepped by the kernel that this binary tests.
@@ -117,6 +118,24 @@ impl Slider {
         Model::new(
             self.lattice(),
             self.surface(),
+            Drive::at_angle(self.v_star, self.degrees),
+            scales::damping(self.omega_star),
+            self.epsilon,
+            self.law,
+        )
+    }
+
+    /// The model of one of several ranks.
+    pub(crate) fn model_of(&self, rank: &dyn Communicator) -> Model {
+        let lattice = self.lattice();
+        let rows = lattice.rows_of(rank);
+        let Ok(meshed) = mesh_watched::<Infallible>(&lattice, &rows, &self.textures, &mut |_| Ok(()));
+        let coefficients = self.coefficients_of(lattice.blocks_of(&rows));
+        let surface = Surface::of_ranks(coefficients, meshed.textured, self.load, 1.0, rank).unwrap();
+        Model::of_rows(
+            lattice,
+            rows,
+            surface,
             Drive::at_angle(self.v_star, self.degrees),
             scales::damping(self.omega_star),
             self.epsilon,

@@ -8,7 +8,7 @@ use crate::common::{self, Slider, cavity, groove};
 use crate::{FUSED, bits, go, has_room, stopped_and_resumed};
 
 /// Everything that can be read of a run at one instant except for its state.
-fn shown(simulation: &Simulation) -> Vec<u64> {
+pub(crate) fn shown(simulation: &Simulation) -> Vec<u64> {
     let now = simulation.snapshot();
     let totals = now.totals;
     let stored = totals.stored_energy.unwrap_or_default();
@@ -30,15 +30,13 @@ fn shown(simulation: &Simulation) -> Vec<u64> {
     bits(&numbers)
 }
 
-fn state(simulation: &Simulation) -> Vec<u64> {
+/// x and y of the displacements, then of the velocities.
+pub(crate) fn state(simulation: &Simulation) -> [Vec<u64>; 4] {
     let State {
         displacement,
         velocity,
     } = simulation.state();
-    [displacement.x, displacement.y, velocity.x, velocity.y]
-        .iter()
-        .flat_map(|field| bits(field))
-        .collect()
+    [displacement.x, displacement.y, velocity.x, velocity.y].map(|field| bits(&field))
 }
 
 /// The fused kernel on one thread without skipping against all other ways to execute it, among them runs in parts of so many

@@ -79,3 +79,4 @@ mod against_reference;
 mod checkpoints;
 mod executions;
 mod fields;
+mod ranks;

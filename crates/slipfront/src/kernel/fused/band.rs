@@ -275,7 +275,7 @@ impl Band {
     /// Marks all vectors that contain a moving element or a neighbour of one.
     pub(super) fn mark_touched(&self, layout: &Layout, touched: &mut [u32]) {
         let mut mark = |from: usize, to: usize| {
-            let pieces = layout.around(self.first + from, self.first + to);
+            let pieces = layout.around((self.first + from) as isize, (self.first + to) as isize);
             pieces.for_each(|piece| mark_vectors(touched, piece));
         };
         for t in (0..self.tiles.len()).filter(|&t| self.tiles[t].moving) {
@@ -584,7 +584,8 @@ impl Band {
                 extent[3] = extent[3].max(down);
                 for (present, there) in self.springs_of(v) {
                     let there = load_vec2(simd, chunks(&self.displacement, there, LANES), 0);
-                    let [x, y] = zero_missing(simd, present, subtract(there, u));
+                    // Of blocks alone: what is stored beyond the last row may have neighbours that are not.
+                    let [x, y] = zero_missing(simd, present & self.blocks[v], subtract(there, u));
                     difference[0] = difference[0].max(x.abs());
                     difference[1] = difference[1].max(y.abs());
                 }

@@ -11,7 +11,8 @@ use super::vector::{
     LANES, Vec2x8, add, bits, dot, is_zero, lane_max, lane_sum, load, load_vec2, mask, or_zero, scale,
     select, shift_in, splat, square, subtract,
 };
-use crate::fixed_point::FixedPoint;
+use crate::communicator::Communicator;
+use crate::fixed_point::{FixedPoint, join, split};
 use crate::friction::Integrator;
 use crate::lattice::Bond;
 use crate::model::{Drive, Model};
@@ -384,6 +385,36 @@ impl Sums<i128, f64, u64> {
         self.speed_square = self.speed_square.max(tile.speed_square);
         self.sliding += u64::from(tile.sliding);
         self.slipping += u64::from(tile.slipping);
+    }
+
+    /// Adds those of all ranks.
+    pub(super) fn over_ranks(&mut self, communicator: &dyn Communicator) {
+        let [ux, uy] = &mut self.displacement;
+        let [vx, vy] = &mut self.velocity;
+        let mut sums = [
+            ux,
+            uy,
+            vx,
+            vy,
+            &mut self.motion_square,
+            &mut self.friction_work,
+            &mut self.lattice_energy,
+            &mut self.velocity_squares,
+            &mut self.displacement_square,
+        ];
+        let mut words = [[0; 2]; 10];
+        for (words, sum) in words.iter_mut().zip(&sums) {
+            *words = split(**sum);
+        }
+        words[9] = [self.sliding as i64, self.slipping as i64];
+        communicator.sum(words.as_flattened_mut());
+        for (sum, words) in sums.iter_mut().zip(words) {
+            **sum = join(words);
+        }
+        [self.sliding, self.slipping] = words[9].map(|count| count as u64);
+        let mut largest = [self.stress_square, self.speed_square];
+        communicator.largest(&mut largest);
+        [self.stress_square, self.speed_square] = largest;
     }
 }
 

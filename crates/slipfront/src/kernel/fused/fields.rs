@@ -78,7 +78,7 @@ pub(super) fn read_rows<S: Simd>(
         for t in 0..band.tiles.len() {
             let elements = band.elements(t);
             let rows = || layout.rows_among(band.first + elements.start..band.first + elements.end);
-            if !rows().any(|(j, ..)| j.is_multiple_of(stride)) {
+            if !rows().any(|(j, ..)| layout.lattice_row(j).is_multiple_of(stride)) {
                 continue;
             }
             let displaced = band.halo + elements.start..band.halo + elements.end;
@@ -114,7 +114,7 @@ pub(super) fn read_rows<S: Simd>(
                     }
                 }
             }
-            for (j, i, blocks) in rows().filter(|(j, ..)| j.is_multiple_of(stride)) {
+            for (j, i, blocks) in rows().filter(|(j, ..)| layout.lattice_row(*j).is_multiple_of(stride)) {
                 let values = &mut values[blocks];
                 if field == Field::Traction {
                     let textured = &model.surface.textured[model.lattice.block(i, j)..];

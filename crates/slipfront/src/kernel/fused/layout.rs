@@ -22,6 +22,9 @@ const MIN_ROW_ELEMENTS: usize = 16;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layout {
     lattice: Lattice,
+    /// The first row of the lattice that is stored here, and their number.
+    first_row: usize,
+    rows: usize,
     /// Elements from a row to the next.
     pub(super) stride: usize,
     /// Ghosts before the first block of a row.
@@ -29,10 +32,13 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    pub(super) fn new(lattice: &Lattice) -> Self {
+    /// Of some rows of a lattice.
+    pub(super) fn new(lattice: &Lattice, rows: &Range<usize>) -> Self {
         let ghosts = usize::from(lattice.edges[0] == Edges::Periodic);
         Self {
             lattice: *lattice,
+            first_row: rows.start,
+            rows: rows.len(),
             stride: (lattice.nx + 2 * ghosts).max(MIN_ROW_ELEMENTS),
             ghosts,
         }
@@ -40,12 +46,17 @@ impl Layout {
 
     /// Number of elements, up to the end of the last row.
     pub(super) fn len(&self) -> usize {
-        self.lattice.ny * self.stride
+        self.rows * self.stride
     }
 
-    /// Number of blocks.
+    /// Number of blocks of the whole lattice.
     pub(super) fn n_blocks(&self) -> usize {
         self.lattice.n_blocks()
+    }
+
+    /// Number of blocks of these rows.
+    pub(super) fn n_own_blocks(&self) -> usize {
+        self.rows * self.lattice.nx
     }
 
     /// Number of tiles. The last is shorter; only its last vector is filled up with elements that are no blocks.
@@ -74,12 +85,17 @@ impl Layout {
     pub(super) fn block(&self, element: usize) -> Option<usize> {
         let j = element / self.stride;
         let i = self.column(element)?;
-        (j < self.lattice.ny).then(|| self.lattice.block(i, j))
+        (j < self.rows).then(|| self.lattice.block(i, j))
     }
 
     /// Number of rows.
     pub(super) fn rows(&self) -> usize {
-        self.lattice.ny
+        self.rows
+    }
+
+    /// Row of the lattice that is stored as row `j`.
+    pub(super) fn lattice_row(&self, j: usize) -> usize {
+        self.first_row + j
     }
 
     /// The ghosts of row `j`, each with the element that it copies.
@@ -109,8 +125,22 @@ impl Layout {
         self.ghosts > 0
     }
 
-    pub(super) fn is_periodic_along_y(&self) -> bool {
+    fn is_periodic_along_y(&self) -> bool {
         self.lattice.edges[1] == Edges::Periodic
+    }
+
+    /// Whether the rows below the first and above the last of these are neighbours that other ranks hold.
+    pub(super) fn has_neighbours(&self) -> [bool; 2] {
+        if self.rows == self.lattice.ny {
+            return [false; 2];
+        }
+        let end = self.first_row + self.rows;
+        [self.first_row > 0, end < self.lattice.ny].map(|inside| inside || self.is_periodic_along_y())
+    }
+
+    /// Whether the last of these rows and the first are neighbours.
+    pub(super) fn wraps_along_y(&self) -> bool {
+        self.is_periodic_along_y() && self.rows == self.lattice.ny
     }
 
     /// Which neighbours of the eight elements from `first` on exist, one bit each: to the east, to the west, and in the next row.
@@ -121,7 +151,8 @@ impl Layout {
         let mut bits = [0; 3];
         for lane in 0..LANES {
             let element = first + lane as isize;
-            let (row, i) = (element.div_euclid(stride), element.rem_euclid(stride) - ghosts);
+            let row = element.div_euclid(stride) + self.first_row as isize;
+            let i = element.rem_euclid(stride) - ghosts;
             let exist = [
                 (-ghosts..nx + ghosts - 1).contains(&i),
                 (1 - ghosts..nx + ghosts).contains(&i),
@@ -141,7 +172,7 @@ impl Layout {
         from: isize,
         to: isize,
     ) -> impl Iterator<Item = (isize, Range<usize>)> + use<> {
-        let (n, periodic) = (self.len() as isize, self.is_periodic_along_y());
+        let (n, wraps) = (self.len() as isize, self.wraps_along_y());
         let mut first = from;
         std::iter::from_fn(move || {
             loop {
@@ -152,19 +183,19 @@ impl Layout {
                 let end = (first - wrapped + n).min(to + 1);
                 let piece = wrapped as usize..(wrapped + end - first) as usize;
                 let start = std::mem::replace(&mut first, end);
-                if wrapped == start || periodic {
+                if wrapped == start || wraps {
                     return Some((start, piece));
                 }
             }
         })
     }
 
-    /// The elements from `first` to `last` and their neighbours.
-    pub(super) fn around(&self, first: usize, last: usize) -> impl Iterator<Item = Range<usize>> + use<> {
+    /// The elements from `first` to `last`, which may lie outside, and their neighbours.
+    pub(super) fn around(&self, first: isize, last: isize) -> impl Iterator<Item = Range<usize>> + use<> {
         let (layout, stride) = (*self, self.stride as isize);
         [-stride, 0, stride]
             .into_iter()
-            .flat_map(move |row| layout.pieces(first as isize + row - 1, last as isize + row + 1))
+            .flat_map(move |row| layout.pieces(first + row - 1, last + row + 1))
             .map(|(_, piece)| piece)
     }
 
@@ -179,10 +210,11 @@ impl Layout {
 /// Sets the bits of the vectors that contain the elements of a piece: one mask per tile, one bit per vector.
 pub(super) fn mark_vectors(masks: &mut [u32], piece: Range<usize>) {
     let (first, last) = (piece.start / LANES, (piece.end - 1) / LANES);
-    for tile in first / VECTORS..=last / VECTORS {
+    let tiles = first / VECTORS..=last / VECTORS;
+    for (tile, mask) in tiles.clone().zip(&mut masks[tiles]) {
         let from = first.saturating_sub(tile * VECTORS);
         let to = (last - tile * VECTORS).min(VECTORS - 1);
-        masks[tile] |= (u32::MAX << from) & (u32::MAX >> (VECTORS - 1 - to));
+        *mask |= (u32::MAX << from) & (u32::MAX >> (VECTORS - 1 - to));
     }
 }
 
@@ -194,9 +226,9 @@ mod tests {
     fn vectors_around(layout: &Layout, vector: usize) -> Vec<u32> {
         let mut masks = vec![0; layout.n_tiles()];
         let (first, last) = (vector * LANES, vector * LANES + LANES - 1);
-        let mut mark = |first, last| {
+        let mut mark = |first: usize, last: usize| {
             layout
-                .around(first, last)
+                .around(first as isize, last as isize)
                 .for_each(|piece| mark_vectors(&mut masks, piece));
         };
         mark(first, last);
@@ -221,7 +253,7 @@ mod tests {
         ] {
             for (nx, ny) in [(5, 7), (25, 40), (50, 50), (300, 5), (700, 4), (3, 400), (254, 5)] {
                 let lattice = Lattice::with_edges(nx, ny, edges);
-                let layout = Layout::new(&lattice);
+                let layout = Layout::new(&lattice, &(0..lattice.ny));
                 for vector in 0..layout.len().div_ceil(LANES) {
                     let masks = vectors_around(&layout, vector);
                     let is_marked =
@@ -260,7 +292,7 @@ mod tests {
     #[test]
     fn blocks_and_elements_are_each_others_inverse() {
         let lattice = Lattice::with_edges(5, 4, [Edges::Periodic, Edges::Free]);
-        let layout = Layout::new(&lattice);
+        let layout = Layout::new(&lattice, &(0..lattice.ny));
         for b in 0..lattice.n_blocks() {
             assert_eq!(layout.block(layout.element_of(b)), Some(b));
         }

@@ -9,14 +9,17 @@
 //! which bounds the speed on a lattice larger than the cache (`examples/large_step.rs`). Spring forces pass through a ring
 //! buffer that stays in the cache.
 //!
-//! The trajectory has the same bits for any number of threads and any SIMD width, whether tiles are skipped or not: sums are
-//! sums over tiles, and the choice between series and square root is made for the whole lattice.
+//! A rank holds some rows and the displacements of the rows beside them ([`neighbours`]).
+//!
+//! The trajectory has the same bits for any number of ranks and threads and any SIMD width, whether vectors are skipped or not:
+//! sums are sums of integers ([`quanta`]), and the choice between series and square root is made for the whole lattice.
 
 mod aligned;
 mod band;
 mod blocks;
 mod fields;
 mod layout;
+mod neighbours;
 mod quanta;
 mod rest;
 mod sparse;
@@ -27,17 +30,20 @@ mod vector;
 mod tests;
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use fearless_simd::{Level, dispatch};
 
 use self::band::{Band, TileTask};
 use self::blocks::{Step, Sums};
-use self::layout::{Layout, TILE, VECTORS};
+use self::layout::{Layout, TILE, VECTORS, mark_vectors};
+use self::neighbours::Neighbours;
 use self::quanta::Quanta;
 use self::springs::{Series, SquareRoot};
 use self::vector::LANES;
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
-use crate::fixed_point;
+use crate::communicator::Communicator;
+use crate::fixed_point::{FixedPoint, join, split};
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
 use crate::kernel::totals::{StoredEnergy, Totals};
@@ -65,7 +71,7 @@ enum Springs {
     SquareRoot,
 }
 
-/// The state of all blocks and the way to step them.
+/// The state of the blocks of a rank and the way to step them.
 #[derive(Debug)]
 pub(crate) struct Fused {
     layout: Layout,
@@ -84,6 +90,8 @@ pub(crate) struct Fused {
     swept_step: Option<u64>,
     /// How the latest sweep computed springs.
     springs: Option<Springs>,
+    /// Whether the first step has begun, or the first after a checkpoint.
+    has_begun: bool,
     /// Sums of the latest sweep, and their quanta.
     sums: Option<(Sums<i128, f64, u64>, Quanta)>,
     /// The same as numbers.
@@ -92,6 +100,8 @@ pub(crate) struct Fused {
     /// Largest strains for the short and for the long series.
     strain_limits: [f64; 2],
     stress_square_max: f64,
+    /// The rows beside those of this rank.
+    neighbours: Neighbours,
 }
 
 impl Fused {
@@ -102,8 +112,9 @@ impl Fused {
         state: Option<&State>,
         threads: usize,
         skips: bool,
+        communicator: Arc<dyn Communicator>,
     ) -> Self {
-        let layout = Layout::new(&model.lattice);
+        let layout = Layout::new(&model.lattice, &model.rows);
         let n_tiles = layout.n_tiles();
         let n_bands = threads.clamp(1, n_tiles);
         let bands: Vec<Band> = (0..n_bands)
@@ -115,11 +126,6 @@ impl Fused {
             .flat_map(|band| &band.tiles)
             .map(|tile| tile.sums.speed_square)
             .fold(0.0, f64::max);
-        let sum = |v: &[f64]| fixed_point::sum(v.len(), |b| v[b]);
-        let totals = Totals {
-            velocity_after: state.map_or([0.0; 2], |state| [sum(&state.velocity.x), sum(&state.velocity.y)]),
-            ..Totals::default()
-        };
         let mut kernel = Self {
             layout,
             dt_star,
@@ -131,14 +137,16 @@ impl Fused {
             active_from_step: 0,
             swept_step: None,
             springs: None,
+            has_begun: false,
             sums: None,
-            totals,
+            totals: Totals::default(),
             motion_bounds: MotionBounds {
                 speed: speed_square.sqrt(),
                 ..MotionBounds::default()
             },
             strain_limits: [Series::<3>::strain_limit(), Series::<7>::strain_limit()],
             stress_square_max: 0.0,
+            neighbours: Neighbours::new(communicator, &layout),
         };
         kernel.copy_ghosts(true);
         kernel.fill_halos(0.0, true);
@@ -151,13 +159,13 @@ impl Fused {
         model: &Model,
         dt_star: f64,
         checkpoint: &Checkpoint,
-        motion_bounds: MotionBounds,
         threads: usize,
         skips: bool,
+        communicator: Arc<dyn Communicator>,
         mut read: impl FnMut(BlockColumn, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<Self, E> {
-        let mut kernel = Self::new(model, dt_star, None, threads, skips);
-        BlockColumn::for_each_part(model.lattice.n_blocks(), |column, first, values| {
+        let mut kernel = Self::new(model, dt_star, None, threads, skips, communicator);
+        BlockColumn::for_each_part(model.surface.n_blocks(), |column, first, values| {
             read(column, first, values)?;
             for band in &mut kernel.bands {
                 band.set_column(&kernel.layout, column, first, values);
@@ -173,7 +181,7 @@ impl Fused {
             totals: checkpoint.totals,
             stress_square_max: checkpoint.stress_square_max,
             swept_step: Some(checkpoint.step),
-            motion_bounds,
+            motion_bounds: checkpoint.motion_bounds.unwrap_or_default(),
             ..kernel
         })
     }
@@ -197,6 +205,8 @@ impl Fused {
                     *most = most.max(value);
                 }
             }
+            self.neighbours.communicator.largest(&mut bounds.extent);
+            self.neighbours.communicator.largest(&mut bounds.difference);
         }
         bounds.growth += 2.0 * step.move_dt * bounds.speed;
         let strain = self.motion_bounds.max_strain(model.epsilon);
@@ -220,12 +230,17 @@ impl Fused {
             bands,
             touched,
             needs_springs,
+            neighbours,
             ..
         } = self;
         touched.fill(0);
         needs_springs.fill(false);
         for band in bands.iter() {
             band.mark_touched(layout, touched);
+        }
+        for &element in &neighbours.moved {
+            let pieces = layout.around(element, element);
+            pieces.for_each(|piece| mark_vectors(touched, piece));
         }
         for band in bands.iter_mut() {
             for t in 0..band.tiles.len() {
@@ -275,7 +290,7 @@ impl Fused {
     /// Displacements beyond the ends of every band, as they will be after moving by `move_dt`: of `all` elements, or of those that
     /// move. Those beyond a free edge stay zero: no spring leads there.
     fn fill_halos(&mut self, move_dt: f64, all: bool) {
-        if self.bands.len() == 1 && !self.layout.is_periodic_along_y() {
+        if self.bands.len() == 1 && !self.layout.wraps_along_y() && self.neighbours.is_alone() {
             return;
         }
         let halo = self.bands[0].halo as isize;
@@ -288,8 +303,55 @@ impl Fused {
                 for (start, elements) in self.layout.pieces(from, to - 1) {
                     self.fill_halo(b, (start - first + halo) as usize, elements, move_dt, all);
                 }
+                for element in from..to {
+                    if let Some(u) = self.neighbours.displacement(&self.layout, element) {
+                        self.bands[b]
+                            .displacement
+                            .set((element - first + halo) as usize, u);
+                    }
+                }
             }
         }
+    }
+
+    /// What ranks have to tell each other before their first step, also one after a checkpoint.
+    fn begin(&mut self) {
+        self.has_begun = true;
+        self.exchange_rows(0.0);
+        self.fill_halos(0.0, false);
+        if self.swept_step.is_some() {
+            return;
+        }
+        let communicator = &*self.neighbours.communicator;
+        let mut speed = [self.motion_bounds.speed];
+        communicator.largest(&mut speed);
+        self.motion_bounds.speed = speed[0];
+        let fixed_point = FixedPoint::new(speed[0]);
+        for axis in 0..2 {
+            let mut sum = 0;
+            for b in 0..self.layout.n_own_blocks() {
+                sum += i128::from(fixed_point.integer(self.motion(b)[1][axis]));
+            }
+            let mut words = split(sum);
+            communicator.sum(&mut words);
+            self.totals.velocity_after[axis] = fixed_point.value(join(words));
+        }
+    }
+
+    /// Exchanges with the neighbouring ranks the displacements that blocks at the ends will have after moving by `move_dt`.
+    fn exchange_rows(&mut self, move_dt: f64) {
+        if self.neighbours.is_alone() {
+            return;
+        }
+        let (stride, len) = (self.layout.stride, self.layout.len());
+        for (end, first) in [0, len - stride].into_iter().enumerate() {
+            // None beyond a free edge.
+            for k in 0..self.neighbours.own[end].len() {
+                let (band, at) = self.locate(first + k);
+                self.neighbours.own[end][k] = self.bands[band].advanced(at, move_dt);
+            }
+        }
+        self.neighbours.exchange(&self.layout);
     }
 
     /// Displacements of some elements to band `b`, from index `k` on.
@@ -343,6 +405,12 @@ impl Fused {
             sums.include(&tile.sums);
             active_from_step = active_from_step.min(if tile.moving { 0 } else { tile.active_from_step });
         }
+        let communicator = &*self.neighbours.communicator;
+        sums.over_ranks(communicator);
+        // Steps beyond 2^53 are none of a run.
+        let mut soonest = [-(active_from_step as f64)];
+        communicator.largest(&mut soonest);
+        let active_from_step = -soonest[0] as u64;
         self.stress_square_max = self.stress_square_max.max(sums.stress_square);
         self.active_from_step = active_from_step;
         self.motion_bounds.speed = sums.speed_square.sqrt();
@@ -394,11 +462,15 @@ impl Engine for Fused {
             // At the start displacements are those of t_0 already.
             step.move_dt = 0.0;
         }
+        if !self.has_begun {
+            self.begin();
+        }
         let (springs, windows_moved) = self.choose_springs(model, &step);
         // Skipped tiles keep their sums and the energy of their springs. After a change of quanta or formula they must be found
         // anew, to have the same bits.
         let springs_changed = windows_moved || self.springs != Some(springs);
         if !self.skips || springs_changed || number >= self.active_from_step {
+            self.exchange_rows(step.move_dt);
             self.schedule_tiles(number, springs_changed);
             self.fill_halos(step.move_dt, false);
             let (level, quanta) = (self.level, Quanta::new(&step, &self.motion_bounds));
@@ -459,6 +531,9 @@ impl Engine for Fused {
                 }
             }
         }
+        let mut square = [square];
+        self.neighbours.communicator.largest(&mut square);
+        let [square] = square;
         square
     }
 

@@ -3,6 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::communicator::Alone;
 use crate::friction::FrictionLaw;
 use crate::lattice::{Bond, Edges, Lattice};
 use crate::model::Drive;
@@ -29,6 +30,11 @@ fn model(lattice: Lattice, v_star: f64, degrees: f64, epsilon: f64) -> Model {
     )
 }
 
+/// On one thread of one rank.
+fn alone(model: &Model, dt_star: f64, state: Option<&State>, skips: bool) -> Fused {
+    Fused::new(model, dt_star, state, 1, skips, Arc::new(Alone))
+}
+
 /// Every width that this processor has, narrow ones first.
 fn levels() -> Vec<Level> {
     let mut levels = vec![Level::baseline()];
@@ -46,7 +52,7 @@ fn levels() -> Vec<Level> {
 
 /// The bits of all displacements, velocities and sums at every tenth step.
 fn history(model: &Model, level: Level, steps: u64) -> Vec<u64> {
-    let mut kernel = Fused::new(model, 0.2, None, 1, true);
+    let mut kernel = alone(model, 0.2, None, true);
     kernel.level = level;
     let mut bits = Vec::new();
     for number in 0..=steps {
@@ -104,7 +110,7 @@ fn displacements_are_bounded() {
     let mut apart = State::at_rest(900);
     (apart.velocity.x[0], apart.velocity.x[899]) = (-1.4, 1.4);
     for (from, skips) in [(None, false), (None, true), (Some(&apart), true)] {
-        let mut kernel = Fused::new(&model, 0.2, from, 1, skips);
+        let mut kernel = alone(&model, 0.2, from, skips);
         for number in 0..400 {
             kernel.step(&model, number, false);
             let (mut extent, mut difference) = ([f64::NEG_INFINITY; 4], [0.0_f64; 2]);
@@ -148,7 +154,7 @@ fn displacements_are_bounded() {
 #[test]
 fn slow_drives_are_mostly_rest() {
     let model = model(Lattice::free(64, 64), 0.002, 0.0, 1e-6);
-    let mut kernel = Fused::new(&model, 0.5, None, 1, true);
+    let mut kernel = alone(&model, 0.5, None, true);
     // Number of swept tiles before and after the first slip, and number of steps after it.
     let (mut before, mut after, mut steps) = (0, 0, 0);
     for number in 0..3000 {
@@ -204,8 +210,8 @@ proptest! {
             displacement: VectorField { x: u.iter().map(|u| u[0]).collect(), y: u.iter().map(|u| u[1]).collect() },
             velocity: VectorField::zeros(9),
         };
-        let mut resting = Fused::new(&model, dt_star, Some(&state), 1, true);
-        let mut plain = Fused::new(&model, dt_star, Some(&state), 1, false);
+        let mut resting = alone(&model, dt_star, Some(&state), true);
+        let mut plain = alone(&model, dt_star, Some(&state), false);
         resting.step(&model, 0, false);
         let mut slips = |number| plain.step(&model, number, false).n_sliding > 0;
         let first = (0..100_000).find(|&number| slips(number)).expect("a block slips");

@@ -1,0 +1,83 @@
+//! The rows beside those of a rank, which other ranks hold.
+
+use std::fmt::{Debug, Formatter};
+use std::sync::Arc;
+
+use super::layout::Layout;
+use crate::communicator::Communicator;
+
+/// Displacements of the row below the first of this rank and of the row above the last, ghosts included; none beyond a free edge.
+pub(super) struct Neighbours {
+    pub(super) communicator: Arc<dyn Communicator>,
+    /// The first and the last row of this rank, which the ranks below and above are told.
+    pub(super) own: [Vec<[f64; 2]>; 2],
+    /// The rows of the ranks below and above.
+    rows: [Vec<[f64; 2]>; 2],
+    /// What they were before the latest exchange.
+    before: [Vec<[f64; 2]>; 2],
+    /// Elements of these rows that have moved in the latest exchange, counted from the first of this rank.
+    pub(super) moved: Vec<isize>,
+}
+
+impl Neighbours {
+    pub(super) fn new(communicator: Arc<dyn Communicator>, layout: &Layout) -> Self {
+        let rows = || {
+            layout
+                .has_neighbours()
+                .map(|has| vec![[0.0; 2]; if has { layout.stride } else { 0 }])
+        };
+        Self {
+            communicator,
+            own: rows(),
+            rows: rows(),
+            before: rows(),
+            moved: Vec::with_capacity(2 * layout.stride),
+        }
+    }
+
+    /// Whether no other rank holds rows of the lattice.
+    pub(super) fn is_alone(&self) -> bool {
+        self.communicator.size() == 1
+    }
+
+    /// Tells the neighbours the rows in `own` and hears theirs.
+    pub(super) fn exchange(&mut self, layout: &Layout) {
+        std::mem::swap(&mut self.rows, &mut self.before);
+        let [below, above] = &mut self.rows;
+        self.communicator.exchange(
+            self.own.each_ref().map(|row| row.as_flattened()),
+            [below.as_flattened_mut(), above.as_flattened_mut()],
+            &mut || {},
+        );
+        self.moved.clear();
+        let firsts = [-(layout.stride as isize), layout.len() as isize];
+        for (first, (row, before)) in firsts.into_iter().zip(self.rows.iter().zip(&self.before)) {
+            for (element, (u, before)) in (first..).zip(row.iter().zip(before)) {
+                if u != before {
+                    self.moved.push(element);
+                }
+            }
+        }
+    }
+
+    /// Displacement of an element of the row below or above, counted from the first element of this rank.
+    pub(super) fn displacement(&self, layout: &Layout, element: isize) -> Option<[f64; 2]> {
+        let [below, above] = &self.rows;
+        match element {
+            ..0 => below.get(layout.stride.checked_add_signed(element)?),
+            _ => above.get((element as usize).checked_sub(layout.len())?),
+        }
+        .copied()
+    }
+}
+
+impl Debug for Neighbours {
+    fn fmt(&self, formatter: &mut Formatter) -> std::fmt::Result {
+        formatter
+            .debug_struct("Neighbours")
+            .field("rank", &self.communicator.rank())
+            .field("rows", &self.rows)
+            .field("moved", &self.moved)
+            .finish()
+    }
+}

@@ -1,0 +1,299 @@
+//! A lattice that several ranks share has the same bits as on one, whatever their number, threads and skipping, and goes on from a
+//! checkpoint on any other number of ranks.
+
+use std::convert::Infallible;
+use std::ops::Range;
+use std::sync::Arc;
+
+use rstest::rstest;
+use slipfront::checkpoint::{BlockColumn, Checkpoint};
+use slipfront::communicator::Threads;
+use slipfront::observe::frames::Selection;
+use slipfront::observe::{Field, Frame};
+use slipfront::surface::{Orientation, Texture};
+use slipfront::{Edges, Execution, Simulation, State, VectorField};
+
+use crate::common::{self, Slider, cavity, groove};
+use crate::executions::{shown, state};
+use crate::{FUSED, bits, go, has_room};
+
+/// What a rank has shown: at every step what all know, its own state at some of them, and at the end its first slips and fields.
+struct Shown {
+    steps: Vec<Vec<u64>>,
+    states: Vec<[Vec<u64>; 4]>,
+    first_slip: Vec<u64>,
+    fields: Vec<Vec<Vec<f32>>>,
+}
+
+/// Of every block, of every second, and of every fifth row.
+fn frames(simulation: &Simulation) -> Vec<Frame> {
+    let capture = |stride| {
+        let fields = vec![Field::ContactStress, Field::Traction, Field::DisplacementX];
+        Selection { fields, stride }.capture(&simulation.snapshot())
+    };
+    [1, 2, 5].map(capture).into()
+}
+
+fn watch(simulation: &mut Simulation, steps: Range<u64>, shown_before: Option<Shown>) -> Shown {
+    let mut seen = shown_before.unwrap_or_else(|| Shown {
+        steps: vec![shown(simulation)],
+        states: Vec::new(),
+        first_slip: Vec::new(),
+        fields: Vec::new(),
+    });
+    for step in steps {
+        go(simulation, step % 5 == 0);
+        seen.steps.push(shown(simulation));
+        if step % 7 == 0 {
+            seen.states.push(state(simulation));
+        }
+    }
+    seen.states.push(state(simulation));
+    seen.first_slip = bits(&simulation.snapshot().first_slip_time_star());
+    seen.fields = frames(simulation).into_iter().map(|frame| frame.values).collect();
+    seen
+}
+
+/// The part of a state that the blocks of a rank have.
+fn part(from: &State, blocks: Range<usize>) -> State {
+    let of = |field: &VectorField| VectorField {
+        x: field.x[blocks.clone()].to_vec(),
+        y: field.y[blocks.clone()].to_vec(),
+    };
+    State {
+        displacement: of(&from.displacement),
+        velocity: of(&from.velocity),
+    }
+}
+
+fn assert_same(slider: &Slider, from: Option<&State>, steps: u64) {
+    let dt_star = slider.dt_star;
+    let mut alone = Simulation::with_execution(slider.model(), dt_star, from.cloned(), FUSED);
+    let alone = watch(&mut alone, 1..steps + 1, None);
+    assert!(
+        alone.first_slip.iter().any(|&t| !f64::from_bits(t).is_nan()),
+        "nothing ever slips"
+    );
+    let ways = [
+        (2, 1, true),
+        (3, 2, true),
+        (4, 1, false),
+        (7, 1, true),
+        (slider.blocks[1], 1, true),
+    ];
+    for (size, threads, skips) in ways
+        .into_iter()
+        .filter(|(size, ..)| (2..=slider.blocks[1].min(9)).contains(size))
+    {
+        let execution = Execution {
+            threads,
+            skips,
+            ..FUSED
+        };
+        let ranks = Threads::run(size, |rank| {
+            let model = slider.model_of(rank);
+            let own = from.map(|from| part(from, model.lattice.blocks_of(&model.rows)));
+            let mut simulation = Simulation::on_ranks(model, dt_star, own, execution, Arc::new(rank.clone()));
+            watch(&mut simulation, 1..steps + 1, None)
+        });
+        assert_joined(&ranks, &alone, &format!("{size} ranks, {execution:?}"));
+    }
+}
+
+/// What the ranks have is what one has, row after row.
+fn assert_joined(ranks: &[Shown], alone: &Shown, of: &str) {
+    for rank in ranks {
+        for (step, (here, expected)) in rank.steps.iter().zip(&alone.steps).enumerate() {
+            assert!(
+                here == expected,
+                "{of}: step {step} {:?}",
+                (floats(here), floats(expected))
+            );
+        }
+    }
+    for (k, expected) in alone.states.iter().enumerate() {
+        for (axis, expected) in expected.iter().enumerate() {
+            let joined: Vec<u64> = ranks
+                .iter()
+                .flat_map(|rank| &rank.states[k][axis])
+                .copied()
+                .collect();
+            assert!(joined == *expected, "{of}: state {k}");
+        }
+    }
+    let first_slip: Vec<u64> = ranks.iter().flat_map(|rank| &rank.first_slip).copied().collect();
+    assert!(first_slip == alone.first_slip, "{of}: first slips");
+    for (k, fields) in alone.fields.iter().enumerate() {
+        for (field, expected) in fields.iter().enumerate() {
+            let joined: Vec<f32> = ranks
+                .iter()
+                .flat_map(|rank| &rank.fields[k][field])
+                .copied()
+                .collect();
+            let [joined, expected] = [&joined, expected].map(|values| values.iter().map(|x| x.to_bits()));
+            assert!(
+                joined.eq(expected),
+                "{of}: field {field} at every n-th row, case {k}"
+            );
+        }
+    }
+}
+
+fn floats(bits: &[u64]) -> Vec<f64> {
+    bits.iter().copied().map(f64::from_bits).collect()
+}
+
+#[rstest]
+fn lattices_of_every_shape(
+    #[values([1, 5], [25, 25], [64, 40], [3, 400], [300, 5], [700, 3])] blocks: [usize; 2],
+    #[values(
+        [Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Free, Edges::Periodic],
+        [Edges::Periodic, Edges::Periodic]
+    )]
+    edges: [Edges; 2],
+) {
+    if !has_room(blocks, edges) {
+        return;
+    }
+    let slider = Slider {
+        blocks,
+        edges,
+        degrees: 25.0,
+        v_star: 0.1,
+        sigma_static_star: 0.1,
+        dt_star: 0.2,
+        ..Slider::default()
+    };
+    assert_same(&slider, None, slider.steps(4.0));
+}
+
+#[rstest]
+fn textures_and_strains(
+    #[values(None, Some(cavity([40, 40], 5.0, 1, 0.3, true)), Some(groove(Orientation::Across, 2.0)))]
+    texture: Option<Texture>,
+    #[values(0.0, 1e-3, 5e-3)] epsilon: f64,
+) {
+    let slider = Slider {
+        blocks: [40, 40],
+        edges: [Edges::Periodic, Edges::Free],
+        textures: texture.into_iter().collect(),
+        epsilon,
+        v_star: 0.1,
+        dt_star: 0.2,
+        ..Slider::default()
+    };
+    assert_same(&slider, None, slider.steps(4.0));
+}
+
+/// Between slips the whole slider is at rest, and during a slip most blocks are: on some ranks all of them.
+#[rstest]
+fn slow_drives(
+    #[values(([40, 24], Edges::Free), ([40, 24], Edges::Periodic), ([3, 200], Edges::Periodic))]
+    (blocks, edges): ([usize; 2], Edges),
+    #[values((0.0, 1e-6), (65.0, 4e-3))] (degrees, epsilon): (f64, f64),
+) {
+    let slider = Slider {
+        blocks,
+        edges: [edges; 2],
+        degrees,
+        epsilon,
+        v_star: 0.004,
+        dt_star: 0.5,
+        sigma_static_star: 0.1,
+        ..Slider::default()
+    };
+    assert_same(&slider, None, slider.steps(2.6));
+}
+
+/// Blocks that are displaced at the start, a few of them with a velocity.
+#[rstest]
+fn a_state_in_motion(
+    #[values([Edges::Free, Edges::Free], [Edges::Periodic, Edges::Periodic])] edges: [Edges; 2],
+    #[values(1e-6, 1e-2)] epsilon: f64,
+) {
+    let slider = Slider {
+        blocks: [17, 90],
+        edges,
+        epsilon,
+        degrees: 200.0,
+        ..Slider::default()
+    };
+    assert_same(&slider, Some(&common::thrown(1530, 0.1, 400)), 200);
+}
+
+/// The checkpoint and the columns of each rank.
+type Saved = (Checkpoint, [Vec<f64>; 5]);
+
+fn save(simulation: &Simulation) -> Saved {
+    let mut columns: [Vec<f64>; 5] = Default::default();
+    let Ok(()) = simulation.write_columns(|column, _, values| {
+        columns[column as usize].extend(values);
+        Ok::<(), Infallible>(())
+    });
+    (simulation.checkpoint(), columns)
+}
+
+/// Goes on on one rank after the other number, one among them, from the columns of all ranks before.
+#[rstest]
+fn checkpoints_go_on_on_any_number_of_ranks(#[values(0.1, 0.01)] v_star: f64) {
+    let slider = Slider {
+        blocks: [33, 21],
+        edges: [Edges::Free, Edges::Periodic],
+        v_star,
+        dt_star: 0.2,
+        sigma_static_star: 0.1,
+        ..Slider::default()
+    };
+    let steps = slider.steps(4.0);
+    let mut simulation = Simulation::with_execution(slider.model(), slider.dt_star, None, FUSED);
+    let alone = watch(&mut simulation, 1..steps + 1, None);
+    let sizes = [1, 3, 2, 7, 1, 4];
+    let length = steps / sizes.len() as u64 + 1;
+    let mut saved: Option<Saved> = None;
+    for (k, &size) in sizes.iter().enumerate() {
+        let steps = 1 + k as u64 * length..(1 + (k as u64 + 1) * length).min(steps + 1);
+        let parts = Threads::run(size, |rank| {
+            let model = slider.model_of(rank);
+            let blocks = model.lattice.blocks_of(&model.rows);
+            let communicator = Arc::new(rank.clone());
+            let mut simulation = match &saved {
+                None => Simulation::on_ranks(model, slider.dt_star, None, FUSED, communicator),
+                Some((checkpoint, columns)) => {
+                    let read = |column: BlockColumn, first: usize, values: &mut [f64]| {
+                        let first = blocks.start + first;
+                        values.copy_from_slice(&columns[column as usize][first..][..values.len()]);
+                        Ok::<(), Infallible>(())
+                    };
+                    let execution = Execution { skips: true, ..FUSED };
+                    let Ok(resumed) = Simulation::resume_on_ranks(
+                        model,
+                        slider.dt_star,
+                        checkpoint,
+                        execution,
+                        communicator,
+                        read,
+                    );
+                    resumed.unwrap()
+                }
+            };
+            for step in steps.clone() {
+                go(&mut simulation, step % 5 == 0);
+                assert!(
+                    shown(&simulation) == alone.steps[step as usize],
+                    "step {step} on {size} ranks"
+                );
+            }
+            save(&simulation)
+        });
+        let mut columns: [Vec<f64>; 5] = Default::default();
+        for (checkpoint, part) in &parts {
+            assert_eq!(checkpoint, &parts[0].0, "of {size} ranks");
+            for (whole, part) in columns.iter_mut().zip(part) {
+                whole.extend(part);
+            }
+        }
+        saved = Some((parts[0].0, columns));
+    }
+    let last = saved.map(|(_, columns)| bits(&columns[0])).unwrap();
+    assert!(last == alone.states.last().unwrap()[0]);
+}
