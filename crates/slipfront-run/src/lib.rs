@@ -6,6 +6,7 @@
 //!
 //! Each arrow is one function: [`running::run`], [`results::write`], `pictures::draw` (with the feature `plot`).
 
+pub mod agree;
 pub mod checkpoint;
 pub mod checksum;
 pub mod clock;

@@ -1,0 +1,84 @@
+//! What the ranks tell each other, counted.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use slipfront::Communicator;
+use slipfront_case::number_format::byte_size;
+
+/// A connection with other ranks that counts what goes through it.
+pub(super) struct Traffic {
+    inner: Arc<dyn Communicator>,
+    /// To the neighbours.
+    messages: Count,
+    /// Maxima and sums over all ranks.
+    reductions: Count,
+}
+
+/// How many, and how much in all.
+#[derive(Default)]
+struct Count {
+    number: AtomicU64,
+    bytes: AtomicU64,
+}
+
+impl Count {
+    fn add<T>(&self, values: &[T]) {
+        self.number.fetch_add(1, Ordering::Relaxed);
+        self.bytes
+            .fetch_add(size_of_val(values) as u64, Ordering::Relaxed);
+    }
+
+    /// In one of so many steps.
+    fn per_step(&self, steps: u64) -> (f64, String) {
+        let [number, bytes] =
+            [&self.number, &self.bytes].map(|count| count.load(Ordering::Relaxed) as f64 / steps as f64);
+        (number, byte_size(bytes))
+    }
+}
+
+impl Traffic {
+    pub(super) fn count(inner: Arc<dyn Communicator>) -> Self {
+        Self {
+            inner,
+            messages: Count::default(),
+            reductions: Count::default(),
+        }
+    }
+
+    /// What this rank has given in one of so many steps, in words.
+    pub(super) fn per_step(&self, steps: u64) -> String {
+        let (messages, sent) = self.messages.per_step(steps);
+        let (reductions, reduced) = self.reductions.per_step(steps);
+        format!(
+            "{messages:.2} messages per step, {sent} in all; {reductions:.2} reductions per step, {reduced} in all"
+        )
+    }
+}
+
+impl Communicator for Traffic {
+    fn rank(&self) -> usize {
+        self.inner.rank()
+    }
+
+    fn size(&self) -> usize {
+        self.inner.size()
+    }
+
+    fn exchange(&self, to: [&[f64]; 2], from: [&mut [f64]; 2], meanwhile: &mut dyn FnMut()) {
+        for values in to.into_iter().filter(|values| !values.is_empty()) {
+            self.messages.add(values);
+        }
+        self.inner.exchange(to, from, meanwhile);
+    }
+
+    fn largest(&self, values: &mut [f64]) {
+        self.reductions.add(values);
+        self.inner.largest(values);
+    }
+
+    fn sum(&self, values: &mut [i64]) {
+        self.reductions.add(values);
+        self.inner.sum(values);
+    }
+}
