@@ -38,7 +38,9 @@ pub(super) fn complete(
             Ok(None) => {}
             Err(error) => {
                 // It would diverge again: there is nothing to go on with. All ranks see it at once, by sums over the lattice.
-                folder.map(RunFolder::discard);
+                if let Some(folder) = folder {
+                    folder.discard();
+                }
                 return ranks.agree(Err(Failure::running(error)));
             }
         }
