@@ -82,3 +82,27 @@ impl Communicator for Traffic {
         self.inner.sum(values);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use slipfront::communicator::Alone;
+
+    /// Messages of 3 and 5 numbers in every step, and one in the other direction that is empty; every other step a sum.
+    #[test]
+    fn what_is_given_is_counted() {
+        let traffic = Traffic::count(Arc::new(Alone));
+        for step in 0..10 {
+            traffic.exchange([&[1.0; 3], &[2.0; 5]], [&mut [0.0; 5], &mut [0.0; 3]], &mut || {});
+            traffic.exchange([&[], &[3.0; 2]], [&mut [0.0; 2], &mut []], &mut || {});
+            traffic.largest(&mut [0.0; 4]);
+            if step % 2 == 0 {
+                traffic.sum(&mut [0; 8]);
+            }
+        }
+        assert_eq!(
+            traffic.per_step(10),
+            "3.00 messages per step, 80 B in all; 1.50 reductions per step, 64 B in all"
+        );
+    }
+}
