@@ -1,23 +1,27 @@
 #!/bin/bash
-# Runs a study and a long run on a real Slurm: a cluster of this one machine, started in a temporary folder and ended
-# with it.
+# Runs a study, a long run and a run on several ranks on a real Slurm: a cluster of this one machine, started in a temporary
+# folder and ended with it.
 #
-# Needs Debian's slurm-wlm (slurmctld, slurmd, sbatch, scontrol) and munge, and root; it installs nothing:
+# Needs Debian's slurm-wlm (slurmctld, slurmd, sbatch, scontrol) and munge, and root; it installs nothing. slipfront-mpi is
+# taken from the folder of slipfront:
 #
-#     apt-get install slurm-wlm munge
+#     apt-get install slurm-wlm munge libopenmpi-dev openmpi-bin libclang-dev
 #     cargo build --release
+#     cargo build --release --manifest-path crates/slipfront-mpi/Cargo.toml --target-dir target
 #     tests/slurm/run.sh [path of slipfront]
 #
 # A study is submitted with the script of `slipfront study slurm`, in three tasks. One task is requeued in the middle,
 # the command of another is killed, and that task is submitted again. The merged parts must be the same bytes as the
 # study run without Slurm, and no run may have been made twice. Then the script of docs/guide/long.md runs a case whose
-# job gets SIGTERM twice: it puts itself back into the queue, and writes the same bytes as without. Takes about a
-# minute. Not part of the tests that always run: no continuous integration has Slurm.
+# job gets SIGTERM twice: it puts itself back into the queue, and writes the same bytes as without. So does the script
+# of docs/guide/mpi.md, with the ranks started by `srun --mpi=pmix`; a rank that is killed ends its job, which goes on when it
+# is submitted again. Takes about two minutes. Not part of the tests that always run: no continuous integration has Slurm.
 
 set -euo pipefail
 
-guide=$(realpath "$(dirname "$0")/../../docs/guide/long.md")
-slipfront=$(realpath "${1:-$(dirname "$0")/../../target/release/slipfront}")
+here=$(realpath "$(dirname "$0")")
+slipfront=$(realpath "${1:-$here/../../target/release/slipfront}")
+[ -x "$slipfront-mpi" ] || { echo "needs $slipfront-mpi: see the head of $0"; exit 2; }
 for command in slurmctld slurmd sbatch squeue scontrol munged mungekey; do
   PATH=$PATH:/usr/sbin command -v "$command" > /dev/null || { echo "needs $command: apt-get install slurm-wlm munge"; exit 2; }
 done
@@ -159,7 +163,7 @@ echo "$parts runs in three parts, $merged merged"
 [ "$parts" = "$runs" ] && [ "$merged" = "$runs" ]
 echo "passed: tables and pictures are the same bytes, and no run was made twice"
 
-# --- A long run, by the script of the guide.
+# --- Long runs, by the scripts of the guide.
 
 cat > case.toml << 'END'
 [slider]
@@ -168,29 +172,64 @@ blocks = [250, 250]
 v_star = 0.005
 END
 "$slipfront" run case.toml --quiet -o once
-{ echo '#!/bin/sh'; echo "PATH=$(dirname "$slipfront"):\$PATH"; sed -n '/^```sh/,/^```$/p' "$guide" | grep -v '^```\|^#!'; } > long.body
-# Directives stand before the first command; this machine has fewer processors than the one the guide has in mind.
-{ echo '#!/bin/sh'; grep '^#SBATCH' long.body | sed "s/per-task=16/per-task=$(nproc)/; /--mem=/d"; grep -v '^#' long.body; } > long.sh
-job=$(sbatch --parsable --job-name=long --open-mode=append --output=long.log long.sh)
-long=results/job-$job
-for stop in 1 2; do
+PATH=$(dirname "$slipfront"):$PATH
+
+# Writes the script of a page of the guide as NAME.sh. This machine has fewer processors than the one the guide has in mind.
+script() { # NAME PAGE
+  sed -n '/^```sh/,/^```$/p' "$here/../../docs/guide/$2" | grep -v '^```' |
+    sed "s/per-task=16/per-task=$(nproc)/; /--mem/d; s/--nodes=.*/--nodes=1/; s/per-node=.*/per-node=$ranks/" > "$1.sh"
+  if [ "$ranks" -gt "$(nproc)" ]; then sed -i 's/^#SBATCH --nodes.*/&\n#SBATCH --overcommit/' "$1.sh"; fi
+}
+submit() { sbatch --parsable --job-name=long --open-mode=append --output="$1.log" "$1.sh"; }
+processes() { pgrep -f "^[^ ]*slipfront(-mpi)? run .*results/job-$1"; }
+wait_for_run() { # until the command of a job goes through its steps
   for _ in $(seq 600); do
-    [ -e "$long/case.toml" ] && pgrep -f "slipfront run .*$long" > /dev/null && break
-    squeue -h -j "$job" -t PENDING -o '%i %r' | awk '$2 == "BeginTime" { print $1 }' |
+    [ -e "results/job-$1/case.toml" ] && processes "$1" > /dev/null && break
+    # A requeued job waits two minutes by default; here, until its last step has gone.
+    pgrep -f "^slurmstepd: \\[$1\\.[0-9]" > /dev/null ||
+      squeue -h -j "$1" -t PENDING -o '%i %r' | awk '$2 == "BeginTime" { print $1 }' |
       while read -r task; do scontrol update JobId="$task" StartTime=now; done
     sleep 0.1
   done
   sleep 0.7
-  scancel --signal=TERM "$job"
-  for _ in $(seq 600); do
-    [ "$(grep -c 'stopped by a signal' long.log)" -ge "$stop" ] && break
-    sleep 0.05
+}
+stop_twice() { # NAME JOB
+  for stop in 1 2; do
+    wait_for_run "$2"
+    scancel --signal=TERM "$2"
+    for _ in $(seq 600); do
+      [ "$(grep -c 'stopped by a signal' "$1.log")" -ge "$stop" ] && ! processes "$2" > /dev/null && break
+      sleep 0.05
+    done
   done
-done
-wait_end "$job"
-grep 'stopped by a signal' long.log
-[ "$(grep -c 'stopped by a signal' long.log)" = 2 ]
-for file in once/*; do
-  [ "$file" = once/manifest.json ] || cmp "$file" "$long/$(basename "$file")"
-done
+  wait_end "$2"
+  grep 'stopped by a signal' "$1.log"
+  [ "$(grep -c 'stopped by a signal' "$1.log")" = 2 ]
+}
+same_as_once() { # FOLDER
+  for file in once/*; do
+    [ "$file" = once/manifest.json ] || cmp "$file" "$1/$(basename "$file")"
+  done
+}
+
+ranks=1
+script long long.md
+job=$(submit long)
+stop_twice long "$job"
+same_as_once "results/job-$job"
 echo "passed: a job that was stopped twice wrote the same bytes"
+
+script mpi mpi.md
+job=$(submit mpi)
+stop_twice mpi "$job"
+same_as_once "results/job-$job"
+echo "passed: so did a job of $ranks ranks"
+
+job=$(submit mpi)
+wait_for_run "$job"
+kill -9 "$(processes "$job" | tail -1)"
+wait_end "$job"
+[ ! -e "results/job-$job/manifest.json" ]
+srun --mpi=pmix --overcommit -n "$ranks" slipfront-mpi run --quiet --resume "results/job-$job"
+same_as_once "results/job-$job"
+echo "passed: the end of one rank was the end of its job, and another went on with it"

@@ -8,6 +8,7 @@ use slipfront_case::case_file::CaseFile;
 
 use crate::failure::Failure;
 use crate::make_case::make_case;
+use crate::ranks::Ranks;
 use crate::signals::Signals;
 
 /// The case file and the changes of it that the command line asks for.
@@ -31,15 +32,15 @@ impl CaseArgs {
     }
 
     /// Reads the case, or takes the baseline that is embedded in the program.
-    pub(crate) fn load(self, signals: &Signals, quiet: bool) -> Result<Case, Failure> {
+    pub(crate) fn load(self, ranks: &Ranks, signals: &Signals, quiet: bool) -> Result<Case, Failure> {
         let mut overrides = self.overrides;
         overrides.extend(self.seed.map(|seed| format!("friction.seed={seed}")));
-        make_case(signals, quiet, |watch| match self.case {
-            Some(path) => Case::load(&path, &overrides, watch),
+        make_case(ranks, signals, quiet, |watch, ranks| match self.case {
+            Some(path) => Case::load_on_ranks(&path, &overrides, watch, ranks),
             None => {
                 let (text, name) = (include_str!("baseline.toml"), "baseline");
                 let file = CaseFile::parse(text, name, &overrides)?;
-                Case::to_run(file, name, Path::new(""), watch)
+                Case::to_run_on_ranks(file, name, Path::new(""), watch, ranks)
             }
         })
     }

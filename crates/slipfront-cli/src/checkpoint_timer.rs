@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::{Duration, Instant};
 
-use slipfront::communicator::Alone;
+use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::Checkpoints;
-use slipfront_run::resume_command::resume_command;
 use slipfront_run::running::Running;
 
 use crate::failure::Failure;
 use crate::progress::run::RunProgress;
+use crate::ranks::Ranks;
 use crate::signals::Signals;
 
 /// Wall time from one checkpoint to the next; none for no checkpoints at all.
@@ -55,12 +55,20 @@ pub(crate) struct CheckpointTimer {
     interval: Interval,
     due: Option<Instant>,
     signals: Signals,
+    ranks: Ranks,
 }
 
 impl CheckpointTimer {
     /// The first checkpoint is due an interval from now.
-    pub(crate) fn new(folder: &Path, checkpoints: Checkpoints, interval: Interval, signals: Signals) -> Self {
+    pub(crate) fn new(
+        folder: &Path,
+        checkpoints: Checkpoints,
+        interval: Interval,
+        signals: Signals,
+        ranks: Ranks,
+    ) -> Self {
         Self {
+            ranks,
             folder: folder.to_owned(),
             checkpoints,
             interval,
@@ -69,21 +77,32 @@ impl CheckpointTimer {
         }
     }
 
-    /// Saves a checkpoint if it is time, or if one was asked for.
+    /// Saves a checkpoint if it is time, or if one was asked for: on all ranks if on any of them.
     ///
     /// # Errors
-    /// [`Failure::Stopped`] if the run is to end here. A checkpoint that could not be saved does not end it.
-    pub(crate) fn save_if_due(&mut self, running: &Running, progress: &RunProgress) -> Result<(), Failure> {
-        if self.signals.stopped().is_some() {
-            return Err(self.stop(running));
+    /// If the run is to end here. A checkpoint that could not be saved does not end it.
+    pub(crate) fn save_if_due(
+        &mut self,
+        running: &Running,
+        progress: &RunProgress,
+    ) -> Result<(), RankFailure> {
+        let is_due = self.due.is_some_and(|due| Instant::now() >= due);
+        let mut reasons = [
+            f64::from(self.signals.stopped().unwrap_or_default()),
+            f64::from(self.signals.take_usr1()),
+            f64::from(is_due),
+        ];
+        self.ranks.largest(&mut reasons);
+        let (signal, asked, is_due) = (reasons[0] as i32, reasons[1] > 0.0, reasons[2] > 0.0);
+        if signal > 0 {
+            return Err(self.stop(signal, running).into());
         }
-        let asked = self.signals.take_usr1();
         if asked && !self.interval.saves() {
             progress.note("warning: no checkpoint is saved, since --checkpoint is off");
-        } else if asked || self.due.is_some_and(|due| Instant::now() >= due) {
+        } else if asked || is_due {
             let began = Instant::now();
             let step = running.snapshot().step;
-            match self.checkpoints.save(running, &Alone) {
+            match self.save(running) {
                 Ok(()) if asked => {
                     let seconds = began.elapsed().as_secs_f64();
                     progress.note(&format!("saved a checkpoint of step {step} in {seconds:.2} s"));
@@ -106,21 +125,27 @@ impl CheckpointTimer {
         Ok(())
     }
 
+    /// Saves a checkpoint; one that is not saved on any of the ranks is not saved.
+    fn save(&mut self, running: &Running) -> Result<(), RankFailure> {
+        let saved = self.checkpoints.save(running, &*self.ranks.communicator());
+        self.ranks.agree(saved.map_err(Failure::running))
+    }
+
     /// Saves a last checkpoint, and says how the run ends.
-    fn stop(&mut self, running: &Running) -> Failure {
+    fn stop(&mut self, signal: i32, running: &Running) -> Failure {
         let (step, last_step) = (running.snapshot().step, running.case().time_plan.last_step);
         let stopped = format!("stopped by a signal at step {step} of {last_step}");
         if !self.interval.saves() {
             let sentence = format!("{stopped}; nothing is saved, since --checkpoint is off");
-            return Failure::stopped(&self.signals, anyhow::anyhow!(sentence));
+            return Failure::Stopped(signal, anyhow::anyhow!(sentence));
         }
-        match self.checkpoints.save(running, &Alone) {
+        match self.save(running) {
             Ok(()) => {
                 let sentence = format!(
                     "{stopped}, which is saved: `{}` goes on",
-                    resume_command(&self.folder)
+                    self.ranks.resume_command(&self.folder)
                 );
-                Failure::stopped(&self.signals, anyhow::anyhow!(sentence))
+                Failure::Stopped(signal, anyhow::anyhow!(sentence))
             }
             // Not stopped as a signal should: a job script must not take it for one that has lost nothing.
             Err(error) => {
@@ -134,7 +159,7 @@ impl CheckpointTimer {
 
     /// The remedy when the disk has refused something.
     pub(crate) fn remedy(&self) -> String {
-        let command = resume_command(&self.folder);
+        let command = self.ranks.resume_command(&self.folder);
         let from = self
             .checkpoints
             .saved_step()

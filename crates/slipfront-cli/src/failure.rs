@@ -2,6 +2,8 @@
 
 use std::process::ExitCode;
 
+use slipfront_run::agree::RankFailure;
+
 use crate::print_stderr::print_stderr;
 use crate::signals::Signals;
 use crate::wrap::for_stderr;
@@ -32,12 +34,24 @@ impl Failure {
 
     /// Prints the error to stderr, and gives the exit status.
     pub(crate) fn report(self) -> ExitCode {
-        let (error, status) = match self {
-            Self::Input(error) => (error, 2),
-            Self::Running(error) => (error, 1),
-            Self::Stopped(signal, error) => (error, 128 + signal as u8),
-        };
-        print_stderr(&for_stderr(&format!("error: {error}")));
-        ExitCode::from(status)
+        report(&RankFailure::from(self))
     }
+}
+
+impl From<Failure> for RankFailure {
+    fn from(failure: Failure) -> Self {
+        let (error, status) = match failure {
+            Failure::Input(error) => (error, 2),
+            Failure::Running(error) => (error, 1),
+            Failure::Stopped(signal, error) => (error, 128 + signal as u8),
+        };
+        let sentence = error.to_string();
+        Self { status, sentence }
+    }
+}
+
+/// Prints a failure to stderr, and gives the exit status.
+pub(crate) fn report(failure: &RankFailure) -> ExitCode {
+    print_stderr(&for_stderr(&format!("error: {failure}")));
+    ExitCode::from(failure.status)
 }

@@ -1,5 +1,5 @@
 //! The command `slipfront` as a library, for its program and for other packages that contain the command: one file per
-//! subcommand under `commands/`, each thin.
+//! subcommand under `commands/`, each thin. `run` is the same code for one process and for the ranks of `slipfront-mpi`.
 //!
 //! Errors go to stderr as sentences, results to stdout. Exit status: 0 done, 1 a run failed, 2 bad input or
 //! usage, 128 + its number stopped by a signal: 129, 130 and 143 by SIGHUP, SIGINT and SIGTERM.
@@ -16,6 +16,7 @@ mod make_case;
 mod print;
 mod print_stderr;
 mod progress;
+mod ranks;
 mod report;
 mod signals;
 mod threads;
@@ -23,15 +24,21 @@ mod wrap;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser, Subcommand};
 
+use slipfront::Communicator;
 use slipfront_case::text::shell_quoted;
+use slipfront_run::agree::RankFailure;
 use slipfront_run::study::StudyFile;
 
-use crate::failure::Failure;
+use crate::commands::run::{CHECKPOINTS_HELP, Run};
+use crate::failure::{Failure, report};
 use crate::print::expect_printed;
+use crate::print_stderr::{is_silent, silence};
+use crate::ranks::Ranks;
 
 /// Friction of micro-textured surfaces: the lattice spring-block model of the transition from static to kinetic
 /// friction.
@@ -49,7 +56,20 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    Run(commands::run::Run),
+    #[command(
+        override_usage = "slipfront run [OPTIONS] [CASE.toml]\n       slipfront run [OPTIONS] --resume <DIR>",
+        after_help = format!(
+            "Examples:
+  slipfront run
+  slipfront run cases/groove_across.toml --set texture.0.coverage=5 -o results/groove-5
+  slipfront run results/baseline/case.toml -o results/again    repeats a run bit for bit
+  slipfront run --resume results/baseline                      goes on with a run that was stopped
+  slipfront run --json | jq .static_friction_star
+
+{CHECKPOINTS_HELP}"
+        )
+    )]
+    Run(Run),
     Check(commands::check::Check),
     Study(commands::study::Study),
     Paper(commands::paper::Paper),
@@ -59,39 +79,95 @@ enum Command {
     Completions(commands::completions::Completions),
 }
 
+/// Friction of micro-textured surfaces, with one lattice divided over many processes, on one machine or many: what `slipfront
+/// run` does, byte for byte.
+#[derive(Parser)]
+#[command(name = "slipfront-mpi", version, max_term_width = 100)]
+struct RanksCli {
+    #[command(subcommand)]
+    command: RanksCommand,
+}
+
+#[derive(Subcommand)]
+enum RanksCommand {
+    #[command(
+        override_usage = "mpirun -n <RANKS> slipfront-mpi run [OPTIONS] [CASE.toml]
+       mpirun -n <RANKS> slipfront-mpi run [OPTIONS] --resume <DIR>",
+        after_help = format!(
+            "Each rank holds rows of the lattice, on one thread unless --threads says otherwise; there are as many ranks as rows at \
+most. A run goes on with any number of ranks, or with `slipfront run --resume`.
+
+Examples:
+  mpirun -n 8 slipfront-mpi run cases/circle.toml -o results/circle
+  mpirun -n 4 slipfront-mpi run --resume results/circle
+  srun --mpi=pmix slipfront-mpi run cases/circle.toml -o results/circle
+
+{CHECKPOINTS_HELP}"
+        )
+    )]
+    Run(Run),
+}
+
 /// Runs the command with these arguments, the first of which is the name of the program; gives its exit status.
 ///
 /// It belongs to a process of its own: signals are caught and the number of threads is set for the whole process, once.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     let command = match Cli::try_parse_from(args) {
         Ok(cli) => cli.command,
-        // Of a wrong line the status is what matters; help and version are what was asked for.
         Err(error) => {
-            if let Some(sentence) = forgotten_subcommand(&error) {
-                return Failure::input(anyhow::anyhow!(sentence)).report();
-            }
-            let status = ExitCode::from(error.exit_code() as u8);
-            return match expect_printed(error.print()) {
-                Err(failure) if !error.use_stderr() => failure.report(),
-                _ => status,
+            return match forgotten_subcommand(&error) {
+                Some(sentence) => Failure::input(anyhow::anyhow!(sentence)).report(),
+                None => print_usage(&error),
             };
         }
     };
+    execute(|| {
+        let done = match command {
+            Command::Run(run) => return run.execute(&Ranks::alone()),
+            Command::Check(check) => check.execute(),
+            Command::Study(study) => study.execute(),
+            Command::Paper(paper) => paper.execute(),
+            Command::Texture(texture) => texture.execute(),
+            Command::Plot(plot) => plot.execute(),
+            Command::Verify(verify) => verify.execute(),
+            Command::Completions(completions) => completions.execute(Cli::command()),
+        };
+        done.map_err(RankFailure::from)
+    })
+}
+
+/// The same for the command `slipfront-mpi`, of which there is a process for every rank of the communicator.
+pub fn main_on_ranks(
+    args: impl IntoIterator<Item = OsString>,
+    communicator: Arc<dyn Communicator>,
+) -> ExitCode {
+    let ranks = Ranks::new("slipfront-mpi", communicator);
+    if !ranks.is_first() {
+        silence();
+    }
+    let RanksCommand::Run(run) = match RanksCli::try_parse_from(args) {
+        Ok(cli) => cli.command,
+        Err(error) => return print_usage(&error),
+    };
+    execute(|| run.execute(&ranks))
+}
+
+fn execute(work: impl FnOnce() -> Result<(), RankFailure>) -> ExitCode {
     // If the signal cannot be caught, only the error message for a file that grows too large is lost.
     let _ = signals::ignore_sigxfsz();
-    let done = match command {
-        Command::Run(run) => run.execute(),
-        Command::Check(check) => check.execute(),
-        Command::Study(study) => study.execute(),
-        Command::Paper(paper) => paper.execute(),
-        Command::Texture(texture) => texture.execute(),
-        Command::Plot(plot) => plot.execute(),
-        Command::Verify(verify) => verify.execute(),
-        Command::Completions(completions) => completions.execute(Cli::command()),
-    };
-    match done {
+    match work() {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
+        Err(failure) => report(&failure),
+    }
+}
+
+/// Prints what was asked for, as help is, or what is wrong with the arguments.
+fn print_usage(error: &clap::Error) -> ExitCode {
+    let printed = if is_silent() { Ok(()) } else { error.print() };
+    // Of a wrong line the status is what matters; help and version are what was asked for.
+    match expect_printed(printed) {
+        Err(failure) if !error.use_stderr() => failure.report(),
+        _ => ExitCode::from(error.exit_code() as u8),
     }
 }
 

@@ -1,26 +1,39 @@
 //! Makes the case of a command, with progress and an ear for signals while its texture is laid over the blocks.
 
-use slipfront_case::case::{Case, Watch};
+use slipfront_case::case::{self, Case, Watch};
 use slipfront_case::case_file::CaseError;
 
 use crate::failure::Failure;
 use crate::progress::mesh::MeshProgress;
+use crate::ranks::Ranks;
 use crate::signals::Signals;
 
-/// The case that `make` gives; it is handed what watches its texture.
+/// The case that `make` gives on all ranks; it is handed what watches its texture.
 pub(crate) fn make_case(
+    ranks: &Ranks,
     signals: &Signals,
     quiet: bool,
-    make: impl FnOnce(&mut Watch) -> Result<Case, CaseError>,
+    make: impl FnOnce(&mut Watch, case::Ranks) -> Result<Case, CaseError>,
 ) -> Result<Case, Failure> {
     let mut progress = MeshProgress::new(quiet);
-    let made = make(&mut |share| {
+    let communicator = ranks.communicator();
+    let of_case = case::Ranks {
+        communicator: &*communicator,
+        on_node: ranks.on_node(),
+    };
+    let watch = &mut |share| {
         progress.show(share);
         signals.stopped().is_none()
-    });
+    };
+    let made = make(watch, of_case);
     progress.finish();
     made.map_err(|error| match error {
-        CaseError::Stopped => Failure::stopped(signals, error),
+        CaseError::Stopped => {
+            // The signal may have come to another rank alone.
+            let mut signal = [f64::from(signals.stopped().unwrap_or_default())];
+            ranks.largest(&mut signal);
+            Failure::Stopped(signal[0] as i32, error.into())
+        }
         error => Failure::input(error),
     })
 }

@@ -3,6 +3,7 @@
 use std::io::{ErrorKind, Write};
 
 use crate::failure::Failure;
+use crate::print_stderr::is_silent;
 
 /// Prints what the command was called for. It is no failure when the reader has closed the pipe, as `head` does.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
@@ -26,6 +27,9 @@ pub(crate) fn expect_printed(written: std::io::Result<()>) -> Result<(), Failure
 }
 
 fn write(text: &str) -> std::io::Result<()> {
+    if is_silent() {
+        return Ok(());
+    }
     let mut stdout = std::io::stdout().lock();
     stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush())
 }

@@ -1,9 +1,26 @@
-//! Messages on stderr.
+//! Messages on stderr, and whether this process says anything at all.
 
 use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Set where another process of the same command speaks for all.
+static IS_SILENT: AtomicBool = AtomicBool::new(false);
+
+/// Nothing more is printed by this process.
+pub(crate) fn silence() {
+    IS_SILENT.store(true, Ordering::Relaxed);
+}
+
+/// Whether another process speaks for this one.
+pub(crate) fn is_silent() -> bool {
+    IS_SILENT.load(Ordering::Relaxed)
+}
 
 /// Prints a line to stderr. A line that cannot be printed, since the terminal is closed or the disk is full, is lost: the
 /// command goes on and ends with the exit status of its work.
 pub(crate) fn print_stderr(line: &str) {
+    if is_silent() {
+        return;
+    }
     let _ = writeln!(std::io::stderr(), "{line}");
 }

@@ -9,7 +9,7 @@ use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use blake3::{Hash, Hasher, OUT_LEN};
 use slipfront::Communicator;
 
-use crate::ranks::agree;
+use crate::agree::agree_on_io;
 
 /// Bytes of a piece; the last may be shorter.
 const PIECE: u64 = 4 << 20;
@@ -44,7 +44,7 @@ pub fn hash_of_pieces(
             }
             Ok(())
         };
-        agree(communicator, hash_own())?;
+        agree_on_io(communicator, hash_own())?;
         communicator.sum(words.as_flattened_mut());
         for word in words.as_flattened() {
             hasher.update(&word.to_le_bytes());
@@ -83,10 +83,9 @@ fn hash(context: &[u8], contents: &[u8]) -> Hash {
 mod tests {
     use std::io::Cursor;
 
-    use slipfront::communicator::Alone;
+    use slipfront::communicator::{Alone, Threads};
 
     use super::*;
-    use crate::test_ranks::on_ranks;
 
     #[test]
     fn a_small_file_is_verified_as_it_was_written() {
@@ -112,7 +111,7 @@ mod tests {
             let pieces = file[..length].chunks(piece);
             let hashes: Vec<u8> = pieces.flat_map(|piece| *blake3::hash(piece).as_bytes()).collect();
             for ranks in [1, 2, 3, 7] {
-                let found = on_ranks(ranks, |communicator| {
+                let found = Threads::run(ranks, |communicator| {
                     hash_of_pieces(&mut Cursor::new(&file), length as u64, communicator).unwrap()
                 });
                 assert_eq!(found, vec![blake3::hash(&hashes); ranks], "{length} {ranks}");

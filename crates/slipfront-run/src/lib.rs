@@ -6,6 +6,7 @@
 //!
 //! Each arrow is one function: [`running::run`], [`results::write`], `pictures::draw` (with the feature `plot`).
 
+pub mod agree;
 pub mod checkpoint;
 pub mod checksum;
 pub mod clock;
@@ -16,7 +17,6 @@ pub mod manifest;
 pub mod names;
 pub mod pictures;
 pub mod program;
-mod ranks;
 pub mod results;
 pub mod resume_command;
 pub mod run_folder;
@@ -25,6 +25,3 @@ pub mod series;
 pub mod study;
 pub mod summary;
 pub mod verify;
-
-#[cfg(test)]
-mod test_ranks;

@@ -90,7 +90,7 @@ pub struct ManifestFile {
 pub enum ManifestError {
     #[error(
         "{path} holds no manifest.json: it is no run folder, or its run did not end; if it did not, `{}` goes on with it",
-        resume_command(path)
+        resume_command("slipfront", path)
     )]
     Missing { path: PathBuf },
     #[error("cannot read {path}: {why}")]

@@ -2,6 +2,9 @@
 //!
 //! Pictures are always drawn from the files, so that those of a run and those of `slipfront plot` are equal.
 
+use std::path::Path;
+
+use slipfront::communicator::{Alone, Communicator};
 use slipfront_case::case::Case;
 use slipfront_case::disk;
 use tempfile::TempPath;
@@ -13,6 +16,7 @@ use crate::names::{CASE, FIELDS, SERIES, SUMMARY};
 #[cfg(feature = "plot")]
 use crate::pictures;
 use crate::run_folder::RunFolder;
+use crate::run_folder::unfinished::Unfinished;
 use crate::running::Record;
 use crate::series::{self, SeriesRow};
 
@@ -26,10 +30,28 @@ pub fn write(
     started: jiff::Timestamp,
     threads: usize,
 ) -> Result<Manifest, ResultsError> {
+    write_tables(case, record, &mut folder)?;
+    match write_fields(case, record, folder.path(), &Alone)? {
+        Some(fields) => finish(case, folder, fields, started, threads),
+        None => Ok(folder.complete(case, started, threads)?),
+    }
+}
+
+/// Summary and series, the first results of a run, by one of its ranks.
+pub fn write_tables(case: &Case, record: &Record, folder: &mut RunFolder) -> Result<(), ResultsError> {
     folder.write(SUMMARY, &disk::json(&record.summary))?;
     let rows = record.rows.iter().map(|row| SeriesRow::new(row, &case.scales));
-    folder.write(SERIES, &series::to_csv(rows)?)?;
-    let fields = write_fields(case, record, &folder)?;
+    Ok(folder.write(SERIES, &series::to_csv(rows)?)?)
+}
+
+/// All that follows the [fields](write_fields), by one of the ranks.
+pub fn finish(
+    case: &Case,
+    mut folder: RunFolder,
+    fields: TempPath,
+    started: jiff::Timestamp,
+    threads: usize,
+) -> Result<Manifest, ResultsError> {
     folder.place(FIELDS, fields)?;
     #[cfg(feature = "plot")]
     for (name, picture) in pictures::draw(folder.path())? {
@@ -48,7 +70,14 @@ pub fn write_case(case: &Case, folder: &mut RunFolder) -> Result<(), ResultsErro
     Ok(folder.sync()?)
 }
 
-fn write_fields(case: &Case, record: &mut Record, folder: &RunFolder) -> Result<TempPath, FieldsError> {
+/// Writes the fields to a temporary file of the run in folder `out`, each rank its own rows; the first one has the file. They are
+/// moved out of the record.
+pub fn write_fields(
+    case: &Case,
+    record: &mut Record,
+    out: &Path,
+    communicator: &dyn Communicator,
+) -> Result<Option<TempPath>, FieldsError> {
     let surface = &case.model.surface;
     let names = &case.output.fields;
     let scale = record.contact_stress_max;
@@ -59,7 +88,7 @@ fn write_fields(case: &Case, record: &mut Record, folder: &RunFolder) -> Result<
     let file = FieldsFile {
         nx: case.model.lattice.nx,
         ny: case.model.lattice.ny,
-        rows: 0..case.model.lattice.ny,
+        rows: case.model.rows.clone(),
         stride: case.output.stride,
         block_size: case.scales.block_size,
         time_unit_s: case.scales.time(),
@@ -72,7 +101,12 @@ fn write_fields(case: &Case, record: &mut Record, folder: &RunFolder) -> Result<
         },
         frames: &frames,
     };
-    fields::write_fields(&folder.temporary(), &folder.path().join(FIELDS), &file)
+    fields::write_fields(
+        &Unfinished::of(out).temporary(),
+        &out.join(FIELDS),
+        &file,
+        communicator,
+    )
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use slipfront::checkpoint::BlockColumn;
+use slipfront::communicator::{Alone, Communicator};
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{CurveRow, Frame, Frames, Instants, Schedule, Scheduled};
 use slipfront::{Checkpoint, Execution, RunError, Simulation, Snapshot, Stop, StopReason};
@@ -81,7 +82,7 @@ impl RunState {
 
 fn execution(case: &Case, threads: usize) -> Execution {
     Execution {
-        threads: (case.model.lattice.n_blocks() / BLOCKS_PER_THREAD).clamp(1, threads),
+        threads: (case.model.surface.n_blocks() / BLOCKS_PER_THREAD).clamp(1, threads),
         ..Execution::default()
     }
 }
@@ -174,7 +175,7 @@ impl Fields {
 
 /// Rows of the lattice that this process holds.
 fn own_rows(case: &Case) -> Range<usize> {
-    0..case.model.lattice.ny
+    case.model.rows.clone()
 }
 
 /// Those rows among every `stride`-th of the lattice, counted among these.
@@ -189,21 +190,33 @@ const PART: usize = 1 << 17;
 impl Running {
     /// Begins a run on at most `threads` threads.
     pub fn start(case: &Arc<Case>, threads: usize) -> Self {
-        Self::begin(case, threads, case.time_plan.stop, case.time_plan.last_step)
+        Self::start_on_ranks(case, threads, Arc::new(Alone))
+    }
+
+    /// The same on each of several ranks, which share the lattice and then call the same functions. `threads` are those of one.
+    pub fn start_on_ranks(case: &Arc<Case>, threads: usize, communicator: Arc<dyn Communicator>) -> Self {
+        let plan = &case.time_plan;
+        Self::begin(case, threads, plan.stop, plan.last_step, communicator)
     }
 
     /// Begins a run that goes on as long as it is advanced, whatever its case says. Its [state](Self::state) cannot be
     /// resumed.
     pub fn start_without_end(case: &Arc<Case>, threads: usize) -> Self {
-        Self::begin(case, threads, Stop::at_step(u64::MAX), u64::MAX)
+        Self::begin(case, threads, Stop::at_step(u64::MAX), u64::MAX, Arc::new(Alone))
     }
 
-    fn begin(case: &Arc<Case>, threads: usize, stop: Stop, last_step: u64) -> Self {
+    fn begin(
+        case: &Arc<Case>,
+        threads: usize,
+        stop: Stop,
+        last_step: u64,
+        communicator: Arc<dyn Communicator>,
+    ) -> Self {
         let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
         Self {
             case: Arc::clone(case),
             stop,
-            simulation: Simulation::with_execution(model, dt_star, None, execution(case, threads)),
+            simulation: Simulation::on_ranks(model, dt_star, None, execution(case, threads), communicator),
             observers: Observers::new(case, last_step),
         }
     }
@@ -217,6 +230,7 @@ impl Running {
         case: &Arc<Case>,
         threads: usize,
         state: RunState,
+        communicator: Arc<dyn Communicator>,
         mut read: impl FnMut(u64, &mut [u8]) -> Result<(), E>,
     ) -> Result<Option<Self>, E> {
         let (checkpoint, mut observers) = (state.simulation, state.observers);
@@ -228,15 +242,21 @@ impl Running {
         let first_row = own_rows(case).start;
         let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
         let execution = execution(case, threads);
-        let simulation =
-            Simulation::resume(model, dt_star, &checkpoint, execution, |column, first, values| {
+        let simulation = Simulation::resume_on_ranks(
+            model,
+            dt_star,
+            &checkpoint,
+            execution,
+            communicator,
+            |column, first, values| {
                 bytes.resize(size_of_val(values), 0);
                 read(blocks.offset(column as usize, first_row, first), &mut bytes)?;
                 for (value, bytes) in values.iter_mut().zip(bytes.as_chunks().0) {
                     *value = f64::from_le_bytes(*bytes);
                 }
                 Ok(())
-            })?;
+            },
+        )?;
         let Some(simulation) = simulation else {
             return Ok(None);
         };

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use slipfront::scales::damping;
 use slipfront::surface::Load;
-use slipfront::{Communicator, Drive, Lattice, Model, Scales, Surface};
+use slipfront::{Communicator, Drive, Kernel, Lattice, Model, Scales, Surface};
 
 use super::budget::Budget;
 use super::coefficients::coefficients;
@@ -240,6 +240,10 @@ impl Derived {
                 lattice.ny
             );
             return Err(file.source.error("slider.blocks", sentence));
+        }
+        if n_ranks > 1 && Kernel::Fused.for_law(file.friction.law) != Kernel::Fused {
+            let sentence = "a lattice is divided among ranks under the law \"projection\" alone: take one rank, or that law";
+            return Err(file.source.error("friction.law", sentence));
         }
         let time_plan = TimePlan::of(file, &scales, &groups)?;
         let output = Output::of(file, &time_plan)?;

@@ -6,6 +6,7 @@ use crate::case_args::CaseArgs;
 use crate::estimate_cost::seconds_per_step;
 use crate::failure::Failure;
 use crate::print::print;
+use crate::ranks::Ranks;
 use crate::report;
 use crate::signals::Signals;
 
@@ -22,7 +23,7 @@ pub(crate) struct Check {
 impl Check {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let signals = Signals::catch().map_err(Failure::running)?;
-        let case = self.case.load(&signals, false)?;
+        let case = self.case.load(&Ranks::alone(), &signals, false)?;
         print(&report::physics(&case))?;
         let seconds = seconds_per_step(&case) * case.time_plan.last_step as f64;
         print(&report::cost(&case, seconds))

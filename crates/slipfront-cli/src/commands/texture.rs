@@ -10,6 +10,7 @@ use slipfront_case::disk::is_same;
 use crate::case_args::CaseArgs;
 use crate::failure::Failure;
 use crate::print::print_message;
+use crate::ranks::Ranks;
 use crate::report;
 use crate::signals::Signals;
 
@@ -31,7 +32,7 @@ pub(crate) struct Texture {
 impl Texture {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let signals = Signals::catch().map_err(Failure::running)?;
-        let case = self.case.load(&signals, false)?;
+        let case = self.case.load(&Ranks::alone(), &signals, false)?;
         let input = case
             .inputs
             .iter()

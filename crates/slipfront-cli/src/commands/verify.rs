@@ -21,6 +21,7 @@ use crate::make_case::make_case;
 use crate::print::print;
 use crate::print_stderr::print_stderr;
 use crate::progress::run::RunProgress;
+use crate::ranks::Ranks;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
 use crate::wrap;
@@ -115,7 +116,7 @@ impl Verify {
             );
             return Err(Failure::input(anyhow::anyhow!(sentence)));
         }
-        let case = make_case(signals, self.quiet, |watch| match &run.case {
+        let case = make_case(&Ranks::alone(), signals, self.quiet, |watch, _| match &run.case {
             Ok(file) => Case::to_run(file.clone(), "case", folder, watch),
             Err(CaseDefect::NotResolved(file)) => Case::to_run(*file.clone(), "case", folder, watch),
             // It says why there is none.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 
-use crate::print_stderr::print_stderr;
+use crate::print_stderr::{is_silent, print_stderr};
 use crate::wrap::for_stderr;
 
 /// Shows how far some work has come.
@@ -15,7 +15,7 @@ pub(crate) struct ProgressDisplay {
 }
 
 enum Sink {
-    /// Where the user asked for quiet.
+    /// Where the user asked for quiet, or another process speaks for this one.
     Silent,
     Bar(ProgressBar),
     /// Plain lines, and when the next one is due.
@@ -26,7 +26,7 @@ impl ProgressDisplay {
     /// `template` is that of the bar, as indicatif reads it.
     pub(crate) fn new(template: &str, quiet: bool) -> Self {
         let began = Instant::now();
-        let sink = if quiet {
+        let sink = if quiet || is_silent() {
             Sink::Silent
         } else if !std::io::stderr().is_terminal() {
             Sink::Lines(began + pause(Duration::ZERO))

@@ -39,7 +39,8 @@ fn words(line: &str) -> Vec<String> {
     words
 }
 
-/// What stands behind `slipfront` or `cargo run --release --` in the `$` lines of the console blocks.
+/// What stands behind `slipfront`, `cargo run --release --` or, with any way to start it, `slipfront-mpi`, of which `run` is the
+/// same, in the `$` lines of the console blocks.
 fn commands(page: &str) -> Vec<Vec<String>> {
     let mut found = Vec::new();
     let mut console = false;
@@ -53,7 +54,8 @@ fn commands(page: &str) -> Vec<Vec<String>> {
         };
         let arguments = ["slipfront ", "cargo run --release -- "]
             .iter()
-            .find_map(|program| line.strip_prefix(program));
+            .find_map(|program| line.strip_prefix(program))
+            .or_else(|| line.split_once(" slipfront-mpi ").map(|(_, arguments)| arguments));
         found.extend(arguments.map(words));
     }
     found

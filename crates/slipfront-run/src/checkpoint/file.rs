@@ -16,10 +16,10 @@ use slipfront_case::disk::{open_regular, remove_if_there};
 use slipfront_case::text::truncated;
 
 use super::error::{CheckpointError, LAYOUT};
+use crate::agree::agree_on_io;
 use crate::checksum::hash_of_pieces;
 use crate::columns::Columns;
 use crate::program;
-use crate::ranks::agree;
 use crate::running::{RunState, Running};
 
 /// Longest first line.
@@ -82,16 +82,21 @@ pub(super) fn write(
     let is_first = communicator.rank() == 0;
     let mut line = serde_json::to_vec(header)?;
     line.push(b'\n');
-    let begin = line.len() as u64;
+    // The first line is that of the first rank, whose clock may show a time of more digits.
+    let mut begin = [if is_first { line.len() as i64 } else { 0 }];
+    communicator.sum(&mut begin);
+    let begin = begin[0] as u64;
     let end = header.columns_end(begin).ok_or(ErrorKind::FileTooLarge)?;
+    // All ranks find the state together, and one writes it.
+    let state = running.state();
     let begun = match is_first {
-        true => write_line_and_state(path, &line, end, running),
+        true => write_line_and_state(path, &line, end, &state),
         false => Ok(0),
     };
-    let mut length = [agree(communicator, begun)? as i64];
+    let mut length = [agree_on_io(communicator, begun)? as i64];
     communicator.sum(&mut length);
     let length = length[0] as u64;
-    let mut file = agree(communicator, write_columns(path, begin, running))?;
+    let mut file = agree_on_io(communicator, write_columns(path, begin, running))?;
     let checksum = hash_of_pieces(&mut file, length, communicator)?;
     let mut finish = || {
         if is_first {
@@ -100,18 +105,18 @@ pub(super) fn write(
         }
         file.sync_all()
     };
-    agree(communicator, finish())
+    agree_on_io(communicator, finish())
 }
 
 /// Makes the file with all but its columns and its checksum, the state from byte `end` on, and gives its length.
-fn write_line_and_state(path: &Path, line: &[u8], end: u64, running: &Running) -> std::io::Result<u64> {
+fn write_line_and_state(path: &Path, line: &[u8], end: u64, state: &impl Serialize) -> std::io::Result<u64> {
     // One that a killed program has left, whatever it leads to.
     remove_if_there(path)?;
     let mut writer = BufWriter::with_capacity(1 << 20, File::create_new(path)?);
     writer.write_all(line)?;
     writer.seek(SeekFrom::Start(end))?;
     // Postcard drops the system's error of a failed write; `flush` gives it again.
-    let written = postcard::to_io(&running.state(), &mut writer).map(|_| ());
+    let written = postcard::to_io(state, &mut writer).map(|_| ());
     writer.flush()?;
     written.map_err(Error::other)?;
     writer.stream_position()
@@ -139,7 +144,7 @@ pub(super) fn read(
         source,
     };
     let damaged = |why| CheckpointError::Damaged { path: owned(), why };
-    let (mut file, line, length) = agree(communicator, open(path)).map_err(unreadable)?;
+    let (mut file, line, length) = agree_on_io(communicator, open(path)).map_err(unreadable)?;
     let unknown = || damaged("its first line is not that of a checkpoint");
     let Layout { slipfront_checkpoint } = serde_json::from_slice(&line).map_err(|_| unknown())?;
     if slipfront_checkpoint != LAYOUT {
@@ -155,7 +160,7 @@ pub(super) fn read(
     let read = file
         .seek(SeekFrom::Start(contents))
         .and_then(|_| file.read_exact(&mut checksum));
-    agree(communicator, read).map_err(unreadable)?;
+    agree_on_io(communicator, read).map_err(unreadable)?;
     if hash.as_bytes() != &checksum {
         return Err(wrong());
     }
@@ -170,7 +175,7 @@ pub(super) fn read(
     let begin = line.len() as u64;
     let end = header.columns_end(begin).filter(|&end| end <= contents);
     let end = end.ok_or_else(|| damaged("it does not hold the columns that its first line tells"))?;
-    let state = agree(communicator, read_state(&file, end, contents));
+    let state = agree_on_io(communicator, read_state(&file, end, contents));
     let state = state.map_err(|error| match error.kind() {
         ErrorKind::InvalidData => damaged("it holds no state of a run"),
         _ => unreadable(error),

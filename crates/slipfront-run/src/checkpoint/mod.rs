@@ -17,8 +17,8 @@ use slipfront_case::disk::{remove_if_there, sync_folder};
 
 pub use self::error::CheckpointError;
 use self::file::{Header, VerifiedFile};
+use crate::agree::agree_on_io;
 use crate::names::{CHECKPOINT, PREVIOUS};
-use crate::ranks::agree;
 use crate::run_folder::unfinished::Unfinished;
 use crate::running::Running;
 
@@ -41,18 +41,23 @@ impl LoadedCheckpoint {
     ///
     /// # Errors
     /// [`CheckpointError::Unreadable`].
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "the run keeps a share of the connection"
+    )]
     pub fn resume(
         self,
         case: &Arc<Case>,
         threads: usize,
-        communicator: &dyn Communicator,
+        communicator: Arc<dyn Communicator>,
     ) -> Result<Option<Running>, CheckpointError> {
         // Nothing is allocated for columns that the file does not hold.
         if self.file.state.columns(case) != self.file.header.columns {
             return Ok(None);
         }
         let (state, read) = self.file.into_parts();
-        agree(communicator, Running::resume(case, threads, state, read)).map_err(|source| {
+        let resumed = Running::resume(case, threads, state, Arc::clone(&communicator), read);
+        agree_on_io(&*communicator, resumed).map_err(|source| {
             let path = self.path;
             CheckpointError::Unreadable { path, source }
         })
@@ -117,7 +122,7 @@ impl Checkpoints {
             // The error that is told is the first one.
             let _ = remove_if_there(&temporary);
         }
-        agree(communicator, placed)?;
+        agree_on_io(communicator, placed)?;
         self.saved_step = Some(header.step);
         Ok(())
     }
@@ -147,7 +152,9 @@ impl Checkpoints {
         for name in [CHECKPOINT, PREVIOUS].into_iter().skip(usize::from(previous)) {
             let path = Unfinished::of(folder).path().join(name);
             // A link with nothing at its end must be refused, and not taken for no checkpoint.
-            if path.symlink_metadata().is_ok() {
+            let mut is_there = [f64::from(u8::from(path.symlink_metadata().is_ok()))];
+            communicator.largest(&mut is_there);
+            if is_there[0] > 0.0 {
                 let file = file::read(&path, &hash_of(case), communicator)?;
                 let latest = name == CHECKPOINT;
                 return Ok(Some(LoadedCheckpoint { path, file, latest }));
@@ -170,10 +177,11 @@ fn hash_of(case: &Case) -> String {
 
 #[cfg(test)]
 mod tests {
-    use slipfront::communicator::Alone;
+    use slipfront::communicator::{Alone, Threads};
+    use slipfront_case::case::Ranks;
+    use slipfront_case::case_file::CaseFile;
 
     use super::*;
-    use crate::test_ranks::on_ranks;
 
     fn case() -> Arc<Case> {
         let text = "slider.blocks = [60, 50]\ntime.duration_star = 20\ndrive.v_star = 0.2\n\
@@ -206,17 +214,63 @@ mod tests {
         for ranks in [2, 3] {
             let folder = tempfile::tempdir().unwrap();
             checkpoints(folder.path(), &case);
-            let steps = on_ranks(ranks, |communicator| {
+            let steps = Threads::run(ranks, |communicator| {
                 let mut checkpoints = Checkpoints::new(folder.path(), &case, Timestamp::UNIX_EPOCH);
                 for _ in 0..2 {
                     checkpoints.save(&running, communicator).unwrap();
                 }
                 let loaded = Checkpoints::load(folder.path(), &case, false, communicator);
-                let resumed = loaded.unwrap().unwrap().resume(&case, 1, communicator);
+                let resumed = loaded
+                    .unwrap()
+                    .unwrap()
+                    .resume(&case, 1, Arc::new(communicator.clone()));
                 resumed.unwrap().unwrap().snapshot().step
             });
             assert_eq!(steps, vec![running.snapshot().step; ranks]);
             assert!(latest(folder.path()) == latest(alone.path()), "{ranks} ranks");
+        }
+    }
+
+    /// At many instants of a run with all kinds of frames, each rank with its own rows.
+    #[test]
+    fn ranks_that_share_a_lattice_save_the_bytes_of_one() {
+        for text in [
+            "slider.blocks = [14, 13]\ndrive.v_star = 0.02\ntime.duration_star = 300\noutput.stride = 2\n",
+            "slider.blocks = [12, 11]\ndrive.v_star = 0.1\ntime.duration_star = 60\noutput.snapshots = { every = 4.0 }\n",
+        ] {
+            let parsed = || CaseFile::parse(text, "case", &[]).unwrap();
+            let alone = tempfile::tempdir().unwrap();
+            let case = Arc::new(Case::to_run(parsed(), "case", Path::new(""), &mut |_| true).unwrap());
+            let saved = |case: &Arc<Case>, folder: &Path, communicator: Arc<dyn Communicator>| {
+                let mut running = Running::start_on_ranks(case, 1, Arc::clone(&communicator));
+                // Clocks differ.
+                let started = Timestamp::from_nanosecond(communicator.rank() as i128).unwrap();
+                let mut checkpoints = Checkpoints::new(folder, case, started);
+                let mut files = Vec::new();
+                while running.advance(97).unwrap().is_none() {
+                    checkpoints.save(&running, &*communicator).unwrap();
+                    files.push(latest(folder));
+                }
+                files
+            };
+            Unfinished::of(alone.path()).create().unwrap();
+            let expected = saved(&case, alone.path(), Arc::new(Alone));
+            assert!(expected.len() > 5);
+            for size in [2, 3, 5] {
+                let folder = tempfile::tempdir().unwrap();
+                Unfinished::of(folder.path()).create().unwrap();
+                Threads::run(size, |rank| {
+                    let ranks = Ranks {
+                        communicator: rank,
+                        on_node: size,
+                    };
+                    let case = Case::to_run_on_ranks(parsed(), "case", Path::new(""), &mut |_| true, ranks);
+                    let found = saved(&Arc::new(case.unwrap()), folder.path(), Arc::new(rank.clone()));
+                    for (k, (found, expected)) in found.iter().zip(&expected).enumerate() {
+                        assert!(found == expected, "{size} ranks, checkpoint {k}");
+                    }
+                });
+            }
         }
     }
 
@@ -238,7 +292,7 @@ mod tests {
                     folder.path()
                 }
             };
-            let errors = on_ranks(3, |communicator| {
+            let errors = Threads::run(3, |communicator| {
                 let seen = seen(communicator.rank());
                 let mut checkpoints = Checkpoints::new(seen, &case, Timestamp::UNIX_EPOCH);
                 checkpoints.save(&begun, communicator).unwrap_err().to_string()
@@ -315,7 +369,7 @@ mod tests {
                         Err(CheckpointError::Damaged { .. }) => false,
                         loaded => {
                             let loaded = loaded.unwrap().unwrap();
-                            loaded.resume(&case, 1, &Alone).unwrap().is_some()
+                            loaded.resume(&case, 1, Arc::new(Alone)).unwrap().is_some()
                         }
                     };
                     assert!(!went_on, "{key} {wrong}");

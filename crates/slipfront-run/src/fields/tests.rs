@@ -6,12 +6,14 @@ use tempfile::TempDir;
 
 use slipfront::observe::Field;
 
+use slipfront::communicator::Alone;
+
 use super::*;
 use slipfront_case::field_info::{field_info, field_named};
 
 /// Writes a file by way of a temporary one beside it.
 fn write(path: &Path, file: &FieldsFile) -> Result<(), FieldsError> {
-    let written = write_fields(path.parent().unwrap(), path, file)?;
+    let written = write_fields(path.parent().unwrap(), path, file, &Alone)?.unwrap();
     written.persist(path).map_err(|error| FieldsError::Write {
         path: path.to_owned(),
         source: error.error,

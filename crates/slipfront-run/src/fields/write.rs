@@ -5,6 +5,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::Path;
 
+use slipfront::communicator::{Communicator, text_of};
 use slipfront::observe::Field;
 use slipfront_case::disk::write_temp;
 use slipfront_case::field_info::field_info;
@@ -14,6 +15,7 @@ use super::definition::define;
 use super::frame::*;
 use super::netcdf3::Number;
 use super::netcdf3_header::{Header, Place};
+use crate::agree::agree_on_io;
 
 /// Bytes that are collected before they are written.
 const BUFFER: usize = 1 << 18;
@@ -21,24 +23,41 @@ const BUFFER: usize = 1 << 18;
 /// What fills up a variable of 16-bit numbers behind an odd number of them: the beginning of NetCDF's number for nothing.
 const SHORT_PADDING: [u8; 2] = [0x80, 0x01];
 
-/// Writes what will be the `fields.nc` at `path` to a temporary file in a folder on the same file system.
+/// Writes what will be the `fields.nc` at `path` to a temporary file in a folder on the same file system, each rank the rows that
+/// it holds.
 ///
-/// It is complete and on the disk, and takes its name when it is renamed (`persist`). Coordinates are the block
-/// centres in m and the time in s; fields are float32, what never changes is float64.
+/// It is complete and on the disk, and takes its name when the first rank, which has it, renames it (`persist`). Coordinates are
+/// the block centres in m and the time in s; fields are float32, what never changes is float64.
 ///
 /// # Errors
 ///
-/// [`FieldsError`] if an array does not have the length that the sizes ask for, or the file cannot be written in full.
-pub fn write_fields(temporary: &Path, path: &Path, file: &FieldsFile) -> Result<TempPath, FieldsError> {
+/// [`FieldsError`] if an array does not have the length that the sizes ask for, or the file cannot be written in full, on any rank.
+pub fn write_fields(
+    temporary: &Path,
+    path: &Path,
+    file: &FieldsFile,
+    communicator: &dyn Communicator,
+) -> Result<Option<TempPath>, FieldsError> {
     let writer = FieldsWriter::new(path, file)?;
-    let fill = |output: &mut File| {
-        writer.create(&mut *output)?;
-        writer.write_rows(output)
-    };
-    write_temp(temporary, fill).map_err(|source| FieldsError::Write {
+    let failed = |source| FieldsError::Write {
         path: path.to_owned(),
         source,
-    })
+    };
+    let created = match communicator.rank() {
+        0 => write_temp(temporary, |output| writer.create(output)).map(Some),
+        _ => Ok(None),
+    };
+    let created = agree_on_io(communicator, created).map_err(failed)?;
+    let name = created.as_ref().and_then(|path| path.file_name());
+    let name = name.unwrap_or_default().to_string_lossy();
+    let shared = temporary.join(text_of(communicator, 0, &name));
+    let write_own = || {
+        let mut output = File::options().write(true).open(shared)?;
+        writer.write_rows(&mut output)?;
+        output.sync_all()
+    };
+    agree_on_io(communicator, write_own()).map_err(failed)?;
+    Ok(created)
 }
 
 /// A fields file whose layout is known, so that processes which hold some rows of the lattice each can write it

@@ -19,7 +19,7 @@ pub enum FolderError {
     #[error(
         "the folder {path} holds a run that was interrupted: go on with it by `{}`, choose another with --out, or begin again \
          with --force",
-        resume_command(path)
+        resume_command("slipfront", path)
     )]
     Interrupted { path: PathBuf },
     #[error("{path} is no folder of a run to go on with: {why}")]

@@ -43,11 +43,22 @@ impl OpenedFolder {
     pub fn open(path: &Path) -> Result<Self, FolderError> {
         let existed = path.is_dir();
         let lock = if existed { lock(path)? } else { None };
-        let inspection = Inspection::of(path).map_err(FolderError::unwritable(path))?;
         Ok(Self {
-            inspection,
             existed,
             lock,
+            ..Self::open_unlocked(path)?
+        })
+    }
+
+    /// Inspects a folder that another process of the same run has locked.
+    ///
+    /// # Errors
+    /// When the folder cannot be listed.
+    pub fn open_unlocked(path: &Path) -> Result<Self, FolderError> {
+        Ok(Self {
+            inspection: Inspection::of(path).map_err(FolderError::unwritable(path))?,
+            existed: path.is_dir(),
+            lock: None,
         })
     }
 

@@ -213,7 +213,7 @@ fn checkpoints(folder: &Path) {
         let (taken, said) = peak(|| {
             let case = made();
             let loaded = Checkpoints::load(&out, &case, false, &Alone).unwrap().unwrap();
-            let running = loaded.resume(&case, 1, &Alone).unwrap().unwrap();
+            let running = loaded.resume(&case, 1, Arc::new(Alone)).unwrap().unwrap();
             save(&case, &running);
             case.budget.memory()
         });

@@ -90,16 +90,7 @@ impl Execution {
         match (self.kernel.for_law(model.law), checkpoint.motion_bounds) {
             (Kernel::Fused, Some(_)) => {
                 let (threads, skips) = (self.threads, self.skips);
-                let kernel = Fused::resume(
-                    model,
-                    dt_star,
-                    checkpoint,
-                    bound,
-                    threads,
-                    skips,
-                    communicator,
-                    read,
-                )?;
+                let kernel = Fused::resume(model, dt_star, checkpoint, threads, skips, communicator, read)?;
                 Ok(Some(Box::new(kernel)))
             }
             (Kernel::Reference, None) => {

@@ -122,7 +122,7 @@ fn resume(case: &Arc<Case>, file: &[u8]) {
         Ok(loaded) => loaded.unwrap(),
         Err(error) => return readable(&error),
     };
-    let Some(mut running) = loaded.resume(case, 1, &Alone).unwrap() else {
+    let Some(mut running) = loaded.resume(case, 1, Arc::new(Alone)).unwrap() else {
         return;
     };
     match running.advance(STEPS) {
@@ -132,7 +132,7 @@ fn resume(case: &Arc<Case>, file: &[u8]) {
             if ended.is_none() {
                 let bytes = save(&folder, &running);
                 let again = Checkpoints::load(&folder, case, false, &Alone).unwrap();
-                let resumed = again.unwrap().resume(case, 1, &Alone).unwrap().unwrap();
+                let resumed = again.unwrap().resume(case, 1, Arc::new(Alone)).unwrap().unwrap();
                 assert_eq!(save(&folder, &resumed), bytes);
             }
             let record = running.record(ended.unwrap_or(StopReason::End));

@@ -1,5 +1,6 @@
 //! The fields of a run, `fields.nc`.
 
+use slipfront::communicator::Alone;
 use slipfront::observe::Field;
 use slipfront_run::fields::{
     FieldFrame, FieldsData, FieldsFile, StaticFields, read_fields, read_maps, thin, write_fields,
@@ -67,7 +68,8 @@ pub(crate) fn file([nx, ny]: [usize; 2], stride: usize, frames: usize, block_siz
         frames: &frames,
     };
     let path = scratch::file("made.nc", b"");
-    write_fields(path.parent().unwrap(), &path, &data)
+    write_fields(path.parent().unwrap(), &path, &data, &Alone)
+        .unwrap()
         .unwrap()
         .persist(&path)
         .unwrap();
@@ -135,7 +137,8 @@ fn expect_round_trip(data: &FieldsData) {
         },
         frames: &data.frames,
     };
-    write_fields(path.parent().unwrap(), &path, &file)
+    write_fields(path.parent().unwrap(), &path, &file, &Alone)
+        .unwrap()
         .unwrap()
         .persist(&path)
         .unwrap();

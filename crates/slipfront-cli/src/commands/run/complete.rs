@@ -4,7 +4,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use slipfront_case::case::Case;
+use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::Checkpoints;
+use slipfront_run::error::ResultsError;
 use slipfront_run::pictures::RUN_PICTURES;
 use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
@@ -18,40 +20,57 @@ use crate::print::{print, print_message};
 use crate::progress::run::RunProgress;
 use crate::report;
 
-/// Takes a run to its end and writes its results.
+/// Takes a run to its end and writes its results to a folder, which the first rank holds.
 pub(super) fn complete(
     mut running: Running,
-    folder: RunFolder,
+    out: &Path,
+    folder: Option<RunFolder>,
     checkpoints: Checkpoints,
     options: RunOptions,
-) -> Result<(), Failure> {
-    let (case, out) = (Arc::clone(running.case()), folder.path().to_owned());
+) -> Result<(), RankFailure> {
+    let (case, ranks) = (Arc::clone(running.case()), options.ranks.clone());
     let (threads, is_verbose) = (options.threads, options.is_verbose());
-    let started = checkpoints.started();
-    let mut timer = CheckpointTimer::new(&out, checkpoints, options.interval, options.signals);
+    let (started, first_step) = (checkpoints.started(), running.snapshot().step);
+    let mut timer = CheckpointTimer::new(out, checkpoints, options.interval, options.signals, options.ranks);
     let mut progress = RunProgress::new(&running, options.quiet);
     let reason = loop {
         match running.advance(case.steps_per_poll()) {
             Ok(Some(reason)) => break reason,
             Ok(None) => {}
             Err(error) => {
-                // It would diverge again: there is nothing to go on with.
-                folder.discard();
-                return Err(Failure::running(error));
+                // It would diverge again: there is nothing to go on with. All ranks see it at once, by sums over the lattice.
+                if let Some(folder) = folder {
+                    folder.discard();
+                }
+                return ranks.agree(Err(Failure::running(error)));
             }
         }
         progress.show(&running.snapshot());
         timer.save_if_due(&running, &progress)?;
     };
     progress.finish();
+    let steps = running.snapshot().step - first_step;
     let mut record = running.record(reason);
-    results::write(&case, &mut record, folder, started, threads)
-        .map_err(|error| Failure::running(anyhow::anyhow!("{error}; {}", timer.remedy())))?;
+    let failed = |error: ResultsError| Failure::running(anyhow::anyhow!("{error}; {}", timer.remedy()));
+    let mut folder = folder;
+    let tables = folder
+        .as_mut()
+        .map(|folder| results::write_tables(&case, &record, folder));
+    ranks.agree(tables.transpose().map_err(failed))?;
+    let fields = results::write_fields(&case, &mut record, out, &*ranks.communicator());
+    let fields = ranks.agree(fields.map_err(|error| failed(error.into())))?;
+    let finished = folder
+        .zip(fields)
+        .map(|(folder, fields)| results::finish(&case, folder, fields, started, threads));
+    ranks.agree(finished.transpose().map_err(failed))?;
     if options.json {
-        print(&summary_json(&record.summary))?;
+        ranks.first(|| print(&summary_json(&record.summary)))?;
     } else if is_verbose {
         print_message(&report::summary(&case, &record.summary));
-        print_message(&files(&case, &out));
+        if let Some(traffic) = ranks.traffic(steps) {
+            print_message(&format!("{:<18}{traffic}\n", "rank 0 sends"));
+        }
+        print_message(&files(&case, out));
     }
     Ok(())
 }

@@ -10,11 +10,12 @@ use std::sync::Arc;
 use clap::Args;
 use slipfront_case::case::Case;
 use slipfront_case::text::{display_path, shell_quoted};
+use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::clock;
 use slipfront_run::results;
-use slipfront_run::run_folder::OpenedFolder;
 use slipfront_run::run_folder::error::FolderError;
+use slipfront_run::run_folder::{OpenedFolder, RunFolder};
 use slipfront_run::running::Running;
 
 use self::complete::complete;
@@ -23,25 +24,18 @@ use crate::case_args::CaseArgs;
 use crate::checkpoint_timer::Interval;
 use crate::failure::Failure;
 use crate::print::print_message;
+use crate::ranks::Ranks;
 use crate::report;
 use crate::signals::Signals;
 use crate::threads::{count_from_one, set_threads};
 
+/// What the help says of checkpoints.
+pub(crate) const CHECKPOINTS_HELP: &str = "The whole state of the run is saved in its folder every --checkpoint and on SIGUSR1, \
+after which it goes on, and on Ctrl-C, SIGTERM and SIGHUP, which stop it with status 130, 143 and 129. A run that was stopped \
+and resumed, however often, writes the same bytes as one that was not.";
+
 /// Run a case: print its physics, show progress, write results and pictures
 #[derive(Args)]
-#[command(
-    override_usage = "slipfront run [OPTIONS] [CASE.toml]\n       slipfront run [OPTIONS] --resume <DIR>",
-    after_help = "Examples:
-  slipfront run
-  slipfront run cases/groove_across.toml --set texture.0.coverage=5 -o results/groove-5
-  slipfront run results/baseline/case.toml -o results/again    repeats a run bit for bit
-  slipfront run --resume results/baseline                      goes on with a run that was stopped
-  slipfront run --json | jq .static_friction_star
-
-The whole state of the run is saved in its folder every --checkpoint and on SIGUSR1, after which it goes on, and on Ctrl-C, \
-SIGTERM and SIGHUP, which stop it with status 130, 143 and 129. A run that was stopped and resumed, however often, writes \
-the same bytes as one that was not."
-)]
 pub(crate) struct Run {
     #[command(flatten)]
     case: CaseArgs,
@@ -72,47 +66,63 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    pub(crate) fn execute(self) -> Result<(), Failure> {
+    /// Runs it, with all ranks that there are.
+    pub(crate) fn execute(self, ranks: &Ranks) -> Result<(), RankFailure> {
         let started = clock::now();
-        let options = RunOptions {
-            threads: set_threads(self.threads)?,
-            interval: self.checkpoint,
-            signals: Signals::catch().map_err(Failure::running)?,
-            quiet: self.quiet,
-            json: self.json,
-        };
+        let options = ranks.agree(self.options(ranks))?;
         if let Some(folder) = &self.resume {
             return resume::resume(folder, self.previous, options);
         }
         let case_path = self.case.path().map(Path::to_owned);
-        let case = Arc::new(self.case.load(&options.signals, options.quiet)?);
+        let case = Arc::new(ranks.agree(self.case.load(ranks, &options.signals, options.quiet))?);
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&case.name));
-        refuse_to_replace(case_path.as_deref(), &case, &out)?;
-        let folder = OpenedFolder::open(&out).map_err(Failure::input)?;
-        let replaced = if self.force {
-            folder.inspection.managed_bytes().map_err(Failure::input)?
-        } else {
-            0
-        };
-        case.budget
-            .check_disk(&case.file, &out, replaced, options.interval.saves())
-            .map_err(Failure::input)?;
-        let mut folder = folder
-            .prepare(self.force, &case.inputs)
-            .map_err(|error| with_free_folder(error, &out))?;
-        // What the run needs to go on if it is stopped.
-        results::write_case(&case, &mut folder).map_err(Failure::running)?;
+        let saves = options.interval.saves();
+        let folder = ranks.first(|| prepare_folder(&out, case_path.as_deref(), &case, self.force, saves))?;
         if options.is_verbose() {
             print_message(&report::physics(&case));
         }
         let checkpoints = Checkpoints::new(&out, &case, started);
-        complete(
-            Running::start(&case, options.threads),
-            folder,
-            checkpoints,
-            options,
-        )
+        let running = Running::start_on_ranks(&case, options.threads, ranks.communicator());
+        complete(running, &out, folder, checkpoints, options)
     }
+
+    fn options(&self, ranks: &Ranks) -> Result<RunOptions, Failure> {
+        // Who starts several ranks on a machine has them share its cores.
+        let default = (ranks.size() > 1).then_some(1);
+        Ok(RunOptions {
+            ranks: ranks.clone(),
+            threads: set_threads(self.threads.or(default))?,
+            interval: self.checkpoint,
+            signals: Signals::catch().map_err(Failure::running)?,
+            quiet: self.quiet,
+            json: self.json,
+        })
+    }
+}
+
+/// Makes the folder of a new run ready, with all that the run needs to go on if it is stopped.
+fn prepare_folder(
+    out: &Path,
+    case_path: Option<&Path>,
+    case: &Case,
+    force: bool,
+    saves: bool,
+) -> Result<RunFolder, Failure> {
+    refuse_to_replace(case_path, case, out)?;
+    let folder = OpenedFolder::open(out).map_err(Failure::input)?;
+    let replaced = if force {
+        folder.inspection.managed_bytes().map_err(Failure::input)?
+    } else {
+        0
+    };
+    case.budget
+        .check_disk(&case.file, out, replaced, saves)
+        .map_err(Failure::input)?;
+    let mut folder = folder
+        .prepare(force, &case.inputs)
+        .map_err(|error| with_free_folder(error, out))?;
+    results::write_case(case, &mut folder).map_err(Failure::running)?;
+    Ok(folder)
 }
 
 /// The refusal of a folder; where it is taken, with the name of one that is free.

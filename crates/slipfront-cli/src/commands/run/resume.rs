@@ -3,9 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use slipfront::communicator::Alone;
+use slipfront::communicator::{Alone, Communicator};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseFile;
+use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::{CheckpointError, Checkpoints, LoadedCheckpoint};
 use slipfront_run::clock;
 use slipfront_run::run_folder::OpenedFolder;
@@ -22,34 +23,72 @@ use crate::make_case::make_case;
 use crate::print::{print, print_message};
 use crate::report;
 
-pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result<(), Failure> {
-    let folder = OpenedFolder::open(path).map_err(Failure::input)?;
+pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result<(), RankFailure> {
+    let ranks = options.ranks.clone();
+    let folder = ranks.agree(open(path, ranks.is_first()))?;
     let run = &folder.inspection;
-    let file = run.case_to_resume().map_err(Failure::input)?;
-    match &run.contents {
-        Contents::Complete(Ok(_)) => return report_complete(run, &options),
-        Contents::Complete(Err(error)) => return Err(Failure::input(error.clone())),
-        Contents::Empty | Contents::Foreign | Contents::Interrupted => {}
+    let is_complete = matches!(run.contents, Contents::Complete(_));
+    // What is there for one rank a moment earlier than for another is what the first says.
+    if ranks.any(ranks.is_first() && is_complete) {
+        return ranks.first(|| report_complete(run, &options)).map(|_| ());
     }
-    let case = Arc::new(case_to_resume(path, file.clone(), &options)?);
-    let budget = case.budget.resumed();
-    budget.check_memory(&case.file, true).map_err(Failure::input)?;
-    let loaded = load(path, &case, previous)?;
+    let file = ranks.agree(run.case_to_resume().map_err(Failure::input))?.clone();
+    let case = Arc::new(ranks.agree(case_to_resume(path, file, &options))?);
+    let communicator = ranks.communicator();
+    let loaded = ranks.agree(load(path, &case, previous, &*communicator))?;
+    ranks.first(|| check_disk(run, &case, &options))?;
+    let (running, checkpoints, from) = ranks.agree(begin(
+        path,
+        &case,
+        loaded,
+        previous,
+        options.threads,
+        &communicator,
+    ))?;
+    let folder = ranks.first(|| folder.resume(&case).map_err(Failure::input))?;
+    if options.is_verbose() {
+        print_message(&report::physics(&case));
+        print_message(&format!("goes on from {from}\n"));
+    }
+    complete(running, path, folder, checkpoints, options)
+}
+
+/// Locks and inspects the folder; the first rank locks it for all.
+fn open(path: &Path, locks: bool) -> Result<OpenedFolder, Failure> {
+    let opened = match locks {
+        true => OpenedFolder::open(path),
+        false => OpenedFolder::open_unlocked(path),
+    };
+    opened.map_err(Failure::input)
+}
+
+fn check_disk(run: &Inspection, case: &Case, options: &RunOptions) -> Result<(), Failure> {
     let replaced = run.managed_bytes().map_err(Failure::input)?;
     case.budget
-        .check_disk(&case.file, path, replaced, options.interval.saves())
-        .map_err(Failure::input)?;
-    let (running, checkpoints, from) = match loaded {
+        .check_disk(&case.file, &run.path, replaced, options.interval.saves())
+        .map_err(Failure::input)
+}
+
+/// Goes on from a checkpoint, if there is one; says from where.
+fn begin(
+    path: &Path,
+    case: &Arc<Case>,
+    loaded: Option<LoadedCheckpoint>,
+    previous: bool,
+    threads: usize,
+    communicator: &Arc<dyn Communicator>,
+) -> Result<(Running, Checkpoints, String), Failure> {
+    Ok(match loaded {
         None => {
-            let checkpoints = Checkpoints::new(path, &case, clock::now());
-            let running = Running::start(&case, options.threads);
+            let checkpoints = Checkpoints::new(path, case, clock::now());
+            let running = Running::start_on_ranks(case, threads, Arc::clone(communicator));
             (running, checkpoints, "the start: it has no checkpoint".to_owned())
         }
         Some(loaded) => {
-            let checkpoints = Checkpoints::after(path, &case, &loaded);
+            let checkpoints = Checkpoints::after(path, case, &loaded);
             let from = format!("step {} of {}", loaded.step(), case.time_plan.last_step);
-            let resumed = loaded.resume(&case, options.threads, &Alone);
-            let resumed = resumed.map_err(|error| refused(&error, path, &case, previous))?;
+            let resumed = loaded.resume(case, threads, Arc::clone(communicator));
+            let resumed = resumed.map_err(|error| refused(&error, path, case, previous))?;
             let running = resumed.ok_or_else(|| {
                 let sentence = "is not one of a run of its case";
                 Failure::input(anyhow::anyhow!(
@@ -59,13 +98,7 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
             })?;
             (running, checkpoints, from)
         }
-    };
-    let folder = folder.resume(&case).map_err(Failure::input)?;
-    if options.is_verbose() {
-        print_message(&report::physics(&case));
-        print_message(&format!("goes on from {from}\n"));
-    }
-    complete(running, folder, checkpoints, options)
+    })
 }
 
 /// The remedy where no checkpoint can be used.
@@ -75,21 +108,26 @@ fn case_to_resume(path: &Path, file: CaseFile, options: &RunOptions) -> Result<C
     // Results are named after their folder, not after the file in it.
     let folder = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
-    let made = make_case(&options.signals, options.quiet, |watch| {
-        Case::to_run(file, &name, path, watch)
+    let made = make_case(&options.ranks, &options.signals, options.quiet, |watch, ranks| {
+        Case::to_run_on_ranks(file, &name, path, watch, ranks)
     });
-    made.map_err(|failure| match failure {
+    let case = made.map_err(|failure| match failure {
         Failure::Input(error) => {
             let hint =
                 "if the run was stopped before all its inputs were copied, begin it again with --force";
             Failure::input(anyhow::anyhow!("{error}\n{hint}"))
         }
         failure => failure,
-    })
+    })?;
+    let budget = case.budget.resumed();
+    budget.check_memory(&case.file, true).map_err(Failure::input)?;
+    Ok(case)
 }
 
 /// Answers for a run in which nothing is left to do.
 fn report_complete(run: &Inspection, options: &RunOptions) -> Result<(), Failure> {
+    run.case_to_resume().map_err(Failure::input)?;
+    run.manifest().map_err(Failure::input)?;
     let path = &run.path;
     // A kill may have come before it was removed. On a disk that cannot be written it does no harm.
     let unfinished = Unfinished::of(path);
@@ -123,8 +161,13 @@ fn report_complete(run: &Inspection, options: &RunOptions) -> Result<(), Failure
 }
 
 /// The checkpoint to go on from, if the run has saved one.
-fn load(path: &Path, case: &Case, previous: bool) -> Result<Option<LoadedCheckpoint>, Failure> {
-    match Checkpoints::load(path, case, previous, &Alone) {
+fn load(
+    path: &Path,
+    case: &Case,
+    previous: bool,
+    communicator: &dyn Communicator,
+) -> Result<Option<LoadedCheckpoint>, Failure> {
+    match Checkpoints::load(path, case, previous, communicator) {
         Ok(None) if previous => {
             let sentence = "holds no checkpoint before the latest one";
             Err(Failure::input(anyhow::anyhow!("{} {sentence}", path.display())))

@@ -1,0 +1,98 @@
+//! The processes that run one command together.
+
+mod traffic;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use gethostname::gethostname;
+use slipfront::Communicator;
+use slipfront::communicator::{Alone, text_of};
+use slipfront_run::agree::{RankFailure, agree};
+use slipfront_run::resume_command::resume_command;
+
+use self::traffic::Traffic;
+use crate::failure::Failure;
+
+/// The ranks of a command, as one of them sees them.
+///
+/// What one rank finds out alone is agreed on before anything is done in which the ranks need each other, so that no rank
+/// waits for one that has given up. Functions that end with [`RankFailure`] end so on every rank.
+#[derive(Clone)]
+pub(crate) struct Ranks {
+    program: &'static str,
+    communicator: Arc<Traffic>,
+}
+
+impl Ranks {
+    /// The one rank of `slipfront`.
+    pub(crate) fn alone() -> Self {
+        Self::new("slipfront", Arc::new(Alone))
+    }
+
+    /// The ranks of a program.
+    pub(crate) fn new(program: &'static str, communicator: Arc<dyn Communicator>) -> Self {
+        let communicator = Arc::new(Traffic::count(communicator));
+        Self {
+            program,
+            communicator,
+        }
+    }
+
+    /// What the ranks talk by.
+    pub(crate) fn communicator(&self) -> Arc<dyn Communicator> {
+        Arc::clone(&self.communicator) as Arc<dyn Communicator>
+    }
+
+    /// Number of ranks on this machine, by its name.
+    pub(crate) fn on_node(&self) -> usize {
+        let own = gethostname().to_string_lossy().into_owned();
+        let host_of = |rank| text_of(&*self.communicator, rank, &own);
+        (0..self.size()).filter(|&rank| host_of(rank) == own).count()
+    }
+
+    /// Number of ranks.
+    pub(crate) fn size(&self) -> usize {
+        self.communicator.size()
+    }
+
+    /// Whether this rank prints, and makes what there is one of: the folder, the manifest, the pictures.
+    pub(crate) fn is_first(&self) -> bool {
+        self.communicator.rank() == 0
+    }
+
+    /// What this rank has done, if all have done it.
+    pub(crate) fn agree<T>(&self, outcome: Result<T, Failure>) -> Result<T, RankFailure> {
+        agree(&*self.communicator, outcome.map_err(RankFailure::from))
+    }
+
+    /// What the first rank alone does; none on the others.
+    pub(crate) fn first<T>(
+        &self,
+        work: impl FnOnce() -> Result<T, Failure>,
+    ) -> Result<Option<T>, RankFailure> {
+        self.agree(self.is_first().then(work).transpose())
+    }
+
+    /// Whether it is so on any rank.
+    pub(crate) fn any(&self, is_so: bool) -> bool {
+        let mut largest = [f64::from(is_so)];
+        self.largest(&mut largest);
+        largest[0] > 0.0
+    }
+
+    /// Replaces every value by the largest that any rank has in its place.
+    pub(crate) fn largest(&self, values: &mut [f64]) {
+        self.communicator.largest(values);
+    }
+
+    /// The command that goes on with the run in a folder.
+    pub(crate) fn resume_command(&self, folder: &Path) -> String {
+        resume_command(self.program, folder)
+    }
+
+    /// What this rank has told the others in each of so many steps; none of one rank.
+    pub(crate) fn traffic(&self, steps: u64) -> Option<String> {
+        (self.size() > 1 && steps > 0).then(|| self.communicator.per_step(steps))
+    }
+}

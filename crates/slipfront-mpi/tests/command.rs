@@ -1,0 +1,240 @@
+//! The command under mpirun: what it writes, prints and leaves behind, whatever ends it.
+
+#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
+
+mod support;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::LazyLock;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use rstest::rstest;
+use tempfile::TempDir;
+
+use crate::support::{mpirun, output, plain, printed, run_plain_command};
+
+/// Files by their names, with their bytes.
+type Files = BTreeMap<String, Vec<u8>>;
+
+/// Some seconds: long enough to be stopped.
+const SLOW: &str = "[slider]\nblocks = [120, 100]\nedges = ['periodic', 'free']\n[drive]\nv_star = 0.002\n";
+
+/// The command on so many ranks, in a folder.
+fn on_ranks(ranks: usize, folder: &TempDir, line: &str) -> Command {
+    let mut command = mpirun(ranks, env!("CARGO_BIN_EXE_slipfront-mpi"));
+    command.args(line.split_whitespace()).current_dir(folder);
+    command
+}
+
+/// Runs the plain command, which must succeed, in a folder.
+fn run_plain(folder: &TempDir, line: &str) {
+    let output = output(plain("plain_command", line).current_dir(folder));
+    assert!(output.status.success(), "{}", printed(&output));
+}
+
+#[test]
+#[ignore = "runs in a process of its own"]
+fn plain_command() {
+    run_plain_command();
+}
+
+/// Every file of a run that is complete but the manifest, which tells of machines and dates.
+fn results(folder: &Path) -> Files {
+    let mut files = Files::new();
+    for folder in [folder, &folder.join("inputs")] {
+        for entry in std::fs::read_dir(folder).into_iter().flatten() {
+            let path = entry.unwrap().path();
+            if path.is_file() {
+                let name = path.file_name().unwrap().to_string_lossy().into_owned();
+                files.insert(name, std::fs::read(path).unwrap());
+            }
+        }
+    }
+    assert!(files.remove("manifest.json").is_some(), "no manifest");
+    files
+}
+
+/// What [`SLOW`] gives by the plain command.
+static SLOW_RESULTS: LazyLock<Files> = LazyLock::new(|| {
+    let folder = TempDir::new().unwrap();
+    std::fs::write(folder.path().join("slow.toml"), SLOW).unwrap();
+    run_plain(&folder, "run slow.toml --quiet -o plain");
+    results(&folder.path().join("plain"))
+});
+
+fn assert_same(one: &Files, other: &Files) {
+    assert!(one.keys().eq(other.keys()));
+    for (name, bytes) in one {
+        assert!(*bytes == other[name], "{name} differs");
+    }
+}
+
+/// Waits until a run has saved its first checkpoint.
+fn wait_for_checkpoint(folder: &Path) {
+    let began = Instant::now();
+    while !folder.join(".slipfront/checkpoint.bin").exists() {
+        assert!(began.elapsed() < Duration::from_secs(60), "no checkpoint");
+        sleep(Duration::from_millis(5));
+    }
+}
+
+/// Whom a signal is sent to.
+#[derive(Clone, Copy)]
+enum Target {
+    Mpirun,
+    LastRank,
+}
+
+/// Which command goes on with a run.
+#[derive(Clone, Copy)]
+enum Resumed {
+    OnRanks,
+    Plain,
+}
+
+/// Sends a signal to the mpirun that was started, or to one of the ranks that it has started.
+fn send(signal: &str, target: Target, child: &Child) {
+    let mut process = child.id().to_string();
+    if let Target::LastRank = target {
+        let ranks = Command::new("pgrep").args(["-P", &process]).output().unwrap();
+        let ranks = String::from_utf8(ranks.stdout).unwrap();
+        process = ranks.lines().last().unwrap().to_owned();
+    }
+    let kill = Command::new("kill").args([signal, &process]).status();
+    assert!(kill.unwrap().success(), "{signal} cannot be sent");
+}
+
+/// Usage, help and refusals are the same for every rank, and printed by one.
+#[rstest]
+#[case("run --nonsense", 2, "unexpected argument '--nonsense'")]
+#[case("--help", 0, "byte for byte")]
+#[case(
+    "run --set slider.blocks=[40,2] -o results",
+    2,
+    "more ranks (3) than rows of blocks (2)"
+)]
+#[case(
+    "run --set friction.law='reversal' -o results",
+    2,
+    "divided among ranks under the law"
+)]
+#[case("run nowhere.toml", 2, "nowhere.toml")]
+fn several_ranks_speak_with_one_voice(#[case] line: &str, #[case] status: i32, #[case] sentence: &str) {
+    let folder = TempDir::new().unwrap();
+    let output = output(&mut on_ranks(3, &folder, line));
+    assert_eq!(output.status.code(), Some(status), "{}", printed(&output));
+    assert_eq!(
+        printed(&output).matches(sentence).count(),
+        1,
+        "{}",
+        printed(&output)
+    );
+    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
+}
+
+/// Shapes, edges, textures, masks and fields, directions, instants and snapshots at some rows, sums at every step, slow drives.
+const CASES: [(&str, &str); 6] = [
+    ("baseline", ""),
+    (
+        "oblique",
+        "slider = { blocks = [33, 29], edges = ['periodic', 'periodic'] }\ndrive = { v_star = 0.1, direction = 25 }\n\
+         time.duration_star = 60\noutput = { stride = 3, snapshots = { every = 10.0 } }\n\
+         texture = [{ shape = 'cavity', coverage = 12 }, { shape = 'groove', orientation = 'along', width = '4 um' }]\n",
+    ),
+    (
+        "given",
+        "slider = { blocks = [17, 11], edges = ['free', 'periodic'] }\ndrive.v_star = 0.05\ntime.duration_star = 120\n\
+         friction = { mu_static_field = 'mu.csv', mu_kinetic_field = 'half.csv' }\n\
+         [[texture]]\nshape = 'mask'\nfile = 'mask.npy'\n",
+    ),
+    (
+        "rows",
+        "slider = { blocks = [300, 7], edges = ['periodic', 'free'] }\ndrive.v_star = 0.1\ntime.duration_star = 60\n\
+         output.stride = 2\n",
+    ),
+    (
+        "slow",
+        "slider.blocks = [25, 24]\ndrive.v_star = 0.002\ntime.stop = 'after_onset'\n",
+    ),
+    (
+        "narrow",
+        "slider.blocks = [1, 40]\ndrive.v_star = 0.05\ntime.duration_star = 100\n",
+    ),
+];
+
+/// A folder with a case and the files that it reads.
+fn folder_of(text: &str) -> TempDir {
+    let folder = TempDir::new().unwrap();
+    let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).unwrap();
+    write("case.toml", text.as_bytes());
+    let table = |mean: f64| {
+        let value = |k: usize| format!("{:.4}", mean * (1.0 + 0.1 * (k as f64 * 1.7).sin()));
+        let row = |j: usize| (0..17).map(|i| value(17 * j + i)).collect::<Vec<_>>().join(",") + "\n";
+        (0..11).map(row).collect::<String>()
+    };
+    write("mu.csv", table(0.47).as_bytes());
+    write("half.csv", table(0.28).as_bytes());
+    let header = "{'descr': '|b1', 'fortran_order': False, 'shape': (11, 17), }";
+    let mut mask = b"\x93NUMPY\x01\x00".to_vec();
+    mask.extend((header.len() as u16).to_le_bytes());
+    mask.extend(header.as_bytes());
+    mask.extend((0..187).map(|k| u8::from(k % 17 > 5 && k % 17 < 11 && k > 50 && k < 130)));
+    write("mask.npy", &mask);
+    folder
+}
+
+#[rstest]
+fn a_run_on_ranks_writes_the_bytes_of_the_plain_command(#[values(0, 1, 2, 3, 4, 5)] case: usize) {
+    let (name, text) = CASES[case];
+    let folder = folder_of(text);
+    run_plain(&folder, "run case.toml -o plain");
+    let plain = results(&folder.path().join("plain"));
+    for ranks in [1, 2, 3, 4, 7] {
+        let line = format!("run case.toml -o ranks-{ranks}");
+        let output = output(&mut on_ranks(ranks, &folder, &line));
+        let text = printed(&output);
+        assert!(output.status.success(), "{name} on {ranks} ranks: {text}");
+        assert_eq!(text.matches("static friction").count(), 1, "{text}");
+        assert_same(&plain, &results(&folder.path().join(format!("ranks-{ranks}"))));
+    }
+}
+
+/// mpirun passes on SIGUSR2 as it is; after SIGINT and SIGTERM it sends SIGTERM to the ranks, and has status 1 whatever they say.
+#[rstest]
+#[case(Target::Mpirun, "-USR2", 140, Resumed::OnRanks)]
+#[case(Target::Mpirun, "-TERM", 1, Resumed::Plain)]
+#[case(Target::Mpirun, "-INT", 1, Resumed::OnRanks)]
+#[case(Target::LastRank, "-TERM", 143, Resumed::Plain)]
+fn a_run_that_is_stopped_by_a_signal_goes_on_in_either_command(
+    #[values(1, 3)] ranks: usize,
+    #[case] target: Target,
+    #[case] signal: &str,
+    #[case] status: i32,
+    #[case] resumed: Resumed,
+) {
+    let folder = TempDir::new().unwrap();
+    std::fs::write(folder.path().join("slow.toml"), SLOW).unwrap();
+    let mut command = on_ranks(ranks, &folder, "run slow.toml --checkpoint 0s -o stopped");
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let child = command.spawn().unwrap();
+    wait_for_checkpoint(&folder.path().join("stopped"));
+    send(signal, target, &child);
+    let stopped = child.wait_with_output().unwrap();
+    let text = printed(&stopped);
+    let sentence = "which is saved: `slipfront-mpi run --resume stopped` goes on";
+    assert_eq!(text.matches(sentence).count(), 1, "{text}");
+    assert_eq!(stopped.status.code(), Some(status), "{text}");
+    let line = "run --quiet --resume stopped";
+    match resumed {
+        Resumed::Plain => run_plain(&folder, line),
+        Resumed::OnRanks => {
+            // On another number of ranks.
+            let output = output(&mut on_ranks(ranks + 1, &folder, line));
+            assert!(output.status.success(), "{}", printed(&output));
+        }
+    }
+    assert_same(&SLOW_RESULTS, &results(&folder.path().join("stopped")));
+}

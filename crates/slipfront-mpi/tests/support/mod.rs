@@ -1,0 +1,65 @@
+//! What the tests share: programs under mpirun.
+
+// Every test binary uses a part of it.
+#![allow(dead_code)]
+
+use std::ffi::OsStr;
+use std::io::ErrorKind;
+use std::process::{Command, Output};
+
+/// The environment in which a test program finds the arguments of the command that it is to run.
+const ARGUMENTS: &str = "SLIPFRONT_TEST_ARGUMENTS";
+
+/// Starts a program with so many ranks. They may be more than cores, and then give way to each other while they wait.
+pub(crate) fn mpirun(ranks: usize, program: impl AsRef<OsStr>) -> Command {
+    let mut command = Command::new("mpirun");
+    command.args(["--allow-run-as-root", "--oversubscribe", "--bind-to", "none"]);
+    // A rank that waits for ever is a failure of the test, not of the machine on which it runs.
+    command.args(["--timeout", "60", "--mca", "mpi_yield_when_idle", "1"]);
+    command.args(["-n", &ranks.to_string()]).arg(program);
+    command
+}
+
+/// Waits for the end of a command.
+pub(crate) fn output(command: &mut Command) -> Output {
+    command.output().unwrap_or_else(|error| match error.kind() {
+        ErrorKind::NotFound => panic!("these tests need mpirun: apt-get install openmpi-bin"),
+        _ => panic!("{command:?}: {error}"),
+    })
+}
+
+/// What is printed to stdout and stderr.
+pub(crate) fn printed(output: &Output) -> String {
+    [&output.stdout, &output.stderr]
+        .map(|bytes| String::from_utf8_lossy(bytes))
+        .concat()
+}
+
+/// Starts one of the tests of this program that are ignored otherwise, on every rank.
+pub(crate) fn ranks_of_test(ranks: usize, test: &str) -> Command {
+    let mut command = mpirun(ranks, std::env::current_exe().unwrap());
+    command.args(only(test));
+    command
+}
+
+/// A process of `slipfront`, the plain command. Its test program has [`run_plain_command`] in a test of this name.
+pub(crate) fn plain(test: &str, line: &str) -> Command {
+    let mut command = Command::new(std::env::current_exe().unwrap());
+    command.args(only(test)).env(ARGUMENTS, line);
+    command
+}
+
+/// Ends this process as `slipfront` with the arguments that it was given.
+pub(crate) fn run_plain_command() {
+    let line = std::env::var(ARGUMENTS).unwrap();
+    let line = std::iter::once("slipfront").chain(line.split_whitespace());
+    let status = slipfront_cli::main(line.map(Into::into));
+    assert_eq!(
+        format!("{status:?}"),
+        format!("{:?}", std::process::ExitCode::SUCCESS)
+    );
+}
+
+fn only(test: &str) -> [&str; 5] {
+    ["--ignored", "--exact", test, "--test-threads=1", "--nocapture"]
+}
