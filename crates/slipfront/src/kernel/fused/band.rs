@@ -10,7 +10,7 @@ use super::blocks::{
     ChunksMut, FrictionLoop, LatticeLoop, Step, Sums, friction, lattice_forces, or_else, spring,
     upward_springs, zero_missing,
 };
-use super::layout::{Layout, TILE, mark_vectors};
+use super::layout::{Layout, TILE};
 use super::quanta::Quanta;
 use super::rest::{RestingVector, steps_until_slip};
 use super::springs::Geometry;
@@ -275,8 +275,7 @@ impl Band {
     /// Marks all vectors that contain a moving element or a neighbour of one.
     pub(super) fn mark_touched(&self, layout: &Layout, touched: &mut [u32]) {
         let mut mark = |from: usize, to: usize| {
-            let pieces = layout.around((self.first + from) as isize, (self.first + to) as isize);
-            pieces.for_each(|piece| mark_vectors(touched, piece));
+            layout.mark_around((self.first + from) as isize, (self.first + to) as isize, touched);
         };
         for t in (0..self.tiles.len()).filter(|&t| self.tiles[t].moving) {
             let elements = self.elements(t);

@@ -190,13 +190,19 @@ impl Layout {
         })
     }
 
-    /// The elements from `first` to `last`, which may lie outside, and their neighbours.
-    pub(super) fn around(&self, first: isize, last: isize) -> impl Iterator<Item = Range<usize>> + use<> {
-        let (layout, stride) = (*self, self.stride as isize);
-        [-stride, 0, stride]
-            .into_iter()
-            .flat_map(move |row| layout.pieces(first + row - 1, last + row + 1))
-            .map(|(_, piece)| piece)
+    /// Marks the vectors that contain the elements from `first` to `last`, which may lie outside, or neighbours of them: see
+    /// [`mark_vectors`].
+    pub(super) fn mark_around(&self, first: isize, last: isize, masks: &mut [u32]) {
+        let (n, stride) = (self.len() as isize, self.stride as isize);
+        for row in [-stride, 0, stride] {
+            let (from, to) = (first + row - 1, last + row + 1);
+            if from >= 0 && to < n {
+                mark_vectors(masks, from as usize..to as usize + 1);
+            } else {
+                self.pieces(from, to)
+                    .for_each(|(_, piece)| mark_vectors(masks, piece));
+            }
+        }
     }
 
     /// Tiles that contain the southern neighbours of the elements from `first` to `last`.
@@ -208,14 +214,14 @@ impl Layout {
 }
 
 /// Sets the bits of the vectors that contain the elements of a piece: one mask per tile, one bit per vector.
-pub(super) fn mark_vectors(masks: &mut [u32], piece: Range<usize>) {
+fn mark_vectors(masks: &mut [u32], piece: Range<usize>) {
     let (first, last) = (piece.start / LANES, (piece.end - 1) / LANES);
-    let tiles = first / VECTORS..=last / VECTORS;
-    for (tile, mask) in tiles.clone().zip(&mut masks[tiles]) {
-        let from = first.saturating_sub(tile * VECTORS);
-        let to = (last - tile * VECTORS).min(VECTORS - 1);
-        *mask |= (u32::MAX << from) & (u32::MAX >> (VECTORS - 1 - to));
+    let (mut tile, mut from) = (first / VECTORS, first % VECTORS);
+    while tile < last / VECTORS {
+        masks[tile] |= u32::MAX << from;
+        (tile, from) = (tile + 1, 0);
     }
+    masks[tile] |= (u32::MAX << from) & (u32::MAX >> (VECTORS - 1 - last % VECTORS));
 }
 
 #[cfg(test)]
@@ -227,9 +233,7 @@ mod tests {
         let mut masks = vec![0; layout.n_tiles()];
         let (first, last) = (vector * LANES, vector * LANES + LANES - 1);
         let mut mark = |first: usize, last: usize| {
-            layout
-                .around(first as isize, last as isize)
-                .for_each(|piece| mark_vectors(&mut masks, piece));
+            layout.mark_around(first as isize, last as isize, &mut masks);
         };
         mark(first, last);
         if layout.has_ghosts() {

@@ -36,7 +36,7 @@ use fearless_simd::{Level, dispatch};
 
 use self::band::{Band, TileTask};
 use self::blocks::{Step, Sums};
-use self::layout::{Layout, TILE, VECTORS, mark_vectors};
+use self::layout::{Layout, TILE, VECTORS};
 use self::neighbours::Neighbours;
 use self::quanta::Quanta;
 use self::springs::{Series, SquareRoot};
@@ -239,8 +239,7 @@ impl Fused {
             band.mark_touched(layout, touched);
         }
         for &element in &neighbours.moved {
-            let pieces = layout.around(element, element);
-            pieces.for_each(|piece| mark_vectors(touched, piece));
+            layout.mark_around(element, element, touched);
         }
         for band in bands.iter_mut() {
             for t in 0..band.tiles.len() {
@@ -405,12 +404,14 @@ impl Fused {
             sums.include(&tile.sums);
             active_from_step = active_from_step.min(if tile.moving { 0 } else { tile.active_from_step });
         }
-        let communicator = &*self.neighbours.communicator;
-        sums.over_ranks(communicator);
-        // Steps beyond 2^53 are none of a run.
-        let mut soonest = [-(active_from_step as f64)];
-        communicator.largest(&mut soonest);
-        let active_from_step = -soonest[0] as u64;
+        if !self.neighbours.is_alone() {
+            let communicator = &*self.neighbours.communicator;
+            sums.over_ranks(communicator);
+            // Steps beyond 2^53 are none of a run.
+            let mut soonest = [-(active_from_step as f64)];
+            communicator.largest(&mut soonest);
+            active_from_step = -soonest[0] as u64;
+        }
         self.stress_square_max = self.stress_square_max.max(sums.stress_square);
         self.active_from_step = active_from_step;
         self.motion_bounds.speed = sums.speed_square.sqrt();
