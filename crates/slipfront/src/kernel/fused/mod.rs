@@ -325,6 +325,9 @@ impl Fused {
         let mut speed = [self.motion_bounds.speed];
         communicator.largest(&mut speed);
         self.motion_bounds.speed = speed[0];
+        if speed[0] == 0.0 {
+            return;
+        }
         let fixed_point = FixedPoint::new(speed[0]);
         for axis in 0..2 {
             let mut sum = 0;
