@@ -43,15 +43,23 @@ pub fn write_fields(
         path: path.to_owned(),
         source,
     };
-    let created = match communicator.rank() {
-        0 => write_temp(temporary, |output| writer.create(output)).map(Some),
-        _ => Ok(None),
+    let is_first = communicator.rank() == 0;
+    let fill = |output: &mut File| {
+        writer.create(&mut *output)?;
+        writer.write_rows(output)
+    };
+    let created = match is_first {
+        true => write_temp(temporary, fill).map(Some),
+        false => Ok(None),
     };
     let created = agree_on_io(communicator, created).map_err(failed)?;
     let name = created.as_ref().and_then(|path| path.file_name());
     let name = name.unwrap_or_default().to_string_lossy();
     let shared = temporary.join(text_of(communicator, 0, &name));
     let write_own = || {
+        if is_first {
+            return Ok(());
+        }
         let mut output = File::options().write(true).open(shared)?;
         writer.write_rows(&mut output)?;
         output.sync_all()
