@@ -2,7 +2,7 @@
 //!
 //! Numbers of a known size become integers, multiples of a quantum, and integers add up exactly: in any order, over any number
 //! of lanes, tiles, threads and ranks the sum has the same bits. Each term is rounded to the nearest multiple of the quantum,
-//! by at most `2^-52` of the largest size that it might have.
+//! by at most `2^-51` of the largest size that it might have.
 
 use serde::{Deserialize, Serialize};
 

@@ -7,13 +7,14 @@ use fearless_simd::{Simd, SimdBase, f64x8, i64x8};
 
 use super::aligned::{Aligned, Vectors};
 use super::blocks::{
-    ChunksMut, FrictionLoop, LatticeLoop, Step, Sums, friction, lattice_forces, or_else, spring,
-    upward_springs, zero_missing,
+    ChunksMut, FrictionLoop, LatticeLoop, Sums, friction, lattice_forces, or_else, spring, upward_springs,
+    zero_missing,
 };
 use super::layout::{Layout, TILE};
 use super::quanta::Quanta;
 use super::rest::{RestingVector, steps_until_slip};
 use super::springs::Geometry;
+use super::step::Step;
 use super::vector::{LANES, Vec2x8, lane_max, load, load_vec2, splat, subtract};
 use crate::checkpoint::BlockColumn;
 use crate::fixed_point::FixedPoint;

@@ -7,63 +7,18 @@ use fearless_simd::{Bytes, Simd, SimdBase, SimdFloat, f64x8, i64x8};
 use super::aligned::CacheLines;
 use super::quanta::Quanta;
 use super::springs::Geometry;
+use super::step::Step;
 use super::vector::{
     LANES, Vec2x8, add, bits, dot, is_zero, lane_max, lane_sum, load, load_vec2, mask, or_zero, scale,
     select, shift_in, splat, square, subtract,
 };
 use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, join, split};
-use crate::friction::Integrator;
 use crate::lattice::Bond;
-use crate::model::{Drive, Model};
 
 /// One number per element, in vectors of eight.
 pub(super) type Chunks<'a> = &'a [[f64; LANES]];
 pub(super) type ChunksMut<'a> = &'a mut [[f64; LANES]];
-
-/// What is common to all blocks in a step.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Step {
-    /// n.
-    pub(super) number: u64,
-    /// `t*` of the step.
-    pub(super) time_star: f64,
-    /// `dt*`.
-    pub(super) dt_star: f64,
-    /// Time for which displacements move before forces are evaluated: `dt*`, or 0 at the start.
-    pub(super) move_dt: f64,
-    pub(super) drive: Drive,
-    /// Displacement of the driven ends of the drive springs.
-    pub(super) drive_position: [f64; 2],
-    pub(super) integrator: Integrator,
-}
-
-impl Step {
-    pub(super) fn new(model: &Model, number: u64, dt_star: f64) -> Self {
-        let time_star = number as f64 * dt_star;
-        Self {
-            number,
-            time_star,
-            dt_star,
-            move_dt: dt_star,
-            drive: model.drive,
-            drive_position: model.drive.position(time_star),
-            integrator: Integrator::new(model.damping, dt_star),
-        }
-    }
-
-    /// The step before this one, of which there must be one.
-    pub(super) fn before(&self) -> Self {
-        let number = self.number - 1;
-        let time_star = number as f64 * self.dt_star;
-        Self {
-            number,
-            time_star,
-            drive_position: self.drive.position(time_star),
-            ..*self
-        }
-    }
-}
 
 /// x and y of a quantity of the springs to the next row: north, north-east and north-west.
 pub(super) type Upward<T> = [[T; 2]; 3];
@@ -309,7 +264,7 @@ pub(super) struct Sums<I, M, N = u32> {
     pub(super) displacement_square: I,
     /// Largest `tau_c^2` of a block in contact.
     pub(super) stress_square: M,
-    /// Square of the highest speed, ghosts included.
+    /// Square of the highest speed.
     pub(super) speed_square: M,
     /// Number of blocks that slide.
     pub(super) sliding: N,

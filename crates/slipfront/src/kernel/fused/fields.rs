@@ -4,9 +4,10 @@
 use fearless_simd::{Simd, SimdBase, SimdFloat, i64x8};
 
 use super::band::{Band, Scratch, chunks};
-use super::blocks::{Step, pull};
+use super::blocks::pull;
 use super::layout::{Layout, TILE};
 use super::springs::SquareRoot;
+use super::step::Step;
 use super::vector::{LANES, add, bits, is_zero, load, load_vec2, scale, select, square};
 use crate::fixed_point::FixedPoint;
 use crate::kernel::block::{Block, Field};

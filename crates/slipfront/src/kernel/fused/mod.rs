@@ -24,6 +24,7 @@ mod quanta;
 mod rest;
 mod sparse;
 mod springs;
+mod step;
 mod vector;
 
 #[cfg(test)]
@@ -35,11 +36,12 @@ use std::sync::Arc;
 use fearless_simd::{Level, dispatch};
 
 use self::band::{Band, TileTask};
-use self::blocks::{Step, Sums};
+use self::blocks::Sums;
 use self::layout::{Layout, TILE, VECTORS};
 use self::neighbours::Neighbours;
 use self::quanta::Quanta;
 use self::springs::{Series, SquareRoot};
+use self::step::Step;
 use self::vector::LANES;
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::communicator::Communicator;

@@ -1,7 +1,7 @@
 //! The quanta of all sums over blocks: see [`FixedPoint`]. They follow from bounds on what is summed, and these from the extent of
 //! displacements and the highest speed, which every rank and thread knows.
 
-use super::blocks::Step;
+use super::step::Step;
 use crate::checkpoint::MotionBounds;
 use crate::fixed_point::{FixedPoint, Window};
 use crate::lattice::{K_DIAGONAL, K_STRAIGHT};
@@ -23,7 +23,7 @@ pub(super) struct Quanta {
     pub(super) lattice_energy: FixedPoint,
 }
 
-/// Rounding in the bounds and in what they bounds.
+/// Rounding in the bounds and in what they bound.
 const MARGIN: f64 = 1.0 + 1e-6;
 
 impl Quanta {

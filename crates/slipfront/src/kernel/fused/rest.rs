@@ -10,7 +10,8 @@
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f64x8};
 
-use super::blocks::{Step, pull};
+use super::blocks::pull;
+use super::step::Step;
 use super::vector::{Vec2x8, add, dot, lane_max, splat, square};
 
 /// Eight blocks in and around which nothing moves.

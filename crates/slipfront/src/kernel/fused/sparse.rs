@@ -6,10 +6,11 @@
 use fearless_simd::{Simd, SimdBase};
 
 use super::band::{Band, Scratch, chunks, chunks_mut};
-use super::blocks::{Step, Sums, displacement_sums, spring, vector_energy};
+use super::blocks::{Sums, displacement_sums, spring, vector_energy};
 use super::layout::VECTORS;
 use super::quanta::Quanta;
 use super::springs::Geometry;
+use super::step::Step;
 use super::vector::{LANES, Vec2x8, add, load, load_vec2, splat, subtract};
 use crate::lattice::Bond;
 
