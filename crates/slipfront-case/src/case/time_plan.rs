@@ -20,8 +20,8 @@ pub struct TimePlan {
     pub kinetic: KineticStart,
 }
 
-/// Longest run, in steps.
-const MAX_STEPS: f64 = 1e11;
+/// Longest run, in steps, of which the kernel keeps the numbers in 32 bits.
+const MAX_STEPS: f64 = 4e9;
 
 impl TimePlan {
     /// The time plan of a case file, refused when the step is unstable, the run too long, or the kinetic window empty.

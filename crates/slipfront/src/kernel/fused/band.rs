@@ -72,7 +72,14 @@ pub(super) struct Band {
     pub(super) len: usize,
     pub(super) tiles: Vec<Tile>,
     pub(super) tasks: Vec<TileTask>,
-    /// Number of elements before and after the band of which it keeps the displacements.
+    /// Sums over its tiles after the latest sweep.
+    pub(super) sums: Sums<i128, f64, u64>,
+    /// The first step at which a block of it may slip if nothing around it moves; 0 if unknown or something moves.
+    pub(super) next_active_step: u64,
+    /// Largest [`Tile::extent`] and [`Tile::difference`] of its tiles at the latest measurement.
+    pub(super) extent: [f64; 4],
+    pub(super) difference: [f64; 2],
+    /// See [`halo`].
     pub(super) halo: usize,
     /// Displacements at t_n, with halos.
     pub(super) displacement: Vectors,
@@ -82,8 +89,8 @@ pub(super) struct Band {
     static_limit_squares: Aligned,
     /// Change of velocity by kinetic friction in a step, `dt mu_k F_n/(m c+)`.
     kinetic_impulses: Aligned,
-    /// t* of the first slip in contact.
-    pub(super) first_slip: Aligned,
+    /// The step of the first slip in contact, or [`NEVER`].
+    pub(super) first_slip: Vec<u32>,
     /// Which elements have a neighbour to the east, to the west, and in the next row; with the front halo.
     pub(super) masks: [Vec<u8>; 3],
     /// Which elements are blocks.
@@ -119,8 +126,8 @@ pub(super) struct Scratch {
     removed_fraction: Aligned,
 }
 
-/// Number of sliding blocks in a tile above which all tiles around it are marked, instead of those around each block.
-const MAX_MARKED_BLOCKS: u32 = 32;
+/// In place of the step at which a block first slips, if it has not slipped.
+pub(super) const NEVER: u32 = u32::MAX;
 
 /// Number of elements that are repeated after the end of the ring buffer, for vectors that extend over its end.
 const MIRROR: usize = 2 * LANES;
@@ -128,6 +135,11 @@ const MIRROR: usize = 2 * LANES;
 /// Number of elements in as many whole vectors as these need.
 fn whole_vectors(elements: usize) -> usize {
     elements.next_multiple_of(LANES)
+}
+
+/// Number of elements before and after a band of which it keeps the displacements.
+pub(super) fn halo(layout: &Layout) -> usize {
+    whole_vectors(layout.stride + 1 + LANES)
 }
 
 impl Band {
@@ -141,7 +153,7 @@ impl Band {
     ) -> Self {
         let first = tiles.start * TILE;
         let len = whole_vectors((tiles.end * TILE).min(layout.len()) - first);
-        let halo = whole_vectors(layout.stride + 1 + LANES);
+        let halo = halo(layout);
         let ring = whole_vectors(layout.stride + 1 + TILE + LANES) + MIRROR;
         let bytes = || vec![0; len / LANES];
         let mut masks: [Vec<u8>; 3] = Default::default();
@@ -157,13 +169,17 @@ impl Band {
             len,
             tiles: vec![Tile::default(); tiles.len()],
             tasks: vec![TileTask::default(); tiles.len()],
+            sums: Sums::default(),
+            next_active_step: 0,
+            extent: [f64::NEG_INFINITY; 4],
+            difference: [0.0; 2],
             halo,
             displacement: Vectors::zeros(halo + len + halo),
             velocity: Vectors::zeros(len),
             static_limit_squares: Aligned::filled(len, f64::INFINITY),
             // A ghost has the velocity of its block: infinite friction keeps it from moving by itself.
             kinetic_impulses: Aligned::filled(len, f64::INFINITY),
-            first_slip: Aligned::filled(len, f64::NAN),
+            first_slip: vec![NEVER; len],
             masks,
             blocks: bytes(),
             in_contact: bytes(),
@@ -216,22 +232,36 @@ impl Band {
     }
 
     /// Takes over the values of a column of a checkpoint, from block `first` on, as far as these blocks are its own.
-    pub(super) fn set_column(&mut self, layout: &Layout, column: BlockColumn, first: usize, values: &[f64]) {
+    pub(super) fn set_column(
+        &mut self,
+        layout: &Layout,
+        dt_star: f64,
+        column: BlockColumn,
+        first: usize,
+        values: &[f64],
+    ) {
         let last = first + values.len() - 1;
         let from = layout.element_of(first).max(self.first);
         let to = (layout.element_of(last) + 1).min(self.first + self.len);
-        let array = match column {
-            BlockColumn::DisplacementX => &mut self.displacement.x[self.halo..],
-            BlockColumn::DisplacementY => &mut self.displacement.y[self.halo..],
-            BlockColumn::VelocityX => &mut self.velocity.x,
-            BlockColumn::VelocityY => &mut self.velocity.y,
-            BlockColumn::FirstSlip => &mut self.first_slip,
-        };
         for (_, _, part) in layout.rows_among(from..to) {
             let element = from + part.start;
-            let own = &mut array[element - self.first..][..part.len()];
-            if let Some(b) = layout.block(element) {
-                own.copy_from_slice(&values[b - first..][..part.len()]);
+            let Some(b) = layout.block(element) else {
+                continue;
+            };
+            let values = &values[b - first..][..part.len()];
+            let own = element - self.first..element - self.first + part.len();
+            let with_halo = self.halo + own.start..self.halo + own.end;
+            match column {
+                BlockColumn::DisplacementX => self.displacement.x[with_halo].copy_from_slice(values),
+                BlockColumn::DisplacementY => self.displacement.y[with_halo].copy_from_slice(values),
+                BlockColumn::VelocityX => self.velocity.x[own].copy_from_slice(values),
+                BlockColumn::VelocityY => self.velocity.y[own].copy_from_slice(values),
+                BlockColumn::FirstSlip => {
+                    for (step, time_star) in self.first_slip[own].iter_mut().zip(values) {
+                        let number = (time_star / dt_star).round();
+                        *step = if number.is_nan() { NEVER } else { number as u32 };
+                    }
+                }
             }
         }
     }
@@ -247,8 +277,21 @@ impl Band {
             self.set_moving(k, v != [0.0, 0.0]);
             let speed_square = &mut self.tiles[k / TILE].sums.speed_square;
             *speed_square = speed_square.max(v[0] * v[0] + v[1] * v[1]);
-            self.slipped[k / LANES] |= u8::from(!self.first_slip[k].is_nan()) << (k % LANES);
+            self.slipped[k / LANES] |= u8::from(self.first_slip[k] != NEVER) << (k % LANES);
         }
+    }
+
+    /// The elements before the band and after it of which it keeps the displacements. Its last vector may extend beyond the last
+    /// row.
+    pub(super) fn halos(&self, layout: &Layout) -> [Range<isize>; 2] {
+        let (first, halo) = (self.first as isize, self.halo as isize);
+        let end = first + self.len.min(layout.len() - self.first) as isize;
+        [first - halo..first, end..first + self.len as isize + halo]
+    }
+
+    /// Index of an element, which may be one of a halo, in the displacements.
+    pub(super) fn halo_index(&self, element: isize) -> usize {
+        (element - self.first as isize + self.halo as isize) as usize
     }
 
     /// Elements of the band's tile `t`, counted from the band's first.
@@ -270,27 +313,6 @@ impl Band {
             self.tiles[k / TILE].moving = true;
         } else {
             self.moving[k / LANES] &= !bit;
-        }
-    }
-
-    /// Marks all vectors that contain a moving element or a neighbour of one.
-    pub(super) fn mark_touched(&self, layout: &Layout, touched: &mut [u32]) {
-        let mut mark = |from: usize, to: usize| {
-            layout.mark_around((self.first + from) as isize, (self.first + to) as isize, touched);
-        };
-        for t in (0..self.tiles.len()).filter(|&t| self.tiles[t].moving) {
-            let elements = self.elements(t);
-            if self.tiles[t].sums.sliding > MAX_MARKED_BLOCKS {
-                mark(elements.start, elements.end - 1);
-                continue;
-            }
-            for v in self.vectors(t).filter(|&v| self.moving[v] != 0) {
-                let (first, last) = (
-                    self.moving[v].trailing_zeros(),
-                    7 - self.moving[v].leading_zeros(),
-                );
-                mark(v * LANES + first as usize, v * LANES + last as usize);
-            }
         }
     }
 
@@ -352,6 +374,17 @@ impl Band {
             }
         }
         *self.scratch() = scratch;
+        self.add_up();
+    }
+
+    /// Sums over the tiles, of which those that were skipped keep theirs.
+    fn add_up(&mut self) {
+        (self.sums, self.next_active_step) = (Sums::default(), u64::MAX);
+        for tile in &self.tiles {
+            self.sums.include(&tile.sums);
+            let step = if tile.moving { 0 } else { tile.active_from_step };
+            self.next_active_step = self.next_active_step.min(step);
+        }
     }
 
     /// The first of the elements whose springs to the next row are needed below element `k`.
@@ -362,7 +395,7 @@ impl Band {
 
     /// Number of tiles after the present one that must have moved before its forces are computed.
     #[inline(always)]
-    fn tiles_ahead(&self) -> usize {
+    pub(super) fn tiles_ahead(&self) -> usize {
         (self.stride + MIRROR).div_ceil(TILE)
     }
 
@@ -444,7 +477,9 @@ impl Band {
         let mut sums = Sums::zero(simd);
         let energy = (quanta.lattice_energy, &mut sums.lattice_energy);
         self.lattice_forces::<S, G, ENERGY>(simd, geometry, t, scratch, energy);
-        self.friction::<S, ENERGY>(simd, step, quanta, self.elements(t), scratch, &mut sums);
+        let ahead = self.tiles_ahead();
+        let next = [t, t + ahead].map(|t| TILE * self.next_whole_tile(t).unwrap_or(t + 1));
+        self.friction::<S, ENERGY>(simd, step, quanta, (self.elements(t), next), scratch, &mut sums);
         let vectors = self.vectors(t).len();
         let tile = &mut self.tiles[t];
         tile.sums = sums.totals::<ENERGY>(quanta, vectors);
@@ -492,20 +527,19 @@ impl Band {
         }
     }
 
-    /// Eqs. 2 and 4-7 of some elements of a tile, whose lattice forces are at the beginning of the scratch array.
+    /// Eqs. 2 and 4-7 of some elements of a tile, whose lattice forces are at the beginning of the scratch array. `next` are the
+    /// first of those that need friction next, and of those that move next.
     #[inline(always)]
     pub(super) fn friction<S: Simd, const ENERGY: bool>(
         &mut self,
         simd: S,
         step: Step,
         quanta: &Quanta,
-        elements: Range<usize>,
+        (elements, [next, moving_next]): (Range<usize>, [usize; 2]),
         scratch: &mut Scratch,
         sums: &mut Sums<i64x8<S>, f64x8<S>>,
     ) {
         let (start, n) = (self.halo + elements.start, elements.len());
-        let next = elements.start + TILE;
-        let moving_next = next + self.tiles_ahead() * TILE;
         let prefetched = [
             self.static_limit_squares.cache_lines(next),
             self.kinetic_impulses.cache_lines(next),
@@ -567,35 +601,47 @@ impl Band {
     /// latest measurement.
     #[inline(always)]
     pub(super) fn measure_displacements<S: Simd>(&mut self, simd: S) {
+        (self.extent, self.difference) = ([f64::NEG_INFINITY; 4], [0.0; 2]);
         for t in 0..self.tiles.len() {
-            if !self.tiles[t].displacements_are_old {
-                continue;
+            if self.tiles[t].displacements_are_old {
+                self.measure_tile(simd, t);
             }
-            let none = splat(simd, f64::NEG_INFINITY);
-            let (mut extent, mut difference) = ([none; 4], [splat(simd, 0.0); 2]);
-            for v in self.vectors(t) {
-                let here = self.halo + v * LANES;
-                let u = load_vec2(simd, chunks(&self.displacement, here, LANES), 0);
-                let [x, y] = or_else(simd, self.blocks[v], u, [none; 2]);
-                let [left, down] = or_else(simd, self.blocks[v], [-u[0], -u[1]], [none; 2]);
-                extent[0] = extent[0].max(x);
-                extent[1] = extent[1].max(left);
-                extent[2] = extent[2].max(y);
-                extent[3] = extent[3].max(down);
-                for (present, there) in self.springs_of(v) {
-                    let there = load_vec2(simd, chunks(&self.displacement, there, LANES), 0);
-                    // Of blocks alone: what is stored beyond the last row may have neighbours that are not.
-                    let [x, y] = zero_missing(simd, present & self.blocks[v], subtract(there, u));
-                    difference[0] = difference[0].max(x.abs());
-                    difference[1] = difference[1].max(y.abs());
-                }
+            let tile = &self.tiles[t];
+            for (most, value) in self.extent.iter_mut().zip(tile.extent) {
+                *most = most.max(value);
             }
-            let tile = &mut self.tiles[t];
-            let [right, left, up, down] = extent;
-            tile.extent = [lane_max(right), lane_max(left), lane_max(up), lane_max(down)];
-            tile.difference = [lane_max(difference[0]), lane_max(difference[1])];
-            tile.displacements_are_old = false;
+            for (most, value) in self.difference.iter_mut().zip(tile.difference) {
+                *most = most.max(value);
+            }
         }
+    }
+
+    #[inline(always)]
+    fn measure_tile<S: Simd>(&mut self, simd: S, t: usize) {
+        let none = splat(simd, f64::NEG_INFINITY);
+        let (mut extent, mut difference) = ([none; 4], [splat(simd, 0.0); 2]);
+        for v in self.vectors(t) {
+            let here = self.halo + v * LANES;
+            let u = load_vec2(simd, chunks(&self.displacement, here, LANES), 0);
+            let [x, y] = or_else(simd, self.blocks[v], u, [none; 2]);
+            let [left, down] = or_else(simd, self.blocks[v], [-u[0], -u[1]], [none; 2]);
+            extent[0] = extent[0].max(x);
+            extent[1] = extent[1].max(left);
+            extent[2] = extent[2].max(y);
+            extent[3] = extent[3].max(down);
+            for (present, there) in self.springs_of(v) {
+                let there = load_vec2(simd, chunks(&self.displacement, there, LANES), 0);
+                // Of blocks alone: what is stored beyond the last row may have neighbours that are not.
+                let [x, y] = zero_missing(simd, present & self.blocks[v], subtract(there, u));
+                difference[0] = difference[0].max(x.abs());
+                difference[1] = difference[1].max(y.abs());
+            }
+        }
+        let tile = &mut self.tiles[t];
+        let [right, left, up, down] = extent;
+        tile.extent = [lane_max(right), lane_max(left), lane_max(up), lane_max(down)];
+        tile.difference = [lane_max(difference[0]), lane_max(difference[1])];
+        tile.displacements_are_old = false;
     }
 
     /// The springs of vector `v` to the east, north, north-east and north-west: which are present, and where their other ends are.

@@ -232,8 +232,8 @@ pub(super) struct FrictionLoop<'a> {
     pub(super) moving: &'a mut [u8],
     /// Which blocks in contact have ever slid.
     pub(super) slipped: &'a mut [u8],
-    /// When they first did.
-    pub(super) first_slip: ChunksMut<'a>,
+    /// The step at which they first did.
+    pub(super) first_slip: &'a mut [[u32; LANES]],
     /// `F_s`, found by [`free_motion`].
     pub(super) drive: [ChunksMut<'a>; 2],
     /// Velocity that the block would have without friction, likewise.
@@ -325,25 +325,25 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
 }
 
 impl Sums<i128, f64, u64> {
-    /// Takes a tile into account.
-    pub(super) fn include(&mut self, tile: &Sums<i64, f64>) {
+    /// Takes a tile or a band into account.
+    pub(super) fn include<I: Copy + Into<i128>, N: Copy + Into<u64>>(&mut self, part: &Sums<I, f64, N>) {
         for axis in 0..2 {
-            self.displacement[axis] += i128::from(tile.displacement[axis]);
-            self.velocity[axis] += i128::from(tile.velocity[axis]);
+            self.displacement[axis] += part.displacement[axis].into();
+            self.velocity[axis] += part.velocity[axis].into();
         }
-        self.motion_square += i128::from(tile.motion_square);
-        self.friction_work += i128::from(tile.friction_work);
-        self.lattice_energy += i128::from(tile.lattice_energy);
-        self.velocity_squares += i128::from(tile.velocity_squares);
-        self.displacement_square += i128::from(tile.displacement_square);
-        self.stress_square = self.stress_square.max(tile.stress_square);
-        self.speed_square = self.speed_square.max(tile.speed_square);
-        self.sliding += u64::from(tile.sliding);
-        self.slipping += u64::from(tile.slipping);
+        self.motion_square += part.motion_square.into();
+        self.friction_work += part.friction_work.into();
+        self.lattice_energy += part.lattice_energy.into();
+        self.velocity_squares += part.velocity_squares.into();
+        self.displacement_square += part.displacement_square.into();
+        self.stress_square = self.stress_square.max(part.stress_square);
+        self.speed_square = self.speed_square.max(part.speed_square);
+        self.sliding += part.sliding.into();
+        self.slipping += part.slipping.into();
     }
 
-    /// Adds those of all ranks.
-    pub(super) fn over_ranks(&mut self, communicator: &dyn Communicator) {
+    /// Adds those of all ranks, and takes the soonest of a step that each of them names.
+    pub(super) fn over_ranks(&mut self, step: &mut u64, communicator: &dyn Communicator) {
         let [ux, uy] = &mut self.displacement;
         let [vx, vy] = &mut self.velocity;
         let mut sums = [
@@ -367,9 +367,11 @@ impl Sums<i128, f64, u64> {
             **sum = join(words);
         }
         [self.sliding, self.slipping] = words[9].map(|count| count as u64);
-        let mut largest = [self.stress_square, self.speed_square];
+        // Steps beyond 2^53 are none of a run.
+        let mut largest = [self.stress_square, self.speed_square, -(*step as f64)];
         communicator.largest(&mut largest);
-        [self.stress_square, self.speed_square] = largest;
+        [self.stress_square, self.speed_square, _] = largest;
+        *step = -largest[2] as u64;
     }
 }
 
@@ -506,20 +508,20 @@ pub(super) fn friction<S: Simd, const ENERGY: bool>(
             let shift = splat(simd, quanta.displacement_square.shift());
             sums.displacement_square += integers(squares, shift);
         }
-        mark_first_slips(slips, &mut slipped[c], &mut first_slip[c], step.time_star);
+        mark_first_slips(slips, &mut slipped[c], &mut first_slip[c], step.number as u32);
     }
 }
 
-/// Records the time for those of eight blocks that slip for the first time.
+/// Records the step for those of eight blocks that slip for the first time.
 #[inline(always)]
-fn mark_first_slips(slips: u8, slipped: &mut u8, first_slip: &mut [f64; LANES], time_star: f64) {
+fn mark_first_slips(slips: u8, slipped: &mut u8, first_slip: &mut [u32; LANES], number: u32) {
     let new = slips & !*slipped;
     // Seldom true: at most once per block in a run.
     if new != 0 {
         *slipped |= new;
-        for (lane, time) in first_slip.iter_mut().enumerate() {
+        for (lane, step) in first_slip.iter_mut().enumerate() {
             if new >> lane & 1 == 1 {
-                *time = time_star;
+                *step = number;
             }
         }
     }

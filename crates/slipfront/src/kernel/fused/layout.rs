@@ -6,6 +6,7 @@
 //! Elements that are no blocks never move, because their threshold is infinite, and are excluded from all sums.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::vector::LANES;
 use crate::lattice::{Edges, Lattice};
@@ -192,7 +193,7 @@ impl Layout {
 
     /// Marks the vectors that contain the elements from `first` to `last`, which may lie outside, or neighbours of them: see
     /// [`mark_vectors`].
-    pub(super) fn mark_around(&self, first: isize, last: isize, masks: &mut [u32]) {
+    pub(super) fn mark_around(&self, first: isize, last: isize, masks: &[AtomicU32]) {
         let (n, stride) = (self.len() as isize, self.stride as isize);
         for row in [-stride, 0, stride] {
             let (from, to) = (first + row - 1, last + row + 1);
@@ -204,24 +205,26 @@ impl Layout {
             }
         }
     }
-
-    /// Tiles that contain the southern neighbours of the elements from `first` to `last`.
-    pub(super) fn tiles_below(&self, first: usize, last: usize) -> impl Iterator<Item = usize> + use<> {
-        let below = self.stride as isize;
-        self.pieces(first as isize - below - 1, last as isize - below + 1)
-            .flat_map(|(_, piece)| piece.start / TILE..=(piece.end - 1) / TILE)
-    }
 }
 
 /// Sets the bits of the vectors that contain the elements of a piece: one mask per tile, one bit per vector.
-fn mark_vectors(masks: &mut [u32], piece: Range<usize>) {
+fn mark_vectors(masks: &[AtomicU32], piece: Range<usize>) {
+    // Several threads set bits. Most are set already, and reading is cheaper than writing.
+    let set = |tile: usize, bits: u32| {
+        if masks[tile].load(Ordering::Relaxed) & bits != bits {
+            masks[tile].fetch_or(bits, Ordering::Relaxed);
+        }
+    };
     let (first, last) = (piece.start / LANES, (piece.end - 1) / LANES);
     let (mut tile, mut from) = (first / VECTORS, first % VECTORS);
     while tile < last / VECTORS {
-        masks[tile] |= u32::MAX << from;
+        set(tile, u32::MAX << from);
         (tile, from) = (tile + 1, 0);
     }
-    masks[tile] |= (u32::MAX << from) & (u32::MAX >> (VECTORS - 1 - last % VECTORS));
+    set(
+        tile,
+        (u32::MAX << from) & (u32::MAX >> (VECTORS - 1 - last % VECTORS)),
+    );
 }
 
 #[cfg(test)]
@@ -230,10 +233,10 @@ mod tests {
 
     /// Vectors around the elements of a vector, and around the ghosts of its blocks.
     fn vectors_around(layout: &Layout, vector: usize) -> Vec<u32> {
-        let mut masks = vec![0; layout.n_tiles()];
+        let masks: Vec<AtomicU32> = (0..layout.n_tiles()).map(|_| AtomicU32::new(0)).collect();
         let (first, last) = (vector * LANES, vector * LANES + LANES - 1);
-        let mut mark = |first: usize, last: usize| {
-            layout.mark_around(first as isize, last as isize, &mut masks);
+        let mark = |first: usize, last: usize| {
+            layout.mark_around(first as isize, last as isize, &masks);
         };
         mark(first, last);
         if layout.has_ghosts() {
@@ -242,7 +245,7 @@ mod tests {
                 .filter(|(_, copied)| (first..=last).contains(copied))
                 .for_each(|(ghost, _)| mark(ghost, ghost));
         }
-        masks
+        masks.into_iter().map(AtomicU32::into_inner).collect()
     }
 
     /// Compared with the neighbours that the lattice itself knows.

@@ -22,6 +22,7 @@ mod layout;
 mod neighbours;
 mod quanta;
 mod rest;
+mod schedule;
 mod sparse;
 mod springs;
 mod step;
@@ -32,14 +33,16 @@ mod tests;
 
 use std::ops::Range;
 use std::sync::Arc;
+use std::sync::atomic::AtomicU32;
 
 use fearless_simd::{Level, dispatch};
 
-use self::band::{Band, TileTask};
+use self::band::{Band, NEVER};
 use self::blocks::Sums;
-use self::layout::{Layout, TILE, VECTORS};
+use self::layout::{Layout, TILE};
 use self::neighbours::Neighbours;
 use self::quanta::Quanta;
+use self::schedule::Schedule;
 use self::springs::{Series, SquareRoot};
 use self::step::Step;
 use self::vector::LANES;
@@ -55,12 +58,6 @@ use crate::state::State;
 
 /// Steps between two measurements of displacements and their differences; in between they are bounded.
 const MEASUREMENT_INTERVAL: u64 = 16;
-
-/// Most vectors of a tile that are swept one by one: more cost more than the whole tile.
-const MAX_SPARSE_VECTORS: u32 = 14;
-
-/// Most touched vectors of a tile after whose sweep its vectors are swept one by one.
-const MAX_SETTLING_VECTORS: u32 = 9;
 
 /// How spring forces are computed in a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,13 +76,13 @@ pub(crate) struct Fused {
     layout: Layout,
     dt_star: f64,
     bands: Vec<Band>,
+    /// Those of them that need nothing of other ranks.
+    inner: Range<usize>,
     level: Level,
     /// Whether tiles at rest are skipped.
     skips: bool,
     /// For every tile, which of its vectors have a moving block or a neighbour of one.
-    touched: Vec<u32>,
-    /// For every tile, whether a tile in the sweep needs its springs.
-    needs_springs: Vec<bool>,
+    touched: Vec<AtomicU32>,
     /// The first step at which a block may slip, if nothing moves.
     active_from_step: u64,
     /// Step of the latest sweep.
@@ -117,10 +114,9 @@ impl Fused {
         communicator: Arc<dyn Communicator>,
     ) -> Self {
         let layout = Layout::new(&model.lattice, &model.rows);
-        let n_tiles = layout.n_tiles();
-        let n_bands = threads.clamp(1, n_tiles);
-        let bands: Vec<Band> = (0..n_bands)
-            .map(|k| n_tiles * k / n_bands..n_tiles * (k + 1) / n_bands)
+        let (tiles, inner) = bands_of(&layout, threads);
+        let bands: Vec<Band> = tiles
+            .into_iter()
             .map(|tiles| Band::new(&layout, model, state, dt_star, tiles))
             .collect();
         let speed_square = bands
@@ -132,10 +128,10 @@ impl Fused {
             layout,
             dt_star,
             bands,
+            inner,
             level: Level::new(),
             skips,
-            touched: vec![0; n_tiles],
-            needs_springs: vec![false; n_tiles],
+            touched: (0..layout.n_tiles()).map(|_| AtomicU32::new(0)).collect(),
             active_from_step: 0,
             swept_step: None,
             springs: None,
@@ -170,7 +166,7 @@ impl Fused {
         BlockColumn::for_each_part(model.surface.n_blocks(), |column, first, values| {
             read(column, first, values)?;
             for band in &mut kernel.bands {
-                band.set_column(&kernel.layout, column, first, values);
+                band.set_column(&kernel.layout, dt_star, column, first, values);
             }
             Ok(())
         })?;
@@ -198,17 +194,17 @@ impl Fused {
                 &mut self.bands,
                 &|band| dispatch!(level, simd => band.measure_displacements(simd)),
             );
-            (bounds.extent, bounds.difference, bounds.growth) = ([f64::NEG_INFINITY; 4], [0.0; 2], 0.0);
-            for tile in self.bands.iter().flat_map(|band| &band.tiles) {
-                for (most, value) in bounds.extent.iter_mut().zip(tile.extent) {
-                    *most = most.max(value);
-                }
-                for (most, value) in bounds.difference.iter_mut().zip(tile.difference) {
+            let mut largest = [f64::NEG_INFINITY; 6];
+            for band in &self.bands {
+                let ([right, left, up, down], [along_x, along_y]) = (band.extent, band.difference);
+                for (most, value) in largest.iter_mut().zip([right, left, up, down, along_x, along_y]) {
                     *most = most.max(value);
                 }
             }
-            self.neighbours.communicator.largest(&mut bounds.extent);
-            self.neighbours.communicator.largest(&mut bounds.difference);
+            self.neighbours.communicator.largest(&mut largest);
+            let [right, left, up, down, along_x, along_y] = largest;
+            (bounds.extent, bounds.difference) = ([right, left, up, down], [along_x, along_y]);
+            bounds.growth = 0.0;
         }
         bounds.growth += 2.0 * step.move_dt * bounds.speed;
         let strain = self.motion_bounds.max_strain(model.epsilon);
@@ -222,94 +218,53 @@ impl Fused {
         (springs, self.motion_bounds.move_ranges())
     }
 
-    /// Decides what is done with every tile in the sweep to step `number`. All are swept if the sums that skipped tiles keep are of
-    /// no more use.
-    fn schedule_tiles(&mut self, number: u64, anew: bool) {
-        let begins = self.swept_step.is_none();
-        let follows = self.swept_step.is_some_and(|swept| swept + 1 == number);
-        let Self {
-            layout,
-            bands,
-            touched,
-            needs_springs,
-            neighbours,
-            ..
-        } = self;
-        touched.fill(0);
-        needs_springs.fill(false);
-        for band in bands.iter() {
-            band.mark_touched(layout, touched);
-        }
-        for &element in &neighbours.moved {
+    /// The sweep to a step. Bands that need nothing of other ranks are swept while the rows beside this rank's are on their way.
+    fn sweep(&mut self, model: &Model, step: Step, springs: Springs, anew: bool, energies: bool) {
+        let schedule = Schedule {
+            number: step.number,
+            skips: self.skips,
+            anew,
+            begins: self.swept_step.is_none(),
+            follows: self.swept_step.is_some_and(|swept| swept + 1 == step.number),
+        };
+        let (level, quanta) = (self.level, Quanta::new(&step, &self.motion_bounds));
+        let (layout, touched) = (self.layout, self.touched.as_slice());
+        for_each_band(&mut self.bands, &|band| band.mark_touched(&layout, touched));
+        self.fill_halos(step.move_dt, false);
+        self.write_own_rows(step.move_dt);
+
+        let touched = self.touched.as_slice();
+        let sweep = |band: &mut Band| {
+            band.schedule(&schedule, touched);
+            sweep(level, band, model.epsilon, step, &quanta, springs, energies);
+        };
+        let (first, others) = self.bands.split_at_mut(self.inner.start);
+        let (inner, last) = others.split_at_mut(self.inner.len());
+        self.neighbours
+            .exchange(&layout, &mut || for_each_band(inner, &sweep));
+        for &element in &self.neighbours.moved {
             layout.mark_around(element, element, touched);
         }
-        for band in bands.iter_mut() {
-            for t in 0..band.tiles.len() {
-                let all = u32::MAX >> (VECTORS - band.vectors(t).len());
-                let (tile, before) = (band.tiles[t], band.tasks[t].active);
-                let mut task = TileTask {
-                    active: all,
-                    touched: touched[band.first_tile + t] & all,
-                    ..TileTask::default()
-                };
-                if task.touched != 0 {
-                    band.tiles[t].displacements_are_old = true;
-                }
-                let few = task.touched.count_ones() <= MAX_SETTLING_VECTORS;
-                if self.skips && !anew && tile.settled {
-                    task.active = task.touched;
-                    if tile.active_from_step <= number {
-                        task.active |= band.vectors_that_may_slip(t, number);
-                    }
-                    task.sparse = task.active.count_ones() <= MAX_SPARSE_VECTORS;
-                }
-                if !task.sparse {
-                    task.active = all;
-                    task.settles = self.skips && few;
-                    let elements = band.elements(t);
-                    let (first, last) = (band.first + elements.start, band.first + elements.end - 1);
-                    needs_springs[band.first_tile + t] = true;
-                    layout
-                        .tiles_below(first, last)
-                        .for_each(|tile| needs_springs[tile] = true);
-                }
-                task.was_skipped = match (begins, follows) {
-                    (true, _) => 0,
-                    (_, true) => task.active & !before,
-                    _ => task.active,
-                };
-                band.tasks[t] = task;
-            }
+        for bands in [first, last] {
+            fill_from_neighbours(bands, &layout, &self.neighbours);
+            for_each_band(bands, &sweep);
         }
-        for band in bands.iter_mut() {
-            for (task, &needs_springs) in band.tasks.iter_mut().zip(&needs_springs[band.first_tile..]) {
-                task.needs_springs = needs_springs;
-            }
-        }
+        self.copy_ghosts(false);
+        (self.swept_step, self.springs) = (Some(step.number), Some(springs));
+        self.sum_bands(&quanta);
     }
 
-    /// Displacements beyond the ends of every band, as they will be after moving by `move_dt`: of `all` elements, or of those that
-    /// move. Those beyond a free edge stay zero: no spring leads there.
+    /// Displacements beyond the ends of every band, as they will be after moving by `move_dt`: of `all` elements of this rank, or of
+    /// those that move. Those beyond a free edge stay zero: no spring leads there.
     fn fill_halos(&mut self, move_dt: f64, all: bool) {
-        if self.bands.len() == 1 && !self.layout.wraps_along_y() && self.neighbours.is_alone() {
+        if self.bands.len() == 1 && !self.layout.wraps_along_y() {
             return;
         }
-        let halo = self.bands[0].halo as isize;
         for b in 0..self.bands.len() {
-            let first = self.bands[b].first as isize;
-            // The last vector of a band may extend beyond the last row.
-            let end = first + self.bands[b].len.min(self.layout.len() - self.bands[b].first) as isize;
-            let after_halo = first + self.bands[b].len as isize + halo;
-            for (from, to) in [(first - halo, first), (end, after_halo)] {
-                for (start, elements) in self.layout.pieces(from, to - 1) {
-                    self.fill_halo(b, (start - first + halo) as usize, elements, move_dt, all);
-                }
-                for element in from..to {
-                    if let Some(u) = self.neighbours.displacement(&self.layout, element) {
-                        self.bands[b]
-                            .displacement
-                            .set((element - first + halo) as usize, u);
-                    }
+            let (layout, halos) = (self.layout, self.bands[b].halos(&self.layout));
+            for elements in halos {
+                for (start, piece) in layout.pieces(elements.start, elements.end - 1) {
+                    self.fill_halo(b, self.bands[b].halo_index(start), piece, move_dt, all);
                 }
             }
         }
@@ -318,8 +273,9 @@ impl Fused {
     /// What ranks have to tell each other before their first step, also one after a checkpoint.
     fn begin(&mut self) {
         self.has_begun = true;
-        self.exchange_rows(0.0);
-        self.fill_halos(0.0, false);
+        self.write_own_rows(0.0);
+        self.neighbours.exchange(&self.layout, &mut || ());
+        fill_from_neighbours(&mut self.bands, &self.layout, &self.neighbours);
         if self.swept_step.is_some() {
             return;
         }
@@ -342,11 +298,8 @@ impl Fused {
         }
     }
 
-    /// Exchanges with the neighbouring ranks the displacements that blocks at the ends will have after moving by `move_dt`.
-    fn exchange_rows(&mut self, move_dt: f64) {
-        if self.neighbours.is_alone() {
-            return;
-        }
+    /// The displacements that the rows at the ends of this rank will have after moving by `move_dt`, for the neighbouring ranks.
+    fn write_own_rows(&mut self, move_dt: f64) {
         let (stride, len) = (self.layout.stride, self.layout.len());
         for (end, first) in [0, len - stride].into_iter().enumerate() {
             // None beyond a free edge.
@@ -355,7 +308,6 @@ impl Fused {
                 self.neighbours.own[end][k] = self.bands[band].advanced(at, move_dt);
             }
         }
-        self.neighbours.exchange(&self.layout);
     }
 
     /// Displacements of some elements to band `b`, from index `k` on.
@@ -402,20 +354,15 @@ impl Fused {
         }
     }
 
-    /// Sums over the lattice, from those over the tiles after a sweep.
-    fn sum_tiles(&mut self, quanta: &Quanta) {
+    /// Sums over the lattice, from those over the bands after a sweep.
+    fn sum_bands(&mut self, quanta: &Quanta) {
         let (mut sums, mut active_from_step) = (Sums::<i128, f64, u64>::default(), u64::MAX);
-        for tile in self.bands.iter().flat_map(|band| &band.tiles) {
-            sums.include(&tile.sums);
-            active_from_step = active_from_step.min(if tile.moving { 0 } else { tile.active_from_step });
+        for band in &self.bands {
+            sums.include(&band.sums);
+            active_from_step = active_from_step.min(band.next_active_step);
         }
         if !self.neighbours.is_alone() {
-            let communicator = &*self.neighbours.communicator;
-            sums.over_ranks(communicator);
-            // Steps beyond 2^53 are none of a run.
-            let mut soonest = [-(active_from_step as f64)];
-            communicator.largest(&mut soonest);
-            active_from_step = -soonest[0] as u64;
+            sums.over_ranks(&mut active_from_step, &*self.neighbours.communicator);
         }
         self.stress_square_max = self.stress_square_max.max(sums.stress_square);
         self.active_from_step = active_from_step;
@@ -463,6 +410,10 @@ impl Fused {
 
 impl Engine for Fused {
     fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals {
+        assert!(
+            number < u64::from(NEVER),
+            "step {number}: runs end before step {NEVER}"
+        );
         let mut step = Step::new(model, number, self.dt_star);
         if self.swept_step.is_none() {
             // At the start displacements are those of t_0 already.
@@ -476,16 +427,7 @@ impl Engine for Fused {
         // anew, to have the same bits.
         let springs_changed = windows_moved || self.springs != Some(springs);
         if !self.skips || springs_changed || number >= self.active_from_step {
-            self.exchange_rows(step.move_dt);
-            self.schedule_tiles(number, springs_changed);
-            self.fill_halos(step.move_dt, false);
-            let (level, quanta) = (self.level, Quanta::new(&step, &self.motion_bounds));
-            for_each_band(&mut self.bands, &|band| {
-                sweep(level, band, model.epsilon, step, &quanta, springs, energies);
-            });
-            self.copy_ghosts(false);
-            (self.swept_step, self.springs) = (Some(number), Some(springs));
-            self.sum_tiles(&quanta);
+            self.sweep(model, step, springs, springs_changed, energies);
         }
         let stored_energy = if energies { self.stored_energy(step) } else { None };
         Totals {
@@ -519,7 +461,10 @@ impl Engine for Fused {
 
     fn first_slip(&self, b: usize) -> f64 {
         let (band, k) = self.locate(self.layout.element_of(b));
-        self.bands[band].first_slip[k]
+        match self.bands[band].first_slip[k] {
+            NEVER => f64::NAN,
+            step => f64::from(step) * self.dt_star,
+        }
     }
 
     fn stress_square_max(&self, model: &Model, number: u64) -> f64 {
@@ -549,6 +494,49 @@ impl Engine for Fused {
 
     fn checkpoint_velocity(&self, b: usize) -> [f64; 2] {
         self.motion(b)[1]
+    }
+}
+
+/// Least number of tiles in a band of several: more bands than threads share out the work more evenly, but each finds springs
+/// of a row before it once more.
+const MIN_BAND_TILES: usize = 1024;
+
+/// The tiles of every band, and which of the bands need nothing of other ranks.
+fn bands_of(layout: &Layout, threads: usize) -> (Vec<Range<usize>>, Range<usize>) {
+    let n_tiles = layout.n_tiles();
+    // What lies within a halo of the rows of other ranks; the last tile may be short.
+    let end = band::halo(layout).div_ceil(TILE) + 1;
+    let [first, last] = layout.has_neighbours().map(|has| if has { end } else { 0 });
+    let (inner, has_inner) = match n_tiles.checked_sub(first + last) {
+        Some(1..) => (first..n_tiles - last, true),
+        _ => (0..n_tiles, false),
+    };
+    let most = if threads == 1 { 1 } else { 4 * threads };
+    let n = (inner.len() / MIN_BAND_TILES)
+        .clamp(threads, most)
+        .min(inner.len());
+    let divided = (0..n).map(|k| inner.start + inner.len() * k / n..inner.start + inner.len() * (k + 1) / n);
+    if !has_inner {
+        return (divided.collect(), 0..0);
+    }
+    let ends = [0..first, n_tiles - last..n_tiles].map(|tiles| (!tiles.is_empty()).then_some(tiles));
+    let [first, last] = ends;
+    let number = usize::from(first.is_some());
+    (
+        first.into_iter().chain(divided).chain(last).collect(),
+        number..number + n,
+    )
+}
+
+/// Displacements in the halos of these bands that other ranks hold.
+fn fill_from_neighbours(bands: &mut [Band], layout: &Layout, neighbours: &Neighbours) {
+    for band in bands {
+        for element in band.halos(layout).into_iter().flatten() {
+            if let Some(u) = neighbours.displacement(layout, element) {
+                let k = band.halo_index(element);
+                band.displacement.set(k, u);
+            }
+        }
     }
 }
 

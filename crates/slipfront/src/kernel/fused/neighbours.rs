@@ -40,14 +40,14 @@ impl Neighbours {
         self.communicator.size() == 1
     }
 
-    /// Tells the neighbours the rows in `own` and hears theirs.
-    pub(super) fn exchange(&mut self, layout: &Layout) {
+    /// Tells the neighbours the rows in `own` and hears theirs, while `meanwhile` runs.
+    pub(super) fn exchange(&mut self, layout: &Layout, meanwhile: &mut dyn FnMut()) {
         std::mem::swap(&mut self.rows, &mut self.before);
         let [below, above] = &mut self.rows;
         self.communicator.exchange(
             self.own.each_ref().map(|row| row.as_flattened()),
             [below.as_flattened_mut(), above.as_flattened_mut()],
-            &mut || {},
+            meanwhile,
         );
         self.moved.clear();
         let firsts = [-(layout.stride as isize), layout.len() as isize];

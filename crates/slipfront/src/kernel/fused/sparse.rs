@@ -7,7 +7,7 @@ use fearless_simd::{Simd, SimdBase};
 
 use super::band::{Band, Scratch, chunks, chunks_mut};
 use super::blocks::{Sums, displacement_sums, spring, vector_energy};
-use super::layout::VECTORS;
+use super::layout::{TILE, VECTORS};
 use super::quanta::Quanta;
 use super::springs::Geometry;
 use super::step::Step;
@@ -70,7 +70,9 @@ impl Band {
             active ^= bit;
             let energy = self.vector_forces(simd, geometry, quanta, v, scratch);
             lattice_energy += energy - std::mem::replace(&mut self.lattice_energy[v], energy);
-            self.friction::<S, true>(simd, step, quanta, v * LANES..(v + 1) * LANES, scratch, &mut sums);
+            let elements = v * LANES..(v + 1) * LANES;
+            let next = [1, 1 + self.tiles_ahead()].map(|tiles| elements.start + tiles * TILE);
+            self.friction::<S, true>(simd, step, quanta, (elements, next), scratch, &mut sums);
             let rests = task.touched & bit == 0 && self.moving[v] == 0;
             self.active_from_step[v] = self.first_active_step(simd, step, v, scratch, 0, rests);
         }

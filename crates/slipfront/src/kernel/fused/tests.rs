@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 
+use super::layout::VECTORS;
 use super::*;
 use crate::communicator::Alone;
 use crate::friction::FrictionLaw;

@@ -1,0 +1,107 @@
+//! What is done with every tile of a band in a sweep: nothing, if nothing moves in it or around it and none of its blocks may slip.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use super::band::{Band, TileTask};
+use super::layout::{Layout, TILE, VECTORS};
+use super::vector::LANES;
+
+/// Most vectors of a tile that are swept one by one: more cost more than the whole tile.
+const MAX_SPARSE_VECTORS: u32 = 14;
+
+/// Most touched vectors of a tile after whose sweep its vectors are swept one by one.
+const MAX_SETTLING_VECTORS: u32 = 9;
+
+/// Number of sliding blocks in a tile above which all tiles around it are marked, instead of those around each block.
+const MAX_MARKED_BLOCKS: u32 = 32;
+
+/// What is common to all tiles in a sweep.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Schedule {
+    /// The step.
+    pub(super) number: u64,
+    /// Whether tiles at rest are skipped.
+    pub(super) skips: bool,
+    /// Whether the sums that skipped tiles keep are of no more use.
+    pub(super) anew: bool,
+    /// Whether there was no sweep before.
+    pub(super) begins: bool,
+    /// Whether the sweep before was that of the step before.
+    pub(super) follows: bool,
+}
+
+impl Band {
+    /// Marks all vectors that contain a moving element or a neighbour of one: for every tile of the rank one bit per vector.
+    pub(super) fn mark_touched(&self, layout: &Layout, touched: &[AtomicU32]) {
+        let mark = |from: usize, to: usize| {
+            layout.mark_around((self.first + from) as isize, (self.first + to) as isize, touched);
+        };
+        for t in (0..self.tiles.len()).filter(|&t| self.tiles[t].moving) {
+            let elements = self.elements(t);
+            if self.tiles[t].sums.sliding > MAX_MARKED_BLOCKS {
+                mark(elements.start, elements.end - 1);
+                continue;
+            }
+            for v in self.vectors(t).filter(|&v| self.moving[v] != 0) {
+                let (first, last) = (
+                    self.moving[v].trailing_zeros(),
+                    7 - self.moving[v].leading_zeros(),
+                );
+                mark(v * LANES + first as usize, v * LANES + last as usize);
+            }
+        }
+    }
+
+    /// Decides what is done with every tile, and takes back the marks.
+    pub(super) fn schedule(&mut self, schedule: &Schedule, touched: &[AtomicU32]) {
+        for t in 0..self.tiles.len() {
+            let all = u32::MAX >> (VECTORS - self.vectors(t).len());
+            let (tile, before) = (self.tiles[t], self.tasks[t].active);
+            let mut task = TileTask {
+                active: all,
+                touched: touched[self.first_tile + t].swap(0, Ordering::Relaxed) & all,
+                ..TileTask::default()
+            };
+            if task.touched != 0 {
+                self.tiles[t].displacements_are_old = true;
+            }
+            if schedule.skips && !schedule.anew && tile.settled {
+                task.active = task.touched;
+                if tile.active_from_step <= schedule.number {
+                    task.active |= self.vectors_that_may_slip(t, schedule.number);
+                }
+                task.sparse = task.active.count_ones() <= MAX_SPARSE_VECTORS;
+            }
+            if !task.sparse {
+                task.active = all;
+                task.settles = schedule.skips && task.touched.count_ones() <= MAX_SETTLING_VECTORS;
+            }
+            task.was_skipped = match (schedule.begins, schedule.follows) {
+                (true, _) => 0,
+                (_, true) => task.active & !before,
+                _ => task.active,
+            };
+            self.tasks[t] = task;
+        }
+        for t in 0..self.tiles.len() {
+            if self.tasks[t].sparse {
+                continue;
+            }
+            self.tasks[t].needs_springs = true;
+            let elements = self.elements(t);
+            // Springs from before the band are found in any case.
+            if let Some(last) = elements.end.checked_sub(self.stride) {
+                let first = elements.start.saturating_sub(self.stride + 1);
+                for below in &mut self.tasks[first / TILE..=last / TILE] {
+                    below.needs_springs = true;
+                }
+            }
+        }
+    }
+
+    /// The first tile after `t` that will be swept as a whole.
+    pub(super) fn next_whole_tile(&self, t: usize) -> Option<usize> {
+        let later = self.tasks.get(t + 1..)?.iter();
+        later.clone().position(|task| !task.sparse).map(|n| t + 1 + n)
+    }
+}
