@@ -12,8 +12,8 @@ const MAX_SPARSE_VECTORS: u32 = 14;
 /// Most touched vectors of a tile after whose sweep its vectors are swept one by one.
 const MAX_SETTLING_VECTORS: u32 = 9;
 
-/// Number of sliding blocks in a tile above which all tiles around it are marked, instead of those around each block.
-const MAX_MARKED_BLOCKS: u32 = 32;
+/// Number of moving vectors in a tile above which all around it are marked, instead of those around each vector.
+const MAX_MARKED_VECTORS: usize = 10;
 
 /// What is common to all tiles in a sweep.
 #[derive(Clone, Copy, Debug)]
@@ -37,12 +37,13 @@ impl Band {
             layout.mark_around((self.first + from) as isize, (self.first + to) as isize, touched);
         };
         for t in (0..self.tiles.len()).filter(|&t| self.tiles[t].moving) {
-            let elements = self.elements(t);
-            if self.tiles[t].sums.sliding > MAX_MARKED_BLOCKS {
+            let moving = self.vectors(t).filter(|&v| self.moving[v] != 0);
+            if moving.clone().count() > MAX_MARKED_VECTORS {
+                let elements = self.elements(t);
                 mark(elements.start, elements.end - 1);
                 continue;
             }
-            for v in self.vectors(t).filter(|&v| self.moving[v] != 0) {
+            for v in moving {
                 let (first, last) = (
                     self.moving[v].trailing_zeros(),
                     7 - self.moving[v].leading_zeros(),
