@@ -212,7 +212,7 @@ same_as_once() { # FOLDER
   done
 }
 
-ranks=1
+ranks=2
 script long long.md
 job=$(submit long)
 stop_twice long "$job"

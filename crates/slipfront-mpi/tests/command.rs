@@ -4,7 +4,6 @@
 
 mod support;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::LazyLock;
@@ -14,10 +13,8 @@ use std::time::{Duration, Instant};
 use rstest::rstest;
 use tempfile::TempDir;
 
-use crate::support::{mpirun, output, plain, printed, run_plain_command};
-
-/// Files by their names, with their bytes.
-type Files = BTreeMap<String, Vec<u8>>;
+use crate::support::results::{Files, assert_same, results};
+use crate::support::{mpirun, output, printed, run_plain, run_plain_command};
 
 /// Some seconds: long enough to be stopped.
 const SLOW: &str = "[slider]\nblocks = [120, 100]\nedges = ['periodic', 'free']\n[drive]\nv_star = 0.002\n";
@@ -29,48 +26,19 @@ fn on_ranks(ranks: usize, folder: &TempDir, line: &str) -> Command {
     command
 }
 
-/// Runs the plain command, which must succeed, in a folder.
-fn run_plain(folder: &TempDir, line: &str) {
-    let output = output(plain("plain_command", line).current_dir(folder));
-    assert!(output.status.success(), "{}", printed(&output));
-}
-
 #[test]
 #[ignore = "runs in a process of its own"]
 fn plain_command() {
     run_plain_command();
 }
 
-/// Every file of a run that is complete but the manifest, which tells of machines and dates.
-fn results(folder: &Path) -> Files {
-    let mut files = Files::new();
-    for folder in [folder, &folder.join("inputs")] {
-        for entry in std::fs::read_dir(folder).into_iter().flatten() {
-            let path = entry.unwrap().path();
-            if path.is_file() {
-                let name = path.file_name().unwrap().to_string_lossy().into_owned();
-                files.insert(name, std::fs::read(path).unwrap());
-            }
-        }
-    }
-    assert!(files.remove("manifest.json").is_some(), "no manifest");
-    files
-}
-
 /// What [`SLOW`] gives by the plain command.
 static SLOW_RESULTS: LazyLock<Files> = LazyLock::new(|| {
     let folder = TempDir::new().unwrap();
     std::fs::write(folder.path().join("slow.toml"), SLOW).unwrap();
-    run_plain(&folder, "run slow.toml --quiet -o plain");
+    run_plain(folder.path(), "run slow.toml --quiet -o plain");
     results(&folder.path().join("plain"))
 });
-
-fn assert_same(one: &Files, other: &Files) {
-    assert!(one.keys().eq(other.keys()));
-    for (name, bytes) in one {
-        assert!(*bytes == other[name], "{name} differs");
-    }
-}
 
 /// Waits until a run has saved its first checkpoint.
 fn wait_for_checkpoint(folder: &Path) {
@@ -190,7 +158,7 @@ fn folder_of(text: &str) -> TempDir {
 fn a_run_on_ranks_writes_the_bytes_of_the_plain_command(#[values(0, 1, 2, 3, 4, 5)] case: usize) {
     let (name, text) = CASES[case];
     let folder = folder_of(text);
-    run_plain(&folder, "run case.toml -o plain");
+    run_plain(folder.path(), "run case.toml -o plain");
     let plain = results(&folder.path().join("plain"));
     for ranks in [1, 2, 3, 4, 7] {
         let line = format!("run case.toml -o ranks-{ranks}");
@@ -202,17 +170,23 @@ fn a_run_on_ranks_writes_the_bytes_of_the_plain_command(#[values(0, 1, 2, 3, 4, 
     }
 }
 
-/// mpirun passes on SIGUSR2 as it is; after SIGINT and SIGTERM it sends SIGTERM to the ranks, and has status 1 whatever they say.
+/// What is said of a run that has saved where it was stopped.
+const SAVED: &str = "which is saved: `slipfront-mpi run --resume stopped` goes on";
+
+/// mpirun passes on SIGUSR2 as it is; after SIGINT and SIGTERM it sends SIGTERM to the ranks, and has status 1 whatever they say. It
+/// says itself that a rank was killed.
 #[rstest]
-#[case(Target::Mpirun, "-USR2", 140, Resumed::OnRanks)]
-#[case(Target::Mpirun, "-TERM", 1, Resumed::Plain)]
-#[case(Target::Mpirun, "-INT", 1, Resumed::OnRanks)]
-#[case(Target::LastRank, "-TERM", 143, Resumed::Plain)]
+#[case(Target::Mpirun, "-USR2", 140, SAVED, Resumed::OnRanks)]
+#[case(Target::Mpirun, "-TERM", 1, SAVED, Resumed::Plain)]
+#[case(Target::Mpirun, "-INT", 1, SAVED, Resumed::OnRanks)]
+#[case(Target::LastRank, "-TERM", 143, SAVED, Resumed::Plain)]
+#[case(Target::LastRank, "-KILL", 137, "signal 9", Resumed::OnRanks)]
 fn a_run_that_is_stopped_by_a_signal_goes_on_in_either_command(
     #[values(1, 3)] ranks: usize,
     #[case] target: Target,
     #[case] signal: &str,
     #[case] status: i32,
+    #[case] sentence: &str,
     #[case] resumed: Resumed,
 ) {
     let folder = TempDir::new().unwrap();
@@ -224,12 +198,11 @@ fn a_run_that_is_stopped_by_a_signal_goes_on_in_either_command(
     send(signal, target, &child);
     let stopped = child.wait_with_output().unwrap();
     let text = printed(&stopped);
-    let sentence = "which is saved: `slipfront-mpi run --resume stopped` goes on";
     assert_eq!(text.matches(sentence).count(), 1, "{text}");
     assert_eq!(stopped.status.code(), Some(status), "{text}");
     let line = "run --quiet --resume stopped";
     match resumed {
-        Resumed::Plain => run_plain(&folder, line),
+        Resumed::Plain => run_plain(folder.path(), line),
         Resumed::OnRanks => {
             // On another number of ranks.
             let output = output(&mut on_ranks(ranks + 1, &folder, line));

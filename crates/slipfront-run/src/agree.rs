@@ -5,6 +5,7 @@
 use std::io;
 
 use slipfront::Communicator;
+use slipfront::communicator::{lowest_rank, text_of};
 use thiserror::Error;
 
 /// Why ranks gave up, the same on every rank.
@@ -31,37 +32,21 @@ pub struct RankFailure {
 /// # Errors
 /// When a rank failed; the sentence names it, unless it is rank 0.
 pub fn agree<T>(communicator: &dyn Communicator, outcome: Result<T, RankFailure>) -> Result<T, RankFailure> {
-    let (rank, size) = (communicator.rank(), communicator.size());
-    let mut from_above = [if outcome.is_err() {
-        (size - rank) as f64
-    } else {
-        0.0
-    }];
-    communicator.largest(&mut from_above);
-    if from_above[0] == 0.0 {
+    let Some(lowest) = lowest_rank(communicator, outcome.is_err()) else {
         return outcome;
-    }
-    let lowest = size - from_above[0] as usize;
-    let own = outcome.err().filter(|_| rank == lowest).map(|mut failure| {
-        if lowest > 0 {
-            failure.sentence.insert_str(0, &format!("rank {lowest}: "));
-        }
-        failure
-    });
-    // One rank gives numbers and the others zeros: the sums are its numbers.
-    let mut head = own
-        .as_ref()
-        .map_or([0; 2], |own| [i64::from(own.status), own.sentence.len() as i64]);
-    communicator.sum(&mut head);
-    let mut text = vec![0; head[1] as usize];
-    if let Some(own) = own {
-        text = own.sentence.bytes().map(i64::from).collect();
-    }
-    communicator.sum(&mut text);
-    let text: Vec<u8> = text.into_iter().map(|byte| byte as u8).collect();
+    };
+    let own = outcome.err().filter(|_| communicator.rank() == lowest);
+    // The others have zero: the sum is that of the lowest.
+    let mut status = [own.as_ref().map_or(0, |own| i64::from(own.status))];
+    communicator.sum(&mut status);
+    let sentence = own.map(|own| own.sentence).unwrap_or_default();
+    let sentence = text_of(communicator, lowest, &sentence);
     Err(RankFailure {
-        status: head[0] as u8,
-        sentence: String::from_utf8_lossy(&text).into_owned(),
+        status: status[0] as u8,
+        sentence: match lowest {
+            0 => sentence,
+            _ => format!("rank {lowest}: {sentence}"),
+        },
     })
 }
 

@@ -27,6 +27,21 @@ pub trait Communicator: Send + Sync {
     fn sum(&self, values: &mut [i64]);
 }
 
+/// The lowest rank for which it is so, on all of them; none if it is so for none.
+///
+/// ```
+/// use slipfront::communicator::{Alone, lowest_rank};
+///
+/// assert_eq!([true, false].map(|is_so| lowest_rank(&Alone, is_so)), [Some(0), None]);
+/// ```
+pub fn lowest_rank(communicator: &dyn Communicator, is_so: bool) -> Option<usize> {
+    let (rank, size) = (communicator.rank(), communicator.size());
+    // Counted from above, so that the lowest rank has the largest number.
+    let mut from_above = [if is_so { (size - rank) as f64 } else { 0.0 }];
+    communicator.largest(&mut from_above);
+    (from_above[0] > 0.0).then(|| size - from_above[0] as usize)
+}
+
 /// The text that one of the ranks has, on all of them; what the others have is not looked at.
 pub fn text_of(communicator: &dyn Communicator, rank: usize, text: &str) -> String {
     let own = if communicator.rank() == rank { text } else { "" };
@@ -224,5 +239,17 @@ mod tests {
         let mut above = [0.0];
         Alone.exchange([&[1.0], &[2.0, 3.0]], [&mut below, &mut above], &mut || ());
         assert_eq!((below, above), ([2.0, 3.0], [1.0]));
+    }
+
+    /// Of every set of ranks.
+    #[test]
+    fn all_ranks_know_the_lowest() {
+        for size in 1..5 {
+            for set in 0..1_usize << size {
+                let found = Threads::run(size, |rank| lowest_rank(rank, set >> rank.rank() & 1 == 1));
+                let lowest = (set > 0).then_some(set.trailing_zeros() as usize);
+                assert_eq!(found, vec![lowest; size], "{set:b} of {size}");
+            }
+        }
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::checkpoint::{BlockColumn, Checkpoint};
-use crate::communicator::{Alone, Communicator};
+use crate::communicator::{Alone, Communicator, lowest_rank};
 use crate::error::RunError;
 use crate::kernel::engine::Engine;
 use crate::kernel::execution::Execution;
@@ -273,15 +273,14 @@ impl Simulation {
             let value = u.into_iter().find(|u| !u.is_finite())?;
             Some((first + b, value))
         });
-        // The first of all ranks tells its value.
-        let mut lowest = [bad.map_or(f64::NEG_INFINITY, |(block, _)| -(block as f64))];
-        self.communicator.largest(&mut lowest);
-        let own = bad.filter(|(block, _)| -(*block as f64) == lowest[0]);
-        let mut bits = [own.map_or(0, |(_, value)| value.to_bits() as i64)];
-        self.communicator.sum(&mut bits);
-        let (block, value) = match lowest[0] {
-            f64::NEG_INFINITY => (0, self.point.mu_star),
-            block => (-block as usize, f64::from_bits(bits[0] as u64)),
+        // The lowest rank has the first block, and tells the others.
+        let lowest = lowest_rank(&*self.communicator, bad.is_some());
+        let own = bad.filter(|_| lowest == Some(self.communicator.rank()));
+        let mut found = own.map_or([0; 2], |(block, value)| [block as i64, value.to_bits() as i64]);
+        self.communicator.sum(&mut found);
+        let (block, value) = match lowest {
+            Some(_) => (found[0] as usize, f64::from_bits(found[1] as u64)),
+            None => (0, self.point.mu_star),
         };
         let (i, j) = self.model.lattice.column_row(block);
         Err(RunError::NotFinite {

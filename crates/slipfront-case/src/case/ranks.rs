@@ -1,7 +1,7 @@
 //! The ranks that make a case together.
 
 use slipfront::Communicator;
-use slipfront::communicator::{Alone, text_of};
+use slipfront::communicator::{Alone, lowest_rank, text_of};
 
 use crate::case_file::CaseError;
 
@@ -26,29 +26,17 @@ impl Ranks<'_> {
     /// What this rank has found, if none has failed; else an error on all of them: that of the lowest rank that has one, or
     /// that they were stopped.
     pub fn agree<T>(&self, found: Result<T, CaseError>) -> Result<T, CaseError> {
-        let rank = self.communicator.rank();
         let is_stopped = matches!(found, Err(CaseError::Stopped));
-        let failed = if found.is_err() {
-            -(rank as f64)
-        } else {
-            f64::NEG_INFINITY
-        };
-        let mut most = [f64::from(u8::from(is_stopped)), failed];
-        self.communicator.largest(&mut most);
-        let [stopped, failed] = most;
-        if stopped > 0.0 {
+        if lowest_rank(self.communicator, is_stopped).is_some() {
             return Err(CaseError::Stopped);
         }
-        if failed == f64::NEG_INFINITY {
+        let Some(lowest) = lowest_rank(self.communicator, found.is_err()) else {
             return found;
-        }
-        let first = -failed as usize;
-        let own = found.err();
+        };
+        let own = found.err().filter(|_| self.communicator.rank() == lowest);
         let text = own.as_ref().map(ToString::to_string).unwrap_or_default();
-        let text = text_of(self.communicator, first, &text);
-        Err(own
-            .filter(|_| rank == first)
-            .unwrap_or(CaseError::OnOtherRank(text)))
+        let text = text_of(self.communicator, lowest, &text);
+        Err(own.unwrap_or(CaseError::OnOtherRank(text)))
     }
 }
 

@@ -2,12 +2,13 @@
 
 mod traffic;
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 use std::sync::Arc;
 
 use gethostname::gethostname;
 use slipfront::Communicator;
-use slipfront::communicator::{Alone, text_of};
+use slipfront::communicator::Alone;
 use slipfront_run::agree::{RankFailure, agree};
 use slipfront_run::resume_command::resume_command;
 
@@ -44,11 +45,15 @@ impl Ranks {
         Arc::clone(&self.communicator) as Arc<dyn Communicator>
     }
 
-    /// Number of ranks on this machine, by its name.
+    /// Number of ranks on this machine, by the hash of its name.
     pub(crate) fn on_node(&self) -> usize {
-        let own = gethostname().to_string_lossy().into_owned();
-        let host_of = |rank| text_of(&*self.communicator, rank, &own);
-        (0..self.size()).filter(|&rank| host_of(rank) == own).count()
+        let mut hasher = DefaultHasher::new();
+        gethostname().hash(&mut hasher);
+        let own = hasher.finish().cast_signed();
+        let mut names = vec![0; self.size()];
+        names[self.communicator.rank()] = own;
+        self.communicator.sum(&mut names);
+        names.into_iter().filter(|name| *name == own).count()
     }
 
     /// Number of ranks.
@@ -94,5 +99,20 @@ impl Ranks {
     /// What this rank has told the others in each of so many steps; none of one rank.
     pub(crate) fn traffic(&self, steps: u64) -> Option<String> {
         (self.size() > 1 && steps > 0).then(|| self.communicator.per_step(steps))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use slipfront::communicator::Threads;
+
+    #[test]
+    fn threads_are_on_one_machine() {
+        for size in 1..4 {
+            let of_rank = |rank: &Threads| Ranks::new("slipfront-mpi", Arc::new(rank.clone()));
+            let found = Threads::run(size, |rank| of_rank(rank).on_node());
+            assert_eq!(found, vec![size; size]);
+        }
     }
 }

@@ -1,36 +1,10 @@
 //! Every file-system call that a command makes fails in turn.
 
-use std::process::Command;
-use std::sync::OnceLock;
-
 use crate::bounded::Ended;
 use crate::jobs::{JOBS, Job, expect_all, workspace};
 use crate::support::workspace::Workspace;
 use crate::tally::{Chance, Tally, cases, long};
-
-/// The watcher, compiled with the C compiler that Rust links with; none where it does not work.
-fn watcher() -> Option<&'static str> {
-    static WATCHER: OnceLock<Option<String>> = OnceLock::new();
-    let make = || {
-        let path = format!("{}/faults-{}", env!("CARGO_TARGET_TMPDIR"), std::process::id());
-        let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/torture/faults.c");
-        let compiled = Command::new("cc")
-            .args(["-O2", "-Wall", "-Wextra", "-Werror", "-o", &path, source])
-            .status();
-        let works = compiled.is_ok_and(|status| status.success())
-            && Command::new(&path)
-                .args(["/nowhere", "EIO", "0", "0", "/dev/null", "true"])
-                .status()
-                .is_ok_and(|status| status.success());
-        if !works {
-            eprintln!(
-                "SKIPPED: no C compiler, or no right to watch a process: no file-system call fails in these tests"
-            );
-        }
-        works.then_some(path)
-    };
-    WATCHER.get_or_init(make).as_deref()
-}
+use crate::watcher::watcher;
 
 /// A call that a command makes.
 #[derive(Clone, Debug)]

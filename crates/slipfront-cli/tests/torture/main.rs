@@ -23,3 +23,5 @@ mod faults;
 mod jobs;
 mod kills;
 mod tally;
+#[cfg(target_os = "linux")]
+mod watcher;

@@ -3,20 +3,29 @@
 // Every test binary uses a part of it.
 #![allow(dead_code)]
 
+pub(crate) mod results;
+
 use std::ffi::OsStr;
 use std::io::ErrorKind;
+use std::path::Path;
 use std::process::{Command, Output};
 
 /// The environment in which a test program finds the arguments of the command that it is to run.
 const ARGUMENTS: &str = "SLIPFRONT_TEST_ARGUMENTS";
 
-/// Starts a program with so many ranks. They may be more than cores, and then give way to each other while they wait.
+/// Starts a program with so many ranks.
 pub(crate) fn mpirun(ranks: usize, program: impl AsRef<OsStr>) -> Command {
+    let mut command = launcher();
+    command.args(["-n", &ranks.to_string()]).arg(program);
+    command
+}
+
+/// mpirun, which is still to be told what to start. Ranks may be more than cores, and then give way to each other while they wait.
+pub(crate) fn launcher() -> Command {
     let mut command = Command::new("mpirun");
     command.args(["--allow-run-as-root", "--oversubscribe", "--bind-to", "none"]);
     // A rank that waits for ever is a failure of the test, not of the machine on which it runs.
     command.args(["--timeout", "60", "--mca", "mpi_yield_when_idle", "1"]);
-    command.args(["-n", &ranks.to_string()]).arg(program);
     command
 }
 
@@ -42,11 +51,13 @@ pub(crate) fn ranks_of_test(ranks: usize, test: &str) -> Command {
     command
 }
 
-/// A process of `slipfront`, the plain command. Its test program has [`run_plain_command`] in a test of this name.
-pub(crate) fn plain(test: &str, line: &str) -> Command {
+/// Runs `slipfront`, the plain command, which must succeed, in a folder: as a process of this test program, which has
+/// [`run_plain_command`] in a test named `plain_command`.
+pub(crate) fn run_plain(folder: &Path, line: &str) {
     let mut command = Command::new(std::env::current_exe().unwrap());
-    command.args(only(test)).env(ARGUMENTS, line);
-    command
+    command.args(only("plain_command")).env(ARGUMENTS, line);
+    let output = output(command.current_dir(folder));
+    assert!(output.status.success(), "{}", printed(&output));
 }
 
 /// Ends this process as `slipfront` with the arguments that it was given.

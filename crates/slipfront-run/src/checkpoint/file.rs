@@ -12,6 +12,7 @@ use blake3::OUT_LEN;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use slipfront::Communicator;
+use slipfront::communicator::{lowest_rank, text_of};
 use slipfront_case::disk::{open_regular, remove_if_there};
 use slipfront_case::text::truncated;
 
@@ -73,6 +74,10 @@ impl Header {
 }
 
 /// Writes a checkpoint to a new file, each rank its own rows, and forces it to the disk.
+///
+/// On a file system that several machines share, one of them is sure to see what another has written from when that has closed the
+/// file on: each rank writes all that it has and closes the file before any of them reads it. None reads while it writes, which would
+/// let it write whole pages of memory, with what it takes for the numbers of others.
 pub(super) fn write(
     path: &Path,
     header: &Header,
@@ -83,53 +88,69 @@ pub(super) fn write(
     let mut line = serde_json::to_vec(header)?;
     line.push(b'\n');
     // The first line is that of the first rank, whose clock may show a time of more digits.
-    let mut begin = [if is_first { line.len() as i64 } else { 0 }];
-    communicator.sum(&mut begin);
-    let begin = begin[0] as u64;
+    let begin = of_first(communicator, line.len() as u64);
     let end = header.columns_end(begin).ok_or(ErrorKind::FileTooLarge)?;
     // All ranks find the state together, and one writes it.
     let state = running.state();
-    let begun = match is_first {
-        true => write_line_and_state(path, &line, end, &state),
-        false => Ok(0),
+    let begun = is_first.then(|| write_line_and_state(path, &line, end, &state));
+    let begun = agree_on_io(communicator, begun.transpose())?;
+    let length = of_first(communicator, begun.as_ref().map_or(0, |(_, length)| *length));
+    let opened = match begun {
+        Some((file, _)) => Ok(file),
+        None => File::options().write(true).open(path),
     };
-    let mut length = [agree_on_io(communicator, begun)? as i64];
-    communicator.sum(&mut length);
-    let length = length[0] as u64;
-    let mut file = agree_on_io(communicator, write_columns(path, begin, running))?;
+    let written = opened.and_then(|file| write_columns(file, begin, running));
+    agree_on_io(communicator, written)?;
+    let opened = File::options().read(true).write(is_first).open(path);
+    let mut file = agree_on_io(communicator, opened)?;
     let checksum = hash_of_pieces(&mut file, length, communicator)?;
     let mut finish = || {
         if is_first {
             file.seek(SeekFrom::Start(length))?;
             file.write_all(checksum.as_bytes())?;
+            file.sync_all()?;
         }
-        file.sync_all()
+        Ok(())
     };
     agree_on_io(communicator, finish())
 }
 
-/// Makes the file with all but its columns and its checksum, the state from byte `end` on, and gives its length.
-fn write_line_and_state(path: &Path, line: &[u8], end: u64, state: &impl Serialize) -> std::io::Result<u64> {
+/// The number that the first rank has, on all of them.
+fn of_first(communicator: &dyn Communicator, number: u64) -> u64 {
+    let is_first = communicator.rank() == 0;
+    let mut of_first = [if is_first { number.cast_signed() } else { 0 }];
+    communicator.sum(&mut of_first);
+    of_first[0].cast_unsigned()
+}
+
+/// Makes the file with all but its columns and its checksum, the state from byte `end` on, and gives it with its length.
+fn write_line_and_state(
+    path: &Path,
+    line: &[u8],
+    end: u64,
+    state: &impl Serialize,
+) -> std::io::Result<(File, u64)> {
     // One that a killed program has left, whatever it leads to.
     remove_if_there(path)?;
-    let mut writer = BufWriter::with_capacity(1 << 20, File::create_new(path)?);
+    let file = File::options().write(true).create_new(true).open(path)?;
+    let mut writer = BufWriter::with_capacity(1 << 20, file);
     writer.write_all(line)?;
     writer.seek(SeekFrom::Start(end))?;
     // Postcard drops the system's error of a failed write; `flush` gives it again.
     let written = postcard::to_io(state, &mut writer).map(|_| ());
     writer.flush()?;
     written.map_err(Error::other)?;
-    writer.stream_position()
+    let length = writer.stream_position()?;
+    Ok((writer.into_inner()?, length))
 }
 
-/// Writes the columns of the rows that this rank holds.
-fn write_columns(path: &Path, begin: u64, running: &Running) -> std::io::Result<File> {
-    let mut file = File::options().read(true).write(true).open(path)?;
+/// Writes the columns of the rows that this rank holds, forces them to the disk and closes the file.
+fn write_columns(mut file: File, begin: u64, running: &Running) -> std::io::Result<()> {
     running.write_columns(|offset, bytes| {
         file.seek(SeekFrom::Start(begin + offset))?;
         file.write_all(bytes)
     })?;
-    Ok(file)
+    file.sync_all()
 }
 
 /// Reads a checkpoint of the case with this hash, all but its columns, whose bytes are held against the checksum.
@@ -144,14 +165,17 @@ pub(super) fn read(
         source,
     };
     let damaged = |why| CheckpointError::Damaged { path: owned(), why };
-    let (mut file, line, length) = agree_on_io(communicator, open(path)).map_err(unreadable)?;
+    let (mut file, own_line, length) = agree_on_io(communicator, open(path)).map_err(unreadable)?;
+    // Ranks may see different files, and must do the same nevertheless: what the first one sees counts.
+    let line = text_of(communicator, 0, &own_line);
+    let length = of_first(communicator, length);
     let unknown = || damaged("its first line is not that of a checkpoint");
-    let Layout { slipfront_checkpoint } = serde_json::from_slice(&line).map_err(|_| unknown())?;
+    let Layout { slipfront_checkpoint } = serde_json::from_str(&line).map_err(|_| unknown())?;
     if slipfront_checkpoint != LAYOUT {
         let (path, found) = (owned(), slipfront_checkpoint);
         return Err(CheckpointError::Layout { path, found });
     }
-    let header: Header = serde_json::from_slice(&line).map_err(|_| unknown())?;
+    let header: Header = serde_json::from_str(&line).map_err(|_| unknown())?;
     // Nothing is made of bytes before they are known to be those that were written.
     let wrong = || damaged("its checksum does not fit");
     let contents = length.checked_sub(OUT_LEN as u64).ok_or_else(wrong)?;
@@ -161,7 +185,8 @@ pub(super) fn read(
         .seek(SeekFrom::Start(contents))
         .and_then(|_| file.read_exact(&mut checksum));
     agree_on_io(communicator, read).map_err(unreadable)?;
-    if hash.as_bytes() != &checksum {
+    let is_other = own_line != line || hash.as_bytes() != &checksum;
+    if lowest_rank(communicator, is_other).is_some() {
         return Err(wrong());
     }
     let here = program::this_build();
@@ -188,13 +213,13 @@ pub(super) fn read(
     })
 }
 
-/// A file with its first line and its length.
-fn open(path: &Path) -> std::io::Result<(File, Vec<u8>, u64)> {
+/// A file with its first line, empty if it is no text, and its length.
+fn open(path: &Path) -> std::io::Result<(File, String, u64)> {
     let file = open_regular(path)?;
     let length = file.metadata()?.len();
     let mut line = Vec::new();
     BufReader::new((&file).take(HEADER_MAX_BYTES)).read_until(b'\n', &mut line)?;
-    Ok((file, line, length))
+    Ok((file, String::from_utf8(line).unwrap_or_default(), length))
 }
 
 /// The state that takes all bytes from `begin` to `end`; an error of [`ErrorKind::InvalidData`] if there is none.

@@ -112,7 +112,9 @@ impl Checkpoints {
     pub fn save(&mut self, running: &Running, communicator: &dyn Communicator) -> std::io::Result<()> {
         let header = Header::new(&self.case_blake3, self.started, running);
         let is_first = communicator.rank() == 0;
-        let temporary = self.folder.temporary().join(CHECKPOINT);
+        // Another name for every step: machines that share a disk may take a name for the file that had it before.
+        let temporary = format!("{}-{CHECKPOINT}", header.step);
+        let temporary = self.folder.temporary().join(temporary);
         let written = file::write(&temporary, &header, running, communicator);
         let placed = written.and_then(|()| match is_first {
             true => self.put_in_place(&temporary),
@@ -309,6 +311,36 @@ mod tests {
             assert!(latest(folder.path()) == before);
             let temporary = Unfinished::of(folder.path()).temporary();
             assert_eq!(std::fs::read_dir(temporary).unwrap().count(), 0);
+        }
+    }
+
+    /// Where machines share a disk, one of them may see for a while what others have replaced: another file, or one of another
+    /// layout or length.
+    #[test]
+    fn where_one_rank_sees_another_checkpoint_all_refuse_it() {
+        let case = case();
+        let [folder, other] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+        checkpoints(folder.path(), &case)
+            .save(&advanced(&case), &Alone)
+            .unwrap();
+        checkpoints(other.path(), &case)
+            .save(&Running::start(&case, 1), &Alone)
+            .unwrap();
+        let earlier = latest(other.path());
+        let longer = [latest(folder.path()), vec![0; 10 << 20]].concat();
+        let layout = b"{\"slipfront_checkpoint\":1}\n".to_vec();
+        for seen in [earlier, longer, layout, Vec::new()] {
+            std::fs::write(Unfinished::of(other.path()).path().join(CHECKPOINT), &seen).unwrap();
+            for differing in 0..3 {
+                let refused = Threads::run(3, |communicator| {
+                    let folder = match communicator.rank() == differing {
+                        true => other.path(),
+                        false => folder.path(),
+                    };
+                    Checkpoints::load(folder, &case, false, communicator).is_err()
+                });
+                assert_eq!(refused, [true; 3], "rank {differing} sees {} bytes", seen.len());
+            }
         }
     }
 

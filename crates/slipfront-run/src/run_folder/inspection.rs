@@ -79,15 +79,26 @@ impl Inspection {
     /// The case of a run that can be resumed, or is complete.
     pub fn case_to_resume(&self) -> Result<&CaseFile, FolderError> {
         let path = self.path.clone();
-        let why = match &self.case {
+        let defect = match &self.case {
             Ok(case) => return Ok(case),
-            Err(_) if !path.exists() => "there is none of this name",
-            Err(_) if !path.is_dir() => "it is a file: name its folder",
-            Err(CaseDefect::Unreadable(error)) if error.kind() == ErrorKind::NotFound => {
-                "it has no case.toml"
-            }
-            Err(_) => {
+            Err(defect) => defect,
+        };
+        let unread = match defect {
+            CaseDefect::Unreadable(error)
+            | CaseDefect::Invalid(CaseError::Unreadable { source: error, .. }) => Some(error),
+            CaseDefect::Invalid(_) | CaseDefect::NotResolved(_) => None,
+        };
+        let why = match unread.map(std::io::Error::kind) {
+            Some(ErrorKind::NotFound) if path.exists() => "it has no case.toml",
+            Some(ErrorKind::NotFound) => "there is none of this name",
+            Some(ErrorKind::NotADirectory) => "it is a file: name its folder",
+            None => {
                 "its case.toml is not as this version wrote it; put it back as it was, or run it to another folder"
+            }
+            Some(kind) => {
+                let sentence = unread.map(ToString::to_string).unwrap_or_default();
+                let error = std::io::Error::new(kind, sentence);
+                return Err(FolderError::read(&path.join(CASE))(error));
             }
         };
         Err(FolderError::NoRun { path, why })

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use slipfront::communicator::{Alone, Communicator};
+use slipfront::communicator::Alone;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::agree::RankFailure;
@@ -21,6 +21,7 @@ use super::options::RunOptions;
 use crate::failure::Failure;
 use crate::make_case::make_case;
 use crate::print::{print, print_message};
+use crate::ranks::Ranks;
 use crate::report;
 
 pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result<(), RankFailure> {
@@ -34,17 +35,10 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
     }
     let file = ranks.agree(run.case_to_resume().map_err(Failure::input))?.clone();
     let case = Arc::new(ranks.agree(case_to_resume(path, file, &options))?);
-    let communicator = ranks.communicator();
-    let loaded = ranks.agree(load(path, &case, previous, &*communicator))?;
+    let loaded = ranks.agree(load(path, &case, previous, &ranks))?;
     ranks.first(|| check_disk(run, &case, &options))?;
-    let (running, checkpoints, from) = ranks.agree(begin(
-        path,
-        &case,
-        loaded,
-        previous,
-        options.threads,
-        &communicator,
-    ))?;
+    let (running, checkpoints, from) =
+        ranks.agree(begin(path, &case, loaded, previous, options.threads, &ranks))?;
     let folder = ranks.first(|| folder.resume(&case).map_err(Failure::input))?;
     if options.is_verbose() {
         print_message(&report::physics(&case));
@@ -76,19 +70,20 @@ fn begin(
     loaded: Option<LoadedCheckpoint>,
     previous: bool,
     threads: usize,
-    communicator: &Arc<dyn Communicator>,
+    ranks: &Ranks,
 ) -> Result<(Running, Checkpoints, String), Failure> {
+    let communicator = ranks.communicator();
     Ok(match loaded {
         None => {
             let checkpoints = Checkpoints::new(path, case, clock::now());
-            let running = Running::start_on_ranks(case, threads, Arc::clone(communicator));
+            let running = Running::start_on_ranks(case, threads, communicator);
             (running, checkpoints, "the start: it has no checkpoint".to_owned())
         }
         Some(loaded) => {
             let checkpoints = Checkpoints::after(path, case, &loaded);
             let from = format!("step {} of {}", loaded.step(), case.time_plan.last_step);
-            let resumed = loaded.resume(case, threads, Arc::clone(communicator));
-            let resumed = resumed.map_err(|error| refused(&error, path, case, previous))?;
+            let resumed = loaded.resume(case, threads, communicator);
+            let resumed = resumed.map_err(|error| refused(ranks, &error, path, case, previous))?;
             let running = resumed.ok_or_else(|| {
                 let sentence = "is not one of a run of its case";
                 Failure::input(anyhow::anyhow!(
@@ -165,21 +160,24 @@ fn load(
     path: &Path,
     case: &Case,
     previous: bool,
-    communicator: &dyn Communicator,
+    ranks: &Ranks,
 ) -> Result<Option<LoadedCheckpoint>, Failure> {
-    match Checkpoints::load(path, case, previous, communicator) {
+    match Checkpoints::load(path, case, previous, &*ranks.communicator()) {
         Ok(None) if previous => {
             let sentence = "holds no checkpoint before the latest one";
             Err(Failure::input(anyhow::anyhow!("{} {sentence}", path.display())))
         }
         Ok(loaded) => Ok(loaded),
-        Err(error) => Err(refused(&error, path, case, previous)),
+        Err(error) => Err(refused(ranks, &error, path, case, previous)),
     }
 }
 
-/// A checkpoint that cannot be used, with the remedy.
-fn refused(error: &CheckpointError, path: &Path, case: &Case, previous: bool) -> Failure {
-    let remedy = remedy(error, path, case, previous);
+/// A checkpoint that cannot be used, with the remedy. All ranks refuse it; the first one, which says so, looks for the remedy.
+fn refused(ranks: &Ranks, error: &CheckpointError, path: &Path, case: &Case, previous: bool) -> Failure {
+    let remedy = match ranks.is_first() {
+        true => remedy(error, path, case, previous),
+        false => String::new(),
+    };
     Failure::input(anyhow::anyhow!("{error}; {remedy}"))
 }
 

@@ -1,0 +1,31 @@
+//! The program that lets calls of a command fail, for the tests of this crate and for those of slipfront-mpi.
+
+use std::process::Command;
+use std::sync::OnceLock;
+
+/// The watcher, compiled with the C compiler that Rust links with; none where it does not work.
+pub(crate) fn watcher() -> Option<&'static str> {
+    static WATCHER: OnceLock<Option<String>> = OnceLock::new();
+    let make = || {
+        let path = format!("{}/faults-{}", env!("CARGO_TARGET_TMPDIR"), std::process::id());
+        let source = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../slipfront-cli/tests/torture/faults.c"
+        );
+        let compiled = Command::new("cc")
+            .args(["-O2", "-Wall", "-Wextra", "-Werror", "-o", &path, source])
+            .status();
+        let works = compiled.is_ok_and(|status| status.success())
+            && Command::new(&path)
+                .args(["/nowhere", "EIO", "0", "0", "/dev/null", "true"])
+                .status()
+                .is_ok_and(|status| status.success());
+        if !works {
+            eprintln!(
+                "SKIPPED: no C compiler, or no right to watch a process: no file-system call fails in these tests"
+            );
+        }
+        works.then_some(path)
+    };
+    WATCHER.get_or_init(make).as_deref()
+}

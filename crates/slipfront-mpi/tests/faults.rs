@@ -1,0 +1,173 @@
+//! File-system calls of one rank of two fail or kill it, while it goes on with a run that has a checkpoint: both ranks end, with one
+//! answer, and what they leave goes on to the same bytes.
+//!
+//! A few calls are tried; with `SLIPFRONT_TORTURE=long` every one.
+
+#![cfg(target_os = "linux")]
+#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
+
+mod support;
+#[path = "../../slipfront-cli/tests/torture/watcher.rs"]
+mod watcher;
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::Output;
+use std::sync::{Arc, LazyLock};
+
+use rstest::rstest;
+use slipfront::communicator::Alone;
+use slipfront_case::case::Case;
+use slipfront_run::checkpoint::Checkpoints;
+use slipfront_run::run_folder::RunFolder;
+use slipfront_run::running::Running;
+use slipfront_run::{clock, results as run_results};
+use tempfile::TempDir;
+
+use crate::support::results::{Files, assert_same, results};
+use crate::support::{launcher, mpirun, output, printed, run_plain, run_plain_command};
+use crate::watcher::watcher;
+
+/// Some tenths of a second, with frames before the checkpoint and after it.
+const CASE: &str = "slider = { blocks = [60, 50], edges = ['periodic', 'free'] }\ndrive.v_star = 0.05\n\
+                    time.duration_star = 200\noutput = { snapshots = [30, 150], series = 5 }\n";
+
+const RESUME: &str = "run --resume run --checkpoint 0s";
+
+#[test]
+#[ignore = "runs in a process of its own"]
+fn plain_command() {
+    run_plain_command();
+}
+
+/// What [`CASE`] gives by the plain command.
+static UNDISTURBED: LazyLock<Files> = LazyLock::new(|| {
+    let folder = TempDir::new().unwrap();
+    std::fs::write(folder.path().join("case.toml"), CASE).unwrap();
+    run_plain(folder.path(), "run case.toml --quiet -o run");
+    results(&folder.path().join("run"))
+});
+
+/// A folder with a run that was stopped in its middle.
+fn stopped_run() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("run");
+    let case = Arc::new(Case::parse(CASE, "run", &[]).unwrap());
+    let mut run = RunFolder::prepare(&path, false, &case.inputs).unwrap();
+    run_results::write_case(&case, &mut run).unwrap();
+    let mut running = Running::start(&case, 1);
+    running.advance(case.time_plan.last_step / 2).unwrap();
+    let mut checkpoints = Checkpoints::new(&path, &case, clock::now());
+    checkpoints.save(&running, &Alone).unwrap();
+    folder
+}
+
+/// Goes on with the run on two ranks. Calls of one of them that concern its folder meet with an action from number `from` to number
+/// `to`, 0 for no end. Gives all of its calls as well.
+fn resume_disturbed(folder: &Path, rank: usize, [action, from, to]: [&str; 3]) -> (Output, Vec<String>) {
+    let log = folder.join("log");
+    let mut command = launcher();
+    for each in 0..2 {
+        command
+            .args(if each > 0 { &[":"][..] } else { &[] })
+            .args(["-n", "1"]);
+        if each == rank {
+            let run = folder.join("run").canonicalize().unwrap();
+            command
+                .arg(watcher().unwrap())
+                .arg(run)
+                .args([action, from, to])
+                .arg(&log);
+        }
+        command
+            .arg(env!("CARGO_BIN_EXE_slipfront-mpi"))
+            .args(RESUME.split(' '));
+    }
+    let output = output(command.current_dir(folder));
+    let log = std::fs::read_to_string(log).unwrap();
+    (output, log.lines().map(str::to_owned).collect())
+}
+
+/// Kinds of calls that are tried in the short form.
+const SHORT: usize = 5;
+
+/// Numbers of the calls that are tried with an action: of some kinds, which are a name and a file, the first.
+fn calls_to_try(calls: &[String], action: &str) -> Vec<usize> {
+    let long = std::env::var("SLIPFRONT_TORTURE").is_ok();
+    let mut kinds = BTreeSet::new();
+    let mut is_tried = |call: &str| {
+        let mut words = call.splitn(3, ' ').skip(1);
+        let (name, path) = (words.next().unwrap(), words.next().unwrap());
+        let writes = ["write", "fsync", "fdatasync", "rename", "renameat", "mkdir"].contains(&name);
+        // Names of temporary files have the step of a checkpoint in them, or are random.
+        let is_checkpoint = path.ends_with("checkpoint.bin");
+        let path = path.split_inclusive("/tmp/").next().unwrap();
+        let is_new = kinds.insert((name.to_owned(), path.to_owned(), is_checkpoint));
+        // A full disk can still be read.
+        (writes || action != "ENOSPC") && (is_new || long)
+    };
+    let tried = calls.iter().zip(1..).filter(|(call, _)| is_tried(call));
+    let tried: Vec<usize> = tried.map(|(_, number)| number).collect();
+    let step = if long { 1 } else { tried.len().div_ceil(SHORT) };
+    tried.into_iter().step_by(step).collect()
+}
+
+#[rstest]
+#[case::full_disk("ENOSPC", true, "No space left on device")]
+#[case::failing_disk("EIO", false, "Input/output error")]
+#[case::kill("kill", false, "signal 9")]
+fn a_fault_of_one_rank_is_the_answer_of_all(
+    #[values(0, 1)] rank: usize,
+    #[case] action: &str,
+    #[case] lasts: bool,
+    #[case] cause: &str,
+) {
+    if watcher().is_none() {
+        return;
+    }
+    let folder = stopped_run();
+    let (undisturbed, calls) = resume_disturbed(folder.path(), rank, [action, "0", "0"]);
+    assert!(undisturbed.status.success(), "{}", printed(&undisturbed));
+    for number in calls_to_try(&calls, action) {
+        let folder = stopped_run();
+        let run = folder.path().join("run");
+        let from = number.to_string();
+        let to = if lasts { "0" } else { &from };
+        let (disturbed, calls) = resume_disturbed(folder.path(), rank, [action, &from, to]);
+        let text = printed(&disturbed);
+        let met = calls.iter().find(|call| call.starts_with('*'));
+        let case = format!("{action} at {met:?}: {text}");
+        // No rank has waited until the `--timeout` of mpirun.
+        assert!(!text.contains("mpirun --timeout"), "{case}");
+        let sentences: Vec<&str> = text.lines().filter(|line| line.starts_with("error: ")).collect();
+        if disturbed.status.success() {
+            // A checkpoint that is not saved is no more than a warning; and clocks decide how many there are.
+            assert!(action != "kill" || met.is_none(), "{case}");
+            assert_same(&UNDISTURBED, &results(&run));
+            continue;
+        }
+        if action == "kill" {
+            assert_eq!(text.matches(cause).count(), 1, "{case}");
+            assert!(sentences.is_empty(), "{case}");
+        } else {
+            assert_eq!(sentences.len(), 1, "{case}");
+            assert!(
+                sentences[0].contains(cause) && sentences[0].contains(" run"),
+                "{case}"
+            );
+            // Bad input, as what cannot be read is, has other remedies.
+            let goes_on = sentences[0].contains("`slipfront-mpi run --resume run` goes on");
+            assert!(goes_on || disturbed.status.code() == Some(2), "{case}");
+        }
+        if number % 2 == 0 {
+            run_plain(folder.path(), "run --quiet --resume run");
+        } else {
+            let mut resumed = mpirun(3, env!("CARGO_BIN_EXE_slipfront-mpi"));
+            resumed.args(["run", "--quiet", "--resume", "run"]);
+            let resumed = output(resumed.current_dir(folder.path()));
+            assert!(resumed.status.success(), "{case}\n{}", printed(&resumed));
+        }
+        assert_same(&UNDISTURBED, &results(&run));
+        assert!(!run.join(".slipfront").exists(), "{case}");
+    }
+}
