@@ -11,7 +11,7 @@ use slipfront::communicator::Threads;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{Field, Frame};
 use slipfront::surface::{Orientation, Texture};
-use slipfront::{Edges, Execution, Simulation, State, VectorField};
+use slipfront::{Edges, Execution, RunError, Simulation, State, Stop, VectorField};
 
 use crate::common::{self, Slider, cavity, groove};
 use crate::executions::{shown, state};
@@ -219,6 +219,50 @@ fn a_state_in_motion(
         ..Slider::default()
     };
     assert_same(&slider, Some(&common::thrown(1530, 0.1, 400)), 200);
+}
+
+/// All ranks name the block that one names: of a lattice whose blocks move alike, the first.
+#[rstest]
+#[case::alike(Slider { dt_star: 4.0, ..Slider::default() }.uniform())]
+#[case::apart(Slider { dt_star: 1.0, ..Slider::default() })]
+fn a_run_that_diverges_says_the_same(#[case] slider: Slider) {
+    let slider = Slider {
+        blocks: [12, 9],
+        ..slider
+    };
+    let dt_star = slider.dt_star;
+    let diverge = |mut simulation: Simulation| simulation.run(Stop::at_step(100_000), &mut []).unwrap_err();
+    let alone = diverge(Simulation::with_execution(slider.model(), dt_star, None, FUSED));
+    let RunError::NotFinite { i, j, .. } = alone else {
+        panic!("{alone}")
+    };
+    assert_eq!((i, j) == (0, 0), slider.sigma_static_star == 0.0, "{alone}");
+    for size in [2, 3, 9] {
+        let ranks = Threads::run(size, |rank| {
+            let communicator = Arc::new(rank.clone());
+            diverge(Simulation::on_ranks(
+                slider.model_of(rank),
+                dt_star,
+                None,
+                FUSED,
+                communicator,
+            ))
+        });
+        assert_eq!(ranks, vec![alone.clone(); size]);
+    }
+}
+
+#[test]
+#[should_panic(expected = "one rank holds the whole lattice")]
+fn one_of_several_ranks_reads_no_single_block() {
+    let slider = Slider::default();
+    Threads::run(2, |rank| {
+        let communicator = Arc::new(rank.clone());
+        let model = slider.model_of(rank);
+        Simulation::on_ranks(model, slider.dt_star, None, FUSED, communicator)
+            .snapshot()
+            .block(0)
+    });
 }
 
 /// The checkpoint and the columns of each rank.
