@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use slipfront::checkpoint::BlockColumn;
 use slipfront::communicator::{Alone, Communicator};
-use slipfront::observe::frames::Selection;
+use slipfront::observe::frames::{Selection, kept};
 use slipfront::observe::{CurveRow, Frame, Frames, Instants, Schedule, Scheduled};
 use slipfront::{Checkpoint, Execution, RunError, Simulation, Snapshot, Stop, StopReason};
 
@@ -129,8 +129,8 @@ impl Observers {
         let (lattice, stride) = (&case.model.lattice, case.output.stride);
         let columns = |count: usize, stride: usize, number_bytes: usize| Columns {
             count: count as u64,
-            rows: lattice.ny.div_ceil(stride) as u64,
-            row_length: lattice.nx.div_ceil(stride) as u64,
+            rows: kept(0..lattice.ny, stride).len() as u64,
+            row_length: kept(0..lattice.nx, stride).len() as u64,
             number_bytes: number_bytes as u64,
         };
         let fields = self.fields.frames().len() * case.output.fields.len();
@@ -180,8 +180,7 @@ fn own_rows(case: &Case) -> Range<usize> {
 
 /// Those rows among every `stride`-th of the lattice, counted among these.
 fn own_rows_of_fields(case: &Case) -> Range<usize> {
-    let (rows, stride) = (own_rows(case), case.output.stride);
-    rows.start.div_ceil(stride)..rows.end.div_ceil(stride)
+    kept(own_rows(case), case.output.stride)
 }
 
 /// Numbers of a field that are written and read at once.
@@ -287,7 +286,7 @@ impl Running {
         }))
     }
 
-    /// At most `steps` steps; why the run ended, if it did. An error says that it diverges.
+    /// At most `steps` steps; why the run ended, if it did. An error says that it diverges. All ranks must call this together.
     pub fn advance(&mut self, steps: u64) -> Result<Option<StopReason>, RunError> {
         let mut observers = self.observers.scheduled(&self.case.output.snapshots);
         self.simulation.advance(self.stop, steps, &mut observers)
@@ -298,7 +297,8 @@ impl Running {
         self.simulation.snapshot()
     }
 
-    /// The present fields of the output of the case, in SI units; tau_c* is divided by its largest value so far.
+    /// The present fields of the output of the case, in SI units; tau_c* is divided by its largest value so far. All
+    /// ranks must call this together.
     pub fn fields(&self) -> FieldFrame {
         let output = &self.case.output;
         let frame = selection(output).capture(&self.snapshot());
@@ -311,7 +311,8 @@ impl Running {
         &self.case
     }
 
-    /// What the run needs to go on later beside its [columns](Self::write_columns), to be written down.
+    /// What the run needs to go on later beside its [columns](Self::write_columns), to be written down. All ranks must
+    /// call this together.
     pub fn state(&self) -> impl Serialize + '_ {
         RunState {
             simulation: self.simulation.checkpoint(),
@@ -357,7 +358,7 @@ impl Running {
         Ok(())
     }
 
-    /// What the run leaves behind, once it has ended.
+    /// What the run leaves behind, once it has ended. All ranks must call this together.
     pub fn record(self, reason: StopReason) -> Record {
         let (case, simulation) = (self.case, self.simulation);
         let Observers { summary, fields } = self.observers;

@@ -5,9 +5,9 @@ use thiserror::Error;
 /// Why a run ended early.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RunError {
-    /// A displacement is infinite or not a number.
+    /// Displacements or speeds have become infinite or too large to compute with.
     #[error(
-        "the displacement of block ({i}, {j}) is {value} at step {step}, t* = {time_star:.4}: the run has diverged; \
+        "the displacement of block ({i}, {j}) is {value:.3e} at step {step}, t* = {time_star:.4}: the run has diverged; \
          lower the load's strain epsilon or the time step"
     )]
     NotFinite {
@@ -15,11 +15,11 @@ pub enum RunError {
         step: u64,
         /// Dimensionless time of that step.
         time_star: f64,
-        /// Column of the block.
+        /// Column of the block that is displaced farthest along an axis, the first of equal ones.
         i: usize,
-        /// Row of the block.
+        /// Its row.
         j: usize,
-        /// The component that is not finite.
+        /// Its displacement along this axis, finite or not.
         value: f64,
     },
     /// An observer failed.

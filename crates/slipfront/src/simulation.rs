@@ -36,6 +36,9 @@ impl Simulation {
     }
 
     /// A slider in a given state, or at rest, computed as `execution` says.
+    ///
+    /// # Panics
+    /// If a displacement or velocity of the state is not finite.
     pub fn with_execution(
         model: impl Into<Arc<Model>>,
         dt_star: f64,
@@ -49,7 +52,8 @@ impl Simulation {
     /// own rows, the state of their blocks and its connection with the others.
     ///
     /// # Panics
-    /// If there are several ranks and the reference kernel is to compute the run.
+    /// If there are several ranks and the reference kernel is to compute the run, or if a displacement or velocity of the state
+    /// is not finite.
     pub fn on_ranks(
         model: impl Into<Arc<Model>>,
         dt_star: f64,
@@ -58,6 +62,10 @@ impl Simulation {
         communicator: Arc<dyn Communicator>,
     ) -> Self {
         let model = model.into();
+        assert!(
+            state.as_ref().is_none_or(State::is_finite),
+            "a displacement or velocity of the state to begin with is not finite"
+        );
         let mut engine = execution.begin(&model, dt_star, state, Arc::clone(&communicator));
         let totals = engine.step(&model, 0, true);
         let mut simulation = Self {
@@ -91,7 +99,7 @@ impl Simulation {
         Self::resume_on_ranks(model, dt_star, checkpoint, execution, Arc::new(Alone), read)
     }
 
-    /// The same on each of several ranks, for the blocks of its rows.
+    /// The same on each of several ranks, which all call this together, for the blocks of its rows.
     ///
     /// # Errors
     /// Those of `read`.
@@ -120,7 +128,8 @@ impl Simulation {
     }
 
     /// What [`Simulation::resume`] needs beside the [columns](Self::write_columns). Taken between two calls of
-    /// [`Simulation::advance`], it belongs together with what the observers have recorded by then.
+    /// [`Simulation::advance`], it belongs together with what the observers have recorded by then. All ranks must call this
+    /// together.
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
             step: self.step,
@@ -156,7 +165,8 @@ impl Simulation {
         })
     }
 
-    /// Steps until `stop`, showing every instant to the observers that are due, the last one included.
+    /// Steps until `stop`, showing every instant to the observers that are due, the last one included. All ranks must call this
+    /// together, with observers that need energies at the same steps.
     ///
     /// # Errors
     /// [`RunError::NotFinite`] when the run diverges, and whatever an observer fails with.
@@ -169,7 +179,7 @@ impl Simulation {
     }
 
     /// At most `steps` steps towards `stop`; none if it was not reached. Observers see every instant once, also where one
-    /// call ends and the next begins.
+    /// call ends and the next begins. All ranks must call this together, as [`Simulation::run`].
     ///
     /// # Errors
     /// As for [`Simulation::run`].
@@ -181,6 +191,7 @@ impl Simulation {
     ) -> Result<Option<StopReason>, RunError> {
         let last_step = self.step.saturating_add(steps);
         loop {
+            self.check_finite()?;
             let mut now = self.snapshot();
             let reason = stop.reached(&now);
             now.last = reason.is_some();
@@ -196,11 +207,10 @@ impl Simulation {
             let next = now.step + 1;
             let energies = stop.may_end(&now) || observers.iter().any(|o| o.needs_energies(next));
             self.step_with(energies);
-            self.check_finite()?;
         }
     }
 
-    /// One time step: from t_n to t_n+1.
+    /// One time step, from t_n to t_n+1, which all ranks must take together. Whether the run diverges is not checked.
     pub fn step(&mut self) {
         self.step_with(false);
     }
@@ -257,31 +267,26 @@ impl Simulation {
     }
 
     /// The largest contact stress (Eq. 10) over blocks in contact and all steps so far, in units of `P mu_s`: the scale of
-    /// tau_c*.
+    /// tau_c*. All ranks must call this together.
     pub fn contact_stress_max(&self) -> f64 {
         self.engine.stress_square_max(&self.model, self.step).sqrt()
     }
 
-    /// Checks mu* alone: a single displacement that is not finite makes it NaN or infinite.
+    /// Speeds that diverge show it first in sums of their squares, which overflow long before displacements do.
     fn check_finite(&self) -> Result<(), RunError> {
-        if self.point.mu_star.is_finite() && self.point.mu_lateral_star.is_finite() {
+        let (point, totals) = (&self.point, &self.totals);
+        let stored = totals.stored_energy.unwrap_or_default().total();
+        let sums = [
+            point.mu_star,
+            point.mu_lateral_star,
+            totals.velocity_square,
+            totals.friction_power,
+            stored,
+        ];
+        if sums.into_iter().all(f64::is_finite) {
             return Ok(());
         }
-        let first = self.model.lattice.blocks_of(&self.model.rows).start;
-        let bad = (0..self.model.surface.n_blocks()).find_map(|b| {
-            let [u, _] = self.engine.motion(b);
-            let value = u.into_iter().find(|u| !u.is_finite())?;
-            Some((first + b, value))
-        });
-        // The lowest rank has the first block, and tells the others.
-        let lowest = lowest_rank(&*self.communicator, bad.is_some());
-        let own = bad.filter(|_| lowest == Some(self.communicator.rank()));
-        let mut found = own.map_or([0; 2], |(block, value)| [block as i64, value.to_bits() as i64]);
-        self.communicator.sum(&mut found);
-        let (block, value) = match lowest {
-            Some(_) => (found[0] as usize, f64::from_bits(found[1] as u64)),
-            None => (0, self.point.mu_star),
-        };
+        let (block, value) = self.largest_displacement();
         let (i, j) = self.model.lattice.column_row(block);
         Err(RunError::NotFinite {
             step: self.step,
@@ -290,5 +295,30 @@ impl Simulation {
             j,
             value,
         })
+    }
+
+    /// The block of all ranks that is displaced farthest along an axis, the first of equal ones, and its displacement along this
+    /// axis. One that is no number counts as infinite.
+    fn largest_displacement(&self) -> (usize, f64) {
+        let size = |u: f64| if u.is_nan() { f64::INFINITY } else { u.abs() };
+        let first = self.model.lattice.blocks_of(&self.model.rows).start;
+        let (mut block, mut value) = (first, 0.0);
+        for b in 0..self.model.surface.n_blocks() {
+            for u in self.engine.motion(b)[0] {
+                if size(u) > size(value) {
+                    (block, value) = (first + b, u);
+                }
+            }
+        }
+        // The lowest of the ranks that have it has the first block, and tells the others.
+        let mut largest = [size(value)];
+        self.communicator.largest(&mut largest);
+        let lowest = lowest_rank(&*self.communicator, size(value) == largest[0]);
+        let mut found = [0; 2];
+        if lowest == Some(self.communicator.rank()) {
+            found = [block as i64, value.to_bits() as i64];
+        }
+        self.communicator.sum(&mut found);
+        (found[0] as usize, f64::from_bits(found[1] as u64))
     }
 }

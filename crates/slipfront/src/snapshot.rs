@@ -35,7 +35,15 @@ pub(crate) const MU_STAR_ROUNDING: f64 = 1e-9;
 impl Snapshot<'_> {
     /// Displacement, velocity and forces of block `b`. The fused kernel keeps no forces, so that they are recomputed: to
     /// read all blocks, use [`read_field`](Self::read_field).
+    ///
+    /// # Panics
+    /// If several ranks share the lattice: one of them does not hold all neighbours of its blocks.
     pub fn block(&self, b: usize) -> Block {
+        assert_eq!(
+            self.communicator.size(),
+            1,
+            "a block is read where one rank holds the whole lattice"
+        );
         self.engine.block(self.model, self.step, b)
     }
 
@@ -71,16 +79,18 @@ impl Snapshot<'_> {
             .expect("an observer needs the energies of this step")
     }
 
-    /// When each block first slid while in contact, t*; NaN where none has.
-    pub fn first_slip_time_star(&self) -> Vec<f64> {
-        let blocks = 0..self.model.surface.n_blocks();
-        blocks.map(|b| self.engine.first_slip(b)).collect()
+    fn first_slips(&self) -> impl Iterator<Item = f64> {
+        (0..self.model.surface.n_blocks()).map(|b| self.engine.first_slip(b))
     }
 
-    /// When the first block of all ranks slid while in contact, t*.
+    /// When each block of this rank first slid while in contact, t*; NaN where none has.
+    pub fn first_slip_time_star(&self) -> Vec<f64> {
+        self.first_slips().collect()
+    }
+
+    /// When the first block of all ranks slid while in contact, t*. All ranks must call this together.
     pub fn earliest_first_slip(&self) -> Option<f64> {
-        let times = self.first_slip_time_star().into_iter();
-        let earliest = times.filter(|time| !time.is_nan()).reduce(f64::min);
+        let earliest = self.first_slips().filter(|time| !time.is_nan()).reduce(f64::min);
         let mut latest_negative = [earliest.map_or(f64::NEG_INFINITY, |time| -time)];
         self.communicator.largest(&mut latest_negative);
         latest_negative[0].is_finite().then_some(-latest_negative[0])

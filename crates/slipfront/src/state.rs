@@ -20,4 +20,13 @@ impl State {
             velocity: VectorField::zeros(n_blocks),
         }
     }
+
+    /// Whether all numbers are finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        let fields = [&self.displacement, &self.velocity];
+        let mut values = fields
+            .into_iter()
+            .flat_map(|field| field.x.iter().chain(&field.y));
+        values.all(|value| value.is_finite())
+    }
 }

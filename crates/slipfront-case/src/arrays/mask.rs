@@ -5,8 +5,8 @@ use std::path::Path;
 
 use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, Reader};
 
-use super::Slab;
 use super::error::{ArrayError, broken, contents_error, extension, unknown_extension};
+use super::slab::Slab;
 use crate::disk::write_atomic;
 
 /// More pixels than any lattice has blocks.

@@ -8,44 +8,23 @@
 //! their rows of one file, the error of the lowest of them is the one that reading all rows gives.
 
 mod error;
+mod head;
 mod mask;
 mod npy;
+mod slab;
 mod table;
 
 use std::fs::File;
 use std::io::{BufRead, Seek};
-use std::ops::Range;
 use std::path::Path;
 
 pub use error::{ArrayError, extension};
 pub use mask::{mask_png, write_mask_png};
 pub use npy::mask_npy;
+pub use slab::Slab;
 
 use crate::disk::open_regular;
 use error::{contents_error, unknown_extension};
-
-/// The rows of a lattice of `nx` x `ny` blocks that are read of a file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Slab {
-    /// Blocks along x.
-    pub nx: usize,
-    /// Blocks along y of the whole lattice.
-    pub ny: usize,
-    /// The rows.
-    pub rows: Range<usize>,
-}
-
-impl Slab {
-    /// All rows.
-    pub fn whole(nx: usize, ny: usize) -> Self {
-        Self { nx, ny, rows: 0..ny }
-    }
-
-    /// Number of blocks of its rows.
-    pub fn n_blocks(&self) -> usize {
-        self.nx * self.rows.len()
-    }
-}
 
 /// Opens a file for a lattice of `nx` x `ny` blocks.
 ///

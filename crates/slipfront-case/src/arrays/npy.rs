@@ -1,12 +1,13 @@
 //! The `.npy` files of numpy: the header through `npyz`, the numbers here.
 
-use std::io::{BufRead, Read, Seek, SeekFrom};
+use std::io::{BufRead, Seek, SeekFrom};
 use std::path::Path;
 
 use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 
-use super::Slab;
 use super::error::{ArrayError, broken, contents_error, value_error};
+use super::head::length_and_head;
+use super::slab::Slab;
 use crate::text::truncated;
 
 /// Numpy itself refuses longer headers.
@@ -44,11 +45,7 @@ pub(super) fn values(
 ) -> Result<Vec<f64>, ArrayError> {
     let Slab { nx, ny, ref rows } = *slab;
     let read_error = ArrayError::read(path);
-    let length = source.seek(SeekFrom::End(0)).map_err(&read_error)?;
-    source.rewind().map_err(&read_error)?;
-    let mut head = Vec::new();
-    let first = source.take(HEADER_MAX_BYTES).read_to_end(&mut head);
-    first.map_err(&read_error)?;
+    let (length, head) = length_and_head(path, source, HEADER_MAX_BYTES)?;
     let (header, data_start) = read_header(&head, path)?;
 
     let number = Number::of(&header.dtype()).ok_or_else(|| {

@@ -1,12 +1,13 @@
 //! Tables of numbers as text (`.csv`).
 
-use std::io::{BufRead, Read, Seek, SeekFrom};
+use std::io::{BufRead, Seek};
 use std::path::Path;
 
 use csv::{ErrorKind, ReaderBuilder, StringRecord, Trim};
 
-use super::Slab;
 use super::error::{ArrayError, broken, contents_error, value_error};
+use super::head::length_and_head;
+use super::slab::Slab;
 
 /// Comment lines are searched for the separator up to this total length.
 pub(super) const PREAMBLE_MAX_BYTES: u64 = 1 << 20;
@@ -23,12 +24,7 @@ pub(super) fn values(
 ) -> Result<Vec<f64>, ArrayError> {
     let Slab { nx, ny, ref rows } = *slab;
     let read_error = ArrayError::read(path);
-    let length = source.seek(SeekFrom::End(0)).map_err(&read_error)?;
-    source.rewind().map_err(&read_error)?;
-    let mut preamble = Vec::new();
-    let first = source.take(PREAMBLE_MAX_BYTES).read_to_end(&mut preamble);
-    first.map_err(&read_error)?;
-    source.rewind().map_err(&read_error)?;
+    let (length, preamble) = length_and_head(path, source, PREAMBLE_MAX_BYTES)?;
     let separator = separator(&preamble);
     let mut table = ReaderBuilder::new()
         .has_headers(false)

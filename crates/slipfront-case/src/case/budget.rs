@@ -7,7 +7,7 @@
 use std::ops::Range;
 use std::path::Path;
 
-use slipfront::observe::{CurveRow, Field, Frame};
+use slipfront::observe::{CurveRow, Field, Frame, frames};
 use slipfront::{Kernel, Lattice};
 
 use super::output::{MAX_MAPS, Output, Snapshots};
@@ -130,30 +130,29 @@ impl Budget {
         time_plan: &TimePlan,
         output: &Output,
     ) -> Self {
-        let kept = |blocks: usize| blocks.div_ceil(output.stride);
-        let kept_rows = kept(rows.end) - kept(rows.start);
+        let kept = |indices: Range<usize>| frames::kept(indices, output.stride).len() as f64;
         let last_step = time_plan.last_step;
-        let frames = match &output.snapshots {
+        let n_frames = match &output.snapshots {
             Snapshots::Instants => 6.0,
             Snapshots::At(steps) => steps.len() as f64,
             Snapshots::Every(every) => (last_step / every + 1) as f64,
         };
         Self {
             blocks: lattice.nx as f64 * rows.len() as f64,
-            cells: kept(lattice.nx) as f64 * kept_rows as f64,
+            cells: kept(0..lattice.nx) * kept(rows.clone()),
             all_blocks: lattice.nx as f64 * lattice.ny as f64,
-            all_cells: kept(lattice.nx) as f64 * kept(lattice.ny) as f64,
+            all_cells: kept(0..lattice.nx) * kept(0..lattice.ny),
             is_shared: ranks.communicator.size() > 1,
             ranks_on_node: ranks.on_node as f64,
             kernel: match Kernel::Fused.for_law(file.friction.law) {
                 Kernel::Fused => FUSED,
                 Kernel::Reference => REFERENCE,
             },
-            frames,
+            frames: n_frames,
             fields: output.fields.len() as f64,
             rows: (last_step / output.series_stride) as f64 + 2.0,
             maps: match output.fields.contains(&Field::ContactStress) {
-                true => frames.min(MAX_MAPS as f64),
+                true => n_frames.min(MAX_MAPS as f64),
                 false => 0.0,
             },
             inputs: 0.0,

@@ -9,6 +9,7 @@ use crate::print::print;
 use crate::ranks::Ranks;
 use crate::report;
 use crate::signals::Signals;
+use crate::threads::set_threads;
 
 /// Validate a case and print what it means and what it will cost
 #[derive(Args)]
@@ -22,6 +23,7 @@ pub(crate) struct Check {
 
 impl Check {
     pub(crate) fn execute(self) -> Result<(), Failure> {
+        set_threads(None)?;
         let signals = Signals::catch().map_err(Failure::running)?;
         let case = self.case.load(&Ranks::alone(), &signals, false)?;
         print(&report::physics(&case))?;

@@ -13,6 +13,7 @@ use crate::print::print_message;
 use crate::ranks::Ranks;
 use crate::report;
 use crate::signals::Signals;
+use crate::threads::set_threads;
 
 /// Write the texture of a case as a mask: one pixel per block, textured ones black
 #[derive(Args)]
@@ -31,6 +32,7 @@ pub(crate) struct Texture {
 
 impl Texture {
     pub(crate) fn execute(self) -> Result<(), Failure> {
+        set_threads(None)?;
         let signals = Signals::catch().map_err(Failure::running)?;
         let case = self.case.load(&Ranks::alone(), &signals, false)?;
         let input = case

@@ -127,6 +127,9 @@ fn a_limit_of_addresses_ends_nothing_in_an_abort() {
             "study merge whole -o merged --quiet",
             "study study.toml -o again --quiet",
             "run small.toml --quiet -o b --force",
+            // Random numbers of more blocks than these are drawn on all threads.
+            "check small.toml --set slider.blocks=[101,100]",
+            "texture small.toml --set slider.blocks=[101,100] -o texture.png --force",
         ] {
             let script = format!("ulimit -v {}; exec {} {line}", 1024 * mib, program());
             let output = workspace.shell(&script);
@@ -180,6 +183,11 @@ fn threads_that_cannot_be_had_are_done_without() {
         ("plot of-anyone -o drawn-by-one", 0),
         ("verify of-anyone", 0),
         ("run small.toml --quiet -o run-by-one", 0),
+        ("check small.toml --set slider.blocks=[101,100]", 0),
+        (
+            "texture small.toml --set slider.blocks=[101,100] -o texture.png",
+            0,
+        ),
         ("study study.toml -o study-by-one", 1),
     ] {
         workspace.write("study.toml", "base.slider.blocks = [2, 2]\n");

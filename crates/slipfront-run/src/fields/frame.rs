@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use slipfront::Scales;
+use slipfront::observe::frames::kept;
 use slipfront::observe::{Field, Frame};
 
 // Dimensions, variables and attributes.
@@ -111,17 +112,17 @@ pub struct FieldsFile<'a> {
 impl FieldsFile<'_> {
     /// Number of values along x in the file.
     pub(super) fn kept_columns(&self) -> usize {
-        self.nx.div_ceil(self.stride)
+        kept(0..self.nx, self.stride).len()
     }
 
     /// Number of values along y in the file.
     pub(super) fn kept_rows(&self) -> usize {
-        self.ny.div_ceil(self.stride)
+        kept(0..self.ny, self.stride).len()
     }
 
     /// The rows of the file that are here.
     pub(super) fn kept_here(&self) -> Range<usize> {
-        self.rows.start.div_ceil(self.stride)..self.rows.end.div_ceil(self.stride)
+        kept(self.rows.clone(), self.stride)
     }
 
     /// What the file keeps of values of the blocks that are here.
@@ -168,12 +169,12 @@ pub struct FieldsData {
 impl FieldsData {
     /// Number of values along x.
     pub fn columns(&self) -> usize {
-        self.nx.div_ceil(self.stride.max(1))
+        kept(0..self.nx, self.stride.max(1)).len()
     }
 
     /// Number of values along y.
     pub fn rows(&self) -> usize {
-        self.ny.div_ceil(self.stride.max(1))
+        kept(0..self.ny, self.stride.max(1)).len()
     }
 }
 

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use slipfront::observe::Field;
+use slipfront::observe::frames::kept;
 use slipfront_case::field_info::{field_info, field_named};
 use slipfront_case::text;
 
@@ -106,7 +107,7 @@ fn read_chosen<R: Reduction>(
     let [block_size] = numbers(file, BLOCK_SIZE)?;
     let [time_unit_s] = numbers(file, TIME_UNIT)?;
     for (name, blocks) in [(X, nx), (Y, ny)] {
-        let (found, wanted) = (file.dimension(name)?, blocks.div_ceil(stride));
+        let (found, wanted) = (file.dimension(name)?, kept(0..blocks, stride).len());
         if found != wanted {
             return broken(format!(
                 "`{name}` has the length {found} where {wanted} is wanted"

@@ -35,14 +35,22 @@ pub struct Selection {
     pub stride: usize,
 }
 
+/// Every `stride`-th index from 0 is kept: these are kept of `indices`, counted among all that are.
+///
+/// ```
+/// # use slipfront::observe::frames::kept;
+/// // Of 0, 3, 6, 9 and 12 the second and the third lie in it.
+/// assert_eq!(kept(1..8, 3), 1..3);
+/// ```
+pub fn kept(indices: Range<usize>, stride: usize) -> Range<usize> {
+    indices.start.div_ceil(stride)..indices.end.div_ceil(stride)
+}
+
 impl Selection {
     /// Number of recorded blocks along x, and which recorded rows are those of the rows of a model.
     fn counts(&self, model: &Model) -> (usize, Range<usize>) {
-        let [nx, first, end] = [model.lattice.nx, model.rows.start, model.rows.end];
-        (
-            nx.div_ceil(self.stride),
-            first.div_ceil(self.stride)..end.div_ceil(self.stride),
-        )
+        let columns = kept(0..model.lattice.nx, self.stride);
+        (columns.len(), kept(model.rows.clone(), self.stride))
     }
 
     /// The selected fields at this instant.
@@ -64,11 +72,11 @@ impl Selection {
         let (nx, rows) = self.counts(now.model);
         for (&field, values) in self.fields.iter().zip(&mut frame.values) {
             now.read_rows(field, self.stride, |j, i, part| {
-                let skipped = i.next_multiple_of(self.stride) - i;
                 let row = (now.model.rows.start + j) / self.stride - rows.start;
-                let first = row * nx + (i + skipped) / self.stride;
-                let read = part.iter().skip(skipped).step_by(self.stride);
-                for (value, &read) in values[first..].iter_mut().zip(read) {
+                let columns = kept(i..i + part.len(), self.stride);
+                let read = part.iter().skip(columns.start * self.stride - i);
+                let values = &mut values[row * nx..][columns];
+                for (value, &read) in values.iter_mut().zip(read.step_by(self.stride)) {
                     *value = read;
                 }
             });

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
+use rayon::prelude::*;
 
 /// Mean and standard deviation of a Gaussian.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,6 +14,19 @@ pub struct Distribution {
     pub mean: f64,
     /// Standard deviation.
     pub deviation: f64,
+}
+
+impl Distribution {
+    /// Makes coefficients of standard normals, and counts the negative ones, which become 0.
+    fn scale(self, normals: impl Iterator<Item = f64>, coefficients: &mut [f64]) -> usize {
+        let mut negative = 0;
+        for (coefficient, z) in coefficients.iter_mut().zip(normals) {
+            let mu = self.mean + self.deviation * z;
+            negative += usize::from(mu < 0.0);
+            *coefficient = mu.max(0.0);
+        }
+        negative
+    }
 }
 
 /// Local coefficients of every block, as if there were no texture.
@@ -55,33 +69,33 @@ impl Coefficients {
         mu_kinetic: Distribution,
         seed: u64,
     ) -> Self {
-        let mut negative_draws = 0;
-        let mut draw = |distribution: Distribution, stream: Stream| -> Vec<f64> {
-            let coefficient = |z: f64| {
-                let mu = distribution.mean + distribution.deviation * z;
-                negative_draws += usize::from(mu < 0.0);
-                mu.max(0.0)
+        let draw = |distribution: Distribution, stream: Stream| {
+            let mut coefficients = vec![0.0; blocks.len()];
+            let normals = |first| standard_normals(seed, stream, blocks.start + first);
+            let negative_draws = if blocks.len() > MAX_KEPT {
+                let parts = coefficients.par_chunks_mut(PART).enumerate();
+                parts
+                    .map(|(k, part)| distribution.scale(normals(k * PART), part))
+                    .sum()
+            } else {
+                LAST_NORMALS.with_borrow_mut(|last| {
+                    let (of_seed, of_blocks, kept) = &mut last[stream as usize];
+                    if *of_seed != seed || *of_blocks != blocks {
+                        kept.clear();
+                        kept.extend(normals(0).take(blocks.len()));
+                        (*of_seed, *of_blocks) = (seed, blocks.clone());
+                    }
+                    distribution.scale(kept.iter().copied(), &mut coefficients)
+                })
             };
-            let normals = || standard_normals(seed, stream, blocks.start).take(blocks.len());
-            if blocks.len() > MAX_KEPT {
-                return normals().map(coefficient).collect();
-            }
-            LAST_NORMALS.with_borrow_mut(|last| {
-                let (of_seed, of_blocks, kept) = &mut last[stream as usize];
-                if *of_seed != seed || *of_blocks != blocks {
-                    kept.clear();
-                    kept.extend(normals());
-                    (*of_seed, *of_blocks) = (seed, blocks.clone());
-                }
-                kept.iter().copied().map(coefficient).collect()
-            })
+            (coefficients, negative_draws)
         };
-        let mu_static = draw(mu_static, Stream::MuStatic);
-        let mu_kinetic = draw(mu_kinetic, Stream::MuKinetic);
+        let (mu_static, negative_static) = draw(mu_static, Stream::MuStatic);
+        let (mu_kinetic, negative_kinetic) = draw(mu_kinetic, Stream::MuKinetic);
         Self {
             mu_static,
             mu_kinetic,
-            negative_draws,
+            negative_draws: negative_static + negative_kinetic,
         }
     }
 
@@ -100,8 +114,11 @@ impl Coefficients {
     }
 }
 
-/// Most blocks whose standard normals are kept.
+/// Most blocks whose standard normals are kept. Those of more are drawn on several threads.
 const MAX_KEPT: usize = 10_000;
+
+/// Blocks for which a thread draws at once: some tenths of a millisecond of work.
+const PART: usize = 1 << 13;
 
 /// Standard normals, with the seed and the blocks that they are drawn for.
 type Kept = (u64, Range<usize>, Vec<f64>);

@@ -4,8 +4,8 @@ use rstest::rstest;
 use slipfront::surface::{Orientation, Texture};
 use slipfront::{Drive, Edges, Execution, FrictionLaw, Lattice, Model, Simulation, State, Surface};
 
-use crate::common::{self, Slider, cavity, groove};
-use crate::{FUSED, bits, go, has_room, stopped_and_resumed};
+use crate::common::{cavity, groove};
+use crate::{FUSED, bits, go, has_room, sliders, stopped_and_resumed};
 
 /// Everything that can be read of a run at one instant except for its state.
 pub(crate) fn shown(simulation: &Simulation) -> Vec<u64> {
@@ -108,39 +108,22 @@ fn lattices_of_every_shape(
     if !has_room(blocks, edges) {
         return;
     }
-    let slider = Slider {
-        blocks,
-        edges,
-        degrees: 25.0,
-        v_star: 0.1,
-        sigma_static_star: 0.1,
-        dt_star: 0.2,
-        ..Slider::default()
-    };
+    let slider = sliders::shaped(blocks, edges);
     assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(4.0));
 }
 
-/// Textured blocks are seldom at rest; the strains need either series and the square root, and change from one to the other.
+/// The strains need either series and the square root, and change from one to the other.
 #[rstest]
 fn textures_and_strains(
     #[values(None, Some(cavity([40, 40], 5.0, 1, 0.3, true)), Some(groove(Orientation::Across, 2.0)))]
     texture: Option<Texture>,
     #[values(0.0, 2e-5, 1e-3, 5e-3)] epsilon: f64,
 ) {
-    let slider = Slider {
-        blocks: [40, 40],
-        edges: [Edges::Periodic, Edges::Free],
-        textures: texture.into_iter().collect(),
-        epsilon,
-        v_star: 0.1,
-        dt_star: 0.2,
-        ..Slider::default()
-    };
+    let slider = sliders::textured(texture, epsilon);
     assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(4.0));
 }
 
-/// Between slips the whole slider is at rest, and during a slip most blocks are. The strains need every formula of springs, and
-/// change it while blocks are at rest.
+/// The strains need every formula of springs, and change it while blocks are at rest.
 #[rstest]
 fn slow_drives(
     #[values(
@@ -149,34 +132,17 @@ fn slow_drives(
     (blocks, edges): ([usize; 2], Edges),
     #[values((0.0, 1e-6), (65.0, 3e-4), (0.0, 1.7e-3), (65.0, 4e-3))] (degrees, epsilon): (f64, f64),
 ) {
-    let slider = Slider {
-        blocks,
-        edges: [edges; 2],
-        degrees,
-        epsilon,
-        v_star: 0.004,
-        dt_star: 0.5,
-        sigma_static_star: 0.1,
-        ..Slider::default()
-    };
+    let slider = sliders::slow(blocks, edges, degrees, epsilon);
     assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(2.6));
 }
 
-/// Blocks that are displaced at the start, a few of them with a velocity.
 #[rstest]
 fn a_state_in_motion(
     #[values([Edges::Free, Edges::Free], [Edges::Periodic, Edges::Free], [Edges::Periodic, Edges::Periodic])]
     edges: [Edges; 2],
     #[values(1e-6, 1e-2)] epsilon: f64,
 ) {
-    let slider = Slider {
-        blocks: [17, 90],
-        edges,
-        epsilon,
-        degrees: 200.0,
-        ..Slider::default()
-    };
-    let from = common::thrown(1530, 0.1, 400);
+    let (slider, from) = sliders::in_motion(edges, epsilon);
     assert_same_bits(&slider.model(), slider.dt_star, Some(&from), 300);
 }
 

@@ -46,10 +46,8 @@ fn has_room(blocks: [usize; 2], edges: [Edges; 2]) -> bool {
     (0..2).all(|axis| edges[axis] == Edges::Free || blocks[axis] >= Lattice::MIN_PERIODIC)
 }
 
-/// A simulation that continues from a checkpoint of this one, if it is one of the same kernel.
-fn resumed(simulation: &Simulation, model: &Model, dt_star: f64, execution: Execution) -> Option<Simulation> {
-    let bytes = postcard::to_stdvec(&simulation.checkpoint()).unwrap();
-    let checkpoint = postcard::from_bytes(&bytes).unwrap();
+/// The numbers of all blocks that a checkpoint keeps.
+fn columns(simulation: &Simulation) -> [Vec<f64>; 5] {
     let mut columns: [Vec<f64>; 5] = Default::default();
     let Ok(()) = simulation.write_columns(|column, first, values| {
         let saved = &mut columns[column as usize];
@@ -57,6 +55,14 @@ fn resumed(simulation: &Simulation, model: &Model, dt_star: f64, execution: Exec
         saved.extend(values);
         Ok::<(), Infallible>(())
     });
+    columns
+}
+
+/// A simulation that continues from a checkpoint of this one, if it is one of the same kernel.
+fn resumed(simulation: &Simulation, model: &Model, dt_star: f64, execution: Execution) -> Option<Simulation> {
+    let bytes = postcard::to_stdvec(&simulation.checkpoint()).unwrap();
+    let checkpoint = postcard::from_bytes(&bytes).unwrap();
+    let columns = columns(simulation);
     let read = |column: BlockColumn, first: usize, values: &mut [f64]| {
         values.copy_from_slice(&columns[column as usize][first..][..values.len()]);
         Ok::<(), Infallible>(())
@@ -80,3 +86,4 @@ mod checkpoints;
 mod executions;
 mod fields;
 mod ranks;
+mod sliders;

@@ -11,11 +11,11 @@ use slipfront::communicator::Threads;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{Field, Frame};
 use slipfront::surface::{Orientation, Texture};
-use slipfront::{Edges, Execution, Simulation, State, VectorField};
+use slipfront::{Edges, Execution, RunError, Simulation, State, Stop, VectorField};
 
-use crate::common::{self, Slider, cavity, groove};
+use crate::common::{Slider, cavity, groove};
 use crate::executions::{shown, state};
-use crate::{FUSED, bits, go, has_room};
+use crate::{FUSED, bits, columns, go, has_room, sliders};
 
 /// What a rank has shown: at every step what all know, its own state at some of them, and at the end its first slips and fields.
 struct Shown {
@@ -155,15 +155,7 @@ fn lattices_of_every_shape(
     if !has_room(blocks, edges) {
         return;
     }
-    let slider = Slider {
-        blocks,
-        edges,
-        degrees: 25.0,
-        v_star: 0.1,
-        sigma_static_star: 0.1,
-        dt_star: 0.2,
-        ..Slider::default()
-    };
+    let slider = sliders::shaped(blocks, edges);
     assert_same(&slider, None, slider.steps(4.0));
 }
 
@@ -173,64 +165,79 @@ fn textures_and_strains(
     texture: Option<Texture>,
     #[values(0.0, 1e-3, 5e-3)] epsilon: f64,
 ) {
-    let slider = Slider {
-        blocks: [40, 40],
-        edges: [Edges::Periodic, Edges::Free],
-        textures: texture.into_iter().collect(),
-        epsilon,
-        v_star: 0.1,
-        dt_star: 0.2,
-        ..Slider::default()
-    };
+    let slider = sliders::textured(texture, epsilon);
     assert_same(&slider, None, slider.steps(4.0));
 }
 
-/// Between slips the whole slider is at rest, and during a slip most blocks are: on some ranks all of them.
+/// While some blocks slip, others are at rest: on some ranks all of them.
 #[rstest]
 fn slow_drives(
     #[values(([40, 24], Edges::Free), ([40, 24], Edges::Periodic), ([3, 200], Edges::Periodic))]
     (blocks, edges): ([usize; 2], Edges),
     #[values((0.0, 1e-6), (65.0, 4e-3))] (degrees, epsilon): (f64, f64),
 ) {
-    let slider = Slider {
-        blocks,
-        edges: [edges; 2],
-        degrees,
-        epsilon,
-        v_star: 0.004,
-        dt_star: 0.5,
-        sigma_static_star: 0.1,
-        ..Slider::default()
-    };
+    let slider = sliders::slow(blocks, edges, degrees, epsilon);
     assert_same(&slider, None, slider.steps(2.6));
 }
 
-/// Blocks that are displaced at the start, a few of them with a velocity.
 #[rstest]
 fn a_state_in_motion(
     #[values([Edges::Free, Edges::Free], [Edges::Periodic, Edges::Periodic])] edges: [Edges; 2],
     #[values(1e-6, 1e-2)] epsilon: f64,
 ) {
+    let (slider, from) = sliders::in_motion(edges, epsilon);
+    assert_same(&slider, Some(&from), 200);
+}
+
+/// All ranks name the block that one names: of a lattice whose blocks move alike, the first.
+#[rstest]
+#[case::alike(Slider { dt_star: 4.0, ..Slider::default() }.uniform())]
+#[case::apart(Slider { dt_star: 1.0, ..Slider::default() })]
+fn a_run_that_diverges_says_the_same(#[case] slider: Slider) {
     let slider = Slider {
-        blocks: [17, 90],
-        edges,
-        epsilon,
-        degrees: 200.0,
-        ..Slider::default()
+        blocks: [12, 9],
+        ..slider
     };
-    assert_same(&slider, Some(&common::thrown(1530, 0.1, 400)), 200);
+    let dt_star = slider.dt_star;
+    let diverge = |mut simulation: Simulation| simulation.run(Stop::at_step(100_000), &mut []).unwrap_err();
+    let alone = diverge(Simulation::with_execution(slider.model(), dt_star, None, FUSED));
+    let RunError::NotFinite { i, j, .. } = alone else {
+        panic!("{alone}")
+    };
+    assert_eq!((i, j) == (0, 0), slider.sigma_static_star == 0.0, "{alone}");
+    for size in [2, 3, 9] {
+        let ranks = Threads::run(size, |rank| {
+            let communicator = Arc::new(rank.clone());
+            diverge(Simulation::on_ranks(
+                slider.model_of(rank),
+                dt_star,
+                None,
+                FUSED,
+                communicator,
+            ))
+        });
+        assert_eq!(ranks, vec![alone.clone(); size]);
+    }
+}
+
+#[test]
+#[should_panic(expected = "one rank holds the whole lattice")]
+fn one_of_several_ranks_reads_no_single_block() {
+    let slider = Slider::default();
+    Threads::run(2, |rank| {
+        let communicator = Arc::new(rank.clone());
+        let model = slider.model_of(rank);
+        Simulation::on_ranks(model, slider.dt_star, None, FUSED, communicator)
+            .snapshot()
+            .block(0)
+    });
 }
 
 /// The checkpoint and the columns of each rank.
 type Saved = (Checkpoint, [Vec<f64>; 5]);
 
 fn save(simulation: &Simulation) -> Saved {
-    let mut columns: [Vec<f64>; 5] = Default::default();
-    let Ok(()) = simulation.write_columns(|column, _, values| {
-        columns[column as usize].extend(values);
-        Ok::<(), Infallible>(())
-    });
-    (simulation.checkpoint(), columns)
+    (simulation.checkpoint(), columns(simulation))
 }
 
 /// Goes on on one rank after the other number, one among them, from the columns of all ranks before.

@@ -3,9 +3,9 @@
 use rstest::rstest;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{Field, Instants, KineticHistory, KineticStart, Observer, Scheduled};
-use slipfront::{RunError, Stop, StopReason};
+use slipfront::{RunError, State, Stop, StopReason};
 
-use crate::common::{Slider, at_rest, cavity};
+use crate::common::{Slider, at_rest, cavity, from_state};
 
 fn textured() -> Slider {
     Slider {
@@ -149,21 +149,95 @@ fn time_is_a_product() {
     );
 }
 
-/// Beyond the limit of stability a run diverges, and says where and when.
-#[test]
-fn a_diverging_run_is_reported() {
+/// Beyond the limit of stability a run diverges, and names the block that has gone farthest: by then speeds have squares that are
+/// infinite, and displacements are still finite. Strains as large as the last two stiffen springs beyond the step's limit.
+#[rstest]
+fn a_diverging_run_is_reported(
+    #[values((1.0, 0.0), (1.0, 1e-6), (0.9, 1.0), (0.9, 1e3))] (dt_star, epsilon): (f64, f64),
+) {
     let slider = Slider {
-        dt_star: 1.0,
+        dt_star,
+        epsilon,
+        v_star: 10.0,
+        omega_star: 0.0,
+        r_star: 0.0,
+        sigma_static_star: 1.0,
         ..textured()
     };
     let model = slider.model();
     let mut simulation = at_rest(&model, slider.dt_star);
     let found = simulation.run(Stop::at_step(100_000), &mut []);
-    let Err(RunError::NotFinite { step, value, .. }) = found else {
+    let Err(RunError::NotFinite {
+        step, i, j, value, ..
+    }) = found
+    else {
         panic!("it ran: {found:?}")
     };
-    assert!(step < 100_000 && !value.is_finite());
-    assert!(found.unwrap_err().to_string().contains("has diverged"));
+    assert!(step < 100_000);
+    let State { displacement, .. } = simulation.state();
+    let sizes = displacement
+        .x
+        .iter()
+        .zip(&displacement.y)
+        .map(|(x, y)| x.abs().max(y.abs()));
+    let largest = sizes.clone().fold(0.0, f64::max);
+    // Speeds whose squares are infinite come from displacements of about that size.
+    assert!(largest > 1e140 && largest.is_finite());
+    assert_eq!(
+        sizes.clone().position(|size| size == largest),
+        Some(model.lattice.block(i, j))
+    );
+    assert_eq!(value.abs(), largest);
+    let said = found.unwrap_err().to_string();
+    assert!(said.contains("has diverged") && said.len() < 250, "{said}");
+}
+
+/// Forces that are no numbers hold blocks that do not move: the run ends before its first step all the same.
+#[rstest]
+fn a_state_too_large_to_compute_with_is_reported(#[values(0.0, 1e-6, 1e3)] epsilon: f64) {
+    let slider = Slider {
+        blocks: [5, 5],
+        epsilon,
+        ..Slider::default()
+    };
+    let mut state = State::at_rest(25);
+    state.displacement.y[7] = -1e200;
+    let found = from_state(&slider.model(), slider.dt_star, state).run(Stop::at_step(0), &mut []);
+    let Err(RunError::NotFinite {
+        step: 0,
+        i: 2,
+        j: 1,
+        value: -1e200,
+        ..
+    }) = found
+    else {
+        panic!("{found:?}")
+    };
+}
+
+/// What a run would begin with must be numbers.
+#[rstest]
+#[should_panic(expected = "of the state to begin with is not finite")]
+fn a_state_that_is_not_finite_is_refused(
+    #[values(f64::NAN, f64::INFINITY, f64::NEG_INFINITY)] bad: f64,
+    #[values(0, 1, 2, 3)] place: usize,
+) {
+    let slider = Slider {
+        blocks: [5, 5],
+        ..Slider::default()
+    };
+    let mut state = State::at_rest(25);
+    let State {
+        displacement,
+        velocity,
+    } = &mut state;
+    [
+        &mut displacement.x,
+        &mut displacement.y,
+        &mut velocity.x,
+        &mut velocity.y,
+    ][place][24] = bad;
+    from_state(&slider.model(), slider.dt_star, state);
 }
 
 /// Eq. 9 as printed: the sum of the drive springs' forces over the load, along the drive and a quarter turn

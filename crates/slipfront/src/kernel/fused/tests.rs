@@ -38,17 +38,19 @@ fn alone(model: &Model, dt_star: f64, state: Option<&State>, skips: bool) -> Fus
 
 /// Every width that this processor has, narrow ones first.
 fn levels() -> Vec<Level> {
-    let mut levels = vec![Level::baseline()];
+    let widest = Level::new();
     #[cfg(target_arch = "x86_64")]
     {
-        let widest = Level::new();
-        levels.extend(widest.as_sse2().map(Level::Sse2));
-        levels.extend(widest.as_sse4_2().map(Level::Sse4_2));
-        levels.extend(widest.as_avx2().map(Level::Avx2));
-        levels.extend(widest.as_avx512().map(Level::Avx512));
+        let levels = [
+            widest.as_sse2().map(Level::Sse2),
+            widest.as_sse4_2().map(Level::Sse4_2),
+            widest.as_avx2().map(Level::Avx2),
+            widest.as_avx512().map(Level::Avx512),
+        ];
+        levels.into_iter().flatten().collect()
     }
-    levels.push(Level::new());
-    levels
+    #[cfg(not(target_arch = "x86_64"))]
+    vec![widest]
 }
 
 /// The bits of all displacements, velocities and sums at every tenth step.
