@@ -36,6 +36,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicU32;
 
 use fearless_simd::{Level, dispatch};
+use rayon::prelude::*;
 
 use self::band::{Band, NEVER};
 use self::blocks::Sums;
@@ -78,6 +79,8 @@ pub(crate) struct Fused {
     bands: Vec<Band>,
     /// Those of them that need nothing of other ranks.
     inner: Range<usize>,
+    /// Threads that share out the bands.
+    threads: usize,
     level: Level,
     /// Whether tiles at rest are skipped.
     skips: bool,
@@ -115,10 +118,11 @@ impl Fused {
     ) -> Self {
         let layout = Layout::new(&model.lattice, &model.rows);
         let (tiles, inner) = bands_of(&layout, threads);
-        let bands: Vec<Band> = tiles
-            .into_iter()
-            .map(|tiles| Band::new(&layout, model, state, dt_star, tiles))
-            .collect();
+        let band = |tiles| Band::new(&layout, model, state, dt_star, tiles);
+        let bands: Vec<Band> = match threads {
+            1 => tiles.into_iter().map(band).collect(),
+            _ => tiles.into_par_iter().map(band).collect(),
+        };
         let speed_square = bands
             .iter()
             .flat_map(|band| &band.tiles)
@@ -129,6 +133,7 @@ impl Fused {
             dt_star,
             bands,
             inner,
+            threads,
             level: Level::new(),
             skips,
             touched: (0..layout.n_tiles()).map(|_| AtomicU32::new(0)).collect(),
@@ -191,6 +196,7 @@ impl Fused {
         if step.number.is_multiple_of(MEASUREMENT_INTERVAL) {
             let level = self.level;
             for_each_band(
+                self.threads,
                 &mut self.bands,
                 &|band| dispatch!(level, simd => band.measure_displacements(simd)),
             );
@@ -228,8 +234,11 @@ impl Fused {
             follows: self.swept_step.is_some_and(|swept| swept + 1 == step.number),
         };
         let (level, quanta) = (self.level, Quanta::new(&step, &self.motion_bounds));
-        let (layout, touched) = (self.layout, self.touched.as_slice());
-        for_each_band(&mut self.bands, &|band| band.mark_touched(&layout, touched));
+        let (threads, layout) = (self.threads, self.layout);
+        let touched = self.touched.as_slice();
+        for_each_band(threads, &mut self.bands, &|band| {
+            band.mark_touched(&layout, touched);
+        });
         self.fill_halos(step.move_dt, false);
         self.write_own_rows(step.move_dt);
 
@@ -241,13 +250,13 @@ impl Fused {
         let (first, others) = self.bands.split_at_mut(self.inner.start);
         let (inner, last) = others.split_at_mut(self.inner.len());
         self.neighbours
-            .exchange(&layout, &mut || for_each_band(inner, &sweep));
+            .exchange(&layout, &mut || for_each_band(threads, inner, &sweep));
         for &element in &self.neighbours.moved {
             layout.mark_around(element, element, touched);
         }
         for bands in [first, last] {
             fill_from_neighbours(bands, &layout, &self.neighbours);
-            for_each_band(bands, &sweep);
+            for_each_band(threads, bands, &sweep);
         }
         self.copy_ghosts(false);
         (self.swept_step, self.springs) = (Some(step.number), Some(springs));
@@ -540,14 +549,21 @@ fn fill_from_neighbours(bands: &mut [Band], layout: &Layout, neighbours: &Neighb
     }
 }
 
-/// Runs `work` on every band, on the threads of the pool.
-fn for_each_band(bands: &mut [Band], work: &(impl Fn(&mut Band) + Sync)) {
+/// Runs `work` on every band: on the threads of the pool, or one after the other on this thread.
+fn for_each_band(threads: usize, bands: &mut [Band], work: &(impl Fn(&mut Band) + Sync)) {
+    if threads == 1 {
+        bands.iter_mut().for_each(work);
+        return;
+    }
     match bands {
         [] => {}
         [band] => work(band),
         _ => {
             let (one, other) = bands.split_at_mut(bands.len() / 2);
-            rayon::join(|| for_each_band(one, work), || for_each_band(other, work));
+            rayon::join(
+                || for_each_band(threads, one, work),
+                || for_each_band(threads, other, work),
+            );
         }
     }
 }
