@@ -5,11 +5,6 @@ use std::path::Path;
 /// Memory that this process may still take, in bytes: what the machine can give without swapping, or what is left to its
 /// control group or within its limit of addresses (`ulimit -v`) if that is less. `None` if the system does not say.
 pub fn available_memory() -> Option<f64> {
-    available_beside(0)
-}
-
-/// The same, beside `threads` that are yet to be started.
-fn available_beside(threads: usize) -> Option<f64> {
     use sysinfo::{ProcessRefreshKind, ProcessesToUpdate, System};
     let mut system = System::new().ok()?;
     system.refresh_memory();
@@ -27,7 +22,7 @@ fn available_beside(threads: usize) -> Option<f64> {
     let least = of_machine
         .into_iter()
         .chain(of_group)
-        .chain(addresses_beside(threads))
+        .chain(addresses_left())
         .min();
     least.map(|bytes| bytes as f64)
 }
@@ -39,9 +34,8 @@ const THREAD_ADDRESSES: u64 = (2 + 128) << 20;
 /// Bytes of addresses that are left to the work of the threads, at least.
 const ADDRESSES_TO_WORK: u64 = 64 << 20;
 
-/// Bytes of addresses that this process may still take beside those of `threads` that are yet to be started; none without a
-/// limit, or if the system does not say.
-fn addresses_beside(threads: usize) -> Option<u64> {
+/// Bytes of addresses that this process may still take; none without a limit, or if the system does not say.
+fn addresses_left() -> Option<u64> {
     let read = |name, key: &str| {
         let text = std::fs::read_to_string(name).ok()?;
         let rest = text.lines().find_map(|line| line.strip_prefix(key))?;
@@ -49,23 +43,22 @@ fn addresses_beside(threads: usize) -> Option<u64> {
     };
     let limit = read("/proc/self/limits", "Max address space")?;
     let taken = 1024 * read("/proc/self/status", "VmSize:")?;
-    Some(limit.saturating_sub(taken + threads as u64 * THREAD_ADDRESSES))
+    Some(limit.saturating_sub(taken))
 }
 
 /// How many of the `wanted` threads have room within the limit of addresses of this process (`ulimit -v`), each beside
 /// `others` that it needs.
 pub fn threads_that_fit(wanted: usize, others: usize) -> usize {
-    let Some(left) = addresses_beside(0) else {
+    let Some(left) = addresses_left() else {
         return wanted;
     };
     let each = (1 + others as u64) * THREAD_ADDRESSES;
     wanted.min((left.saturating_sub(ADDRESSES_TO_WORK) / each) as usize)
 }
 
-/// Memory out of `bytes` that this process can be given beside `threads` that are yet to be started, in bytes: all of it, or
-/// what is left.
-pub fn available_of(bytes: f64, threads: usize) -> f64 {
-    most_at_once(bytes.min(available_beside(threads).unwrap_or(f64::INFINITY)))
+/// Memory out of `bytes` that this process can be given, in bytes: all of it, or what is left.
+pub fn available_of(bytes: f64) -> f64 {
+    most_at_once(bytes.min(available_memory().unwrap_or(f64::INFINITY)))
 }
 
 /// The largest part of `bytes` that the system allocates at once, to one part in ten thousand.

@@ -25,9 +25,10 @@ pub(crate) fn set_threads(threads: Option<u16>) -> Result<usize, Failure> {
     Ok(started.max(1))
 }
 
-/// The same for a command that starts as many threads beside the pool, to run cases on them.
-pub(crate) fn set_worker_threads(threads: Option<u16>) -> Result<usize, Failure> {
-    match start_pool(threads, 1)? {
+/// The same for a command that runs cases on the pool while the present thread waits for them. For every thread of the pool it
+/// starts `others` beside it.
+pub(crate) fn set_worker_threads(threads: Option<u16>, others: usize) -> Result<usize, Failure> {
+    match start_pool(threads, others)? {
         0 => Err(Failure::running(anyhow::anyhow!(
             "runs take threads of their own, which the system refuses: raise the limit on processes (`ulimit -u`) or on \
              addresses (`ulimit -v`)"

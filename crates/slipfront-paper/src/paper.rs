@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::thread::Builder;
 
 use slipfront_run::study::{self, Records};
 
@@ -18,7 +20,7 @@ use crate::step_rule::StepRule;
 /// How figures are run.
 #[derive(Clone, Copy, Debug)]
 pub struct Options<'a> {
-    /// Runs at once.
+    /// Figures at once. Their runs are those of rayon's pool, which has as many threads.
     pub threads: usize,
     /// Set by a signal: all runs end, and the finished runs of studies stay recorded.
     pub stop: &'a AtomicBool,
@@ -28,14 +30,16 @@ pub struct Options<'a> {
     pub folder: &'a Path,
 }
 
-/// How many figures are done, and which one is being run.
+/// How many figures are done, and one that is being run.
 #[derive(Clone, Copy, Debug)]
 pub struct Stage<'a> {
     /// Figures done so far, under both step rules together.
     pub done: usize,
     /// Figures to do.
     pub total: usize,
-    /// The present figure.
+    /// Place of this figure among them, from 1.
+    pub number: usize,
+    /// The figure.
     pub figure: &'a Figure,
     /// Its step rule.
     pub step: StepRule,
@@ -83,9 +87,9 @@ impl Paper {
 /// When a run fails, a record cannot be written, or a signal asks to stop.
 pub fn run(
     figures: &[Figure],
-    records: &mut Records,
+    records: &Records,
     options: &Options,
-    watch: &mut dyn FnMut(&Stage),
+    watch: &(dyn Fn(&Stage) + Sync),
 ) -> Result<Paper, PaperError> {
     let rules: &[StepRule] = match options.reduced {
         true => &[StepRule::Auto],
@@ -95,19 +99,24 @@ pub fn run(
     let figures = with_finished(figures, &cache, rules);
     let mut data_by_rule = Vec::new();
     for (pass, &step) in rules.iter().enumerate() {
-        let mut data = Vec::new();
-        for (index, figure) in figures.iter().enumerate() {
+        let before = pass * figures.len();
+        let done = AtomicUsize::new(before);
+        // The runs of the other figures fill the pool while one waits for its last run or draws.
+        let data = map_at_once(&figures, options.threads, |index, figure| {
             let stage = Stage {
-                done: pass * figures.len() + index,
+                done: done.load(Ordering::Relaxed),
                 total: figures.len() * rules.len(),
+                number: before + index + 1,
                 figure,
                 step,
                 study: None,
             };
             watch(&stage);
-            data.push((*figure, data_of(&stage, records, options, &cache, watch)?));
-        }
-        data_by_rule.push(data);
+            let data = data_of(&stage, records, options, &cache, watch);
+            done.fetch_add(1, Ordering::Relaxed);
+            data
+        })?;
+        data_by_rule.push(figures.iter().copied().zip(data).collect::<Vec<_>>());
     }
     let judged = |rule: usize| {
         let data = data_by_rule.get(rule);
@@ -119,6 +128,36 @@ pub fn run(
         figures: data_by_rule.swap_remove(0),
         reduced: options.reduced,
     })
+}
+
+/// What `work` makes of each item, in their order, on the present thread and on others beside it, if the system grants them:
+/// `threads` in all. After an error no further item is begun.
+fn map_at_once<T: Sync, R: Send + Sync>(
+    items: &[T],
+    threads: usize,
+    work: impl Fn(usize, &T) -> Result<R, PaperError> + Sync,
+) -> Result<Vec<R>, PaperError> {
+    let next = AtomicUsize::new(0);
+    let results: Vec<OnceLock<Result<R, PaperError>>> = items.iter().map(|_| OnceLock::new()).collect();
+    let take = || {
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let (Some(item), Some(place)) = (items.get(index), results.get(index)) else {
+                return;
+            };
+            if place.get_or_init(|| work(index, item)).is_err() {
+                next.store(items.len(), Ordering::Relaxed);
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..threads.min(items.len()) {
+            let _ = Builder::new().spawn_scoped(scope, take);
+        }
+        take();
+    });
+    // Items are begun in their order, so that those that were not follow the error.
+    results.into_iter().filter_map(OnceLock::into_inner).collect()
 }
 
 /// The wanted figures and those that earlier calls have finished, in the order of the paper.
@@ -134,10 +173,10 @@ fn with_finished(wanted: &[Figure], cache: &FigureCache, rules: &[StepRule]) -> 
 /// Data of a figure: from the cache, or measured now and stored there.
 fn data_of(
     stage: &Stage,
-    records: &mut Records,
+    records: &Records,
     options: &Options,
     cache: &FigureCache,
-    watch: &mut dyn FnMut(&Stage),
+    watch: &(dyn Fn(&Stage) + Sync),
 ) -> Result<FigureData, PaperError> {
     let Stage { figure, step, .. } = *stage;
     if let Some(data) = cache.load(figure.name, step) {
@@ -145,7 +184,6 @@ fn data_of(
     }
     let mut runner = FigureRunner {
         records,
-        threads: options.threads,
         stop: options.stop,
         step,
         reduced: options.reduced,

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use slipfront::Stop;
 use slipfront::observe::{CurvePoint, Frame};
 
 use crate::drawing::Drawing;
@@ -13,11 +14,12 @@ use slipfront_plot::{FieldMap, FrictionCurve};
 use slipfront_run::pictures::marked_curve;
 use slipfront_run::running::Record;
 
-/// A case whose fields are kept at these times alone.
+/// A case that ends at the last of these times, with its fields at these alone.
 pub(super) fn seen_at(mut case: Case, times_star: &[f64]) -> Case {
     let step = |time: &f64| (time / case.time_plan.dt_star).round() as u64;
     let mut steps: Vec<u64> = times_star.iter().map(step).collect();
     steps.dedup();
+    case.time_plan.stop = Stop::at_step(steps.last().copied().unwrap_or(case.time_plan.last_step));
     case.output.snapshots = Snapshots::At(steps);
     case
 }
@@ -60,6 +62,8 @@ pub(super) fn on_each<T>(
 pub(super) struct Run {
     pub(super) case: Arc<Case>,
     pub(super) record: Record,
+    /// Seconds that it took.
+    pub(super) wall_time_s: f64,
 }
 
 impl Run {

@@ -3,8 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use rayon::prelude::*;
+use slipfront::StopReason;
 
 use crate::embedded_cases::FILES;
 use crate::error::PaperError;
@@ -13,15 +15,14 @@ use crate::step_rule::StepRule;
 use crate::sweep::Sweep;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::CaseError;
-use slipfront_run::study::{Plan, Records, StudyError, StudyFile, StudyResults};
+use slipfront_run::study::{Outcome, Plan, Record, Records, StudyError, StudyFile, StudyResults};
+use slipfront_run::summary::Summary;
 use slipfront_run::{running, study};
 
 /// Runs the cases and studies of a figure.
 pub(super) struct FigureRunner<'a> {
     /// Finished runs of studies.
-    pub(super) records: &'a mut Records,
-    /// Runs at once.
-    pub(super) threads: usize,
+    pub(super) records: &'a Records,
     /// Set by a signal: all runs end.
     pub(super) stop: &'a AtomicBool,
     pub(super) step: StepRule,
@@ -54,10 +55,12 @@ impl FigureRunner<'_> {
     }
 
     pub(super) fn run_one(&self, case: Case) -> Result<Run, PaperError> {
-        run_case(case, self.stop)
+        // On the pool as all others, which limits the runs at once.
+        rayon::scope(|_| run_case(case, self.stop))
     }
 
-    /// Runs a case again that `run` is of, with its fields at the times at which these shares of its blocks have slipped.
+    /// Runs a case again that `run` is of, with its fields at the times at which these shares of its blocks have slipped, up to
+    /// the last of these. Maps of it have the scale of the whole run.
     pub(super) fn run_seen_at_shares(
         &self,
         case: Case,
@@ -65,7 +68,9 @@ impl FigureRunner<'_> {
         shares: &[f64],
     ) -> Result<Run, PaperError> {
         let times = shares.iter().map(|&share| run.time_of_share(share));
-        self.run_one(seen_at(case, &times.collect::<Result<Vec<_>, _>>()?))
+        let mut again = self.run_one(seen_at(case, &times.collect::<Result<Vec<_>, _>>()?))?;
+        again.record.contact_stress_max = run.record.contact_stress_max;
+        Ok(again)
     }
 
     /// A study of this crate, of which nothing is run.
@@ -85,14 +90,7 @@ impl FigureRunner<'_> {
     pub(super) fn study(&mut self, name: &str) -> Result<Sweep, PaperError> {
         let plan = self.plan(name)?.plan;
         // No run folders are kept, so that the folder is not used.
-        let results = study::execute(
-            &plan,
-            self.records,
-            Path::new(""),
-            self.threads,
-            self.stop,
-            self.watch,
-        )?;
+        let results = study::execute(&plan, self.records, Path::new(""), self.stop, self.watch)?;
         if let Some((_, reason)) = results.failures().next() {
             return Err(PaperError::StudyRun {
                 study: name.to_owned(),
@@ -101,9 +99,36 @@ impl FigureRunner<'_> {
         }
         Ok(Sweep { plan, results })
     }
+
+    /// The same, and the runs of the first `replicates` of its points with their curves and fields, in the order of
+    /// replicates and then of points. Where the study goes to the same end, they are runs of it and not made again.
+    pub(super) fn study_with_runs(
+        &mut self,
+        name: &str,
+        replicates: usize,
+    ) -> Result<(Sweep, Vec<Run>), PaperError> {
+        let plan = self.plan(name)?;
+        let keys = plan.keys(replicates);
+        let cases = keys.iter().map(|&key| plan.case_of(key));
+        let runs = self.run(cases.collect::<Result<_, _>>()?)?;
+        let whole = keys.iter().zip(&runs);
+        let whole = whole.filter(|(_, run)| run.case.file.time.stop == StopReason::End);
+        let records = whole.map(|(&key, run)| Record {
+            id: plan.plan.identity(key),
+            wall_time_s: run.wall_time_s,
+            // A study has no instants A-F.
+            outcome: Outcome::of(Summary {
+                instants: Vec::new(),
+                ..run.record.summary.clone()
+            }),
+        });
+        self.records.append(&records.collect::<Vec<_>>())?;
+        Ok((self.study(name)?, runs))
+    }
 }
 
 fn run_case(case: Case, stop: &AtomicBool) -> Result<Run, PaperError> {
+    let began = Instant::now();
     let case = Arc::new(case);
     let record =
         running::run_unless(&case, &|| stop.load(Ordering::Relaxed)).ok_or(StudyError::Interrupted)?;
@@ -111,7 +136,11 @@ fn run_case(case: Case, stop: &AtomicBool) -> Result<Run, PaperError> {
         name: case.name.clone(),
         source,
     })?;
-    Ok(Run { case, record })
+    Ok(Run {
+        case,
+        record,
+        wall_time_s: began.elapsed().as_secs_f64(),
+    })
 }
 
 fn text_of(file: &str) -> Result<&'static str, PaperError> {

@@ -68,11 +68,15 @@ impl Sweep {
 
     /// The case of a run of a point, to be run to its end with its curve and fields.
     pub(super) fn case(&self, levels: &[usize], replicate: usize) -> Result<Case, PaperError> {
-        let run = RunKey {
+        self.case_of(RunKey {
             point: self.point(levels),
             replicate,
             role: Role::Point,
-        };
+        })
+    }
+
+    /// The case of a run, to be run to its end with its curve and fields.
+    pub(super) fn case_of(&self, run: RunKey) -> Result<Case, PaperError> {
         // A plan that keeps its runs gives their cases with curves and fields.
         let mut plan = self.plan.clone();
         plan.settings.keep = RetainRuns::All;
@@ -81,6 +85,21 @@ impl Sweep {
         // The largest contact stress of all, which maps are scaled by, may come late.
         case.time_plan.stop = Stop::at_step(case.time_plan.last_step);
         Ok(case)
+    }
+
+    /// The runs of the first `replicates` of all points, without references, by replicate and then by point.
+    pub(super) fn keys(&self, replicates: usize) -> Vec<RunKey> {
+        let points = 0..self.plan.points.len();
+        let replicates = 0..self.plan.settings.max_replicates().min(replicates);
+        let keys = replicates.flat_map(|replicate| {
+            let key = move |point| RunKey {
+                point,
+                replicate,
+                role: Role::Point,
+            };
+            points.clone().map(key)
+        });
+        keys.collect()
     }
 
     /// The cases of each level of the only axis, on the first surface.

@@ -225,7 +225,7 @@ fn verify_study(folder: &Path) -> Result<Verdict, VerifyError> {
     again.records.merge(folder)?;
     let records = folder.join(Records::FILE);
     let (damaged, records) = (again.records.damaged, records.display());
-    let results = match study::collect(&plan, &mut again.records) {
+    let results = match study::collect(&plan, &again.records) {
         Ok(results) => results,
         Err(StudyError::Missing { runs, others }) if damaged == 0 => {
             let path = folder.to_owned();

@@ -45,12 +45,12 @@ pub(crate) struct Paper {
 
 impl Paper {
     pub(crate) fn execute(self) -> Result<(), Failure> {
-        let threads = set_worker_threads(self.threads)?;
+        let threads = set_worker_threads(self.threads, 1)?;
         let figures = slipfront_paper::figures(&self.figures).map_err(Failure::input)?;
         if let Some(docs) = &self.docs {
             refuse_foreign(docs)?;
         }
-        let mut records = open(&self.out)?;
+        let records = open(&self.out)?;
         let signals = Signals::catch().map_err(Failure::running)?;
         let options = Options {
             threads,
@@ -59,7 +59,7 @@ impl Paper {
             folder: &self.out,
         };
         let progress = PaperProgress::new(self.quiet);
-        let done = slipfront_paper::run(&figures, &mut records, &options, &mut |stage| {
+        let done = slipfront_paper::run(&figures, &records, &options, &|stage| {
             progress.show(stage);
         });
         progress.finish();

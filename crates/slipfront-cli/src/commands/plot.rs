@@ -91,7 +91,7 @@ impl Plot {
 /// Refuses pictures for which there is no memory.
 fn expect_memory(folders: &[PathBuf]) -> Result<(), Failure> {
     let needed = PROGRAM + pictures::memory(folders).map_err(Failure::input)?;
-    let available = available_of(needed, 0);
+    let available = available_of(needed);
     if needed <= available {
         return Ok(());
     }

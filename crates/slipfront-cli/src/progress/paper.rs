@@ -29,7 +29,7 @@ impl PaperProgress {
         });
         if stage.study.is_none() {
             self.0.print_line(|| {
-                let (number, total, title) = (stage.done + 1, stage.total, &stage.figure.title);
+                let (number, total, title) = (stage.number, stage.total, &stage.figure.title);
                 format!("{number:>2} of {total}: {title}{step}")
             });
         }

@@ -6,20 +6,19 @@ use crate::figure_data::FigureData;
 use crate::run::{Run, curves, mu_star, sliding_percent};
 use crate::runner::FigureRunner;
 use crate::statistics::mean;
-use crate::sweep::Sweep;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
-    let sweep = runner.study("fig05")?;
-    let runs = runner.run(sweep.first_cases()?)?;
+    let (sweep, runs) = runner.study_with_runs("fig05", usize::MAX)?;
     let sides = sweep.axis(0);
+    let firsts = &runs[..sides.len()];
     let name = |size: usize| format!("{0} \u{d7} {0} blocks", sides[size]);
     data.panel(
         "fig05",
         "Friction and sliding blocks of sliders of 5 x 5, 25 x 25 and 75 x 75 blocks.",
-        curves(&runs, name),
+        curves(firsts, name),
     );
     let mut maps = Vec::new();
-    for (size, run) in runs.iter().enumerate() {
+    for (size, run) in firsts.iter().enumerate() {
         for letter in ['C', 'D', 'E'] {
             maps.push(run.stress_map(run.instant(letter)?, &format!("{}, {letter}", name(size)))?);
         }
@@ -30,7 +29,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
          friction after it (E).",
         stress_maps(maps, 3),
     );
-    whole_curves(runner, &sweep, runs, data)?;
+    whole_curves(&runs, data);
     // Each surface against the mean of the largest size: scatter counts as much as bias, as for one run.
     let long = runner.study("fig05_long")?;
     for (sweep, quantity) in [(&sweep, "static_friction_star"), (&long, "kinetic_friction_star")] {
@@ -47,39 +46,27 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     Ok(())
 }
 
-/// How far the curves of the smaller sizes are from the mean curve of the largest; `firsts` are the first surfaces.
-fn whole_curves(
-    runner: &FigureRunner,
-    sweep: &Sweep,
-    firsts: Vec<Run>,
-    data: &mut FigureData,
-) -> Result<(), PaperError> {
-    let mut sizes = Vec::new();
-    for (size, first) in firsts.into_iter().enumerate() {
-        let mut runs = vec![first];
-        runs.extend(runner.run(sweep.cases(&[size])?.split_off(1))?);
-        sizes.push(runs);
-    }
-    let [small, middle, large] = &sizes[..] else {
-        return Ok(());
-    };
+/// How far the curves of the smaller sizes are from the mean curve of the largest. Of each surface there is a run in the three
+/// sizes.
+fn whole_curves(runs: &[Run], data: &mut FigureData) {
+    let [small, middle, large] =
+        [0, 1, 2].map(|size| runs.iter().skip(size).step_by(3).collect::<Vec<&Run>>());
     for (name, value) in [
         ("curve_error", mu_star as fn(&_) -> f64),
         ("sliding_curve_error", sliding_percent),
     ] {
         let mean_curve = |time: f64| mean(&large.iter().map(|run| run.at(time, value)).collect::<Vec<_>>());
-        let errors = |runs: &[Run]| -> Vec<f64> {
-            let error = |run: &Run| {
+        let errors = |runs: &[&Run]| -> Vec<f64> {
+            let error = |run: &&Run| {
                 let rows = run.record.rows.iter();
                 let squares = rows.map(|row| (value(&row.point) - mean_curve(row.time_star)).powi(2));
                 mean(&squares.collect::<Vec<_>>()).sqrt()
             };
             runs.iter().map(error).collect()
         };
-        let (small, middle) = (errors(small), errors(middle));
+        let (small, middle) = (errors(&small), errors(&middle));
         data.values(&format!("{name}_5"), &small);
         data.values(&format!("{name}_25"), &middle);
         data.value(&format!("{name}_ratio"), mean(&middle) / mean(&small));
     }
-    Ok(())
 }

@@ -12,8 +12,7 @@ use crate::sweep::Sweep;
 const SAME: f64 = 0.0015;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
-    let sweep = runner.study("fig07")?;
-    let runs = runner.run(sweep.first_cases()?)?;
+    let (_, runs) = runner.study_with_runs("fig07", 1)?;
     let [paper, .., finest] = &runs[..] else {
         return Ok(());
     };

@@ -16,8 +16,7 @@ const DRAWN: [f64; 6] = [0.0, 0.03, 0.1, 0.3, 1.0, 3.0];
 const JUMP: f64 = 5.0;
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
-    let sweep = runner.study("fig09")?;
-    let runs = runner.run(sweep.first_cases()?)?;
+    let (sweep, runs) = runner.study_with_runs("fig09", 1)?;
     let drawn = DRAWN.map(|omega| runs[sweep.level(omega)].curve(&format!("\u{3a9}* = {omega}")));
     data.panel(
         "fig09",

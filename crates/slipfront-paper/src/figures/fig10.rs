@@ -12,9 +12,8 @@ use crate::statistics::{largest, mean, rises};
 const WINDOW_ENDS: [f64; 6] = [150.0, 160.0, 180.0, 200.0, 220.0, 266.7];
 
 pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Result<(), PaperError> {
-    let sweep = runner.study("fig10")?;
+    let (sweep, runs) = runner.study_with_runs("fig10", 1)?;
     let ratios = sweep.axis(0);
-    let runs = runner.run(sweep.first_cases()?)?;
     data.panel(
         "fig10",
         "Friction and sliding blocks for four ratios of kinetic to static friction.",

@@ -19,23 +19,28 @@ use slipfront_run::run_folder::error::FolderError;
 /// # Errors
 /// When a picture cannot be drawn or a file not be written.
 pub fn write(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
-    let mut drawn = Vec::new();
-    for (_, data) in &paper.figures {
-        let pictures = draw(data)?;
-        for (Panel { name, drawing, .. }, picture) in data.panels.iter().zip(&pictures) {
-            write_file(folder, &format!("{name}.svg"), picture.svg.as_bytes())?;
-            write_file(folder, &format!("{name}.png"), &picture.png)?;
-            write_file(folder, &format!("{name}.csv"), &drawing.csv()?)?;
-        }
-        for table in &data.tables {
-            let rows = [&table.header].into_iter().chain(&table.rows);
-            write_file(folder, &format!("{}.csv", table.name), &csv(rows)?)?;
-        }
-        drawn.push(pictures);
-    }
+    let figures = paper.figures.par_iter();
+    let drawn: Vec<Vec<Picture>> = figures
+        .map(|(_, data)| write_figure(data, folder))
+        .collect::<Result<_, _>>()?;
     write_file(folder, "claims.csv", &claims_csv(paper)?)?;
     write_file(folder, "numbers.csv", &numbers_csv(paper)?)?;
     write_file(folder, "report.html", html::page(paper, &drawn).as_bytes())
+}
+
+/// Writes the pictures and tables of a figure, and returns the pictures.
+fn write_figure(data: &FigureData, folder: &Path) -> Result<Vec<Picture>, PaperError> {
+    let pictures = draw(data)?;
+    for (Panel { name, drawing, .. }, picture) in data.panels.iter().zip(&pictures) {
+        write_file(folder, &format!("{name}.svg"), picture.svg.as_bytes())?;
+        write_file(folder, &format!("{name}.png"), &picture.png)?;
+        write_file(folder, &format!("{name}.csv"), &drawing.csv()?)?;
+    }
+    for table in &data.tables {
+        let rows = [&table.header].into_iter().chain(&table.rows);
+        write_file(folder, &format!("{}.csv", table.name), &csv(rows)?)?;
+    }
+    Ok(pictures)
 }
 
 fn draw(data: &FigureData) -> Result<Vec<Picture>, PaperError> {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use slipfront_paper::{FIGURES, Options, Paper, Verdict};
 use slipfront_run::study::{Records, StudyError};
@@ -18,12 +18,12 @@ fn options<'a>(folder: &'a Path, stop: &'a AtomicBool) -> Options<'a> {
 
 fn run(names: &[&str], folder: &Path, stop: &AtomicBool) -> Result<Paper, slipfront_paper::PaperError> {
     let names: Vec<String> = names.iter().map(|&name| name.to_owned()).collect();
-    let mut records = Records::open(folder)?;
+    let records = Records::open(folder)?;
     slipfront_paper::run(
         &slipfront_paper::figures(&names)?,
-        &mut records,
+        &records,
         &options(folder, stop),
-        &mut |_| {},
+        &|_| {},
     )
 }
 
@@ -149,18 +149,13 @@ fn finished_runs_of_a_figure_that_was_not_finished_are_not_run_again() {
     let runs = Records::open(folder.path()).unwrap().len();
     std::fs::remove_dir_all(folder.path().join("found")).unwrap();
     let names = ["fig08".to_owned()];
-    let mut records = Records::open(folder.path()).unwrap();
-    let mut here = 0;
+    let records = Records::open(folder.path()).unwrap();
+    let here = AtomicUsize::new(0);
     let figures = slipfront_paper::figures(&names).unwrap();
-    let second = slipfront_paper::run(
-        &figures,
-        &mut records,
-        &options(folder.path(), &never),
-        &mut |stage| {
-            here = here.max(stage.study.map_or(0, |study| study.here));
-        },
-    );
-    assert_eq!((here, records.len()), (0, runs));
+    let second = slipfront_paper::run(&figures, &records, &options(folder.path(), &never), &|stage| {
+        here.fetch_max(stage.study.map_or(0, |study| study.here), Ordering::Relaxed);
+    });
+    assert_eq!((here.into_inner(), records.len()), (0, runs));
     assert_eq!(second.unwrap().results, first.results);
     assert!(
         first

@@ -99,8 +99,6 @@ pub enum StudyError {
     #[cfg(feature = "plot")]
     #[error("cannot draw {name}: {source}")]
     Picture { name: String, source: PictureError },
-    #[error("cannot start the threads of the study: {0}")]
-    Threads(std::io::Error),
     #[error("stopped by a signal: finished runs are safe, and the same command goes on from there")]
     Interrupted,
 }

@@ -1,10 +1,10 @@
-//! Runs what a study lacks: the scheduler on this thread, and one run at a time on each worker thread.
+//! Runs what a study lacks: the scheduler on this thread, and one run at a time on each thread of the pool.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, Receiver, Sender};
-use std::sync::{Arc, Mutex};
+use std::sync::mpsc::{self, Sender};
 use std::time::Instant;
 
 use super::error::StudyError;
@@ -29,73 +29,64 @@ type RunCase<'a> = dyn Fn(RunKey, &IsStopped) -> Result<Option<Outcome>, StudyEr
 
 /// Runs everything that the plan needs and the records lack.
 ///
-/// `threads` runs are done at once. `stop` ends them all; finished runs stay recorded. Run folders that the study keeps are
-/// written to `folder`. `watch` is called after every run. A run that fails is no error.
+/// The threads of rayon's pool do one run each at a time, of this study and of others that are executed meanwhile; this thread
+/// waits for them, and must not be the only one of the pool. `stop` ends all runs; finished ones stay recorded. Run folders that
+/// the study keeps are written to `folder`. `watch` is called after every run. A run that fails is no error.
 pub fn execute(
     plan: &Plan,
-    records: &mut Records,
+    records: &Records,
     folder: &Path,
-    threads: usize,
     stop: &AtomicBool,
     watch: &mut dyn FnMut(&Progress),
 ) -> Result<StudyResults, StudyError> {
     let runs = folder.join(RUNS);
     let run_case = |run: RunKey, is_stopped: &IsStopped| run_one(plan, &runs, run, is_stopped);
-    execute_with(plan, records, &run_case, threads, stop, watch)
+    execute_with(plan, records, &run_case, stop, watch)
 }
 
 /// The results of a plan from the records alone, if all its runs are recorded.
-pub fn collect(plan: &Plan, records: &mut Records) -> Result<StudyResults, StudyError> {
-    let (to_workers, _tasks) = mpsc::channel();
-    Scheduler::new(plan, records, to_workers, 1).collect()
+pub fn collect(plan: &Plan, records: &Records) -> Result<StudyResults, StudyError> {
+    Scheduler::new(plan, records, &|_| {}, 1).collect()
 }
 
 fn execute_with(
     plan: &Plan,
-    records: &mut Records,
+    records: &Records,
     run_case: &RunCase,
-    threads: usize,
     stop: &AtomicBool,
     watch: &mut dyn FnMut(&Progress),
 ) -> Result<StudyResults, StudyError> {
-    let (to_workers, tasks) = mpsc::channel::<Task>();
     let (to_scheduler, finished) = mpsc::channel::<Ended>();
-    let tasks = Mutex::new(tasks);
     let abandon = AtomicBool::new(false);
     let is_stopped = || stop.load(Ordering::Relaxed) || abandon.load(Ordering::Relaxed);
-    std::thread::scope(|scope| {
+    rayon::in_place_scope(|scope| {
         let _abandon = SetOnDrop(&abandon);
-        for _ in 0..threads {
-            let (tasks, is_stopped, to_scheduler) = (&tasks, &is_stopped, to_scheduler.clone());
-            let spawned = std::thread::Builder::new()
-                .spawn_scoped(scope, move || work(run_case, tasks, &to_scheduler, is_stopped));
-            spawned.map_err(StudyError::Threads)?;
-        }
-        drop(to_scheduler);
-        Scheduler::new(plan, records, to_workers, threads).run(&finished, stop, watch)
+        let start = |task| {
+            let (is_stopped, to_scheduler) = (&is_stopped, to_scheduler.clone());
+            scope.spawn(move |_| work(run_case, task, &to_scheduler, is_stopped));
+        };
+        let threads = rayon::current_num_threads();
+        Scheduler::new(plan, records, &start, threads).run(&finished, stop, watch)
     })
 }
 
-/// Runs tasks until there are no more.
-fn work(run_case: &RunCase, tasks: &Mutex<Receiver<Task>>, finished: &Sender<Ended>, is_stopped: &IsStopped) {
-    while let Some(Task { run, id }) = tasks.lock().ok().and_then(|tasks| tasks.recv().ok()) {
-        let began = Instant::now();
-        let outcome = if is_stopped() {
-            Ok(None)
-        } else {
-            // A panic is recorded as a failed run, so that the scheduler does not wait for it without end.
-            catch_unwind(AssertUnwindSafe(|| run_case(run, is_stopped)))
-                .unwrap_or_else(|panic| Ok(Some(Outcome::Failed(panicked(panic.as_ref())))))
-        };
-        let record = |outcome| Record {
-            id,
-            wall_time_s: began.elapsed().as_secs_f64(),
-            outcome,
-        };
-        if finished.send(outcome.map(|outcome| outcome.map(record))).is_err() {
-            return;
-        }
-    }
+/// Does a run.
+fn work(run_case: &RunCase, Task { run, id }: Task, finished: &Sender<Ended>, is_stopped: &IsStopped) {
+    let began = Instant::now();
+    let outcome = if is_stopped() {
+        Ok(None)
+    } else {
+        // A panic is recorded as a failed run, so that the scheduler does not wait for it without end.
+        catch_unwind(AssertUnwindSafe(|| run_case(run, is_stopped)))
+            .unwrap_or_else(|panic| Ok(Some(Outcome::Failed(panicked(panic.as_ref())))))
+    };
+    let record = |outcome| Record {
+        id,
+        wall_time_s: began.elapsed().as_secs_f64(),
+        outcome,
+    };
+    // A scheduler that has ended wants no more of them.
+    let _ = finished.send(outcome.map(|outcome| outcome.map(record)));
 }
 
 /// The reason of a run that failed by a panic.
@@ -133,7 +124,7 @@ fn run_one(
         write_folder(&case, record.as_mut().ok(), &path, started)?;
     }
     Ok(Some(match record {
-        Ok(record) => Outcome::Done(Box::new(record.summary)).or_not_finite(),
+        Ok(record) => Outcome::of(record.summary),
         Err(error) => Outcome::Failed(error.to_string()),
     }))
 }
@@ -153,8 +144,8 @@ fn write_folder(
     Ok(())
 }
 
-/// Sets a flag when it is dropped, on an error and a panic as well: without a scheduler the workers would run cases that
-/// nobody records.
+/// Sets a flag when it is dropped, on an error and a panic as well: without a scheduler the pool would run cases that nobody
+/// records.
 struct SetOnDrop<'a>(&'a AtomicBool);
 
 impl Drop for SetOnDrop<'_> {
@@ -186,17 +177,24 @@ mod tests {
         }))
     }
 
+    /// Executes a plan with so many runs at once: the thread that waits for them is one more of the pool.
+    fn execute_on(
+        threads: usize,
+        plan: &Plan,
+        records: &Records,
+        run_case: &RunCase,
+        watch: &mut (dyn FnMut(&Progress) + Send),
+    ) -> Result<StudyResults, StudyError> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads + 1).build();
+        let never = AtomicBool::new(false);
+        pool.unwrap()
+            .install(|| execute_with(plan, records, run_case, &never, watch))
+    }
+
     fn run(plan: &Plan, run_case: &RunCase, threads: usize) -> (Result<StudyResults, StudyError>, usize) {
         let folder = tempfile::tempdir().unwrap();
-        let mut records = Records::open(folder.path()).unwrap();
-        let found = execute_with(
-            plan,
-            &mut records,
-            run_case,
-            threads,
-            &AtomicBool::new(false),
-            &mut |_| {},
-        );
+        let records = Records::open(folder.path()).unwrap();
+        let found = execute_on(threads, plan, &records, run_case, &mut |_| {});
         (found, records.len())
     }
 
@@ -242,11 +240,10 @@ mod tests {
     fn runs_ahead_of_need_are_not_orphaned() {
         let plan = plan(ADAPTIVE);
         let folder = tempfile::tempdir().unwrap();
-        let mut records = Records::open(folder.path()).unwrap();
-        let never = AtomicBool::new(false);
+        let records = Records::open(folder.path()).unwrap();
         for threads in [16, 1] {
             let runner = |run, _: &IsStopped| Ok(Some(pretend(run)));
-            let found = execute_with(&plan, &mut records, &runner, threads, &never, &mut |_| {}).unwrap();
+            let found = execute_on(threads, &plan, &records, &runner, &mut |_| {}).unwrap();
             assert_eq!(found.orphaned_runs, 0, "{threads} threads");
         }
         assert!(records.len() > 12);
@@ -275,10 +272,10 @@ mod tests {
 
     /// Without a scheduler, further runs would not be recorded.
     #[test]
-    fn a_fault_of_the_manager_ends_the_workers() {
+    fn a_fault_of_the_scheduler_ends_the_runs() {
         let plan = plan("base.slider.blocks = [2, 2]\nstudy.replicates = 100");
         let folder = tempfile::tempdir().unwrap();
-        let mut records = Records::open(folder.path()).unwrap();
+        let records = Records::open(folder.path()).unwrap();
         let forever = AtomicBool::new(false);
         let runner = |run: RunKey, is_stopped: &IsStopped| {
             if run.replicate < 5 {
@@ -292,24 +289,25 @@ mod tests {
             forever.fetch_or(!is_stopped(), Ordering::Relaxed);
             Ok(None)
         };
-        let never = AtomicBool::new(false);
         let watch = &mut |now: &Progress| assert_eq!(now.here, 0, "a fault of the scheduler");
         let ended = catch_unwind(AssertUnwindSafe(|| {
-            execute_with(&plan, &mut records, &runner, 2, &never, watch).map(|_| ())
+            execute_on(2, &plan, &records, &runner, watch).map(|_| ())
         }));
         assert!(ended.is_err());
-        assert!(!forever.into_inner(), "a worker was not told to end");
+        assert!(!forever.into_inner(), "a run was not told to end");
     }
 
     #[test]
     fn a_study_that_cannot_go_on_keeps_what_is_finished() {
         let plan = plan("base.slider.blocks = [2, 2]\nstudy.replicates = 50");
         let runner = |run: RunKey, _: &IsStopped| match run.replicate {
-            10 => Err(StudyError::Threads(std::io::Error::other("the disk is full"))),
+            10 => Err(StudyError::NotRecords {
+                path: "full disk".into(),
+            }),
             _ => Ok(Some(pretend(run))),
         };
         let (found, recorded) = run(&plan, &runner, 1);
-        assert!(matches!(found, Err(StudyError::Threads(_))));
+        assert!(matches!(found, Err(StudyError::NotRecords { .. })));
         assert!((10..50).contains(&recorded), "{recorded}");
     }
 }

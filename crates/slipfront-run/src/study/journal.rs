@@ -7,20 +7,27 @@ use std::collections::HashMap;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::error::StudyError;
 use super::record::{Record, RunResult, looks_like_ours, may_begin_ours, parse_line, to_line};
 use crate::names::RECORDS;
 use slipfront_case::disk::{open_limited, remove_unfinished, sync_folder};
 
-/// The record file of a study folder, open for one process alone.
+/// The record file of a study folder, open for one process alone, whose threads may share it.
 #[derive(Debug)]
 pub struct Records {
     path: PathBuf,
-    file: File,
-    results: HashMap<String, RunResult>,
+    written: Mutex<Written>,
     /// Lines that failed their checksum.
     pub damaged: usize,
+}
+
+/// The file, and what stands in it.
+#[derive(Debug)]
+struct Written {
+    file: File,
+    results: HashMap<String, RunResult>,
 }
 
 impl Records {
@@ -47,47 +54,58 @@ impl Records {
         let results = lines.records.into_iter().map(|record| entry(&record));
         Ok(Self {
             path,
-            file,
-            results: results.collect(),
+            written: Mutex::new(Written {
+                file,
+                results: results.collect(),
+            }),
             damaged: lines.damaged,
         })
     }
 
+    /// What is written, for this thread alone. A thread that panicked has left it whole: results are added last.
+    fn written(&self) -> MutexGuard<'_, Written> {
+        self.written.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// The result of the run with this identity, if it is recorded.
-    pub fn get(&self, id: &str) -> Option<&RunResult> {
-        self.results.get(id)
+    pub fn get(&self, id: &str) -> Option<RunResult> {
+        self.written().results.get(id).cloned()
     }
 
     /// Number of runs recorded.
     pub fn len(&self) -> usize {
-        self.results.len()
+        self.written().results.len()
     }
 
     /// Whether nothing is recorded.
     pub fn is_empty(&self) -> bool {
-        self.results.is_empty()
+        self.len() == 0
     }
 
-    /// Appends finished runs and waits until the disk has them; what had been recorded before stays whole.
-    pub fn append(&mut self, records: &[Record]) -> Result<(), StudyError> {
-        if records.is_empty() {
+    /// Appends finished runs that are not recorded yet and waits until the disk has them; what had been recorded before stays
+    /// whole.
+    pub fn append(&self, records: &[Record]) -> Result<(), StudyError> {
+        let Written { file, results } = &mut *self.written();
+        // Studies that share the file may have made the same run at the same time.
+        let unknown = records.iter().filter(|record| !results.contains_key(&record.id));
+        let lines: Vec<u8> = unknown.flat_map(to_line).collect();
+        if lines.is_empty() {
             return Ok(());
         }
-        let lines: Vec<u8> = records.iter().flat_map(to_line).collect();
-        let before = self.file.stream_position();
+        let before = file.stream_position();
         let before = before.map_err(failed("write to", &self.path))?;
-        let written = self.file.write_all(&lines).and_then(|()| self.file.sync_data());
-        written.map_err(|source| {
+        let appended = file.write_all(&lines).and_then(|()| file.sync_data());
+        appended.map_err(|source| {
             // Whole lines stay. If a part of a line cannot be cut off, the next start does it.
-            let length = self.file.metadata().map_or(0, |file| file.len());
+            let length = file.metadata().map_or(0, |file| file.len());
             let there = length.saturating_sub(before) as usize;
             let there = &lines[..lines.len().min(there)];
             let last_break = there.iter().rposition(|&byte| byte == b'\n');
             let whole = last_break.map_or(0, |end| end + 1);
-            let _ = self.file.set_len(before + whole as u64);
+            let _ = file.set_len(before + whole as u64);
             failed("write to", &self.path)(source)
         })?;
-        self.results.extend(records.iter().map(entry));
+        results.extend(records.iter().map(entry));
         Ok(())
     }
 
@@ -101,7 +119,7 @@ impl Records {
         }
         self.damaged += lines.damaged;
         let mut records = lines.records;
-        records.retain(|record| !self.results.contains_key(&record.id));
+        records.retain(|record| self.get(&record.id).is_none());
         // Their lines need not be in memory all at once.
         for some in records.chunks(LINES_AT_ONCE) {
             self.append(some)?;
@@ -241,7 +259,7 @@ mod tests {
             let left = usize::from(cut == next.len() - 1);
             let folder = tempfile::tempdir().unwrap();
             std::fs::write(folder.path().join(RECORDS), [&whole[..], &next[..cut]].concat()).unwrap();
-            let mut records = Records::open(folder.path()).unwrap();
+            let records = Records::open(folder.path()).unwrap();
             assert_eq!(
                 (records.len(), records.get("b").is_some()),
                 (1 + left, left == 1),
@@ -318,6 +336,22 @@ mod tests {
         std::fs::remove_file(&path).unwrap();
         std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
         refused(&mut records);
+    }
+
+    /// Studies that share the records may make the same run at the same time.
+    #[test]
+    fn a_run_is_recorded_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let records = Records::open(folder.path()).unwrap();
+        std::thread::scope(|scope| {
+            for other in ["b", "c"] {
+                let records = &records;
+                scope.spawn(move || records.append(&[record("a"), record(other)]).unwrap());
+            }
+        });
+        assert_eq!(records.len(), 3);
+        let lines = std::fs::read_to_string(folder.path().join(RECORDS)).unwrap();
+        assert_eq!(lines.lines().count(), 3);
     }
 
     #[test]

@@ -396,7 +396,7 @@ impl Plan {
     /// Refuses as many runs at once as there is no memory for, and says how many there is memory for; with no runs, what
     /// tables and pictures take is held against the memory alone.
     pub fn check_memory(&self, threads: usize) -> Result<(), StudyError> {
-        self.compare_memory(threads, available_of(self.memory(threads), threads))
+        self.compare_memory(threads, available_of(self.memory(threads)))
     }
 
     fn compare_memory(&self, threads: usize, available: f64) -> Result<(), StudyError> {

@@ -21,6 +21,11 @@ pub enum Outcome {
 pub type RunResult = Result<Arc<SummaryValues>, String>;
 
 impl Outcome {
+    /// The outcome of a run with these numbers.
+    pub fn of(summary: Summary) -> Self {
+        Self::Done(Box::new(summary)).or_not_finite()
+    }
+
     /// The part of it that tables and statistics need.
     pub(super) fn result(&self) -> RunResult {
         match self {
@@ -30,7 +35,7 @@ impl Outcome {
     }
 
     /// The outcome, or a failure if a number of it is not finite: JSON has no such numbers.
-    pub(super) fn or_not_finite(self) -> Self {
+    fn or_not_finite(self) -> Self {
         let json = serde_json::to_string(&self).unwrap_or_default();
         match serde_json::from_str::<Self>(&json) {
             Ok(read_back) if read_back == self => self,
@@ -98,7 +103,7 @@ mod tests {
                 energy_error: value,
                 ..Summary::default()
             };
-            Outcome::Done(Box::new(summary)).or_not_finite()
+            Outcome::of(summary)
         };
         assert!(matches!(outcome(0.1), Outcome::Done(_)));
         assert!(matches!(outcome(f64::NAN), Outcome::Failed(_)));

@@ -5,7 +5,7 @@
 
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
+use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
 use super::error::StudyError;
@@ -16,7 +16,7 @@ use super::statistics::Sample;
 use super::study_results::{PointResult, Progress, StudyResults};
 use super::summary_values::Quantity;
 
-/// A run to be done by a worker.
+/// A run to be done.
 pub(super) struct Task {
     pub(super) run: RunKey,
     /// [`Plan::identity`] of the run.
@@ -26,11 +26,12 @@ pub(super) struct Task {
 /// The record of a run that has ended; none if it was given up.
 pub(super) type Ended = Result<Option<Record>, StudyError>;
 
-/// Requests runs from the workers and decides on the number of replicates.
+/// Starts runs and decides on the number of replicates.
 pub(super) struct Scheduler<'a> {
     plan: &'a Plan,
-    records: &'a mut Records,
-    tasks: Sender<Task>,
+    records: &'a Records,
+    start: &'a dyn Fn(Task),
+    /// Runs at once.
     threads: usize,
     /// The runs known so far; the points follow at the end.
     results: StudyResults,
@@ -60,12 +61,13 @@ struct PointState {
 }
 
 impl<'a> Scheduler<'a> {
-    pub(super) fn new(plan: &'a Plan, records: &'a mut Records, tasks: Sender<Task>, threads: usize) -> Self {
+    /// `start` lets a run be done by another thread.
+    pub(super) fn new(plan: &'a Plan, records: &'a Records, start: &'a dyn Fn(Task), threads: usize) -> Self {
         let until = plan.settings.until.as_ref();
         Self {
             plan,
             records,
-            tasks,
+            start,
             threads,
             results: StudyResults::default(),
             waiting: HashMap::new(),
@@ -99,11 +101,7 @@ impl<'a> Scheduler<'a> {
         self.report(watch);
         while !self.waiting.is_empty() {
             let stopped = stop.load(Ordering::Relaxed);
-            let first = match finished.recv_timeout(Duration::from_millis(100)) {
-                Ok(first) => Some(first),
-                Err(RecvTimeoutError::Timeout) => None,
-                Err(RecvTimeoutError::Disconnected) => return Err(StudyError::Interrupted),
-            };
+            let first = finished.recv_timeout(Duration::from_millis(100)).ok();
             // All that has finished meanwhile is written at once, since every write waits for the disk.
             self.record(first.into_iter().chain(finished.try_iter()))?;
             if stopped {
@@ -140,12 +138,12 @@ impl<'a> Scheduler<'a> {
     }
 
     /// Requests the replicates of a point up to the number `requested`: recorded runs are taken as they are, the others are
-    /// sent to the workers.
+    /// started.
     fn request(&mut self, point: usize, requested: usize) {
         let plan = self.plan;
         for run in plan.runs_of(point, self.points[point].requested..requested) {
             let id = plan.identity(run);
-            let Some(result) = self.records.get(&id).cloned() else {
+            let Some(result) = self.records.get(&id) else {
                 self.send(run, id);
                 continue;
             };
@@ -164,8 +162,7 @@ impl<'a> Scheduler<'a> {
         waiting.push(run);
         if waiting.len() == 1 {
             self.progress.total += 1;
-            // There are no workers where results are only collected.
-            let _ = self.tasks.send(Task { run, id });
+            (self.start)(Task { run, id });
         }
     }
 
@@ -177,7 +174,7 @@ impl<'a> Scheduler<'a> {
 
     /// Adds the result of a recorded run to every point that waits for it.
     fn ingest(&mut self, id: String) {
-        let Some(result) = self.records.get(&id).cloned() else {
+        let Some(result) = self.records.get(&id) else {
             return;
         };
         let runs = self.waiting.remove(&id).unwrap_or_default();

@@ -295,9 +295,12 @@ fn study(folder: &Path) {
         // The fonts of the pictures before, which a study has not yet when it runs.
         let before = LIVE.load(Ordering::Relaxed) as f64;
         let (taken, ()) = peak(|| {
-            let mut records = Records::open(records.path()).unwrap();
+            let records = Records::open(records.path()).unwrap();
             let never = AtomicBool::new(false);
-            study::execute(&plan, &mut records, folder, threads, &never, &mut |_| {}).unwrap();
+            // The thread that waits for the runs is one more.
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads + 1).build();
+            let execute = || study::execute(&plan, &records, folder, &never, &mut |_| {});
+            pool.unwrap().install(execute).unwrap();
         });
         let taken = taken - before;
         if threads == 1 {

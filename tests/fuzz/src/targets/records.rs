@@ -83,7 +83,7 @@ fn records(input: &[u8]) {
 fn open(file: &[u8]) -> Option<Records> {
     let folder = scratch::folder("records");
     std::fs::write(folder.join(Records::FILE), file).unwrap();
-    let mut records = match Records::open(&folder) {
+    let records = match Records::open(&folder) {
         Ok(records) => records,
         Err(error) => {
             readable(&error);

@@ -47,7 +47,7 @@ impl Merge {
                 count(self.shards.len(), "shard")
             ));
         }
-        let results = collect(&plan, &mut folder.records).map_err(Failure::running)?;
+        let results = collect(&plan, &folder.records).map_err(Failure::running)?;
         for shard in &self.shards {
             folder
                 .take_kept(&plan, &results, shard)

@@ -63,7 +63,7 @@ impl StudyRun {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let threads = match self.dry_run {
             true => set_threads(self.threads)?,
-            false => set_worker_threads(self.threads)?,
+            false => set_worker_threads(self.threads, 0)?,
         };
         let Some(path) = self.study else {
             return Err(Failure::input(anyhow::anyhow!("name a study file")));
@@ -77,10 +77,10 @@ impl StudyRun {
         plan.check_memory(threads).map_err(Failure::input)?;
         let out = self.out.unwrap_or_else(|| default_out(&file.name, self.shard));
         refuse_to_replace(&path, &file, &out)?;
-        let mut folder = StudyFolder::open(&out, &file).map_err(Failure::input)?;
+        let folder = StudyFolder::open(&out, &file).map_err(Failure::input)?;
         folder.check_disk(&plan).map_err(Failure::input)?;
         let plan = plan.reading_copies(&folder.study);
-        complete(&plan, &mut folder, threads, self.quiet)
+        complete(&plan, &folder, self.quiet)
     }
 }
 
@@ -107,23 +107,16 @@ fn default_out(name: &str, shard: Option<Shard>) -> PathBuf {
 }
 
 /// Runs what the folder lacks, and writes tables and pictures.
-fn complete(plan: &Plan, folder: &mut StudyFolder, threads: usize, quiet: bool) -> Result<(), Failure> {
+fn complete(plan: &Plan, folder: &StudyFolder, quiet: bool) -> Result<(), Failure> {
     let signals = Signals::catch().map_err(Failure::running)?;
     let mut progress = StudyProgress::new(quiet);
     if !quiet {
         print_notes(plan, folder);
     }
     let path = folder.path().to_owned();
-    let done = study::execute(
-        plan,
-        &mut folder.records,
-        &path,
-        threads,
-        &signals.stop,
-        &mut |now| {
-            progress.show(now);
-        },
-    );
+    let done = study::execute(plan, &folder.records, &path, &signals.stop, &mut |now| {
+        progress.show(now);
+    });
     progress.finish();
     let results = done.map_err(|error| match error {
         StudyError::Interrupted => Failure::stopped(&signals, error),

@@ -121,7 +121,7 @@ fn a_full_disk_ends_it_with_a_sentence_and_it_goes_on() {
 #[test]
 fn what_the_system_does_not_give_is_refused_before_it_begins() {
     let workspace = Workspace::with_study(
-        "base.slider.blocks = [1500, 1500]\nbase.time.duration_star = 1\nstudy.replicates = 1",
+        "base.slider.blocks = [2000, 2000]\nbase.time.duration_star = 1\nstudy.replicates = 1",
     );
     // There is room for a thread, and not for the blocks.
     let output = limited(&workspace, "-v 400000", "--threads 1 -o out");
