@@ -15,7 +15,7 @@
 # study run without Slurm, and no run may have been made twice. Then the script of docs/guide/long.md runs a case whose
 # job gets SIGTERM twice: it puts itself back into the queue, and writes the same bytes as without. So does the script
 # of docs/guide/mpi.md, with the ranks started by `srun --mpi=pmix`; a rank that is killed ends its job, which goes on when it
-# is submitted again. Takes about four minutes. Not part of the tests that always run: no continuous integration has Slurm.
+# is submitted again. Takes five to eight minutes on two busy cores. Not part of the tests that always run: no continuous integration has Slurm.
 
 set -euo pipefail
 
