@@ -15,7 +15,7 @@
 # study run without Slurm, and no run may have been made twice. Then the script of docs/guide/long.md runs a case whose
 # job gets SIGTERM twice: it puts itself back into the queue, and writes the same bytes as without. So does the script
 # of docs/guide/mpi.md, with the ranks started by `srun --mpi=pmix`; a rank that is killed ends its job, which goes on when it
-# is submitted again. Takes about two minutes. Not part of the tests that always run: no continuous integration has Slurm.
+# is submitted again. Takes five to eight minutes on two busy cores. Not part of the tests that always run: no continuous integration has Slurm.
 
 set -euo pipefail
 
@@ -230,6 +230,7 @@ wait_for_run "$job"
 kill -9 "$(processes "$job" | tail -1)"
 wait_end "$job"
 [ ! -e "results/job-$job/manifest.json" ]
+scontrol show job "$job" | grep -q 'ExitCode=137:0'
 srun --mpi=pmix --overcommit -n "$ranks" slipfront-mpi run --quiet --resume "results/job-$job"
 same_as_once "results/job-$job"
 echo "passed: the end of one rank was the end of its job, and another went on with it"

@@ -165,10 +165,10 @@ pub(super) fn read(
         source,
     };
     let damaged = |why| CheckpointError::Damaged { path: owned(), why };
-    let (mut file, own_line, length) = agree_on_io(communicator, open(path)).map_err(unreadable)?;
+    let (mut file, own_line, own_length) = agree_on_io(communicator, open(path)).map_err(unreadable)?;
     // Ranks may see different files, and must do the same nevertheless: what the first one sees counts.
     let line = text_of(communicator, 0, &own_line);
-    let length = of_first(communicator, length);
+    let length = of_first(communicator, own_length);
     let unknown = || damaged("its first line is not that of a checkpoint");
     let Layout { slipfront_checkpoint } = serde_json::from_str(&line).map_err(|_| unknown())?;
     if slipfront_checkpoint != LAYOUT {
@@ -185,7 +185,7 @@ pub(super) fn read(
         .seek(SeekFrom::Start(contents))
         .and_then(|_| file.read_exact(&mut checksum));
     agree_on_io(communicator, read).map_err(unreadable)?;
-    let is_other = own_line != line || hash.as_bytes() != &checksum;
+    let is_other = own_line != line || own_length != length || hash.as_bytes() != &checksum;
     if lowest_rank(communicator, is_other).is_some() {
         return Err(wrong());
     }
