@@ -111,6 +111,7 @@ pub fn write_fields(
 
 #[cfg(test)]
 mod tests {
+    use slipfront_case::case::Ranks;
     use slipfront_case::case_file::CaseFile;
 
     use super::*;
@@ -123,7 +124,7 @@ mod tests {
         std::fs::write(&table, "1,1\n1,1\n").unwrap();
         let text = "slider.blocks = [2, 2]\nfriction.mu_static_field = 'mu.csv'";
         let file = CaseFile::parse(text, "case", &[]).unwrap();
-        let case = Case::new(file, "case", folder.path(), &mut |_| true).unwrap();
+        let case = Case::new(file, "case", folder.path(), &mut |_| true, Ranks::ALONE).unwrap();
         let write = |name: &str| {
             let out = folder.path().join(name);
             let mut run = RunFolder::prepare(&out, false, &case.inputs).unwrap();

@@ -109,10 +109,16 @@ impl Case {
         Self::make(file, name, folder, true, watch, ranks)
     }
 
-    /// Makes a case of a case file; the files it names stand relative to `folder`. The memory for a run of it is not
-    /// checked.
-    pub fn new(file: CaseFile, name: &str, folder: &Path, watch: &mut Watch) -> Result<Self, CaseError> {
-        Self::make(file, name, folder, false, watch, Ranks::ALONE)
+    /// Makes a case of a case file on all `ranks` at once; the files it names stand relative to `folder`. The memory for a
+    /// run of it is not checked.
+    pub fn new(
+        file: CaseFile,
+        name: &str,
+        folder: &Path,
+        watch: &mut Watch,
+        ranks: Ranks,
+    ) -> Result<Self, CaseError> {
+        Self::make(file, name, folder, false, watch, ranks)
     }
 
     fn make(

@@ -1,7 +1,7 @@
 use std::fs;
 use std::path::Path;
 
-use slipfront_case::case::Case;
+use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
 
 use super::{files, notes};
@@ -24,7 +24,7 @@ fn complaint(path: &Path) -> Option<String> {
         return Some(format!("{name} expects no error"));
     }
     let file = CaseFile::parse(&text, "bad.toml", &notes(&text, "set"));
-    let case = file.and_then(|file| Case::new(file, "bad", Path::new(""), &mut |_| true));
+    let case = file.and_then(|file| Case::new(file, "bad", Path::new(""), &mut |_| true, Ranks::ALONE));
     let Err(error) = case else {
         return Some(format!("{name} was accepted"));
     };

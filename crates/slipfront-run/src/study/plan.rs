@@ -12,7 +12,7 @@ use super::plan_warnings::{Warning, Warnings, note_on_replicates};
 use super::shard::Shard;
 use super::study_file::{Base, RetainRuns, Settings, StudyFile};
 use super::summary_values::REDUCTION;
-use slipfront_case::case::{Case, PICTURE, PROGRAM, Watch};
+use slipfront_case::case::{Case, PICTURE, PROGRAM, Ranks, Watch};
 use slipfront_case::case_file::{AutoOr, CaseError, CaseFile, Override, ParsedCase, Snapshots};
 use slipfront_case::machine::available_of;
 use slipfront_case::number_format::byte_size;
@@ -329,7 +329,7 @@ impl Plan {
             file.output.snapshots = Snapshots::At(Vec::new());
             file.output.series = AutoOr::Auto;
         }
-        let mut case = Case::new(file, name, &self.base.folder, watch)?;
+        let mut case = Case::new(file, name, &self.base.folder, watch, Ranks::ALONE)?;
         if !keeps_all {
             case.output.series_stride = case.time_plan.last_step;
         }

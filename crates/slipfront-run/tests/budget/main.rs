@@ -133,7 +133,7 @@ fn what_is_said_is_what_is_taken() {
         let out = folder.path().join("out");
         let (taken, (memory, disk)) = peak(|| {
             let file = CaseFile::parse("", "case", &overrides).unwrap();
-            let case = Arc::new(Case::new(file, "case", folder.path(), &mut |_| true).unwrap());
+            let case = Arc::new(Case::new(file, "case", folder.path(), &mut |_| true, Ranks::ALONE).unwrap());
             let mut record = running::run(&case, 1).unwrap();
             let out = RunFolder::prepare(&out, false, &case.inputs).unwrap();
             results::write(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();
@@ -156,7 +156,7 @@ fn ranks(folder: &Path) {
                 texture = [{ shape = 'mask', file = 'mask.png' }, { shape = 'mask', file = 'mask.npy' }]";
     let make = |ranks: Ranks| {
         let file = CaseFile::parse(text, "case", &[]).unwrap();
-        Case::to_run_on_ranks(file, "case", folder, &mut |_| true, ranks).unwrap()
+        Case::new(file, "case", folder, &mut |_| true, ranks).unwrap()
     };
     let before = LIVE.load(Ordering::Relaxed) as f64;
     let (alone, _) = peak(|| make(Ranks::ALONE));
@@ -194,7 +194,7 @@ fn checkpoints(folder: &Path) {
         // `Case::parse` would reserve the memory of a run, to see whether it is available.
         let made = || {
             let file = CaseFile::parse("", "case", &overrides).unwrap();
-            Arc::new(Case::new(file, "case", folder, &mut |_| true).unwrap())
+            Arc::new(Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap())
         };
         let out = folder.join("saved");
         std::fs::create_dir(&out).unwrap();
@@ -234,7 +234,7 @@ fn pictures_of_a_large_lattice(folder: &Path) {
         "output.snapshots=[0,0.2,0.4,0.6,0.8,1]",
     ];
     let file = CaseFile::parse("", "case", &sets.map(str::to_owned)).unwrap();
-    let case = Arc::new(Case::new(file, "case", folder, &mut |_| true).unwrap());
+    let case = Arc::new(Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap());
     let mut record = running::run(&case, 1).unwrap();
     let out = folder.join("out");
     let prepared = RunFolder::prepare(&out, false, &case.inputs).unwrap();
@@ -254,7 +254,7 @@ fn masks(folder: &Path) {
     let before = LIVE.load(Ordering::Relaxed) as f64;
     let (taken, case) = peak(|| {
         let file = CaseFile::parse(&text, "case", &[]).unwrap();
-        Case::new(file, "case", folder, &mut |_| true).unwrap()
+        Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap()
     });
     // The centres of 13 of 25 rows of blocks lie in the dark half: the middle one on its first row of pixels.
     assert_eq!((case.texture.meshed_percent, case.inputs.len()), (52.0, 1));

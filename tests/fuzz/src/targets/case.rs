@@ -1,6 +1,6 @@
 //! Case files and their overrides, which stand in `# set: ` comments at the top.
 
-use slipfront_case::case::Case;
+use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
 
 use crate::checks::readable;
@@ -94,7 +94,7 @@ fn case(input: &[u8]) {
     {
         return;
     }
-    match Case::new(file, "case", &repository("cases"), &mut |_| true) {
+    match Case::new(file, "case", &repository("cases"), &mut |_| true, Ranks::ALONE) {
         Err(error) => readable(&error),
         Ok(case) => {
             assert!(case.time_plan.last_step >= 1 && case.time_plan.dt_star > 0.0);

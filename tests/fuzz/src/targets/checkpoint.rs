@@ -8,7 +8,7 @@ use jiff::Timestamp;
 use serde_json::Value;
 use slipfront::StopReason;
 use slipfront::communicator::Alone;
-use slipfront_case::case::Case;
+use slipfront_case::case::{Case, Ranks};
 use slipfront_case::case_file::CaseFile;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::checksum::hash_of_pieces;
@@ -47,7 +47,7 @@ const TEXTS: [&str; 3] = [
 
 static CASES: LazyLock<[Arc<Case>; 3]> = LazyLock::new(|| {
     // `Case::parse` would reserve the memory of a run, to see whether it is available.
-    let made = |file| Arc::new(Case::new(file, "case", Path::new(""), &mut |_| true).unwrap());
+    let made = |file| Arc::new(Case::new(file, "case", Path::new(""), &mut |_| true, Ranks::ALONE).unwrap());
     TEXTS.map(|text| made(CaseFile::parse(text, "case.toml", &[]).unwrap()))
 });
 
