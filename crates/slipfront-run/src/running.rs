@@ -370,8 +370,8 @@ impl Running {
             summary: summary.end(&case, &simulation, reason, &instants),
             rows: summary.curve.rows,
             frames: lettered(instants, frames),
-            first_slip_time_star: simulation.snapshot().first_slip_time_star(),
             contact_stress_max: simulation.contact_stress_max(),
+            first_slip_time_star: simulation.into_first_slip_time_star(),
         }
     }
 }

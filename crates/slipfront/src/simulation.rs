@@ -272,6 +272,12 @@ impl Simulation {
         self.engine.stress_square_max(&self.model, self.step).sqrt()
     }
 
+    /// When each block of this rank first slid while in contact, t*; NaN where none has. They take no memory beside that of
+    /// the run, which ends with them.
+    pub fn into_first_slip_time_star(self) -> Vec<f64> {
+        self.engine.into_first_slips()
+    }
+
     /// Speeds that diverge show it first in sums of their squares, which overflow long before displacements do.
     fn check_finite(&self) -> Result<(), RunError> {
         let (point, totals) = (&self.point, &self.totals);

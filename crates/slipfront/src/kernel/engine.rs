@@ -30,6 +30,9 @@ pub(crate) trait Engine: Send + Sync {
     /// When block `b` first slid while in contact; NaN if it never has.
     fn first_slip(&self, b: usize) -> f64;
 
+    /// [`first_slip`](Self::first_slip) of every block; memory for the state is given back before any is taken for them.
+    fn into_first_slips(self: Box<Self>) -> Vec<f64>;
+
     /// Largest square of a contact stress of a block in contact at any step so far.
     fn stress_square_max(&self, model: &Model, number: u64) -> f64;
 

@@ -238,6 +238,10 @@ impl Engine for Reference {
         self.first_slip[b]
     }
 
+    fn into_first_slips(self: Box<Self>) -> Vec<f64> {
+        self.first_slip
+    }
+
     fn stress_square_max(&self, _: &Model, _: u64) -> f64 {
         self.stress_square_max
     }

@@ -116,6 +116,9 @@ fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
         }
         assert_eq!(here.slides(), there.slides());
     }
+    for run in [fused, reference] {
+        assert_eq!(bits(&run.into_first_slip_time_star()), bits(&first));
+    }
 }
 
 /// Sizes equal and close to those of a vector, of the shortest row, and of a tile; and rows of 24 blocks in so many tiles that

@@ -38,6 +38,7 @@ use std::sync::atomic::AtomicU32;
 use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
 
+use self::aligned::Vectors;
 use self::band::{Band, NEVER};
 use self::blocks::Sums;
 use self::layout::{Layout, TILE};
@@ -474,6 +475,15 @@ impl Engine for Fused {
             NEVER => f64::NAN,
             step => f64::from(step) * self.dt_star,
         }
+    }
+
+    fn into_first_slips(mut self: Box<Self>) -> Vec<f64> {
+        for band in &mut self.bands {
+            (band.displacement, band.velocity) = (Vectors::default(), Vectors::default());
+        }
+        (0..self.layout.n_own_blocks())
+            .map(|b| self.first_slip(b))
+            .collect()
     }
 
     fn stress_square_max(&self, model: &Model, number: u64) -> f64 {
