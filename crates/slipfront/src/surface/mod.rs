@@ -5,38 +5,23 @@
 //! blocks that a rank holds.
 
 mod coefficients;
+mod load;
 mod mesh;
 mod outline;
 mod texture;
 mod whole;
 
 pub use coefficients::{Coefficients, Distribution, STREAMS};
+pub use load::{Adhesion, Contact, Load, pressure_along};
 pub use mesh::{Meshed, mesh, mesh_watched};
 pub use texture::{Cavity, Groove, Orientation, Texture, cavity_lambda, cavity_percent};
+
+use rayon::prelude::*;
 
 use self::whole::Whole;
 use crate::communicator::{Alone, Communicator};
 use crate::error::SurfaceError;
 use crate::lattice::Lattice;
-
-/// What happens to the load of textured blocks, which carry none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Load {
-    /// The blocks in contact carry equal parts of the whole load: `F_n,i = P l^2 N/N_contact`. The paper's model.
-    Redistributed,
-    /// Every block in contact carries `P l^2`; the load of the textured blocks is lost. For comparison.
-    Kept,
-}
-
-impl Load {
-    /// Normal force on a block in contact in units of `P l^2`.
-    fn normal_force_per_block(self, whole: &Whole) -> f64 {
-        match self {
-            Load::Redistributed => whole.n_blocks as f64 / whole.n_contact as f64,
-            Load::Kept => 1.0,
-        }
-    }
-}
 
 /// Friction of every block; arrays have one value per block that this process holds.
 ///
@@ -49,15 +34,15 @@ pub struct Surface {
     pub mu_static: Vec<f64>,
     /// Local kinetic coefficients `mu_ki`; 0 over a texture.
     pub mu_kinetic: Vec<f64>,
+    contact: Contact,
     whole: Whole,
-    /// Normal force on a block in contact, in units of `P l^2`.
-    normal_force_per_block: f64,
-    /// The scale of all forces, `mu_s`.
-    mu_static_mean: f64,
+    /// Normal force on a block in contact over `p_i l^2`.
+    load_factor: f64,
+    min_slip_threshold: f64,
 }
 
 impl Surface {
-    /// Sets the coefficients of textured blocks to 0 and distributes the load.
+    /// Sets the coefficients of textured blocks to 0 and distributes the load, the same on all blocks before.
     ///
     /// `mu_static_mean` is the scale of all forces. Fails when no block is left in contact.
     pub fn new(
@@ -66,89 +51,97 @@ impl Surface {
         load: Load,
         mu_static_mean: f64,
     ) -> Result<Self, SurfaceError> {
-        Self::of_ranks(coefficients, textured, load, mu_static_mean, &Alone)
+        Self::of_ranks(coefficients, textured, Contact::new(load, mu_static_mean), &Alone)
     }
 
-    /// [`new`](Self::new) of the blocks that this rank holds, called by all `ranks` of a lattice at once. What depends on the
-    /// whole surface has the same bits on all of them, however many they are.
+    /// The surface of the blocks that this rank holds, called by all `ranks` of a lattice at once. What depends on the
+    /// whole surface has the same bits on all of them, however many they are. Fails when no block is left in contact.
+    ///
+    /// # Panics
+    /// Unless coefficients, texture and pressures are of the same number of blocks.
     pub fn of_ranks(
         mut coefficients: Coefficients,
         textured: Vec<bool>,
-        load: Load,
-        mu_static_mean: f64,
+        contact: Contact,
         ranks: &dyn Communicator,
     ) -> Result<Self, SurfaceError> {
+        let n = textured.len();
         assert_eq!(
-            coefficients.mu_static.len(),
-            textured.len(),
-            "coefficients and texture belong to different lattices"
+            [
+                coefficients.mu_static.len(),
+                contact.pressure.as_ref().map_or(n, Vec::len)
+            ],
+            [n; 2],
+            "coefficients, pressures and texture belong to different lattices"
         );
-        for b in (0..textured.len()).filter(|&b| textured[b]) {
+        for b in (0..n).filter(|&b| textured[b]) {
             coefficients.mu_static[b] = 0.0;
             coefficients.mu_kinetic[b] = 0.0;
         }
-        let whole = Whole::find(&coefficients, &textured, ranks);
-        if whole.n_contact == 0 {
+        let whole = Whole::find(&coefficients, &textured, contact.pressure.as_deref(), ranks);
+        if whole.sum_pressure[1] <= 0.0 {
             let n_blocks = whole.n_blocks;
             return Err(SurfaceError::NoContact { n_blocks });
         }
-        Ok(Self {
+        let mut surface = Self {
             textured,
             mu_static: coefficients.mu_static,
             mu_kinetic: coefficients.mu_kinetic,
-            normal_force_per_block: load.normal_force_per_block(&whole),
+            load_factor: contact.load.factor(whole.sum_pressure),
+            contact,
             whole,
-            mu_static_mean,
-        })
+            min_slip_threshold: f64::NAN,
+        };
+        let in_contact = (0..n).into_par_iter().filter(|&b| !surface.textured[b]);
+        let thresholds = in_contact.map(|b| surface.static_limit(b).max(surface.kinetic_force(b)));
+        let mut largest_negative = [-thresholds.reduce(|| f64::INFINITY, f64::min)];
+        ranks.largest(&mut largest_negative);
+        surface.min_slip_threshold = -largest_negative[0];
+        Ok(surface)
     }
 
     /// Equal coefficients for all blocks and no texture. Coefficients are in units of their static mean, so that `mu_static`
     /// is 1 in the model of the paper.
     pub fn uniform(lattice: &Lattice, mu_static: f64, mu_kinetic: f64) -> Self {
         let n = lattice.n_blocks();
-        let textured = vec![false; n];
         let coefficients = Coefficients::given(vec![mu_static; n], vec![mu_kinetic; n]);
-        Self {
-            whole: Whole::find(&coefficients, &textured, &Alone),
-            textured,
-            mu_static: coefficients.mu_static,
-            mu_kinetic: coefficients.mu_kinetic,
-            normal_force_per_block: 1.0,
-            mu_static_mean: 1.0,
-        }
+        let made = Self::new(coefficients, vec![false; n], Load::Redistributed, 1.0);
+        made.expect("a lattice has a block, and all are in contact")
     }
 
     /// Normal force `F_n,i` on block `b` in units of `P l^2`; 0 over a texture.
+    #[inline(always)]
     pub fn normal_force(&self, b: usize) -> f64 {
         if self.textured[b] {
-            0.0
-        } else {
-            self.normal_force_per_block
+            return 0.0;
         }
+        let pressure = self.contact.pressure.as_ref().map_or(1.0, |pressure| pressure[b]);
+        self.load_factor * pressure
     }
 
-    /// Static threshold `mu_si F_n,i` of block `b` in units of `P mu_s l^2`.
+    /// Static threshold `mu_si F_n,i + tau_a l^2` of block `b` in units of `P mu_s l^2`; 0 over a texture.
+    #[inline(always)]
     pub fn static_limit(&self, b: usize) -> f64 {
-        self.mu_static[b] / self.mu_static_mean * self.normal_force(b)
+        self.limit(self.mu_static[b], self.contact.adhesion.of_static, b)
     }
 
-    /// Kinetic friction `mu_ki F_n,i` of block `b` in units of `P mu_s l^2`.
+    /// Kinetic friction `mu_ki F_n,i + tau_ak l^2` of block `b` in units of `P mu_s l^2`; 0 over a texture.
+    #[inline(always)]
     pub fn kinetic_force(&self, b: usize) -> f64 {
-        self.mu_kinetic[b] / self.mu_static_mean * self.normal_force(b)
+        self.limit(self.mu_kinetic[b], self.contact.adhesion.of_kinetic, b)
+    }
+
+    #[inline(always)]
+    fn limit(&self, coefficient: f64, adhesion: f64, b: usize) -> f64 {
+        let adhesion = if self.textured[b] { 0.0 } else { adhesion };
+        coefficient / self.contact.mu_static_mean * self.normal_force(b) + adhesion
     }
 
     /// [`kinetic_force`](Self::kinetic_force) of the blocks from `first` on.
     #[inline(always)]
     pub(crate) fn read_kinetic_forces(&self, first: usize, forces: &mut [f64]) {
-        let blocks = first..first + forces.len();
-        let coefficients = self.mu_kinetic[blocks.clone()].iter().zip(&self.textured[blocks]);
-        for (force, (mu_kinetic, &textured)) in forces.iter_mut().zip(coefficients) {
-            let normal_force = if textured {
-                0.0
-            } else {
-                self.normal_force_per_block
-            };
-            *force = mu_kinetic / self.mu_static_mean * normal_force;
+        for (b, force) in (first..).zip(forces) {
+            *force = self.kinetic_force(b);
         }
     }
 
@@ -185,16 +178,17 @@ impl Surface {
         self.whole.sum_kinetic / self.whole.n_contact as f64
     }
 
-    /// Mean kinetic friction over all blocks, textured ones included: `mean(mu_ki F_n,i)` in units of `P mu_s l^2`.
+    /// Mean kinetic friction over all blocks, textured ones included: `mean(mu_ki F_n,i + tau_ak l^2)` in units of `P mu_s l^2`.
     pub fn mean_kinetic_force(&self) -> f64 {
-        let sum = self.whole.sum_kinetic / self.mu_static_mean * self.normal_force_per_block;
-        sum / self.whole.n_blocks as f64
+        let whole = &self.whole;
+        let sum = whole.sum_kinetic_pressure / self.contact.mu_static_mean * self.load_factor;
+        (sum + whole.n_contact as f64 * self.contact.adhesion.of_kinetic) / whole.n_blocks as f64
     }
 
-    /// The smallest force that makes a block in contact slip: `min_i max(mu_si, mu_ki) F_n,i` over the whole surface (D12).
+    /// The smallest force that makes a block in contact slip, the larger of its static threshold and its kinetic friction
+    /// (D12), over the whole surface.
     pub fn min_slip_threshold(&self) -> f64 {
-        // Rounding keeps the order of numbers, so that these are the bits of the smallest of all thresholds.
-        self.whole.min_coefficient / self.mu_static_mean * self.normal_force_per_block
+        self.min_slip_threshold
     }
 }
 

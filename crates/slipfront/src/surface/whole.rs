@@ -1,5 +1,6 @@
 //! What is known of the surface as a whole, whichever ranks hold its blocks.
 
+use std::array;
 use std::ops::Range;
 
 use rayon::prelude::*;
@@ -14,67 +15,72 @@ pub(super) struct Whole {
     pub(super) n_blocks: usize,
     pub(super) n_contact: usize,
     pub(super) negative_draws: usize,
-    /// The smallest `max(mu_si, mu_ki)` of a block in contact.
-    pub(super) min_coefficient: f64,
     /// `sum mu_si` over the blocks in contact.
     pub(super) sum_static: f64,
     /// `sum mu_ki` over the blocks in contact.
     pub(super) sum_kinetic: f64,
+    /// `sum mu_ki p_i/P` over the blocks in contact.
+    pub(super) sum_kinetic_pressure: f64,
+    /// `sum p_i/P` over all blocks, and over those in contact.
+    pub(super) sum_pressure: [f64; 2],
 }
 
 /// Blocks that a thread looks at at once.
 const PART: usize = 1 << 16;
 
-/// What no blocks have: the largest static and the largest kinetic coefficient, and minus the smallest `max(mu_si, mu_ki)`.
-const NO_EXTREMES: [f64; 3] = [0.0, 0.0, f64::NEG_INFINITY];
-
-fn larger(one: [f64; 3], other: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|k| one[k].max(other[k]))
-}
+/// Sums that are formed of a block: `mu_si`, `mu_ki`, `mu_ki p_i/P`, `p_i/P`, and `p_i/P` of a block in contact.
+const SUMS: usize = 5;
 
 impl Whole {
-    /// Found with all other ranks that hold a part of the surface, of coefficients that are 0 over a texture.
-    pub(super) fn find(coefficients: &Coefficients, textured: &[bool], ranks: &dyn Communicator) -> Self {
-        let arrays = [&coefficients.mu_static, &coefficients.mu_kinetic];
-        let [mu_static, mu_kinetic] = arrays;
+    /// Found with all other ranks that hold a part of the surface, of coefficients that are 0 over a texture, and of local
+    /// pressures in units of `P`, 1 everywhere if there are none.
+    pub(super) fn find(
+        coefficients: &Coefficients,
+        textured: &[bool],
+        pressure: Option<&[f64]>,
+        ranks: &dyn Communicator,
+    ) -> Self {
+        let [mu_static, mu_kinetic] = [&coefficients.mu_static, &coefficients.mu_kinetic];
+        let terms = |b: usize| {
+            let p = pressure.map_or(1.0, |pressure| pressure[b]);
+            let contact = if textured[b] { 0.0 } else { p };
+            [mu_static[b], mu_kinetic[b], mu_kinetic[b] * p, p, contact]
+        };
         // Neither maxima nor sums of integers depend on how the blocks are divided among threads.
         let parts = || {
             let starts = (0..textured.len()).into_par_iter().step_by(PART);
             starts.map(|first| first..textured.len().min(first + PART))
         };
-        let count = |blocks: Range<usize>| {
-            let (mut n_contact, mut extremes) = (0, NO_EXTREMES);
-            for b in blocks.filter(|&b| !textured[b]) {
-                let (mu_static, mu_kinetic) = (mu_static[b], mu_kinetic[b]);
-                n_contact += 1;
-                let found = [mu_static, mu_kinetic, -mu_static.max(mu_kinetic)];
-                extremes = larger(extremes, found);
-            }
-            (n_contact, extremes)
-        };
-        let (n_contact, mut extremes) = parts().map(count).reduce(
-            || (0, NO_EXTREMES),
-            |(n, one), (m, other)| (n + m, larger(one, other)),
-        );
-        ranks.largest(&mut extremes);
+        let none = || [0.0; SUMS];
+        let larger = |one: [f64; SUMS], other: [f64; SUMS]| array::from_fn(|k| f64::max(one[k], other[k]));
+        let largest = |blocks: Range<usize>| blocks.map(terms).fold(none(), larger);
+        let mut largest: [f64; SUMS] = parts().map(largest).reduce(none, larger);
+        ranks.largest(&mut largest);
 
-        let fixed = [0, 1].map(|k| FixedPoint::new(extremes[k]));
-        let [[a, b], [c, d]] = [0, 1].map(|k| {
-            let sum = |blocks: Range<usize>| fixed[k].sum(blocks.len(), |b| arrays[k][blocks.start + b]);
-            split(parts().map(sum).sum())
-        });
-        let counts = [textured.len(), n_contact, coefficients.negative_draws];
-        let [n_blocks, n_contact, negative_draws] = counts.map(|count| count as i64);
-        let mut sums = [n_blocks, n_contact, negative_draws, a, b, c, d];
-        ranks.sum(&mut sums);
-        let [n_blocks, n_contact, negative_draws, a, b, c, d] = sums;
+        let fixed = largest.map(FixedPoint::new);
+        let sum = |blocks: Range<usize>| -> [i128; SUMS] {
+            array::from_fn(|k| fixed[k].sum(blocks.len(), |b| terms(blocks.start + b)[k]))
+        };
+        let added = |one: [i128; SUMS], other: [i128; SUMS]| array::from_fn(|k| one[k] + other[k]);
+        let sums: [i128; SUMS] = parts().map(sum).reduce(|| [0; SUMS], added);
+        let n_contact = parts().map(|blocks| textured[blocks].iter().filter(|&&textured| !textured).count());
+        let counts = [textured.len(), n_contact.sum(), coefficients.negative_draws];
+        let mut words = [[0; 2]; SUMS + 2];
+        for (words, sum) in words.iter_mut().zip(sums) {
+            *words = split(sum);
+        }
+        words[SUMS] = [counts[0] as i64, counts[1] as i64];
+        words[SUMS + 1][0] = counts[2] as i64;
+        ranks.sum(words.as_flattened_mut());
+        let value = |k: usize| fixed[k].value(join(words[k]));
         Self {
-            n_blocks: n_blocks as usize,
-            n_contact: n_contact as usize,
-            negative_draws: negative_draws as usize,
-            min_coefficient: -extremes[2],
-            sum_static: fixed[0].value(join([a, b])),
-            sum_kinetic: fixed[1].value(join([c, d])),
+            n_blocks: words[SUMS][0] as usize,
+            n_contact: words[SUMS][1] as usize,
+            negative_draws: words[SUMS + 1][0] as usize,
+            sum_static: value(0),
+            sum_kinetic: value(1),
+            sum_kinetic_pressure: value(2),
+            sum_pressure: [value(3), value(4)],
         }
     }
 }
@@ -96,15 +102,23 @@ mod tests {
         }
         coefficients.mu_static[PART + 1] = 1e6;
         (coefficients.mu_static[n - 1], coefficients.mu_kinetic[n - 1]) = (0.0, 1.0);
-        let found = Whole::find(&coefficients, &textured, &Alone);
+        let found = Whole::find(&coefficients, &textured, None, &Alone);
         let expected = Whole {
             n_blocks: n,
             n_contact: n - 3,
             negative_draws: 0,
-            min_coefficient: 1.0,
             sum_static: 1e6 + 2.0 * (n - 5) as f64,
             sum_kinetic: 1.0 + 3.0 * (n - 4) as f64,
+            sum_kinetic_pressure: 1.0 + 3.0 * (n - 4) as f64,
+            sum_pressure: [n as f64, (n - 3) as f64],
         };
         assert_eq!(found, expected);
+        // Half the pressure on every other block, from the first on; of those without contact, one has the whole.
+        let pressure: Vec<f64> = (0..n).map(|b| if b % 2 == 0 { 0.5 } else { 1.0 }).collect();
+        let found = Whole::find(&coefficients, &textured, Some(&pressure), &Alone);
+        let all = 0.5 * (n.div_ceil(2)) as f64 + (n / 2) as f64;
+        assert_eq!(found.sum_pressure, [all, all - 2.0]);
+        // The last block has an even index and the coefficient 1.
+        assert_eq!(found.sum_kinetic_pressure, 3.0 * (all - 2.0 - 0.5) + 0.5);
     }
 }

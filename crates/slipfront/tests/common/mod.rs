@@ -6,7 +6,8 @@ use std::ops::Range;
 
 use slipfront::observe::{Curve, CurveRow, Kinetic, KineticHistory, KineticStart, Observer, Peak, Scheduled};
 use slipfront::surface::{
-    Cavity, Coefficients, Distribution, Groove, Load, Orientation, Texture, cavity_lambda, mesh, mesh_watched,
+    Cavity, Coefficients, Contact, Distribution, Groove, Load, Orientation, Texture, cavity_lambda, mesh,
+    mesh_watched,
 };
 use slipfront::{
     Communicator, Drive, Edges, Execution, FrictionLaw, Lattice, Model, Simulation, State, Stop, Surface,
@@ -131,7 +132,8 @@ impl Slider {
         let rows = lattice.rows_of(rank);
         let Ok(meshed) = mesh_watched::<Infallible>(&lattice, &rows, &self.textures, &mut |_| Ok(()));
         let coefficients = self.coefficients_of(lattice.blocks_of(&rows));
-        let surface = Surface::of_ranks(coefficients, meshed.textured, self.load, 1.0, rank).unwrap();
+        let surface =
+            Surface::of_ranks(coefficients, meshed.textured, Contact::new(self.load, 1.0), rank).unwrap();
         Model::of_rows(
             lattice,
             rows,

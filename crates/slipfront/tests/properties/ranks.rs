@@ -3,6 +3,7 @@
 use proptest::prelude::*;
 use slipfront::Surface;
 use slipfront::communicator::{Communicator, Threads};
+use slipfront::surface::Contact;
 use slipfront::surface::{Meshed, mesh, mesh_watched};
 
 use crate::common::Slider;
@@ -16,7 +17,7 @@ fn make(slider: &Slider, rank: &dyn Communicator) -> (Meshed, Surface) {
         mesh_watched::<std::convert::Infallible>(&lattice, &rows, &slider.textures, &mut |_| Ok(()));
     let coefficients = slider.coefficients_of(lattice.blocks_of(&rows));
     let textured = meshed.textured.clone();
-    let surface = Surface::of_ranks(coefficients, textured, slider.load, 1.0, rank);
+    let surface = Surface::of_ranks(coefficients, textured, Contact::new(slider.load, 1.0), rank);
     (meshed, surface.unwrap())
 }
 

@@ -1,0 +1,74 @@
+//! The load on the blocks, and adhesion.
+
+use crate::lattice::Lattice;
+
+/// What happens to the load of textured blocks, which carry none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Load {
+    /// The blocks in contact carry the whole load: `F_n,i = p_i l^2 sum_all p/sum_contact p`, which is `P l^2 N/N_contact` under
+    /// an equal pressure. The paper's model.
+    Redistributed,
+    /// Every block in contact carries `p_i l^2`; the load of the textured blocks is lost. For comparison.
+    Kept,
+}
+
+impl Load {
+    /// Normal force on a block in contact over `p_i l^2`, from the sums of pressures over all blocks and over those in contact.
+    pub(super) fn factor(self, [all, contact]: [f64; 2]) -> f64 {
+        match self {
+            Load::Redistributed => all / contact,
+            Load::Kept => 1.0,
+        }
+    }
+}
+
+/// What makes thresholds of coefficients: `mu_i F_n,i + tau_a l^2`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contact {
+    /// What happens to the load of textured blocks.
+    pub load: Load,
+    /// Scale of all forces, `mu_s`.
+    pub mu_static_mean: f64,
+    /// Local pressure `p_i/P` of every block that this process holds, before the load of textured ones is distributed; 1 if there
+    /// are none.
+    pub pressure: Option<Vec<f64>>,
+    /// What adds to friction whatever the load.
+    pub adhesion: Adhesion,
+}
+
+/// Shear strength of the contact without load, in units of `P mu_s`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Adhesion {
+    /// Added to the static threshold of a block in contact, `tau_a l^2`.
+    pub of_static: f64,
+    /// Added to its kinetic friction, `tau_ak l^2`.
+    pub of_kinetic: f64,
+}
+
+impl Contact {
+    /// Equal pressure, without adhesion.
+    pub fn new(load: Load, mu_static_mean: f64) -> Self {
+        Self {
+            load,
+            mu_static_mean,
+            pressure: None,
+            adhesion: Adhesion::default(),
+        }
+    }
+}
+
+/// Pressure that rises along an axis, `p/P = 1 + slope (2 x/L - 1)` at the middle of every block of some rows; its mean over the
+/// lattice is `P`.
+///
+/// ```
+/// use slipfront::Lattice;
+/// use slipfront::surface::pressure_along;
+/// assert_eq!(pressure_along(&Lattice::free(2, 2), 0..2, 0, 0.5), [0.75, 1.25, 0.75, 1.25]);
+/// assert_eq!(pressure_along(&Lattice::free(2, 2), 1..2, 1, 0.5), [1.25, 1.25]);
+/// ```
+pub fn pressure_along(lattice: &Lattice, rows: std::ops::Range<usize>, axis: usize, slope: f64) -> Vec<f64> {
+    let length = [lattice.nx, lattice.ny][axis] as f64;
+    let at = |place: usize| 1.0 + slope * ((2 * place + 1) as f64 / length - 1.0);
+    let columns = |j: usize| (0..lattice.nx).map(move |i| at([i, j][axis]));
+    rows.flat_map(columns).collect()
+}
