@@ -1,11 +1,10 @@
-//! Friction coefficients of a case: drawn, or read from the files that it names.
+//! Friction coefficients of a case, drawn or read from the files that it names, and what makes thresholds of them.
 
-use slipfront::Lattice;
-use slipfront::surface::{Coefficients, Distribution};
+use slipfront::surface::{Adhesion, Coefficients, Contact, Distribution, Load, pressure_along};
+use slipfront::{Lattice, Scales};
 
 use super::groups::Groups;
 use super::inputs::Inputs;
-use crate::arrays;
 use crate::case_file::{CaseError, CaseFile};
 
 pub(super) fn coefficients(
@@ -16,16 +15,8 @@ pub(super) fn coefficients(
 ) -> Result<Coefficients, CaseError> {
     let friction = &file.friction;
     let mean = friction.mu_static;
-    let given = |key: &str, name: &Option<String>| -> Result<_, CaseError> {
-        let read = |name: &String| {
-            inputs.read(file, key, name, |path, source, slab| {
-                arrays::field(path, source, slab)
-            })
-        };
-        name.as_ref().map(read).transpose()
-    };
-    let mu_static = given("friction.mu_static_field", &friction.mu_static_field)?;
-    let mu_kinetic = given("friction.mu_kinetic_field", &friction.mu_kinetic_field)?;
+    let mu_static = inputs.read_field(file, "friction.mu_static_field", &friction.mu_static_field)?;
+    let mu_kinetic = inputs.read_field(file, "friction.mu_kinetic_field", &friction.mu_kinetic_field)?;
     // A given field takes the place of its draws; the other stream is not shifted by it.
     let spread = |mean: f64, sigma_star: f64, given: bool| Distribution {
         mean,
@@ -44,4 +35,37 @@ pub(super) fn coefficients(
     drawn.mu_static = mu_static.unwrap_or(drawn.mu_static);
     drawn.mu_kinetic = mu_kinetic.unwrap_or(drawn.mu_kinetic);
     Ok(drawn)
+}
+
+/// Load and adhesion.
+pub(super) fn contact(
+    file: &CaseFile,
+    scales: &Scales,
+    lattice: &Lattice,
+    inputs: &Inputs,
+) -> Result<Contact, CaseError> {
+    let load = match file.load.redistribute {
+        true => Load::Redistributed,
+        false => Load::Kept,
+    };
+    let given = inputs.read_field(file, "load.pressure_field", &file.load.pressure_field)?;
+    let pressure = match &file.load.profile {
+        Some(profile) => Some(pressure_along(
+            lattice,
+            inputs.slab.rows.clone(),
+            profile.along as usize,
+            profile.relative_slope,
+        )),
+        None => given,
+    };
+    let [of_static, of_kinetic] = [&file.friction.adhesion, &file.friction.adhesion_kinetic]
+        .map(|strength| strength.si() / scales.stress());
+    Ok(Contact {
+        pressure,
+        adhesion: Adhesion {
+            of_static,
+            of_kinetic,
+        },
+        ..Contact::new(load, scales.mu_static_mean)
+    })
 }

@@ -65,7 +65,7 @@ impl NamedFiles {
             originals: Vec::new(),
             digests: Vec::new(),
         };
-        for (key, name) in CaseFile::files_mut(&mut file.friction, &mut file.texture) {
+        for (key, name) in CaseFile::files_mut(&mut file.load, &mut file.friction, &mut file.texture) {
             let original = folder.join(&*name);
             let digest = match digests.get(&original) {
                 Some(known) => *known,
@@ -86,7 +86,8 @@ impl NamedFiles {
     pub(super) fn share(mut self, file: &mut CaseFile, ranks: &Ranks) -> Vec<Input> {
         ranks.communicator.sum(self.digests.as_flattened_mut());
         let mut inputs: Vec<Input> = Vec::new();
-        let names = CaseFile::files_mut(&mut file.friction, &mut file.texture).map(|(_, name)| name);
+        let names =
+            CaseFile::files_mut(&mut file.load, &mut file.friction, &mut file.texture).map(|(_, name)| name);
         for ((original, digest), written) in self.originals.into_iter().zip(self.digests).zip(names) {
             let [length, hash @ ..] = digest;
             let mut bytes = [0; blake3::OUT_LEN];
@@ -152,5 +153,20 @@ impl Inputs {
             ArrayError::Stopped => CaseError::Stopped,
             error => file.source.error(key, error.to_string()),
         })
+    }
+
+    /// Reads a number of every block from the file of this name, if the case names one.
+    pub(super) fn read_field(
+        &self,
+        file: &CaseFile,
+        key: &str,
+        name: &Option<String>,
+    ) -> Result<Option<Vec<f64>>, CaseError> {
+        let read = |name: &String| {
+            self.read(file, key, name, |path, source, slab| {
+                arrays::field(path, source, slab)
+            })
+        };
+        name.as_ref().map(read).transpose()
     }
 }

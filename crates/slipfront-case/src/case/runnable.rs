@@ -5,11 +5,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use slipfront::scales::damping;
-use slipfront::surface::Load;
 use slipfront::{Communicator, Drive, Kernel, Lattice, Model, Scales, Surface};
 
 use super::budget::Budget;
-use super::coefficients::coefficients;
+use super::coefficients::{coefficients, contact};
 use super::groups::Groups;
 use super::inputs::{Input, Inputs, NamedFiles};
 use super::output::Output;
@@ -155,21 +154,13 @@ impl Case {
         };
         budget.inputs = inputs.files.iter().map(|input| input.length as f64).sum();
 
-        let made = textures::mesh(&file, &scales, &lattice, &inputs, watch)
-            .and_then(|meshed| Ok((meshed, coefficients(&file, &groups, &lattice, &inputs)?)));
-        let ((meshed, asked_percent), coefficients) = ranks.agree(made)?;
-        let load = match file.load.redistribute {
-            true => Load::Redistributed,
-            false => Load::Kept,
-        };
-        let surface = Surface::of_ranks(
-            coefficients,
-            meshed.textured,
-            load,
-            scales.mu_static_mean,
-            ranks.communicator,
-        )
-        .map_err(|error| file.source.error("texture", error.to_string()))?;
+        let made = textures::mesh(&file, &scales, &lattice, &inputs, watch).and_then(|meshed| {
+            let coefficients = coefficients(&file, &groups, &lattice, &inputs)?;
+            Ok((meshed, coefficients, contact(&file, &scales, &lattice, &inputs)?))
+        });
+        let ((meshed, asked_percent), coefficients, contact) = ranks.agree(made)?;
+        let surface = Surface::of_ranks(coefficients, meshed.textured, contact, ranks.communicator)
+            .map_err(|error| file.source.error("texture", error.to_string()))?;
         let texture = TextureReport {
             asked_percent,
             meshed_percent: surface.texture_percent(),

@@ -82,6 +82,7 @@ impl CaseFile {
 
     /// Every file that these tables of a case name, relative to the case file, and the key that names it.
     pub fn files_mut<'a>(
+        load: &'a mut Load,
         friction: &'a mut Friction,
         texture: &'a mut [Texture],
     ) -> impl Iterator<Item = (String, &'a mut String)> {
@@ -91,6 +92,7 @@ impl CaseFile {
             _ => None,
         });
         let fields = [
+            ("load.pressure_field", &mut load.pressure_field),
             ("friction.mu_static_field", &mut friction.mu_static_field),
             ("friction.mu_kinetic_field", &mut friction.mu_kinetic_field),
         ];

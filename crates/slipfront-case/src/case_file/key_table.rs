@@ -152,7 +152,10 @@ const SIGMA: Kind = number(
 );
 const SIZE: Kind = quantity("m", above(0.0, MAX_LENGTH));
 pub(super) const COORDINATE: Kind = quantity("m", within(-MAX_LENGTH, MAX_LENGTH));
-const COEFFICIENTS: Kind = Kind::File(&["npy", "csv"]);
+const ARRAY: Kind = Kind::File(&["npy", "csv"]);
+/// A slope of a profile.
+pub(super) const RELATIVE_SLOPE: Kind = number(between(-1.0, 1.0), "1 would leave no load on an edge");
+const SHEAR_STRENGTH: Kind = quantity("Pa", within(0.0, 1e15));
 
 /// Every section of a case file.
 pub const SECTIONS: [Section; 10] = [
@@ -188,6 +191,9 @@ const LOAD: &[Key] = &[
     key("pressure", "\"100 kPa\"", quantity("Pa", within(1e-9, 1e15)), "normal load over the whole area, textured or not")
         .title("pressure", "P", "Pa"),
     key("redistribute", "true", Kind::Switch, "whether the blocks in contact carry the load of the textured ones"),
+    key("profile", "", Kind::Special("`{ along = \"x\", relative_slope = 0.5 }`; more than -1, less than 1"),
+        "a pressure that rises along x or y, with the mean `pressure`").or("pressure_field"),
+    key("pressure_field", "", ARRAY, "local pressure over `pressure`, block by block").or("profile"),
 ];
 
 #[rustfmt::skip]
@@ -214,8 +220,12 @@ const FRICTION: &[Key] = &[
     key("sigma_kinetic_star", "0.05", SIGMA, "standard deviation of the kinetic coefficients over *their* mean")
         .title("spread of kinetic coefficients", "\u{3c3}\u{2096}*", ""),
     key("seed", "1", whole(0, MAX_SEED), "seed of the random coefficients").title("seed", "", ""),
-    key("mu_static_field", "", COEFFICIENTS, "static coefficients block by block, in place of random ones"),
-    key("mu_kinetic_field", "", COEFFICIENTS, "kinetic coefficients block by block, in place of random ones"),
+    key("mu_static_field", "", ARRAY, "static coefficients block by block, in place of random ones"),
+    key("mu_kinetic_field", "", ARRAY, "kinetic coefficients block by block, in place of random ones"),
+    key("adhesion", "\"0 Pa\"", SHEAR_STRENGTH, "shear strength without load, added to the static threshold of the blocks in contact")
+        .title("adhesion", "\u{3c4}\u{2090}", "Pa"),
+    key("adhesion_kinetic", "\"0 Pa\"", SHEAR_STRENGTH, "the same, added to their kinetic friction")
+        .title("kinetic adhesion", "\u{3c4}\u{2090}\u{2096}", "Pa"),
 ];
 
 /// Largest mean kinetic over mean static coefficient.

@@ -34,7 +34,7 @@ pub use keys::{
     unknown as unknown_key, unknown_table as unknown_case_table,
 };
 pub use load::read_text;
-pub use motion::{Drive, DriveSpeed, Friction, KineticFriction, Load};
+pub use motion::{Along, Drive, DriveSpeed, Friction, KineticFriction, Load, Profile};
 pub use output::{Output, Snapshots};
 pub use overrides::Override;
 pub use probe::names_of;

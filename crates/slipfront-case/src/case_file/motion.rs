@@ -8,7 +8,7 @@ use slipfront::FrictionLaw;
 use super::check::Check;
 use super::choice::keys_with_choice;
 use super::error::CaseError;
-use super::key_table::MAX_R_STAR;
+use super::key_table::{MAX_R_STAR, RELATIVE_SLOPE};
 use super::values::word;
 use crate::quantity::{Pressure, Speed};
 
@@ -20,11 +20,42 @@ pub struct Load {
     pub pressure: Pressure,
     /// Whether the blocks in contact carry the load of the textured ones; otherwise every block keeps P l^2.
     pub redistribute: bool,
+    /// A pressure that rises along an axis and has the mean `pressure`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub profile: Option<Profile>,
+    /// A file of local pressures over `pressure`, block by block: `.npy` or `.csv`, shape (ny, nx).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pressure_field: Option<String>,
+}
+
+/// What rises along an axis, `1 + relative_slope (2 x/L - 1)` times its mean.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Profile {
+    /// The axis.
+    #[serde(deserialize_with = "word")]
+    pub along: Along,
+    /// Half the difference between both ends over the mean; more than -1, less than 1.
+    pub relative_slope: f64,
+}
+
+/// An axis of the lattice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Along {
+    /// Along rows.
+    X,
+    /// Along columns.
+    Y,
 }
 
 impl Load {
     pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
-        check.value("pressure", &self.pressure)
+        check.value("pressure", &self.pressure)?;
+        if let Some(profile) = &self.profile {
+            check.value_of(&RELATIVE_SLOPE, "profile.relative_slope", &profile.relative_slope)?;
+        }
+        check.value("pressure_field", &self.pressure_field)
     }
 }
 
@@ -85,6 +116,10 @@ pub struct Friction {
     pub mu_static_field: Option<String>,
     /// A file of kinetic coefficients, block by block, in place of random ones: `.npy` or `.csv`, shape (ny, nx).
     pub mu_kinetic_field: Option<String>,
+    /// Shear strength of the contact without load (tau_a), which adds `tau_a l^2` to the static threshold, Pa.
+    pub adhesion: Pressure,
+    /// The same of kinetic friction, Pa.
+    pub adhesion_kinetic: Pressure,
 }
 
 /// The mean kinetic coefficient.
@@ -109,7 +144,9 @@ impl Friction {
         check.value("sigma_kinetic_star", &self.sigma_kinetic_star)?;
         check.value("seed", &self.seed)?;
         check.value("mu_static_field", &self.mu_static_field)?;
-        check.value("mu_kinetic_field", &self.mu_kinetic_field)
+        check.value("mu_kinetic_field", &self.mu_kinetic_field)?;
+        check.value("adhesion", &self.adhesion)?;
+        check.value("adhesion_kinetic", &self.adhesion_kinetic)
     }
 }
 
@@ -128,5 +165,7 @@ keys_with_choice! {
         seed: u64,
         mu_static_field: Option<String>,
         mu_kinetic_field: Option<String>,
+        adhesion: Pressure,
+        adhesion_kinetic: Pressure,
     }
 }

@@ -5,8 +5,9 @@ use slipfront::observe::Field;
 use slipfront::surface::Orientation;
 use slipfront::{Edges, FrictionLaw, StopReason};
 use slipfront_case::case_file::{
-    AutoOr, CaseFile, Cavity, CavitySize, Center, Damping, Drive, DriveSpeed, Friction, Groove, GrooveSize,
-    KineticFriction, Load, Mask, Output, Polygon, RunTime, Slider, Snapshots, Source, Step, Texture, Time,
+    Along, AutoOr, CaseFile, Cavity, CavitySize, Center, Damping, Drive, DriveSpeed, Friction, Groove,
+    GrooveSize, KineticFriction, Load, Mask, Output, Polygon, Profile, RunTime, Slider, Snapshots, Source,
+    Step, Texture, Time,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 
@@ -64,9 +65,24 @@ fn slider() -> impl Strategy<Value = Slider> {
 }
 
 fn load() -> impl Strategy<Value = Load> {
-    (quantity(-9, 14, &["kPa", "Pa"]), any::<bool>()).prop_map(|(pressure, redistribute)| Load {
+    let profile = (select(vec![Along::X, Along::Y]), -0.99..0.99);
+    let profile = profile.prop_map(|(along, relative_slope)| {
+        (
+            Some(Profile {
+                along,
+                relative_slope,
+            }),
+            None,
+        )
+    });
+    let field = prop::option::of(file(&["npy", "csv"])).prop_map(|field| (None, field));
+    let local = prop_oneof![profile, field];
+    let pressure = quantity(-9, 14, &["kPa", "Pa"]);
+    (pressure, any::<bool>(), local).prop_map(|(pressure, redistribute, (profile, pressure_field))| Load {
         pressure,
         redistribute,
+        profile,
+        pressure_field,
     })
 }
 
@@ -89,6 +105,7 @@ fn friction() -> impl Strategy<Value = Friction> {
         FrictionLaw::Literal,
     ]);
     let field = || prop::option::of(file(&["npy", "csv"]));
+    let adhesion = || quantity(-9, 14, &["kPa", "Pa"]);
     (
         law,
         0.1..100.0,
@@ -96,8 +113,8 @@ fn friction() -> impl Strategy<Value = Friction> {
         0.0..1.0,
         0.0..1.0,
         0..=i64::MAX as u64,
-        field(),
-        field(),
+        [field(), field()],
+        [adhesion(), adhesion()],
     )
         .prop_map(
             |(
@@ -107,8 +124,8 @@ fn friction() -> impl Strategy<Value = Friction> {
                 sigma_static_star,
                 sigma_kinetic_star,
                 seed,
-                mu_static_field,
-                mu_kinetic_field,
+                [mu_static_field, mu_kinetic_field],
+                [adhesion, adhesion_kinetic],
             )| {
                 Friction {
                     law,
@@ -119,6 +136,8 @@ fn friction() -> impl Strategy<Value = Friction> {
                     seed,
                     mu_static_field,
                     mu_kinetic_field,
+                    adhesion,
+                    adhesion_kinetic,
                 }
             },
         )

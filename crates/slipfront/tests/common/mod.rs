@@ -4,10 +4,11 @@
 use std::convert::Infallible;
 use std::ops::Range;
 
+use slipfront::communicator::Alone;
 use slipfront::observe::{Curve, CurveRow, Kinetic, KineticHistory, KineticStart, Observer, Peak, Scheduled};
 use slipfront::surface::{
-    Cavity, Coefficients, Contact, Distribution, Groove, Load, Orientation, Texture, cavity_lambda, mesh,
-    mesh_watched,
+    Adhesion, Cavity, Coefficients, Contact, Distribution, Groove, Load, Orientation, Texture, cavity_lambda,
+    mesh, mesh_watched, pressure_along,
 };
 use slipfront::{
     Communicator, Drive, Edges, Execution, FrictionLaw, Lattice, Model, Simulation, State, Stop, Surface,
@@ -39,6 +40,9 @@ pub(crate) struct Slider {
     pub(crate) edges: [Edges; 2],
     pub(crate) textures: Vec<Texture>,
     pub(crate) load: Load,
+    /// Axis and relative slope of a pressure that rises along it.
+    pub(crate) pressure: Option<(usize, f64)>,
+    pub(crate) adhesion: Adhesion,
     pub(crate) v_star: f64,
     pub(crate) degrees: f64,
     pub(crate) r_star: f64,
@@ -58,6 +62,8 @@ impl Default for Slider {
             edges: [Edges::Free; 2],
             textures: Vec::new(),
             load: Load::Redistributed,
+            pressure: None,
+            adhesion: Adhesion::default(),
             v_star: 0.03,
             degrees: 0.0,
             r_star: 0.5,
@@ -111,8 +117,19 @@ impl Slider {
     }
 
     pub(crate) fn surface(&self) -> Surface {
-        let textured = mesh(&self.lattice(), &self.textures).textured;
-        Surface::new(self.coefficients(), textured, self.load, 1.0).unwrap()
+        let lattice = self.lattice();
+        let textured = mesh(&lattice, &self.textures).textured;
+        Surface::of_ranks(self.coefficients(), textured, self.contact(0..lattice.ny), &Alone).unwrap()
+    }
+
+    /// Load and adhesion of some rows.
+    pub(crate) fn contact(&self, rows: Range<usize>) -> Contact {
+        let pressure = |(axis, slope)| pressure_along(&self.lattice(), rows, axis, slope);
+        Contact {
+            pressure: self.pressure.map(pressure),
+            adhesion: self.adhesion,
+            ..Contact::new(self.load, 1.0)
+        }
     }
 
     pub(crate) fn model(&self) -> Model {
@@ -133,7 +150,7 @@ impl Slider {
         let Ok(meshed) = mesh_watched::<Infallible>(&lattice, &rows, &self.textures, &mut |_| Ok(()));
         let coefficients = self.coefficients_of(lattice.blocks_of(&rows));
         let surface =
-            Surface::of_ranks(coefficients, meshed.textured, Contact::new(self.load, 1.0), rank).unwrap();
+            Surface::of_ranks(coefficients, meshed.textured, self.contact(rows.clone()), rank).unwrap();
         Model::of_rows(
             lattice,
             rows,

@@ -15,6 +15,7 @@ mod energy;
 mod first_slip;
 mod front_speed;
 mod lattice_waves;
+mod load_and_adhesion;
 mod observables;
 mod scale_invariance;
 mod shapes;

@@ -2,7 +2,7 @@
 
 use rstest::rstest;
 use slipfront::exact_solutions::steady_level;
-use slipfront::surface::Load;
+use slipfront::surface::{Adhesion, Load};
 
 use crate::common::{Slider, cavity};
 
@@ -17,13 +17,16 @@ use crate::common::{Slider, cavity};
 #[case(Slider { omega_star: 2.0, r_star: 0.75, degrees: 40.0, ..Slider::default() })]
 #[case(Slider { omega_star: 2.0, textures: vec![cavity([25, 25], 12.0, 1, 0.3, false)], ..Slider::default() })]
 #[case(Slider { omega_star: 2.0, load: Load::Kept, textures: vec![cavity([25, 25], 12.0, 1, 0.3, false)], ..Slider::default() })]
+#[case(Slider { omega_star: 2.0, pressure: Some((0, 0.7)), adhesion: Adhesion { of_static: 0.3, of_kinetic: 0.2 }, ..Slider::default() })]
+#[case(Slider { omega_star: 2.0, pressure: Some((1, -0.4)), adhesion: Adhesion { of_static: 0.3, of_kinetic: 0.2 }, textures: vec![cavity([25, 25], 12.0, 1, 0.3, false)], ..Slider::default() })]
 fn strong_damping_ends_in_steady_sliding(#[case] slider: Slider) {
     let surface = slider.surface();
     let n = surface.n_blocks();
     let mean = (0..n)
         .map(|b| surface.mu_kinetic[b] * surface.normal_force(b))
         .sum::<f64>()
-        / n as f64;
+        / n as f64
+        + slider.adhesion.of_kinetic * surface.n_contact() as f64 / n as f64;
     let exact = steady_level(mean, slider.omega_star, slider.v_star);
     assert!((slider.model().steady_level() - exact).abs() < 1e-13);
     let outcome = slider.run(20.0);

@@ -18,6 +18,8 @@ mod first_slip;
 mod front_speed;
 #[path = "../physics/lattice_waves.rs"]
 mod lattice_waves;
+#[path = "../physics/load_and_adhesion.rs"]
+mod load_and_adhesion;
 #[path = "../physics/observables.rs"]
 mod observables;
 #[path = "../physics/scale_invariance.rs"]

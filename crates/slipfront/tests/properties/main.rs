@@ -12,7 +12,7 @@ use proptest::prelude::*;
 use slipfront::observe::Field;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{Curve, Instants, KineticHistory, KineticStart, Observer, Scheduled};
-use slipfront::surface::{Cavity, Groove, Load, Orientation, Texture, mesh};
+use slipfront::surface::{Adhesion, Cavity, Groove, Load, Orientation, Texture, mesh};
 use slipfront::{
     Drive, Edges, Execution, FrictionLaw, Kernel, Lattice, Model, Simulation, State, Stop, Surface,
     VectorField,
@@ -93,6 +93,8 @@ prop_compose! {
         lattice in lattice(),
         textures in prop::collection::vec(texture(), 0..3),
         kept in any::<bool>(),
+        pressure in prop::option::of((0..2_usize, -0.99..0.99_f64)),
+        adhesion in prop::option::of([0.0..2.0_f64, 0.0..1.0_f64]),
         v_star in 0.001..0.5_f64,
         degrees in -720.0..720.0_f64,
         r_star in 0.0..1.5_f64,
@@ -108,6 +110,8 @@ prop_compose! {
             edges: lattice.edges,
             textures,
             load: if kept { Load::Kept } else { Load::Redistributed },
+            pressure,
+            adhesion: adhesion.map_or(Adhesion::default(), |[of_static, of_kinetic]| Adhesion { of_static, of_kinetic }),
             v_star,
             degrees,
             r_star,
@@ -143,8 +147,14 @@ proptest! {
         prop_assert_eq!(surface.n_contact(), n - n_textured);
         prop_assert!((surface.texture_percent() - 100.0 * n_textured as f64 / n as f64).abs() < 1e-12);
         let load: f64 = (0..n).map(|b| surface.normal_force(b)).sum();
-        let carried = if slider.load == Load::Kept { n - n_textured } else { n };
-        prop_assert!((load / carried as f64 - 1.0).abs() < 1e-12);
+        let contact = slider.contact(0..slider.blocks[1]);
+        let pressure = |b: usize| contact.pressure.as_ref().map_or(1.0, |pressure| pressure[b]);
+        let is_carried = |b: &usize| slider.load == Load::Redistributed || !textured[*b];
+        let carried: f64 = (0..n).filter(is_carried).map(pressure).sum();
+        prop_assert!((load / carried - 1.0).abs() < 1e-12);
+        // A linear profile has the mean 1.
+        let all: f64 = (0..n).map(pressure).sum();
+        prop_assert!((all / n as f64 - 1.0).abs() < 1e-12);
         for (b, &over) in textured.iter().enumerate() {
             let felt = [surface.static_limit(b), surface.kinetic_force(b), surface.normal_force(b)];
             let nothing = felt == [0.0; 3];

@@ -3,7 +3,6 @@
 use proptest::prelude::*;
 use slipfront::Surface;
 use slipfront::communicator::{Communicator, Threads};
-use slipfront::surface::Contact;
 use slipfront::surface::{Meshed, mesh, mesh_watched};
 
 use crate::common::Slider;
@@ -17,25 +16,18 @@ fn make(slider: &Slider, rank: &dyn Communicator) -> (Meshed, Surface) {
         mesh_watched::<std::convert::Infallible>(&lattice, &rows, &slider.textures, &mut |_| Ok(()));
     let coefficients = slider.coefficients_of(lattice.blocks_of(&rows));
     let textured = meshed.textured.clone();
-    let surface = Surface::of_ranks(coefficients, textured, Contact::new(slider.load, 1.0), rank);
+    let surface = Surface::of_ranks(coefficients, textured, slider.contact(rows), rank);
     (meshed, surface.unwrap())
 }
 
 /// Numbers of the whole surface.
-fn numbers(surface: &Surface) -> ([usize; 2], [u64; 6]) {
+fn numbers(surface: &Surface) -> ([usize; 2], [u64; 5]) {
     let numbers = [
         surface.texture_percent(),
         surface.min_slip_threshold(),
         surface.mean_kinetic_force(),
         surface.mean_static_coefficient(),
         surface.mean_kinetic_coefficient(),
-        surface.normal_force(
-            surface
-                .textured
-                .iter()
-                .position(|textured| !textured)
-                .unwrap_or(0),
-        ),
     ];
     let counts = [surface.n_contact(), surface.negative_draws()];
     (counts, numbers.map(f64::to_bits))
@@ -51,18 +43,15 @@ proptest! {
         for size in [1, 2, 3, 4, 7].into_iter().filter(|size| *size <= slider.blocks[1]) {
             let made = Threads::run(size, |rank| make(&slider, rank));
             let surfaces = || made.iter().map(|(_, surface)| surface);
-            let joined = |array: fn(&Surface) -> &Vec<f64>| -> Vec<f64> { surfaces().flat_map(array).copied().collect() };
-            prop_assert_eq!(joined(|surface| &surface.mu_static), &whole.mu_static[..]);
-            prop_assert_eq!(joined(|surface| &surface.mu_kinetic), &whole.mu_kinetic[..]);
+            for value in [Surface::normal_force, Surface::static_limit, Surface::kinetic_force] {
+                let all = |surface: &Surface| -> Vec<u64> { (0..surface.n_blocks()).map(|b| value(surface, b).to_bits()).collect() };
+                let joined: Vec<u64> = surfaces().flat_map(all).collect();
+                prop_assert_eq!(joined, all(&whole));
+            }
             let textured: Vec<bool> = surfaces().flat_map(|surface| &surface.textured).copied().collect();
             prop_assert_eq!(&textured, &whole.textured);
             for (rank, (part, surface)) in made.iter().enumerate() {
-                let (mut of_rank, mut of_whole) = (numbers(surface), numbers(&whole));
-                if !surface.textured.contains(&false) {
-                    // No block of this rank carries load.
-                    (of_rank.1[5], of_whole.1[5]) = (0, 0);
-                }
-                prop_assert_eq!(of_rank, of_whole, "rank {} of {}", rank, size);
+                prop_assert_eq!(numbers(surface), numbers(&whole), "rank {} of {}", rank, size);
                 prop_assert_eq!(&part.clipped, &meshed.clipped);
             }
             // A texture covers nothing if it covers no rows of any rank.

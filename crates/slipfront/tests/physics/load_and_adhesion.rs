@@ -1,0 +1,95 @@
+//! Pressure that is not the same everywhere, and friction that does not need any.
+
+use rstest::rstest;
+use slipfront::Edges;
+use slipfront::Stop;
+use slipfront::exact_solutions::{Facing, groove_edge_factor};
+use slipfront::surface::{Adhesion, Orientation};
+
+use crate::common::{Slider, at_rest, groove};
+
+fn adhesive(of_static: f64) -> Adhesion {
+    Adhesion {
+        of_static,
+        of_kinetic: 0.0,
+    }
+}
+
+/// Nothing moves before the first slip, so that its force is `k_s V t` on every block and the block with the least
+/// threshold slips first: `k_s V t = min_i (mu_si p_i/P + tau_a/(P mu_s))`. It is seen at most a step late.
+#[rstest]
+fn the_weakest_block_slips_first(
+    #[values(None, Some((0, 0.8)), Some((1, -0.5)))] pressure: Option<(usize, f64)>,
+    #[values(0.0, 0.4)] adhesion: f64,
+) {
+    let slider = Slider {
+        pressure,
+        adhesion: adhesive(adhesion),
+        ..Slider::default()
+    };
+    let drawn = slider.coefficients();
+    // p/P = 1 + slope (2 x/L - 1) at the middle of a block.
+    let relative = |b: usize| {
+        let place = |axis: usize| [b % 25, b / 25][axis] as f64;
+        pressure.map_or(1.0, |(axis, slope)| {
+            1.0 + slope * ((2.0 * place(axis) + 1.0) / 25.0 - 1.0)
+        })
+    };
+    let threshold = |b: usize| drawn.mu_static[b].max(drawn.mu_kinetic[b]) * relative(b) + adhesion;
+    let weakest = (0..625)
+        .min_by(|&a, &b| threshold(a).total_cmp(&threshold(b)))
+        .unwrap();
+    let exact = threshold(weakest) / (0.375 * slider.v_star);
+    let model = slider.model();
+    assert!((model.first_slip_estimate() / exact - 1.0).abs() < 1e-14);
+    let mut simulation = at_rest(&model, slider.dt_star);
+    simulation.run(Stop::at_step(slider.steps(5.0)), &mut []).unwrap();
+    let now = simulation.snapshot();
+    let earliest = now.earliest_first_slip().unwrap();
+    let late = earliest - exact;
+    assert!(
+        -1e-10 < late && late < slider.dt_star * (1.0 + 1e-9),
+        "late by {late}"
+    );
+    assert_eq!(now.first_slip_time_star()[weakest], earliest);
+}
+
+/// Equal blocks slip in the same step: `mu_s* = 1 + tau_a/(P mu_s)`, less than one step of the pull below it.
+#[rstest]
+fn adhesion_adds_to_static_friction_without_texture(#[values(0.0, 0.1, 1.5)] adhesion: f64) {
+    let slider = Slider {
+        adhesion: adhesive(adhesion),
+        ..Slider::default().uniform()
+    };
+    let peak = slider.run(4.0 * (1.0 + adhesion)).peak.mu_star;
+    let below = 1.0 + adhesion - peak;
+    let pull = 0.375 * slider.v_star * slider.dt_star;
+    assert!(-1e-12 < below + pull && below < pull, "{peak}");
+}
+
+/// Only the adhesive part feels how much of the surface a groove leaves: the load is redistributed, the area is not. The first
+/// slip comes at `k_s V t f = N/N_c + tau_a/(P mu_s)`, f the factor of the edge; the lag and the oscillation of the groove that
+/// the quasi-static factor leaves out are of the order of V*.
+#[rstest]
+fn adhesion_is_not_redistributed(
+    #[values((Facing::Across, Orientation::Across), (Facing::Along, Orientation::Along))]
+    (facing, orientation): (Facing, Orientation),
+    #[values(0.25, 1.0)] adhesion: f64,
+) {
+    let slider = Slider {
+        blocks: [20, 20],
+        edges: [Edges::Periodic; 2],
+        textures: vec![groove(orientation, 5.0)],
+        adhesion: adhesive(adhesion),
+        v_star: 1e-3,
+        omega_star: 0.3,
+        dt_star: 0.5,
+        ..Slider::default().uniform()
+    };
+    let model = slider.model();
+    let mut simulation = at_rest(&model, slider.dt_star);
+    simulation.run(Stop::at_step(slider.steps(5.0)), &mut []).unwrap();
+    let exact = (20.0 / 15.0 + adhesion) / (0.375 * slider.v_star * groove_edge_factor(facing, 5));
+    let found = simulation.snapshot().earliest_first_slip().unwrap();
+    assert!((found / exact - 1.0).abs() < 3e-3, "{found}, exactly {exact}");
+}
