@@ -23,7 +23,7 @@ const NUMBER: f64 = size_of::<f64>() as f64;
 /// Whether a block is textured; whether it slides.
 const FLAG: f64 = size_of::<bool>() as f64;
 
-/// [`slipfront::Surface`].
+/// [`slipfront::Surface`] under an equal pressure.
 const SURFACE: f64 = FLAG + 2.0 * NUMBER;
 /// The fused kernel: two vectors, two thresholds, a step; masks, vectors of eight and tiles take 3.6 together.
 const FUSED: f64 = 6.5 * NUMBER + 3.6;
@@ -72,6 +72,8 @@ const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
 pub struct Budget {
     /// Blocks of the rows that this process holds.
     blocks: f64,
+    /// Bytes of the surface per block.
+    surface: f64,
     /// Bytes of the kernel per block.
     kernel: f64,
     /// Those of them that are kept of a field.
@@ -144,6 +146,10 @@ impl Budget {
             all_cells: kept(0..lattice.nx) * kept(0..lattice.ny),
             is_shared: ranks.communicator.size() > 1,
             ranks_on_node: ranks.on_node as f64,
+            surface: match file.load.profile.is_some() || file.load.pressure_field.is_some() {
+                true => SURFACE + NUMBER,
+                false => SURFACE,
+            },
             kernel: match Kernel::Fused.for_law(file.friction.law) {
                 Kernel::Fused => FUSED,
                 Kernel::Reference => REFERENCE,
@@ -175,10 +181,10 @@ impl Budget {
                 what: |budget| count(budget.blocks as usize, "block"),
                 remedy: "lower `slider.blocks`",
                 bytes: [
-                    blocks * SURFACE,
-                    blocks * (SURFACE + self.kernel),
+                    blocks * self.surface,
+                    blocks * (self.surface + self.kernel),
                     // With the time of its first slip.
-                    blocks * (SURFACE + NUMBER) + drawn * AVERAGED,
+                    blocks * (self.surface + NUMBER) + drawn * AVERAGED,
                     all_cells * STATICS_ON_DISK,
                     self.all_blocks * SAVED,
                 ],

@@ -133,6 +133,12 @@ impl Case {
                 ));
             }
         }
+        let mean = surface.mean_pressure();
+        if self.file.load.pressure_field.is_some() && differs(mean, 1.0) {
+            warnings.push(format!(
+                "the given pressures have a mean of {mean:.4} times `pressure`: what is starred is relative to `pressure`"
+            ));
+        }
         let [mean_static, mean_kinetic] = means;
         if mean_kinetic >= mean_static {
             warnings.push(format!(

@@ -178,6 +178,11 @@ impl Surface {
         self.whole.sum_kinetic / self.whole.n_contact as f64
     }
 
+    /// Mean of the local pressures over all blocks, in units of `P`.
+    pub fn mean_pressure(&self) -> f64 {
+        self.whole.sum_pressure[0] / self.whole.n_blocks as f64
+    }
+
     /// Mean kinetic friction over all blocks, textured ones included: `mean(mu_ki F_n,i + tau_ak l^2)` in units of `P mu_s l^2`.
     pub fn mean_kinetic_force(&self) -> f64 {
         let whole = &self.whole;
