@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use slipfront::scales::damping;
-use slipfront::{Communicator, Drive, Kernel, Lattice, Model, Scales, Surface};
+use slipfront::{Communicator, Drive, FrictionLaw, Lattice, Model, Scales, Surface};
 
 use super::budget::Budget;
 use super::coefficients::{coefficients, contact};
@@ -238,7 +238,7 @@ impl Derived {
             );
             return Err(file.source.error("slider.blocks", sentence));
         }
-        if n_ranks > 1 && Kernel::Fused.for_law(file.friction.law) != Kernel::Fused {
+        if n_ranks > 1 && file.friction.law != FrictionLaw::Projection {
             let sentence = "a lattice is divided among ranks under the law \"projection\" alone: take one rank, or that law";
             return Err(file.source.error("friction.law", sentence));
         }

@@ -42,7 +42,7 @@ impl Case {
                 "V* = {v_star} is above {LARGE_V_STAR}: the slider slips as a whole before any front can cross it"
             )
         });
-        warn(self.model.law == FrictionLaw::Literal, &|| {
+        warn(self.file.friction.law == FrictionLaw::Literal, &|| {
             "law = \"literal\" is for comparison only: its results depend on the time step".to_owned()
         });
         warn(dt_star > 0.5, &|| {

@@ -63,7 +63,7 @@ fn digest_at(plan: &Plan, levels: &[usize]) -> Option<blake3::Hash> {
 fn digest(case: &Case) -> blake3::Hash {
     let (model, time) = (&case.model, &case.time_plan);
     let mut hasher = blake3::Hasher::new();
-    let words = (model.lattice, model.law, time.last_step, time.stop);
+    let words = (model.lattice, model.friction, time.last_step, time.stop);
     hasher.update(format!("{words:?}").as_bytes());
     let mut number = |value: f64| {
         hasher.update(&(value as f32).to_le_bytes());

@@ -9,16 +9,17 @@ use super::fused::Fused;
 use super::reference::Reference;
 use crate::checkpoint::{BlockColumn, Checkpoint};
 use crate::communicator::Communicator;
-use crate::friction::FrictionLaw;
+use crate::friction::{Friction, FrictionLaw};
 use crate::model::Model;
+use crate::slider::Slider;
 use crate::state::State;
 
 /// Which kernel computes the steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
-    /// One pass per equation, to be read along with the paper, for every [`FrictionLaw`].
+    /// One pass per equation, to be read along with the paper, for every model.
     Reference,
-    /// One sweep for all equations, for [`FrictionLaw::Projection`]; the reference kernel computes the other laws.
+    /// One sweep for all equations, for [`FrictionLaw::Projection`]; the reference kernel computes all else.
     Fused,
 }
 
@@ -38,12 +39,13 @@ pub struct Execution {
 const NOT_DIVIDED: &str = "the reference kernel divides no lattice among ranks";
 
 impl Kernel {
-    /// The kernel that computes a friction law when this one is asked for.
-    pub fn for_law(self, law: FrictionLaw) -> Self {
-        match law {
-            FrictionLaw::Projection => self,
-            _ => Self::Reference,
-        }
+    /// The kernel that computes a model when this one is asked for.
+    pub fn for_model(self, model: &Model) -> Self {
+        let is_plain = model.friction == Friction::from(FrictionLaw::Projection)
+            && model.slider == Slider::default()
+            && model.drive.program.is_none()
+            && model.drive.rotation.is_none();
+        if is_plain { self } else { Self::Reference }
     }
 
     /// Its name in a manifest.
@@ -64,7 +66,7 @@ impl Execution {
         state: Option<State>,
         communicator: Arc<dyn Communicator>,
     ) -> Box<dyn Engine> {
-        match self.kernel.for_law(model.law) {
+        match self.kernel.for_model(model) {
             Kernel::Fused => {
                 let (threads, skips) = (self.threads, self.skips);
                 let kernel = Fused::new(model, dt_star, state.as_ref(), threads, skips, communicator);
@@ -87,7 +89,7 @@ impl Execution {
         communicator: Arc<dyn Communicator>,
         read: impl FnMut(BlockColumn, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<Option<Box<dyn Engine>>, E> {
-        match (self.kernel.for_law(model.law), checkpoint.motion_bounds) {
+        match (self.kernel.for_model(model), checkpoint.motion_bounds) {
             (Kernel::Fused, Some(_)) => {
                 let (threads, skips) = (self.threads, self.skips);
                 let kernel = Fused::resume(model, dt_star, checkpoint, threads, skips, communicator, read)?;

@@ -5,13 +5,14 @@ use serde::{Deserialize, Serialize};
 /// Sums over all blocks at t_n, in units of this crate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Totals {
-    /// `sum u`.
+    /// `sum w u`, with the relative stiffness `w` of the drive springs. In a drive that rotates its two components are not x and
+    /// y, but `w u . g` along the [direction](crate::Drive::direction_at) of each block and the same across it, to its left.
     pub displacement: [f64; 2],
-    /// `sum v` at t_n, the mean of the half steps around it.
+    /// `sum w v` at t_n, the mean of the half steps around it, in the same components.
     pub velocity: [f64; 2],
-    /// `sum v` at `t_n + dt/2`.
+    /// `sum w v` at `t_n + dt/2`.
     pub velocity_after: [f64; 2],
-    /// `sum v^2` at t_n.
+    /// `sum m v^2` at t_n.
     pub velocity_square: f64,
     /// `sum F_f . v` at t_n, the power of friction: negative.
     pub friction_power: f64,

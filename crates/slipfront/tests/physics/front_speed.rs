@@ -25,6 +25,7 @@ fn strip(rows: usize, direction: [f64; 2], tau: f64) -> Model {
         direction,
         k_drive: 0.0,
         constant_force: [force * direction[0], force * direction[1]],
+        ..Drive::along_x(0.0)
     };
     Model::new(lattice, surface, drive, 0.0, 0.0, FrictionLaw::Projection)
 }

@@ -178,7 +178,14 @@ fn a_chain_pulled_across_is_a_row_of_single_blocks() {
         let surface = Surface::uniform(&lattice, drawn.mu_static[b], drawn.mu_kinetic[b]);
         assert_eq!(surface.static_limit(0), model.surface.static_limit(b));
         assert_eq!(surface.kinetic_force(0), model.surface.kinetic_force(b));
-        let alone = Model::new(lattice, surface, model.drive, model.damping, 0.0, model.law);
+        let alone = Model::new(
+            lattice,
+            surface,
+            model.drive.clone(),
+            model.damping,
+            0.0,
+            model.friction,
+        );
         let mut alone = at_rest(&alone, 0.1);
         for _ in 0..3000 {
             alone.step();

@@ -64,7 +64,7 @@ fn models(slider: &Slider, operation: Operation) -> [Model; 2] {
     let drive = Drive::at_angle(slider.v_star, slider.degrees);
     let turned_drive = Drive {
         direction: operation.vector(drive.direction),
-        ..drive
+        ..drive.clone()
     };
     let model = |lattice, coefficients, textured, drive| {
         let surface = Surface::new(coefficients, textured, Load::Redistributed, 1.0).unwrap();

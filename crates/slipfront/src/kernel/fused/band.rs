@@ -673,7 +673,7 @@ impl Band {
             for k in v * LANES..(v + 1) * LANES {
                 if self.in_contact[v] >> (k % LANES) & 1 == 1 {
                     let u = self.displacement.at(self.halo + k);
-                    let [x, y] = step.drive.force(u, step.time_star);
+                    let [x, y] = step.drive_force(u);
                     most = most.max(x * x + y * y);
                 }
             }

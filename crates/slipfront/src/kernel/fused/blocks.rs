@@ -391,10 +391,10 @@ fn integer_sum<S: Simd>(lanes: i64x8<S>, quantum: FixedPoint, vectors: usize) ->
 /// Eq. 2: `F_s = k_s (V t - u)`, with any constant force.
 #[inline(always)]
 pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
-    let ([x, y], [fx, fy]) = (step.drive_position, step.drive.constant_force);
+    let ([x, y], [fx, fy]) = (step.drive_position, step.constant_force);
     let stretch = subtract([splat(simd, x), splat(simd, y)], u);
     add(
-        scale(splat(simd, step.drive.k_drive), stretch),
+        scale(splat(simd, step.k_drive), stretch),
         [splat(simd, fx), splat(simd, fy)],
     )
 }

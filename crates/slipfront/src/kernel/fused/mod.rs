@@ -413,7 +413,7 @@ impl Fused {
         Some(StoredEnergy {
             kinetic: 0.25 * quanta.motion_square.value(sums.velocity_squares),
             lattice: quanta.lattice_energy.value(sums.lattice_energy) / (2.0 * K_STRAIGHT),
-            drive_springs: 0.5 * step.drive.k_drive * stretch_square.max(0.0),
+            drive_springs: 0.5 * step.k_drive * stretch_square.max(0.0),
         })
     }
 }

@@ -53,8 +53,8 @@ fn highest_speed(step: &Step, bounds: &MotionBounds) -> f64 {
         let stretch = (position - low).abs().max((position - high).abs());
         // The force of a spring is at most its stiffness times the difference of the displacements of its ends.
         force += 4.0 * (K_STRAIGHT + K_DIAGONAL) * bounds.spring_difference(axis)
-            + step.drive.k_drive * stretch
-            + step.drive.constant_force[axis].abs();
+            + step.k_drive * stretch
+            + step.constant_force[axis].abs();
     }
     MARGIN * (bounds.speed + step.integrator.force_to_velocity * force)
 }

@@ -29,8 +29,7 @@ pub(super) struct RestingVector<S: Simd> {
 /// contact stress of a skipped block is always largest at the first or at the last skipped step.
 #[inline(always)]
 pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingVector<S>) -> u64 {
-    let drive = &step.drive;
-    let [bx, by] = drive.direction.map(|d| drive.k_drive * drive.v_star * d);
+    let [bx, by] = step.force_growth;
     let growth_square = bx * bx + by * by;
     if growth_square == 0.0 {
         return u64::MAX;
@@ -56,7 +55,7 @@ pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingVe
     // Forces have rounding errors of some units of their last place: the result is shortened by the time in which the load
     // grows by that, and by two steps for the rounding of the root and of the division.
     let distance = step.drive_position[0].abs() + step.drive_position[1].abs();
-    let noise = 1e-13 * (1.0 + step.drive.k_drive * distance) / growth_square.sqrt();
+    let noise = 1e-13 * (1.0 + step.k_drive * distance) / growth_square.sqrt();
     let steps = (soonest * (1.0 - 1e-9) - noise) / step.dt_star - 2.0;
     // The conversion saturates: at zero if negative, at the largest integer if too large.
     steps as u64

@@ -1,48 +1,59 @@
 //! What a step of the fused kernel has in common for all blocks.
 
 use crate::friction::Integrator;
-use crate::model::{Drive, Model};
+use crate::model::Model;
 
 /// What is common to all blocks in a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {
     /// n.
     pub(super) number: u64,
-    /// `t*` of the step.
-    pub(super) time_star: f64,
     /// `dt*`.
     pub(super) dt_star: f64,
     /// Time for which displacements move before forces are evaluated: `dt*`, or 0 at the start.
     pub(super) move_dt: f64,
-    pub(super) drive: Drive,
+    /// Stiffness of the drive springs.
+    pub(super) k_drive: f64,
     /// Displacement of the driven ends of the drive springs.
     pub(super) drive_position: [f64; 2],
+    /// The same at the step before.
+    position_before: [f64; 2],
+    /// By how much the force of a drive spring on a block at rest grows per time, `k_s V`.
+    pub(super) force_growth: [f64; 2],
+    pub(super) constant_force: [f64; 2],
     pub(super) integrator: Integrator,
 }
 
 impl Step {
     pub(super) fn new(model: &Model, number: u64, dt_star: f64) -> Self {
-        let time_star = number as f64 * dt_star;
+        let drive = &model.drive;
+        let [time_star, before] = [number, number.saturating_sub(1)].map(|n| n as f64 * dt_star);
         Self {
             number,
-            time_star,
             dt_star,
             move_dt: dt_star,
-            drive: model.drive,
-            drive_position: model.drive.position(time_star),
+            k_drive: drive.k_drive,
+            drive_position: drive.position(time_star),
+            position_before: drive.position(before),
+            force_growth: drive
+                .direction
+                .map(|d| drive.k_drive * drive.speed_after(time_star) * d),
+            constant_force: drive.constant_force,
             integrator: Integrator::new(model.damping, dt_star),
         }
     }
 
     /// The step before this one, of which there must be one.
     pub(super) fn before(&self) -> Self {
-        let number = self.number - 1;
-        let time_star = number as f64 * self.dt_star;
         Self {
-            number,
-            time_star,
-            drive_position: self.drive.position(time_star),
+            number: self.number - 1,
+            drive_position: self.position_before,
             ..*self
         }
+    }
+
+    /// Force of the drive spring on a block at displacement `u` (Eq. 2), with the constant force.
+    pub(super) fn drive_force(&self, u: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| self.k_drive * (self.drive_position[axis] - u[axis]) + self.constant_force[axis])
     }
 }

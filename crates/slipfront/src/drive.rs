@@ -1,0 +1,177 @@
+//! How the slider is pulled: the far ends of the drive springs, which move together.
+
+use std::sync::Arc;
+
+use crate::lattice::{K_DRIVE, Lattice};
+use crate::vector_field::unit_vector;
+
+/// How the slider is pulled.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive {
+    /// Dimensionless speed `V*` (Eq. 11a); the largest of a program, and that at the largest radius of a rotation.
+    pub v_star: f64,
+    /// Unit vector of the sliding direction.
+    pub direction: [f64; 2],
+    /// Stiffness `k_s` of the spring on every block, in units of `E l`; see [`Slider::drive_springs`](crate::Slider::drive_springs).
+    pub k_drive: f64,
+    /// A constant force on every block in addition to the drive spring's, in units of `P mu_s l^2`; zero in the paper. A block with
+    /// another drive spring has as much more or less of it.
+    pub constant_force: [f64; 2],
+    /// Speeds that follow one another; `v_star` all the time if there are none.
+    pub program: Option<Arc<Program>>,
+    /// A rotation in place of the translation along `direction`.
+    pub rotation: Option<Rotation>,
+}
+
+/// The speed of the drive, constant over each of several segments. The far ends move without a jump.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Program {
+    segments: Vec<Segment>,
+}
+
+/// A part of a program in which the speed is constant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// Speed, which may be zero or negative.
+    pub v_star: f64,
+    /// t* at which it begins.
+    pub from_star: f64,
+    /// Displacement of the far ends at its beginning.
+    pub from_position: f64,
+}
+
+/// A rotation of the far ends about an axis across the sliding plane, counterclockwise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rotation {
+    /// The axis, in units of the block size.
+    pub centre: [f64; 2],
+    /// Largest distance of a block from it, at which the speed is `v_star`.
+    pub radius: f64,
+    /// `sum r_i/radius` over all blocks.
+    pub sum_radii: f64,
+}
+
+impl Program {
+    /// From the speed of each segment and the t* at which it ends; the last has no end.
+    pub fn new(segments: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let (mut from_star, mut from_position) = (0.0, 0.0);
+        let segment = |(v_star, until_star): (f64, f64)| {
+            let segment = Segment {
+                v_star,
+                from_star,
+                from_position,
+            };
+            from_position += v_star * (until_star - from_star);
+            from_star = until_star;
+            segment
+        };
+        Self {
+            segments: segments.into_iter().map(segment).collect(),
+        }
+    }
+
+    /// The segments one after the other.
+    pub fn segments(&self) -> &[Segment] {
+        &self.segments
+    }
+
+    /// The segment at `time_star`; of two that meet there, the later.
+    pub fn segment_at(&self, time_star: f64) -> &Segment {
+        let after = self
+            .segments
+            .partition_point(|segment| segment.from_star <= time_star);
+        &self.segments[after.saturating_sub(1)]
+    }
+}
+
+impl Drive {
+    /// Along x at `v_star`.
+    pub fn along_x(v_star: f64) -> Self {
+        Self {
+            v_star,
+            direction: [1.0, 0.0],
+            k_drive: K_DRIVE,
+            constant_force: [0.0, 0.0],
+            program: None,
+            rotation: None,
+        }
+    }
+
+    /// At `v_star`, `degrees` from x towards y.
+    pub fn at_angle(v_star: f64, degrees: f64) -> Self {
+        Self {
+            direction: unit_vector(degrees),
+            ..Self::along_x(v_star)
+        }
+    }
+
+    /// Path of the driven ends at `time_star`, along the direction or of a rotation at its largest radius.
+    #[inline]
+    pub fn path(&self, time_star: f64) -> f64 {
+        match &self.program {
+            None => self.v_star * time_star,
+            Some(program) => {
+                let segment = program.segment_at(time_star);
+                segment.from_position + segment.v_star * (time_star - segment.from_star)
+            }
+        }
+    }
+
+    /// Speed from `time_star` on.
+    pub fn speed_after(&self, time_star: f64) -> f64 {
+        match &self.program {
+            None => self.v_star,
+            Some(program) => program.segment_at(time_star).v_star,
+        }
+    }
+
+    /// Displacement of the driven ends of the drive springs at `time_star`, of a drive that does not rotate.
+    #[inline]
+    pub fn position(&self, time_star: f64) -> [f64; 2] {
+        let along = self.path(time_star);
+        [along * self.direction[0], along * self.direction[1]]
+    }
+
+    /// Force of the drive spring on a block at displacement `u` (Eq. 2), `F_s = k_s (V t - u)`, with the constant force.
+    pub fn force(&self, u: [f64; 2], time_star: f64) -> [f64; 2] {
+        let position = self.position(time_star);
+        [0, 1].map(|axis| self.k_drive * (position[axis] - u[axis]) + self.constant_force[axis])
+    }
+
+    /// Displacement of the driven end over block `b` per path of the drive, `g`: the direction, or `z x r/r_max` of a rotation.
+    /// Power and work of the drive belong to `sum F_s . g`.
+    pub fn direction_at(&self, lattice: &Lattice, b: usize) -> [f64; 2] {
+        match &self.rotation {
+            None => self.direction,
+            Some(rotation) => {
+                let (i, j) = lattice.column_row(b);
+                let [x, y] = [
+                    i as f64 + 0.5 - rotation.centre[0],
+                    j as f64 + 0.5 - rotation.centre[1],
+                ];
+                [-y / rotation.radius, x / rotation.radius]
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_moves_without_jumps() {
+        let drive = Drive {
+            program: Some(Arc::new(Program::new([
+                (0.5, 10.0),
+                (0.0, 20.0),
+                (-1.0, f64::INFINITY),
+            ]))),
+            ..Drive::along_x(1.0)
+        };
+        let paths = [0.0, 4.0, 10.0, 15.0, 20.0, 22.0].map(|t| drive.path(t));
+        assert_eq!(paths, [0.0, 2.0, 5.0, 5.0, 5.0, 3.0]);
+        let speeds = [0.0, 9.9, 10.0, 20.0].map(|t| drive.speed_after(t));
+        assert_eq!(speeds, [0.5, 0.5, 0.0, -1.0]);
+    }
+}
