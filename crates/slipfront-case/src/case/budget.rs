@@ -10,6 +10,7 @@ use std::path::Path;
 use slipfront::observe::{CurveRow, Field, Frame, frames};
 use slipfront::{Kernel, Lattice};
 
+use super::kernel::kernel;
 use super::output::{MAX_MAPS, Output, Snapshots};
 use super::ranks::Ranks;
 use super::textures::count_masks;
@@ -150,7 +151,7 @@ impl Budget {
                 true => SURFACE + NUMBER,
                 false => SURFACE,
             },
-            kernel: match Kernel::Fused.for_law(file.friction.law) {
+            kernel: match kernel(file) {
                 Kernel::Fused => FUSED,
                 Kernel::Reference => REFERENCE,
             },

@@ -4,6 +4,7 @@ mod budget;
 mod coefficients;
 mod groups;
 mod inputs;
+mod kernel;
 mod output;
 mod ranks;
 mod runnable;

@@ -5,12 +5,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use slipfront::scales::damping;
-use slipfront::{Communicator, Drive, FrictionLaw, Lattice, Model, Scales, Surface};
+use slipfront::{Communicator, Drive, Kernel, Lattice, Model, Scales, Surface};
 
 use super::budget::Budget;
 use super::coefficients::{coefficients, contact};
 use super::groups::Groups;
 use super::inputs::{Input, Inputs, NamedFiles};
+use super::kernel::kernel;
 use super::output::Output;
 use super::ranks::Ranks;
 use super::textures::{self, Watch};
@@ -238,7 +239,7 @@ impl Derived {
             );
             return Err(file.source.error("slider.blocks", sentence));
         }
-        if n_ranks > 1 && file.friction.law != FrictionLaw::Projection {
+        if n_ranks > 1 && kernel(file) != Kernel::Fused {
             let sentence = "a lattice is divided among ranks under the law \"projection\" alone: take one rank, or that law";
             return Err(file.source.error("friction.law", sentence));
         }

@@ -190,6 +190,7 @@ fn a_constant_force_alone(
         direction,
         k_drive: 0.0,
         constant_force: direction.map(|d| 0.8 * d),
+        ..Drive::along_x(0.0)
     };
     let model = Model::new(lattice, surface, drive, 0.0, 1e-3, FrictionLaw::Projection);
     assert_same(&model, 0.1, None, 400);
