@@ -125,6 +125,13 @@ impl Drive {
         }
     }
 
+    /// The next t* after `time_star` at which the speed changes.
+    pub(crate) fn next_change(&self, time_star: f64) -> Option<f64> {
+        let segments = self.program.as_ref()?.segments();
+        let later = segments.iter().map(|segment| segment.from_star);
+        later.filter(|&from_star| from_star > time_star).reduce(f64::min)
+    }
+
     /// Displacement of the driven ends of the drive springs at `time_star`, of a drive that does not rotate.
     #[inline]
     pub fn position(&self, time_star: f64) -> [f64; 2] {

@@ -130,6 +130,12 @@ fn neighbour_coordinate(coordinate: usize, offset: isize, count: usize, edges: E
     }
 }
 
+/// Stiffness of two springs in series, each half as long as one of the same modulus: `2 a b/(a + b)`; 0 if both are 0.
+#[inline(always)]
+pub(crate) fn harmonic_mean(a: f64, b: f64) -> f64 {
+    if a + b > 0.0 { 2.0 * a * b / (a + b) } else { 0.0 }
+}
+
 /// A spring between a block and one of its eight neighbours. Four bonds per block make all of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bond {

@@ -2,7 +2,7 @@
 
 use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, join, split};
-use crate::lattice::{Bond, Lattice};
+use crate::lattice::{Bond, Lattice, harmonic_mean};
 
 /// What may differ from block to block; arrays have one value per block. Without any of it, as in the paper, all blocks are alike.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -72,14 +72,39 @@ impl Slider {
 
     /// Stiffness of the drive spring of block `b` over that of [`Drive`](crate::Drive).
     pub fn drive_spring(&self, b: usize) -> f64 {
-        self.drive_springs
-            .as_ref()
-            .map_or(1.0, |springs| springs.relative[b])
+        match &self.drive_springs {
+            _ if !self.exists(b) => 0.0,
+            Some(springs) => springs.relative[b],
+            None => 1.0,
+        }
+    }
+
+    /// Young's modulus `E_i/E` of block `b`; 0 if it does not exist.
+    pub fn modulus(&self, b: usize) -> f64 {
+        match &self.stiffness {
+            _ if !self.exists(b) => 0.0,
+            Some(stiffness) => stiffness[b],
+            None => 1.0,
+        }
     }
 
     /// Whether block `b` exists.
     pub fn exists(&self, b: usize) -> bool {
         self.outline.as_ref().is_none_or(|outline| outline.exists[b])
+    }
+
+    /// Sum of [`drive_spring`](Self::drive_spring) over all blocks of the lattice.
+    pub fn sum_of_drive_springs(&self, lattice: &Lattice) -> f64 {
+        self.drive_springs
+            .as_ref()
+            .map_or_else(|| self.n_blocks(lattice) as f64, |springs| springs.sum)
+    }
+
+    /// Number of blocks of the lattice that exist.
+    pub fn n_blocks(&self, lattice: &Lattice) -> usize {
+        self.outline
+            .as_ref()
+            .map_or(lattice.n_blocks(), |outline| outline.n_blocks)
     }
 
     /// Whether all springs between blocks are those of the paper.
@@ -90,12 +115,7 @@ impl Slider {
     /// Stiffness of the spring between two blocks over that of its [`Bond`]: the harmonic mean of their moduli, `2 E_i E_j/(E_i + E_j)`;
     /// 0 if one of them does not exist.
     pub fn spring(&self, b: usize, other: usize) -> f64 {
-        if !self.exists(b) || !self.exists(other) {
-            return 0.0;
-        }
-        self.stiffness.as_ref().map_or(1.0, |modulus| {
-            2.0 * modulus[b] * modulus[other] / (modulus[b] + modulus[other])
-        })
+        harmonic_mean(self.modulus(b), self.modulus(other))
     }
 
     /// [`spring`](Self::spring) from every block along `bond`; 0 where a free edge leaves it out.

@@ -95,7 +95,7 @@ pub fn write_docs(paper: &Paper, folder: &Path) -> Result<(), PaperError> {
     Ok(())
 }
 
-fn write_file(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), PaperError> {
+pub(crate) fn write_file(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), PaperError> {
     let path = folder.join(name);
     let parent = path.parent().unwrap_or(folder).to_owned();
     let written = std::fs::create_dir_all(parent).and_then(|()| write_atomic(&path, bytes));

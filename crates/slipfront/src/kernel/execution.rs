@@ -9,9 +9,8 @@ use super::fused::Fused;
 use super::reference::Reference;
 use crate::checkpoint::{BlockColumn, Checkpoint};
 use crate::communicator::Communicator;
-use crate::friction::{Friction, FrictionLaw};
+use crate::friction::{Coulomb, Friction, FrictionLaw};
 use crate::model::Model;
-use crate::slider::Slider;
 use crate::state::State;
 
 /// Which kernel computes the steps.
@@ -19,7 +18,8 @@ use crate::state::State;
 pub enum Kernel {
     /// One pass per equation, to be read along with the paper, for every model.
     Reference,
-    /// One sweep for all equations, for [`FrictionLaw::Projection`]; the reference kernel computes all else.
+    /// One sweep for all equations. The reference kernel computes what this does not: other laws than
+    /// [`FrictionLaw::Projection`], ageing, internal viscosity, and drives that rotate.
     Fused,
 }
 
@@ -41,11 +41,14 @@ const NOT_DIVIDED: &str = "the reference kernel divides no lattice among ranks";
 impl Kernel {
     /// The kernel that computes a model when this one is asked for.
     pub fn for_model(self, model: &Model) -> Self {
-        let is_plain = model.friction == Friction::from(FrictionLaw::Projection)
-            && model.slider == Slider::default()
-            && model.drive.program.is_none()
+        let is_swept = match model.friction {
+            Friction::Coulomb(Coulomb { law, ageing, .. }) => {
+                law == FrictionLaw::Projection && ageing.is_none()
+            }
+            Friction::RateAndState(_) | Friction::ContactSprings(_) => false,
+        } && model.slider.viscosity_time == 0.0
             && model.drive.rotation.is_none();
-        if is_plain { self } else { Self::Reference }
+        if is_swept { self } else { Self::Reference }
     }
 
     /// Its name in a manifest.

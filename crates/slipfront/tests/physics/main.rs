@@ -11,6 +11,7 @@ use slipfront::Kernel;
 /// The kernel of the simulations of this binary.
 const KERNEL: Kernel = Kernel::Fused;
 
+mod driven_fronts;
 mod energy;
 mod first_slip;
 mod front_speed;

@@ -7,7 +7,7 @@ use fearless_simd::{Simd, SimdBase, f64x8, i64x8};
 
 use super::aligned::{Aligned, Vectors};
 use super::blocks::{
-    ChunksMut, FrictionLoop, LatticeLoop, Sums, friction, lattice_forces, or_else, spring, upward_springs,
+    FrictionLoop, LatticeLoop, Sums, friction, lattice_forces, or_else, spring, times_factor, upward_springs,
     zero_missing,
 };
 use super::layout::{Layout, TILE};
@@ -15,12 +15,12 @@ use super::quanta::Quanta;
 use super::rest::{RestingVector, steps_until_slip};
 use super::springs::Geometry;
 use super::step::Step;
-use super::vector::{LANES, Vec2x8, lane_max, load, load_vec2, splat, subtract};
+use super::variations::{Moduli, Variation, Variations, blocks_differ, weaken};
+use super::vector::{Chunks, ChunksMut, LANES, Vec2x8, lane_max, load, load_vec2, splat, subtract};
 use crate::checkpoint::BlockColumn;
 use crate::fixed_point::FixedPoint;
 use crate::friction::Integrator;
 use crate::lattice::Bond;
-use crate::model::Model;
 use crate::state::State;
 
 /// A tile after its latest sweep.
@@ -91,8 +91,8 @@ pub(super) struct Band {
     kinetic_impulses: Aligned,
     /// The step of the first slip in contact, or [`NEVER`].
     pub(super) first_slip: Vec<u32>,
-    /// Which elements have a neighbour to the east, to the west, and in the next row; with the front halo.
-    pub(super) masks: [Vec<u8>; 3],
+    /// Which elements have a spring to the east, north, north-east and north-west; with the front halo.
+    pub(super) masks: [Vec<u8>; 4],
     /// Which elements are blocks.
     pub(super) blocks: Vec<u8>,
     /// Which elements are blocks in contact.
@@ -105,6 +105,8 @@ pub(super) struct Band {
     pub(super) active_from_step: Vec<u64>,
     /// Energy of the springs of each vector, as in [`Sums`]. Known in settled tiles.
     pub(super) lattice_energy: Vec<i64>,
+    /// Of a slider whose blocks differ.
+    pub(super) variations: Option<Variations>,
     /// Locked while fields are read; a sweep, which nothing runs beside, takes it without.
     scratch: Mutex<Scratch>,
     /// Elements from a row to the next.
@@ -146,21 +148,22 @@ impl Band {
     /// The given tiles of a lattice in `state`, or at rest, with time steps of `dt_star`.
     pub(super) fn new(
         layout: &Layout,
-        model: &Model,
+        moduli: &Moduli,
         state: Option<&State>,
         dt_star: f64,
         tiles: Range<usize>,
     ) -> Self {
+        let model = moduli.model;
         let first = tiles.start * TILE;
         let len = whole_vectors((tiles.end * TILE).min(layout.len()) - first);
         let halo = halo(layout);
         let ring = whole_vectors(layout.stride + 1 + TILE + LANES) + MIRROR;
         let bytes = || vec![0; len / LANES];
-        let mut masks: [Vec<u8>; 3] = Default::default();
-        for vector in 0..(halo + len) / LANES {
-            let element = (first + vector * LANES) as isize - halo as isize;
-            for (masks, bits) in masks.iter_mut().zip(layout.masks(element)) {
-                masks.push(bits);
+        let mut masks = [(); 4].map(|()| vec![0; (halo + len) / LANES]);
+        for k in 0..halo + len {
+            let springs = moduli.present(layout, (first + k) as isize - halo as isize);
+            for (masks, present) in masks.iter_mut().zip(springs) {
+                masks[k / LANES] |= u8::from(present) << (k % LANES);
             }
         }
         let mut band = Self {
@@ -187,6 +190,8 @@ impl Band {
             slipped: bytes(),
             active_from_step: vec![0; len / LANES],
             lattice_energy: vec![0; len / LANES],
+            variations: blocks_differ(model)
+                .then(|| Variations::new(layout, model, moduli, halo, first..first + len)),
             scratch: Mutex::new(Scratch {
                 upward: [(); 3].map(|()| Vectors::zeros(ring)),
                 lattice: Vectors::zeros(TILE),
@@ -198,12 +203,13 @@ impl Band {
         };
         let force_to_velocity = Integrator::new(model.damping, dt_star).force_to_velocity;
         for k in 0..len {
-            let Some(b) = layout.block(first + k) else {
+            let Some(b) = layout.block(first + k).filter(|&b| model.slider.exists(b)) else {
                 continue;
             };
             let static_limit = model.surface.static_limit(b);
             band.static_limit_squares[k] = static_limit * static_limit;
-            band.kinetic_impulses[k] = force_to_velocity * model.surface.kinetic_force(b);
+            band.kinetic_impulses[k] =
+                force_to_velocity * model.surface.kinetic_force(b) / model.slider.mass(b);
             let bit = 1 << (k % LANES);
             band.blocks[k / LANES] |= bit;
             if !model.surface.textured[b] {
@@ -337,7 +343,7 @@ impl Band {
         let n_tiles = self.tiles.len();
         let ahead = self.tiles_ahead().min(n_tiles);
         for t in 0..ahead {
-            self.advance(simd, step, quanta, t);
+            self.advance::<S, G>(simd, step, quanta, t);
         }
         let mut scratch = std::mem::take(self.scratch());
         if self.tasks[..ahead].iter().any(|task| task.needs_springs) {
@@ -345,7 +351,7 @@ impl Band {
         }
         for t in 0..n_tiles {
             if t + ahead < n_tiles {
-                self.advance(simd, step, quanta, t + ahead);
+                self.advance::<S, G>(simd, step, quanta, t + ahead);
             }
             let (task, elements) = (self.tasks[t], self.elements(t));
             if task.needs_springs {
@@ -357,7 +363,7 @@ impl Band {
             }
             if task.sparse {
                 self.sparse_tile(simd, geometry, step, quanta, t, &mut scratch);
-            } else if energies || task.settles {
+            } else if energies || task.settles || G::BLOCKS_DIFFER {
                 self.tile::<S, G, true>(simd, geometry, step, quanta, t, &mut scratch);
             } else {
                 self.tile::<S, G, false>(simd, geometry, step, quanta, t, &mut scratch);
@@ -401,12 +407,12 @@ impl Band {
 
     /// Eq. 8: `u += dt v` in a tile that moves.
     #[inline(always)]
-    fn advance<S: Simd>(&mut self, simd: S, step: Step, quanta: &Quanta, t: usize) {
+    fn advance<S: Simd, G: Geometry>(&mut self, simd: S, step: Step, quanta: &Quanta, t: usize) {
         if !self.tiles[t].moving {
             return;
         }
         if self.tasks[t].sparse {
-            self.advance_vectors(simd, step, quanta, t);
+            self.advance_vectors::<S, G>(simd, step, quanta, t);
             return;
         }
         let elements = self.elements(t);
@@ -440,19 +446,21 @@ impl Band {
             // Written out: an array's `map` costs more than its elements here.
             let at = |k| chunks(&self.displacement, k, n);
             let there = [at(north), at(north + 1), at(north - 1)];
-            let [has_east, has_west, has_north] = &self.masks;
+            let [_, north_masks, north_east_masks, north_west_masks] = &self.masks;
             let masks = [
-                &has_east[vectors.clone()],
-                &has_west[vectors.clone()],
-                &has_north[vectors],
+                &north_masks[vectors.clone()],
+                &north_east_masks[vectors.clone()],
+                &north_west_masks[vectors],
             ];
+            let factors = |bond: usize| self.spring_factors::<G>(bond, first, n);
+            let factors = [factors(1), factors(2), factors(3)];
             let [north_f, north_east_f, north_west_f] = &mut scratch.upward;
             let force = [
                 chunks_mut(north_f, own, n),
                 chunks_mut(north_east_f, own, n),
                 chunks_mut(north_west_f, own, n),
             ];
-            upward_springs(simd, geometry, here, there, masks, force);
+            upward_springs(simd, geometry, here, there, (masks, factors), force);
             if own < MIRROR {
                 let ring = scratch.ring();
                 for force in &mut scratch.upward {
@@ -479,7 +487,7 @@ impl Band {
         self.lattice_forces::<S, G, ENERGY>(simd, geometry, t, scratch, energy);
         let ahead = self.tiles_ahead();
         let next = [t, t + ahead].map(|t| TILE * self.next_whole_tile(t).unwrap_or(t + 1));
-        self.friction::<S, ENERGY>(simd, step, quanta, (self.elements(t), next), scratch, &mut sums);
+        self.friction::<S, G, ENERGY>(simd, step, quanta, (self.elements(t), next), scratch, &mut sums);
         let vectors = self.vectors(t).len();
         let tile = &mut self.tiles[t];
         tile.sums = sums.totals::<ENERGY>(quanta, vectors);
@@ -510,6 +518,7 @@ impl Band {
                 here: chunks(&self.displacement, first, n),
                 east: chunks(&self.displacement, first + 1, n),
                 has_east: &self.masks[0][vectors.clone()],
+                factors: [0, 1, 2, 3].map(|bond| self.spring_factors::<G>(bond, first, n)),
                 blocks: &self.blocks[vectors.start - halo..vectors.end - halo],
                 own: [
                     chunks(north, own, n),
@@ -530,7 +539,7 @@ impl Band {
     /// Eqs. 2 and 4-7 of some elements of a tile, whose lattice forces are at the beginning of the scratch array. `next` are the
     /// first of those that need friction next, and of those that move next.
     #[inline(always)]
-    pub(super) fn friction<S: Simd, const ENERGY: bool>(
+    pub(super) fn friction<S: Simd, G: Geometry, const ENERGY: bool>(
         &mut self,
         simd: S,
         step: Step,
@@ -549,11 +558,22 @@ impl Band {
             self.velocity.y.cache_lines(moving_next),
         ];
         let vectors = elements.start / LANES..elements.end / LANES;
+        let mut kinetic_impulses: Chunks = self.kinetic_impulses[elements.clone()].as_chunks().0;
+        let mut variation = Variation::default();
+        if let Some(variations) = self.variations.as_mut().filter(|_| G::BLOCKS_DIFFER) {
+            if let Some(weakening) = &variations.weakening {
+                let weakened = variations.weakened_impulses[elements.clone()].as_chunks_mut().0;
+                let velocity = chunks(&self.velocity, elements.start, n);
+                weaken(simd, weakening, velocity, kinetic_impulses, weakened);
+                kinetic_impulses = variations.weakened_impulses[elements.clone()].as_chunks().0;
+            }
+            variation = variations.of(elements.clone());
+        }
         let arrays = FrictionLoop {
             displacement: chunks(&self.displacement, start, n),
             lattice: chunks(&scratch.lattice, 0, n),
             static_limit_squares: self.static_limit_squares[elements.clone()].as_chunks().0,
-            kinetic_impulses: self.kinetic_impulses[elements.clone()].as_chunks().0,
+            kinetic_impulses,
             blocks: &self.blocks[vectors.clone()],
             in_contact: &self.in_contact[vectors.clone()],
             velocity: chunks_mut(&mut self.velocity, elements.start, n),
@@ -564,8 +584,22 @@ impl Band {
             free: chunks_mut(&mut scratch.free, 0, n),
             removed_fraction: scratch.removed_fraction[..n].as_chunks_mut().0,
             prefetched,
+            variation,
         };
-        friction::<S, ENERGY>(simd, step, quanta, arrays, sums);
+        if G::BLOCKS_DIFFER {
+            friction::<S, ENERGY, true>(simd, &step, quanta, arrays, sums);
+        } else {
+            friction::<S, ENERGY, false>(simd, &step, quanta, arrays, sums);
+        }
+    }
+
+    /// Kinetic friction of an element, as weakened by its speed before the latest sweep, from that of slow sliding.
+    pub(super) fn weakened_force(&self, k: usize, kinetic_force: f64, velocity_to_force: f64) -> f64 {
+        let variations = self.variations.as_ref();
+        match variations.filter(|variations| variations.weakening.is_some()) {
+            Some(variations) => variations.weakened_impulses[k] * variations.mass[k] * velocity_to_force,
+            None => kinetic_force,
+        }
     }
 
     /// Springs to the east of the eight elements from `first` on.
@@ -574,7 +608,19 @@ impl Band {
         let here = load_vec2(simd, chunks(&self.displacement, first, LANES), 0);
         let there = load_vec2(simd, chunks(&self.displacement, first + 1, LANES), 0);
         let has_east = self.masks[0][first / LANES];
-        spring(simd, geometry, &Bond::EAST, has_east, here, there)
+        let factors = self.spring_factors::<G>(0, first, LANES);
+        let force = spring(simd, geometry, &Bond::EAST, has_east, here, there);
+        times_factor::<S, G>(simd, force, factors, 0)
+    }
+
+    /// Factors of the springs along a bond of the `n` elements from `first` on, counted from the front halo; nothing where all are
+    /// alike.
+    #[inline(always)]
+    pub(super) fn spring_factors<G: Geometry>(&self, bond: usize, first: usize, n: usize) -> Chunks<'_> {
+        match &self.variations {
+            Some(variations) if G::BLOCKS_DIFFER => variations.springs[bond][first..first + n].as_chunks().0,
+            _ => &[],
+        }
     }
 
     /// For how many steps vector `v` at rest can be skipped; its lattice forces are at `place` in the scratch array.
@@ -593,6 +639,10 @@ impl Band {
             lattice: load_vec2(simd, chunks(&scratch.lattice, place, LANES), 0),
             static_limit_square: load(simd, &self.static_limit_squares[k..].as_chunks().0[0]),
             kinetic_impulse: load(simd, &self.kinetic_impulses[k..].as_chunks().0[0]),
+            variation: self.variations.as_ref().map(|variations| {
+                let [drive_spring, mass] = [&variations.drive_springs, &variations.mass];
+                [drive_spring, mass].map(|values| load(simd, &values[k..].as_chunks().0[0]))
+            }),
         };
         steps_until_slip(simd, &step, &blocks)
     }
@@ -648,18 +698,15 @@ impl Band {
     #[inline(always)]
     pub(super) fn springs_of(&self, v: usize) -> [(u8, usize); 4] {
         let here = self.halo + v * LANES;
-        let [has_east, has_west, has_north] = &self.masks;
-        let (east, west, north) = (
-            has_east[here / LANES],
-            has_west[here / LANES],
-            has_north[here / LANES],
-        );
         let above = here + self.stride;
+        let ends = [here + 1, above, above + 1, above - 1];
+        // Written out: an array's `map` costs more than its elements here.
+        let present = |bond: usize| self.masks[bond][here / LANES];
         [
-            (east, here + 1),
-            (north, above),
-            (north & east, above + 1),
-            (north & west, above - 1),
+            (present(0), ends[0]),
+            (present(1), ends[1]),
+            (present(2), ends[2]),
+            (present(3), ends[3]),
         ]
     }
 
@@ -673,7 +720,9 @@ impl Band {
             for k in v * LANES..(v + 1) * LANES {
                 if self.in_contact[v] >> (k % LANES) & 1 == 1 {
                     let u = self.displacement.at(self.halo + k);
-                    let [x, y] = step.drive_force(u);
+                    let variations = self.variations.as_ref();
+                    let drive_spring = variations.map_or(1.0, |variations| variations.drive_springs[k]);
+                    let [x, y] = step.drive_force(u).map(|force| drive_spring * force);
                     most = most.max(x * x + y * y);
                 }
             }

@@ -8,17 +8,14 @@ use super::aligned::CacheLines;
 use super::quanta::Quanta;
 use super::springs::Geometry;
 use super::step::Step;
+use super::variations::Variation;
 use super::vector::{
-    LANES, Vec2x8, add, bits, dot, is_zero, lane_max, lane_sum, load, load_vec2, mask, or_zero, scale,
-    select, shift_in, splat, square, subtract,
+    Chunks, ChunksMut, LANES, Vec2x8, add, bits, dot, is_zero, lane_max, lane_sum, load, load_vec2, mask,
+    or_zero, scale, select, shift_in, splat, square, subtract,
 };
 use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, join, split};
 use crate::lattice::Bond;
-
-/// One number per element, in vectors of eight.
-pub(super) type Chunks<'a> = &'a [[f64; LANES]];
-pub(super) type ChunksMut<'a> = &'a mut [[f64; LANES]];
 
 /// x and y of a quantity of the springs to the next row: north, north-east and north-west.
 pub(super) type Upward<T> = [[T; 2]; 3];
@@ -28,6 +25,8 @@ pub(super) struct LatticeLoop<'a> {
     pub(super) here: [Chunks<'a>; 2],
     pub(super) east: [Chunks<'a>; 2],
     pub(super) has_east: &'a [u8],
+    /// Factors of the springs to the east, north, north-east and north-west, where they differ.
+    pub(super) factors: [Chunks<'a>; 4],
     /// Which elements are blocks.
     pub(super) blocks: &'a [u8],
     /// Upward springs of these blocks.
@@ -51,6 +50,21 @@ pub(super) fn spring<S: Simd, G: Geometry>(
     zero_missing(simd, present, geometry.force(simd, bond, subtract(there, here)))
 }
 
+/// Forces of springs that may differ, times the factor of each.
+#[inline(always)]
+pub(super) fn times_factor<S: Simd, G: Geometry>(
+    simd: S,
+    force: Vec2x8<S>,
+    factors: Chunks,
+    chunk: usize,
+) -> Vec2x8<S> {
+    if G::BLOCKS_DIFFER {
+        scale(load(simd, &factors[chunk]), force)
+    } else {
+        force
+    }
+}
+
 /// Zero where a bit of `present` is 0.
 #[inline(always)]
 pub(super) fn zero_missing<S: Simd>(simd: S, present: u8, a: Vec2x8<S>) -> Vec2x8<S> {
@@ -68,15 +82,14 @@ pub(super) fn or_else<S: Simd>(simd: S, present: u8, a: Vec2x8<S>, other: Vec2x8
 }
 
 /// Eq. 3: the springs to the next row, each computed once for the blocks at its two ends, from the displacements of the blocks
-/// and of their neighbours along the three bonds. `force` is that on the lower blocks; for `masks` see
-/// [`super::layout::Layout::masks`].
+/// and of their neighbours along the three bonds. `force` is that on the lower blocks; masks tell which springs are there.
 #[inline(always)]
 pub(super) fn upward_springs<S: Simd, G: Geometry>(
     simd: S,
     geometry: G,
     here: [Chunks; 2],
     there: Upward<Chunks>,
-    masks: [&[u8]; 3],
+    (masks, factors): ([&[u8]; 3], [Chunks; 3]),
     force: Upward<ChunksMut>,
 ) {
     let [[nx, ny], [nex, ney], [nwx, nwy]] = force;
@@ -86,21 +99,28 @@ pub(super) fn upward_springs<S: Simd, G: Geometry>(
     let here = first_n(here, n);
     let [north, north_east, north_west] = there;
     let (north, north_east, north_west) = (first_n(north, n), first_n(north_east, n), first_n(north_west, n));
-    let [has_east, has_west, has_north] = masks;
-    let (has_east, has_west, has_north) = (&has_east[..n], &has_west[..n], &has_north[..n]);
+    let [has_north, has_north_east, has_north_west] = masks;
+    let (has_north, has_north_east) = (&has_north[..n], &has_north_east[..n]);
+    let has_north_west = &has_north_west[..n];
+    let factors_end = if G::BLOCKS_DIFFER { n } else { 0 };
+    let [to_north, to_north_east, to_north_west] = factors;
+    let (to_north, to_north_east) = (&to_north[..factors_end], &to_north_east[..factors_end]);
+    let to_north_west = &to_north_west[..factors_end];
     for c in 0..n {
         let u = load_vec2(simd, here, c);
-        let (up, right, left) = (has_north[c], has_east[c], has_west[c]);
         let there = load_vec2(simd, north, c);
-        let [x, y] = spring(simd, geometry, &Bond::NORTH, up, u, there);
+        let force = spring(simd, geometry, &Bond::NORTH, has_north[c], u, there);
+        let [x, y] = times_factor::<S, G>(simd, force, to_north, c);
         x.store_array(&mut nx[c]);
         y.store_array(&mut ny[c]);
         let there = load_vec2(simd, north_east, c);
-        let [x, y] = spring(simd, geometry, &Bond::NORTH_EAST, up & right, u, there);
+        let force = spring(simd, geometry, &Bond::NORTH_EAST, has_north_east[c], u, there);
+        let [x, y] = times_factor::<S, G>(simd, force, to_north_east, c);
         x.store_array(&mut nex[c]);
         y.store_array(&mut ney[c]);
         let there = load_vec2(simd, north_west, c);
-        let [x, y] = spring(simd, geometry, &Bond::NORTH_WEST, up & left, u, there);
+        let force = spring(simd, geometry, &Bond::NORTH_WEST, has_north_west[c], u, there);
+        let [x, y] = times_factor::<S, G>(simd, force, to_north_west, c);
         x.store_array(&mut nwx[c]);
         y.store_array(&mut nwy[c]);
     }
@@ -129,11 +149,16 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
     let [south, south_west, south_east] = arrays.behind;
     let (south, south_west, south_east) = (first_n(south, n), first_n(south_west, n), first_n(south_east, n));
     let (has_east, blocks) = (&arrays.has_east[..n], &arrays.blocks[..n]);
+    let factors_end = if G::BLOCKS_DIFFER { n } else { 0 };
+    let [to_east, to_north, to_north_east, to_north_west] = arrays.factors;
+    let (to_east, to_north) = (&to_east[..factors_end], &to_north[..factors_end]);
+    let (to_north_east, to_north_west) = (&to_north_east[..factors_end], &to_north_west[..factors_end]);
     let mut before = *west;
     for c in 0..n {
         let u = load_vec2(simd, here, c);
         let v = load_vec2(simd, there, c);
         let east = spring(simd, geometry, &Bond::EAST, has_east[c], u, v);
+        let east = times_factor::<S, G>(simd, east, to_east, c);
         let west = shift_in(before, east);
         before = east;
         let north = load_vec2(simd, north, c);
@@ -150,23 +175,54 @@ pub(super) fn lattice_forces<S: Simd, G: Geometry, const ENERGY: bool>(
         y.store_array(&mut fy[c]);
         if ENERGY {
             let springs = [east, north, north_east, north_west];
-            *energy += spring_energies(simd, springs, blocks[c], quantum);
+            let squares = squares_over_factors::<S, G>(
+                simd,
+                springs,
+                [to_east, to_north, to_north_east, to_north_west],
+                c,
+            );
+            *energy += spring_energies(simd, squares, blocks[c], quantum);
         }
     }
     *west = before;
 }
 
-/// Energy times `2 k_1` of the springs of eight blocks to the east, north, north-east and north-west: see [`integers`].
+/// Squares of the forces of eight blocks' springs to the east, north, north-east and north-west, over the factors of springs that
+/// may differ.
+#[inline(always)]
+fn squares_over_factors<S: Simd, G: Geometry>(
+    simd: S,
+    [east, north, north_east, north_west]: [Vec2x8<S>; 4],
+    factors: [Chunks; 4],
+    chunk: usize,
+) -> [f64x8<S>; 4] {
+    let squares = [
+        square(east),
+        square(north),
+        square(north_east),
+        square(north_west),
+    ];
+    if !G::BLOCKS_DIFFER {
+        return squares;
+    }
+    // A missing spring has no force, and no factor.
+    let least = splat(simd, f64::MIN_POSITIVE);
+    let over = |k: usize| squares[k] / load(simd, &factors[k][chunk]).max(least);
+    [over(0), over(1), over(2), over(3)]
+}
+
+/// Energy times `2 k_1` of the springs of eight blocks to the east, north, north-east and north-west, from the squares of their
+/// forces: see [`integers`].
 #[inline(always)]
 fn spring_energies<S: Simd>(
     simd: S,
-    [east, north, north_east, north_west]: [Vec2x8<S>; 4],
+    [east, north, north_east, north_west]: [f64x8<S>; 4],
     blocks: u8,
     quantum: FixedPoint,
 ) -> i64x8<S> {
     // (k/2) extension^2 = F^2/(2k), and k_1 = 2 k_2.
-    let straight = square(east) + square(north);
-    let diagonal = square(north_east) + square(north_west);
+    let straight = east + north;
+    let diagonal = north_east + north_west;
     let energies = straight + splat(simd, 2.0) * diagonal;
     let energies = zero_missing(simd, blocks, [energies, energies])[0];
     integers(energies, splat(simd, quantum.shift()))
@@ -174,38 +230,48 @@ fn spring_energies<S: Simd>(
 
 /// Sum of [`spring_energies`] over a vector.
 #[inline(always)]
-pub(super) fn vector_energy<S: Simd>(
+pub(super) fn vector_energy<S: Simd, G: Geometry>(
     simd: S,
     springs: [Vec2x8<S>; 4],
     blocks: u8,
+    factors: [Chunks; 4],
     quantum: FixedPoint,
 ) -> i64 {
-    integer_sum(spring_energies(simd, springs, blocks, quantum), quantum, 1)
+    let squares = squares_over_factors::<S, G>(simd, springs, factors, 0);
+    integer_sum(spring_energies(simd, squares, blocks, quantum), quantum, 1)
 }
 
-/// What eight blocks add to the sums of `u - c` and `(u - c)^2`.
+/// What eight blocks add to the sums of `w (u - c)` and `w (u - c)^2`.
 #[inline(always)]
-pub(super) fn displacement_sums<S: Simd>(
+pub(super) fn displacement_sums<S: Simd, G: Geometry>(
     simd: S,
     u: Vec2x8<S>,
     blocks: u8,
+    drive_springs: Chunks,
     quanta: &Quanta,
 ) -> ([i64; 2], i64) {
     let [x, y] = quanta.displacement;
     let centres = [splat(simd, x.centre()), splat(simd, y.centre())];
     let u = or_else(simd, blocks, u, centres);
-    let lanes = [
-        integers(u[0], splat(simd, x.shift())),
-        integers(u[1], splat(simd, y.shift())),
-    ];
-    let sums = [
-        integer_sum(lanes[0], x.differences(), 1),
-        integer_sum(lanes[1], y.differences(), 1),
-    ];
-    let squares = integers(
-        square(subtract(u, centres)),
-        splat(simd, quanta.displacement_square.shift()),
-    );
+    let differences = subtract(u, centres);
+    let mut squares = square(differences);
+    let lanes = if G::BLOCKS_DIFFER {
+        let w = load(simd, &drive_springs[0]);
+        squares = w * squares;
+        let [x, y] = quanta.weighted_displacement;
+        [
+            integers(w * differences[0], splat(simd, x.shift())),
+            integers(w * differences[1], splat(simd, y.shift())),
+        ]
+    } else {
+        [
+            integers(u[0], splat(simd, x.shift())),
+            integers(u[1], splat(simd, y.shift())),
+        ]
+    };
+    let [x, y] = quanta.weighted_displacement;
+    let sums = [integer_sum(lanes[0], x, 1), integer_sum(lanes[1], y, 1)];
+    let squares = integers(squares, splat(simd, quanta.displacement_square.shift()));
     (sums, integer_sum(squares, quanta.displacement_square, 1))
 }
 
@@ -242,25 +308,27 @@ pub(super) struct FrictionLoop<'a> {
     pub(super) removed_fraction: ChunksMut<'a>,
     /// Memory of later tiles, fetched ahead.
     pub(super) prefetched: [CacheLines; 6],
+    /// Of a slider whose blocks differ.
+    pub(super) variation: Variation<'a>,
 }
 
 /// Sums over the blocks of a tile, as integers of type `I` in their [`Quanta`], and maxima. While the tile is swept, both are one
 /// number for each of eight lanes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sums<I, M, N = u32> {
-    /// `sum u - c`, with the centre c of the window.
+    /// `sum w (u - c)`, with the relative stiffness w of the drive springs and the centre c of the window.
     pub(super) displacement: [I; 2],
-    /// `sum v(t + dt/2)`.
+    /// `sum w v(t + dt/2)`.
     pub(super) velocity: [I; 2],
-    /// `sum (v(t - dt/2) + v(t + dt/2))^2`.
+    /// `sum m (v(t - dt/2) + v(t + dt/2))^2`.
     pub(super) motion_square: I,
     /// `sum -F_f . (v(t - dt/2) + v(t + dt/2))`.
     pub(super) friction_work: I,
     /// Energy of the springs times `2 k_1`, at steps at which energies are needed.
     pub(super) lattice_energy: I,
-    /// `sum v(t - dt/2)^2 + v(t + dt/2)^2`, at steps at which energies are needed.
+    /// `sum m (v(t - dt/2)^2 + v(t + dt/2)^2)`, at steps at which energies are needed.
     pub(super) velocity_squares: I,
-    /// `sum (u - c)^2`, at steps at which energies are needed.
+    /// `sum w (u - c)^2`, at steps at which energies are needed.
     pub(super) displacement_square: I,
     /// Largest `tau_c^2` of a block in contact.
     pub(super) stress_square: M,
@@ -294,11 +362,11 @@ impl<S: Simd> Sums<i64x8<S>, f64x8<S>> {
     /// Of all lanes, after so many vectors.
     #[inline(always)]
     pub(super) fn totals<const ENERGY: bool>(&self, quanta: &Quanta, vectors: usize) -> Sums<i64, f64> {
-        let [x, y] = quanta.displacement;
+        let [x, y] = quanta.weighted_displacement;
         let mut sums = Sums {
             displacement: [
-                integer_sum(self.displacement[0], x.differences(), vectors),
-                integer_sum(self.displacement[1], y.differences(), vectors),
+                integer_sum(self.displacement[0], x, vectors),
+                integer_sum(self.displacement[1], y, vectors),
             ],
             velocity: [
                 integer_sum(self.velocity[0], quanta.velocity, vectors),
@@ -401,7 +469,7 @@ pub(super) fn pull<S: Simd>(simd: S, step: Step, u: Vec2x8<S>) -> Vec2x8<S> {
 
 /// The first part of the friction law: drive (Eq. 2), damping (Eq. 5), and the velocity without friction.
 #[inline(always)]
-fn free_motion<S: Simd>(simd: S, step: Step, arrays: &mut FrictionLoop) {
+fn free_motion<S: Simd, const DIFFER: bool>(simd: S, step: Step, arrays: &mut FrictionLoop) {
     let n = arrays.removed_fraction.len();
     let (u, lattice) = (first_n(arrays.displacement, n), first_n(arrays.lattice, n));
     let velocity = [&arrays.velocity[0][..n], &arrays.velocity[1][..n]];
@@ -410,15 +478,19 @@ fn free_motion<S: Simd>(simd: S, step: Step, arrays: &mut FrictionLoop) {
     let [fx, fy] = &mut arrays.free;
     let (dx, dy, fx, fy) = (&mut dx[..n], &mut dy[..n], &mut fx[..n], &mut fy[..n]);
     let removed_fraction = &mut arrays.removed_fraction[..n];
+    let variation = arrays.variation.first::<DIFFER>(n);
     for c in 0..n {
-        let drive = pull(simd, step, load_vec2(simd, u, c));
+        let mut drive = pull(simd, step, load_vec2(simd, u, c));
+        let mut force_to_velocity = splat(simd, step.integrator.force_to_velocity);
+        let before = load_vec2(simd, velocity, c);
+        if DIFFER {
+            drive = scale(load(simd, &variation.drive_springs[c]), drive);
+            force_to_velocity = force_to_velocity * load(simd, &variation.inverse_mass[c]);
+        }
         let force = add(drive, load_vec2(simd, lattice, c));
         let free = add(
-            scale(
-                splat(simd, step.integrator.velocity_decay),
-                load_vec2(simd, velocity, c),
-            ),
-            scale(splat(simd, step.integrator.force_to_velocity), force),
+            scale(splat(simd, step.integrator.velocity_decay), before),
+            scale(force_to_velocity, force),
         );
         let removed = load(simd, &kinetic_impulses[c]) / square(free).sqrt();
         drive[0].store_array(&mut dx[c]);
@@ -429,17 +501,32 @@ fn free_motion<S: Simd>(simd: S, step: Step, arrays: &mut FrictionLoop) {
     }
 }
 
+/// [`friction_loop`] as a function of its own, which sweeps by other formulas for springs share: it takes most of the time to compile.
+#[inline(never)]
+pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
+    simd: S,
+    step: &Step,
+    quanta: &Quanta,
+    arrays: FrictionLoop,
+    sums: &mut Sums<i64x8<S>, f64x8<S>>,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || friction_loop::<S, ENERGY, DIFFER>(simd, *step, quanta, arrays, sums),
+    );
+}
+
 /// Eqs. 2 and 4-7 by Moreau's time-stepping: the operations of [`crate::friction::Projection`], eight blocks at a time, and all
 /// sums that observers need at every step.
 #[inline(always)]
-pub(super) fn friction<S: Simd, const ENERGY: bool>(
+fn friction_loop<S: Simd, const ENERGY: bool, const DIFFER: bool>(
     simd: S,
     step: Step,
     quanta: &Quanta,
     mut arrays: FrictionLoop,
     sums: &mut Sums<i64x8<S>, f64x8<S>>,
 ) {
-    free_motion(simd, step, &mut arrays);
+    free_motion::<S, DIFFER>(simd, step, &mut arrays);
     let [vx, vy] = arrays.velocity;
     let n = vx.len();
     let vy = &mut vy[..n];
@@ -459,6 +546,9 @@ pub(super) fn friction<S: Simd, const ENERGY: bool>(
     let velocity_shift = splat(simd, quanta.velocity.shift());
     let motion_shift = splat(simd, quanta.motion_square.shift());
     let work_shift = splat(simd, quanta.friction_work.shift());
+    let variation = arrays.variation.first::<DIFFER>(n);
+    let weighted = quanta.weighted_displacement;
+    let weighted = [splat(simd, weighted[0].shift()), splat(simd, weighted[1].shift())];
     for c in 0..n {
         for lines in arrays.prefetched {
             lines.prefetch(c);
@@ -483,18 +573,30 @@ pub(super) fn friction<S: Simd, const ENERGY: bool>(
         after[1].store_array(&mut vy[c]);
 
         // Minus the friction force: kinetic friction of a sliding block, else the sum of the other forces.
-        let kinetic = scale(
-            removed_fraction * splat(simd, step.integrator.velocity_to_force),
-            free,
-        );
+        let mut velocity_to_force = splat(simd, step.integrator.velocity_to_force);
+        if DIFFER {
+            velocity_to_force = velocity_to_force * load(simd, &variation.mass[c]);
+        }
+        let kinetic = scale(removed_fraction * velocity_to_force, free);
         let against = select(slides, kinetic, force);
         let both = zero_missing(simd, blocks[c], add(before, after));
         let displacement = or_else(simd, blocks[c], load_vec2(simd, u, c), centres);
-        sums.displacement[0] += integers(displacement[0], in_window[0]);
-        sums.displacement[1] += integers(displacement[1], in_window[1]);
-        sums.velocity[0] += integers(after[0], velocity_shift);
-        sums.velocity[1] += integers(after[1], velocity_shift);
-        sums.motion_square += integers(square(both), motion_shift);
+        let mut motion_square = square(both);
+        if DIFFER {
+            let w = load(simd, &variation.drive_springs[c]);
+            let differences = subtract(displacement, centres);
+            sums.displacement[0] += integers(w * differences[0], weighted[0]);
+            sums.displacement[1] += integers(w * differences[1], weighted[1]);
+            sums.velocity[0] += integers(w * after[0], velocity_shift);
+            sums.velocity[1] += integers(w * after[1], velocity_shift);
+            motion_square = load(simd, &variation.mass[c]) * motion_square;
+        } else {
+            sums.displacement[0] += integers(displacement[0], in_window[0]);
+            sums.displacement[1] += integers(displacement[1], in_window[1]);
+            sums.velocity[0] += integers(after[0], velocity_shift);
+            sums.velocity[1] += integers(after[1], velocity_shift);
+        }
+        sums.motion_square += integers(motion_square, motion_shift);
         sums.friction_work += integers(dot(against, both), work_shift);
         sums.speed_square = sums.speed_square.max(square(after));
         // Eq. 10; for a stuck block F_f + F_c = -F_s to the last bit.
@@ -502,11 +604,16 @@ pub(super) fn friction<S: Simd, const ENERGY: bool>(
         let stress = zero_missing(simd, in_contact[c], stress);
         sums.stress_square = sums.stress_square.max(square(stress));
         if ENERGY {
-            let squares = zero_missing(simd, blocks[c], [square(before) + square(after), zero])[0];
-            sums.velocity_squares += integers(squares, motion_shift);
-            let squares = square(subtract(displacement, centres));
+            let mut motion = square(before) + square(after);
+            let mut stretch = square(subtract(displacement, centres));
+            if DIFFER {
+                motion = load(simd, &variation.mass[c]) * motion;
+                stretch = load(simd, &variation.drive_springs[c]) * stretch;
+            }
+            let motion = zero_missing(simd, blocks[c], [motion, zero])[0];
+            sums.velocity_squares += integers(motion, motion_shift);
             let shift = splat(simd, quanta.displacement_square.shift());
-            sums.displacement_square += integers(squares, shift);
+            sums.displacement_square += integers(stretch, shift);
         }
         mark_first_slips(slips, &mut slipped[c], &mut first_slip[c], step.number as u32);
     }

@@ -6,7 +6,7 @@ use fearless_simd::{Simd, SimdBase, SimdFloat, i64x8};
 use super::band::{Band, Scratch, chunks};
 use super::blocks::pull;
 use super::layout::{Layout, TILE};
-use super::springs::SquareRoot;
+use super::springs::Geometry;
 use super::step::Step;
 use super::vector::{LANES, add, bits, is_zero, load, load_vec2, scale, select, square};
 use crate::fixed_point::FixedPoint;
@@ -20,17 +20,22 @@ pub(super) fn block(
     model: &Model,
     time_star: f64,
     b: usize,
+    kinetic_force: f64,
     motion: impl Fn(usize) -> [[f64; 2]; 2],
 ) -> Block {
     let [displacement, velocity] = motion(b);
     let force_lattice = lattice_force(model, b, displacement, |b| motion(b)[0]);
-    let force_drive = model.drive.force(displacement, time_star);
+    let drive_spring = model.slider.drive_spring(b);
+    let force_drive = model
+        .drive
+        .force(displacement, time_star)
+        .map(|force| drive_spring * force);
     Block {
         displacement,
         velocity,
         force_drive,
         force_lattice,
-        force_friction: friction(model, b, velocity, force_drive, force_lattice),
+        force_friction: friction(kinetic_force, velocity, force_drive, force_lattice),
     }
 }
 
@@ -41,9 +46,12 @@ fn lattice_force(model: &Model, b: usize, u: [f64; 2], displacement: impl Fn(usi
         let [di, dj] = bond.offset;
         let force =
             |from: [f64; 2], to: [f64; 2]| bond.force([to[0] - from[0], to[1] - from[1]], model.epsilon);
-        let neighbour = |offset| model.lattice.neighbour(i, j, offset).map(&displacement);
-        let ahead = neighbour([di, dj]).map_or([0.0; 2], |v| force(u, v));
-        let behind = neighbour([-di, -dj]).map_or([0.0; 2], |v| force(v, u));
+        let neighbour = |offset| {
+            let other = model.lattice.neighbour(i, j, offset)?;
+            Some((displacement(other), model.slider.spring(b, other)))
+        };
+        let ahead = neighbour([di, dj]).map_or([0.0; 2], |(v, factor)| force(u, v).map(|f| factor * f));
+        let behind = neighbour([-di, -dj]).map_or([0.0; 2], |(v, factor)| force(v, u).map(|f| factor * f));
         [ahead[0] - behind[0], ahead[1] - behind[1]]
     };
     let [e, n, ne, nw] = Bond::ALL.each_ref().map(pair);
@@ -52,19 +60,20 @@ fn lattice_force(model: &Model, b: usize, u: [f64; 2], displacement: impl Fn(usi
 
 /// `F_f` of the projection law: kinetic friction against the velocity that the update left, or for a stuck block minus the
 /// sum of the other forces.
-fn friction(model: &Model, b: usize, velocity: [f64; 2], drive: [f64; 2], lattice: [f64; 2]) -> [f64; 2] {
+fn friction(kinetic_force: f64, velocity: [f64; 2], drive: [f64; 2], lattice: [f64; 2]) -> [f64; 2] {
     if velocity == [0.0, 0.0] {
         return [-(drive[0] + lattice[0]), -(drive[1] + lattice[1])];
     }
-    let per_velocity = model.surface.kinetic_force(b) / length(velocity);
+    let per_velocity = kinetic_force / length(velocity);
     [-per_velocity * velocity[0], -per_velocity * velocity[1]]
 }
 
 /// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the row, the column of the
 /// first value, and the values.
 #[inline(always)]
-pub(super) fn read_rows<S: Simd>(
+pub(super) fn read_rows<S: Simd, G: Geometry>(
     simd: S,
+    geometry: G,
     model: &Model,
     step: Step,
     field: Field,
@@ -87,21 +96,22 @@ pub(super) fn read_rows<S: Simd>(
                 Field::ContactStress | Field::Traction => {
                     let from = band.below(displaced.start).max(springs_end);
                     springs_end = displaced.end;
-                    let epsilon = model.epsilon;
-                    let geometry = SquareRoot { epsilon };
                     band.upward(simd, geometry, &mut scratch, from, springs_end);
                     let energy = (FixedPoint::new(0.0), &mut i64x8::splat(simd, 0));
-                    band.lattice_forces::<S, SquareRoot, false>(simd, geometry, t, &mut scratch, energy);
+                    band.lattice_forces::<S, G, false>(simd, geometry, t, &mut scratch, energy);
                     let mut forces = [[0.0; LANES]; TILE / LANES];
                     if band.tiles[t].moving {
                         for (j, i, blocks) in rows() {
+                            let first = band.first + elements.start + blocks.start;
                             let kinetic = &mut forces.as_flattened_mut()[blocks];
-                            model
-                                .surface
-                                .read_kinetic_forces(model.lattice.block(i, j), kinetic);
+                            let b = model.lattice.block(i, j);
+                            model.surface.read_kinetic_forces(b, kinetic);
+                            for (k, force) in (first - band.first..).zip(kinetic) {
+                                *force = band.weakened_force(k, *force, step.integrator.velocity_to_force);
+                            }
                         }
                     }
-                    stresses(simd, step, field, band, t, &scratch, &mut forces);
+                    stresses::<S, G>(simd, step, field, band, t, &scratch, &mut forces);
                     round(&mut values, forces.as_flattened());
                 }
                 Field::DisplacementX => round(&mut values, &band.displacement.x[displaced]),
@@ -117,6 +127,12 @@ pub(super) fn read_rows<S: Simd>(
             }
             for (j, i, blocks) in rows().filter(|(j, ..)| layout.lattice_row(*j).is_multiple_of(stride)) {
                 let values = &mut values[blocks];
+                if let Some(outline) = &model.slider.outline {
+                    let exists = &outline.exists[model.lattice.block(i, j)..];
+                    for (value, &exists) in values.iter_mut().zip(exists) {
+                        *value = if exists { *value } else { f32::NAN };
+                    }
+                }
                 if field == Field::Traction {
                     let textured = &model.surface.textured[model.lattice.block(i, j)..];
                     for (value, &textured) in values.iter_mut().zip(textured) {
@@ -138,7 +154,7 @@ fn round(values: &mut [f32; TILE], exact: &[f64]) {
 /// Contact stress `|F_f + F_c|` (Eq. 10) or traction `|F_f|` in a tile, with friction as for one block. `forces` are the kinetic
 /// friction of every element, and become what is found.
 #[inline(always)]
-fn stresses<S: Simd>(
+fn stresses<S: Simd, G: Geometry>(
     simd: S,
     step: Step,
     field: Field,
@@ -155,7 +171,15 @@ fn stresses<S: Simd>(
     for (c, stress) in forces[..n / LANES].iter_mut().enumerate() {
         let velocity = load_vec2(simd, velocities, c);
         let lattice = load_vec2(simd, lattice_forces, c);
-        let [x, y] = add(pull(simd, step, load_vec2(simd, displacements, c)), lattice);
+        let mut drive = pull(simd, step, load_vec2(simd, displacements, c));
+        if let Some(variations) = band.variations.as_ref().filter(|_| G::BLOCKS_DIFFER) {
+            let first = elements.start + c * LANES;
+            drive = scale(
+                load(simd, &variations.drive_springs[first..].as_chunks().0[0]),
+                drive,
+            );
+        }
+        let [x, y] = add(drive, lattice);
         let mut force = [-x, -y];
         let stuck = is_zero(simd, velocity);
         if bits(simd, stuck) != u8::MAX {

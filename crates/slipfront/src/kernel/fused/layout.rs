@@ -50,11 +50,6 @@ impl Layout {
         self.rows * self.stride
     }
 
-    /// Number of blocks of the whole lattice.
-    pub(super) fn n_blocks(&self) -> usize {
-        self.lattice.n_blocks()
-    }
-
     /// Number of blocks of these rows.
     pub(super) fn n_own_blocks(&self) -> usize {
         self.rows * self.lattice.nx
@@ -144,26 +139,40 @@ impl Layout {
         self.is_periodic_along_y() && self.rows == self.lattice.ny
     }
 
-    /// Which neighbours of the eight elements from `first` on exist, one bit each: to the east, to the west, and in the next row.
-    /// The elements may lie before the first or after the last row.
-    pub(super) fn masks(&self, first: isize) -> [u8; 3] {
-        let (stride, ghosts) = (self.stride as isize, self.ghosts as isize);
-        let (nx, ny) = (self.lattice.nx as isize, self.lattice.ny as isize);
-        let mut bits = [0; 3];
-        for lane in 0..LANES {
-            let element = first + lane as isize;
-            let row = element.div_euclid(stride) + self.first_row as isize;
-            let i = element.rem_euclid(stride) - ghosts;
-            let exist = [
-                (-ghosts..nx + ghosts - 1).contains(&i),
-                (1 - ghosts..nx + ghosts).contains(&i),
-                self.is_periodic_along_y() || (0..ny - 1).contains(&row),
-            ];
-            for (bits, exists) in bits.iter_mut().zip(exist) {
-                *bits |= u8::from(exists) << lane;
-            }
+    /// Row, counted from the first of these, and column of an element, ghosts included; the column counts from the first ghost.
+    pub(super) fn row_column(&self, element: isize) -> (isize, usize) {
+        let stride = self.stride as isize;
+        (element.div_euclid(stride), element.rem_euclid(stride) as usize)
+    }
+
+    /// The block at a place of [`row_column`](Self::row_column), or the one that is copied there; none beyond a free edge.
+    pub(super) fn block_around(&self, row: isize, column: usize) -> Option<usize> {
+        let (nx, rows) = (self.lattice.nx, self.rows as isize);
+        let row = if self.wraps_along_y() {
+            row.rem_euclid(rows)
+        } else {
+            row
+        };
+        if !(0..rows).contains(&row) || column >= nx + 2 * self.ghosts {
+            return None;
         }
-        bits
+        let i = (column + nx - self.ghosts) % nx;
+        Some(self.lattice.block(i, row as usize))
+    }
+
+    /// Which springs of an element to the east, north, north-east and north-west the lattice has. It may lie before the first or
+    /// after the last row.
+    pub(super) fn springs(&self, element: isize) -> [bool; 4] {
+        let ghosts = self.ghosts as isize;
+        let (nx, ny) = (self.lattice.nx as isize, self.lattice.ny as isize);
+        let (row, column) = self.row_column(element);
+        let (row, i) = (row + self.first_row as isize, column as isize - ghosts);
+        let east = (-ghosts..nx + ghosts - 1).contains(&i);
+        let west = (1 - ghosts..nx + ghosts).contains(&i);
+        let north = self.is_periodic_along_y() || (0..ny - 1).contains(&row);
+        // Elements between the rows have no springs.
+        let is_stored = (-ghosts..nx + ghosts).contains(&i);
+        [east, north && is_stored, north && east, north && west]
     }
 
     /// The elements from `from` to `to`, each piece with where it begins. Those before the first row or after the last are left out,

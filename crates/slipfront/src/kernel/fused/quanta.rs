@@ -2,59 +2,111 @@
 //! displacements and the highest speed, which every rank and thread knows.
 
 use super::step::Step;
+use super::variations::blocks_differ;
 use crate::checkpoint::MotionBounds;
+use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, Window};
 use crate::lattice::{K_DIAGONAL, K_STRAIGHT};
+use crate::model::Model;
 
 /// Quanta of the sums in a sweep.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Quanta {
     /// Of `u - c`, for each axis; c is the centre of the window.
     pub(super) displacement: [Window; 2],
-    /// Of `(u - c)^2`.
+    /// Of `w (u - c)`, with the relative stiffness w of the drive springs.
+    pub(super) weighted_displacement: [FixedPoint; 2],
+    /// Of `w (u - c)^2`.
     pub(super) displacement_square: FixedPoint,
-    /// Of `v`.
+    /// Of `w v`.
     pub(super) velocity: FixedPoint,
-    /// Of squares of sums of two velocities.
+    /// Of masses times squares of sums of two velocities.
     pub(super) motion_square: FixedPoint,
     /// Of products of a force and a sum of two velocities.
     pub(super) friction_work: FixedPoint,
-    /// Of squares of spring forces.
+    /// Of squares of spring forces over the factors of the springs.
     pub(super) lattice_energy: FixedPoint,
+}
+
+/// Largest factors of any block of the lattice.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Largest {
+    /// Young's modulus, and so the factor of a spring between blocks.
+    pub(super) modulus: f64,
+    pub(super) drive_spring: f64,
+    pub(super) mass: f64,
+    pub(super) inverse_mass: f64,
+}
+
+impl Largest {
+    /// Of all blocks of this rank and of the others, which call this together.
+    pub(super) fn of(model: &Model, communicator: &dyn Communicator) -> Self {
+        let slider = &model.slider;
+        let all = || 0..model.surface.n_blocks();
+        let largest = |value: &dyn Fn(usize) -> f64| all().map(value).fold(0.0, f64::max);
+        let mut found = [1.0; 4];
+        if blocks_differ(model) {
+            found = [
+                largest(&|b| slider.modulus(b)),
+                largest(&|b| slider.drive_spring(b)),
+                largest(&|b| slider.mass(b)),
+                largest(&|b| 1.0 / slider.mass(b)),
+            ];
+            communicator.largest(&mut found);
+        }
+        let [modulus, drive_spring, mass, inverse_mass] = found;
+        Self {
+            modulus,
+            drive_spring,
+            mass,
+            inverse_mass,
+        }
+    }
 }
 
 /// Rounding in the bounds and in what they bound.
 const MARGIN: f64 = 1.0 + 1e-6;
 
 impl Quanta {
-    pub(super) fn new(step: &Step, bounds: &MotionBounds) -> Self {
+    pub(super) fn new(step: &Step, bounds: &MotionBounds, largest: &Largest) -> Self {
         let [x, y] = bounds.windows.map(|window| window.differences().limit());
         let spring_force = K_STRAIGHT * bounds.spring_range.limit();
-        let speed = highest_speed(step, bounds);
+        let speed = highest_speed(step, bounds, largest);
+        let &Largest {
+            modulus,
+            drive_spring,
+            mass,
+            ..
+        } = largest;
         Self {
             displacement: bounds.windows,
-            displacement_square: FixedPoint::new(MARGIN * (x * x + y * y)),
-            velocity: FixedPoint::new(speed),
-            motion_square: FixedPoint::new(MARGIN * 4.0 * speed * speed),
+            weighted_displacement: bounds.windows.map(|window| match drive_spring {
+                1.0 => window.differences(),
+                _ => FixedPoint::new(MARGIN * drive_spring * window.differences().limit()),
+            }),
+            displacement_square: FixedPoint::new(MARGIN * drive_spring * (x * x + y * y)),
+            velocity: FixedPoint::new(drive_spring * speed),
+            motion_square: FixedPoint::new(MARGIN * mass * 4.0 * speed * speed),
             // Friction stops a block at most.
-            friction_work: FixedPoint::new(MARGIN * step.integrator.velocity_to_force * 2.0 * speed * speed),
+            friction_work: FixedPoint::new(
+                MARGIN * mass * step.integrator.velocity_to_force * 2.0 * speed * speed,
+            ),
             // Two straight springs, and two diagonal ones of half their stiffness that count twice.
-            lattice_energy: FixedPoint::new(MARGIN * 3.0 * spring_force * spring_force),
+            lattice_energy: FixedPoint::new(MARGIN * modulus * 3.0 * spring_force * spring_force),
         }
     }
 }
 
 /// A bound on all speeds half a step after `step`: they change at most as without friction.
-fn highest_speed(step: &Step, bounds: &MotionBounds) -> f64 {
+fn highest_speed(step: &Step, bounds: &MotionBounds, largest: &Largest) -> f64 {
     let mut force = 0.0;
     for axis in 0..2 {
         let [low, high] = bounds.range(axis);
         let position = step.drive_position[axis];
         let stretch = (position - low).abs().max((position - high).abs());
         // The force of a spring is at most its stiffness times the difference of the displacements of its ends.
-        force += 4.0 * (K_STRAIGHT + K_DIAGONAL) * bounds.spring_difference(axis)
-            + step.k_drive * stretch
-            + step.constant_force[axis].abs();
+        force += largest.modulus * 4.0 * (K_STRAIGHT + K_DIAGONAL) * bounds.spring_difference(axis)
+            + largest.drive_spring * (step.k_drive * stretch + step.constant_force[axis].abs());
     }
-    MARGIN * (bounds.speed + step.integrator.force_to_velocity * force)
+    MARGIN * (bounds.speed + largest.inverse_mass * step.integrator.force_to_velocity * force)
 }

@@ -12,7 +12,7 @@ use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f64x8};
 
 use super::blocks::pull;
 use super::step::Step;
-use super::vector::{Vec2x8, add, dot, lane_max, splat, square};
+use super::vector::{Vec2x8, add, dot, lane_max, scale, splat, square};
 
 /// Eight blocks in and around which nothing moves.
 pub(super) struct RestingVector<S: Simd> {
@@ -21,6 +21,8 @@ pub(super) struct RestingVector<S: Simd> {
     pub(super) lattice: Vec2x8<S>,
     pub(super) static_limit_square: f64x8<S>,
     pub(super) kinetic_impulse: f64x8<S>,
+    /// Relative stiffness of the drive springs and masses, of a slider whose blocks differ.
+    pub(super) variation: Option<[f64x8<S>; 2]>,
 }
 
 /// Number of steps from `step` until the first of the blocks can slip, or somewhat less.
@@ -34,12 +36,15 @@ pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingVe
     if growth_square == 0.0 {
         return u64::MAX;
     }
-    let growth = [splat(simd, bx), splat(simd, by)];
-    let c = splat(simd, growth_square);
     let zero = splat(simd, 0.0);
-    let drive = pull(simd, *step, blocks.displacement);
+    let one = splat(simd, 1.0);
+    let [drive_spring, mass] = blocks.variation.unwrap_or([one; 2]);
+    let growth = scale(drive_spring, [splat(simd, bx), splat(simd, by)]);
+    let c = drive_spring * drive_spring * splat(simd, growth_square);
+    let drive = scale(drive_spring, pull(simd, *step, blocks.displacement));
     let force = add(drive, blocks.lattice);
-    let kinetic_force = blocks.kinetic_impulse * splat(simd, step.integrator.velocity_to_force);
+    let velocity_to_force = mass * splat(simd, step.integrator.velocity_to_force);
+    let kinetic_force = blocks.kinetic_impulse * velocity_to_force;
     let threshold_square = blocks.static_limit_square.max(kinetic_force * kinetic_force);
     let a = dot(force, growth);
     let room = threshold_square - square(force);
@@ -51,12 +56,17 @@ pub(super) fn steps_until_slip<S: Simd>(simd: S, step: &Step, blocks: &RestingVe
     };
     // At the threshold, or if rounding makes the root NaN, the block may slip at once.
     let time = (grows & room.simd_ge(zero) & time.simd_ge(zero)).select(time, zero);
-    let soonest = -lane_max(-time);
+    // A block without drive spring waits for its neighbours.
+    let waits = drive_spring.simd_eq(zero) & room.simd_gt(zero);
+    let time = waits.select(splat(simd, f64::INFINITY), time);
     // Forces have rounding errors of some units of their last place: the result is shortened by the time in which the load
     // grows by that, and by two steps for the rounding of the root and of the division.
     let distance = step.drive_position[0].abs() + step.drive_position[1].abs();
     let noise = 1e-13 * (1.0 + step.k_drive * distance) / growth_square.sqrt();
-    let steps = (soonest * (1.0 - 1e-9) - noise) / step.dt_star - 2.0;
+    let noise = waits.select(zero, splat(simd, noise) / drive_spring);
+    let time = time * splat(simd, 1.0 - 1e-9) - noise;
+    let soonest = -lane_max(-time);
+    let steps = soonest / step.dt_star - 2.0;
     // The conversion saturates: at zero if negative, at the largest integer if too large.
     steps as u64
 }

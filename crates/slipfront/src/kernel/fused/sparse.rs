@@ -6,13 +6,19 @@
 use fearless_simd::{Simd, SimdBase};
 
 use super::band::{Band, Scratch, chunks, chunks_mut};
-use super::blocks::{Sums, displacement_sums, spring, vector_energy};
+use super::blocks::{Sums, displacement_sums, spring, times_factor, vector_energy};
 use super::layout::{TILE, VECTORS};
 use super::quanta::Quanta;
 use super::springs::Geometry;
 use super::step::Step;
-use super::vector::{LANES, Vec2x8, add, load, load_vec2, splat, subtract};
+use super::vector::{Chunks, LANES, Vec2x8, add, load, load_vec2, splat, subtract};
 use crate::lattice::Bond;
+
+/// Positions of the bonds in [`Bond::ALL`].
+const EAST: usize = 0;
+const NORTH: usize = 1;
+const NORTH_EAST: usize = 2;
+const NORTH_WEST: usize = 3;
 
 impl Band {
     /// The vectors of a settled tile whose blocks may slip at step `number`.
@@ -25,7 +31,13 @@ impl Band {
 
     /// Eq. 8 in the moving vectors of a tile.
     #[inline(always)]
-    pub(super) fn advance_vectors<S: Simd>(&mut self, simd: S, step: Step, quanta: &Quanta, t: usize) {
+    pub(super) fn advance_vectors<S: Simd, G: Geometry>(
+        &mut self,
+        simd: S,
+        step: Step,
+        quanta: &Quanta,
+        t: usize,
+    ) {
         let dt = splat(simd, step.move_dt);
         for v in self.vectors(t) {
             if self.moving[v] == 0 {
@@ -39,8 +51,12 @@ impl Band {
             after[0].store_array(&mut x[0]);
             after[1].store_array(&mut y[0]);
             let blocks = self.blocks[v];
-            let (old, old_square) = displacement_sums(simd, before, blocks, quanta);
-            let (new, new_square) = displacement_sums(simd, after, blocks, quanta);
+            let springs = match &self.variations {
+                Some(variations) if G::BLOCKS_DIFFER => variations.drive_springs[k..k + LANES].as_chunks().0,
+                _ => &[],
+            };
+            let (old, old_square) = displacement_sums::<S, G>(simd, before, blocks, springs, quanta);
+            let (new, new_square) = displacement_sums::<S, G>(simd, after, blocks, springs, quanta);
             let sums = &mut self.tiles[t].sums;
             for axis in 0..2 {
                 sums.displacement[axis] += new[axis] - old[axis];
@@ -72,7 +88,7 @@ impl Band {
             lattice_energy += energy - std::mem::replace(&mut self.lattice_energy[v], energy);
             let elements = v * LANES..(v + 1) * LANES;
             let next = [1, 1 + self.tiles_ahead()].map(|tiles| elements.start + tiles * TILE);
-            self.friction::<S, true>(simd, step, quanta, (elements, next), scratch, &mut sums);
+            self.friction::<S, G, true>(simd, step, quanta, (elements, next), scratch, &mut sums);
             let rests = task.touched & bit == 0 && self.moving[v] == 0;
             self.active_from_step[v] = self.first_active_step(simd, step, v, scratch, 0, rests);
         }
@@ -105,7 +121,13 @@ impl Band {
             let rests = touched >> place & 1 == 0 && self.moving[v] == 0;
             self.active_from_step[v] = self.first_active_step(simd, step, v, scratch, place * LANES, rests);
             let springs = self.own_springs(simd, geometry, v);
-            self.lattice_energy[v] = vector_energy(simd, springs, self.blocks[v], quanta.lattice_energy);
+            self.lattice_energy[v] = vector_energy::<S, G>(
+                simd,
+                springs,
+                self.blocks[v],
+                self.factors_of::<G>(v),
+                quanta.lattice_energy,
+            );
         }
         self.tiles[t].active_from_step = self.soonest_active_step(t);
         self.tiles[t].settled = true;
@@ -126,7 +148,8 @@ impl Band {
             return 0;
         }
         let steps = self.steps_until_slip(simd, step, v, scratch, place);
-        step.number.saturating_add(steps.max(1))
+        // Beyond a change of speed nothing is known.
+        step.number.saturating_add(steps.max(1)).min(step.next_change)
     }
 
     fn soonest_active_step(&self, t: usize) -> u64 {
@@ -146,7 +169,7 @@ impl Band {
         &self,
         simd: S,
         geometry: G,
-        bond: &Bond,
+        bond: usize,
         (present, there): (u8, usize),
         first: usize,
     ) -> Vec2x8<S> {
@@ -154,7 +177,14 @@ impl Band {
             self.displacement_at(simd, first),
             self.displacement_at(simd, there),
         );
-        spring(simd, geometry, bond, present, here, there)
+        let force = spring(simd, geometry, &Bond::ALL[bond], present, here, there);
+        times_factor::<S, G>(simd, force, self.spring_factors::<G>(bond, first, LANES), 0)
+    }
+
+    /// Factors of the springs of vector `v` to the east, north, north-east and north-west.
+    #[inline(always)]
+    fn factors_of<G: Geometry>(&self, v: usize) -> [Chunks<'_>; 4] {
+        [0, 1, 2, 3].map(|bond| self.spring_factors::<G>(bond, self.halo + v * LANES, LANES))
     }
 
     /// Springs of eight blocks to the east, north, north-east and north-west.
@@ -163,10 +193,10 @@ impl Band {
         let here = self.halo + v * LANES;
         let [east, north, north_east, north_west] = self.springs_of(v);
         [
-            self.springs_between(simd, geometry, &Bond::EAST, east, here),
-            self.springs_between(simd, geometry, &Bond::NORTH, north, here),
-            self.springs_between(simd, geometry, &Bond::NORTH_EAST, north_east, here),
-            self.springs_between(simd, geometry, &Bond::NORTH_WEST, north_west, here),
+            self.springs_between(simd, geometry, EAST, east, here),
+            self.springs_between(simd, geometry, NORTH, north, here),
+            self.springs_between(simd, geometry, NORTH_EAST, north_east, here),
+            self.springs_between(simd, geometry, NORTH_WEST, north_west, here),
         ]
     }
 
@@ -183,16 +213,13 @@ impl Band {
         let own = self.own_springs(simd, geometry, v);
         let here = self.halo + v * LANES;
         let below = here - self.stride;
-        let [has_east, has_west, has_north] = &self.masks;
-        let south_west = bits_from(has_north, below - 1) & bits_from(has_east, below - 1);
-        let south_east = bits_from(has_north, below + 1) & bits_from(has_west, below + 1);
-        let (west, south) = (bits_from(has_east, here - 1), bits_from(has_north, below));
-        let west = self.springs_between(simd, geometry, &Bond::EAST, (west, here), here - 1);
-        let south = self.springs_between(simd, geometry, &Bond::NORTH, (south, here), below);
-        let south_west =
-            self.springs_between(simd, geometry, &Bond::NORTH_EAST, (south_west, here), below - 1);
-        let south_east =
-            self.springs_between(simd, geometry, &Bond::NORTH_WEST, (south_east, here), below + 1);
+        let [east, north, north_east, north_west] = &self.masks;
+        let (west, south) = (bits_from(east, here - 1), bits_from(north, below));
+        let (south_west, south_east) = (bits_from(north_east, below - 1), bits_from(north_west, below + 1));
+        let west = self.springs_between(simd, geometry, EAST, (west, here), here - 1);
+        let south = self.springs_between(simd, geometry, NORTH, (south, here), below);
+        let south_west = self.springs_between(simd, geometry, NORTH_EAST, (south_west, here), below - 1);
+        let south_east = self.springs_between(simd, geometry, NORTH_WEST, (south_east, here), below + 1);
         let [east, north, north_east, north_west] = own;
         let [x, y] = add(
             add(subtract(east, west), subtract(north, south)),
@@ -201,7 +228,13 @@ impl Band {
         let [fx, fy] = chunks_mut(&mut scratch.lattice, 0, LANES);
         x.store_array(&mut fx[0]);
         y.store_array(&mut fy[0]);
-        vector_energy(simd, own, self.blocks[v], quanta.lattice_energy)
+        vector_energy::<S, G>(
+            simd,
+            own,
+            self.blocks[v],
+            self.factors_of::<G>(v),
+            quanta.lattice_energy,
+        )
     }
 }
 

@@ -7,9 +7,25 @@ use crate::lattice::Bond;
 
 /// How the force of a spring is computed.
 pub(super) trait Geometry: Copy {
+    /// Whether springs, masses or anything else differs from block to block.
+    const BLOCKS_DIFFER: bool = false;
+
     /// Force of the spring along `bond` on a block, as [`Bond::force`]; `e` is the displacement of the neighbour less that of
     /// the block.
     fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S>;
+}
+
+/// The same of a slider whose blocks differ. Forces are those of a spring of factor 1.
+#[derive(Clone, Copy)]
+pub(super) struct Differing<G>(pub(super) G);
+
+impl<G: Geometry> Geometry for Differing<G> {
+    const BLOCKS_DIFFER: bool = true;
+
+    #[inline(always)]
+    fn force<S: Simd>(self, simd: S, bond: &Bond, e: Vec2x8<S>) -> Vec2x8<S> {
+        self.0.force(simd, bond, e)
+    }
 }
 
 /// By the length of the spring, exact at any strain, with the same bits as [`Bond::force`].

@@ -18,6 +18,8 @@ pub(super) struct Step {
     pub(super) drive_position: [f64; 2],
     /// The same at the step before.
     position_before: [f64; 2],
+    /// The step at which the drive changes its speed next.
+    pub(super) next_change: u64,
     /// By how much the force of a drive spring on a block at rest grows per time, `k_s V`.
     pub(super) force_growth: [f64; 2],
     pub(super) constant_force: [f64; 2],
@@ -35,6 +37,9 @@ impl Step {
             k_drive: drive.k_drive,
             drive_position: drive.position(time_star),
             position_before: drive.position(before),
+            next_change: drive
+                .next_change(time_star)
+                .map_or(u64::MAX, |t| (t / dt_star).round() as u64),
             force_growth: drive
                 .direction
                 .map(|d| drive.k_drive * drive.speed_after(time_star) * d),

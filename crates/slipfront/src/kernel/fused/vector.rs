@@ -11,6 +11,10 @@ pub(super) const LANES: usize = 8;
 /// A plane vector, `[x, y]`, for each of eight blocks.
 pub(super) type Vec2x8<S> = [f64x8<S>; 2];
 
+/// One number per element, in vectors of eight.
+pub(super) type Chunks<'a> = &'a [[f64; LANES]];
+pub(super) type ChunksMut<'a> = &'a mut [[f64; LANES]];
+
 #[inline(always)]
 pub(super) fn splat<S: Simd>(simd: S, value: f64) -> f64x8<S> {
     f64x8::splat(simd, value)

@@ -1,0 +1,53 @@
+//! `slipfront family`: holds the options of the engine against exact answers.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use slipfront_case::number_format::are;
+use slipfront_paper::family;
+
+use crate::failure::Failure;
+use crate::print::print_message;
+use crate::threads::{count_from_one, set_worker_threads};
+
+/// Hold every option of the engine against its exact answers
+#[derive(Args)]
+#[command(after_help = "Examples:
+  slipfront family                         one line per option
+  slipfront family --docs docs/validation   the page of the documentation, with pictures
+
+Exit status 0 says that every answer is within its tolerance, 1 that one is not.")]
+pub(crate) struct Family {
+    /// Write family.md and its pictures to this folder
+    #[arg(long, value_name = "DIR")]
+    docs: Option<PathBuf>,
+    /// Most runs at once [default: one per core]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = count_from_one)]
+    threads: Option<u16>,
+}
+
+impl Family {
+    pub(crate) fn execute(self) -> Result<(), Failure> {
+        set_worker_threads(self.threads, 1)?;
+        if let Some(path) = self.docs.as_deref().and_then(family::foreign_docs) {
+            let remedy = "move it away, or choose another folder with --docs";
+            return Err(Failure::input(anyhow::anyhow!(
+                "{} is not of an earlier call: {remedy}",
+                path.display()
+            )));
+        }
+        let chapters = family::chapters().map_err(Failure::running)?;
+        print_message(&family::summary(&chapters));
+        if let Some(docs) = &self.docs {
+            family::write_docs(&chapters, docs).map_err(Failure::running)?;
+        }
+        let answers = chapters.iter().flat_map(|chapter| &chapter.answers);
+        match answers.filter(|answer| !answer.holds()).count() {
+            0 => Ok(()),
+            missed => Err(Failure::running(anyhow::anyhow!(
+                "{} farther from the exact one than the tolerance",
+                are(missed, "answer")
+            ))),
+        }
+    }
+}

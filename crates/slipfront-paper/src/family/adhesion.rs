@@ -1,0 +1,66 @@
+//! Adhesion, which needs no load.
+
+use slipfront::exact_solutions::{Facing, groove_edge_factor};
+
+use super::answer::{Answer, Chapter};
+use super::runs::Run;
+use crate::drawing::{Drawing, formula, measured};
+use crate::error::PaperError;
+use crate::number::Number;
+use slipfront_plot::Responses;
+
+/// Adhesion over the pressure times mu_s.
+const STRENGTHS: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
+
+pub(super) fn chapter() -> Result<Chapter, PaperError> {
+    let mut answers = Vec::new();
+    let mut smooth = Vec::new();
+    for adhesion in STRENGTHS {
+        let text = format!(
+            "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\nfriction.adhesion = \"{} kPa\"\n\
+             time.step = 0.01",
+            100.0 * adhesion
+        );
+        let found = Run::of_case("adhesion", &text)?.largest();
+        smooth.push(Number::exact(found));
+        answers.push(Answer::new(
+            format!("μ_s* without texture, τ_a/(P μ̄_s) = {adhesion}"),
+            [1.0 + adhesion, found],
+            (0.375 * 0.03 * 0.01, "the pull of one step"),
+        ));
+    }
+    for adhesion in STRENGTHS {
+        // Five columns of twenty are a groove across the drive; nothing is left of the lag of the waves at this speed.
+        let text = format!(
+            "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\nfriction.adhesion = \"{} kPa\"\n\
+             slider.blocks = [20, 20]\nslider.edges = \"periodic\"\nslider.omega_star = 0.3\ndrive.v_star = 1e-3\n\
+             time.step = 0.5\ntime.duration_star = 5000\n[[texture]]\nshape = \"groove\"\norientation = \"across\"\nwidth = \"5 um\"",
+            100.0 * adhesion
+        );
+        let run = Run::of_case("adhesion on a groove", &text)?;
+        let exact = (20.0 / 15.0 + adhesion) / groove_edge_factor(Facing::Across, 5);
+        answers.push(Answer::new(
+            format!("pull k_s V t* at the first slip beside a groove, τ_a/(P μ̄_s) = {adhesion}"),
+            [exact, 0.375 * 1e-3 * run.first_slip()],
+            (3e-3 * exact, "the drive of V* = 0.001 is not infinitely slow"),
+        ));
+    }
+    Ok(Chapter {
+        title: "Adhesion",
+        name: "adhesion",
+        text: include_str!("text/adhesion.md"),
+        answers,
+        picture: Some((
+            "Static friction of a smooth uniform surface against adhesion: the line is exact, the points are computed.",
+            Drawing::Responses(Responses {
+                x_title: "adhesion \u{3c4}\u{2090}/(P \u{3bc}\u{305}\u{209b})".to_owned(),
+                y_title: "static friction \u{3bc}\u{209b}*".to_owned(),
+                curves: vec![
+                    formula("exact", &STRENGTHS, |adhesion| 1.0 + adhesion),
+                    measured("computed", &STRENGTHS, &smooth),
+                ],
+                ..Responses::default()
+            }),
+        )),
+    })
+}

@@ -1,0 +1,41 @@
+//! Pressure that is not the same everywhere.
+
+use super::answer::{Answer, Chapter};
+use super::runs::Run;
+use crate::error::PaperError;
+
+const V_STAR: f64 = 0.03;
+
+pub(super) fn chapter() -> Result<Chapter, PaperError> {
+    let mut answers = Vec::new();
+    for (along, slope) in [("x", 0.8), ("y", -0.5)] {
+        let text = format!(
+            "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\n[load]\n\
+             profile = {{ along = \"{along}\", relative_slope = {slope} }}\n[drive]\nv_star = {V_STAR}\n\
+             [time]\nduration_star = 100\nstep = 0.01"
+        );
+        let run = Run::of_case("load", &text)?;
+        // The least pressure is that of the outermost blocks, half a block from the edge.
+        let least: f64 = 1.0 - f64::abs(slope) * (1.0 - 1.0 / 25.0);
+        answers.push(Answer::new(
+            format!("first slip, slope {slope} along {along}: t*"),
+            [least / (0.375 * V_STAR), run.first_slip()],
+            (0.01 * (1.0 + 1e-9), "it is seen at the next step"),
+        ));
+        let load: f64 = (0..run.model.surface.n_blocks())
+            .map(|b| run.model.surface.normal_force(b))
+            .sum();
+        answers.push(Answer::new(
+            format!("whole load over P L_x L_y, slope {slope} along {along}"),
+            [1.0, load / 625.0],
+            (1e-14, "rounding of a sum"),
+        ));
+    }
+    Ok(Chapter {
+        title: "Load that is not the same everywhere",
+        name: "load",
+        text: include_str!("text/load.md"),
+        answers,
+        picture: None,
+    })
+}

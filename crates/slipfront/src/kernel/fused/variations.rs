@@ -1,0 +1,190 @@
+//! What differs from block to block beside the thresholds: springs, drive springs, masses, and kinetic friction that follows speed.
+//!
+//! Where all blocks are alike none of it is stored or computed: the sweep is compiled for both kinds of slider ([`Geometry`]).
+//! An outline needs nothing of it, either: blocks outside are elements that are no blocks, and their springs are masked.
+//!
+//! [`Geometry`]: super::springs::Geometry
+
+use std::ops::Range;
+
+use fearless_simd::{Simd, SimdBase, SimdFloat};
+
+use super::aligned::Aligned;
+use super::layout::Layout;
+use super::vector::{Chunks, ChunksMut, load, load_vec2, splat, square};
+use crate::friction::{Friction, Weakening};
+use crate::lattice::harmonic_mean;
+use crate::model::Model;
+
+/// Numbers of the elements of a band.
+#[derive(Debug)]
+pub(super) struct Variations {
+    /// Stiffness of the springs to the east, north, north-east and north-west over that of their bonds; with the front halo.
+    pub(super) springs: [Aligned; 4],
+    /// Stiffness of the drive springs over `k_s`.
+    pub(super) drive_springs: Aligned,
+    pub(super) mass: Aligned,
+    pub(super) inverse_mass: Aligned,
+    /// Kinetic impulses of the latest sweep: those of slow sliding, weakened by speed.
+    pub(super) weakened_impulses: Aligned,
+    pub(super) weakening: Option<Weakening>,
+}
+
+/// [`Variations`] of some elements, in vectors of eight; nothing of it where all blocks are alike.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Variation<'a> {
+    pub(super) drive_springs: Chunks<'a>,
+    pub(super) mass: Chunks<'a>,
+    pub(super) inverse_mass: Chunks<'a>,
+}
+
+impl<'a> Variation<'a> {
+    /// The first `n` vectors, if there are any.
+    #[inline(always)]
+    pub(super) fn first<const DIFFER: bool>(self, n: usize) -> Self {
+        let n = if DIFFER { n } else { 0 };
+        Self {
+            drive_springs: &self.drive_springs[..n],
+            mass: &self.mass[..n],
+            inverse_mass: &self.inverse_mass[..n],
+        }
+    }
+}
+
+/// Kinetic impulses at these velocities, from those of slow sliding.
+#[inline(always)]
+pub(super) fn weaken<S: Simd>(
+    simd: S,
+    weakening: &Weakening,
+    [vx, vy]: [Chunks; 2],
+    impulses: Chunks,
+    weakened: ChunksMut,
+) {
+    let n = weakened.len();
+    let (vx, vy, impulses) = (&vx[..n], &vy[..n], &impulses[..n]);
+    let [one, ratio] = [1.0, weakening.ratio].map(|number| splat(simd, number));
+    let critical_speed = splat(simd, weakening.critical_speed);
+    for c in 0..n {
+        let speed = square(load_vec2(simd, [vx, vy], c)).sqrt();
+        let slowness = one + speed / critical_speed;
+        let factor = ratio + (one - ratio) / slowness;
+        (load(simd, &impulses[c]) * factor).store_array(&mut weakened[c]);
+    }
+}
+
+/// Whether the blocks of a model need [`Variations`].
+pub(super) fn blocks_differ(model: &Model) -> bool {
+    let slider = &model.slider;
+    slider.stiffness.is_some()
+        || slider.density.is_some()
+        || slider.drive_springs.is_some()
+        || weakening(model).is_some()
+}
+
+fn weakening(model: &Model) -> Option<Weakening> {
+    match model.friction {
+        Friction::Coulomb(coulomb) => coulomb.weakening,
+        _ => None,
+    }
+}
+
+impl Variations {
+    /// Of the elements from `first` on, and of springs also of a `halo` of elements before.
+    pub(super) fn new(
+        layout: &Layout,
+        model: &Model,
+        moduli: &Moduli,
+        halo: usize,
+        elements: Range<usize>,
+    ) -> Self {
+        let len = elements.len();
+        let ones = || Aligned::filled(len, 1.0);
+        let mut variations = Self {
+            springs: [(); 4].map(|()| Aligned::filled(halo + len, 0.0)),
+            drive_springs: ones(),
+            mass: ones(),
+            inverse_mass: ones(),
+            weakened_impulses: Aligned::filled(len, f64::INFINITY),
+            weakening: weakening(model),
+        };
+        let before = elements.start as isize - halo as isize;
+        for k in 0..halo + len {
+            for (springs, factor) in variations
+                .springs
+                .iter_mut()
+                .zip(moduli.springs(layout, before + k as isize))
+            {
+                springs[k] = factor;
+            }
+        }
+        for k in 0..len {
+            if let Some(b) = layout.block(elements.start + k) {
+                variations.drive_springs[k] = model.slider.drive_spring(b);
+                variations.mass[k] = model.slider.mass(b);
+                variations.inverse_mass[k] = 1.0 / model.slider.mass(b);
+            }
+        }
+        variations
+    }
+}
+
+impl Variations {
+    /// Those of some elements, counted from the first of the band.
+    #[inline(always)]
+    pub(super) fn of(&self, elements: Range<usize>) -> Variation<'_> {
+        Variation {
+            drive_springs: self.drive_springs[elements.clone()].as_chunks().0,
+            mass: self.mass[elements.clone()].as_chunks().0,
+            inverse_mass: self.inverse_mass[elements].as_chunks().0,
+        }
+    }
+}
+
+/// Young's moduli of the blocks of this rank and of the rows beside it, 0 of blocks that do not exist.
+pub(super) struct Moduli<'a> {
+    pub(super) model: &'a Model,
+    /// Those of the row below the first, and above the last, if other ranks hold them.
+    pub(super) beside: [Vec<f64>; 2],
+}
+
+impl Moduli<'_> {
+    /// Of an element, which may be a ghost or in a row beside those of this rank.
+    pub(super) fn at(&self, layout: &Layout, element: isize) -> f64 {
+        let (row, column) = layout.row_column(element);
+        let rows = layout.rows() as isize;
+        let beside = |side: usize| self.beside[side].get(column).copied();
+        let other = match row {
+            -1 => beside(0),
+            _ if row == rows => beside(1),
+            _ => None,
+        };
+        other.unwrap_or_else(|| {
+            let block = layout.block_around(row, column);
+            block.map_or(0.0, |b| self.model.slider.modulus(b))
+        })
+    }
+
+    /// Which of the springs of an element are there.
+    pub(super) fn present(&self, layout: &Layout, element: isize) -> [bool; 4] {
+        match &self.model.slider.outline {
+            None => layout.springs(element),
+            Some(_) => self.springs(layout, element).map(|factor| factor > 0.0),
+        }
+    }
+
+    /// Stiffness of the springs of an element to the east, north, north-east and north-west over that of their bonds; 0 of those
+    /// that are not there.
+    pub(super) fn springs(&self, layout: &Layout, element: isize) -> [f64; 4] {
+        let own = self.at(layout, element);
+        let stride = layout.stride as isize;
+        let ends = [1, stride, stride + 1, stride - 1];
+        let present = layout.springs(element);
+        let mut springs = [0.0; 4];
+        for ((spring, end), present) in springs.iter_mut().zip(ends).zip(present) {
+            if present {
+                *spring = harmonic_mean(own, self.at(layout, element + end));
+            }
+        }
+        springs
+    }
+}

@@ -1,0 +1,74 @@
+//! Slip fronts in a chain whose blocks keep their drive springs, under constant far ends.
+
+use rstest::rstest;
+use slipfront::lattice::K_STRAIGHT;
+use slipfront::{Drive, FrictionLaw, Lattice, Model, State, Stop, Surface};
+
+use crate::common::from_state;
+
+const BLOCKS: usize = 200;
+const KINETIC: f64 = 0.5;
+
+/// A chain under the prestress `tau = (F - mu_k)/(mu_s - mu_k)`, with drive springs of `kappa` times its own.
+fn chain(kappa: f64, tau: f64) -> Model {
+    let lattice = Lattice::free(BLOCKS, 1);
+    let drive = Drive {
+        k_drive: kappa * K_STRAIGHT,
+        constant_force: [KINETIC + tau * (1.0 - KINETIC), 0.0],
+        ..Drive::along_x(0.0)
+    };
+    let surface = Surface::uniform(&lattice, 1.0, KINETIC);
+    Model::new(lattice, surface, drive, 0.0, 0.0, FrictionLaw::Projection)
+}
+
+/// A block that slides `s` far is pulled back by its drive spring by `k_s s`: fronts are slower than without, and under a low
+/// prestress slower than sound. No closed form is known. The speeds are those that an independent integration of the same chain
+/// gave, to the digits that they have; a front takes a whole number of steps from block to block, hence half a step more.
+#[rstest]
+fn drive_springs_slow_fronts_down(
+    #[values(
+        (1.0 / 3.0, 0.3, 0.9025), (1.0 / 3.0, 0.4, 1.006), (1.0 / 3.0, 0.5, 1.104), (1.0 / 3.0, 0.6, 1.218),
+        (1.0 / 3.0, 0.7, 1.379), (1.0 / 3.0, 0.8, 1.654), (1.0 / 3.0, 0.9, 2.283),
+        (1.0, 0.4, 0.801), (1.0, 0.5, 0.984), (1.0, 0.6, 1.144), (1.0, 0.7, 1.333), (1.0, 0.8, 1.626), (1.0, 0.9, 2.273)
+    )]
+    (kappa, tau, expected): (f64, f64, f64),
+) {
+    let dt = 2e-3;
+    let sound = K_STRAIGHT.sqrt();
+    let mut state = State::at_rest(BLOCKS);
+    state.velocity.x[..5].fill(0.5 * sound * (1.0 - KINETIC) / K_STRAIGHT);
+    let mut simulation = from_state(&chain(kappa, tau), dt, state);
+    let duration = 1.3 * BLOCKS as f64 / (expected * sound);
+    simulation
+        .run(Stop::at_step((duration / dt) as u64), &mut [])
+        .unwrap();
+    let first = simulation.snapshot().first_slip_time_star();
+    let (from, to) = (BLOCKS / 2, BLOCKS - 20);
+    let delay = (first[to] - first[from]) / (to - from) as f64;
+    let found = 1.0 / (delay * sound);
+    let digits = if expected == 0.9025 { 5e-5 } else { 5e-4 };
+    assert!(
+        (found - expected).abs() < digits + 0.5 * dt / delay * expected,
+        "{found}, expected {expected}"
+    );
+}
+
+/// Without drive springs the same chain has the closed form `v = c/sqrt(1 - tau^2)`, which it approaches as they soften.
+#[rstest]
+fn soft_drive_springs_change_little(#[values(0.6, 0.8)] tau: f64) {
+    let speeds = [1e-4, 0.0].map(|kappa| {
+        let mut state = State::at_rest(BLOCKS);
+        state.velocity.x[..5].fill(0.3);
+        let mut simulation = from_state(&chain(kappa, tau), 0.01, state);
+        simulation.run(Stop::at_step(25_000), &mut []).unwrap();
+        let first = simulation.snapshot().first_slip_time_star();
+        80.0 / (first[180] - first[100]) / K_STRAIGHT.sqrt()
+    });
+    let exact = 1.0 / (1.0 - tau * tau).sqrt();
+    // Half a step per block.
+    assert!(
+        (speeds[1] / exact - 1.0).abs() < 5e-3 * exact,
+        "{speeds:?}, exactly {exact}"
+    );
+    assert!((speeds[0] / speeds[1] - 1.0).abs() < 1e-2, "{speeds:?}");
+}
