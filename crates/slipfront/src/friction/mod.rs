@@ -53,7 +53,6 @@ impl Friction {
     /// Mean friction of all blocks in steady sliding at a speed, in units of `P mu_s l^2`; of springs in contact, which are torn off at
     /// all extensions alike, half the mean of their thresholds.
     pub(crate) fn steady_force(&self, surface: &Surface, speed: f64) -> f64 {
-        let n = surface.n_blocks();
         match self {
             Self::Coulomb(coulomb) => {
                 let at_rest = surface.mean_kinetic_force();
@@ -61,11 +60,11 @@ impl Friction {
                     law.kinetic_force(at_rest, surface.mean_kinetic_adhesion(), speed)
                 })
             }
-            Self::RateAndState(law) => {
-                let load = fixed_point::sum(n, |b| surface.normal_force(b)) / n as f64;
-                load * law.steady_coefficient(speed)
+            Self::RateAndState(law) => surface.mean_normal_force() * law.steady_coefficient(speed),
+            Self::ContactSprings(_) => {
+                let n = surface.n_blocks();
+                0.5 * fixed_point::sum(n, |b| surface.static_limit(b)) / n as f64
             }
-            Self::ContactSprings(_) => 0.5 * fixed_point::sum(n, |b| surface.static_limit(b)) / n as f64,
         }
     }
 

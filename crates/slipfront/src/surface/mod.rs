@@ -201,6 +201,11 @@ impl Surface {
         (sum + whole.n_contact as f64 * self.contact.adhesion.of_kinetic) / whole.n_blocks as f64
     }
 
+    /// Mean normal force over all blocks, textured ones included, in units of `P l^2`.
+    pub fn mean_normal_force(&self) -> f64 {
+        self.load_factor * self.whole.sum_pressure[1] / self.whole.n_blocks as f64
+    }
+
     /// The part of [`mean_kinetic_force`](Self::mean_kinetic_force) that is adhesion.
     pub fn mean_kinetic_adhesion(&self) -> f64 {
         self.whole.n_contact as f64 * self.contact.adhesion.of_kinetic / self.whole.n_blocks as f64
