@@ -40,7 +40,10 @@ pub fn write(
 /// Summary and series, the first results of a run, by one of its ranks.
 pub fn write_tables(case: &Case, record: &Record, folder: &mut RunFolder) -> Result<(), ResultsError> {
     folder.write(SUMMARY, &disk::json(&record.summary))?;
-    let rows = record.rows.iter().map(|row| SeriesRow::new(row, &case.scales));
+    let rows = record
+        .rows
+        .iter()
+        .map(|row| SeriesRow::new(row, &case.scales, &case.model.friction));
     Ok(folder.write(SERIES, &series::to_csv(rows)?)?)
 }
 

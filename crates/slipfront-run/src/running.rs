@@ -4,7 +4,6 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use slipfront::checkpoint::BlockColumn;
 use slipfront::communicator::{Alone, Communicator};
 use slipfront::observe::frames::{Selection, kept};
 use slipfront::observe::{CurveRow, Frame, Frames, Instants, Schedule, Scheduled};
@@ -135,7 +134,7 @@ impl Observers {
         };
         let fields = self.fields.frames().len() * case.output.fields.len();
         [
-            columns(BlockColumn::ALL.len(), 1, size_of::<f64>()),
+            columns(case.model.n_columns(), 1, size_of::<f64>()),
             columns(fields, stride, size_of::<f32>()),
         ]
     }
@@ -249,7 +248,7 @@ impl Running {
             communicator,
             |column, first, values| {
                 bytes.resize(size_of_val(values), 0);
-                read(blocks.offset(column as usize, first_row, first), &mut bytes)?;
+                read(blocks.offset(column, first_row, first), &mut bytes)?;
                 for (value, bytes) in values.iter_mut().zip(bytes.as_chunks().0) {
                     *value = f64::from_le_bytes(*bytes);
                 }
@@ -339,7 +338,7 @@ impl Running {
             for (value, bytes) in values.iter().zip(bytes.as_chunks_mut().0) {
                 *bytes = value.to_le_bytes();
             }
-            write(blocks.offset(column as usize, first_row, first), &bytes)
+            write(blocks.offset(column, first_row, first), &bytes)
         })?;
         let (row, begin) = (
             own_rows_of_fields(&self.case).start,

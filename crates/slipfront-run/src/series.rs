@@ -3,9 +3,9 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
-use slipfront::Scales;
+use serde::{Deserialize, Deserializer, Serialize};
 use slipfront::observe::CurveRow;
+use slipfront::{Friction, Scales};
 use thiserror::Error;
 
 use slipfront_case::disk::open_limited;
@@ -40,6 +40,20 @@ pub struct SeriesRow {
     pub friction_loss_j: f64,
     /// Lost to damping since the start, J.
     pub damping_loss_j: f64,
+    /// Energy of the springs in contact, J; none if contacts are no springs.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub contact_spring_energy_j: Option<f64>,
+    /// Lost with such springs that broke since the start, J.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub broken_spring_loss_j: Option<f64>,
+    /// Mean state of the contacts, t*; none but under rate and state.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub mean_state_star: Option<f64>,
+}
+
+/// A number of a column that a series need not have; one that has it has a number in every row.
+fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    f64::deserialize(deserializer).map(Some)
 }
 
 /// A series that cannot be read.
@@ -55,8 +69,10 @@ pub struct SeriesError {
 
 impl SeriesRow {
     /// A recorded row with its units.
-    pub fn new(row: &CurveRow, scales: &Scales) -> Self {
+    pub fn new(row: &CurveRow, scales: &Scales, friction: &Friction) -> Self {
         let energy = scales.energy();
+        let has_springs = matches!(friction, Friction::ContactSprings(_));
+        let has_state = matches!(friction, Friction::RateAndState(_));
         Self {
             step: row.step,
             time_star: row.time_star,
@@ -71,6 +87,9 @@ impl SeriesRow {
             drive_spring_energy_j: row.energies.stored.drive_springs * energy,
             friction_loss_j: row.energies.friction_loss * energy,
             damping_loss_j: row.energies.damping_loss * energy,
+            contact_spring_energy_j: has_springs.then(|| row.energies.contact_springs * energy),
+            broken_spring_loss_j: has_springs.then(|| row.energies.broken_springs_loss * energy),
+            mean_state_star: has_state.then_some(row.mean_state),
         }
     }
 }
@@ -124,7 +143,7 @@ fn rows_of(file: impl Read) -> Result<Vec<SeriesRow>, csv::Error> {
     rows.collect()
 }
 
-/// The longest line of a series: more than its header, and than thirteen numbers take.
+/// The longest line of a series: more than its header, and than sixteen numbers take.
 const LINE_MAX_BYTES: usize = 4096;
 
 /// A file whose lines are not too long: the csv crate would keep one of any length in memory.

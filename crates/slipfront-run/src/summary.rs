@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use slipfront::observe::{Curve, Energies, Frame, Kinetic, KineticHistory, NoUncertainty, Peak, Scheduled};
-use slipfront::{Simulation, StopReason};
+use slipfront::{Friction, Simulation, StopReason};
 
 use crate::error::ResultsError;
 use crate::names::SUMMARY;
@@ -81,6 +81,12 @@ pub struct Summary {
     pub friction_loss_j: f64,
     /// Lost to damping, J.
     pub damping_loss_j: f64,
+    /// Lost with springs in contact that broke, J; none if contacts are no springs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub broken_spring_loss_j: Option<f64>,
+    /// Mean state of the contacts at the end, t*; none but under rate and state.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean_state_star: Option<f64>,
     /// What a reader should know before trusting the numbers.
     pub warnings: Vec<String>,
     /// Version of slipfront.
@@ -148,6 +154,7 @@ impl SummaryObservers {
         };
         let last = self.curve.rows.last();
         let (steps, energies) = last.map(|row| (row.step, row.energies)).unwrap_or_default();
+        let friction = &case.model.friction;
         let (mean, time) = (case.scales.mu_static_mean, case.scales.time());
         let energy = case.scales.energy();
         let instants = instants
@@ -193,6 +200,12 @@ impl SummaryObservers {
             work_j: energies.work * energy,
             friction_loss_j: energies.friction_loss * energy,
             damping_loss_j: energies.damping_loss * energy,
+            broken_spring_loss_j: matches!(friction, Friction::ContactSprings(_))
+                .then(|| energies.broken_springs_loss * energy),
+            mean_state_star: match friction {
+                Friction::RateAndState(_) => last.map(|row| row.mean_state),
+                _ => None,
+            },
             warnings: [case.warnings(), after_run].concat(),
             version: VERSION.to_owned(),
         }

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::checkpoint::BlockColumn;
 use crate::drive::Drive;
 use crate::friction::Friction;
 use crate::lattice::Lattice;
@@ -69,18 +70,26 @@ impl Model {
         }
     }
 
+    /// Columns of a checkpoint: numbers that are kept of every block.
+    pub fn n_columns(&self) -> usize {
+        BlockColumn::ALL.len() + self.friction.n_columns()
+    }
+
     /// Level of mu* in steady sliding:
     ///
     /// ```text
     /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V*
     /// ```
+    ///
+    /// with the coefficient at V* of a law in which it depends on the speed, and half the mean threshold of springs in contact.
     pub fn steady_level(&self) -> f64 {
-        self.surface.mean_kinetic_force() + self.damping * self.drive.v_star
+        self.friction.steady_force(&self.surface, self.drive.v_star) + self.damping * self.drive.v_star
     }
 
     /// Time of the first slip of a block in contact on a surface without texture, exact:
     /// `t* = min_i max(mu_si, mu_ki) F_n,i/(k_s V*)`.
     pub fn first_slip_estimate(&self) -> f64 {
-        self.surface.min_slip_threshold() / (self.drive.k_drive * self.drive.v_star)
+        let (k, v_star) = (self.drive.k_drive, self.drive.v_star);
+        self.friction.first_slip_pull(&self.surface, k, v_star) / (k * v_star)
     }
 }

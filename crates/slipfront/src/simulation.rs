@@ -7,7 +7,7 @@ use crate::communicator::{Alone, Communicator, lowest_rank};
 use crate::error::RunError;
 use crate::kernel::engine::Engine;
 use crate::kernel::execution::Execution;
-use crate::kernel::totals::Totals;
+use crate::kernel::totals::{ContactTotals, Totals};
 use crate::measure::{CurvePoint, Peak};
 use crate::model::Model;
 use crate::observe::observer::Scheduled;
@@ -23,6 +23,7 @@ pub struct Simulation {
     engine: Box<dyn Engine>,
     communicator: Arc<dyn Communicator>,
     totals: Totals,
+    contact: ContactTotals,
     point: CurvePoint,
     peak: Peak,
     /// Whether observers have seen the present step.
@@ -76,6 +77,7 @@ impl Simulation {
             engine,
             communicator,
             totals,
+            contact: ContactTotals::default(),
             point: CurvePoint::default(),
             observed: false,
         };
@@ -84,8 +86,8 @@ impl Simulation {
     }
 
     /// A run that continues from a checkpoint with the same bits as if it had not been stopped, computed as `execution`
-    /// says. `read` is given a column, a block and room for the values of the blocks from there on. None if the checkpoint is
-    /// that of another kernel.
+    /// says. `read` is given the number of a column, a block and room for the values of the blocks from there on. None if the
+    /// checkpoint is that of another kernel.
     ///
     /// # Errors
     /// Those of `read`.
@@ -94,7 +96,7 @@ impl Simulation {
         dt_star: f64,
         checkpoint: &Checkpoint,
         execution: Execution,
-        read: impl FnMut(BlockColumn, usize, &mut [f64]) -> Result<(), E>,
+        read: impl FnMut(usize, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<Option<Self>, E> {
         Self::resume_on_ranks(model, dt_star, checkpoint, execution, Arc::new(Alone), read)
     }
@@ -109,7 +111,7 @@ impl Simulation {
         checkpoint: &Checkpoint,
         execution: Execution,
         communicator: Arc<dyn Communicator>,
-        read: impl FnMut(BlockColumn, usize, &mut [f64]) -> Result<(), E>,
+        read: impl FnMut(usize, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<Option<Self>, E> {
         let model = model.into();
         let (step, totals, peak) = (checkpoint.step, checkpoint.totals, checkpoint.peak);
@@ -122,6 +124,7 @@ impl Simulation {
             engine,
             communicator,
             totals,
+            contact: checkpoint.contact,
             peak,
             observed: true,
         }))
@@ -134,20 +137,22 @@ impl Simulation {
         Checkpoint {
             step: self.step,
             totals: self.totals,
+            contact: self.contact,
             peak: self.peak,
             stress_square_max: self.engine.stress_square_max(&self.model, self.step),
             motion_bounds: self.engine.motion_bounds(),
         }
     }
 
-    /// The numbers of all blocks that [`Simulation::resume`] reads, part by part: `write` is given the column, the first block,
-    /// and the values.
+    /// The numbers of all blocks that [`Simulation::resume`] reads, part by part: `write` is given the number of the column, the
+    /// first block, and the values. The columns are [`BlockColumn::ALL`] and those of the law of friction, together
+    /// [`Model::n_columns`].
     ///
     /// # Errors
     /// Those of `write`.
     pub fn write_columns<E>(
         &self,
-        mut write: impl FnMut(BlockColumn, usize, &[f64]) -> Result<(), E>,
+        mut write: impl FnMut(usize, usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
         let engine = &*self.engine;
         BlockColumn::for_each_part(self.model.surface.n_blocks(), |column, first, values| {
@@ -161,8 +166,14 @@ impl Simulation {
             for (b, to) in (first..).zip(&mut *values) {
                 *to = value(b);
             }
-            write(column, first, values)
-        })
+            write(column as usize, first, values)
+        })?;
+        for (column, values) in (BlockColumn::ALL.len()..).zip(engine.memory()) {
+            for (part, values) in values.chunks(BlockColumn::PART).enumerate() {
+                write(column, part * BlockColumn::PART, values)?;
+            }
+        }
+        Ok(())
     }
 
     /// Steps until `stop`, showing every instant to the observers that are due, the last one included. All ranks must call this
@@ -224,6 +235,7 @@ impl Simulation {
 
     fn measure(&mut self) {
         let time_star = self.time_star();
+        self.contact = self.engine.contact_totals(&self.model);
         self.point = CurvePoint::measure(&self.model, &self.totals, time_star);
         self.peak.update(self.step, time_star, self.point.mu_star);
     }
@@ -236,6 +248,7 @@ impl Simulation {
             time_star: self.time_star(),
             dt_star: self.dt_star,
             totals: self.totals,
+            contact: self.contact,
             point: self.point,
             peak: self.peak,
             last: false,

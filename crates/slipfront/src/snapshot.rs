@@ -3,7 +3,7 @@
 use crate::communicator::Communicator;
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
-use crate::kernel::totals::{StoredEnergy, Totals};
+use crate::kernel::totals::{ContactTotals, StoredEnergy, Totals};
 use crate::measure::{CurvePoint, Peak};
 use crate::model::Model;
 
@@ -19,6 +19,8 @@ pub struct Snapshot<'a> {
     pub dt_star: f64,
     /// Sums over all blocks.
     pub totals: Totals,
+    /// Sums that belong to the law of friction.
+    pub contact: ContactTotals,
     /// mu* and N*.
     pub point: CurvePoint,
     /// The first peak of mu* as far as it is known at t_n.

@@ -15,7 +15,7 @@ use super::output::{MAX_MAPS, Output, Snapshots};
 use super::ranks::Ranks;
 use super::textures::count_masks;
 use super::time_plan::TimePlan;
-use crate::case_file::{CaseError, CaseFile};
+use crate::case_file::{CaseError, CaseFile, Contact, Friction, Law};
 use crate::machine::{available_memory, can_be_had, free_disk};
 use crate::number_format::{byte_size, count};
 
@@ -30,8 +30,37 @@ const SURFACE: f64 = FLAG + 2.0 * NUMBER;
 const FUSED: f64 = 6.5 * NUMBER + 3.6;
 /// The reference kernel: two vectors of state, eight of forces, two thresholds, a time.
 const REFERENCE: f64 = 23.0 * NUMBER + FLAG;
-/// A block in a checkpoint: two vectors, a time.
+/// A block in a checkpoint: two vectors, a time; what the law of friction remembers is added.
 const SAVED: f64 = 5.0 * NUMBER;
+
+/// Numbers of a block that a law of friction adds to the reference kernel, and those of them that a checkpoint keeps.
+fn of_friction(friction: &Friction) -> [f64; 2] {
+    let each = [
+        // Kinetic friction at the present speed.
+        (friction.velocity.is_some(), [1.0, 0.0]),
+        // The threshold at the present age, and when the block has stopped.
+        (friction.ageing.is_some(), [2.0, 1.0]),
+        // State and load.
+        (friction.law == Law::RateAndState, [2.0, 1.0]),
+        // The anchor of its spring, and how often this has broken.
+        (friction.contact == Contact::Springs, [3.0, 3.0]),
+    ];
+    let used = each.into_iter().filter(|(is_used, _)| *is_used);
+    used.fold([0.0; 2], |[kept, saved], (_, [more, of_them])| {
+        [kept + more, saved + of_them]
+    })
+}
+
+/// Columns that a law of friction adds to the series.
+fn columns_of_friction(friction: &Friction) -> f64 {
+    match (friction.contact, friction.law) {
+        // Energy of springs, and what is lost with them.
+        (Contact::Springs, _) => 2.0,
+        // The state.
+        (Contact::Rigid, Law::RateAndState) => 1.0,
+        _ => 0.0,
+    }
+}
 
 /// A value of a field.
 const VALUE: f64 = size_of::<f32>() as f64;
@@ -42,10 +71,12 @@ const AVERAGED: f64 = FLAG + NUMBER + VALUE;
 /// What never changes in the file, where textured takes 16 bits.
 const STATICS_ON_DISK: f64 = 2.0 + 3.0 * NUMBER;
 
-/// A row of `series.csv`: 13 columns of at most 24 characters and what separates them.
-const ROW_TEXT: f64 = 13.0 * 25.0;
-/// A row of `series.csv` in memory: 13 numbers.
-const SERIES_ROW: f64 = 13.0 * NUMBER;
+/// A column of `series.csv`: at most 24 characters and what separates it from the next.
+const COLUMN_TEXT: f64 = 25.0;
+/// Columns of every series.
+const COLUMNS: f64 = 13.0;
+/// A row of `series.csv` in memory: these numbers, and three that are there under some laws.
+const SERIES_ROW: f64 = (COLUMNS + 6.0) * NUMBER;
 /// Stretches of the history of mu* and their copies while an uncertainty is sought.
 const HISTORY: f64 = 1024.0 * 1024.0;
 
@@ -77,6 +108,8 @@ pub struct Budget {
     surface: f64,
     /// Bytes of the kernel per block.
     kernel: f64,
+    /// Bytes of a block in a checkpoint.
+    saved: f64,
     /// Those of them that are kept of a field.
     cells: f64,
     /// Blocks of the whole lattice.
@@ -90,6 +123,8 @@ pub struct Budget {
     frames: f64,
     fields: f64,
     rows: f64,
+    /// Bytes of a row in its file.
+    row_text: f64,
     /// Maps that are drawn.
     maps: f64,
     /// Bytes of the files that the case reads, of which there will be copies.
@@ -135,6 +170,7 @@ impl Budget {
     ) -> Self {
         let kept = |indices: Range<usize>| frames::kept(indices, output.stride).len() as f64;
         let last_step = time_plan.last_step;
+        let [kept_by_law, saved_by_law] = of_friction(&file.friction);
         let n_frames = match &output.snapshots {
             Snapshots::Instants => 6.0,
             Snapshots::At(steps) => steps.len() as f64,
@@ -153,11 +189,13 @@ impl Budget {
             },
             kernel: match kernel(file) {
                 Kernel::Fused => FUSED,
-                Kernel::Reference => REFERENCE,
+                Kernel::Reference => REFERENCE + kept_by_law * NUMBER,
             },
+            saved: SAVED + saved_by_law * NUMBER,
             frames: n_frames,
             fields: output.fields.len() as f64,
             rows: (last_step / output.series_stride) as f64 + 2.0,
+            row_text: COLUMN_TEXT * (COLUMNS + columns_of_friction(&file.friction)),
             maps: match output.fields.contains(&Field::ContactStress) {
                 true => n_frames.min(MAX_MAPS as f64),
                 false => 0.0,
@@ -187,7 +225,7 @@ impl Budget {
                     // With the time of its first slip.
                     blocks * (self.surface + NUMBER) + drawn * AVERAGED,
                     all_cells * STATICS_ON_DISK,
-                    self.all_blocks * SAVED,
+                    self.all_blocks * self.saved,
                 ],
             },
             Part {
@@ -211,9 +249,9 @@ impl Budget {
                 remedy: "raise `output.series`",
                 bytes: [
                     0.0,
-                    grown(rows) * row + grown(rows * ROW_TEXT),
+                    grown(rows) * row + grown(rows * self.row_text),
                     grown(rows) * (row + DRAWN_ROW),
-                    rows * ROW_TEXT,
+                    rows * self.row_text,
                     rows * row,
                 ],
             },

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use slipfront::Scales;
 
-use crate::case_file::{CaseError, CaseFile, Damping, DriveSpeed, KineticFriction};
+use crate::case_file::{CaseError, CaseFile, Damping, DriveSpeed, KineticFriction, Law};
 use crate::number_format::four_digits;
 
 /// The dimensionless groups on which the model depends (Eq. 11).
@@ -50,7 +50,9 @@ impl Groups {
             DriveSpeed::Speed(speed) => ("drive.speed", speed.si() / scales.speed()),
         };
         within(file, key, "V*", v_star, MIN_V_STAR..=MAX_V_STAR)?;
-        let r_star = match file.friction.kinetic {
+        let friction = &file.friction;
+        let r_star = match friction.kinetic {
+            _ if !friction.has_kinetic_coefficient() => 0.0,
             KineticFriction::RStar(r_star) => r_star,
             KineticFriction::MuKinetic(mu) => mu / scales.mu_static_mean,
         };
@@ -63,8 +65,14 @@ impl Groups {
             v_star,
             r_star,
             omega_star,
-            sigma_static_star: file.friction.sigma_static_star,
-            sigma_kinetic_star: file.friction.sigma_kinetic_star,
+            sigma_static_star: match friction.law {
+                Law::RateAndState => 0.0,
+                _ => friction.sigma_static_star,
+            },
+            sigma_kinetic_star: match friction.has_kinetic_coefficient() {
+                true => friction.sigma_kinetic_star,
+                false => 0.0,
+            },
             epsilon,
         })
     }

@@ -9,6 +9,7 @@ use slipfront::{Communicator, Drive, Kernel, Lattice, Model, Scales, Surface};
 
 use super::budget::Budget;
 use super::coefficients::{coefficients, contact};
+use super::friction::law;
 use super::groups::Groups;
 use super::inputs::{Input, Inputs, NamedFiles};
 use super::kernel::kernel;
@@ -176,7 +177,7 @@ impl Case {
             drive,
             damping(groups.omega_star),
             groups.epsilon,
-            file.friction.law,
+            law(&file, &groups),
         );
         Ok(Self {
             name: name.to_owned(),

@@ -32,10 +32,16 @@ impl TimePlan {
             Step::Paper => 2.0 / 3.0 * groups.v_star,
             Step::Number(dt_star) => dt_star,
         };
-        if dt_star >= dt_star_limit() {
+        let limit = match file.friction.contact_stiffness_star {
+            None => dt_star_limit(),
+            Some(stiffness) => {
+                let highest = 2.0 / dt_star_limit();
+                2.0 / (highest * highest + stiffness).sqrt()
+            }
+        };
+        if dt_star >= limit {
             let sentence = format!(
-                "the step dt* = {dt_star:.4} is not stable: it must be less than {:.4}; \"auto\" takes 0.1",
-                dt_star_limit()
+                "the step dt* = {dt_star:.4} is not stable: it must be less than {limit:.4}; \"auto\" takes 0.1",
             );
             return Err(file.source.error("time.step", sentence));
         }

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use slipfront::FrictionLaw;
+use slipfront::Friction;
 
 use super::runnable::Case;
 use super::textures::is_array;
-use crate::case_file::{DEFAULT_THRESHOLD, Mask, Texture};
-use crate::number_format::{are, count};
+use crate::case_file::{DEFAULT_THRESHOLD, Law, Mask, Texture};
+use crate::number_format::{are, count, four_digits};
 
 /// Difference between the texture as asked and as meshed, relative to what was asked, above which there is a warning.
 const LARGE_MISFIT: f64 = 0.25;
@@ -42,7 +42,7 @@ impl Case {
                 "V* = {v_star} is above {LARGE_V_STAR}: the slider slips as a whole before any front can cross it"
             )
         });
-        warn(self.file.friction.law == FrictionLaw::Literal, &|| {
+        warn(self.file.friction.law == Law::Literal, &|| {
             "law = \"literal\" is for comparison only: its results depend on the time step".to_owned()
         });
         warn(dt_star > 0.5, &|| {
@@ -138,6 +138,18 @@ impl Case {
             warnings.push(format!(
                 "the given pressures have a mean of {mean:.4} times `pressure`: what is starred is relative to `pressure`"
             ));
+        }
+        if let Friction::RateAndState(law) = &self.model.friction {
+            let (k_drive, v_star) = (self.model.drive.k_drive, self.groups.v_star);
+            // The slider as a whole has the least stiffness.
+            let critical = law.critical_stiffness(surface.mean_normal_force(), self.model.damping, v_star);
+            if k_drive < critical {
+                warnings.push(format!(
+                    "the drive, of stiffness {k_drive} E l per block, is softer than {}, below which steady sliding at V* = {v_star} is \
+                     unstable: stick-slip is to be expected",
+                    four_digits(critical)
+                ));
+            }
         }
         let [mean_static, mean_kinetic] = means;
         if mean_kinetic >= mean_static {

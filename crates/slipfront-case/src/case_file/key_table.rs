@@ -12,8 +12,9 @@ use toml::de::{DeTable, DeValue};
 
 use slipfront::observe::Field;
 use slipfront::surface::Orientation;
-use slipfront::{Edges, FrictionLaw, StopReason};
+use slipfront::{Edges, StopReason};
 
+use super::friction::{Contact, Law};
 use super::probe::names_of;
 
 /// A range of numbers.
@@ -208,7 +209,7 @@ const DRIVE: &[Key] = &[
 
 #[rustfmt::skip]
 const FRICTION: &[Key] = &[
-    key("law", "\"projection\"", Kind::Words(names_of::<FrictionLaw>), "the reading of Eq. 4"),
+    key("law", "\"projection\"", Kind::Words(names_of::<Law>), "the reading of Eq. 4, or rate and state in its place"),
     key("mu_static", "1.0", number(above(0.0, 100.0), "it is the scale of all forces"), "mean static coefficient")
         .title("mean static coefficient", "\u{3bc}\u{209b}", ""),
     key("r_star", "0.5", number(within(0.0, MAX_R_STAR), "it is the kinetic over the static coefficient"),
@@ -226,7 +227,41 @@ const FRICTION: &[Key] = &[
         .title("adhesion", "\u{3c4}\u{2090}", "Pa"),
     key("adhesion_kinetic", "\"0 Pa\"", SHEAR_STRENGTH, "the same, added to their kinetic friction")
         .title("kinetic adhesion", "\u{3c4}\u{2090}\u{2096}", "Pa"),
+    key("velocity", "", Kind::Special("`{ law = \"weakening\", v_c_star = 0.1, ratio = 0.5 }`; v_c_star more than 0, at most 10; ratio 0 to 1"),
+        "kinetic friction that falls with speed"),
+    key("ageing", "", Kind::Special("`{ law = \"logarithmic\", beta = 0.02, time_star = 1 }`; beta 0 to 10; time_star more than 0, at most 1e9"),
+        "static friction that grows while a block is stuck"),
+    key("contact", "\"rigid\"", Kind::Words(names_of::<Contact>), "what holds a block until its threshold"),
+    key("contact_stiffness_star", "", number(above(0.0, 1e3), "it is over E l, and a spring between blocks has 0.75"),
+        "stiffness of the spring in the contact of a block").title("contact stiffness", "k\u{209c}*", ""),
+    key("redraw", "false", Kind::Switch, "whether a spring that forms again has another threshold"),
+    key("a", "", number(above(0.0, 10.0), "it is a coefficient, of the order of 0.01"), "direct effect of rate and state")
+        .title("direct effect", "a", ""),
+    key("b", "", number(within(0.0, 10.0), "it is a coefficient, of the order of 0.01"), "evolution effect of rate and state")
+        .title("evolution effect", "b", ""),
+    key("d_c_star", "", number(above(0.0, 1e9), "it is in units of P mu_s l/E"), "slip over which the state follows a change of speed")
+        .title("slip of the state", "D\u{1d9c}*", ""),
+    key("v_0_star", "", SPEED_STAR, "reference speed of rate and state").title("reference speed", "V\u{2080}*", ""),
+    key("mu_0", "", number(within(0.0, 100.0), "it is a coefficient"), "coefficient of steady sliding at `v_0_star`")
+        .title("coefficient of steady sliding", "\u{3bc}\u{2080}", ""),
+    key("theta_0_star", "", TIME_STAR, "state at the start").title("state at the start", "\u{3b8}\u{2080}*", ""),
+    key("slip_speed_star", "", SPEED_STAR, "speed above which a block counts as sliding under rate and state"),
 ];
+
+/// A speed in the unit of V*.
+pub(super) const SPEED_STAR: Kind = number(above(0.0, 10.0), "it is in the unit of V*");
+/// A time in t*.
+pub(super) const TIME_STAR: Kind = number(POSITIVE_TIME, "it is a time t*");
+/// A share of kinetic friction.
+pub(super) const RATIO: Kind = number(
+    within(0.0, 1.0),
+    "it is kinetic friction at high speed over that at rest",
+);
+/// Growth with age.
+pub(super) const BETA: Kind = number(
+    within(0.0, 10.0),
+    "it is the growth per unit of the logarithm of the age",
+);
 
 /// Largest mean kinetic over mean static coefficient.
 pub(super) const MAX_R_STAR: f64 = 10.0;

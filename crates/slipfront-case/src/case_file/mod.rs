@@ -9,6 +9,7 @@ mod depth;
 mod diagnose;
 mod error;
 mod file;
+mod friction;
 mod key_table;
 mod keys;
 mod load;
@@ -28,13 +29,14 @@ pub use depth::limit_nesting;
 pub use diagnose::syntax_error;
 pub use error::{CaseError, Invalid, Place};
 pub use file::{CaseFile, ParsedCase};
+pub use friction::{Ageing, AgeingLaw, Contact, Friction, KineticFriction, Law, Velocity, VelocityLaw};
 pub use key_table::{Bounds, Key, Kind, SECTIONS, Section, Title, names_a_file, title_of};
 pub use keys::{
     STUDY_TABLES, TABLES as CASE_TABLES, exclude_each_other, header_below, partners_of,
     unknown as unknown_key, unknown_table as unknown_case_table,
 };
 pub use load::read_text;
-pub use motion::{Along, Drive, DriveSpeed, Friction, KineticFriction, Load, Profile};
+pub use motion::{Along, Drive, DriveSpeed, Load, Profile};
 pub use output::{Output, Snapshots};
 pub use overrides::Override;
 pub use probe::names_of;

@@ -47,7 +47,11 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("weight", PRESSURE),
     ("V", SPEED),
     ("v", SPEED),
-    ("velocity", SPEED),
+    (
+        "velocity",
+        "the speed of the drive is `drive.v_star`, or `drive.speed` with its unit; friction that falls with speed is \
+        `friction.velocity`",
+    ),
     (
         "angle",
         "the direction of the drive is `drive.direction`, and a cavity is turned by `texture.N.rotate`",
@@ -158,6 +162,27 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
         "simulation",
         "the length of a run and its step stand in [time], what it writes in [output]",
     ),
+    ("weakening", WEAKENING),
+    ("stribeck", WEAKENING),
+    ("aging", AGEING),
+    ("healing", AGEING),
+    ("contact_stiffness", CONTACT_SPRINGS),
+    ("k_t", CONTACT_SPRINGS),
+    ("rate_and_state", RATE_AND_STATE),
+    ("d_c", "the slip of rate and state is `friction.d_c_star`"),
+    ("dc", "the slip of rate and state is `friction.d_c_star`"),
+    (
+        "v_0",
+        "the reference speed of rate and state is `friction.v_0_star`",
+    ),
+    (
+        "v0",
+        "the reference speed of rate and state is `friction.v_0_star`",
+    ),
+    (
+        "mu0",
+        "the coefficient of rate and state at its reference speed is `friction.mu_0`",
+    ),
     ("temperature", "the model has no temperature"),
 ];
 
@@ -174,6 +199,11 @@ const KINETIC: &str =
 const SPREAD: &str =
     "the spreads of the coefficients are `friction.sigma_static_star` and `friction.sigma_kinetic_star`";
 const DURATION: &str = "the length of the run is `time.duration_star`, or `time.duration` with its unit";
+const WEAKENING: &str = "friction that falls with speed is `friction.velocity` = { law = \"weakening\", v_c_star = 0.1, ratio = 0.5 }";
+const AGEING: &str = "static friction that grows with age is `friction.ageing` = { law = \"logarithmic\", beta = 0.02, time_star = 1 }";
+const CONTACT_SPRINGS: &str =
+    "springs in contact are `friction.contact` = \"springs\", of stiffness `friction.contact_stiffness_star`";
+const RATE_AND_STATE: &str = "rate and state is `friction.law` = \"rate_and_state\"";
 const CIRCLE: &str = "a circle is `shape` = \"cavity\" with `coverage`, or with `lambda`, its radius";
 const GROOVE: &str = "a straight one is `shape` = \"groove\" with `coverage` or `width`";
 const RADIUS: &str = "the radius of a circle is `lambda`";
@@ -193,7 +223,8 @@ mod tests {
     use super::*;
     use crate::case_file::key_table::SECTIONS;
 
-    /// Every key that is named exists, and no word is a key itself, which would be misdirected from the wrong table.
+    /// Every key that is named exists, and no word is a key itself, which would be misdirected from the wrong table, unless its
+    /// advice names it.
     #[test]
     fn advice_names_keys_that_exist() {
         for (word, advice) in SYNONYMS {
@@ -209,7 +240,8 @@ mod tests {
                 assert!(has(table, name) || name == "shape", "{word}: {named}");
             }
             assert!(
-                SECTIONS.iter().all(|section| section.key(word).is_none()),
+                SECTIONS.iter().all(|section| section.key(word).is_none())
+                    || advice.contains(&format!(".{word}`")),
                 "{word}"
             );
             assert!(word.len() == 1 || *word == word.to_lowercase(), "{word}");
@@ -221,7 +253,7 @@ mod tests {
             assert_eq!(advice_on(word), Some(*advice));
         }
         assert_eq!(advice_on("E"), Some(YOUNG));
-        assert_eq!(advice_on("Velocity"), Some(SPEED));
+        assert_eq!(advice_on("V"), Some(SPEED));
         assert_eq!(advice_on("e"), None);
     }
 }

@@ -3,11 +3,11 @@ use proptest::sample::{select, subsequence};
 
 use slipfront::observe::Field;
 use slipfront::surface::Orientation;
-use slipfront::{Edges, FrictionLaw, StopReason};
+use slipfront::{Edges, StopReason};
 use slipfront_case::case_file::{
-    Along, AutoOr, CaseFile, Cavity, CavitySize, Center, Damping, Drive, DriveSpeed, Friction, Groove,
-    GrooveSize, KineticFriction, Load, Mask, Output, Polygon, Profile, RunTime, Slider, Snapshots, Source,
-    Step, Texture, Time,
+    Ageing, AgeingLaw, Along, AutoOr, CaseFile, Cavity, CavitySize, Center, Contact, Damping, Drive,
+    DriveSpeed, Friction, Groove, GrooveSize, KineticFriction, Law, Load, Mask, Output, Polygon, Profile,
+    RunTime, Slider, Snapshots, Source, Step, Texture, Time, Velocity, VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 
@@ -99,36 +99,27 @@ fn friction() -> impl Strategy<Value = Friction> {
         (0.0..10.0).prop_map(KineticFriction::RStar),
         (0.0..1.0).prop_map(KineticFriction::MuKinetic)
     ];
-    let law = select(vec![
-        FrictionLaw::Projection,
-        FrictionLaw::Reversal,
-        FrictionLaw::Literal,
-    ]);
     let field = || prop::option::of(file(&["npy", "csv"]));
     let adhesion = || quantity(-9, 14, &["kPa", "Pa"]);
-    (
-        law,
+    let base = CaseFile::default().friction;
+    let plain = (
         0.1..100.0,
         kinetic,
-        0.0..1.0,
-        0.0..1.0,
+        [0.0..1.0, 0.0..1.0],
         0..=i64::MAX as u64,
         [field(), field()],
         [adhesion(), adhesion()],
     )
         .prop_map(
-            |(
-                law,
+            move |(
                 mu_static,
                 kinetic,
-                sigma_static_star,
-                sigma_kinetic_star,
+                [sigma_static_star, sigma_kinetic_star],
                 seed,
                 [mu_static_field, mu_kinetic_field],
                 [adhesion, adhesion_kinetic],
             )| {
                 Friction {
-                    law,
                     mu_static,
                     kinetic,
                     sigma_static_star,
@@ -138,7 +129,83 @@ fn friction() -> impl Strategy<Value = Friction> {
                     mu_kinetic_field,
                     adhesion,
                     adhesion_kinetic,
+                    ..base.clone()
                 }
+            },
+        );
+    prop_oneof![
+        (plain.clone(), of_coefficients()).prop_map(|(plain, law)| Friction {
+            law: law.law,
+            velocity: law.velocity,
+            ageing: law.ageing,
+            ..plain
+        }),
+        (plain, springs()).prop_map(|(plain, law)| Friction {
+            kinetic: law.kinetic.clone(),
+            sigma_kinetic_star: law.sigma_kinetic_star,
+            mu_kinetic_field: None,
+            adhesion_kinetic: law.adhesion_kinetic,
+            contact: law.contact,
+            contact_stiffness_star: law.contact_stiffness_star,
+            redraw: law.redraw,
+            ..plain
+        }),
+        rate_and_state(),
+    ]
+}
+
+/// Laws of static and kinetic coefficients.
+fn of_coefficients() -> impl Strategy<Value = Friction> {
+    let base = CaseFile::default().friction;
+    let velocity = (1e-6..10.0, 0.0..1.0).prop_map(|(v_c_star, ratio)| Velocity {
+        law: VelocityLaw::Weakening,
+        v_c_star,
+        ratio,
+    });
+    let ageing = (0.0..10.0, 1e-6..1e9).prop_map(|(beta, time_star)| Ageing {
+        law: AgeingLaw::Logarithmic,
+        beta,
+        time_star,
+    });
+    let varying = (prop::option::of(velocity), prop::option::of(ageing));
+    let varying = varying.prop_map(|(velocity, ageing)| (Law::Projection, velocity, ageing));
+    let other = select(vec![Law::Reversal, Law::Literal]).prop_map(|law| (law, None, None));
+    prop_oneof![varying, other].prop_map(move |(law, velocity, ageing)| Friction {
+        law,
+        velocity,
+        ageing,
+        ..base.clone()
+    })
+}
+
+fn springs() -> impl Strategy<Value = Friction> {
+    let base = CaseFile::default().friction;
+    (1e-6..1e3, any::<bool>()).prop_map(move |(stiffness, redraw)| Friction {
+        contact: Contact::Springs,
+        contact_stiffness_star: Some(stiffness),
+        redraw,
+        ..base.clone()
+    })
+}
+
+fn rate_and_state() -> impl Strategy<Value = Friction> {
+    let base = CaseFile::default().friction;
+    let optional = |most: f64| prop::option::of(1e-6..most);
+    (
+        (1e-6..10.0, 0.0..10.0, 1e-6..1e9, 1e-6..10.0),
+        [optional(100.0), optional(1e9), optional(10.0)],
+    )
+        .prop_map(
+            move |((a, b, d_c, v_0), [mu_0, theta_0_star, slip_speed_star])| Friction {
+                law: Law::RateAndState,
+                a: Some(a),
+                b: Some(b),
+                d_c_star: Some(d_c),
+                v_0_star: Some(v_0),
+                mu_0,
+                theta_0_star,
+                slip_speed_star,
+                ..base.clone()
             },
         )
 }

@@ -3,6 +3,16 @@
 //! In the units of this crate (lengths in blocks, times in `l sqrt(rho/E)`, forces in
 //! `P mu_s l^2`). The tests under `tests/physics` hold the kernels against them.
 
+mod ageing;
+mod contact_springs;
+mod rate_and_state;
+mod weakening;
+
+pub use ageing::{StopOfSteadySliding, ageing_slip_time};
+pub use contact_springs::{chain_slip_force, static_over_kinetic_of_springs};
+pub use rate_and_state::{friction_after_speed_step, rate_and_state_growth};
+pub use weakening::weakening_growth;
+
 use crate::lattice::{K_DIAGONAL, K_DRIVE, K_STRAIGHT};
 use crate::scales::damping;
 

@@ -62,9 +62,19 @@ impl Integrator {
         }
     }
 
+    /// That of a block of another mass than 1.
+    #[inline(always)]
+    pub(crate) fn of_mass(&self, mass: f64) -> Self {
+        Self {
+            velocity_decay: self.velocity_decay,
+            force_to_velocity: self.force_to_velocity / mass,
+            velocity_to_force: self.velocity_to_force * mass,
+        }
+    }
+
     /// Velocity at `t + dt/2` under a force alone (Eqs. 5-8): `(c- v + dt F/m)/c+`.
     #[inline(always)]
-    fn accelerate(&self, velocity: [f64; 2], force: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn accelerate(&self, velocity: [f64; 2], force: [f64; 2]) -> [f64; 2] {
         let one = |v: f64, f: f64| self.velocity_decay * v + self.force_to_velocity * f;
         [one(velocity[0], force[0]), one(velocity[1], force[1])]
     }

@@ -1,7 +1,11 @@
 //! Friction that follows speed and the state of the contact.
 
 /// Rate and state with the ageing law: `mu = mu_0 + a ln(V/V_0) + b ln(V_0 theta/D_c)`, `dtheta/dt = 1 - V theta/D_c`; coefficients
-/// over `mu_s`.
+/// over `mu_s`. The logarithm of the speed is regularised at V = 0,
+///
+/// ```text
+/// mu = a asinh(V/(2 V_0) exp((mu_0 + b ln(V_0 theta/D_c))/a))
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateAndState {
     /// Direct effect.
@@ -18,4 +22,125 @@ pub struct RateAndState {
     pub theta_0: f64,
     /// A block counts as sliding above this speed.
     pub slip_speed: f64,
+}
+
+/// Above this logarithm of its argument, `asinh x = ln(2 x)` to the last bit.
+const LARGE: f64 = 20.0;
+
+/// Newton steps that no solution needs: each of them but the last few takes at least half a unit off the unknown, which lies at most
+/// `ln(750)` + 2 below where it begins.
+const MAX_STEPS: usize = 40;
+
+/// `asinh(exp(y))`, without overflow.
+fn asinh_of_exp(y: f64) -> f64 {
+    if y > LARGE {
+        y + std::f64::consts::LN_2
+    } else {
+        libm::asinh(libm::exp(y))
+    }
+}
+
+impl RateAndState {
+    /// `ln` of the factor of V in the regularised law, `(mu_0 + b ln(V_0 theta/D_c))/a - ln(2 V_0)`.
+    #[inline]
+    fn log_factor(&self, theta: f64) -> f64 {
+        (self.mu_0 + self.b * libm::log(self.v_0 * theta / self.d_c)) / self.a - libm::log(2.0 * self.v_0)
+    }
+
+    /// Coefficient at a speed and state, over `mu_s`.
+    ///
+    /// ```
+    /// # use slipfront::RateAndState;
+    /// let law = RateAndState { a: 0.01, b: 0.02, d_c: 0.5, v_0: 0.03, mu_0: 0.6, theta_0: 1.0, slip_speed: 0.01 };
+    /// // Steady sliding at V_0; a jump of speed by a factor of e raises friction by a.
+    /// let steady = 0.5 / 0.03;
+    /// assert!((law.coefficient(0.03, steady) - 0.6).abs() < 1e-15);
+    /// assert!((law.coefficient(0.03 * 1_f64.exp(), steady) - 0.61).abs() < 1e-15);
+    /// ```
+    pub fn coefficient(&self, speed: f64, theta: f64) -> f64 {
+        self.a * asinh_of_exp(self.log_factor(theta) + libm::log(speed))
+    }
+
+    /// Coefficient of steady sliding at a speed: that of the state `D_c/V`.
+    pub fn steady_coefficient(&self, speed: f64) -> f64 {
+        self.coefficient(speed, self.d_c / speed)
+    }
+
+    /// The state after a time at constant speed, exact:
+    ///
+    /// ```text
+    /// theta' = theta e^-x + dt (1 - e^-x)/x,   x = V dt/D_c
+    /// ```
+    ///
+    /// ```
+    /// # use slipfront::RateAndState;
+    /// let law = RateAndState { a: 0.01, b: 0.02, d_c: 0.5, v_0: 0.03, mu_0: 0.6, theta_0: 1.0, slip_speed: 0.01 };
+    /// // At rest it is the age; in steady sliding it stays at D_c/V.
+    /// assert_eq!(law.evolve(3.0, 0.0, 0.1), 3.1);
+    /// assert!((law.evolve(5.0, 0.1, 2.0) - 5.0).abs() < 1e-14);
+    /// ```
+    #[inline]
+    pub fn evolve(&self, theta: f64, speed: f64, dt: f64) -> f64 {
+        let x = speed * dt / self.d_c;
+        if x > 0.0 {
+            let change = libm::expm1(-x);
+            theta + theta * change - dt * (change / x)
+        } else {
+            theta + dt
+        }
+    }
+
+    /// The speed after a step and the force of friction, of a block whose speed would be `free` without friction:
+    ///
+    /// ```text
+    /// v + g F_n mu(v, theta) = free
+    /// ```
+    ///
+    /// with the change of speed per force `g = dt/(m c+)`. With `w = mu/a` as the unknown, `v = sinh(w) e^-L`, and the equation is
+    /// `h(w) = sinh(w) e^-L + g F_n a w - free = 0`. For w >= 0 this h rises and is convex, so that Newton's method from the right of
+    /// the root comes down to it step by step; it ends where rounding lets it come no further. It begins at
+    /// the lesser of the roots that each of the two terms alone would have, which is close.
+    #[inline]
+    pub(crate) fn slide(&self, free: f64, theta: f64, normal_force: f64, g: f64) -> (f64, f64) {
+        let per_unit = g * normal_force * self.a;
+        // Zero is also what is left of a block over a texture: no friction.
+        if free <= 0.0 || per_unit <= 0.0 {
+            return (free, 0.0);
+        }
+        let log_factor = self.log_factor(theta);
+        let mut w = f64::min(free / per_unit, asinh_of_exp(log_factor + libm::log(free)));
+        let mut speed = free;
+        for _ in 0..MAX_STEPS {
+            let (rising, falling) = (libm::exp(w - log_factor), libm::exp(-w - log_factor));
+            speed = 0.5 * (rising - falling);
+            let error = speed + per_unit * w - free;
+            let next = w - error / (0.5 * (rising + falling) + per_unit);
+            if next >= w {
+                break;
+            }
+            w = next;
+        }
+        (speed, normal_force * self.a * w)
+    }
+
+    /// Stiffness per block below which steady sliding of a block at `speed` under the normal force `sigma` is unstable (Rice and
+    /// Ruina 1983, with inertia and damping), in units of `E l`, for blocks of mass `m` = 1:
+    ///
+    /// ```text
+    /// k_c = max(0, [(b - a) sigma - m Omega V]/D_c [1 + m V^2/((sigma a + m Omega V) D_c)])
+    /// ```
+    ///
+    /// ```
+    /// # use slipfront::{RateAndState, scales::damping};
+    /// let law = RateAndState { a: 0.01, b: 0.02, d_c: 0.5, v_0: 0.03, mu_0: 0.6, theta_0: 1.0, slip_speed: 0.01 };
+    /// assert!((law.critical_stiffness(1.0, damping(0.1), 0.03) - 0.0169).abs() < 5e-5);
+    /// // So much damping that nothing makes it unstable.
+    /// assert_eq!(law.critical_stiffness(1.0, damping(0.1), 0.3), 0.0);
+    /// ```
+    pub fn critical_stiffness(&self, sigma: f64, damping: f64, speed: f64) -> f64 {
+        let viscous = damping * speed;
+        let weakening = (self.b - self.a) * sigma - viscous;
+        let inertia = speed * speed / ((sigma * self.a + viscous) * self.d_c);
+        (weakening / self.d_c * (1.0 + inertia)).max(0.0)
+    }
 }

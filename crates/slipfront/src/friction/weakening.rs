@@ -5,6 +5,34 @@
 pub struct Weakening {
     /// Speed `v_c` at which half of the fall is reached, in units of `P mu_s/sqrt(E rho)`.
     pub critical_speed: f64,
-    /// Kinetic friction at high speed over that at rest.
+    /// Kinetic friction at high speed over that at rest, 0 to 1.
     pub ratio: f64,
+}
+
+impl Weakening {
+    /// Share of kinetic friction that is lost at a speed, in the form that is exactly 0 at rest:
+    ///
+    /// ```text
+    /// 1 - mu_k(v)/mu_k = (1 - ratio) |v|/(v_c + |v|)
+    /// ```
+    ///
+    /// ```
+    /// // Half of the fall at v_c.
+    /// let weakening = slipfront::Weakening { critical_speed: 0.1, ratio: 0.5 };
+    /// assert_eq!((weakening.lost_share(0.0), weakening.lost_share(0.1)), (0.0, 0.25));
+    /// ```
+    #[inline(always)]
+    pub fn lost_share(&self, speed: f64) -> f64 {
+        (1.0 - self.ratio) * (speed / (self.critical_speed + speed))
+    }
+
+    /// Kinetic friction `mu_k(v) F_n + tau_ak l^2` at a speed, from that at rest. Adhesion does not weaken: the law is one of the
+    /// coefficient.
+    ///
+    /// The operations have this order in every kernel: `x = v/(v_c + v)`, `s = (1 - ratio) x`, `m = max(K - tau_ak l^2, 0)`,
+    /// `K - s m`.
+    #[inline(always)]
+    pub(crate) fn kinetic_force(&self, at_rest: f64, adhesion: f64, speed: f64) -> f64 {
+        at_rest - self.lost_share(speed) * (at_rest - adhesion).max(0.0)
+    }
 }

@@ -1,7 +1,7 @@
 //! What every kernel does.
 
 use super::block::{Block, Field};
-use super::totals::Totals;
+use super::totals::{ContactTotals, Totals};
 use crate::checkpoint::MotionBounds;
 use crate::model::Model;
 
@@ -38,6 +38,17 @@ pub(crate) trait Engine: Send + Sync {
 
     /// Bounds that a checkpoint keeps, of a kernel that has any.
     fn motion_bounds(&self) -> Option<MotionBounds>;
+
+    /// Sums that belong to a law of friction, of a kernel that computes such laws.
+    fn contact_totals(&self, _model: &Model) -> ContactTotals {
+        ContactTotals::default()
+    }
+
+    /// What the law of friction remembers of every block, one array per column of a checkpoint beyond
+    /// [`BlockColumn::ALL`](crate::checkpoint::BlockColumn::ALL).
+    fn memory(&self) -> Vec<&[f64]> {
+        Vec::new()
+    }
 
     /// Velocity of block `b` as a checkpoint keeps it.
     fn checkpoint_velocity(&self, b: usize) -> [f64; 2];

@@ -90,11 +90,13 @@ impl Execution {
         dt_star: f64,
         checkpoint: &Checkpoint,
         communicator: Arc<dyn Communicator>,
-        read: impl FnMut(BlockColumn, usize, &mut [f64]) -> Result<(), E>,
+        mut read: impl FnMut(usize, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<Option<Box<dyn Engine>>, E> {
         match (self.kernel.for_model(model), checkpoint.motion_bounds) {
             (Kernel::Fused, Some(_)) => {
                 let (threads, skips) = (self.threads, self.skips);
+                let read =
+                    |column: BlockColumn, first, values: &mut [f64]| read(column as usize, first, values);
                 let kernel = Fused::resume(model, dt_star, checkpoint, threads, skips, communicator, read)?;
                 Ok(Some(Box::new(kernel)))
             }

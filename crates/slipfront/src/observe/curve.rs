@@ -19,6 +19,8 @@ pub struct CurveRow {
     pub point: CurvePoint,
     /// Energies stored at this instant, and supplied and lost up to it.
     pub energies: Energies,
+    /// Mean state variable of the blocks in contact, t*; 0 under laws that have none.
+    pub mean_state: f64,
 }
 
 /// Records the curve and keeps the energy balance. It must be called at every step.
@@ -56,6 +58,7 @@ impl Observer for Curve {
                 time_star: now.time_star,
                 point: now.point,
                 energies: self.ledger.energies(now.stored_energy()),
+                mean_state: now.contact.mean_state,
             });
         }
         Ok(())

@@ -19,6 +19,10 @@ pub struct Energies {
     pub friction_loss: f64,
     /// Lost to damping since the start.
     pub damping_loss: f64,
+    /// Stored in springs between blocks and substrate at this instant.
+    pub contact_springs: f64,
+    /// Lost with such springs that broke since the start.
+    pub broken_springs_loss: f64,
     /// Energy stored at the start.
     pub stored_at_start: f64,
 }
@@ -34,8 +38,9 @@ impl Energies {
     /// of a slip, at most `(mu_k F_n dt)^2/2`. While all blocks slide the error is that of rounding.
     pub fn error(&self) -> f64 {
         let supplied = self.work.abs() + self.stored_at_start;
-        let missing =
-            self.work - (self.stored.total() - self.stored_at_start) - self.friction_loss - self.damping_loss;
+        let stored = self.stored.total() + self.contact_springs;
+        let lost = self.friction_loss + self.damping_loss + self.broken_springs_loss;
+        let missing = self.work - (stored - self.stored_at_start) - lost;
         if supplied > 0.0 { missing / supplied } else { 0.0 }
     }
 }
@@ -72,6 +77,8 @@ impl Ledger {
     /// Adds the step that ends now. It must be called at every step.
     pub(crate) fn add(&mut self, now: &Snapshot) {
         let powers = Powers::at(now);
+        self.totals.contact_springs = now.contact.spring_energy;
+        self.totals.broken_springs_loss += now.contact.broken_energy;
         match self.before {
             Some(before) => {
                 let half = 0.5 * now.dt_star;

@@ -122,7 +122,18 @@ impl Surface {
     /// Static threshold `mu_si F_n,i + tau_a l^2` of block `b` in units of `P mu_s l^2`; 0 over a texture.
     #[inline(always)]
     pub fn static_limit(&self, b: usize) -> f64 {
-        self.limit(self.mu_static[b], self.contact.adhesion.of_static, b)
+        self.static_limit_with(self.mu_static[b], b)
+    }
+
+    /// The static threshold that block `b` would have with another coefficient.
+    #[inline(always)]
+    pub(crate) fn static_limit_with(&self, coefficient: f64, b: usize) -> f64 {
+        self.limit(coefficient, self.contact.adhesion.of_static, b)
+    }
+
+    /// What adds to friction whatever the load.
+    pub fn adhesion(&self) -> Adhesion {
+        self.contact.adhesion
     }
 
     /// Kinetic friction `mu_ki F_n,i + tau_ak l^2` of block `b` in units of `P mu_s l^2`; 0 over a texture.
@@ -188,6 +199,16 @@ impl Surface {
         let whole = &self.whole;
         let sum = whole.sum_kinetic_pressure / self.contact.mu_static_mean * self.load_factor;
         (sum + whole.n_contact as f64 * self.contact.adhesion.of_kinetic) / whole.n_blocks as f64
+    }
+
+    /// Mean normal force over all blocks, textured ones included, in units of `P l^2`.
+    pub fn mean_normal_force(&self) -> f64 {
+        self.load_factor * self.whole.sum_pressure[1] / self.whole.n_blocks as f64
+    }
+
+    /// The part of [`mean_kinetic_force`](Self::mean_kinetic_force) that is adhesion.
+    pub fn mean_kinetic_adhesion(&self) -> f64 {
+        self.whole.n_contact as f64 * self.contact.adhesion.of_kinetic / self.whole.n_blocks as f64
     }
 
     /// The smallest force that makes a block in contact slip, the larger of its static threshold and its kinetic friction

@@ -8,7 +8,6 @@ mod common;
 
 use std::convert::Infallible;
 
-use slipfront::checkpoint::BlockColumn;
 use slipfront::{Edges, Execution, Kernel, Lattice, Model, Simulation, Stop};
 
 /// The kernel of the simulations that the common helpers make.
@@ -47,11 +46,11 @@ fn has_room(blocks: [usize; 2], edges: [Edges; 2]) -> bool {
 }
 
 /// The numbers of all blocks that a checkpoint keeps.
-fn columns(simulation: &Simulation) -> [Vec<f64>; 5] {
-    let mut columns: [Vec<f64>; 5] = Default::default();
+fn columns(simulation: &Simulation) -> Vec<Vec<f64>> {
+    let mut columns = vec![Vec::new(); simulation.snapshot().model.n_columns()];
     let Ok(()) = simulation.write_columns(|column, first, values| {
-        let saved = &mut columns[column as usize];
-        assert_eq!(saved.len(), first, "{column:?}");
+        let saved = &mut columns[column];
+        assert_eq!(saved.len(), first, "column {column}");
         saved.extend(values);
         Ok::<(), Infallible>(())
     });
@@ -63,8 +62,8 @@ fn resumed(simulation: &Simulation, model: &Model, dt_star: f64, execution: Exec
     let bytes = postcard::to_stdvec(&simulation.checkpoint()).unwrap();
     let checkpoint = postcard::from_bytes(&bytes).unwrap();
     let columns = columns(simulation);
-    let read = |column: BlockColumn, first: usize, values: &mut [f64]| {
-        values.copy_from_slice(&columns[column as usize][first..][..values.len()]);
+    let read = |column: usize, first: usize, values: &mut [f64]| {
+        values.copy_from_slice(&columns[column][first..][..values.len()]);
         Ok::<(), Infallible>(())
     };
     let Ok(resumed) = Simulation::resume(model.clone(), dt_star, &checkpoint, execution, read);

@@ -11,13 +11,17 @@ use slipfront::Kernel;
 /// The kernel of the simulations of this binary.
 const KERNEL: Kernel = Kernel::Fused;
 
+mod ageing;
+mod contact_springs;
 mod driven_fronts;
 mod energy;
 mod first_slip;
 mod front_speed;
+mod growth;
 mod lattice_waves;
 mod load_and_adhesion;
 mod observables;
+mod rate_and_state;
 mod scale_invariance;
 mod shapes;
 mod slip_cycle;
@@ -26,3 +30,4 @@ mod steady_sliding;
 mod straight_groove;
 mod symmetry;
 mod texture;
+mod weakening;

@@ -4,17 +4,24 @@
 //! Forces of opposite neighbours are summed in pairs, straight ones before diagonal ones, so that the trajectory of a rotated
 //! or mirrored problem is the rotated or mirrored trajectory, with the same bits.
 
+mod contact;
+mod contact_springs;
+mod forces;
+mod rate_and_state;
 mod springs;
+mod thresholds;
 
 use fearless_simd::{Level, dispatch};
 
+use self::contact::Contact;
+use self::forces::{Forces, components};
 use self::springs::{lattice_energy, lattice_forces};
 use super::block::{Block, Field};
 use super::engine::Engine;
-use super::totals::{StoredEnergy, Totals};
+use super::totals::{ContactTotals, StoredEnergy, Totals};
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::fixed_point;
-use crate::friction::{BlockState, Friction, FrictionLaw, Integrator, Law, Literal, Projection, Reversal};
+use crate::friction::{BlockState, FrictionLaw, Integrator, Law, Literal, Projection, Reversal};
 use crate::model::Model;
 use crate::reductions;
 use crate::state::State;
@@ -29,25 +36,13 @@ pub(crate) struct Reference {
     /// Displacements at t_n, velocities half a step later.
     state: State,
     forces: Forces,
-    /// `mu_s F_n`.
+    /// `mu_s F_n`; of springs in contact the thresholds that they have since they last broke.
     static_limit: Vec<f64>,
     /// `mu_k F_n`.
     kinetic_force: Vec<f64>,
+    contact: Contact,
     first_slip: Vec<f64>,
     stress_square_max: f64,
-}
-
-/// Forces at t_n and the outcome of the update that starts there; one value per block.
-#[derive(Clone, Debug, PartialEq)]
-struct Forces {
-    drive: VectorField,
-    lattice: VectorField,
-    friction: VectorField,
-    /// Velocities after the update within a step; between steps those before it.
-    velocity: VectorField,
-    slides: Vec<bool>,
-    /// Force of the spring along each bond, before they are summed into `lattice`.
-    springs: [VectorField; 4],
 }
 
 impl Reference {
@@ -68,6 +63,7 @@ impl Reference {
             },
             static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
             kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
+            contact: Contact::new(model),
             first_slip: vec![f64::NAN; n],
             stress_square_max: 0.0,
         }
@@ -78,7 +74,7 @@ impl Reference {
         model: &Model,
         dt_star: f64,
         checkpoint: &Checkpoint,
-        mut read: impl FnMut(BlockColumn, usize, &mut [f64]) -> Result<(), E>,
+        mut read: impl FnMut(usize, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<Self, E> {
         let n = model.lattice.n_blocks();
         let mut kernel = Self {
@@ -93,10 +89,18 @@ impl Reference {
                 BlockColumn::VelocityY => &mut kernel.state.velocity.y,
                 BlockColumn::FirstSlip => &mut kernel.first_slip,
             };
-            read(column, first, values)?;
+            read(column as usize, first, values)?;
             array[first..][..values.len()].copy_from_slice(values);
             Ok(())
         })?;
+        for (column, values) in (BlockColumn::ALL.len()..).zip(kernel.contact.columns_mut()) {
+            for (part, values) in values.chunks_mut(BlockColumn::PART).enumerate() {
+                read(column, part * BlockColumn::PART, values)?;
+            }
+        }
+        if let Contact::Springs(springs) = &kernel.contact {
+            springs.find_thresholds(model, &mut kernel.static_limit);
+        }
         kernel.step(model, checkpoint.step, false);
         Ok(kernel)
     }
@@ -104,6 +108,16 @@ impl Reference {
     #[inline(always)]
     fn advance_and_evaluate(&mut self, model: &Model, time_star: f64) {
         if std::mem::replace(&mut self.started, true) {
+            match &mut self.contact {
+                Contact::Coulomb(_) => {}
+                Contact::RateAndState(contact) => contact.evolve(&self.state.velocity, self.dt_star),
+                Contact::Springs(springs) => springs.form_again(
+                    model,
+                    &self.state.displacement,
+                    &self.forces.slides,
+                    &mut self.static_limit,
+                ),
+            }
             move_blocks(&mut self.state, self.dt_star);
         }
         drive_forces(model, &self.state, time_star, &mut self.forces.drive);
@@ -114,32 +128,24 @@ impl Reference {
             &mut self.forces.springs,
         );
         let integrator = Integrator::new(model.damping, self.dt_star);
-        match model.friction {
-            Friction::Coulomb(coulomb) => match coulomb.law {
-                FrictionLaw::Projection => self.friction_forces(&Projection, &integrator),
-                FrictionLaw::Reversal => self.friction_forces(&Reversal, &integrator),
-                FrictionLaw::Literal => self.friction_forces(&Literal, &integrator),
-            },
-            Friction::RateAndState(_) | Friction::ContactSprings(_) => todo!(),
+        let (state, forces) = (&self.state, &mut self.forces);
+        match &mut self.contact {
+            Contact::Coulomb(thresholds) => {
+                thresholds.update(&self.static_limit, &self.kinetic_force, state, forces, time_star);
+                let now = thresholds.now(&self.static_limit, &self.kinetic_force);
+                match thresholds.law {
+                    FrictionLaw::Projection => friction_forces(&Projection, &integrator, now, state, forces),
+                    FrictionLaw::Reversal => friction_forces(&Reversal, &integrator, now, state, forces),
+                    FrictionLaw::Literal => friction_forces(&Literal, &integrator, now, state, forces),
+                }
+                thresholds.note_stops(state, forces, time_star);
+            }
+            Contact::RateAndState(contact) => contact.apply(model, state, &integrator, forces),
+            Contact::Springs(springs) => {
+                springs.apply(model, state, &self.static_limit, &integrator, forces);
+            }
         }
         std::mem::swap(&mut self.state.velocity, &mut self.forces.velocity);
-    }
-
-    /// Eqs. 4-7: friction and damping, and the velocity half a step later.
-    #[inline(always)]
-    fn friction_forces<L: Law>(&mut self, law: &L, integrator: &Integrator) {
-        let (forces, before) = (&mut self.forces, &self.state.velocity);
-        let (drive, lattice) = (&forces.drive, &forces.lattice);
-        apply_friction(
-            law,
-            integrator,
-            [&self.static_limit, &self.kinetic_force],
-            [&before.x, &before.y],
-            [&drive.x, &drive.y, &lattice.x, &lattice.y],
-            [&mut forces.friction.x, &mut forces.friction.y],
-            [&mut forces.velocity.x, &mut forces.velocity.y],
-            &mut forces.slides,
-        );
     }
 
     fn mark_first_slips(&mut self, model: &Model, time_star: f64) {
@@ -175,7 +181,11 @@ impl Reference {
             velocity: [fixed_point::sum(n, vx), fixed_point::sum(n, vy)],
             velocity_after: sum([ax, ay]),
             velocity_square: fixed_point::sum(n, |b| vx(b) * vx(b) + vy(b) * vy(b)),
-            friction_power: fixed_point::sum(n, |b| fx[b] * vx(b) + fy[b] * vy(b)),
+            friction_power: match self.contact {
+                // What these springs take is stored, or lost where they break.
+                Contact::Springs(_) => 0.0,
+                _ => fixed_point::sum(n, |b| fx[b] * vx(b) + fy[b] * vy(b)),
+            },
             n_sliding: slides.iter().filter(|&&slides| slides).count(),
             n_slipping: slipping
                 .filter(|&(slides, textured)| *slides && !textured)
@@ -228,7 +238,10 @@ impl Engine for Reference {
             for i in (0..lattice.nx).step_by(WIDTH) {
                 let values = &mut values[..WIDTH.min(lattice.nx - i)];
                 for (value, b) in values.iter_mut().zip(lattice.block(i, j)..) {
-                    *value = field.value(&self.block(model, number, b), model.surface.textured[b]) as f32;
+                    *value = match field {
+                        Field::Sliding => f32::from(u8::from(self.forces.slides[b])),
+                        _ => field.value(&self.block(model, number, b), model.surface.textured[b]) as f32,
+                    };
                 }
                 write(j, i, values);
             }
@@ -255,15 +268,22 @@ impl Engine for Reference {
         None
     }
 
+    fn contact_totals(&self, model: &Model) -> ContactTotals {
+        match &self.contact {
+            Contact::Coulomb(_) => ContactTotals::default(),
+            Contact::RateAndState(contact) => contact.totals(model),
+            Contact::Springs(springs) => springs.totals(model, &self.state.displacement, &self.forces.slides),
+        }
+    }
+
+    fn memory(&self) -> Vec<&[f64]> {
+        self.contact.columns()
+    }
+
     /// Half a step before the present instant, which is evaluated again when it resumes.
     fn checkpoint_velocity(&self, b: usize) -> [f64; 2] {
         self.forces.velocity.at(b)
     }
-}
-
-#[inline(always)]
-fn components(field: &VectorField, n: usize) -> [&[f64]; 2] {
-    [&field.x[..n], &field.y[..n]]
 }
 
 /// Eq. 8: `u(t + dt) = u(t) + dt v(t + dt/2)`.
@@ -290,6 +310,28 @@ fn drive_forces(model: &Model, state: &State, time_star: f64, force: &mut Vector
     };
     component(&mut force.x, &state.displacement.x, 0);
     component(&mut force.y, &state.displacement.y, 1);
+}
+
+/// Eqs. 4-7: friction and damping, and the velocity half a step later.
+#[inline(always)]
+fn friction_forces<L: Law>(
+    law: &L,
+    integrator: &Integrator,
+    thresholds: [&[f64]; 2],
+    state: &State,
+    forces: &mut Forces,
+) {
+    let (drive, lattice, before) = (&forces.drive, &forces.lattice, &state.velocity);
+    apply_friction(
+        law,
+        integrator,
+        thresholds,
+        [&before.x, &before.y],
+        [&drive.x, &drive.y, &lattice.x, &lattice.y],
+        [&mut forces.friction.x, &mut forces.friction.y],
+        [&mut forces.velocity.x, &mut forces.velocity.y],
+        &mut forces.slides,
+    );
 }
 
 /// Applies the friction law to every block: finds friction, velocities and which slide from thresholds, velocities and forces.

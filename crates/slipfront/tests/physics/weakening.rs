@@ -1,0 +1,94 @@
+//! Kinetic friction that falls with speed.
+
+use rstest::rstest;
+use slipfront::exact_solutions::weakening_growth;
+use slipfront::lattice::K_DRIVE;
+use slipfront::{
+    Coulomb, Drive, Friction, FrictionLaw, Lattice, Model, State, Surface, VectorField, Weakening, scales,
+};
+
+use crate::common::{Slider, from_state};
+use crate::growth::growth_rate;
+
+fn weakening(law: Weakening) -> Friction {
+    Friction::Coulomb(Coulomb {
+        law: FrictionLaw::Projection,
+        weakening: Some(law),
+        ageing: None,
+    })
+}
+
+const LAW: Weakening = Weakening {
+    critical_speed: 0.1,
+    ratio: 0.4,
+};
+
+/// Growth rate of a small disturbance of steady sliding at `v`, of blocks that move as one.
+fn measured_growth(v: f64, damping: f64, dt: f64) -> f64 {
+    let lattice = Lattice::free(2, 2);
+    let surface = Surface::uniform(&lattice, 1.0, 0.5);
+    let model = Model::new(lattice, surface, Drive::along_x(v), damping, 0.0, weakening(LAW));
+    let behind = (model.steady_level()) / K_DRIVE;
+    // So small that the law is linear to a millionth, so large that rounding is less.
+    let amplitude = 1e-6;
+    let state = State {
+        displacement: VectorField {
+            x: vec![-behind + amplitude; 4],
+            y: vec![0.0; 4],
+        },
+        velocity: VectorField {
+            x: vec![v; 4],
+            y: vec![0.0; 4],
+        },
+    };
+    let mut simulation = from_state(&model, dt, state);
+    growth_rate(&mut simulation, dt, [0.0, 2.4], |now| {
+        now.block(0).displacement[0] + behind - v * now.time_star
+    })
+}
+
+/// Friction is taken at the speed half a step before: of first order in the step, so that half the step leaves half the error, to
+/// terms of the next order (10 %). On both sides of dF/dv + Omega = 0.
+#[rstest]
+#[case(0.2, 0.0)]
+#[case(0.2, 0.2)]
+#[case(0.2, 0.4)]
+#[case(0.05, 1.3)]
+#[case(0.05, 1.5)]
+fn disturbances_of_steady_sliding_grow_as_the_eigenvalue_says(#[case] v: f64, #[case] damping: f64) {
+    let exact = weakening_growth(&LAW, 0.5, v, K_DRIVE, damping);
+    let [coarse, fine] = [0.04, 0.02].map(|dt| measured_growth(v, damping, dt) - exact);
+    assert!(fine.abs() < 0.02 * (0.01 + exact.abs()), "{exact} {fine}");
+    assert!((coarse / fine - 2.0).abs() < 0.2, "{coarse} {fine}");
+    let slope = -0.5 * 0.6 * 0.1 / (0.1 + v).powi(2);
+    assert_eq!(exact > 0.0, slope + damping < 0.0);
+}
+
+/// With strong damping all blocks slide for good at the level of the law at V*; adhesion does not weaken.
+#[rstest]
+fn strong_damping_ends_at_the_level_of_the_law(#[values(0.0, 0.3)] adhesion: f64) {
+    let mut slider = Slider {
+        blocks: [12, 9],
+        omega_star: 6.0,
+        v_star: 0.1,
+        ..Slider::default()
+    };
+    slider.adhesion.of_kinetic = adhesion;
+    let mut model = slider.model();
+    model.friction = weakening(LAW);
+    let surface = &model.surface;
+    let n = surface.n_blocks();
+    let mean = (0..n).map(|b| surface.mu_kinetic[b]).sum::<f64>() / n as f64;
+    // mu_k(V*) = mu_k (0.4 + 0.6/2).
+    let exact = 0.7 * mean + adhesion + scales::damping(6.0) * 0.1;
+    assert!((model.steady_level() - exact).abs() < 1e-14);
+    let mut simulation = crate::common::at_rest(&model, 0.1);
+    slider.watch(&mut simulation, 40.0, &mut []);
+    let now = simulation.snapshot();
+    assert!(
+        (now.point.mu_star - exact).abs() < 1e-9,
+        "{} {exact}",
+        now.point.mu_star
+    );
+    assert_eq!(now.point.sliding_percent, 100.0);
+}
