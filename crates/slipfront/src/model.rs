@@ -72,14 +72,19 @@ impl Model {
     /// Level of mu* in steady sliding:
     ///
     /// ```text
-    /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V*
+    /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V* mean(m_i)
     /// ```
     pub fn steady_level(&self) -> f64 {
-        self.surface.mean_kinetic_force() + self.damping * self.drive.v_star
+        self.surface.mean_kinetic_force() + self.damping * self.drive.v_star * self.slider.mean_mass
+    }
+
+    /// Number of blocks of the whole lattice that exist.
+    pub fn n_blocks(&self) -> usize {
+        self.slider.n_blocks(&self.lattice)
     }
 
     /// Time of the first slip of a block in contact on a surface without texture, exact:
-    /// `t* = min_i max(mu_si, mu_ki) F_n,i/(k_s V*)`.
+    /// `t* = min_i max(mu_si, mu_ki) F_n,i/(k_s,i V*)`.
     pub fn first_slip_estimate(&self) -> f64 {
         self.surface.min_slip_threshold() / (self.drive.k_drive * self.drive.v_star)
     }

@@ -3,6 +3,12 @@
 //! In the units of this crate (lengths in blocks, times in `l sqrt(rho/E)`, forces in
 //! `P mu_s l^2`). The tests under `tests/physics` hold the kernels against them.
 
+mod sliders;
+
+pub use self::sliders::{
+    PairMode, composite_peak, graded_first_slip_time_star, lagged_decay_rate, pair_modes, viscous_decay_rate,
+};
+
 use crate::lattice::{K_DIAGONAL, K_DRIVE, K_STRAIGHT};
 use crate::scales::damping;
 

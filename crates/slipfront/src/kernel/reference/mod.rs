@@ -8,13 +8,14 @@ mod springs;
 
 use fearless_simd::{Level, dispatch};
 
-use self::springs::{lattice_energy, lattice_forces};
+use self::springs::{damper_forces, lattice_energy, lattice_forces};
 use super::block::{Block, Field};
 use super::engine::Engine;
 use super::totals::{StoredEnergy, Totals};
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::fixed_point;
 use crate::friction::{BlockState, Friction, FrictionLaw, Integrator, Law, Literal, Projection, Reversal};
+use crate::lattice::Bond;
 use crate::model::Model;
 use crate::reductions;
 use crate::state::State;
@@ -33,6 +34,12 @@ pub(crate) struct Reference {
     static_limit: Vec<f64>,
     /// `mu_k F_n`.
     kinetic_force: Vec<f64>,
+    /// Relative stiffness of the spring of every block along each bond, if they are not all alike.
+    relative_springs: Option<[Vec<f64>; 4]>,
+    /// Forces of the dampers beside the springs, if there are any.
+    dampers: Option<VectorField>,
+    /// Power that these take.
+    viscous_power: f64,
     first_slip: Vec<f64>,
     stress_square_max: f64,
 }
@@ -41,6 +48,7 @@ pub(crate) struct Reference {
 #[derive(Clone, Debug, PartialEq)]
 struct Forces {
     drive: VectorField,
+    /// Of the springs between blocks and the dampers beside them.
     lattice: VectorField,
     friction: VectorField,
     /// Velocities after the update within a step; between steps those before it.
@@ -54,6 +62,8 @@ impl Reference {
     pub(crate) fn new(model: &Model, dt_star: f64, state: State) -> Self {
         let n = model.lattice.n_blocks();
         let zeros = || VectorField::zeros(n);
+        let slider = &model.slider;
+        let springs = || Bond::ALL.map(|bond| slider.springs_along(&model.lattice, &bond));
         Self {
             dt_star,
             started: false,
@@ -68,6 +78,9 @@ impl Reference {
             },
             static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
             kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
+            relative_springs: (!slider.has_equal_springs()).then(springs),
+            dampers: (slider.viscosity_time > 0.0).then(zeros),
+            viscous_power: 0.0,
             first_slip: vec![f64::NAN; n],
             stress_square_max: 0.0,
         }
@@ -107,18 +120,20 @@ impl Reference {
             move_blocks(&mut self.state, self.dt_star);
         }
         drive_forces(model, &self.state, time_star, &mut self.forces.drive);
-        lattice_forces(
-            model,
-            &self.state,
-            &mut self.forces.lattice,
-            &mut self.forces.springs,
-        );
+        let Forces { lattice, springs, .. } = &mut self.forces;
+        let relative = self.relative_springs.as_ref();
+        lattice_forces(model, &self.state, relative, lattice, springs);
+        if let Some(dampers) = &mut self.dampers {
+            damper_forces(model, &self.state, relative, dampers, springs);
+            add_to(&mut lattice.x, &dampers.x);
+            add_to(&mut lattice.y, &dampers.y);
+        }
         let integrator = Integrator::new(model.damping, self.dt_star);
         match model.friction {
             Friction::Coulomb(coulomb) => match coulomb.law {
-                FrictionLaw::Projection => self.friction_forces(&Projection, &integrator),
-                FrictionLaw::Reversal => self.friction_forces(&Reversal, &integrator),
-                FrictionLaw::Literal => self.friction_forces(&Literal, &integrator),
+                FrictionLaw::Projection => self.friction_forces(model, &Projection, integrator),
+                FrictionLaw::Reversal => self.friction_forces(model, &Reversal, integrator),
+                FrictionLaw::Literal => self.friction_forces(model, &Literal, integrator),
             },
             Friction::RateAndState(_) | Friction::ContactSprings(_) => todo!(),
         }
@@ -127,7 +142,15 @@ impl Reference {
 
     /// Eqs. 4-7: friction and damping, and the velocity half a step later.
     #[inline(always)]
-    fn friction_forces<L: Law>(&mut self, law: &L, integrator: &Integrator) {
+    fn friction_forces<L: Law>(&mut self, model: &Model, law: &L, integrator: Integrator) {
+        match &model.slider.density {
+            None => self.friction_of_masses(law, |_| integrator),
+            Some(mass) => self.friction_of_masses(law, |b| integrator.of_mass(mass[b])),
+        }
+    }
+
+    #[inline(always)]
+    fn friction_of_masses<L: Law>(&mut self, law: &L, integrator: impl Fn(usize) -> Integrator) {
         let (forces, before) = (&mut self.forces, &self.state.velocity);
         let (drive, lattice) = (&forces.drive, &forces.lattice);
         apply_friction(
@@ -161,8 +184,11 @@ impl Reference {
         let [lx, ly] = components(&self.forces.lattice, n);
         let [fx, fy] = components(&self.forces.friction, n);
         let (textured, slides) = (&model.surface.textured[..n], &self.forces.slides[..n]);
-        let sum = |[x, y]: [&[f64]; 2]| [fixed_point::sum(n, |b| x[b]), fixed_point::sum(n, |b| y[b])];
-        let squares = |[x, y]: [&[f64]; 2]| fixed_point::sum(n, |b| x[b] * x[b] + y[b] * y[b]);
+        let slider = &model.slider;
+        let mass = slider.density.as_deref();
+        let driven = slider.drive_springs.as_ref().map(|springs| &*springs.relative);
+        let sum = |[x, y]: [&[f64]; 2]| [x, y].map(|values| weighted_sum(n, driven, |b| values[b]));
+        let squares = |[x, y]: [&[f64]; 2]| weighted_sum(n, mass, |b| x[b] * x[b] + y[b] * y[b]);
         let (vx, vy) = (|b: usize| 0.5 * (bx[b] + ax[b]), |b: usize| 0.5 * (by[b] + ay[b]));
         let slipping = slides.iter().zip(textured);
         let stress_square = reductions::largest(n, |b| {
@@ -170,11 +196,15 @@ impl Reference {
             if textured[b] { 0.0 } else { x * x + y * y }
         });
         self.stress_square_max = self.stress_square_max.max(stress_square);
+        if let Some(dampers) = &self.dampers {
+            let [dx, dy] = components(dampers, n);
+            self.viscous_power = -fixed_point::sum(n, |b| dx[b] * vx(b) + dy[b] * vy(b));
+        }
         Totals {
             displacement: sum([ux, uy]),
-            velocity: [fixed_point::sum(n, vx), fixed_point::sum(n, vy)],
+            velocity: [weighted_sum(n, driven, vx), weighted_sum(n, driven, vy)],
             velocity_after: sum([ax, ay]),
-            velocity_square: fixed_point::sum(n, |b| vx(b) * vx(b) + vy(b) * vy(b)),
+            velocity_square: weighted_sum(n, mass, |b| vx(b) * vx(b) + vy(b) * vy(b)),
             friction_power: fixed_point::sum(n, |b| fx[b] * vx(b) + fy[b] * vy(b)),
             n_sliding: slides.iter().filter(|&&slides| slides).count(),
             n_slipping: slipping
@@ -182,11 +212,14 @@ impl Reference {
                 .count(),
             stored_energy: energies.then(|| {
                 let [x, y] = model.drive.position(time_star);
-                let stretch_square =
-                    fixed_point::sum(n, |b| (x - ux[b]) * (x - ux[b]) + (y - uy[b]) * (y - uy[b]));
+                let stretch_square = weighted_sum(n, driven, |b| {
+                    (x - ux[b]) * (x - ux[b]) + (y - uy[b]) * (y - uy[b])
+                });
+                let displacement = &self.state.displacement;
+                let springs = self.relative_springs.as_ref();
                 StoredEnergy {
                     kinetic: 0.25 * (squares([bx, by]) + squares([ax, ay])),
-                    lattice: lattice_energy(&model.lattice, &self.state.displacement, model.epsilon),
+                    lattice: lattice_energy(&model.lattice, displacement, springs, model.epsilon),
                     drive_springs: 0.5 * model.drive.k_drive * stretch_square,
                 }
             }),
@@ -251,6 +284,10 @@ impl Engine for Reference {
         self.stress_square_max
     }
 
+    fn viscous_power(&self) -> f64 {
+        self.viscous_power
+    }
+
     fn motion_bounds(&self) -> Option<MotionBounds> {
         None
     }
@@ -266,6 +303,26 @@ fn components(field: &VectorField, n: usize) -> [&[f64]; 2] {
     [&field.x[..n], &field.y[..n]]
 }
 
+/// Sum of `weight term` over the blocks; all weights are 1 if there are none.
+#[inline(always)]
+fn weighted_sum(n: usize, weights: Option<&[f64]>, term: impl Fn(usize) -> f64) -> f64 {
+    match weights {
+        None => fixed_point::sum(n, term),
+        Some(weights) => {
+            let weights = &weights[..n];
+            fixed_point::sum(n, |b| weights[b] * term(b))
+        }
+    }
+}
+
+#[inline(always)]
+fn add_to(values: &mut [f64], others: &[f64]) {
+    values
+        .iter_mut()
+        .zip(others)
+        .for_each(|(value, other)| *value += other);
+}
+
 /// Eq. 8: `u(t + dt) = u(t) + dt v(t + dt/2)`.
 #[inline(always)]
 fn move_blocks(state: &mut State, dt_star: f64) {
@@ -278,7 +335,7 @@ fn move_blocks(state: &mut State, dt_star: f64) {
     }
 }
 
-/// Eq. 2: `F_s = k_s (V t - u)`.
+/// Eq. 2: `F_s = k_s,i (V t - u)`.
 #[inline(always)]
 fn drive_forces(model: &Model, state: &State, time_star: f64, force: &mut VectorField) {
     let drive = &model.drive;
@@ -290,6 +347,14 @@ fn drive_forces(model: &Model, state: &State, time_star: f64, force: &mut Vector
     };
     component(&mut force.x, &state.displacement.x, 0);
     component(&mut force.y, &state.displacement.y, 1);
+    if let Some(springs) = &model.slider.drive_springs {
+        for force in [&mut force.x, &mut force.y] {
+            force
+                .iter_mut()
+                .zip(&springs.relative)
+                .for_each(|(f, relative)| *f *= relative);
+        }
+    }
 }
 
 /// Applies the friction law to every block: finds friction, velocities and which slide from thresholds, velocities and forces.
@@ -297,7 +362,7 @@ fn drive_forces(model: &Model, state: &State, time_star: f64, force: &mut Vector
 #[allow(clippy::too_many_arguments)] // Separate slices are known not to overlap, so that the loop is vectorised.
 fn apply_friction<L: Law>(
     law: &L,
-    integrator: &Integrator,
+    integrator: impl Fn(usize) -> Integrator,
     thresholds: [&[f64]; 2],
     velocity: [&[f64]; 2],
     forces: [&[f64]; 4],
@@ -319,7 +384,7 @@ fn apply_friction<L: Law>(
                 static_limit: static_limit[b],
                 kinetic_force: kinetic_force[b],
             },
-            integrator,
+            &integrator(b),
         );
         [friction_x[b], friction_y[b]] = update.friction;
         [after_x[b], after_y[b]] = update.velocity;
