@@ -29,10 +29,8 @@ impl CurvePoint {
     pub(crate) fn measure(model: &Model, totals: &Totals, time_star: f64) -> Self {
         let (drive, n) = (&model.drive, model.n_blocks() as f64);
         let mean = totals.displacement.map(|sum| sum / n);
-        let springs = model.slider.drive_springs.as_ref();
-        let stiffness = springs.map_or(1.0, |springs| springs.sum / n);
-        let position = drive.position(time_star);
-        let pull = [0, 1].map(|axis| drive.k_drive * (stiffness * position[axis] - mean[axis]));
+        let (position, share) = (drive.position(time_star), model.driven_share());
+        let pull = [0, 1].map(|axis| drive.k_drive * (position[axis] * share - mean[axis]));
         let [dx, dy] = drive.direction;
         Self {
             mu_star: dot(pull, [dx, dy]),

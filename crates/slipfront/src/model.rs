@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::drive::Drive;
 use crate::friction::Friction;
-use crate::lattice::Lattice;
+use crate::lattice::{K_DRIVE, Lattice};
 use crate::slider::Slider;
 use crate::surface::Surface;
 
@@ -76,6 +76,18 @@ impl Model {
     /// ```
     pub fn steady_level(&self) -> f64 {
         self.surface.mean_kinetic_force() + self.damping * self.drive.v_star * self.slider.mean_mass
+    }
+
+    /// Rise of mu* per path of the drive over [`Drive::k_drive`] while no block moves: 1 if every block has an equal drive spring.
+    pub fn driven_share(&self) -> f64 {
+        let springs = self.slider.drive_springs.as_ref();
+        springs.map_or(1.0, |springs| springs.sum / self.n_blocks() as f64)
+    }
+
+    /// Speed of a drive with a spring of stiffness `k_2` on every block that loads the slider as fast as this one does, in which
+    /// waiting times are counted: V* times `sum k_s/(k_2 N)`.
+    pub fn loading_speed(&self) -> f64 {
+        self.drive.v_star * (self.drive.k_drive * self.driven_share() / K_DRIVE)
     }
 
     /// Number of blocks of the whole lattice that exist.
