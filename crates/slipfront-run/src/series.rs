@@ -4,8 +4,9 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Deserializer, Serialize};
+
 use slipfront::observe::CurveRow;
-use slipfront::{Friction, Scales};
+use slipfront::{Friction, Model, Scales};
 use thiserror::Error;
 
 use slipfront_case::disk::open_limited;
@@ -40,6 +41,9 @@ pub struct SeriesRow {
     pub friction_loss_j: f64,
     /// Lost to damping since the start, J.
     pub damping_loss_j: f64,
+    /// Lost to the dampers between blocks since the start, J, if there are any.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub viscous_loss_j: Option<f64>,
     /// Energy of the springs in contact, J; none if contacts are no springs.
     #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
     pub contact_spring_energy_j: Option<f64>,
@@ -68,11 +72,12 @@ pub struct SeriesError {
 }
 
 impl SeriesRow {
-    /// A recorded row with its units.
-    pub fn new(row: &CurveRow, scales: &Scales, friction: &Friction) -> Self {
+    /// A recorded row of a run of this model with its units.
+    pub fn new(row: &CurveRow, scales: &Scales, model: &Model) -> Self {
         let energy = scales.energy();
-        let has_springs = matches!(friction, Friction::ContactSprings(_));
-        let has_state = matches!(friction, Friction::RateAndState(_));
+        let has_springs = matches!(model.friction, Friction::ContactSprings(_));
+        let has_state = matches!(model.friction, Friction::RateAndState(_));
+        let viscous_loss = row.energies.viscous_loss * energy;
         Self {
             step: row.step,
             time_star: row.time_star,
@@ -87,6 +92,7 @@ impl SeriesRow {
             drive_spring_energy_j: row.energies.stored.drive_springs * energy,
             friction_loss_j: row.energies.friction_loss * energy,
             damping_loss_j: row.energies.damping_loss * energy,
+            viscous_loss_j: model.slider.is_viscous().then_some(viscous_loss),
             contact_spring_energy_j: has_springs.then(|| row.energies.contact_springs * energy),
             broken_spring_loss_j: has_springs.then(|| row.energies.broken_springs_loss * energy),
             mean_state_star: has_state.then_some(row.mean_state),
@@ -205,6 +211,22 @@ mod tests {
             );
         }
         assert_eq!(rows_of(text.as_slice()).unwrap(), rows);
+    }
+
+    #[test]
+    fn a_series_has_a_column_in_all_rows_or_in_none() {
+        let row = |viscous_loss_j| SeriesRow {
+            viscous_loss_j,
+            ..SeriesRow::default()
+        };
+        for rows in [[row(None); 2], [row(Some(0.5)), row(Some(f64::MIN_POSITIVE))]] {
+            let text = to_csv(rows.into_iter()).unwrap();
+            assert_eq!(rows_of(text.as_slice()).unwrap(), rows);
+        }
+        let text = to_csv([row(Some(0.5)); 2].into_iter()).unwrap();
+        let text = String::from_utf8(text).unwrap();
+        let cut = text.strip_suffix("0.5\n").unwrap().to_owned() + "\n";
+        assert!(rows_of(cut.as_bytes()).is_err());
     }
 
     #[test]

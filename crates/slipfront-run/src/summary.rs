@@ -81,6 +81,9 @@ pub struct Summary {
     pub friction_loss_j: f64,
     /// Lost to damping, J.
     pub damping_loss_j: f64,
+    /// Lost to the dampers between blocks, J, if there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub viscous_loss_j: Option<f64>,
     /// Lost with springs in contact that broke, J; none if contacts are no springs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub broken_spring_loss_j: Option<f64>,
@@ -144,7 +147,10 @@ impl SummaryObservers {
         instants: &[(char, Frame)],
     ) -> Summary {
         let (peak, first_slip) = (simulation.peak(), simulation.snapshot().earliest_first_slip());
-        let kinetic_from = case.time_plan.kinetic.time_star(&peak, case.groups.v_star);
+        let kinetic_from = case
+            .time_plan
+            .kinetic
+            .time_star(&peak, case.model.loading_speed());
         // A run that stops at its onset has no kinetic phase, wherever the window was meant to begin, and neither has one
         // in which nothing slipped.
         let kinetic = match reason {
@@ -189,7 +195,7 @@ impl SummaryObservers {
             sigma_static_star: case.groups.sigma_static_star,
             sigma_kinetic_star: case.groups.sigma_kinetic_star,
             epsilon: case.groups.epsilon,
-            n_blocks: case.model.lattice.n_blocks(),
+            n_blocks: case.model.n_blocks(),
             texture_percent: case.texture.meshed_percent,
             texture_percent_asked: case.texture.asked_percent,
             dt_star: case.time_plan.dt_star,
@@ -200,6 +206,11 @@ impl SummaryObservers {
             work_j: energies.work * energy,
             friction_loss_j: energies.friction_loss * energy,
             damping_loss_j: energies.damping_loss * energy,
+            viscous_loss_j: case
+                .model
+                .slider
+                .is_viscous()
+                .then_some(energies.viscous_loss * energy),
             broken_spring_loss_j: matches!(friction, Friction::ContactSprings(_))
                 .then(|| energies.broken_springs_loss * energy),
             mean_state_star: match friction {

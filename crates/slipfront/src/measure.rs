@@ -16,21 +16,21 @@ pub struct CurvePoint {
     pub mu_lateral_star: f64,
     /// Number of blocks that slide, textured ones included.
     pub n_sliding: usize,
-    /// N*, the sliding blocks in % of all blocks.
+    /// N*, the sliding blocks in % of all blocks that exist.
     pub sliding_percent: f64,
 }
 
 impl CurvePoint {
-    /// Eq. 9 over mu_s, from the mean displacement:
+    /// Eq. 9 over mu_s, from the mean displacement, with the relative stiffness w of the drive springs and N blocks that exist:
     ///
     /// ```text
-    /// mu* = (1/N) sum_i F_s,i . d = k_s (V* t* - mean(u . d))
+    /// mu* = (1/N) sum_i F_s,i . d = k_s (mean(w) V* t* - mean(w u . d))
     /// ```
     pub(crate) fn measure(model: &Model, totals: &Totals, time_star: f64) -> Self {
-        let (drive, n) = (&model.drive, model.lattice.n_blocks() as f64);
+        let (drive, n) = (&model.drive, model.n_blocks() as f64);
         let mean = totals.displacement.map(|sum| sum / n);
-        let position = drive.position(time_star);
-        let pull = [0, 1].map(|axis| drive.k_drive * (position[axis] - mean[axis]));
+        let (position, share) = (drive.position(time_star), model.driven_share());
+        let pull = [0, 1].map(|axis| drive.k_drive * (position[axis] * share - mean[axis]));
         let [dx, dy] = drive.direction;
         Self {
             mu_star: dot(pull, [dx, dy]),

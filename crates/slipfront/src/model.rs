@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::checkpoint::BlockColumn;
 use crate::drive::Drive;
 use crate::friction::Friction;
-use crate::lattice::Lattice;
+use crate::lattice::{K_DRIVE, Lattice};
 use crate::slider::Slider;
 use crate::surface::Surface;
 
@@ -78,16 +78,34 @@ impl Model {
     /// Level of mu* in steady sliding:
     ///
     /// ```text
-    /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V*
+    /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V* mean(m_i)
     /// ```
     ///
     /// with the coefficient at V* of a law in which it depends on the speed, and half the mean threshold of springs in contact.
     pub fn steady_level(&self) -> f64 {
-        self.friction.steady_force(&self.surface, self.drive.v_star) + self.damping * self.drive.v_star
+        let kinetic = self.friction.steady_force(&self.surface, self.drive.v_star);
+        kinetic + self.damping * self.drive.v_star * self.slider.mean_mass
+    }
+
+    /// Rise of mu* per path of the drive over [`Drive::k_drive`] while no block moves: 1 if every block has an equal drive spring.
+    pub fn driven_share(&self) -> f64 {
+        let springs = self.slider.drive_springs.as_ref();
+        springs.map_or(1.0, |springs| springs.sum / self.n_blocks() as f64)
+    }
+
+    /// Speed of a drive with a spring of stiffness `k_2` on every block that loads the slider as fast as this one does, in which
+    /// waiting times are counted: V* times `sum k_s/(k_2 N)`.
+    pub fn loading_speed(&self) -> f64 {
+        self.drive.v_star * (self.drive.k_drive * self.driven_share() / K_DRIVE)
+    }
+
+    /// Number of blocks of the whole lattice that exist.
+    pub fn n_blocks(&self) -> usize {
+        self.slider.n_blocks(&self.lattice)
     }
 
     /// Time of the first slip of a block in contact on a surface without texture, exact:
-    /// `t* = min_i max(mu_si, mu_ki) F_n,i/(k_s V*)`.
+    /// `t* = min_i max(mu_si, mu_ki) F_n,i/(k_s,i V*)`.
     pub fn first_slip_estimate(&self) -> f64 {
         let (k, v_star) = (self.drive.k_drive, self.drive.v_star);
         self.friction.first_slip_pull(&self.surface, k, v_star) / (k * v_star)

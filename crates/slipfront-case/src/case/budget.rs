@@ -15,7 +15,7 @@ use super::output::{MAX_MAPS, Output, Snapshots};
 use super::ranks::Ranks;
 use super::textures::count_masks;
 use super::time_plan::TimePlan;
-use crate::case_file::{CaseError, CaseFile, Contact, Friction, Law};
+use crate::case_file::{CaseError, CaseFile, Contact, Friction, Law, Outline};
 use crate::machine::{available_memory, can_be_had, free_disk};
 use crate::number_format::{byte_size, count};
 
@@ -26,6 +26,47 @@ const FLAG: f64 = size_of::<bool>() as f64;
 
 /// [`slipfront::Surface`] under an equal pressure.
 const SURFACE: f64 = FLAG + 2.0 * NUMBER;
+/// Bytes of [`slipfront::Slider`] per block: moduli, densities, and the blocks that exist; the stiffness of drive springs that follows
+/// from moduli and outline.
+fn slider_bytes(file: &CaseFile) -> f64 {
+    let slider = &file.slider;
+    let has = |property: bool| f64::from(u8::from(property));
+    let stiffness = slider.stiffness_field.is_some() || slider.stiffness_grade.is_some();
+    let density = slider.density_field.is_some() || slider.density_grade.is_some();
+    let outline = slider.outline != Outline::Rectangle;
+    NUMBER * (has(stiffness) + has(density) + has(stiffness || outline)) + FLAG * has(outline)
+}
+
+/// Bytes of the reference kernel per block, with springs that differ and with dampers.
+fn reference_bytes(file: &CaseFile) -> f64 {
+    let slider = &file.slider;
+    let graded = slider.stiffness_field.is_some() || slider.stiffness_grade.is_some();
+    let springs = match graded || slider.outline != Outline::Rectangle {
+        true => 4.0 * NUMBER,
+        false => 0.0,
+    };
+    let dampers = match slider.viscosity_time_star > 0.0 {
+        true => 2.0 * NUMBER,
+        false => 0.0,
+    };
+    REFERENCE + springs + dampers
+}
+
+/// Bytes of the fused kernel per block, with what it keeps of blocks that differ.
+fn fused_bytes(file: &CaseFile) -> f64 {
+    let slider = &file.slider;
+    let differ = slider.stiffness_field.is_some()
+        || slider.stiffness_grade.is_some()
+        || slider.density_field.is_some()
+        || slider.density_grade.is_some()
+        || file.friction.velocity.is_some();
+    match differ {
+        // Four springs, the drive spring, mass and its inverse, kinetic friction at the present speed.
+        true => FUSED + 8.0 * NUMBER,
+        false => FUSED,
+    }
+}
+
 /// The fused kernel: two vectors, two thresholds, a step; masks, vectors of eight and tiles take 3.6 together.
 const FUSED: f64 = 6.5 * NUMBER + 3.6;
 /// The reference kernel: two vectors of state, eight of forces, two thresholds, a time.
@@ -51,15 +92,17 @@ fn of_friction(friction: &Friction) -> [f64; 2] {
     })
 }
 
-/// Columns that a law of friction adds to the series.
-fn columns_of_friction(friction: &Friction) -> f64 {
-    match (friction.contact, friction.law) {
+/// Columns of the series that not every run has.
+fn more_columns(file: &CaseFile) -> f64 {
+    let of_friction = match (file.friction.contact, file.friction.law) {
         // Energy of springs, and what is lost with them.
         (Contact::Springs, _) => 2.0,
         // The state.
         (Contact::Rigid, Law::RateAndState) => 1.0,
         _ => 0.0,
-    }
+    };
+    // What is lost to dampers.
+    of_friction + f64::from(u8::from(file.slider.viscosity_time_star > 0.0))
 }
 
 /// A value of a field.
@@ -75,8 +118,8 @@ const STATICS_ON_DISK: f64 = 2.0 + 3.0 * NUMBER;
 const COLUMN_TEXT: f64 = 25.0;
 /// Columns of every series.
 const COLUMNS: f64 = 13.0;
-/// A row of `series.csv` in memory: these numbers, and three that are there under some laws.
-const SERIES_ROW: f64 = (COLUMNS + 6.0) * NUMBER;
+/// A row of `series.csv` in memory: these numbers, and four that need not be there.
+const SERIES_ROW: f64 = (COLUMNS + 8.0) * NUMBER;
 /// Stretches of the history of mu* and their copies while an uncertainty is sought.
 const HISTORY: f64 = 1024.0 * 1024.0;
 
@@ -104,7 +147,7 @@ const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
 pub struct Budget {
     /// Blocks of the rows that this process holds.
     blocks: f64,
-    /// Bytes of the surface per block.
+    /// Bytes of the surface and of the slider per block.
     surface: f64,
     /// Bytes of the kernel per block.
     kernel: f64,
@@ -183,19 +226,20 @@ impl Budget {
             all_cells: kept(0..lattice.nx) * kept(0..lattice.ny),
             is_shared: ranks.communicator.size() > 1,
             ranks_on_node: ranks.on_node as f64,
-            surface: match file.load.profile.is_some() || file.load.pressure_field.is_some() {
-                true => SURFACE + NUMBER,
-                false => SURFACE,
-            },
+            surface: slider_bytes(file)
+                + match file.load.profile.is_some() || file.load.pressure_field.is_some() {
+                    true => SURFACE + NUMBER,
+                    false => SURFACE,
+                },
             kernel: match kernel(file) {
-                Kernel::Fused => FUSED,
-                Kernel::Reference => REFERENCE + kept_by_law * NUMBER,
+                Kernel::Fused => fused_bytes(file),
+                Kernel::Reference => reference_bytes(file) + kept_by_law * NUMBER,
             },
             saved: SAVED + saved_by_law * NUMBER,
             frames: n_frames,
             fields: output.fields.len() as f64,
             rows: (last_step / output.series_stride) as f64 + 2.0,
-            row_text: COLUMN_TEXT * (COLUMNS + columns_of_friction(&file.friction)),
+            row_text: COLUMN_TEXT * (COLUMNS + more_columns(file)),
             maps: match output.fields.contains(&Field::ContactStress) {
                 true => n_frames.min(MAX_MAPS as f64),
                 false => 0.0,

@@ -2,10 +2,11 @@
 
 use slipfront::lattice::dt_star_limit;
 use slipfront::observe::KineticStart;
-use slipfront::{Scales, Stop, StopReason};
+use slipfront::{Model, Scales, Stop, StopReason};
 
 use super::groups::Groups;
 use crate::case_file::{AutoOr, CaseError, CaseFile, RunTime, Step};
+use crate::number_format::four_digits;
 
 /// Duration and time step of a run, its end and the window of the kinetic friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,33 +21,63 @@ pub struct TimePlan {
     pub kinetic: KineticStart,
 }
 
+/// What a time plan must know of the model, which is made after the memory that the plan takes is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Dynamics {
+    /// The step must be less.
+    step_limit: f64,
+    /// Speed in which waiting times are counted.
+    loading_speed: f64,
+}
+
+impl Dynamics {
+    /// Of equal blocks.
+    pub(super) fn of_equal_blocks(groups: &Groups) -> Self {
+        Self {
+            step_limit: dt_star_limit(),
+            loading_speed: groups.v_star,
+        }
+    }
+
+    pub(super) fn of(model: &Model) -> Self {
+        Self {
+            step_limit: model.stable_step_limit(),
+            loading_speed: model.loading_speed(),
+        }
+    }
+}
+
+/// The step of "auto", where it is stable.
+const AUTO_STEP: f64 = 0.1;
+
 /// Longest run, in steps, of which the kernel keeps the numbers in 32 bits.
 const MAX_STEPS: f64 = 4e9;
 
 impl TimePlan {
     /// The time plan of a case file, refused when the step is unstable, the run too long, or the kinetic window empty.
-    pub(super) fn of(file: &CaseFile, scales: &Scales, groups: &Groups) -> Result<Self, CaseError> {
+    pub(super) fn of(
+        file: &CaseFile,
+        scales: &Scales,
+        groups: &Groups,
+        dynamics: Dynamics,
+    ) -> Result<Self, CaseError> {
         let time = &file.time;
+        let limit = dynamics.step_limit;
+        let auto = if AUTO_STEP < limit { AUTO_STEP } else { 0.5 * limit };
         let dt_star = match time.step {
-            Step::Auto => 0.1,
+            Step::Auto => auto,
             Step::Paper => 2.0 / 3.0 * groups.v_star,
             Step::Number(dt_star) => dt_star,
         };
-        let limit = match file.friction.contact_stiffness_star {
-            None => dt_star_limit(),
-            Some(stiffness) => {
-                let highest = 2.0 / dt_star_limit();
-                2.0 / (highest * highest + stiffness).sqrt()
-            }
-        };
         if dt_star >= limit {
             let sentence = format!(
-                "the step dt* = {dt_star:.4} is not stable: it must be less than {limit:.4}; \"auto\" takes 0.1",
+                "the step dt* = {dt_star:.4} is not stable: it must be less than {limit:.4}; \"auto\" takes {}",
+                four_digits(auto)
             );
             return Err(file.source.error("time.step", sentence));
         }
         let (key, end_star) = match &time.duration {
-            RunTime::Star(AutoOr::Auto) => ("time.duration_star", 8.0 / groups.v_star),
+            RunTime::Star(AutoOr::Auto) => ("time.duration_star", 8.0 / dynamics.loading_speed),
             RunTime::Star(AutoOr::Number(duration)) => ("time.duration_star", *duration),
             RunTime::Duration(duration) => ("time.duration", duration.si() / scales.time()),
         };

@@ -83,6 +83,7 @@ impl CaseFile {
 
     /// Every file that these tables of a case name, relative to the case file, and the key that names it.
     pub fn files_mut<'a>(
+        slider: &'a mut Slider,
         load: &'a mut Load,
         friction: &'a mut Friction,
         texture: &'a mut [Texture],
@@ -93,6 +94,9 @@ impl CaseFile {
             _ => None,
         });
         let fields = [
+            ("slider.outline_file", &mut slider.outline_file),
+            ("slider.stiffness_field", &mut slider.stiffness_field),
+            ("slider.density_field", &mut slider.density_field),
             ("load.pressure_field", &mut load.pressure_field),
             ("friction.mu_static_field", &mut friction.mu_static_field),
             ("friction.mu_kinetic_field", &mut friction.mu_kinetic_field),

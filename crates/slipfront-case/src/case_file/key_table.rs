@@ -16,6 +16,7 @@ use slipfront::{Edges, StopReason};
 
 use super::friction::{Contact, Law};
 use super::probe::names_of;
+use super::slider::Outline;
 
 /// A range of numbers.
 pub type Bounds = (Bound<f64>, Bound<f64>);
@@ -144,6 +145,10 @@ const MAX_LENGTH: f64 = 1e9;
 /// TOML's largest integer.
 const MAX_SEED: u64 = i64::MAX.unsigned_abs();
 
+/// Least and largest property of a block over that of the whole slider.
+pub(crate) const MIN_RELATIVE: f64 = 1e-6;
+pub(crate) const MAX_RELATIVE: f64 = 1e6;
+
 const POSITIVE_TIME: Bounds = above(0.0, MAX_TIME_STAR);
 const COVERAGE: Kind = number(between(0.0, 100.0), "it is in percent of the whole area");
 const DEGREES: Kind = number(within(-360.0, 360.0), "it is in degrees from x towards y");
@@ -156,6 +161,12 @@ pub(super) const COORDINATE: Kind = quantity("m", within(-MAX_LENGTH, MAX_LENGTH
 const ARRAY: Kind = Kind::File(&["npy", "csv"]);
 /// A slope of a profile.
 pub(super) const RELATIVE_SLOPE: Kind = number(between(-1.0, 1.0), "1 would leave no load on an edge");
+/// A property of a block over that of the whole slider.
+pub(super) const RELATIVE_PROPERTY: Kind = number(
+    within(MIN_RELATIVE, MAX_RELATIVE),
+    "it is relative, so that 1 changes nothing",
+);
+const GRADE: Kind = Kind::Special("`{ along = \"x\", from = 1, to = 0.1 }`; 1e-6 to 1e6");
 const SHEAR_STRENGTH: Kind = quantity("Pa", within(0.0, 1e15));
 
 /// Every section of a case file.
@@ -185,6 +196,15 @@ const SLIDER: &[Key] = &[
     key("damping_rate", "", quantity("1/s", within(0.0, 1e24)), "damping with its unit")
         .or("omega_star").title("damping", "\u{3a9}", "1/s"),
     key("edges", "\"free\"", Kind::Words(names_of::<Edges>), "what lies beyond the edges that bound x and those that bound y"),
+    key("outline", "\"rectangle\"", Kind::Words(names_of::<Outline>), "shape of the slider: blocks outside do not exist"),
+    key("outline_file", "", Kind::File(&["png", "npy"]), "the shape as a mask: dark pixels, or 1 in an array, are blocks"),
+    key("viscosity_time_star", "0", number(within(0.0, 1e3), "it is a time in t*, of the order of 0.1 where it matters"),
+        "damping constant of a damper beside every spring between blocks over the spring's stiffness")
+        .title("viscosity", "\u{3c4}\u{1d65}*", ""),
+    key("stiffness_field", "", ARRAY, "Young's modulus over `young_modulus`, block by block").or("stiffness_grade"),
+    key("stiffness_grade", "", GRADE, "the same, from one edge to the other").or("stiffness_field"),
+    key("density_field", "", ARRAY, "density over `density`, block by block").or("density_grade"),
+    key("density_grade", "", GRADE, "the same, from one edge to the other").or("density_field"),
 ];
 
 #[rustfmt::skip]

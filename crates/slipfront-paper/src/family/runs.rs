@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use slipfront::observe::{Curve, CurveRow, Scheduled};
 use slipfront::{Model, Simulation, State, Stop};
-use slipfront_case::Case;
+use slipfront_case::case::Case;
 
 use crate::error::PaperError;
 

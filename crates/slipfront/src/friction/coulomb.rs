@@ -62,13 +62,13 @@ impl Integrator {
         }
     }
 
-    /// That of a block of another mass than 1.
+    /// That of a block of another mass: damping goes with the mass.
     #[inline(always)]
-    pub(crate) fn of_mass(&self, mass: f64) -> Self {
+    pub(crate) fn of_mass(self, mass: f64) -> Self {
         Self {
-            velocity_decay: self.velocity_decay,
             force_to_velocity: self.force_to_velocity / mass,
             velocity_to_force: self.velocity_to_force * mass,
+            ..self
         }
     }
 

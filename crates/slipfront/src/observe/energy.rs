@@ -19,6 +19,8 @@ pub struct Energies {
     pub friction_loss: f64,
     /// Lost to damping since the start.
     pub damping_loss: f64,
+    /// Lost to the dampers between blocks since the start.
+    pub viscous_loss: f64,
     /// Stored in springs between blocks and substrate at this instant.
     pub contact_springs: f64,
     /// Lost with such springs that broke since the start.
@@ -39,29 +41,31 @@ impl Energies {
     pub fn error(&self) -> f64 {
         let supplied = self.work.abs() + self.stored_at_start;
         let stored = self.stored.total() + self.contact_springs;
-        let lost = self.friction_loss + self.damping_loss + self.broken_springs_loss;
-        let missing = self.work - (stored - self.stored_at_start) - lost;
+        let losses = self.friction_loss + self.damping_loss + self.viscous_loss + self.broken_springs_loss;
+        let missing = self.work - (stored - self.stored_at_start) - losses;
         if supplied > 0.0 { missing / supplied } else { 0.0 }
     }
 }
 
-/// Powers at one instant: of the drive, of friction and of damping.
+/// Powers at one instant: of the drive, of friction, of damping and of the dampers between blocks.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Powers {
     work: f64,
     friction: f64,
     damping: f64,
+    viscous: f64,
 }
 
 impl Powers {
     /// The drive supplies `V . sum F_s`, and a constant force its own work.
     fn at(now: &Snapshot) -> Self {
         let (model, totals) = (now.model, &now.totals);
-        let pull = now.point.mu_star * model.lattice.n_blocks() as f64 * model.drive.v_star;
+        let pull = now.point.mu_star * model.n_blocks() as f64 * model.drive.v_star;
         Self {
             work: pull + dot(model.drive.constant_force, totals.velocity),
             friction: -totals.friction_power,
             damping: model.damping * totals.velocity_square,
+            viscous: now.engine.viscous_power(),
         }
     }
 }
@@ -85,6 +89,7 @@ impl Ledger {
                 self.totals.work += half * (before.work + powers.work);
                 self.totals.friction_loss += half * (before.friction + powers.friction);
                 self.totals.damping_loss += half * (before.damping + powers.damping);
+                self.totals.viscous_loss += half * (before.viscous + powers.viscous);
             }
             None => self.totals.stored_at_start = now.stored_energy().total(),
         }

@@ -28,7 +28,14 @@ fn model(law: Ageing, damping: f64, segments: &[(f64, f64)], adhesion: Adhesion)
         adhesion,
         ..Contact::new(Load::Redistributed, 1.0)
     };
-    let surface = Surface::of_ranks(coefficients, vec![false; 9], contact, &Alone).unwrap();
+    let surface = Surface::of_ranks(
+        coefficients,
+        vec![false; 9],
+        contact,
+        &slipfront::Slider::default(),
+        &Alone,
+    )
+    .unwrap();
     let drive = Drive {
         program: Some(Arc::new(Program::new(segments.iter().copied()))),
         ..Drive::along_x(V)

@@ -15,7 +15,7 @@ use super::quanta::Quanta;
 use super::rest::{RestingVector, steps_until_slip};
 use super::springs::Geometry;
 use super::step::Step;
-use super::variations::{Moduli, Variation, Variations, blocks_differ, weaken};
+use super::variations::{Moduli, Variation, Variations, weaken};
 use super::vector::{Chunks, ChunksMut, LANES, Vec2x8, lane_max, load, load_vec2, splat, subtract};
 use crate::checkpoint::BlockColumn;
 use crate::fixed_point::FixedPoint;
@@ -149,6 +149,7 @@ impl Band {
     pub(super) fn new(
         layout: &Layout,
         moduli: &Moduli,
+        blocks_differ: bool,
         state: Option<&State>,
         dt_star: f64,
         tiles: Range<usize>,
@@ -190,7 +191,7 @@ impl Band {
             slipped: bytes(),
             active_from_step: vec![0; len / LANES],
             lattice_energy: vec![0; len / LANES],
-            variations: blocks_differ(model)
+            variations: blocks_differ
                 .then(|| Variations::new(layout, model, moduli, halo, first..first + len)),
             scratch: Mutex::new(Scratch {
                 upward: [(); 3].map(|()| Vectors::zeros(ring)),

@@ -44,11 +44,11 @@ use self::band::{Band, NEVER};
 use self::blocks::Sums;
 use self::layout::{Layout, TILE};
 use self::neighbours::Neighbours;
-use self::quanta::{Largest, Quanta};
+use self::quanta::Quanta;
 use self::schedule::Schedule;
 use self::springs::{Differing, Series, SquareRoot};
 use self::step::Step;
-use self::variations::blocks_differ;
+use self::variations::{Largest, blocks_differ};
 use self::vector::LANES;
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::communicator::Communicator;
@@ -128,7 +128,9 @@ impl Fused {
         let (tiles, inner) = bands_of(&layout, threads);
         let mut neighbours = Neighbours::new(communicator, &layout);
         let moduli = neighbours.moduli(&layout, model);
-        let band = |tiles| Band::new(&layout, &moduli, state, dt_star, tiles);
+        let largest = Largest::of(model, &*neighbours.communicator);
+        let differ = blocks_differ(model, &largest);
+        let band = |tiles| Band::new(&layout, &moduli, differ, state, dt_star, tiles);
         let bands: Vec<Band> = match threads {
             1 => tiles.into_iter().map(band).collect(),
             _ => tiles.into_par_iter().map(band).collect(),
@@ -159,9 +161,9 @@ impl Fused {
             },
             strain_limits: [Series::<3>::strain_limit(), Series::<7>::strain_limit()],
             stress_square_max: 0.0,
-            largest: Largest::of(model, &*neighbours.communicator),
+            largest,
             drive_springs: model.slider.sum_of_drive_springs(&model.lattice),
-            blocks_differ: blocks_differ(model),
+            blocks_differ: differ,
             neighbours,
         };
         kernel.copy_ghosts(true);

@@ -2,12 +2,10 @@
 //! displacements and the highest speed, which every rank and thread knows.
 
 use super::step::Step;
-use super::variations::blocks_differ;
+use super::variations::Largest;
 use crate::checkpoint::MotionBounds;
-use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, Window};
 use crate::lattice::{K_DIAGONAL, K_STRAIGHT};
-use crate::model::Model;
 
 /// Quanta of the sums in a sweep.
 #[derive(Clone, Copy, Debug)]
@@ -26,42 +24,6 @@ pub(super) struct Quanta {
     pub(super) friction_work: FixedPoint,
     /// Of squares of spring forces over the factors of the springs.
     pub(super) lattice_energy: FixedPoint,
-}
-
-/// Largest factors of any block of the lattice.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Largest {
-    /// Young's modulus, and so the factor of a spring between blocks.
-    pub(super) modulus: f64,
-    pub(super) drive_spring: f64,
-    pub(super) mass: f64,
-    pub(super) inverse_mass: f64,
-}
-
-impl Largest {
-    /// Of all blocks of this rank and of the others, which call this together.
-    pub(super) fn of(model: &Model, communicator: &dyn Communicator) -> Self {
-        let slider = &model.slider;
-        let all = || 0..model.surface.n_blocks();
-        let largest = |value: &dyn Fn(usize) -> f64| all().map(value).fold(0.0, f64::max);
-        let mut found = [1.0; 4];
-        if blocks_differ(model) {
-            found = [
-                largest(&|b| slider.modulus(b)),
-                largest(&|b| slider.drive_spring(b)),
-                largest(&|b| slider.mass(b)),
-                largest(&|b| 1.0 / slider.mass(b)),
-            ];
-            communicator.largest(&mut found);
-        }
-        let [modulus, drive_spring, mass, inverse_mass] = found;
-        Self {
-            modulus,
-            drive_spring,
-            mass,
-            inverse_mass,
-        }
-    }
 }
 
 /// Rounding in the bounds and in what they bound.

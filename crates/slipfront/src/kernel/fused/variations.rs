@@ -12,6 +12,7 @@ use fearless_simd::{Simd, SimdBase, SimdFloat};
 use super::aligned::Aligned;
 use super::layout::Layout;
 use super::vector::{Chunks, ChunksMut, load, load_vec2, splat, square};
+use crate::communicator::Communicator;
 use crate::friction::{Friction, Weakening};
 use crate::lattice::harmonic_mean;
 use crate::model::Model;
@@ -73,12 +74,52 @@ pub(super) fn weaken<S: Simd>(
 }
 
 /// Whether the blocks of a model need [`Variations`].
-pub(super) fn blocks_differ(model: &Model) -> bool {
+pub(super) fn blocks_differ(model: &Model, largest: &Largest) -> bool {
     let slider = &model.slider;
+    // Drive springs of 1 on every block that exists are those of a plain slider.
+    let drive_springs_differ = slider
+        .drive_springs
+        .as_ref()
+        .is_some_and(|springs| largest.drive_spring > 1.0 || springs.sum != model.n_blocks() as f64);
     slider.stiffness.is_some()
         || slider.density.is_some()
-        || slider.drive_springs.is_some()
+        || drive_springs_differ
         || weakening(model).is_some()
+}
+
+/// Largest factors of any block of the lattice.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Largest {
+    /// Young's modulus, and so the factor of a spring between blocks.
+    pub(super) modulus: f64,
+    pub(super) drive_spring: f64,
+    pub(super) mass: f64,
+    pub(super) inverse_mass: f64,
+}
+
+impl Largest {
+    /// Of all blocks of this rank and of the others, which call this together.
+    pub(super) fn of(model: &Model, communicator: &dyn Communicator) -> Self {
+        let slider = &model.slider;
+        let largest = |differs: bool, value: &dyn Fn(usize) -> f64| match differs {
+            true => (0..model.surface.n_blocks()).map(value).fold(0.0, f64::max),
+            false => 1.0,
+        };
+        let mut found = [
+            largest(slider.stiffness.is_some(), &|b| slider.modulus(b)),
+            largest(slider.drive_springs.is_some(), &|b| slider.drive_spring(b)),
+            largest(slider.density.is_some(), &|b| slider.mass(b)),
+            largest(slider.density.is_some(), &|b| 1.0 / slider.mass(b)),
+        ];
+        communicator.largest(&mut found);
+        let [modulus, drive_spring, mass, inverse_mass] = found;
+        Self {
+            modulus,
+            drive_spring,
+            mass,
+            inverse_mass,
+        }
+    }
 }
 
 fn weakening(model: &Model) -> Option<Weakening> {

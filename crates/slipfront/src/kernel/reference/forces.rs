@@ -6,6 +6,7 @@ use crate::vector_field::VectorField;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Forces {
     pub(super) drive: VectorField,
+    /// Of the springs between blocks and the dampers beside them.
     pub(super) lattice: VectorField,
     pub(super) friction: VectorField,
     /// Velocities after the update within a step; between steps those before it.

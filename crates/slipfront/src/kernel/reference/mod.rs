@@ -15,13 +15,14 @@ use fearless_simd::{Level, dispatch};
 
 use self::contact::Contact;
 use self::forces::{Forces, components};
-use self::springs::{lattice_energy, lattice_forces};
+use self::springs::{damper_forces, lattice_energy, lattice_forces};
 use super::block::{Block, Field};
 use super::engine::Engine;
 use super::totals::{ContactTotals, StoredEnergy, Totals};
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::fixed_point;
 use crate::friction::{BlockState, FrictionLaw, Integrator, Law, Literal, Projection, Reversal};
+use crate::lattice::Bond;
 use crate::model::Model;
 use crate::reductions;
 use crate::state::State;
@@ -41,6 +42,12 @@ pub(crate) struct Reference {
     /// `mu_k F_n`.
     kinetic_force: Vec<f64>,
     contact: Contact,
+    /// Relative stiffness of the spring of every block along each bond, if they are not all alike.
+    relative_springs: Option<[Vec<f64>; 4]>,
+    /// Forces of the dampers beside the springs, if there are any.
+    dampers: Option<VectorField>,
+    /// Power that these take.
+    viscous_power: f64,
     first_slip: Vec<f64>,
     stress_square_max: f64,
 }
@@ -49,6 +56,8 @@ impl Reference {
     pub(crate) fn new(model: &Model, dt_star: f64, state: State) -> Self {
         let n = model.lattice.n_blocks();
         let zeros = || VectorField::zeros(n);
+        let slider = &model.slider;
+        let springs = || Bond::ALL.map(|bond| slider.springs_along(&model.lattice, &bond));
         Self {
             dt_star,
             started: false,
@@ -64,6 +73,9 @@ impl Reference {
             static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
             kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
             contact: Contact::new(model),
+            relative_springs: (!slider.has_equal_springs()).then(springs),
+            dampers: slider.is_viscous().then(zeros),
+            viscous_power: 0.0,
             first_slip: vec![f64::NAN; n],
             stress_square_max: 0.0,
         }
@@ -121,22 +133,30 @@ impl Reference {
             move_blocks(&mut self.state, self.dt_star);
         }
         drive_forces(model, &self.state, time_star, &mut self.forces.drive);
-        lattice_forces(
-            model,
-            &self.state,
-            &mut self.forces.lattice,
-            &mut self.forces.springs,
-        );
+        let Forces { lattice, springs, .. } = &mut self.forces;
+        let relative = self.relative_springs.as_ref();
+        lattice_forces(model, &self.state, relative, lattice, springs);
+        if let Some(dampers) = &mut self.dampers {
+            damper_forces(model, &self.state, relative, dampers, springs);
+            add_to(&mut lattice.x, &dampers.x);
+            add_to(&mut lattice.y, &dampers.y);
+        }
         let integrator = Integrator::new(model.damping, self.dt_star);
-        let (state, forces) = (&self.state, &mut self.forces);
+        let (state, forces, masses) = (&self.state, &mut self.forces, model.slider.density.as_deref());
         match &mut self.contact {
             Contact::Coulomb(thresholds) => {
                 thresholds.update(&self.static_limit, &self.kinetic_force, state, forces, time_star);
                 let now = thresholds.now(&self.static_limit, &self.kinetic_force);
                 match thresholds.law {
-                    FrictionLaw::Projection => friction_forces(&Projection, &integrator, now, state, forces),
-                    FrictionLaw::Reversal => friction_forces(&Reversal, &integrator, now, state, forces),
-                    FrictionLaw::Literal => friction_forces(&Literal, &integrator, now, state, forces),
+                    FrictionLaw::Projection => {
+                        friction_forces(&Projection, &integrator, masses, now, state, forces);
+                    }
+                    FrictionLaw::Reversal => {
+                        friction_forces(&Reversal, &integrator, masses, now, state, forces);
+                    }
+                    FrictionLaw::Literal => {
+                        friction_forces(&Literal, &integrator, masses, now, state, forces);
+                    }
                 }
                 thresholds.note_stops(state, forces, time_star);
             }
@@ -167,8 +187,11 @@ impl Reference {
         let [lx, ly] = components(&self.forces.lattice, n);
         let [fx, fy] = components(&self.forces.friction, n);
         let (textured, slides) = (&model.surface.textured[..n], &self.forces.slides[..n]);
-        let sum = |[x, y]: [&[f64]; 2]| [fixed_point::sum(n, |b| x[b]), fixed_point::sum(n, |b| y[b])];
-        let squares = |[x, y]: [&[f64]; 2]| fixed_point::sum(n, |b| x[b] * x[b] + y[b] * y[b]);
+        let slider = &model.slider;
+        let mass = slider.density.as_deref();
+        let driven = slider.drive_springs.as_ref().map(|springs| &*springs.relative);
+        let sum = |[x, y]: [&[f64]; 2]| [x, y].map(|values| weighted_sum(n, driven, |b| values[b]));
+        let squares = |[x, y]: [&[f64]; 2]| weighted_sum(n, mass, |b| x[b] * x[b] + y[b] * y[b]);
         let (vx, vy) = (|b: usize| 0.5 * (bx[b] + ax[b]), |b: usize| 0.5 * (by[b] + ay[b]));
         let slipping = slides.iter().zip(textured);
         let stress_square = reductions::largest(n, |b| {
@@ -176,11 +199,15 @@ impl Reference {
             if textured[b] { 0.0 } else { x * x + y * y }
         });
         self.stress_square_max = self.stress_square_max.max(stress_square);
+        if let Some(dampers) = &self.dampers {
+            let [dx, dy] = components(dampers, n);
+            self.viscous_power = -fixed_point::sum(n, |b| dx[b] * vx(b) + dy[b] * vy(b));
+        }
         Totals {
             displacement: sum([ux, uy]),
-            velocity: [fixed_point::sum(n, vx), fixed_point::sum(n, vy)],
+            velocity: [weighted_sum(n, driven, vx), weighted_sum(n, driven, vy)],
             velocity_after: sum([ax, ay]),
-            velocity_square: fixed_point::sum(n, |b| vx(b) * vx(b) + vy(b) * vy(b)),
+            velocity_square: weighted_sum(n, mass, |b| vx(b) * vx(b) + vy(b) * vy(b)),
             friction_power: match self.contact {
                 // What these springs take is stored, or lost where they break.
                 Contact::Springs(_) => 0.0,
@@ -192,11 +219,14 @@ impl Reference {
                 .count(),
             stored_energy: energies.then(|| {
                 let [x, y] = model.drive.position(time_star);
-                let stretch_square =
-                    fixed_point::sum(n, |b| (x - ux[b]) * (x - ux[b]) + (y - uy[b]) * (y - uy[b]));
+                let stretch_square = weighted_sum(n, driven, |b| {
+                    (x - ux[b]) * (x - ux[b]) + (y - uy[b]) * (y - uy[b])
+                });
+                let displacement = &self.state.displacement;
+                let springs = self.relative_springs.as_ref();
                 StoredEnergy {
                     kinetic: 0.25 * (squares([bx, by]) + squares([ax, ay])),
-                    lattice: lattice_energy(&model.lattice, &self.state.displacement, model.epsilon),
+                    lattice: lattice_energy(&model.lattice, displacement, springs, model.epsilon),
                     drive_springs: 0.5 * model.drive.k_drive * stretch_square,
                 }
             }),
@@ -264,6 +294,10 @@ impl Engine for Reference {
         self.stress_square_max
     }
 
+    fn viscous_power(&self) -> f64 {
+        self.viscous_power
+    }
+
     fn motion_bounds(&self) -> Option<MotionBounds> {
         None
     }
@@ -286,6 +320,26 @@ impl Engine for Reference {
     }
 }
 
+/// Sum of `weight term` over the blocks; all weights are 1 if there are none.
+#[inline(always)]
+fn weighted_sum(n: usize, weights: Option<&[f64]>, term: impl Fn(usize) -> f64) -> f64 {
+    match weights {
+        None => fixed_point::sum(n, term),
+        Some(weights) => {
+            let weights = &weights[..n];
+            fixed_point::sum(n, |b| weights[b] * term(b))
+        }
+    }
+}
+
+#[inline(always)]
+fn add_to(values: &mut [f64], others: &[f64]) {
+    values
+        .iter_mut()
+        .zip(others)
+        .for_each(|(value, other)| *value += other);
+}
+
 /// Eq. 8: `u(t + dt) = u(t) + dt v(t + dt/2)`.
 #[inline(always)]
 fn move_blocks(state: &mut State, dt_star: f64) {
@@ -298,7 +352,7 @@ fn move_blocks(state: &mut State, dt_star: f64) {
     }
 }
 
-/// Eq. 2: `F_s = k_s (V t - u)`.
+/// Eq. 2: `F_s = k_s,i (V t - u)`.
 #[inline(always)]
 fn drive_forces(model: &Model, state: &State, time_star: f64, force: &mut VectorField) {
     let drive = &model.drive;
@@ -310,13 +364,38 @@ fn drive_forces(model: &Model, state: &State, time_star: f64, force: &mut Vector
     };
     component(&mut force.x, &state.displacement.x, 0);
     component(&mut force.y, &state.displacement.y, 1);
+    if let Some(springs) = &model.slider.drive_springs {
+        for force in [&mut force.x, &mut force.y] {
+            force
+                .iter_mut()
+                .zip(&springs.relative)
+                .for_each(|(f, relative)| *f *= relative);
+        }
+    }
 }
 
-/// Eqs. 4-7: friction and damping, and the velocity half a step later.
+/// Eqs. 4-7: friction and damping, and the velocity half a step later, of blocks with these masses; 1 if there are none.
 #[inline(always)]
 fn friction_forces<L: Law>(
     law: &L,
     integrator: &Integrator,
+    masses: Option<&[f64]>,
+    thresholds: [&[f64]; 2],
+    state: &State,
+    forces: &mut Forces,
+) {
+    match masses {
+        None => friction_of_masses(law, |_| *integrator, thresholds, state, forces),
+        Some(masses) => {
+            friction_of_masses(law, |b| integrator.of_mass(masses[b]), thresholds, state, forces);
+        }
+    }
+}
+
+#[inline(always)]
+fn friction_of_masses<L: Law>(
+    law: &L,
+    integrator: impl Fn(usize) -> Integrator,
     thresholds: [&[f64]; 2],
     state: &State,
     forces: &mut Forces,
@@ -339,7 +418,7 @@ fn friction_forces<L: Law>(
 #[allow(clippy::too_many_arguments)] // Separate slices are known not to overlap, so that the loop is vectorised.
 fn apply_friction<L: Law>(
     law: &L,
-    integrator: &Integrator,
+    integrator: impl Fn(usize) -> Integrator,
     thresholds: [&[f64]; 2],
     velocity: [&[f64]; 2],
     forces: [&[f64]; 4],
@@ -361,7 +440,7 @@ fn apply_friction<L: Law>(
                 static_limit: static_limit[b],
                 kinetic_force: kinetic_force[b],
             },
-            integrator,
+            &integrator(b),
         );
         [friction_x[b], friction_y[b]] = update.friction;
         [after_x[b], after_y[b]] = update.velocity;
