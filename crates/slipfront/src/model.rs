@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use crate::drive::Drive;
 use crate::friction::Friction;
-use crate::lattice::Lattice;
+use crate::lattice::{K_DRIVE, Lattice};
 use crate::slider::Slider;
 use crate::surface::Surface;
+use crate::vector_field::length;
 
 /// The slider with its surface and drive.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,18 +70,84 @@ impl Model {
         }
     }
 
-    /// Level of mu* in steady sliding:
+    /// What the sum of the forces of the drive springs is divided by in mu*: the number of blocks that exist; of a rotation
+    /// `sum r_i/r_max`, which makes mu* the torque of the drive springs over `P mu_s l^2 sum r_i`.
+    pub fn mu_star_divisor(&self) -> f64 {
+        match &self.drive.rotation {
+            None => self.slider.n_blocks(&self.lattice) as f64,
+            Some(rotation) => rotation.sum_radii,
+        }
+    }
+
+    /// Rise of mu* per path of the drive over [`Drive::k_drive`] while no block moves: 1 if every block has a drive spring and the
+    /// drive does not rotate.
+    pub fn driven_share(&self) -> f64 {
+        let driven = match &self.drive.rotation {
+            None => self.slider.sum_of_drive_springs(&self.lattice),
+            Some(rotation) => rotation.sum_squares,
+        };
+        driven / self.mu_star_divisor()
+    }
+
+    /// Speed of a drive with a spring of stiffness `k_2` on every block that loads the slider as fast as this one does, in which
+    /// waiting times are counted: V* times `sum k_s/(k_2 N)`.
+    pub fn loading_speed(&self) -> f64 {
+        self.drive.v_star * (self.drive.k_drive * self.driven_share() / K_DRIVE)
+    }
+
+    /// Level of mu* in steady sliding at V*:
     ///
     /// ```text
     /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V*
+    /// L = [sum_i mu_ki F_n,i r_i/(P l^2 mu_s) + Omega V* sum_i m_i r_i^2/r_max]/sum_i r_i    of a rotation
     /// ```
     pub fn steady_level(&self) -> f64 {
-        self.surface.mean_kinetic_force() + self.damping * self.drive.v_star
+        let Some(rotation) = &self.drive.rotation else {
+            return self.surface.mean_kinetic_force() + self.damping * self.drive.v_star;
+        };
+        let force = |b: usize| {
+            let relative = self.relative_radius(b);
+            let damping = self.damping * self.drive.v_star * self.slider.mass(b) * relative;
+            relative * (self.surface.kinetic_force(b) + damping)
+        };
+        let blocks = (0..self.surface.n_blocks()).filter(|&b| self.slider.exists(b));
+        blocks.map(force).sum::<f64>() / rotation.sum_radii
     }
 
-    /// Time of the first slip of a block in contact on a surface without texture, exact:
-    /// `t* = min_i max(mu_si, mu_ki) F_n,i/(k_s V*)`.
+    /// Time of the first slip of a block in contact on a surface without texture, exact; of a rank, of its own blocks. Of a drive at
+    /// constant speed with a spring on every block
+    ///
+    /// ```text
+    /// t* = min_i max(mu_si, mu_ki) F_n,i/(k_s,i V*)
+    /// ```
+    ///
+    /// and in general when the path of the drive is as long as it is here after this time.
     pub fn first_slip_estimate(&self) -> f64 {
-        self.surface.min_slip_threshold() / (self.drive.k_drive * self.drive.v_star)
+        if self.slider.drive_springs.is_none()
+            && self.slider.outline.is_none()
+            && self.drive.rotation.is_none()
+        {
+            let path = self.surface.min_slip_threshold() / self.drive.k_drive;
+            return match self.drive.program {
+                None => self.surface.min_slip_threshold() / (self.drive.k_drive * self.drive.v_star),
+                Some(_) => self.drive.time_of_path(path),
+            };
+        }
+        let path = |b: usize| {
+            let limit = self.surface.static_limit(b).max(self.surface.kinetic_force(b));
+            limit / (self.drive.k_drive * self.slider.drive_spring(b) * self.relative_radius(b))
+        };
+        let in_contact =
+            (0..self.surface.n_blocks()).filter(|&b| !self.surface.textured[b] && self.slider.exists(b));
+        self.drive
+            .time_of_path(in_contact.map(path).fold(f64::INFINITY, f64::min))
+    }
+
+    /// `r_i/r_max` of a rotation, else 1.
+    fn relative_radius(&self, b: usize) -> f64 {
+        match self.drive.rotation {
+            None => 1.0,
+            Some(_) => length(self.drive.direction_at(&self.lattice, b)),
+        }
     }
 }

@@ -1,8 +1,10 @@
 //! What may differ from block to block of the slider, and its internal viscosity.
 
+use std::ops::Range;
+
 use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, join, split};
-use crate::lattice::{Bond, Lattice};
+use crate::lattice::{Bond, Edge, Lattice};
 
 /// What may differ from block to block; arrays have one value per block. Without any of it, as in the paper, all blocks are alike.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -38,6 +40,15 @@ pub struct Outline {
 }
 
 impl DriveSprings {
+    /// Equal springs on the blocks of one edge of the lattice, for the rank that holds these `rows`.
+    pub fn at_edge(lattice: &Lattice, rows: &Range<usize>, edge: Edge) -> Self {
+        let relative = |b: usize| f64::from(u8::from(edge.distance(lattice, b) == 0));
+        Self {
+            relative: lattice.blocks_of(rows).map(relative).collect(),
+            sum: edge.n_blocks(lattice) as f64,
+        }
+    }
+
     /// Of the blocks that this rank holds, called by all `ranks` at once: the sum has the same bits however many they are.
     pub fn new(relative: Vec<f64>, ranks: &dyn Communicator) -> Self {
         let mut largest = [relative.iter().copied().fold(0.0, f64::max)];
@@ -70,11 +81,27 @@ impl Slider {
         self.density.as_ref().map_or(1.0, |density| density[b])
     }
 
-    /// Stiffness of the drive spring of block `b` over that of [`Drive`](crate::Drive).
+    /// Stiffness of the drive spring of block `b` over that of [`Drive`](crate::Drive); 0 for a block that does not exist.
     pub fn drive_spring(&self, b: usize) -> f64 {
+        let relative = self
+            .drive_springs
+            .as_ref()
+            .map_or(1.0, |springs| springs.relative[b]);
+        if self.exists(b) { relative } else { 0.0 }
+    }
+
+    /// Number of blocks of the whole lattice that exist.
+    pub fn n_blocks(&self, lattice: &Lattice) -> usize {
+        self.outline
+            .as_ref()
+            .map_or(lattice.n_blocks(), |outline| outline.n_blocks)
+    }
+
+    /// Sum of [`drive_spring`](Self::drive_spring) over the whole lattice.
+    pub fn sum_of_drive_springs(&self, lattice: &Lattice) -> f64 {
         self.drive_springs
             .as_ref()
-            .map_or(1.0, |springs| springs.relative[b])
+            .map_or(self.n_blocks(lattice) as f64, |springs| springs.sum)
     }
 
     /// Whether block `b` exists.

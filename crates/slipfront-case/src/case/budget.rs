@@ -15,7 +15,7 @@ use super::output::{MAX_MAPS, Output, Snapshots};
 use super::ranks::Ranks;
 use super::textures::count_masks;
 use super::time_plan::TimePlan;
-use crate::case_file::{CaseError, CaseFile};
+use crate::case_file::{Attached, AttachedEdge, CaseError, CaseFile, Motion};
 use crate::machine::{available_memory, can_be_had, free_disk};
 use crate::number_format::{byte_size, count};
 
@@ -135,6 +135,10 @@ impl Budget {
     ) -> Self {
         let kept = |indices: Range<usize>| frames::kept(indices, output.stride).len() as f64;
         let last_step = time_plan.last_step;
+        let drive_springs = match file.drive.attached {
+            Attached::At(AttachedEdge::All) => 0.0,
+            _ => NUMBER,
+        };
         let n_frames = match &output.snapshots {
             Snapshots::Instants => 6.0,
             Snapshots::At(steps) => steps.len() as f64,
@@ -150,10 +154,14 @@ impl Budget {
             surface: match file.load.profile.is_some() || file.load.pressure_field.is_some() {
                 true => SURFACE + NUMBER,
                 false => SURFACE,
-            },
+            } + drive_springs,
             kernel: match kernel(file) {
                 Kernel::Fused => FUSED,
                 Kernel::Reference => REFERENCE,
+            } + match file.drive.motion {
+                Motion::Translation => drive_springs,
+                // Relative stiffness and direction; radii of the blocks before.
+                Motion::Rotation => 3.0 * NUMBER,
             },
             frames: n_frames,
             fields: output.fields.len() as f64,
@@ -163,7 +171,8 @@ impl Budget {
                 false => 0.0,
             },
             inputs: 0.0,
-            masks: count_masks(file) as f64,
+            masks: count_masks(file) as f64
+                + f64::from(u8::from(matches!(file.drive.attached, Attached::File(_)))),
             is_resumed: false,
         }
     }

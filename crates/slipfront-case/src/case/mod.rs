@@ -2,6 +2,7 @@
 
 mod budget;
 mod coefficients;
+mod drive;
 mod groups;
 mod inputs;
 mod kernel;

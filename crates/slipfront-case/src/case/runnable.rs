@@ -5,10 +5,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use slipfront::scales::damping;
-use slipfront::{Communicator, Drive, Kernel, Lattice, Model, Scales, Surface};
+use slipfront::{Communicator, FrictionLaw, Kernel, Lattice, Model, Scales, Slider, Surface};
 
 use super::budget::Budget;
 use super::coefficients::{coefficients, contact};
+use super::drive::{attached, drive, drive_springs, refuse_large_angles};
 use super::groups::Groups;
 use super::inputs::{Input, Inputs, NamedFiles};
 use super::kernel::kernel;
@@ -157,9 +158,10 @@ impl Case {
 
         let made = textures::mesh(&file, &scales, &lattice, &inputs, watch).and_then(|meshed| {
             let coefficients = coefficients(&file, &groups, &lattice, &inputs)?;
-            Ok((meshed, coefficients, contact(&file, &scales, &lattice, &inputs)?))
+            let contact = contact(&file, &scales, &lattice, &inputs)?;
+            Ok((meshed, coefficients, contact, attached(&file, &inputs, watch)?))
         });
-        let ((meshed, asked_percent), coefficients, contact) = ranks.agree(made)?;
+        let ((meshed, asked_percent), coefficients, contact, attached) = ranks.agree(made)?;
         let surface = Surface::of_ranks(coefficients, meshed.textured, contact, ranks.communicator)
             .map_err(|error| file.source.error("texture", error.to_string()))?;
         let texture = TextureReport {
@@ -168,8 +170,13 @@ impl Case {
             clipped: meshed.clipped,
             empty: empty_on_all(&meshed.empty, file.texture.len(), ranks.communicator),
         };
-        let drive = Drive::at_angle(groups.v_star, file.drive.direction);
-        let model = Model::of_rows(
+        let slider = Slider {
+            drive_springs: drive_springs(&file, &lattice, &rows, attached, ranks.communicator)?,
+            ..Slider::default()
+        };
+        let drive = drive(&file, &scales, &groups, &time_plan, &lattice, &slider)?;
+        refuse_large_angles(&file, &drive, groups.epsilon, time_plan.end_star())?;
+        let mut model = Model::of_rows(
             lattice,
             rows,
             surface,
@@ -178,6 +185,7 @@ impl Case {
             groups.epsilon,
             file.friction.law,
         );
+        model.slider = slider;
         Ok(Self {
             name: name.to_owned(),
             file,
@@ -240,10 +248,20 @@ impl Derived {
             return Err(file.source.error("slider.blocks", sentence));
         }
         if n_ranks > 1 && kernel(file) != Kernel::Fused {
-            let sentence = "a lattice is divided among ranks under the law \"projection\" alone: take one rank, or that law";
-            return Err(file.source.error("friction.law", sentence));
+            let (key, sentence) = match file.friction.law {
+                FrictionLaw::Projection => (
+                    "drive",
+                    "a lattice is divided among ranks under a drive of constant speed and direction, attached to all blocks, alone: \
+                     take one rank, or that drive",
+                ),
+                _ => (
+                    "friction.law",
+                    "a lattice is divided among ranks under the law \"projection\" alone: take one rank, or that law",
+                ),
+            };
+            return Err(file.source.error(key, sentence));
         }
-        let time_plan = TimePlan::of(file, &scales, &groups)?;
+        let time_plan = TimePlan::of(file, &scales, &groups, lattice)?;
         let output = Output::of(file, &time_plan)?;
         let budget = Budget::new(lattice, rows, ranks, file, &time_plan, &output);
         if to_run {

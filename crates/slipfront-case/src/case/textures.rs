@@ -85,17 +85,25 @@ impl<'a> Masks<'a> {
             Entry::Occupied(known) => return Ok(Arc::clone(known.get())),
             Entry::Vacant(entry) => entry,
         };
-        let key = format!("texture.{index}.file");
-        let read = inputs.read(file, &key, &mask.file, |path, source, slab| {
-            match is_array(path) {
-                true => arrays::mask_npy(path, source, slab),
-                false => arrays::mask_png(path, source, mask.threshold, slab, &mut |share| {
-                    watch(share).then_some(()).ok_or(ArrayError::Stopped)
-                }),
-            }
-        });
-        Ok(Arc::clone(entry.insert(Arc::new(read?))))
+        let read = read_mask(file, &format!("texture.{index}.file"), mask, inputs, watch)?;
+        Ok(Arc::clone(entry.insert(Arc::new(read))))
     }
+}
+
+/// The dark pixels of an image, or the ones of an array, which `key` names.
+pub(super) fn read_mask(
+    file: &CaseFile,
+    key: &str,
+    mask: &Mask,
+    inputs: &Inputs,
+    watch: &mut Watch,
+) -> Result<Vec<bool>, CaseError> {
+    inputs.read(file, key, &mask.file, |path, source, slab| match is_array(path) {
+        true => arrays::mask_npy(path, source, slab),
+        false => arrays::mask_png(path, source, mask.threshold, slab, &mut |share| {
+            watch(share).then_some(()).ok_or(ArrayError::Stopped)
+        }),
+    })
 }
 
 /// How far a texture may reach, in slider lengths. Farther away it is a typing error, and on a periodic axis its position

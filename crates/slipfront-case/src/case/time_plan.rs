@@ -2,10 +2,11 @@
 
 use slipfront::lattice::dt_star_limit;
 use slipfront::observe::KineticStart;
-use slipfront::{Scales, Stop, StopReason};
+use slipfront::{Lattice, Scales, Stop, StopReason};
 
+use super::drive::loading_share;
 use super::groups::Groups;
-use crate::case_file::{AutoOr, CaseError, CaseFile, RunTime, Step};
+use crate::case_file::{AutoOr, CaseError, CaseFile, DriveSpeed, RunTime, Step};
 
 /// Duration and time step of a run, its end and the window of the kinetic friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +26,12 @@ const MAX_STEPS: f64 = 4e9;
 
 impl TimePlan {
     /// The time plan of a case file, refused when the step is unstable, the run too long, or the kinetic window empty.
-    pub(super) fn of(file: &CaseFile, scales: &Scales, groups: &Groups) -> Result<Self, CaseError> {
+    pub(super) fn of(
+        file: &CaseFile,
+        scales: &Scales,
+        groups: &Groups,
+        lattice: &Lattice,
+    ) -> Result<Self, CaseError> {
         let time = &file.time;
         let dt_star = match time.step {
             Step::Auto => 0.1,
@@ -40,7 +46,10 @@ impl TimePlan {
             return Err(file.source.error("time.step", sentence));
         }
         let (key, end_star) = match &time.duration {
-            RunTime::Star(AutoOr::Auto) => ("time.duration_star", 8.0 / groups.v_star),
+            RunTime::Star(AutoOr::Auto) => (
+                "time.duration_star",
+                auto_duration(file, scales, groups, lattice)?,
+            ),
             RunTime::Star(AutoOr::Number(duration)) => ("time.duration_star", *duration),
             RunTime::Duration(duration) => ("time.duration", duration.si() / scales.time()),
         };
@@ -75,8 +84,37 @@ impl TimePlan {
         })
     }
 
+    /// The number of the step nearest to a time.
+    pub(super) fn step_at(&self, time_star: f64) -> f64 {
+        (time_star / self.dt_star).round()
+    }
+
     /// t* of the last step.
     pub fn end_star(&self) -> f64 {
         self.last_step as f64 * self.dt_star
     }
+}
+
+/// 8/V* shows onset and sliding of the paper's slider. A drive that loads more slowly and adhesion delay the onset; under a program
+/// of speeds it is counted from the last of them.
+fn auto_duration(
+    file: &CaseFile,
+    scales: &Scales,
+    groups: &Groups,
+    lattice: &Lattice,
+) -> Result<f64, CaseError> {
+    let Some(share) = loading_share(file, scales, lattice) else {
+        let sentence = "how fast these blocks load the slider is known only when the file has been read: set `time.duration_star`, \
+                        or `drive.total_stiffness_star`";
+        return Err(file.source.error("drive.attach_file", sentence));
+    };
+    let delay = 1.0 + file.friction.adhesion.si() / scales.stress();
+    let from = match &file.drive.speed {
+        DriveSpeed::Program(segments) => segments
+            .iter()
+            .filter_map(|segment| segment.until_star)
+            .next_back(),
+        _ => None,
+    };
+    Ok(from.unwrap_or(0.0) + 8.0 / (groups.v_star * share) * delay)
 }

@@ -8,10 +8,11 @@ use toml::de::DeTable;
 use super::check::Check;
 use super::depth::limit_nesting;
 use super::diagnose::syntax_error;
+use super::drive::{Attached, Drive};
 use super::error::CaseError;
 use super::keys;
 use super::load::read_text;
-use super::motion::{Drive, Friction, Load};
+use super::motion::{Friction, Load};
 use super::output::Output;
 use super::overrides::Override;
 use super::slider::Slider;
@@ -83,6 +84,7 @@ impl CaseFile {
     /// Every file that these tables of a case name, relative to the case file, and the key that names it.
     pub fn files_mut<'a>(
         load: &'a mut Load,
+        drive: &'a mut Drive,
         friction: &'a mut Friction,
         texture: &'a mut [Texture],
     ) -> impl Iterator<Item = (String, &'a mut String)> {
@@ -97,7 +99,13 @@ impl CaseFile {
             ("friction.mu_kinetic_field", &mut friction.mu_kinetic_field),
         ];
         let fields = fields.into_iter();
-        masks.chain(fields.filter_map(|(key, name)| Some((key.to_owned(), name.as_mut()?))))
+        let attached = match &mut drive.attached {
+            Attached::File(name) => Some(("drive.attach_file".to_owned(), name)),
+            Attached::At(_) => None,
+        };
+        masks
+            .chain(attached)
+            .chain(fields.filter_map(|(key, name)| Some((key.to_owned(), name.as_mut()?))))
     }
 
     /// Checks every bound that needs nothing but the file. [`parse`](Self::parse) has done so already.
@@ -108,7 +116,7 @@ impl CaseFile {
         let check = |table| Check::new(&self.source, table, table);
         self.slider.check(&check("slider"))?;
         self.load.check(&check("load"))?;
-        self.drive.check(&check("drive"))?;
+        self.drive.check(&check("drive"), &self.slider.edges)?;
         self.friction.check(&check("friction"))?;
         for (index, texture) in self.texture.iter().enumerate() {
             let path = format!("texture.{index}");

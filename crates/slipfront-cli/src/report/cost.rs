@@ -27,7 +27,7 @@ fn onset(case: &Case) -> String {
         let (first, late) = at(case.model.first_slip_estimate());
         text += &format!("first slip        {first}{late}\n");
     }
-    let (onset, late) = at(2.5 / case.groups.v_star);
+    let (onset, late) = at(2.5 / case.model.loading_speed());
     text += &format!("onset expected    about {onset} (Eq. 12){late}\n");
     text
 }

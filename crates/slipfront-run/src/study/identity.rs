@@ -64,14 +64,14 @@ fn texts(
         let ending = name.rsplit('.').next().unwrap_or_default();
         *name = format!("{}.{ending}", hash.unwrap_or_default());
     };
-    let (mut load, mut friction, mut texture) =
-        (file.load.clone(), file.friction.clone(), file.texture.clone());
+    let (mut load, mut drive) = (file.load.clone(), file.drive.clone());
+    let (mut friction, mut texture) = (file.friction.clone(), file.texture.clone());
     friction.seed = 0;
-    CaseFile::files_mut(&mut load, &mut friction, &mut texture).for_each(contents);
+    CaseFile::files_mut(&mut load, &mut drive, &mut friction, &mut texture).for_each(contents);
     Ok([
         text(&file.slider, known.map(|(file, texts)| (&file.slider, &texts[0])))?,
         text(&load, None)?,
-        text(&file.drive, known.map(|(file, texts)| (&file.drive, &texts[2])))?,
+        text(&drive, None)?,
         text(&friction, None)?,
         text(&texture, None)?,
         text(&file.time, known.map(|(file, texts)| (&file.time, &texts[5])))?,

@@ -3,6 +3,10 @@
 //! In the units of this crate (lengths in blocks, times in `l sqrt(rho/E)`, forces in
 //! `P mu_s l^2`). The tests under `tests/physics` hold the kernels against them.
 
+mod edge_drive;
+
+pub use edge_drive::precursor_load;
+
 use crate::lattice::{K_DIAGONAL, K_DRIVE, K_STRAIGHT};
 use crate::scales::damping;
 

@@ -2,7 +2,8 @@
 //!
 //! A: t* = 0.5/V*. B: first slip of a block in contact. C: the peak of mu*. D: the largest N* in
 //! [t_s*, t_s* + 2.5/V*]. E: the smallest mu* from D to the start of the kinetic window. F: the middle of that
-//! window. An instant that a later step may replace is kept as a candidate and overwritten.
+//! window. An instant that a later step may replace is kept as a candidate and overwritten. V* is the
+//! [loading speed](crate::Model::loading_speed).
 
 use serde::{Deserialize, Serialize};
 
@@ -107,7 +108,7 @@ impl Instants {
 
 impl Observer for Instants {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
-        let v_star = now.model.drive.v_star;
+        let v_star = now.model.loading_speed();
         // The step before, as its own product: n dt - dt need not be (n - 1) dt to the last bit.
         let before = (now.step as f64 - 1.0) * now.dt_star;
         let passes = |time: f64| now.time_star >= time && before < time;

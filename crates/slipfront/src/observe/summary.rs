@@ -17,7 +17,8 @@ pub enum KineticStart {
 }
 
 impl KineticStart {
-    /// Where the window begins, t*, with the peak of mu* as far as it is known.
+    /// Where the window begins, t*, with the peak of mu* as far as it is known, at a
+    /// [loading speed](crate::Model::loading_speed) of `v_star`.
     pub fn time_star(&self, peak: &Peak, v_star: f64) -> f64 {
         match *self {
             KineticStart::At(time_star) => time_star,

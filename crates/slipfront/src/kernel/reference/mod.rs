@@ -4,10 +4,12 @@
 //! Forces of opposite neighbours are summed in pairs, straight ones before diagonal ones, so that the trajectory of a rotated
 //! or mirrored problem is the rotated or mirrored trajectory, with the same bits.
 
+mod drive;
 mod springs;
 
 use fearless_simd::{Level, dispatch};
 
+use self::drive::DrivenBlocks;
 use self::springs::{lattice_energy, lattice_forces};
 use super::block::{Block, Field};
 use super::engine::Engine;
@@ -33,6 +35,7 @@ pub(crate) struct Reference {
     static_limit: Vec<f64>,
     /// `mu_k F_n`.
     kinetic_force: Vec<f64>,
+    driven: DrivenBlocks,
     first_slip: Vec<f64>,
     stress_square_max: f64,
 }
@@ -68,6 +71,7 @@ impl Reference {
             },
             static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
             kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
+            driven: DrivenBlocks::of(model),
             first_slip: vec![f64::NAN; n],
             stress_square_max: 0.0,
         }
@@ -106,7 +110,9 @@ impl Reference {
         if std::mem::replace(&mut self.started, true) {
             move_blocks(&mut self.state, self.dt_star);
         }
-        drive_forces(model, &self.state, time_star, &mut self.forces.drive);
+        let displacement = &self.state.displacement;
+        self.driven
+            .forces(&model.drive, displacement, time_star, &mut self.forces.drive);
         lattice_forces(
             model,
             &self.state,
@@ -161,7 +167,7 @@ impl Reference {
         let [lx, ly] = components(&self.forces.lattice, n);
         let [fx, fy] = components(&self.forces.friction, n);
         let (textured, slides) = (&model.surface.textured[..n], &self.forces.slides[..n]);
-        let sum = |[x, y]: [&[f64]; 2]| [fixed_point::sum(n, |b| x[b]), fixed_point::sum(n, |b| y[b])];
+        let sums = |[x, y]: [&[f64]; 2]| self.driven.sums(n, |b| x[b], |b| y[b]);
         let squares = |[x, y]: [&[f64]; 2]| fixed_point::sum(n, |b| x[b] * x[b] + y[b] * y[b]);
         let (vx, vy) = (|b: usize| 0.5 * (bx[b] + ax[b]), |b: usize| 0.5 * (by[b] + ay[b]));
         let slipping = slides.iter().zip(textured);
@@ -171,24 +177,19 @@ impl Reference {
         });
         self.stress_square_max = self.stress_square_max.max(stress_square);
         Totals {
-            displacement: sum([ux, uy]),
-            velocity: [fixed_point::sum(n, vx), fixed_point::sum(n, vy)],
-            velocity_after: sum([ax, ay]),
+            displacement: sums([ux, uy]),
+            velocity: self.driven.sums(n, vx, vy),
+            velocity_after: sums([ax, ay]),
             velocity_square: fixed_point::sum(n, |b| vx(b) * vx(b) + vy(b) * vy(b)),
             friction_power: fixed_point::sum(n, |b| fx[b] * vx(b) + fy[b] * vy(b)),
             n_sliding: slides.iter().filter(|&&slides| slides).count(),
             n_slipping: slipping
                 .filter(|&(slides, textured)| *slides && !textured)
                 .count(),
-            stored_energy: energies.then(|| {
-                let [x, y] = model.drive.position(time_star);
-                let stretch_square =
-                    fixed_point::sum(n, |b| (x - ux[b]) * (x - ux[b]) + (y - uy[b]) * (y - uy[b]));
-                StoredEnergy {
-                    kinetic: 0.25 * (squares([bx, by]) + squares([ax, ay])),
-                    lattice: lattice_energy(&model.lattice, &self.state.displacement, model.epsilon),
-                    drive_springs: 0.5 * model.drive.k_drive * stretch_square,
-                }
+            stored_energy: energies.then(|| StoredEnergy {
+                kinetic: 0.25 * (squares([bx, by]) + squares([ax, ay])),
+                lattice: lattice_energy(&model.lattice, &self.state.displacement, model.epsilon),
+                drive_springs: self.driven.energy(&model.drive, [ux, uy], time_star),
             }),
         }
     }
@@ -276,20 +277,6 @@ fn move_blocks(state: &mut State, dt_star: f64) {
     ] {
         u.iter_mut().zip(v).for_each(|(u, v)| *u += dt_star * v);
     }
-}
-
-/// Eq. 2: `F_s = k_s (V t - u)`.
-#[inline(always)]
-fn drive_forces(model: &Model, state: &State, time_star: f64, force: &mut VectorField) {
-    let drive = &model.drive;
-    let position = drive.position(time_star);
-    let component = |force: &mut [f64], u: &[f64], axis: usize| {
-        for (f, u) in force.iter_mut().zip(u) {
-            *f = drive.k_drive * (position[axis] - u) + drive.constant_force[axis];
-        }
-    };
-    component(&mut force.x, &state.displacement.x, 0);
-    component(&mut force.y, &state.displacement.y, 1);
 }
 
 /// Applies the friction law to every block: finds friction, velocities and which slide from thresholds, velocities and forces.

@@ -1,0 +1,178 @@
+//! How the slider of a case is driven.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use slipfront::lattice::K_DRIVE;
+use slipfront::{Communicator, Drive, DriveSprings, Lattice, Program, Rotation, Scales, Slider};
+
+use super::groups::{Groups, within};
+use super::inputs::Inputs;
+use super::textures::{Watch, read_mask};
+use super::time_plan::TimePlan;
+use crate::case_file::{
+    Attached, CaseError, CaseFile, DEFAULT_THRESHOLD, DriveSpeed, DriveStiffness, Mask, Motion, SpeedSegment,
+};
+
+/// Largest angle, in rad, by which a drive may turn: the far ends move along tangents, not along circles.
+const MAX_ANGLE: f64 = 1e-3;
+
+/// The blocks of these rows that have a drive spring, if a file says so.
+pub(super) fn attached(
+    file: &CaseFile,
+    inputs: &Inputs,
+    watch: &mut Watch,
+) -> Result<Option<Vec<bool>>, CaseError> {
+    let Attached::File(name) = &file.drive.attached else {
+        return Ok(None);
+    };
+    let mask = Mask {
+        file: name.clone(),
+        threshold: DEFAULT_THRESHOLD,
+    };
+    read_mask(file, "drive.attach_file", &mask, inputs, watch).map(Some)
+}
+
+/// The drive springs of these rows, called by all ranks at once; none if every block has one.
+pub(super) fn drive_springs(
+    file: &CaseFile,
+    lattice: &Lattice,
+    rows: &Range<usize>,
+    attached: Option<Vec<bool>>,
+    ranks: &dyn Communicator,
+) -> Result<Option<DriveSprings>, CaseError> {
+    let edge = file.drive.edge();
+    let springs = match attached {
+        None => edge.map(|edge| DriveSprings::at_edge(lattice, rows, edge)),
+        Some(attached) => {
+            let relative = attached.into_iter().map(|attached| f64::from(u8::from(attached)));
+            Some(DriveSprings::new(relative.collect(), ranks))
+        }
+    };
+    match springs {
+        Some(springs) if springs.sum == 0.0 => {
+            let sentence = "the file leaves no block attached, so that nothing pulls the slider: 1 or a dark pixel attaches a block";
+            Err(file.source.error("drive.attach_file", sentence))
+        }
+        springs => Ok(springs),
+    }
+}
+
+/// The drive of a slider that is complete but for it.
+pub(super) fn drive(
+    file: &CaseFile,
+    scales: &Scales,
+    groups: &Groups,
+    time_plan: &TimePlan,
+    lattice: &Lattice,
+    slider: &Slider,
+) -> Result<Drive, CaseError> {
+    let n_attached = slider.sum_of_drive_springs(lattice);
+    let key = match file.drive.stiffness {
+        DriveStiffness::Auto | DriveStiffness::Each(_) => "drive.stiffness",
+        DriveStiffness::EachStar(_) => "drive.stiffness_star",
+        DriveStiffness::Total(_) => "drive.total_stiffness",
+        DriveStiffness::TotalStar(_) => "drive.total_stiffness_star",
+    };
+    let k_drive = match total(file, scales) {
+        Some(total) => total / n_attached,
+        None => each(file, scales),
+    };
+    within(
+        file,
+        key,
+        "the stiffness of a drive spring over E l",
+        k_drive,
+        1e-12..=1e6,
+    )?;
+    let program = match &file.drive.speed {
+        DriveSpeed::Program(segments) => Some(Arc::new(program(file, segments, time_plan)?)),
+        DriveSpeed::VStar(_) | DriveSpeed::Speed(_) => None,
+    };
+    let rotation = match file.drive.motion {
+        Motion::Translation => None,
+        Motion::Rotation if slider.n_blocks(lattice) == 1 => {
+            let sentence = "a single block has no radius to turn about: take more, or \"translation\"";
+            return Err(file.source.error("drive.motion", sentence));
+        }
+        Motion::Rotation => Some(Rotation::about_centroid(lattice, slider)),
+    };
+    Ok(Drive {
+        k_drive,
+        program,
+        rotation,
+        ..Drive::at_angle(groups.v_star, file.drive.direction)
+    })
+}
+
+/// Stiffness of all drive springs together, if the case says that.
+fn total(file: &CaseFile, scales: &Scales) -> Option<f64> {
+    match &file.drive.stiffness {
+        DriveStiffness::Total(total) => Some(total.si() / scales.stiffness()),
+        DriveStiffness::TotalStar(total) => Some(*total),
+        _ => None,
+    }
+}
+
+/// Stiffness of each, unless the case says what they have together.
+fn each(file: &CaseFile, scales: &Scales) -> f64 {
+    match &file.drive.stiffness {
+        DriveStiffness::Each(each) => each.si() / scales.stiffness(),
+        DriveStiffness::EachStar(each) => *each,
+        _ => K_DRIVE,
+    }
+}
+
+/// `sum k_s/(k_2 N)`, by which a drive loads the slider faster or more slowly than the paper's; none if it depends on what a file
+/// attaches.
+pub(super) fn loading_share(file: &CaseFile, scales: &Scales, lattice: &Lattice) -> Option<f64> {
+    let n_blocks = lattice.n_blocks() as f64;
+    let n_attached = match (&file.drive.attached, file.drive.edge()) {
+        (Attached::File(_), _) => None,
+        (Attached::At(_), Some(edge)) => Some(edge.n_blocks(lattice) as f64),
+        (Attached::At(_), None) => Some(n_blocks),
+    };
+    let sum = total(file, scales).or_else(|| Some(n_attached? * each(file, scales)));
+    Some(sum? / (n_blocks * K_DRIVE))
+}
+
+/// The program of the file, with speeds that change where steps begin.
+fn program(file: &CaseFile, segments: &[SpeedSegment], time_plan: &TimePlan) -> Result<Program, CaseError> {
+    let mut before = 0.0;
+    let mut parts = Vec::with_capacity(segments.len());
+    for segment in segments {
+        let until = segment.until_star.map(|until| time_plan.step_at(until));
+        if until.is_some_and(|until| until <= before) {
+            let sentence = format!(
+                "the speed {:?} of the program lasts less than a step of dt* = {}: speeds change where steps begin",
+                segment.v_star, time_plan.dt_star
+            );
+            return Err(file.source.error("drive.program", sentence));
+        }
+        before = until.unwrap_or(before);
+        let until_star = until.map_or(f64::INFINITY, |until| until * time_plan.dt_star);
+        parts.push((segment.v_star, until_star));
+    }
+    Ok(Program::new(parts))
+}
+
+/// Refuses a rotation by an angle that is not small.
+pub(super) fn refuse_large_angles(
+    file: &CaseFile,
+    drive: &Drive,
+    epsilon: f64,
+    end_star: f64,
+) -> Result<(), CaseError> {
+    let Some(rotation) = &drive.rotation else {
+        return Ok(());
+    };
+    let angle = epsilon * drive.farthest_path(end_star) / rotation.radius;
+    if angle <= MAX_ANGLE {
+        return Ok(());
+    }
+    let sentence = format!(
+        "the drive turns by up to {angle:.2e} rad, more than {MAX_ANGLE:e}, where its ends would no longer move along tangents: \
+         shorten the run, lower the speed or `load.pressure`, or raise `slider.young_modulus`"
+    );
+    Err(file.source.error("drive.motion", sentence))
+}
