@@ -210,6 +210,8 @@ quantities! {
     Speed: Dimension::new(0, 1, -1), "a speed", "0.0949 mm/s", "m/s";
     /// A duration, read into s.
     Duration: Dimension::new(0, 0, 1), "a time", "84 ns", "s";
+    /// A stiffness, read into N/m.
+    Stiffness: Dimension::new(1, 0, -2), "a stiffness", "2 N/m", "N/m";
     /// A rate, read into 1/s.
     Rate: Dimension::new(0, 0, -1), "a rate", "3e8 1/s", "1/s";
 }

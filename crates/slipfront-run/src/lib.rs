@@ -16,6 +16,7 @@ pub mod fields;
 pub mod manifest;
 pub mod names;
 pub mod pictures;
+pub mod precursors;
 pub mod program;
 pub mod results;
 pub mod resume_command;

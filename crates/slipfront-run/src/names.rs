@@ -8,6 +8,8 @@ pub const MANIFEST: &str = "manifest.json";
 pub const SUMMARY: &str = "summary.json";
 /// The curve of a run, row by row.
 pub const SERIES: &str = "series.csv";
+/// The events of slip of a run that is driven at an edge.
+pub const PRECURSORS: &str = "precursors.csv";
 /// The fields of a run, block by block.
 pub const FIELDS: &str = "fields.nc";
 /// The hidden subfolder of everything that belongs to a run which is not complete.

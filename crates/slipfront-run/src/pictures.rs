@@ -4,18 +4,23 @@
 use {
     crate::error::ResultsError,
     crate::fields::{self, FieldFrame, Reduction},
+    crate::precursors::{self, PrecursorRow},
     crate::series,
     crate::summary::{Summary, read_summary},
     rayon::prelude::*,
+    slipfront::exact_solutions::precursor_load,
     slipfront::observe::Field,
+    slipfront::{Edge, Edges},
     slipfront_case::case::{MAX_MAPS, memory_to_draw},
+    slipfront_case::case_file::{CaseFile, KineticFriction},
     slipfront_plot::{
-        self as plot, CellMeans, FrictionCurve, Instant, Kinetic, Picture, StressMap, StressMaps,
+        self as plot, CellMeans, FrictionCurve, Instant, Kinetic, Picture, Response, Responses, StressMap,
+        StressMaps,
     },
     std::path::{Path, PathBuf},
 };
 
-use crate::names::{FIELDS, SERIES, SUMMARY};
+use crate::names::{CASE, FIELDS, PRECURSORS, SERIES, SUMMARY};
 
 /// A picture of a run.
 pub struct RunPicture {
@@ -42,10 +47,16 @@ pub static RUN_PICTURES: &[RunPicture] = &[
         #[cfg(feature = "plot")]
         draw: draw_stress,
     },
+    RunPicture {
+        name: "precursors",
+        shows: "how far events of slip reach under the load",
+        #[cfg(feature = "plot")]
+        draw: draw_precursors,
+    },
 ];
 
 /// The files that pictures are drawn from.
-pub const DRAWN_FROM: [&str; 3] = [SUMMARY, SERIES, FIELDS];
+pub const DRAWN_FROM: [&str; 5] = [CASE, SUMMARY, SERIES, PRECURSORS, FIELDS];
 
 impl RunPicture {
     /// Names of its files.
@@ -179,4 +190,82 @@ fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
         name: "stress",
         source,
     })
+}
+
+/// Draws how far the events of slip of a slider driven at an edge have reached, against the load after them; none of another run. An
+/// event counts if it is longer than all before: a shorter one slips over what these have left behind.
+#[cfg(feature = "plot")]
+fn draw_precursors(folder: &Path) -> Result<Option<Picture>, ResultsError> {
+    let path = folder.join(PRECURSORS);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let mut longest = 0.0;
+    let mut is_longer = |row: &PrecursorRow| {
+        let is_longer = row.length > longest;
+        longest = row.length.max(longest);
+        is_longer
+    };
+    let rows = precursors::read_csv(&path)?;
+    let longer = rows.into_iter().filter(|row| is_longer(row));
+    let points = longer.filter_map(|row| Some((row.friction_coefficient_after?, row.length)));
+    let curve = |label: &str, points: Vec<(f64, f64)>, line: bool| {
+        let (x, mean): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
+        Response {
+            label: label.to_owned(),
+            low: vec![f64::NAN; x.len()],
+            high: vec![f64::NAN; x.len()],
+            x,
+            mean,
+            line,
+        }
+    };
+    let mut curves = vec![curve("events", points.collect(), false)];
+    let case = CaseFile::load(&folder.join(CASE), &[])?;
+    if let Some((mu_kinetic, slope)) = equal_chain(&case) {
+        let lengths = (0..=100).map(|percent| f64::from(percent) / 100.0);
+        let points = lengths.map(|length| (precursor_load(length, mu_kinetic, slope), length));
+        curves.push(curve("exact", points.collect(), true));
+    }
+    let drawn = plot::response(&Responses {
+        x_title: "load F\u{209c}/F\u{2099} after the event".to_owned(),
+        y_title: "length of the event L\u{209a}/L".to_owned(),
+        curves,
+        ..Responses::default()
+    });
+    drawn.map(Some).map_err(|source| ResultsError::Picture {
+        name: "precursors",
+        source,
+    })
+}
+
+/// Kinetic coefficient and slope of the pressure from the driven end, of a chain of equal thresholds that is pulled along itself.
+#[cfg(feature = "plot")]
+fn equal_chain(case: &CaseFile) -> Option<(f64, f64)> {
+    let (slider, load, friction) = (&case.slider, &case.load, &case.friction);
+    let edge = case.drive.edge()?;
+    let axis = edge.axis();
+    let is_chain = slider.blocks[1 - axis] == 1 && slider.edges[1 - axis] == Edges::Free;
+    let is_pulled_along = case.drive.direction.rem_euclid(180.0) == [0.0, 90.0][axis];
+    let is_equal = friction.sigma_static_star == 0.0
+        && friction.sigma_kinetic_star == 0.0
+        && friction.mu_static_field.is_none()
+        && friction.mu_kinetic_field.is_none()
+        && friction.adhesion_kinetic.si() == 0.0
+        && load.pressure_field.is_none()
+        && case.texture.is_empty();
+    let slope = match &load.profile {
+        None => 0.0,
+        Some(profile) if profile.along as usize == axis => profile.relative_slope,
+        Some(_) => return None,
+    };
+    let slope = match edge {
+        Edge::Left | Edge::Bottom => slope,
+        Edge::Right | Edge::Top => -slope,
+    };
+    let mu_kinetic = match friction.kinetic {
+        KineticFriction::RStar(r_star) => r_star * friction.mu_static,
+        KineticFriction::MuKinetic(mu_kinetic) => mu_kinetic,
+    };
+    (is_chain && is_pulled_along && is_equal).then_some((mu_kinetic, slope))
 }

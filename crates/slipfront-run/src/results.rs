@@ -14,9 +14,10 @@ use tempfile::TempPath;
 use crate::error::ResultsError;
 use crate::fields::{self, FieldFrame, FieldsError, FieldsFile, StaticFields};
 use crate::manifest::Manifest;
-use crate::names::{CASE, FIELDS, SERIES, SUMMARY};
+use crate::names::{CASE, FIELDS, PRECURSORS, SERIES, SUMMARY};
 #[cfg(feature = "plot")]
 use crate::pictures;
+use crate::precursors;
 use crate::run_folder::RunFolder;
 use crate::run_folder::unfinished::Unfinished;
 use crate::running::Record;
@@ -39,14 +40,21 @@ pub fn write(
     }
 }
 
-/// Summary and series, the first results of a run, by one of its ranks.
+/// Summary, series and events, the first results of a run, by one of its ranks.
 pub fn write_tables(case: &Case, record: &Record, folder: &mut RunFolder) -> Result<(), ResultsError> {
     folder.write(SUMMARY, &disk::json(&record.summary))?;
     let rows = record
         .rows
         .iter()
         .map(|row| SeriesRow::new(row, &case.scales, &case.model));
-    Ok(folder.write(SERIES, &series::to_csv(rows)?)?)
+    folder.write(SERIES, &series::to_csv(rows)?)?;
+    match &record.precursors {
+        Some(precursors) => Ok(folder.write(
+            PRECURSORS,
+            &precursors::to_csv(precursors.events(), &case.scales)?,
+        )?),
+        None => Ok(()),
+    }
 }
 
 /// All that follows the [fields](write_fields), by one of the ranks.

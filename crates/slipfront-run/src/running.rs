@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use slipfront::communicator::{Alone, Communicator};
 use slipfront::observe::frames::{Selection, kept};
-use slipfront::observe::{CurveRow, Frame, Frames, Instants, Schedule, Scheduled};
+use slipfront::observe::{CurveRow, Frame, Frames, Instants, Precursors, Schedule, Scheduled};
 use slipfront::{Checkpoint, Execution, RunError, Simulation, Snapshot, Stop, StopReason};
 
 use crate::columns::Columns;
@@ -21,6 +21,8 @@ pub struct Record {
     pub summary: Summary,
     /// The recorded curve.
     pub rows: Vec<CurveRow>,
+    /// Events of slip of a slider driven at an edge.
+    pub precursors: Option<Precursors>,
     /// Fields in the order of time, each with the letters of the instants A-F that it shows.
     pub frames: Vec<(String, Frame)>,
     /// t* of the first slip of every block.
@@ -120,7 +122,8 @@ impl Observers {
             (Fields::Frames(old), Fields::Frames(new)) => old.is_consistent_with(new, step),
             _ => false,
         };
-        fields && self.summary.is_consistent_with(&new.summary, step)
+        let time_star = step as f64 * case.time_plan.dt_star;
+        fields && self.summary.is_consistent_with(&new.summary, step, time_star)
     }
 
     /// The numbers of blocks that a checkpoint keeps: those of the simulation, and those of every field of every frame.
@@ -368,6 +371,7 @@ impl Running {
         Record {
             summary: summary.end(&case, &simulation, reason, &instants),
             rows: summary.curve.rows,
+            precursors: summary.precursors,
             frames: lettered(instants, frames),
             contact_stress_max: simulation.contact_stress_max(),
             first_slip_time_star: simulation.into_first_slip_time_star(),

@@ -3,12 +3,13 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize};
-
 use slipfront::observe::CurveRow;
 use slipfront::{Friction, Model, Scales};
 use thiserror::Error;
 
+use crate::names::SERIES;
 use slipfront_case::disk::open_limited;
 use slipfront_case::text;
 
@@ -63,11 +64,12 @@ fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::
 /// A series that cannot be read.
 #[derive(Debug, Error)]
 #[error(
-    "cannot read {path}: {}; it should be the series.csv of a slipfront run",
+    "cannot read {path}: {}; it should be the {name} of a slipfront run",
     text::single_line(&source.to_string())
 )]
 pub struct SeriesError {
     path: PathBuf,
+    name: &'static str,
     source: csv::Error,
 }
 
@@ -128,20 +130,27 @@ pub fn estimate_rows(path: &Path) -> Result<f64, SeriesError> {
     };
     estimate().map_err(|error: std::io::Error| SeriesError {
         path: path.to_owned(),
+        name: SERIES,
         source: error.into(),
     })
 }
 
 /// Reads a series back.
 pub fn read_csv(path: &Path) -> Result<Vec<SeriesRow>, SeriesError> {
+    read_rows(path, SERIES)
+}
+
+/// Reads the rows of a table of a run, which is called `name` in its folder.
+pub(crate) fn read_rows<T: DeserializeOwned>(path: &Path, name: &'static str) -> Result<Vec<T>, SeriesError> {
     let read = || rows_of(open_limited(path, u64::MAX)?);
     read().map_err(|source| SeriesError {
         path: path.to_owned(),
+        name,
         source,
     })
 }
 
-fn rows_of(file: impl Read) -> Result<Vec<SeriesRow>, csv::Error> {
+fn rows_of<T: DeserializeOwned>(file: impl Read) -> Result<Vec<T>, csv::Error> {
     let mut reader = csv::Reader::from_reader(BoundedLines { file, line_bytes: 0 });
     // The crate's own iterator takes names that cannot be read for none, and goes on with what follows them.
     let names = reader.headers()?.clone();
@@ -206,11 +215,11 @@ mod tests {
         for failing in 1..=pieces {
             let (file, reads) = (text.as_slice(), 0);
             assert!(
-                rows_of(Failing { file, reads, failing }).is_err(),
+                rows_of::<SeriesRow>(Failing { file, reads, failing }).is_err(),
                 "piece {failing} of {pieces}"
             );
         }
-        assert_eq!(rows_of(text.as_slice()).unwrap(), rows);
+        assert_eq!(rows_of::<SeriesRow>(text.as_slice()).unwrap(), rows);
     }
 
     #[test]
@@ -221,7 +230,7 @@ mod tests {
         };
         for rows in [[row(None); 2], [row(Some(0.5)), row(Some(f64::MIN_POSITIVE))]] {
             let text = to_csv(rows.into_iter()).unwrap();
-            assert_eq!(rows_of(text.as_slice()).unwrap(), rows);
+            assert_eq!(rows_of::<SeriesRow>(text.as_slice()).unwrap(), rows);
         }
         let text = to_csv([row(Some(0.5)); 2].into_iter()).unwrap();
         let text = String::from_utf8(text).unwrap();

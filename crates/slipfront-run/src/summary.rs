@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use slipfront::observe::{Curve, Energies, Frame, Kinetic, KineticHistory, NoUncertainty, Peak, Scheduled};
+use slipfront::observe::{
+    Curve, Cycles, Energies, Frame, Kinetic, KineticHistory, NoUncertainty, Peak, Precursors, Scheduled,
+};
 use slipfront::{Friction, Simulation, StopReason};
 
 use crate::error::ResultsError;
@@ -11,6 +13,7 @@ use crate::names::SUMMARY;
 use crate::program::VERSION;
 use crate::run_folder::error::FolderError;
 use slipfront_case::case::Case;
+use slipfront_case::case_file::Motion;
 use slipfront_case::disk::{TEXT_MAX_BYTES, json, read_limited};
 
 /// The numbers of a run. Starred quantities are dimensionless (Eq. 11); times without a star are in s.
@@ -81,6 +84,15 @@ pub struct Summary {
     pub friction_loss_j: f64,
     /// Lost to damping, J.
     pub damping_loss_j: f64,
+    /// Of a drive that rotates: mu* and its derivatives are the torque over P mu_s l^2 times the sum of all radii.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<Motion>,
+    /// Events of slip of a slider driven at an edge.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub precursors: Option<PrecursorSummary>,
+    /// Under a program of speeds, the peak of every part in which the drive moves forwards.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cycles: Option<Vec<CycleSummary>>,
     /// Lost to the dampers between blocks, J, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub viscous_loss_j: Option<f64>,
@@ -110,11 +122,41 @@ pub struct InstantSummary {
     pub sliding_percent: f64,
 }
 
+/// Events of slip of a slider driven at an edge.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PrecursorSummary {
+    /// How many there were; each is a row of `precursors.csv`.
+    pub events: usize,
+    /// t* at which the first one begins that crosses the whole slider.
+    pub crossing_time_star: Option<f64>,
+    /// mu* then.
+    pub crossing_mu_star: Option<f64>,
+}
+
+/// A part of a program of speeds in which the drive moves forwards.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CycleSummary {
+    /// t* at which it begins.
+    pub from_star: f64,
+    /// Its V*.
+    pub v_star: f64,
+    /// Largest mu*.
+    pub mu_star_max: f64,
+    /// t* of it.
+    pub time_star: f64,
+}
+
 /// The observers of which every run has one each, and its numbers.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct SummaryObservers {
     pub(crate) curve: Curve,
     history: KineticHistory,
+    /// Of a drive at an edge.
+    pub(crate) precursors: Option<Precursors>,
+    /// Of a program of speeds.
+    cycles: Option<Cycles>,
 }
 
 impl SummaryObservers {
@@ -123,19 +165,62 @@ impl SummaryObservers {
         Self {
             curve: Curve::every(case.output.series_stride),
             history: KineticHistory::new(last_step),
+            precursors: case.file.drive.edge().map(Precursors::new),
+            cycles: case.model.drive.program.is_some().then(Cycles::default),
         }
     }
 
-    /// Whether they can be those that began as `new` after `step` steps.
-    pub(crate) fn is_consistent_with(&self, new: &Self, step: u64) -> bool {
-        self.curve.is_consistent_with(&new.curve, step) && self.history.is_consistent_with(&new.history, step)
+    /// Whether they can be those that began as `new` after `step` steps, at `time_star`.
+    pub(crate) fn is_consistent_with(&self, new: &Self, step: u64, time_star: f64) -> bool {
+        let precursors = match (&self.precursors, &new.precursors) {
+            (Some(old), Some(new)) => old.is_consistent_with(new, time_star),
+            (old, new) => old.is_none() && new.is_none(),
+        };
+        let cycles = match (&self.cycles, &new.cycles) {
+            (Some(old), Some(_)) => old.is_consistent_with(time_star),
+            (old, new) => old.is_none() && new.is_none(),
+        };
+        precursors
+            && cycles
+            && self.curve.is_consistent_with(&new.curve, step)
+            && self.history.is_consistent_with(&new.history, step)
     }
 
     pub(crate) fn scheduled(&mut self) -> Vec<Scheduled<'_>> {
-        vec![
+        let mut scheduled = vec![
             Scheduled::always(&mut self.curve),
             Scheduled::always(&mut self.history),
-        ]
+        ];
+        scheduled.extend(
+            self.precursors
+                .as_mut()
+                .map(|precursors| Scheduled::always(precursors)),
+        );
+        scheduled.extend(self.cycles.as_mut().map(|cycles| Scheduled::always(cycles)));
+        scheduled
+    }
+
+    /// The events of slip of a slider driven at an edge.
+    fn precursors(&self) -> Option<PrecursorSummary> {
+        let precursors = self.precursors.as_ref()?;
+        let crossing = precursors.crossing();
+        Some(PrecursorSummary {
+            events: precursors.events().len(),
+            crossing_time_star: crossing.map(|event| event.from_star),
+            crossing_mu_star: crossing.map(|event| event.mu_star_before),
+        })
+    }
+
+    /// The peaks under a program of speeds.
+    fn cycles(&self) -> Option<Vec<CycleSummary>> {
+        let cycles = self.cycles.as_ref()?.cycles().iter();
+        let peaks = cycles.map(|cycle| CycleSummary {
+            from_star: cycle.from_star,
+            v_star: cycle.v_star,
+            mu_star_max: cycle.mu_star,
+            time_star: cycle.time_star,
+        });
+        Some(peaks.collect())
     }
 
     /// The numbers of a run that has ended, with the instants A-F that it had.
@@ -206,6 +291,9 @@ impl SummaryObservers {
             work_j: energies.work * energy,
             friction_loss_j: energies.friction_loss * energy,
             damping_loss_j: energies.damping_loss * energy,
+            motion: case.model.drive.rotation.map(|_| Motion::Rotation),
+            precursors: self.precursors(),
+            cycles: self.cycles(),
             viscous_loss_j: case
                 .model
                 .slider

@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
+use crate::fixed_point;
 use crate::lattice::{K_DRIVE, Lattice};
-use crate::vector_field::unit_vector;
+use crate::slider::Slider;
+use crate::vector_field::{length, unit_vector};
 
 /// How the slider is pulled.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +17,8 @@ pub struct Drive {
     /// Stiffness `k_s` of the spring on every block, in units of `E l`; see [`Slider::drive_springs`](crate::Slider::drive_springs).
     pub k_drive: f64,
     /// A constant force on every block in addition to the drive spring's, in units of `P mu_s l^2`; zero in the paper. A block with
-    /// another drive spring has as much more or less of it.
+    /// another drive spring has as much more or less of it. Its components are x and y, of a rotation those along the
+    /// [direction](Self::direction_at) of each block and across it.
     pub constant_force: [f64; 2],
     /// Speeds that follow one another; `v_star` all the time if there are none.
     pub program: Option<Arc<Program>>,
@@ -47,8 +50,49 @@ pub struct Rotation {
     pub centre: [f64; 2],
     /// Largest distance of a block from it, at which the speed is `v_star`.
     pub radius: f64,
-    /// `sum r_i/radius` over all blocks.
+    /// `sum r_i/radius` over all blocks that exist.
     pub sum_radii: f64,
+    /// `sum w_i (r_i/radius)^2`, with the relative stiffness `w` of the drive springs.
+    pub sum_squares: f64,
+}
+
+impl Rotation {
+    /// About the middle of all blocks that exist.
+    pub fn about_centroid(lattice: &Lattice, slider: &Slider) -> Self {
+        let blocks: Vec<usize> = (0..lattice.n_blocks()).filter(|&b| slider.exists(b)).collect();
+        // Twice the coordinates of the centres of blocks are odd whole numbers, which no order of summation rounds.
+        let twice = blocks.iter().fold([0, 0], |[x, y], &b| {
+            let (i, j) = lattice.column_row(b);
+            [x + 2 * i as u64 + 1, y + 2 * j as u64 + 1]
+        });
+        let about_axis = Self {
+            centre: twice.map(|sum| sum as f64 / (2 * blocks.len()) as f64),
+            radius: 1.0,
+            sum_radii: f64::NAN,
+            sum_squares: f64::NAN,
+        };
+        let radii: Vec<f64> = blocks
+            .iter()
+            .map(|&b| length(about_axis.arm(lattice, b)))
+            .collect();
+        let radius = radii.iter().copied().fold(0.0, f64::max);
+        let relative = |k: usize| radii[k] / radius;
+        Self {
+            radius,
+            sum_radii: fixed_point::sum(radii.len(), relative),
+            sum_squares: fixed_point::sum(radii.len(), |k| {
+                slider.drive_spring(blocks[k]) * (relative(k) * relative(k))
+            }),
+            ..about_axis
+        }
+    }
+
+    /// Displacement of the driven end over block `b` per path at the largest radius: `z x r/r_max`.
+    fn arm(&self, lattice: &Lattice, b: usize) -> [f64; 2] {
+        let (i, j) = lattice.column_row(b);
+        let [x, y] = [i as f64 + 0.5 - self.centre[0], j as f64 + 0.5 - self.centre[1]];
+        [-y / self.radius, x / self.radius]
+    }
 }
 
 impl Program {
@@ -150,15 +194,33 @@ impl Drive {
     pub fn direction_at(&self, lattice: &Lattice, b: usize) -> [f64; 2] {
         match &self.rotation {
             None => self.direction,
-            Some(rotation) => {
-                let (i, j) = lattice.column_row(b);
-                let [x, y] = [
-                    i as f64 + 0.5 - rotation.centre[0],
-                    j as f64 + 0.5 - rotation.centre[1],
-                ];
-                [-y / rotation.radius, x / rotation.radius]
-            }
+            Some(rotation) => rotation.arm(lattice, b),
         }
+    }
+
+    /// When the driven ends have first moved by `path`, forwards or backwards; infinite if they never do.
+    pub fn time_of_path(&self, path: f64) -> f64 {
+        let Some(program) = &self.program else {
+            return path / self.v_star;
+        };
+        let reached = program.segments.iter().enumerate().find_map(|(number, segment)| {
+            let end = program.segments.get(number + 1);
+            let target = path.copysign(segment.v_star);
+            let time_star = segment.from_star + (target - segment.from_position) / segment.v_star;
+            let is_within =
+                time_star >= segment.from_star && end.is_none_or(|end| time_star <= end.from_star);
+            is_within.then_some(time_star)
+        });
+        reached.unwrap_or(f64::INFINITY)
+    }
+
+    /// The farthest that the driven ends have moved by `time_star`, forwards or backwards.
+    pub fn farthest_path(&self, time_star: f64) -> f64 {
+        let segments = self.program.iter().flat_map(|program| &program.segments);
+        let ends = segments
+            .filter(|segment| segment.from_star < time_star)
+            .map(|segment| segment.from_position.abs());
+        ends.fold(self.path(time_star).abs(), f64::max)
     }
 }
 
@@ -180,5 +242,12 @@ mod tests {
         assert_eq!(paths, [0.0, 2.0, 5.0, 5.0, 5.0, 3.0]);
         let speeds = [0.0, 9.9, 10.0, 20.0].map(|t| drive.speed_after(t));
         assert_eq!(speeds, [0.5, 0.5, 0.0, -1.0]);
+        let times = [0.0, 4.0, 5.0, 6.0].map(|path| drive.time_of_path(path));
+        // 5.0 is reached before the stop, -6 eleven units of time after the return begins.
+        assert_eq!(times, [0.0, 8.0, 10.0, 31.0]);
+        assert_eq!(
+            [15.0, 25.0, 31.0].map(|t| drive.farthest_path(t)),
+            [5.0, 5.0, 6.0]
+        );
     }
 }

@@ -36,6 +36,51 @@ pub enum Edges {
     Periodic,
 }
 
+/// One of the four edges of the lattice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Edge {
+    /// At x = 0.
+    Left,
+    /// At the largest x.
+    Right,
+    /// At y = 0.
+    Bottom,
+    /// At the largest y.
+    Top,
+}
+
+impl Edge {
+    /// The axis across the edge: 0 for x, 1 for y.
+    pub fn axis(self) -> usize {
+        match self {
+            Self::Left | Self::Right => 0,
+            Self::Bottom | Self::Top => 1,
+        }
+    }
+
+    /// Blocks from the edge to the one opposite.
+    pub fn n_across(self, lattice: &Lattice) -> usize {
+        [lattice.nx, lattice.ny][self.axis()]
+    }
+
+    /// Blocks along the edge.
+    pub fn n_blocks(self, lattice: &Lattice) -> usize {
+        [lattice.ny, lattice.nx][self.axis()]
+    }
+
+    /// Blocks between the edge and block `b`.
+    pub fn distance(self, lattice: &Lattice, b: usize) -> usize {
+        let (i, j) = lattice.column_row(b);
+        match self {
+            Self::Left => i,
+            Self::Right => lattice.nx - 1 - i,
+            Self::Bottom => j,
+            Self::Top => lattice.ny - 1 - j,
+        }
+    }
+}
+
 /// The blocks and their arrangement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lattice {

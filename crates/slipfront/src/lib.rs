@@ -52,7 +52,7 @@ pub use drive::{Drive, Program, Rotation, Segment};
 pub use error::{RunError, SurfaceError};
 pub use friction::{Ageing, ContactSprings, Coulomb, Friction, FrictionLaw, RateAndState, Weakening};
 pub use kernel::{Execution, Kernel, simd_width};
-pub use lattice::{Edges, Lattice};
+pub use lattice::{Edge, Edges, Lattice};
 pub use model::Model;
 pub use scales::Scales;
 pub use simulation::Simulation;

@@ -26,17 +26,29 @@ impl CurvePoint {
     /// ```text
     /// mu* = (1/N) sum_i F_s,i . d = k_s (mean(w) V* t* - mean(w u . d))
     /// ```
+    ///
+    /// If the drive springs differ, `w_i` being their relative stiffness, and of a rotation, with `g_i = z x r_i/r_max`:
+    ///
+    /// ```text
+    /// mu* = (k_s/N) (X sum_i w_i - sum_i w_i u_i . d)
+    /// mu* = (k_s r_max/sum_i r_i) (X sum_i w_i g_i^2 - sum_i w_i u_i . g_i)
+    /// ```
     pub(crate) fn measure(model: &Model, totals: &Totals, time_star: f64) -> Self {
-        let (drive, n) = (&model.drive, model.n_blocks() as f64);
-        let mean = totals.displacement.map(|sum| sum / n);
-        let (position, share) = (drive.position(time_star), model.driven_share());
+        let (drive, divisor) = (&model.drive, model.mu_star_divisor());
+        let mean = totals.displacement.map(|sum| sum / divisor);
+        // The sums of a rotation are along and across its direction at each block.
+        let (position, [dx, dy]) = match drive.rotation {
+            None => (drive.position(time_star), drive.direction),
+            Some(_) => ([drive.path(time_star), 0.0], [1.0, 0.0]),
+        };
+        let share = model.driven_share();
         let pull = [0, 1].map(|axis| drive.k_drive * (position[axis] * share - mean[axis]));
-        let [dx, dy] = drive.direction;
+        let n_blocks = model.n_blocks() as f64;
         Self {
             mu_star: dot(pull, [dx, dy]),
             mu_lateral_star: dot(pull, [-dy, dx]),
             n_sliding: totals.n_sliding,
-            sliding_percent: 100.0 * totals.n_sliding as f64 / n,
+            sliding_percent: 100.0 * totals.n_sliding as f64 / n_blocks,
         }
     }
 }

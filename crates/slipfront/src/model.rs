@@ -8,6 +8,7 @@ use crate::friction::Friction;
 use crate::lattice::{K_DRIVE, Lattice};
 use crate::slider::Slider;
 use crate::surface::Surface;
+use crate::vector_field::length;
 
 /// The slider with its surface and drive.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,22 +76,28 @@ impl Model {
         BlockColumn::ALL.len() + self.friction.n_columns()
     }
 
-    /// Level of mu* in steady sliding:
-    ///
-    /// ```text
-    /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V* mean(m_i)
-    /// ```
-    ///
-    /// with the coefficient at V* of a law in which it depends on the speed, and half the mean threshold of springs in contact.
-    pub fn steady_level(&self) -> f64 {
-        let kinetic = self.friction.steady_force(&self.surface, self.drive.v_star);
-        kinetic + self.damping * self.drive.v_star * self.slider.mean_mass
+    /// Number of blocks of the whole lattice that exist.
+    pub fn n_blocks(&self) -> usize {
+        self.slider.n_blocks(&self.lattice)
     }
 
-    /// Rise of mu* per path of the drive over [`Drive::k_drive`] while no block moves: 1 if every block has an equal drive spring.
+    /// What the sum of the forces of the drive springs is divided by in mu*: the number of blocks that exist; of a rotation
+    /// `sum r_i/r_max`, which makes mu* the torque of the drive springs over `P mu_s l^2 sum r_i`.
+    pub fn mu_star_divisor(&self) -> f64 {
+        match &self.drive.rotation {
+            None => self.n_blocks() as f64,
+            Some(rotation) => rotation.sum_radii,
+        }
+    }
+
+    /// Rise of mu* per path of the drive over [`Drive::k_drive`] while no block moves: 1 if every block has a drive spring and the
+    /// drive does not rotate.
     pub fn driven_share(&self) -> f64 {
-        let springs = self.slider.drive_springs.as_ref();
-        springs.map_or(1.0, |springs| springs.sum / self.n_blocks() as f64)
+        let driven = match &self.drive.rotation {
+            None => self.slider.sum_of_drive_springs(&self.lattice),
+            Some(rotation) => rotation.sum_squares,
+        };
+        driven / self.mu_star_divisor()
     }
 
     /// Speed of a drive with a spring of stiffness `k_2` on every block that loads the slider as fast as this one does, in which
@@ -99,15 +106,69 @@ impl Model {
         self.drive.v_star * (self.drive.k_drive * self.driven_share() / K_DRIVE)
     }
 
-    /// Number of blocks of the whole lattice that exist.
-    pub fn n_blocks(&self) -> usize {
-        self.slider.n_blocks(&self.lattice)
+    /// Level of mu* in steady sliding at V*:
+    ///
+    /// ```text
+    /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V* mean(m_i)
+    /// L = [sum_i mu_ki F_n,i r_i/(P l^2 mu_s) + Omega V* sum_i m_i r_i^2/r_max]/sum_i r_i    of a rotation
+    /// ```
+    ///
+    /// with the coefficient at V* of a law in which it depends on the speed, and half the mean threshold of springs in contact.
+    pub fn steady_level(&self) -> f64 {
+        let Some(rotation) = &self.drive.rotation else {
+            let kinetic = self.friction.steady_force(&self.surface, self.drive.v_star);
+            return kinetic + self.damping * self.drive.v_star * self.slider.mean_mass;
+        };
+        let force = |b: usize| {
+            let relative = self.relative_radius(b);
+            let speed = self.drive.v_star * relative;
+            let kinetic = self.friction.steady_force_of(&self.surface, b, speed);
+            relative * (kinetic + self.damping * self.slider.mass(b) * speed)
+        };
+        let blocks = (0..self.surface.n_blocks()).filter(|&b| self.slider.exists(b));
+        blocks.map(force).sum::<f64>() / rotation.sum_radii
     }
 
-    /// Time of the first slip of a block in contact on a surface without texture, exact:
-    /// `t* = min_i max(mu_si, mu_ki) F_n,i/(k_s,i V*)`.
+    /// Time of the first slip of a block in contact on a surface without texture, exact; of a rank, of its own blocks. Of a drive at
+    /// constant speed with a spring on every block
+    ///
+    /// ```text
+    /// t* = min_i max(mu_si, mu_ki) F_n,i/(k_s,i V*)
+    /// ```
+    ///
+    /// and in general when the path of the drive is as long as it is here after this time.
     pub fn first_slip_estimate(&self) -> f64 {
-        let (k, v_star) = (self.drive.k_drive, self.drive.v_star);
-        self.friction.first_slip_pull(&self.surface, k, v_star) / (k * v_star)
+        let (k_drive, v_star) = (self.drive.k_drive, self.drive.v_star);
+        let pull =
+            |threshold: f64, k: f64| self.friction.first_slip_pull(&self.surface, threshold, k, v_star);
+        let is_equal = self.slider.drive_springs.is_none() && self.drive.rotation.is_none();
+        if is_equal {
+            let pull = pull(self.surface.min_slip_threshold(), k_drive);
+            return match self.drive.program {
+                None => pull / (k_drive * v_star),
+                Some(_) => self.drive.time_of_path(pull / k_drive),
+            };
+        }
+        let path = |b: usize| {
+            let limit = self.surface.static_limit(b).max(self.surface.kinetic_force(b));
+            let k = k_drive * self.slider.drive_spring(b) * self.relative_radius(b);
+            if k > 0.0 {
+                pull(limit, k) / k
+            } else {
+                f64::INFINITY
+            }
+        };
+        let in_contact =
+            (0..self.surface.n_blocks()).filter(|&b| !self.surface.textured[b] && self.slider.exists(b));
+        self.drive
+            .time_of_path(in_contact.map(path).fold(f64::INFINITY, f64::min))
+    }
+
+    /// `r_i/r_max` of a rotation, else 1.
+    fn relative_radius(&self, b: usize) -> f64 {
+        match self.drive.rotation {
+            None => 1.0,
+            Some(_) => length(self.drive.direction_at(&self.lattice, b)),
+        }
     }
 }

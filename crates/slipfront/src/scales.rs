@@ -56,6 +56,11 @@ impl Scales {
         self.stress() * self.block_size * self.block_size * self.displacement()
     }
 
+    /// One unit of stiffness, `E l`, N/m.
+    pub fn stiffness(&self) -> f64 {
+        self.young_modulus * self.block_size
+    }
+
     /// The load's strain, `eps = P mu_s/E`, which measures how nonlinear the springs are.
     pub fn epsilon(&self) -> f64 {
         self.pressure * self.mu_static_mean / self.young_modulus

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, join, split};
-use crate::lattice::{Bond, Lattice, harmonic_mean};
+use crate::lattice::{Bond, Edge, Lattice, harmonic_mean};
 
 /// What may differ from block to block; arrays have one value per block. Without any of it, as in the paper, all blocks are alike.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,6 +55,15 @@ impl Default for Slider {
 }
 
 impl DriveSprings {
+    /// Equal springs on the blocks of one edge of the lattice, for the rank that holds these `rows`.
+    pub fn at_edge(lattice: &Lattice, rows: &Range<usize>, edge: Edge) -> Self {
+        let relative = |b: usize| f64::from(u8::from(edge.distance(lattice, b) == 0));
+        Self {
+            relative: lattice.blocks_of(rows).map(relative).collect(),
+            sum: edge.n_blocks(lattice) as f64,
+        }
+    }
+
     /// Of the blocks that this rank holds, called by all `ranks` at once: the sum has the same bits however many they are.
     pub fn new(relative: Vec<f64>, ranks: &dyn Communicator) -> Self {
         Self {
@@ -135,14 +144,9 @@ impl Slider {
             let blocks = sum_over(density.len(), |b| f64::from(u8::from(slider.exists(b))), ranks);
             slider.mean_mass = masses / blocks;
         }
-        let stiffness = slider.stiffness.as_ref().map(Vec::len);
-        if let Some(n) = stiffness.or(slider.outline.as_ref().map(|outline| outline.exists.len())) {
-            let relative = |b: usize| match &slider.stiffness {
-                _ if !slider.exists(b) => 0.0,
-                Some(modulus) => modulus[b],
-                None => 1.0,
-            };
-            slider.drive_springs = Some(DriveSprings::new((0..n).map(relative).collect(), ranks));
+        if slider.stiffness.is_some() {
+            let relative = (0..slider.stiffness.as_ref().map_or(0, Vec::len)).map(|b| slider.modulus(b));
+            slider.drive_springs = Some(DriveSprings::new(relative.collect(), ranks));
         }
         slider
     }
@@ -178,7 +182,7 @@ impl Slider {
         self.density.as_ref().map_or(1.0, |density| density[b])
     }
 
-    /// Stiffness of the drive spring of block `b` over that of [`Drive`](crate::Drive).
+    /// Stiffness of the drive spring of block `b` over that of [`Drive`](crate::Drive); 0 for a block that does not exist.
     pub fn drive_spring(&self, b: usize) -> f64 {
         match &self.drive_springs {
             _ if !self.exists(b) => 0.0,

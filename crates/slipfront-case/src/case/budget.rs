@@ -15,7 +15,9 @@ use super::output::{MAX_MAPS, Output, Snapshots};
 use super::ranks::Ranks;
 use super::textures::count_masks;
 use super::time_plan::TimePlan;
-use crate::case_file::{CaseError, CaseFile, Contact, Friction, Law, Outline};
+use crate::case_file::{
+    Attached, AttachedEdge, CaseError, CaseFile, Contact, Friction, Law, Motion, Outline,
+};
 use crate::machine::{available_memory, can_be_had, free_disk};
 use crate::number_format::{byte_size, count};
 
@@ -214,6 +216,10 @@ impl Budget {
         let kept = |indices: Range<usize>| frames::kept(indices, output.stride).len() as f64;
         let last_step = time_plan.last_step;
         let [kept_by_law, saved_by_law] = of_friction(&file.friction);
+        let drive_springs = match file.drive.attached {
+            Attached::At(AttachedEdge::All) => 0.0,
+            _ => NUMBER,
+        };
         let n_frames = match &output.snapshots {
             Snapshots::Instants => 6.0,
             Snapshots::At(steps) => steps.len() as f64,
@@ -227,6 +233,7 @@ impl Budget {
             is_shared: ranks.communicator.size() > 1,
             ranks_on_node: ranks.on_node as f64,
             surface: slider_bytes(file)
+                + drive_springs
                 + match file.load.profile.is_some() || file.load.pressure_field.is_some() {
                     true => SURFACE + NUMBER,
                     false => SURFACE,
@@ -234,6 +241,10 @@ impl Budget {
             kernel: match kernel(file) {
                 Kernel::Fused => fused_bytes(file),
                 Kernel::Reference => reference_bytes(file) + kept_by_law * NUMBER,
+            } + match file.drive.motion {
+                Motion::Translation => drive_springs,
+                // Relative stiffness and direction; radii of the blocks before.
+                Motion::Rotation => 3.0 * NUMBER,
             },
             saved: SAVED + saved_by_law * NUMBER,
             frames: n_frames,
@@ -245,7 +256,8 @@ impl Budget {
                 false => 0.0,
             },
             inputs: 0.0,
-            masks: count_masks(file) as f64,
+            masks: count_masks(file) as f64
+                + f64::from(u8::from(matches!(file.drive.attached, Attached::File(_)))),
             is_resumed: false,
         }
     }

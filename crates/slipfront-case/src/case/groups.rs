@@ -10,7 +10,7 @@ use crate::number_format::four_digits;
 /// The dimensionless groups on which the model depends (Eq. 11).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Groups {
-    /// V*, the speed of the drive.
+    /// V*, the speed of the drive; the largest of a program.
     pub v_star: f64,
     /// R*, the mean kinetic over the mean static coefficient.
     pub r_star: f64,
@@ -48,6 +48,10 @@ impl Groups {
         let (key, v_star) = match &file.drive.speed {
             DriveSpeed::VStar(v_star) => ("drive.v_star", *v_star),
             DriveSpeed::Speed(speed) => ("drive.speed", speed.si() / scales.speed()),
+            DriveSpeed::Program(segments) => {
+                let speeds = segments.iter().map(|segment| segment.v_star.abs());
+                ("drive.program", speeds.fold(0.0, f64::max))
+            }
         };
         within(file, key, "V*", v_star, MIN_V_STAR..=MAX_V_STAR)?;
         let friction = &file.friction;
@@ -107,7 +111,7 @@ fn refuse_small_units(file: &CaseFile, scales: &Scales) -> Result<(), CaseError>
     Err(file.source.error(key, sentence))
 }
 
-fn within(
+pub(super) fn within(
     file: &CaseFile,
     key: &str,
     symbol: &str,

@@ -65,8 +65,14 @@ impl NamedFiles {
             originals: Vec::new(),
             digests: Vec::new(),
         };
-        let (slider, load) = (&mut file.slider, &mut file.load);
-        for (key, name) in CaseFile::files_mut(slider, load, &mut file.friction, &mut file.texture) {
+        let files = CaseFile::files_mut(
+            &mut file.slider,
+            &mut file.load,
+            &mut file.drive,
+            &mut file.friction,
+            &mut file.texture,
+        );
+        for (key, name) in files {
             let original = folder.join(&*name);
             let digest = match digests.get(&original) {
                 Some(known) => *known,
@@ -87,9 +93,14 @@ impl NamedFiles {
     pub(super) fn share(mut self, file: &mut CaseFile, ranks: &Ranks) -> Vec<Input> {
         ranks.communicator.sum(self.digests.as_flattened_mut());
         let mut inputs: Vec<Input> = Vec::new();
-        let (slider, load) = (&mut file.slider, &mut file.load);
-        let names =
-            CaseFile::files_mut(slider, load, &mut file.friction, &mut file.texture).map(|(_, name)| name);
+        let files = CaseFile::files_mut(
+            &mut file.slider,
+            &mut file.load,
+            &mut file.drive,
+            &mut file.friction,
+            &mut file.texture,
+        );
+        let names = files.map(|(_, name)| name);
         for ((original, digest), written) in self.originals.into_iter().zip(self.digests).zip(names) {
             let [length, hash @ ..] = digest;
             let mut bytes = [0; blake3::OUT_LEN];

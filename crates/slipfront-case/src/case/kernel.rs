@@ -2,7 +2,7 @@
 
 use slipfront::Kernel;
 
-use crate::case_file::{CaseFile, Contact, Law};
+use crate::case_file::{CaseFile, Contact, Law, Motion};
 
 /// The kernel that [`Kernel::for_model`] chooses for the model of this file.
 pub(super) fn kernel(file: &CaseFile) -> Kernel {
@@ -20,6 +20,7 @@ pub(super) fn beyond_fused(file: &CaseFile) -> Option<&'static str> {
         (friction.contact != Contact::Rigid, "friction.contact"),
         (friction.ageing.is_some(), "friction.ageing"),
         (slider.viscosity_time_star > 0.0, "slider.viscosity_time_star"),
+        (file.drive.motion != Motion::Translation, "drive.motion"),
     ];
     keys.into_iter()
         .find(|(is_asked, _)| *is_asked)

@@ -2,6 +2,7 @@
 
 mod budget;
 mod coefficients;
+mod drive;
 mod friction;
 mod groups;
 mod inputs;

@@ -5,10 +5,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use slipfront::scales::damping;
-use slipfront::{Communicator, Drive, Lattice, Model, Scales, Surface};
+use slipfront::{Communicator, Lattice, Model, Scales, Slider, Surface};
 
 use super::budget::Budget;
 use super::coefficients::{coefficients, contact};
+use super::drive::{attached, drive, drive_springs, program, refuse_large_angles};
 use super::friction::law;
 use super::groups::Groups;
 use super::inputs::{Input, Inputs, NamedFiles};
@@ -152,9 +153,10 @@ impl Case {
         let n_blocks = slider.n_blocks(&lattice);
         let made = textures::mesh(&file, &scales, &lattice, n_blocks, &inputs, watch).and_then(|meshed| {
             let coefficients = coefficients(&file, &groups, &lattice, &inputs)?;
-            Ok((meshed, coefficients, contact(&file, &scales, &lattice, &inputs)?))
+            let contact = contact(&file, &scales, &lattice, &inputs)?;
+            Ok((meshed, coefficients, contact, attached(&file, &inputs, watch)?))
         });
-        let ((meshed, asked_percent), coefficients, contact) = ranks.agree(made)?;
+        let ((meshed, asked_percent), coefficients, contact, attached) = ranks.agree(made)?;
         let surface = Surface::of_ranks(
             coefficients,
             meshed.textured,
@@ -169,8 +171,12 @@ impl Case {
             clipped: meshed.clipped,
             empty: empty_on_all(&meshed.empty, file.texture.len(), ranks.communicator),
         };
-        let drive = Drive::at_angle(groups.v_star, file.drive.direction);
-        let model = Model::of_rows(
+        let slider = Slider {
+            drive_springs: drive_springs(&file, &lattice, &rows, attached, &slider, ranks.communicator)?,
+            ..slider
+        };
+        let drive = drive(&file, &scales, &groups, &lattice, &slider)?;
+        let mut model = Model::of_rows(
             lattice,
             rows,
             surface,
@@ -179,7 +185,7 @@ impl Case {
             groups.epsilon,
             law(&file, &groups),
         );
-        let model = Model { slider, ..model };
+        model.slider = slider;
         let plan = ranks.agree(plan.of_model(&file, &model, &scales, &groups, &ranks))?;
         let Plan {
             time_plan,
@@ -188,6 +194,8 @@ impl Case {
             ..
         } = plan;
         budget.inputs = inputs.files.iter().map(|input| input.length as f64).sum();
+        model.drive.program = program(&file, &time_plan)?;
+        refuse_large_angles(&file, &model.drive, groups.epsilon, time_plan.end_star())?;
         Ok(Self {
             name: name.to_owned(),
             file,

@@ -5,7 +5,7 @@ use slipfront::observe::KineticStart;
 use slipfront::{Model, Scales, Stop, StopReason};
 
 use super::groups::Groups;
-use crate::case_file::{AutoOr, CaseError, CaseFile, RunTime, Step};
+use crate::case_file::{AutoOr, CaseError, CaseFile, DriveSpeed, RunTime, Step};
 use crate::number_format::four_digits;
 
 /// Duration and time step of a run, its end and the window of the kinetic friction.
@@ -77,7 +77,7 @@ impl TimePlan {
             return Err(file.source.error("time.step", sentence));
         }
         let (key, end_star) = match &time.duration {
-            RunTime::Star(AutoOr::Auto) => ("time.duration_star", 8.0 / dynamics.loading_speed),
+            RunTime::Star(AutoOr::Auto) => ("time.duration_star", auto_duration(file, scales, dynamics)),
             RunTime::Star(AutoOr::Number(duration)) => ("time.duration_star", *duration),
             RunTime::Duration(duration) => ("time.duration", duration.si() / scales.time()),
         };
@@ -112,8 +112,27 @@ impl TimePlan {
         })
     }
 
+    /// The number of the step nearest to a time.
+    pub(super) fn step_at(&self, time_star: f64) -> f64 {
+        (time_star / self.dt_star).round()
+    }
+
     /// t* of the last step.
     pub fn end_star(&self) -> f64 {
         self.last_step as f64 * self.dt_star
     }
+}
+
+/// 8/V* shows onset and sliding of the paper's slider. A drive that loads more slowly and adhesion delay the onset; under a program
+/// of speeds it is counted from the last of them.
+fn auto_duration(file: &CaseFile, scales: &Scales, dynamics: Dynamics) -> f64 {
+    let delay = 1.0 + file.friction.adhesion.si() / scales.stress();
+    let from = match &file.drive.speed {
+        DriveSpeed::Program(segments) => segments
+            .iter()
+            .filter_map(|segment| segment.until_star)
+            .next_back(),
+        _ => None,
+    };
+    from.unwrap_or(0.0) + 8.0 / dynamics.loading_speed * delay
 }

@@ -37,7 +37,7 @@ impl Case {
                 "the load strains the slider by {epsilon:.3}, more than {LARGE_EPSILON}: results depend on it"
             )
         });
-        warn(v_star > LARGE_V_STAR, &|| {
+        warn(self.model.loading_speed() > LARGE_V_STAR, &|| {
             format!(
                 "V* = {v_star} is above {LARGE_V_STAR}: the slider slips as a whole before any front can cross it"
             )

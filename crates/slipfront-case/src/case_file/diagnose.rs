@@ -165,8 +165,10 @@ fn takes(key: &Key, message: &str) -> Option<String> {
 /// What else may help with a value as it was `written`: a number needs no quotes and a point, not a comma, and a key with a unit
 /// may have a partner without, and the other way round. Else a number has its remark.
 fn hint(key: &Key, section: Option<&Section>, written: &str) -> String {
-    let partner = key.partner.and_then(|name| section?.key(name));
     let quantity = |key: &Key| matches!(key.kind, Kind::Quantity { .. });
+    // The same thing with a unit, or without.
+    let mut partners = key.partners().filter_map(|name| section?.key(name));
+    let partner = partners.find(|partner| quantity(partner) != quantity(key));
     let inside = written.trim_matches(['"', '\'']);
     let is_number = inside.parse::<f64>().is_ok();
     let begins_as_number = inside.starts_with(|c: char| c.is_ascii_digit());

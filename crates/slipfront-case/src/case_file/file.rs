@@ -8,11 +8,12 @@ use toml::de::DeTable;
 use super::check::Check;
 use super::depth::limit_nesting;
 use super::diagnose::syntax_error;
+use super::drive::{Attached, Drive};
 use super::error::CaseError;
 use super::friction::Friction;
 use super::keys;
 use super::load::read_text;
-use super::motion::{Drive, Load};
+use super::motion::Load;
 use super::output::Output;
 use super::overrides::Override;
 use super::slider::Slider;
@@ -85,6 +86,7 @@ impl CaseFile {
     pub fn files_mut<'a>(
         slider: &'a mut Slider,
         load: &'a mut Load,
+        drive: &'a mut Drive,
         friction: &'a mut Friction,
         texture: &'a mut [Texture],
     ) -> impl Iterator<Item = (String, &'a mut String)> {
@@ -102,7 +104,13 @@ impl CaseFile {
             ("friction.mu_kinetic_field", &mut friction.mu_kinetic_field),
         ];
         let fields = fields.into_iter();
-        masks.chain(fields.filter_map(|(key, name)| Some((key.to_owned(), name.as_mut()?))))
+        let attached = match &mut drive.attached {
+            Attached::File(name) => Some(("drive.attach_file".to_owned(), name)),
+            Attached::At(_) => None,
+        };
+        masks
+            .chain(attached)
+            .chain(fields.filter_map(|(key, name)| Some((key.to_owned(), name.as_mut()?))))
     }
 
     /// Checks every bound that needs nothing but the file. [`parse`](Self::parse) has done so already.
@@ -113,7 +121,7 @@ impl CaseFile {
         let check = |table| Check::new(&self.source, table, table);
         self.slider.check(&check("slider"))?;
         self.load.check(&check("load"))?;
-        self.drive.check(&check("drive"))?;
+        self.drive.check(&check("drive"), &self.slider.edges)?;
         self.friction.check(&check("friction"))?;
         for (index, texture) in self.texture.iter().enumerate() {
             let path = format!("texture.{index}");

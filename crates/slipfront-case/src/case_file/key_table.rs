@@ -14,6 +14,7 @@ use slipfront::observe::Field;
 use slipfront::surface::Orientation;
 use slipfront::{Edges, StopReason};
 
+use super::drive::{AttachedEdge, Motion};
 use super::friction::{Contact, Law};
 use super::probe::names_of;
 use super::slider::Outline;
@@ -74,8 +75,8 @@ pub struct Key {
     pub kind: Kind,
     /// Its default as TOML; empty if it has none.
     pub default: &'static str,
-    /// The key that sets the same thing: a table has one of the two.
-    pub partner: Option<&'static str>,
+    /// The keys that set the same thing: a table has one of them.
+    partners: [Option<&'static str>; 3],
     /// Its title; none for keys that no picture has along an axis.
     pub title: Option<Title>,
     /// What it means, in one line.
@@ -109,8 +110,11 @@ impl Section {
         let defaults = DEFAULTS.get(self.name).map_or(&[][..], Vec::as_slice);
         for (key, value) in self.keys.iter().zip(defaults) {
             let Some(value) = value else { continue };
-            let names = [Some(key.name), key.partner];
-            if !names.into_iter().flatten().any(|name| table.contains_key(name)) {
+            if !key
+                .partners()
+                .chain([key.name])
+                .any(|name| table.contains_key(name))
+            {
                 table.insert(Spanned::new(0..0, Cow::Borrowed(key.name)), value.clone());
             }
         }
@@ -167,6 +171,13 @@ pub(super) const RELATIVE_PROPERTY: Kind = number(
     "it is relative, so that 1 changes nothing",
 );
 const GRADE: Kind = Kind::Special("`{ along = \"x\", from = 1, to = 0.1 }`; 1e-6 to 1e6");
+/// A stiffness with its unit.
+pub(super) const STIFFNESS: Kind = quantity("N/m", within(1e-30, 1e30));
+const DRIVE_STIFFNESS: Kind = number(above(0.0, 1e6), "that of the paper is 0.375 on each block");
+/// A speed of a program.
+pub(super) const PROGRAM_SPEED: Kind = number(within(-10.0, 10.0), "the paper's runs have 0.01 to 0.2");
+/// The end of a segment of a program.
+pub(super) const UNTIL: Kind = number(POSITIVE_TIME, "it is a time t*");
 const SHEAR_STRENGTH: Kind = quantity("Pa", within(0.0, 1e15));
 
 /// Every section of a case file.
@@ -220,11 +231,25 @@ const LOAD: &[Key] = &[
 #[rustfmt::skip]
 const DRIVE: &[Key] = &[
     key("v_star", "0.03", number(above(0.0, 10.0), "the paper's runs have 0.01 to 0.2"), "speed of the drive")
-        .or("speed").title("drive speed", "V*", ""),
+        .or("speed").or("program").title("drive speed", "V*", ""),
     key("speed", "", quantity("m/s", within(1e-18, 1e6)), "speed of the drive with its unit")
-        .or("v_star").title("drive speed", "V", "m/s"),
+        .or("v_star").or("program").title("drive speed", "V", "m/s"),
+    key("program", "", Kind::Special("`[{ v_star = 0.03, until_star = 200 }, { v_star = 0 }]`; -10 to 10, times rising"),
+        "speeds that follow one another").or("v_star").or("speed"),
     key("direction", "0", DEGREES, "direction of the drive, degrees from x towards y")
         .title("direction of the drive", "\u{3b8}", "\u{b0}"),
+    key("motion", "\"translation\"", Kind::Words(names_of::<Motion>), "whether the drive pulls along the direction or turns"),
+    key("attach", "\"all\"", Kind::Words(names_of::<AttachedEdge>), "which blocks have a drive spring: all, or those of an edge")
+        .or("attach_file"),
+    key("attach_file", "", Kind::File(&["png", "npy"]), "an image or array of the blocks that have a drive spring").or("attach"),
+    key("stiffness", "\"auto\"", Kind::Special("`\"auto\"`, or 1e-30 to 1e30 N/m"), "stiffness of each drive spring")
+        .or("stiffness_star").or("total_stiffness").or("total_stiffness_star"),
+    key("stiffness_star", "", DRIVE_STIFFNESS, "the same over E l").or("stiffness").or("total_stiffness").or("total_stiffness_star")
+        .title("drive stiffness", "k\u{209b}*", ""),
+    key("total_stiffness", "", STIFFNESS, "stiffness of all drive springs together, which they share equally")
+        .or("stiffness").or("stiffness_star").or("total_stiffness_star").title("total drive stiffness", "K\u{209b}", "N/m"),
+    key("total_stiffness_star", "", DRIVE_STIFFNESS, "the same over E l")
+        .or("stiffness").or("stiffness_star").or("total_stiffness").title("total drive stiffness", "K\u{209b}*", ""),
 ];
 
 #[rustfmt::skip]
@@ -357,8 +382,17 @@ pub(super) const SNAPSHOT_TIME: Kind = number(within(0.0, MAX_TIME_STAR), "snaps
 const AUTO: &[&str] = &["auto"];
 
 impl Key {
+    /// The keys that set the same thing: a table has one of them.
+    pub fn partners(&self) -> impl Iterator<Item = &'static str> + use<> {
+        self.partners.into_iter().flatten()
+    }
+
     const fn or(mut self, partner: &'static str) -> Self {
-        self.partner = Some(partner);
+        let mut free = 0;
+        while self.partners[free].is_some() {
+            free += 1;
+        }
+        self.partners[free] = Some(partner);
         self
     }
 
@@ -377,7 +411,7 @@ const fn key(name: &'static str, default: &'static str, kind: Kind, doc: &'stati
         name,
         kind,
         default,
-        partner: None,
+        partners: [None; 3],
         title: None,
         doc,
     }
@@ -448,5 +482,6 @@ fn sections_of(table: &str) -> impl Iterator<Item = &'static Section> {
 
 /// The names of the keys that exclude `key` in a table: each sets the same thing.
 pub(super) fn partners<'k>(table: &'k str, key: &'k str) -> impl Iterator<Item = &'static str> + 'k {
-    sections_of(table).filter_map(move |section| section.key(key)?.partner)
+    let keys = sections_of(table).filter_map(move |section| section.key(key));
+    keys.flat_map(Key::partners)
 }

@@ -73,9 +73,11 @@ pub(super) fn refuse_both(root: &DeTable<'_>, source: &Source) -> Result<(), Cas
                 .collect(),
             _ => continue,
         };
-        for key in section.keys {
-            let Some(second) = key.partner else { continue };
-            let first = key.name;
+        let pairs = section
+            .keys
+            .iter()
+            .flat_map(|key| key.partners().map(move |partner| (key.name, partner)));
+        for (first, second) in pairs {
             let spans = |keys: &&DeTable<'_>| {
                 let span = |name| keys.get_key_value(name).map(|(key, _)| key.span());
                 span(first).zip(span(second))

@@ -7,6 +7,7 @@ mod check;
 mod choice;
 mod depth;
 mod diagnose;
+mod drive;
 mod error;
 mod file;
 mod friction;
@@ -27,6 +28,7 @@ mod values;
 
 pub use depth::limit_nesting;
 pub use diagnose::syntax_error;
+pub use drive::{Attached, AttachedEdge, Drive, DriveSpeed, DriveStiffness, Motion, SpeedSegment};
 pub use error::{CaseError, Invalid, Place};
 pub use file::{CaseFile, ParsedCase};
 pub use friction::{Ageing, AgeingLaw, Contact, Friction, KineticFriction, Law, Velocity, VelocityLaw};
@@ -37,7 +39,7 @@ pub use keys::{
     unknown as unknown_key, unknown_table as unknown_case_table,
 };
 pub use load::read_text;
-pub use motion::{Along, Drive, DriveSpeed, Load, Profile};
+pub use motion::{Along, Load, Profile};
 pub use output::{Output, Snapshots};
 pub use overrides::Override;
 pub use probe::names_of;

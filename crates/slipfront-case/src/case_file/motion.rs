@@ -1,13 +1,12 @@
-//! `[load]` and `[drive]`: what acts on the slider.
+//! `[load]`: the normal load.
 
 use serde::{Deserialize, Serialize};
 
 use super::check::Check;
-use super::choice::keys_with_choice;
 use super::error::CaseError;
 use super::key_table::RELATIVE_SLOPE;
 use super::values::word;
-use crate::quantity::{Pressure, Speed};
+use crate::quantity::Pressure;
 
 /// `[load]`: the normal load.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -53,42 +52,5 @@ impl Load {
             check.value_of(&RELATIVE_SLOPE, "profile.relative_slope", &profile.relative_slope)?;
         }
         check.value("pressure_field", &self.pressure_field)
-    }
-}
-
-/// `[drive]`: how the slider is pulled.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "DriveKeys", into = "DriveKeys")]
-pub struct Drive {
-    /// Speed of the drive: `v_star` or `speed`.
-    pub speed: DriveSpeed,
-    /// Direction of the drive (theta), degrees from x towards y, -360 to 360.
-    pub direction: f64,
-}
-
-/// The speed of the drive.
-#[derive(Clone, Debug, PartialEq)]
-pub enum DriveSpeed {
-    /// `v_star`: V* = sqrt(E rho) V/(P `mu_static`) (Eq. 11), more than 0, at most 10.
-    VStar(f64),
-    /// `speed`: V, m/s.
-    Speed(Speed),
-}
-
-impl Drive {
-    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
-        self.speed.check(check)?;
-        check.value("direction", &self.direction)
-    }
-}
-
-keys_with_choice! {
-    Drive: DriveKeys {
-        (speed: DriveSpeed {
-            v_star: f64 => VStar,
-            speed: Speed => Speed,
-            _ => "the drive needs `v_star` or `speed`"
-        }),
-        direction: f64,
     }
 }

@@ -7,9 +7,10 @@ use slipfront::StopReason;
 
 use super::check::Check;
 use super::choice::keys_with_choice;
+use super::drive::DriveSpeed;
 use super::error::CaseError;
 use super::key_table::{MAX_TIME_STAR, UNSTABLE_STEP};
-use super::motion::DriveSpeed;
+
 use super::values::{AutoOr, WordOrNumber, word};
 use crate::quantity::Duration;
 
@@ -30,7 +31,7 @@ pub struct Time {
 /// The length of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RunTime {
-    /// `duration_star`: in t*, more than 0; `auto` is 8/V*.
+    /// `duration_star`: in t*, more than 0; `auto` is 8/V*, longer for drives that load slower.
     Star(AutoOr),
     /// `duration`: in s.
     Duration(Duration),
@@ -66,9 +67,8 @@ impl Time {
             _ => {}
         }
         if let AutoOr::Number(from) = self.kinetic_from_star {
-            let end = match (&self.duration, speed) {
-                (RunTime::Star(AutoOr::Number(star)), _) => Excluded(*star),
-                (RunTime::Star(AutoOr::Auto), DriveSpeed::VStar(v_star)) => Excluded(8.0 / v_star),
+            let end = match &self.duration {
+                RunTime::Star(AutoOr::Number(star)) => Excluded(*star),
                 _ => Included(MAX_TIME_STAR),
             };
             let remark = "the average is taken from there to the end of the run";

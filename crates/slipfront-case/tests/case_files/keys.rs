@@ -1,3 +1,5 @@
+use std::collections::BTreeSet;
+
 use slipfront_case::case_file::{CaseFile, Kind, SECTIONS, Section};
 
 /// A case that has a texture of the shape, and how its keys are reached.
@@ -53,14 +55,19 @@ fn every_bound_of_the_table_is_checked() {
     }
 }
 
-/// A key has one partner, which has it as its own.
+/// The partners of a key have it and each other as theirs.
 #[test]
 fn partners_are_mutual() {
     for section in &SECTIONS {
         for key in section.keys {
-            let Some(partner) = key.partner else { continue };
-            let partner = section.key(partner).unwrap();
-            assert_eq!(partner.partner, Some(key.name));
+            for partner in key.partners() {
+                let of_partner = section.key(partner).unwrap().partners();
+                let of_both = |name: &str| name != key.name && name != partner;
+                let others: BTreeSet<_> = key.partners().filter(|name| of_both(name)).collect();
+                let mut its: BTreeSet<_> = of_partner.collect();
+                assert!(its.remove(key.name), "{partner} does not know {}", key.name);
+                assert_eq!(its, others, "{}, {partner}", key.name);
+            }
         }
     }
 }

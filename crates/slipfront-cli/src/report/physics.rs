@@ -2,7 +2,7 @@
 
 use slipfront::{Friction, FrictionLaw};
 use slipfront_case::case::Case;
-use slipfront_case::case_file::{Grade, Outline};
+use slipfront_case::case_file::{Attached, AttachedEdge, DriveStiffness, Grade, Motion, Outline};
 use slipfront_case::number_format::{count, four_digits, with_si_prefix};
 
 /// The resolved physics of a case, as a tree.
@@ -83,13 +83,35 @@ fn load(case: &Case) -> String {
 }
 
 fn drive(case: &Case) -> String {
+    let (keys, drive) = (&case.file.drive, &case.model.drive);
     let v_star = case.groups.v_star;
-    format!(
-        "V* = {} ({}) at {} degrees",
+    let speed = format!(
+        "V* = {} ({})",
         four_digits(v_star),
-        with_si_prefix(v_star * case.scales.speed(), "m/s"),
-        case.file.drive.direction
-    )
+        with_si_prefix(v_star * case.scales.speed(), "m/s")
+    );
+    let segments = drive.program.as_ref().map(|program| program.segments().len());
+    let speed = segments.map_or(speed.clone(), |count| {
+        format!("a program of {count} speeds up to {speed}")
+    });
+    let motion = match keys.motion {
+        Motion::Translation => format!("at {} degrees", keys.direction),
+        Motion::Rotation => "at the largest radius, turning about the middle".to_owned(),
+    };
+    let at = match &keys.attached {
+        Attached::At(AttachedEdge::All) => String::new(),
+        Attached::At(edge) => format!(", attached at the {} edge", format!("{edge:?}").to_lowercase()),
+        Attached::File(file) => format!(", attached as {file} says"),
+    };
+    let stiffness = match keys.stiffness {
+        DriveStiffness::Auto => String::new(),
+        _ => format!(
+            ", {} springs of k_s* = {}",
+            four_digits(case.model.slider.sum_of_drive_springs(&case.model.lattice)),
+            four_digits(drive.k_drive)
+        ),
+    };
+    format!("{speed} {motion}{at}{stiffness}")
 }
 
 fn friction(case: &Case) -> String {

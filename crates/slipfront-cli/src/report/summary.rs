@@ -1,8 +1,9 @@
 //! The summary of a run, to be read at a glance.
 
 use slipfront_case::case::Case;
+use slipfront_case::case_file::Motion;
 use slipfront_case::number_format::{four_digits, with_si_prefix, with_uncertainty};
-use slipfront_run::summary::Summary;
+use slipfront_run::summary::{CycleSummary, PrecursorSummary, Summary};
 
 use super::times::instant;
 use crate::wrap::note;
@@ -15,8 +16,17 @@ pub(crate) fn summary(case: &Case, summary: &Summary) -> String {
     }
     lines.push(("kinetic friction", kinetic_friction(case, summary)));
     lines.push(("sliding blocks", sliding_blocks(summary)));
+    if let Some(precursors) = &summary.precursors {
+        lines.push(("events of slip", events(case, precursors)));
+    }
+    if let Some(cycles) = &summary.cycles {
+        lines.push(("peaks", peaks(cycles)));
+    }
     lines.push(("energy", energy(summary)));
-    let mut text = String::from("\n");
+    let mut text = match summary.motion {
+        Some(Motion::Rotation) => String::from("\nmu is the torque over the load times the mean radius\n"),
+        _ => String::from("\n"),
+    };
     for (name, value) in lines {
         text += &format!("{name:<18}{value}\n");
     }
@@ -59,6 +69,32 @@ fn sliding_blocks(summary: &Summary) -> String {
         Some(kinetic) => format!("{most}, {kinetic:.1} % in that window"),
         None => most,
     }
+}
+
+fn events(case: &Case, precursors: &PrecursorSummary) -> String {
+    let crossing = precursors.crossing_time_star.zip(precursors.crossing_mu_star);
+    let crossing = match crossing {
+        Some((time_star, mu_star)) => {
+            let at = instant(time_star, &case.scales);
+            format!("the first across the whole slider at mu* = {mu_star:.4}, {at}")
+        }
+        None => "none across the whole slider".to_owned(),
+    };
+    format!("{}, {crossing}", precursors.events)
+}
+
+/// Most peaks that are printed.
+const MAX_PEAKS: usize = 6;
+
+fn peaks(cycles: &[CycleSummary]) -> String {
+    let shown = cycles.iter().take(MAX_PEAKS);
+    let shown: Vec<String> = shown.map(|cycle| format!("{:.4}", cycle.mu_star_max)).collect();
+    let more = if cycles.len() > MAX_PEAKS {
+        ", and so on"
+    } else {
+        ""
+    };
+    format!("mu* = {}{more}", shown.join(", "))
 }
 
 fn energy(summary: &Summary) -> String {

@@ -65,13 +65,14 @@ fn texts(
         *name = format!("{}.{ending}", hash.unwrap_or_default());
     };
     let (mut slider, mut load) = (file.slider.clone(), file.load.clone());
-    let (mut friction, mut texture) = (file.friction.clone(), file.texture.clone());
+    let (mut drive, mut friction) = (file.drive.clone(), file.friction.clone());
+    let mut texture = file.texture.clone();
     friction.seed = 0;
-    CaseFile::files_mut(&mut slider, &mut load, &mut friction, &mut texture).for_each(contents);
+    CaseFile::files_mut(&mut slider, &mut load, &mut drive, &mut friction, &mut texture).for_each(contents);
     Ok([
         text(&slider, known.map(|(file, texts)| (&file.slider, &texts[0])))?,
         text(&load, None)?,
-        text(&file.drive, known.map(|(file, texts)| (&file.drive, &texts[2])))?,
+        text(&drive, None)?,
         text(&friction, None)?,
         text(&texture, None)?,
         text(&file.time, known.map(|(file, texts)| (&file.time, &texts[5])))?,

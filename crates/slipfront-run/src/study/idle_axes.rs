@@ -73,9 +73,25 @@ fn digest(case: &Case) -> blake3::Hash {
     } else {
         0.0
     });
-    let [along_x, along_y] = model.drive.direction;
-    for value in [model.drive.v_star, along_x, along_y, model.damping, time.dt_star] {
+    let drive = &model.drive;
+    let [along_x, along_y] = drive.direction;
+    for value in [
+        drive.v_star,
+        along_x,
+        along_y,
+        model.damping,
+        time.dt_star,
+        drive.k_drive,
+    ] {
         number(value);
+    }
+    number(f64::from(u8::from(drive.rotation.is_some())));
+    for segment in drive.program.iter().flat_map(|program| program.segments()) {
+        number(segment.v_star);
+        number(segment.from_star);
+    }
+    for block in 0..model.surface.n_blocks() {
+        number(model.slider.drive_spring(block));
     }
     if let KineticStart::At(from) = time.kinetic {
         number(from);

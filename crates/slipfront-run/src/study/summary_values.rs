@@ -11,7 +11,16 @@ use crate::summary::Summary;
 pub const REDUCTION: &str = "static_reduction_percent";
 
 /// Entries of a summary that are not numbers, and the seed, whose mean has no meaning.
-const NOT_QUANTITIES: [&str; 5] = ["kinetic_window_star", "instants", "warnings", "version", "seed"];
+const NOT_QUANTITIES: [&str; 8] = [
+    "kinetic_window_star",
+    "instants",
+    "motion",
+    "precursors",
+    "cycles",
+    "warnings",
+    "version",
+    "seed",
+];
 
 /// Names of all numbers, in the order of the summary; the reduction comes last.
 pub fn known() -> &'static [String] {

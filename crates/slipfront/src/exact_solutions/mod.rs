@@ -5,12 +5,14 @@
 
 mod ageing;
 mod contact_springs;
+mod edge_drive;
 mod rate_and_state;
 mod sliders;
 mod weakening;
 
 pub use ageing::{StopOfSteadySliding, ageing_slip_time};
 pub use contact_springs::{chain_slip_force, static_over_kinetic_of_springs};
+pub use edge_drive::precursor_load;
 pub use rate_and_state::{friction_after_speed_step, rate_and_state_growth};
 pub use sliders::{
     PairMode, composite_peak, graded_first_slip_time_star, lagged_decay_rate, pair_modes, viscous_decay_rate,

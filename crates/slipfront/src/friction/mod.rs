@@ -68,11 +68,29 @@ impl Friction {
         }
     }
 
-    /// Pull `F` of the drive springs of stiffness `k`, which rises as `k V t`, at which the first block slips on a surface without
-    /// texture: for springs in contact the pull that the whole slider would need if they did not yield. Ageing is that of a threshold
+    /// Friction of block `b` in steady sliding at a speed, in the same units.
+    pub(crate) fn steady_force_of(&self, surface: &Surface, b: usize, speed: f64) -> f64 {
+        match self {
+            Self::Coulomb(coulomb) => {
+                let at_rest = surface.kinetic_force(b);
+                let adhesion = if surface.textured[b] {
+                    0.0
+                } else {
+                    surface.adhesion().of_kinetic
+                };
+                coulomb
+                    .weakening
+                    .map_or(at_rest, |law| law.kinetic_force(at_rest, adhesion, speed))
+            }
+            Self::RateAndState(law) => surface.normal_force(b) * law.steady_coefficient(speed),
+            Self::ContactSprings(_) => 0.5 * surface.static_limit(b),
+        }
+    }
+
+    /// Pull `F` of the drive springs of stiffness `k`, which rises as `k V t`, at which a block of this threshold slips on a surface
+    /// without texture: for springs in contact the pull that the whole slider would need if they did not yield. Ageing is that of a threshold
     /// above kinetic friction. Under rate and state no block slips at a moment; the pull is that of steady sliding.
-    pub(crate) fn first_slip_pull(&self, surface: &Surface, k: f64, speed: f64) -> f64 {
-        let threshold = surface.min_slip_threshold();
+    pub(crate) fn first_slip_pull(&self, surface: &Surface, threshold: f64, k: f64, speed: f64) -> f64 {
         match self {
             Self::Coulomb(Coulomb { ageing: None, .. }) => threshold,
             Self::Coulomb(Coulomb {

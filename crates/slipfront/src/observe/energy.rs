@@ -47,22 +47,28 @@ impl Energies {
     }
 }
 
-/// Powers at one instant: of the drive, of friction, of damping and of the dampers between blocks.
+/// The pull of the drive at one instant, and powers: of a constant force, of friction, of damping and of the dampers between blocks.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Powers {
-    work: f64,
+    /// `sum F_s . d`, the force that moves along the path of the drive; of a rotation the torque over the largest radius.
+    pull: f64,
+    constant_force: f64,
     friction: f64,
     damping: f64,
     viscous: f64,
 }
 
 impl Powers {
-    /// The drive supplies `V . sum F_s`, and a constant force its own work.
+    /// Power of the drive at this speed, and of the constant force.
+    fn work(&self, speed: f64) -> f64 {
+        self.pull * speed + self.constant_force
+    }
+
     fn at(now: &Snapshot) -> Self {
         let (model, totals) = (now.model, &now.totals);
-        let pull = now.point.mu_star * model.n_blocks() as f64 * model.drive.v_star;
         Self {
-            work: pull + dot(model.drive.constant_force, totals.velocity),
+            pull: now.point.mu_star * model.mu_star_divisor(),
+            constant_force: dot(model.drive.constant_force, totals.velocity),
             friction: -totals.friction_power,
             damping: model.damping * totals.velocity_square,
             viscous: now.engine.viscous_power(),
@@ -70,7 +76,8 @@ impl Powers {
     }
 }
 
-/// Integrates powers over the steps by the trapezoidal rule.
+/// Integrates powers over the steps by the trapezoidal rule. The work of the drive in a step, whose speed is constant within it, is
+/// `(F_n + F_n+1)/2 (X_n+1 - X_n)`, or torque times angle.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Ledger {
     before: Option<Powers>,
@@ -86,7 +93,8 @@ impl Ledger {
         match self.before {
             Some(before) => {
                 let half = 0.5 * now.dt_star;
-                self.totals.work += half * (before.work + powers.work);
+                let speed = now.model.drive.speed_after((now.step - 1) as f64 * now.dt_star);
+                self.totals.work += half * (before.work(speed) + powers.work(speed));
                 self.totals.friction_loss += half * (before.friction + powers.friction);
                 self.totals.damping_loss += half * (before.damping + powers.damping);
                 self.totals.viscous_loss += half * (before.viscous + powers.viscous);

@@ -1,20 +1,25 @@
 //! What is measured on a run. Observers look at [`Snapshot`](crate::Snapshot)s and change nothing.
 //!
 //! [`curve`]: mu*, N* and energies against time; [`summary`]: the kinetic friction coefficient; [`frames`]: fields at
-//! chosen steps; [`instants`]: fields at the instants A-F; [`energy`]: the energy balance.
+//! chosen steps; [`instants`]: fields at the instants A-F; [`energy`]: the energy balance; [`precursors`]: events of slip of a
+//! slider driven at an edge; [`cycles`]: peaks under a program of speeds.
 
 pub mod curve;
+pub mod cycles;
 pub mod energy;
 pub mod frames;
 pub mod instants;
 pub(crate) mod observer;
+pub mod precursors;
 pub mod summary;
 
 pub use crate::kernel::block::Field;
 pub use crate::measure::{CurvePoint, Peak};
 pub use curve::{Curve, CurveRow};
+pub use cycles::{Cycle, Cycles};
 pub use energy::{Energies, Ledger};
 pub use frames::{Frame, Frames};
 pub use instants::Instants;
 pub use observer::{Observer, Schedule, Scheduled};
+pub use precursors::{Precursors, SlipEvent};
 pub use summary::{Kinetic, KineticHistory, KineticStart, NoUncertainty};

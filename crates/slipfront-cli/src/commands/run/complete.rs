@@ -81,6 +81,7 @@ fn files(case: &Case, out: &Path) -> String {
         .map(|picture| (picture.name, ".svg .png", picture.shows));
     let files = [
         ("series", ".csv", "the curve, row by row"),
+        ("precursors", ".csv", "the events of slip, row by row"),
         ("fields", ".nc", "the fields, for ParaView, Python, MATLAB"),
         ("summary", ".json", "the numbers above"),
         ("case", ".toml", "the case, every default filled in"),

@@ -565,7 +565,10 @@ impl Band {
             if let Some(weakening) = &variations.weakening {
                 let weakened = variations.weakened_impulses[elements.clone()].as_chunks_mut().0;
                 let velocity = chunks(&self.velocity, elements.start, n);
-                weaken(simd, weakening, velocity, kinetic_impulses, weakened);
+                let inverse_mass = variations.inverse_mass[elements.clone()].as_chunks().0;
+                let adhesive = step.integrator.force_to_velocity * variations.adhesion;
+                let at_rest = (kinetic_impulses, inverse_mass, adhesive);
+                weaken(simd, weakening, velocity, at_rest, weakened);
                 kinetic_impulses = variations.weakened_impulses[elements.clone()].as_chunks().0;
             }
             variation = variations.of(elements.clone());

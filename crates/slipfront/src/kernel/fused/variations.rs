@@ -29,6 +29,8 @@ pub(super) struct Variations {
     /// Kinetic impulses of the latest sweep: those of slow sliding, weakened by speed.
     pub(super) weakened_impulses: Aligned,
     pub(super) weakening: Option<Weakening>,
+    /// Kinetic adhesion, which does not weaken.
+    pub(super) adhesion: f64,
 }
 
 /// [`Variations`] of some elements, in vectors of eight; nothing of it where all blocks are alike.
@@ -52,24 +54,28 @@ impl<'a> Variation<'a> {
     }
 }
 
-/// Kinetic impulses at these velocities, from those of slow sliding.
+/// Kinetic impulses at these velocities, from those of slow sliding: the operations of [`Weakening::kinetic_force`]. `adhesive` is
+/// the impulse of adhesion on a block of mass 1. What is no block has an infinite impulse, which becomes no number, and moves as
+/// little.
 #[inline(always)]
 pub(super) fn weaken<S: Simd>(
     simd: S,
     weakening: &Weakening,
     [vx, vy]: [Chunks; 2],
-    impulses: Chunks,
+    (impulses, inverse_mass, adhesive): (Chunks, Chunks, f64),
     weakened: ChunksMut,
 ) {
     let n = weakened.len();
-    let (vx, vy, impulses) = (&vx[..n], &vy[..n], &impulses[..n]);
-    let [one, ratio] = [1.0, weakening.ratio].map(|number| splat(simd, number));
+    let (vx, vy, impulses, inverse_mass) = (&vx[..n], &vy[..n], &impulses[..n], &inverse_mass[..n]);
+    let [adhesive, zero] = [adhesive, 0.0].map(|number| splat(simd, number));
+    let fall = splat(simd, 1.0 - weakening.ratio);
     let critical_speed = splat(simd, weakening.critical_speed);
     for c in 0..n {
         let speed = square(load_vec2(simd, [vx, vy], c)).sqrt();
-        let slowness = one + speed / critical_speed;
-        let factor = ratio + (one - ratio) / slowness;
-        (load(simd, &impulses[c]) * factor).store_array(&mut weakened[c]);
+        let lost = fall * (speed / (critical_speed + speed));
+        let at_rest = load(simd, &impulses[c]);
+        let of_load = (at_rest - adhesive * load(simd, &inverse_mass[c])).max(zero);
+        (at_rest - lost * of_load).store_array(&mut weakened[c]);
     }
 }
 
@@ -147,6 +153,7 @@ impl Variations {
             inverse_mass: ones(),
             weakened_impulses: Aligned::filled(len, f64::INFINITY),
             weakening: weakening(model),
+            adhesion: model.surface.adhesion().of_kinetic,
         };
         let before = elements.start as isize - halo as isize;
         for k in 0..halo + len {

@@ -6,6 +6,7 @@
 
 mod contact;
 mod contact_springs;
+mod drive;
 mod forces;
 mod rate_and_state;
 mod springs;
@@ -14,6 +15,7 @@ mod thresholds;
 use fearless_simd::{Level, dispatch};
 
 use self::contact::Contact;
+use self::drive::DrivenBlocks;
 use self::forces::{Forces, components};
 use self::springs::{damper_forces, lattice_energy, lattice_forces};
 use super::block::{Block, Field};
@@ -41,6 +43,7 @@ pub(crate) struct Reference {
     static_limit: Vec<f64>,
     /// `mu_k F_n`.
     kinetic_force: Vec<f64>,
+    driven: DrivenBlocks,
     contact: Contact,
     /// Relative stiffness of the spring of every block along each bond, if they are not all alike.
     relative_springs: Option<[Vec<f64>; 4]>,
@@ -72,6 +75,7 @@ impl Reference {
             },
             static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
             kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
+            driven: DrivenBlocks::of(model),
             contact: Contact::new(model),
             relative_springs: (!slider.has_equal_springs()).then(springs),
             dampers: slider.is_viscous().then(zeros),
@@ -132,7 +136,9 @@ impl Reference {
             }
             move_blocks(&mut self.state, self.dt_star);
         }
-        drive_forces(model, &self.state, time_star, &mut self.forces.drive);
+        let displacement = &self.state.displacement;
+        self.driven
+            .forces(&model.drive, displacement, time_star, &mut self.forces.drive);
         let Forces { lattice, springs, .. } = &mut self.forces;
         let relative = self.relative_springs.as_ref();
         lattice_forces(model, &self.state, relative, lattice, springs);
@@ -187,10 +193,8 @@ impl Reference {
         let [lx, ly] = components(&self.forces.lattice, n);
         let [fx, fy] = components(&self.forces.friction, n);
         let (textured, slides) = (&model.surface.textured[..n], &self.forces.slides[..n]);
-        let slider = &model.slider;
-        let mass = slider.density.as_deref();
-        let driven = slider.drive_springs.as_ref().map(|springs| &*springs.relative);
-        let sum = |[x, y]: [&[f64]; 2]| [x, y].map(|values| weighted_sum(n, driven, |b| values[b]));
+        let mass = model.slider.density.as_deref();
+        let sums = |[x, y]: [&[f64]; 2]| self.driven.sums(n, |b| x[b], |b| y[b]);
         let squares = |[x, y]: [&[f64]; 2]| weighted_sum(n, mass, |b| x[b] * x[b] + y[b] * y[b]);
         let (vx, vy) = (|b: usize| 0.5 * (bx[b] + ax[b]), |b: usize| 0.5 * (by[b] + ay[b]));
         let slipping = slides.iter().zip(textured);
@@ -204,9 +208,9 @@ impl Reference {
             self.viscous_power = -fixed_point::sum(n, |b| dx[b] * vx(b) + dy[b] * vy(b));
         }
         Totals {
-            displacement: sum([ux, uy]),
-            velocity: [weighted_sum(n, driven, vx), weighted_sum(n, driven, vy)],
-            velocity_after: sum([ax, ay]),
+            displacement: sums([ux, uy]),
+            velocity: self.driven.sums(n, vx, vy),
+            velocity_after: sums([ax, ay]),
             velocity_square: weighted_sum(n, mass, |b| vx(b) * vx(b) + vy(b) * vy(b)),
             friction_power: match self.contact {
                 // What these springs take is stored, or lost where they break.
@@ -217,18 +221,15 @@ impl Reference {
             n_slipping: slipping
                 .filter(|&(slides, textured)| *slides && !textured)
                 .count(),
-            stored_energy: energies.then(|| {
-                let [x, y] = model.drive.position(time_star);
-                let stretch_square = weighted_sum(n, driven, |b| {
-                    (x - ux[b]) * (x - ux[b]) + (y - uy[b]) * (y - uy[b])
-                });
-                let displacement = &self.state.displacement;
-                let springs = self.relative_springs.as_ref();
-                StoredEnergy {
-                    kinetic: 0.25 * (squares([bx, by]) + squares([ax, ay])),
-                    lattice: lattice_energy(&model.lattice, displacement, springs, model.epsilon),
-                    drive_springs: 0.5 * model.drive.k_drive * stretch_square,
-                }
+            stored_energy: energies.then(|| StoredEnergy {
+                kinetic: 0.25 * (squares([bx, by]) + squares([ax, ay])),
+                lattice: lattice_energy(
+                    &model.lattice,
+                    &self.state.displacement,
+                    self.relative_springs.as_ref(),
+                    model.epsilon,
+                ),
+                drive_springs: self.driven.energy(&model.drive, [ux, uy], time_star),
             }),
         }
     }
@@ -349,28 +350,6 @@ fn move_blocks(state: &mut State, dt_star: f64) {
         (&mut displacement.y, &velocity.y),
     ] {
         u.iter_mut().zip(v).for_each(|(u, v)| *u += dt_star * v);
-    }
-}
-
-/// Eq. 2: `F_s = k_s,i (V t - u)`.
-#[inline(always)]
-fn drive_forces(model: &Model, state: &State, time_star: f64, force: &mut VectorField) {
-    let drive = &model.drive;
-    let position = drive.position(time_star);
-    let component = |force: &mut [f64], u: &[f64], axis: usize| {
-        for (f, u) in force.iter_mut().zip(u) {
-            *f = drive.k_drive * (position[axis] - u) + drive.constant_force[axis];
-        }
-    };
-    component(&mut force.x, &state.displacement.x, 0);
-    component(&mut force.y, &state.displacement.y, 1);
-    if let Some(springs) = &model.slider.drive_springs {
-        for force in [&mut force.x, &mut force.y] {
-            force
-                .iter_mut()
-                .zip(&springs.relative)
-                .for_each(|(f, relative)| *f *= relative);
-        }
     }
 }
 

@@ -1,0 +1,161 @@
+//! How the slider of a case is driven.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use slipfront::lattice::K_DRIVE;
+use slipfront::{Communicator, Drive, DriveSprings, Lattice, Program, Rotation, Scales, Slider};
+
+use super::groups::{Groups, within};
+use super::inputs::Inputs;
+use super::textures::{Watch, read_mask};
+use super::time_plan::TimePlan;
+use crate::case_file::{
+    Attached, CaseError, CaseFile, DEFAULT_THRESHOLD, DriveSpeed, DriveStiffness, Motion,
+};
+
+/// Largest angle, in rad, by which a drive may turn: the far ends move along tangents, not along circles.
+const MAX_ANGLE: f64 = 1e-3;
+
+/// The blocks of these rows that have a drive spring, if a file says so.
+pub(super) fn attached(
+    file: &CaseFile,
+    inputs: &Inputs,
+    watch: &mut Watch,
+) -> Result<Option<Vec<bool>>, CaseError> {
+    let Attached::File(name) = &file.drive.attached else {
+        return Ok(None);
+    };
+    read_mask(file, "drive.attach_file", name, DEFAULT_THRESHOLD, inputs, watch).map(Some)
+}
+
+/// The drive springs of these rows, called by all ranks at once; none if every block has one.
+pub(super) fn drive_springs(
+    file: &CaseFile,
+    lattice: &Lattice,
+    rows: &Range<usize>,
+    attached: Option<Vec<bool>>,
+    slider: &Slider,
+    ranks: &dyn Communicator,
+) -> Result<Option<DriveSprings>, CaseError> {
+    let mut relative = match (attached, file.drive.edge()) {
+        (Some(attached), _) => attached
+            .into_iter()
+            .map(|attached| f64::from(u8::from(attached)))
+            .collect(),
+        (None, Some(edge)) => DriveSprings::at_edge(lattice, rows, edge).relative,
+        (None, None) => return Ok(slider.drive_springs.clone()),
+    };
+    for (b, relative) in relative.iter_mut().enumerate() {
+        *relative *= slider.drive_spring(b);
+    }
+    let springs = DriveSprings::new(relative, ranks);
+    if springs.sum > 0.0 {
+        return Ok(Some(springs));
+    }
+    let sentence = "the file leaves no block attached, so that nothing pulls the slider: 1 or a dark pixel attaches a block";
+    Err(file.source.error("drive.attach_file", sentence))
+}
+
+/// The drive of a slider that is complete but for it, at a constant speed.
+pub(super) fn drive(
+    file: &CaseFile,
+    scales: &Scales,
+    groups: &Groups,
+    lattice: &Lattice,
+    slider: &Slider,
+) -> Result<Drive, CaseError> {
+    let n_attached = slider.sum_of_drive_springs(lattice);
+    let key = match file.drive.stiffness {
+        DriveStiffness::Auto | DriveStiffness::Each(_) => "drive.stiffness",
+        DriveStiffness::EachStar(_) => "drive.stiffness_star",
+        DriveStiffness::Total(_) => "drive.total_stiffness",
+        DriveStiffness::TotalStar(_) => "drive.total_stiffness_star",
+    };
+    let k_drive = match total(file, scales) {
+        Some(total) => total / n_attached,
+        None => each(file, scales),
+    };
+    within(
+        file,
+        key,
+        "the stiffness of a drive spring over E l",
+        k_drive,
+        1e-12..=1e6,
+    )?;
+    let rotation = match file.drive.motion {
+        Motion::Translation => None,
+        Motion::Rotation if slider.n_blocks(lattice) == 1 => {
+            let sentence = "a single block has no radius to turn about: take more, or \"translation\"";
+            return Err(file.source.error("drive.motion", sentence));
+        }
+        Motion::Rotation => Some(Rotation::about_centroid(lattice, slider)),
+    };
+    Ok(Drive {
+        k_drive,
+        rotation,
+        ..Drive::at_angle(groups.v_star, file.drive.direction)
+    })
+}
+
+/// Stiffness of all drive springs together, if the case says that.
+fn total(file: &CaseFile, scales: &Scales) -> Option<f64> {
+    match &file.drive.stiffness {
+        DriveStiffness::Total(total) => Some(total.si() / scales.stiffness()),
+        DriveStiffness::TotalStar(total) => Some(*total),
+        _ => None,
+    }
+}
+
+/// Stiffness of each, unless the case says what they have together.
+fn each(file: &CaseFile, scales: &Scales) -> f64 {
+    match &file.drive.stiffness {
+        DriveStiffness::Each(each) => each.si() / scales.stiffness(),
+        DriveStiffness::EachStar(each) => *each,
+        _ => K_DRIVE,
+    }
+}
+
+/// The program of the file, if it has one, with speeds that change where steps begin.
+pub(super) fn program(file: &CaseFile, time_plan: &TimePlan) -> Result<Option<Arc<Program>>, CaseError> {
+    let DriveSpeed::Program(segments) = &file.drive.speed else {
+        return Ok(None);
+    };
+    let mut before = 0.0;
+    let mut parts = Vec::with_capacity(segments.len());
+    for segment in segments {
+        let until = segment.until_star.map(|until| time_plan.step_at(until));
+        if until.is_some_and(|until| until <= before) {
+            let sentence = format!(
+                "the speed {:?} of the program lasts less than a step of dt* = {}: speeds change where steps begin",
+                segment.v_star, time_plan.dt_star
+            );
+            return Err(file.source.error("drive.program", sentence));
+        }
+        before = until.unwrap_or(before);
+        let until_star = until.map_or(f64::INFINITY, |until| until * time_plan.dt_star);
+        parts.push((segment.v_star, until_star));
+    }
+    Ok(Some(Arc::new(Program::new(parts))))
+}
+
+/// Refuses a rotation by an angle that is not small.
+pub(super) fn refuse_large_angles(
+    file: &CaseFile,
+    drive: &Drive,
+    epsilon: f64,
+    end_star: f64,
+) -> Result<(), CaseError> {
+    let Some(rotation) = &drive.rotation else {
+        return Ok(());
+    };
+    let angle = epsilon * drive.farthest_path(end_star) / rotation.radius;
+    if angle <= MAX_ANGLE {
+        return Ok(());
+    }
+    let sentence = format!(
+        "the drive turns by up to {angle:.2e} rad, more than {MAX_ANGLE:e}, where its ends would no longer move along tangents: \
+         shorten the run, lower the speed or `load.pressure`, or raise `slider.young_modulus`"
+    );
+    Err(file.source.error("drive.motion", sentence))
+}

@@ -1,0 +1,71 @@
+//! The peaks of mu* in a program of speeds, one for each part in which the drive moves forwards.
+
+use serde::{Deserialize, Serialize};
+
+use super::observer::Observer;
+use crate::error::RunError;
+use crate::snapshot::Snapshot;
+
+/// A segment of a program with a speed above zero, as far as the run went.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cycle {
+    /// t* at which it begins.
+    pub from_star: f64,
+    /// Its speed.
+    pub v_star: f64,
+    /// Largest mu* in it: of the instants after its beginning, up to and with its end.
+    pub mu_star: f64,
+    /// t* of the largest mu*, the first of equal ones.
+    pub time_star: f64,
+}
+
+/// Peaks of a run under a program. It must be called at every step.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Cycles {
+    cycles: Vec<Cycle>,
+}
+
+impl Cycles {
+    /// In the order of time.
+    pub fn cycles(&self) -> &[Cycle] {
+        &self.cycles
+    }
+
+    /// Whether this can be the recording of a run up to `time_star`.
+    pub fn is_consistent_with(&self, time_star: f64) -> bool {
+        let times = self
+            .cycles
+            .iter()
+            .flat_map(|cycle| [cycle.from_star, cycle.time_star]);
+        times.chain([time_star]).is_sorted()
+    }
+}
+
+impl Observer for Cycles {
+    fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
+        let Some(program) = &now.model.drive.program else {
+            return Ok(());
+        };
+        // What an instant shows is due to the step that ends there.
+        let before = now.step.saturating_sub(1) as f64 * now.dt_star;
+        let segment = program.segment_at(before);
+        if segment.v_star <= 0.0 {
+            return Ok(());
+        }
+        let mu_star = now.point.mu_star;
+        match self.cycles.last_mut() {
+            Some(cycle) if cycle.from_star == segment.from_star => {
+                if mu_star > cycle.mu_star {
+                    (cycle.mu_star, cycle.time_star) = (mu_star, now.time_star);
+                }
+            }
+            _ => self.cycles.push(Cycle {
+                from_star: segment.from_star,
+                v_star: segment.v_star,
+                mu_star,
+                time_star: now.time_star,
+            }),
+        }
+        Ok(())
+    }
+}
