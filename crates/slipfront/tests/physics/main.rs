@@ -20,6 +20,7 @@ mod growth;
 mod lattice_waves;
 mod load_and_adhesion;
 mod observables;
+mod oracle_friction;
 mod rate_and_state;
 mod scale_invariance;
 mod shapes;

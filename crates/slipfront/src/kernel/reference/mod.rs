@@ -310,6 +310,14 @@ fn drive_forces(model: &Model, state: &State, time_star: f64, force: &mut Vector
     };
     component(&mut force.x, &state.displacement.x, 0);
     component(&mut force.y, &state.displacement.y, 1);
+    if let Some(springs) = &model.slider.drive_springs {
+        for force in [&mut force.x, &mut force.y] {
+            force
+                .iter_mut()
+                .zip(&springs.relative)
+                .for_each(|(f, relative)| *f *= relative);
+        }
+    }
 }
 
 /// Eqs. 4-7: friction and damping, and the velocity half a step later.
