@@ -235,7 +235,7 @@ mod tests {
         let text = to_csv([row(Some(0.5)); 2].into_iter()).unwrap();
         let text = String::from_utf8(text).unwrap();
         let cut = text.strip_suffix("0.5\n").unwrap().to_owned() + "\n";
-        assert!(rows_of(cut.as_bytes()).is_err());
+        assert!(rows_of::<SeriesRow>(cut.as_bytes()).is_err());
     }
 
     #[test]

@@ -154,7 +154,10 @@ mod tests {
 
     use super::*;
     use crate::surface::{Coefficients, Distribution, Load};
-    use crate::{Drive, Edges, Execution, FrictionLaw, Kernel, Lattice, Model, Simulation, Surface, scales};
+    use crate::{
+        ContactSprings, Drive, Edges, Execution, Friction, FrictionLaw, Kernel, Lattice, Model, Simulation,
+        Surface, scales,
+    };
 
     /// Blocks that slip one after the other.
     fn model(lattice: Lattice) -> Model {
@@ -167,8 +170,8 @@ mod tests {
     }
 
     /// The bits of all columns.
-    fn columns(simulation: &Simulation) -> [Vec<u64>; 5] {
-        let mut columns: [Vec<u64>; 5] = Default::default();
+    fn columns(simulation: &Simulation) -> Vec<Vec<u64>> {
+        let mut columns = vec![Vec::new(); simulation.snapshot().model.n_columns()];
         let Ok(()) = simulation.write_columns(|column, first, values| {
             let bits = &mut columns[column];
             assert_eq!(bits.len(), first, "column {column}");
@@ -187,18 +190,27 @@ mod tests {
         #[case] nx: usize,
         #[case] ny: usize,
         #[case] edges: Edges,
-        #[values((Kernel::Fused, 1), (Kernel::Fused, 3), (Kernel::Reference, 1))] by: (Kernel, usize),
+        #[values((Kernel::Fused, 1, false), (Kernel::Fused, 3, false), (Kernel::Reference, 1, false), (Kernel::Reference, 1, true))]
+        by: (Kernel, usize, bool),
     ) {
-        let (kernel, threads) = by;
+        let (kernel, threads, has_springs) = by;
         let execution = Execution {
             kernel,
             threads,
             ..Execution::default()
         };
-        let model = model(Lattice::with_edges(nx, ny, [edges; 2]));
+        let mut model = model(Lattice::with_edges(nx, ny, [edges; 2]));
+        if has_springs {
+            model.friction = Friction::ContactSprings(ContactSprings {
+                stiffness: 0.3,
+                redraw: None,
+            });
+        }
         let mut plain = Simulation::with_execution(model.clone(), 0.1, None, execution);
-        while plain.snapshot().totals.n_slipping < 100 {
+        let mut slips = 0;
+        while slips < 100 {
             plain.step();
+            slips += plain.snapshot().totals.n_slipping;
         }
         let saved = columns(&plain);
         let read = |column: usize, first: usize, values: &mut [f64]| {

@@ -280,7 +280,7 @@ const FRICTION: &[Key] = &[
     key("contact_stiffness_star", "", number(above(0.0, 1e3), "it is over E l, and a spring between blocks has 0.75"),
         "stiffness of the spring in the contact of a block").title("contact stiffness", "k\u{209c}*", ""),
     key("redraw", "false", Kind::Switch, "whether a spring that forms again has another threshold"),
-    key("a", "", number(above(0.0, 10.0), "it is a coefficient, of the order of 0.01"), "direct effect of rate and state")
+    key("a", "", number(within(1e-6, 10.0), "it is a coefficient, of the order of 0.01"), "direct effect of rate and state")
         .title("direct effect", "a", ""),
     key("b", "", number(within(0.0, 10.0), "it is a coefficient, of the order of 0.01"), "evolution effect of rate and state")
         .title("evolution effect", "b", ""),

@@ -230,7 +230,7 @@ fn rate_and_state() -> impl Strategy<Value = Friction> {
     let base = CaseFile::default().friction;
     let optional = |most: f64| prop::option::of(1e-6..most);
     (
-        (1e-6..10.0, 0.0..10.0, 1e-6..1e9, 1e-6..10.0),
+        (1e-5..10.0, 0.0..10.0, 1e-6..1e9, 1e-6..10.0),
         [optional(100.0), optional(1e9), optional(10.0)],
     )
         .prop_map(

@@ -20,6 +20,10 @@ const SLOW: &str = "[slider]\nblocks = [60, 50]\nedges = ['periodic', 'free']\n[
 const REVERSAL: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.004\n[friction]\nlaw = 'reversal'\n\
                        [output]\nsnapshots = { every = 75 }\n";
 
+/// A law that remembers something of every block.
+const SPRINGS: &str = "[slider]\nblocks = [60, 50]\n[drive]\nv_star = 0.01\n[friction]\ncontact = 'springs'\n\
+                       contact_stiffness_star = 0.3\nredraw = true\n";
+
 /// Enough blocks for two threads, until the onset.
 const WIDE: &str = "[slider]\nblocks = [400, 350]\n[drive]\nv_star = 0.1\n[time]\nstop = 'after_onset'\n";
 
@@ -28,6 +32,7 @@ fn slow_workspace() -> Workspace {
     for (name, text) in [
         ("slow.toml", SLOW),
         ("reversal.toml", REVERSAL),
+        ("springs.toml", SPRINGS),
         ("wide.toml", WIDE),
     ] {
         workspace.write(name, text);
@@ -53,6 +58,7 @@ fn stopped(workspace: &Workspace, line: &str, folder: &str, times: usize) {
 #[rstest]
 #[case("slow.toml", "-INT", 130)]
 #[case("reversal.toml", "-TERM", 143)]
+#[case("springs.toml", "-TERM", 143)]
 #[case("wide.toml", "-INT", 130)]
 fn stopped_any_number_of_times_it_writes_the_same_bytes(
     #[case] case: &str,

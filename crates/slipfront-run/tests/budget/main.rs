@@ -119,6 +119,14 @@ fn what_is_said_is_what_is_taken() {
         // The lattice.
         "slider.blocks=[600,600];time.duration_star=1;output.snapshots=[]",
         "slider.blocks=[256,256];drive.v_star=0.3",
+        // Laws of friction that remember more.
+        "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.contact='springs';\
+         friction.contact_stiffness_star=0.1",
+        "slider.blocks=[300,300];time.duration_star=1;output.snapshots=[];friction.law='rate_and_state';friction.a=0.01;\
+         friction.b=0.02;friction.d_c_star=0.5;friction.v_0_star=0.03",
+        "slider.blocks=[3,3];output.series=0.1;time.duration_star=8000;friction.contact='springs';friction.contact_stiffness_star=0.1",
+        "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.ageing={law='logarithmic',beta=0.1,time_star=1};\
+         friction.velocity={law='weakening',v_c_star=0.1,ratio=0.5}",
         // Snapshots.
         "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1}",
         "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1};output.stride=3",
@@ -189,6 +197,8 @@ fn checkpoints(folder: &Path) {
     for sets in [
         "slider.blocks=[600,600];time.duration_star=1;output.snapshots=[]",
         "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1}",
+        "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.contact='springs';\
+         friction.contact_stiffness_star=0.1",
     ] {
         let overrides: Vec<String> = sets.split(';').map(str::to_owned).collect();
         // `Case::parse` would reserve the memory of a run, to see whether it is available.

@@ -27,8 +27,8 @@ pub struct RateAndState {
 /// Above this logarithm of its argument, `asinh x = ln(2 x)` to the last bit.
 const LARGE: f64 = 20.0;
 
-/// Newton steps that no solution needs: each of them but the last few takes at least half a unit off the unknown, which lies at most
-/// `ln(750)` + 2 below where it begins.
+/// Newton steps that no solution needs: while the sine is more than the linear term each takes at least half a unit off the unknown,
+/// which begins less than 16 above the root for any `a` of 1e-8 and more; the last few double the digits.
 const MAX_STEPS: usize = 40;
 
 /// `asinh(exp(y))`, without overflow.
@@ -111,7 +111,13 @@ impl RateAndState {
         let mut w = f64::min(free / per_unit, asinh_of_exp(log_factor + libm::log(free)));
         let mut speed = free;
         for _ in 0..MAX_STEPS {
-            let (rising, falling) = (libm::exp(w - log_factor), libm::exp(-w - log_factor));
+            let rising = libm::exp(w - log_factor);
+            // Beside the other it is below the last bit.
+            let falling = if w > LARGE {
+                0.0
+            } else {
+                libm::exp(-w - log_factor)
+            };
             speed = 0.5 * (rising - falling);
             let error = speed + per_unit * w - free;
             let next = w - error / (0.5 * (rising + falling) + per_unit);

@@ -3,6 +3,7 @@
 
 use std::convert::Infallible;
 use std::ops::Range;
+use std::sync::Arc;
 
 use slipfront::communicator::Alone;
 use slipfront::observe::{Curve, CurveRow, Kinetic, KineticHistory, KineticStart, Observer, Peak, Scheduled};
@@ -11,8 +12,8 @@ use slipfront::surface::{
     mesh, mesh_watched, pressure_along,
 };
 use slipfront::{
-    Communicator, Drive, Edges, Execution, FrictionLaw, Lattice, Model, Outline, Simulation, State, Stop,
-    Surface, VectorField, scales,
+    Communicator, Coulomb, Drive, DriveSprings, Edges, Execution, Friction, FrictionLaw, Lattice, Model,
+    Outline, Program, Simulation, State, Stop, Surface, VectorField, Weakening, scales,
 };
 
 /// A slider at rest, stepped by the kernel that this binary tests.
@@ -41,6 +42,8 @@ pub(crate) struct Slider {
     pub(crate) textures: Vec<Texture>,
     /// What differs from block to block, of the whole lattice.
     pub(crate) body: slipfront::Slider,
+    pub(crate) weakening: Option<Weakening>,
+    pub(crate) program: Option<Arc<Program>>,
     pub(crate) load: Load,
     /// Axis and relative slope of a pressure that rises along it.
     pub(crate) pressure: Option<(usize, f64)>,
@@ -64,6 +67,8 @@ impl Default for Slider {
             edges: [Edges::Free; 2],
             textures: Vec::new(),
             body: slipfront::Slider::default(),
+            weakening: None,
+            program: None,
             load: Load::Redistributed,
             pressure: None,
             adhesion: Adhesion::default(),
@@ -137,18 +142,8 @@ impl Slider {
     }
 
     pub(crate) fn model(&self) -> Model {
-        let model = Model::new(
-            self.lattice(),
-            self.surface(),
-            Drive::at_angle(self.v_star, self.degrees),
-            scales::damping(self.omega_star),
-            self.epsilon,
-            self.law,
-        );
-        Model {
-            slider: self.body.clone(),
-            ..model
-        }
+        let lattice = self.lattice();
+        self.model_with(lattice, 0..lattice.ny, self.surface(), self.body.clone())
     }
 
     /// The model of one of several ranks.
@@ -158,16 +153,32 @@ impl Slider {
         let Ok(meshed) = mesh_watched::<Infallible>(&lattice, &rows, &self.textures, &mut |_| Ok(()));
         let coefficients = self.coefficients_of(lattice.blocks_of(&rows));
         let contact = self.contact(rows.clone());
-        let surface = Surface::of_ranks(coefficients, meshed.textured, contact, &self.body, rank).unwrap();
-        Model::of_rows(
-            lattice,
-            rows,
-            surface,
-            Drive::at_angle(self.v_star, self.degrees),
-            scales::damping(self.omega_star),
-            self.epsilon,
-            self.law,
-        )
+        let body = part(&self.body, lattice.blocks_of(&rows));
+        let surface = Surface::of_ranks(coefficients, meshed.textured, contact, &body, rank).unwrap();
+        self.model_with(lattice, rows, surface, body)
+    }
+
+    fn model_with(
+        &self,
+        lattice: Lattice,
+        rows: Range<usize>,
+        surface: Surface,
+        body: slipfront::Slider,
+    ) -> Model {
+        let drive = Drive {
+            program: self.program.clone(),
+            ..Drive::at_angle(self.v_star, self.degrees)
+        };
+        let friction = Friction::Coulomb(Coulomb {
+            law: self.law,
+            weakening: self.weakening,
+            ageing: None,
+        });
+        let damping = scales::damping(self.omega_star);
+        Model {
+            slider: body,
+            ..Model::of_rows(lattice, rows, surface, drive, damping, self.epsilon, friction)
+        }
     }
 
     /// Steps to t* = `turns`/V*.
@@ -222,6 +233,25 @@ impl Slider {
         simulation.run(Stop::at_step(steps), &mut observers).unwrap();
         let from = KineticStart::Auto.time_star(&simulation.peak(), self.v_star);
         history.kinetic(from, self.dt_star)
+    }
+}
+
+/// The part of a slider that these blocks are.
+fn part(body: &slipfront::Slider, blocks: Range<usize>) -> slipfront::Slider {
+    let of = |values: &Option<Vec<f64>>| values.as_ref().map(|values| values[blocks.clone()].to_vec());
+    slipfront::Slider {
+        stiffness: of(&body.stiffness),
+        density: of(&body.density),
+        mean_mass: body.mean_mass,
+        drive_springs: body.drive_springs.as_ref().map(|springs| DriveSprings {
+            relative: springs.relative[blocks.clone()].to_vec(),
+            sum: springs.sum,
+        }),
+        outline: body.outline.as_ref().map(|outline| Outline {
+            exists: outline.exists[blocks.clone()].to_vec(),
+            n_blocks: outline.n_blocks,
+        }),
+        viscosity_time: body.viscosity_time,
     }
 }
 

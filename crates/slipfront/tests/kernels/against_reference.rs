@@ -82,7 +82,7 @@ fn assert_alike(fused: &Simulation, reference: &Simulation) {
 }
 
 /// Both kernels through up to `steps` steps, or until the first peak has ended; energies are measured at some of the steps.
-fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
+pub(crate) fn assert_same(model: &Model, dt_star: f64, state: Option<&State>, steps: u64) {
     let run = |execution| Simulation::with_execution(model.clone(), dt_star, state.cloned(), execution);
     let (mut fused, mut reference) = (run(FUSED), run(REFERENCE));
     assert_alike(&fused, &reference);

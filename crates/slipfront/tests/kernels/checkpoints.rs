@@ -4,10 +4,13 @@
 use rstest::rstest;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{Curve, Field, Instants, KineticHistory, KineticStart, Scheduled};
-use slipfront::{Execution, FrictionLaw, Simulation, Stop};
+use slipfront::{
+    Ageing, ContactSprings, Coulomb, Execution, Friction, FrictionLaw, RateAndState, Simulation, Stop,
+    Weakening,
+};
 
 use crate::common::{Slider, cavity, varied};
-use crate::{FUSED, REFERENCE, bits, resumed, stopped_and_resumed};
+use crate::{FUSED, REFERENCE, bits, columns, resumed, stopped_and_resumed};
 
 fn slider(law: FrictionLaw) -> Slider {
     Slider {
@@ -88,6 +91,44 @@ fn goes_on_from_checkpoints(slider: &Slider, every: u64) {
             .any(|t| !t.is_nan()),
         "nothing ever slips"
     );
+}
+
+/// What a law remembers is part of a checkpoint: ages, anchors and breaks with their thresholds, states.
+#[rstest]
+#[case(Friction::Coulomb(Coulomb {
+    law: FrictionLaw::Projection,
+    weakening: Some(Weakening { critical_speed: 0.1, ratio: 0.4 }),
+    ageing: Some(Ageing { beta: 0.1, time: 1.0 }),
+}))]
+#[case(Friction::ContactSprings(ContactSprings { stiffness: 0.5, redraw: Some(3) }))]
+#[case(Friction::RateAndState(RateAndState {
+    a: 0.02, b: 0.05, d_c: 0.2, v_0: 0.1, mu_0: 0.6, theta_0: 2.0, slip_speed: 0.05,
+}))]
+fn what_a_law_remembers(#[case] friction: Friction, #[values(1, 7)] every: u64) {
+    let slider = slider(FrictionLaw::Projection);
+    let (mut model, dt_star) = (slider.model(), slider.dt_star);
+    model.friction = friction;
+    let start = || Simulation::with_execution(model.clone(), dt_star, None, REFERENCE);
+    let (mut plain, mut stopped) = (start(), start());
+    for step in 0..slider.steps(6.0) {
+        if step.is_multiple_of(every) {
+            stopped = stopped_and_resumed(&stopped, &model, dt_star, REFERENCE);
+            assert_eq!(everything(&stopped), everything(&plain), "resumed at step {step}");
+            assert_eq!(stopped.checkpoint(), plain.checkpoint());
+            let saved = |simulation: &Simulation| columns(simulation).concat();
+            assert!(
+                bits(&saved(&stopped)) == bits(&saved(&plain)),
+                "saved at step {step}"
+            );
+        }
+        plain.step();
+        stopped.step();
+        assert_eq!(everything(&stopped), everything(&plain), "step {step}");
+    }
+    let remembered = &columns(&plain)[5..];
+    assert_eq!(remembered.len(), friction.n_columns());
+    let differs = |column: &Vec<f64>| column.iter().any(|value| *value != column[0]);
+    assert!(remembered.iter().all(differs), "there is nothing to remember");
 }
 
 /// A run without stops and one in parts, each of which continues from a checkpoint of the run and of its observers: these have

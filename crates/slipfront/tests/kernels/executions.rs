@@ -42,7 +42,7 @@ pub(crate) fn state(simulation: &Simulation) -> [Vec<u64>; 4] {
 /// The fused kernel on one thread without skipping against all other ways to execute it, among them runs in parts of so many
 /// steps; energies are measured at some of the steps. Sums are compared at every step, whole states at every seventh and at the
 /// last: a difference stays in the state.
-fn assert_same_bits(model: &Model, dt_star: f64, from: Option<&State>, steps: u64) {
+pub(crate) fn assert_same_bits(model: &Model, dt_star: f64, from: Option<&State>, steps: u64) {
     let of = |threads| {
         [false, true].map(|skips| Execution {
             threads,

@@ -86,3 +86,4 @@ mod executions;
 mod fields;
 mod ranks;
 mod sliders;
+mod variations;

@@ -66,7 +66,7 @@ fn part(from: &State, blocks: Range<usize>) -> State {
     }
 }
 
-fn assert_same(slider: &Slider, from: Option<&State>, steps: u64) {
+pub(crate) fn assert_same(slider: &Slider, from: Option<&State>, steps: u64) {
     let dt_star = slider.dt_star;
     let mut alone = Simulation::with_execution(slider.model(), dt_star, from.cloned(), FUSED);
     let alone = watch(&mut alone, 1..steps + 1, None);

@@ -1,12 +1,13 @@
 //! Springs between the blocks and the substrate, which break and form again.
 
 use rstest::rstest;
-use slipfront::exact_solutions::static_over_kinetic_of_springs;
-use slipfront::lattice::K_DRIVE;
+use slipfront::communicator::Alone;
+use slipfront::exact_solutions::{chain_slip_force, static_over_kinetic_of_springs};
+use slipfront::lattice::{K_DRIVE, K_STRAIGHT};
 use slipfront::observe::Curve;
 use slipfront::surface::Coefficients;
 use slipfront::surface::Load;
-use slipfront::{ContactSprings, Drive, Friction, Lattice, Model, Surface, scales};
+use slipfront::{ContactSprings, Drive, DriveSprings, Friction, Lattice, Model, Surface, scales};
 
 use crate::common::{Slider, at_rest, cavity};
 
@@ -88,6 +89,41 @@ fn the_weakest_spring_breaks_first() {
     // Which block it was is known: the one of the least threshold.
     let weakest = (0..400).min_by(|&a, &b| model.surface.mu_static[a].total_cmp(&model.surface.mu_static[b]));
     assert!(!simulation.snapshot().first_slip_time_star()[weakest.unwrap()].is_nan());
+}
+
+/// A chain that is pulled at its first block alone is in equilibrium until the spring there breaks: displacements decay along the chain.
+/// The drive is slow and damping critical for the chain as a whole. Its viscous force, Omega V of the blocks that move, and the
+/// growth of the pull in a step are below 1e-3.
+#[rstest]
+fn the_first_block_of_a_chain_that_is_pulled_there_breaks(#[values(1, 2, 5, 20)] n: usize) {
+    let (stiffness, v_star, dt) = (0.1, 2e-4, 0.2);
+    let lattice = Lattice::free(n, 1);
+    let law = ContactSprings {
+        stiffness,
+        redraw: None,
+    };
+    let surface = Surface::uniform(&lattice, 1.0, 0.0);
+    let mut model = Model::new(
+        lattice,
+        surface,
+        Drive::along_x(v_star),
+        0.5,
+        0.0,
+        Friction::ContactSprings(law),
+    );
+    let mut relative = vec![0.0; n];
+    relative[0] = 1.0;
+    model.slider.drive_springs = Some(DriveSprings::new(relative, &Alone));
+    let mut simulation = at_rest(&model, dt);
+    while simulation.snapshot().totals.n_slipping == 0 {
+        simulation.step();
+    }
+    let now = simulation.snapshot();
+    let found = now.block(0).force_drive[0];
+    let exact = chain_slip_force(n, K_STRAIGHT, stiffness);
+    assert!((found / exact - 1.0).abs() < 1e-3, "{found}, exactly {exact}");
+    let slipped = now.first_slip_time_star();
+    assert!(!slipped[0].is_nan() && slipped[1..].iter().all(|time| time.is_nan()));
 }
 
 /// The whole energy is found again: stored, lost to damping, or lost with the springs that broke, which is

@@ -23,6 +23,7 @@ mod growth;
 mod lattice_waves;
 mod load_and_adhesion;
 mod observables;
+mod oracle_friction;
 mod oracle_sliders;
 mod outline;
 mod rate_and_state;

@@ -110,6 +110,8 @@ prop_compose! {
             edges: lattice.edges,
             textures,
             body: slipfront::Slider::default(),
+            weakening: None,
+            program: None,
             load: if kept { Load::Kept } else { Load::Redistributed },
             pressure,
             adhesion: adhesion.map_or(Adhesion::default(), |[of_static, of_kinetic]| Adhesion { of_static, of_kinetic }),

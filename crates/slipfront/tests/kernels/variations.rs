@@ -1,0 +1,129 @@
+//! Sliders whose blocks differ, kinetic friction that weakens and drives by a program on the fused kernel: it agrees with the
+//! reference to rounding, and has the same bits however it is executed.
+
+use std::sync::Arc;
+
+use rstest::rstest;
+use slipfront::communicator::Alone;
+use slipfront::{DriveSprings, Edges, Outline, Program, Weakening};
+
+use crate::common::{Slider, cavity, varied};
+use crate::{against_reference, executions, ranks, sliders};
+
+/// What is not as in the paper.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Variety {
+    /// Drive springs at the left edge alone.
+    EdgeDrive,
+    /// Moduli and densities, and drive springs as stiff as their blocks.
+    Grading,
+    /// One block in nine does not exist.
+    Outline,
+    Weakening,
+    /// A stop, and a way back.
+    Program,
+}
+
+const BLOCKS: [usize; 2] = [40, 31];
+
+fn with(slider: Slider, options: &[Variety]) -> Slider {
+    let [nx, ny] = slider.blocks;
+    let mut slider = slider;
+    for option in options {
+        match option {
+            Variety::EdgeDrive => {
+                let left = (0..nx * ny).map(|b| f64::from(u8::from(b % nx == 0)));
+                slider.body.drive_springs = Some(DriveSprings::new(left.collect(), &Alone));
+            }
+            Variety::Grading => slider.body = varied(nx * ny, false),
+            Variety::Outline => {
+                let exists = (0..nx * ny).map(|b| b * b % 9 != 4).collect();
+                slider.body.outline = Some(Outline::new(exists, &Alone));
+                if let Some(springs) = &slider.body.drive_springs {
+                    let relative = (0..nx * ny).map(|b| slider.body.drive_spring(b)).collect();
+                    assert_eq!(springs.relative.len(), nx * ny);
+                    slider.body.drive_springs = Some(DriveSprings::new(relative, &Alone));
+                }
+            }
+            Variety::Weakening => {
+                slider.weakening = Some(Weakening {
+                    critical_speed: 0.2,
+                    ratio: 0.4,
+                });
+            }
+            Variety::Program => {
+                let v_star = slider.v_star;
+                let until = |turns: f64| (turns / v_star / slider.dt_star).round() * slider.dt_star;
+                let segments = [
+                    (v_star, until(2.0)),
+                    (0.0, until(2.5)),
+                    (v_star, until(4.0)),
+                    (-0.5 * v_star, f64::INFINITY),
+                ];
+                slider.program = Some(Arc::new(Program::new(segments)));
+            }
+        }
+    }
+    slider
+}
+
+fn base(epsilon: f64, edges: Edges) -> Slider {
+    Slider {
+        textures: vec![cavity(BLOCKS, 6.0, 1, 0.3, true)],
+        epsilon,
+        blocks: BLOCKS,
+        edges: [edges; 2],
+        ..sliders::shaped(BLOCKS, [edges; 2])
+    }
+}
+
+use Variety::{EdgeDrive, Grading, Outline as Cut, Program as Changes, Weakening as Weakens};
+
+#[rstest]
+fn the_reference_agrees(
+    #[values(
+        &[EdgeDrive], &[Grading], &[Cut], &[Weakens], &[Changes], &[Grading, Cut], &[EdgeDrive, Cut, Weakens],
+        &[Grading, Cut, Weakens, Changes]
+    )]
+    options: &[Variety],
+    #[values(0.0, 1e-6, 1e-2)] epsilon: f64,
+    #[values(Edges::Free, Edges::Periodic)] edges: Edges,
+) {
+    let slider = with(base(epsilon, edges), options);
+    against_reference::assert_same(&slider.model(), slider.dt_star, None, slider.steps(5.0));
+}
+
+#[rstest]
+fn the_same_bits_however_executed(
+    #[values(
+        &[EdgeDrive], &[Grading], &[Cut], &[Weakens], &[Changes], &[EdgeDrive, Cut, Weakens],
+        &[Grading, Cut, Weakens, Changes]
+    )]
+    options: &[Variety],
+    #[values(1e-6, 2e-3)] epsilon: f64,
+    #[values(Edges::Free, Edges::Periodic)] edges: Edges,
+) {
+    let slider = with(base(epsilon, edges), options);
+    executions::assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(5.0));
+}
+
+/// Between slips most of a slow slider is skipped.
+#[rstest]
+fn slow_sliders_have_the_same_bits(
+    #[values(&[EdgeDrive], &[Grading, Cut, Weakens], &[Changes])] options: &[Variety],
+) {
+    let slider = with(sliders::slow(BLOCKS, Edges::Free, 0.0, 1e-6), options);
+    executions::assert_same_bits(&slider.model(), slider.dt_star, None, slider.steps(4.0));
+}
+
+#[rstest]
+fn the_same_bits_over_ranks(
+    #[values(
+        &[EdgeDrive], &[Grading], &[Cut], &[Weakens, Changes], &[Grading, Cut, Weakens, Changes]
+    )]
+    options: &[Variety],
+    #[values(Edges::Free, Edges::Periodic)] edges: Edges,
+) {
+    let slider = with(base(1e-6, edges), options);
+    ranks::assert_same(&slider, None, slider.steps(4.0));
+}
