@@ -13,12 +13,15 @@ fn bits(values: &[f32]) -> Vec<u32> {
     values.iter().map(|value| value.to_bits()).collect()
 }
 
-/// The field, block by block.
+/// The field, block by block; NaN where no block exists.
 fn by_block(simulation: &Simulation, field: Field) -> Vec<f32> {
     let now = simulation.snapshot();
     let textured = &now.model.surface.textured;
     (0..textured.len())
-        .map(|b| field.value(&now.block(b), textured[b]) as f32)
+        .map(|b| match now.model.slider.exists(b) {
+            true => field.value(&now.block(b), textured[b]) as f32,
+            false => f32::NAN,
+        })
         .collect()
 }
 

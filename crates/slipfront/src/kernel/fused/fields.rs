@@ -127,12 +127,6 @@ pub(super) fn read_rows<S: Simd, G: Geometry>(
             }
             for (j, i, blocks) in rows().filter(|(j, ..)| layout.lattice_row(*j).is_multiple_of(stride)) {
                 let values = &mut values[blocks];
-                if let Some(outline) = &model.slider.outline {
-                    let exists = &outline.exists[model.lattice.block(i, j)..];
-                    for (value, &exists) in values.iter_mut().zip(exists) {
-                        *value = if exists { *value } else { f32::NAN };
-                    }
-                }
                 if field == Field::Traction {
                     let textured = &model.surface.textured[model.lattice.block(i, j)..];
                     for (value, &textured) in values.iter_mut().zip(textured) {

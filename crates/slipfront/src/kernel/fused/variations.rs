@@ -198,6 +198,9 @@ pub(super) struct Moduli<'a> {
 impl Moduli<'_> {
     /// Of an element, which may be a ghost or in a row beside those of this rank.
     pub(super) fn at(&self, layout: &Layout, element: isize) -> f64 {
+        if self.model.slider.has_equal_springs() {
+            return 1.0;
+        }
         let (row, column) = layout.row_column(element);
         let rows = layout.rows() as isize;
         let beside = |side: usize| self.beside[side].get(column).copied();
