@@ -234,6 +234,27 @@ impl Bond {
         [tension * rx, tension * ry]
     }
 
+    /// Force on the block from a damper beside this spring, over the time `tau_v` of its damping constant `eta = tau_v k`:
+    ///
+    /// ```text
+    /// F_v/tau_v = k (r/|r| . w) r/|r|,   r = d + eps e
+    /// ```
+    ///
+    /// `e`, `epsilon`: as for [`Bond::force`]; `w`: velocity of the neighbour less that of the block.
+    ///
+    /// ```
+    /// use slipfront::lattice::Bond;
+    /// // Only the part of the velocity along the spring counts.
+    /// assert_eq!(Bond::NORTH.damper_force([0.0, 0.0], [5.0, 2.0], 0.0), [0.0, 0.75 * 2.0]);
+    /// ```
+    #[inline(always)]
+    pub fn damper_force(&self, e: [f64; 2], w: [f64; 2], epsilon: f64) -> [f64; 2] {
+        let [dx, dy] = self.rest;
+        let (rx, ry) = (dx + epsilon * e[0], dy + epsilon * e[1]);
+        let pull = self.stiffness * (rx * w[0] + ry * w[1]) / (rx * rx + ry * ry);
+        [pull * rx, pull * ry]
+    }
+
     /// Energy of this spring, `(k/2) ((r - d)/eps)^2`, for the same `e` and `epsilon` as [`Bond::force`].
     #[inline(always)]
     pub fn energy(&self, e: [f64; 2], epsilon: f64) -> f64 {

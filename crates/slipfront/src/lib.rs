@@ -29,6 +29,7 @@ pub mod kernel;
 pub mod lattice;
 pub mod observe;
 pub mod scales;
+pub mod stability;
 pub mod surface;
 
 mod drive;

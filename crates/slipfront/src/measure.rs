@@ -16,15 +16,15 @@ pub struct CurvePoint {
     pub mu_lateral_star: f64,
     /// Number of blocks that slide, textured ones included.
     pub n_sliding: usize,
-    /// N*, the sliding blocks in % of all blocks.
+    /// N*, the sliding blocks in % of all blocks that exist.
     pub sliding_percent: f64,
 }
 
 impl CurvePoint {
-    /// Eq. 9 over mu_s, from the mean displacement:
+    /// Eq. 9 over mu_s, from the mean displacement, with the relative stiffness w of the drive springs and N blocks that exist:
     ///
     /// ```text
-    /// mu* = (1/N) sum_i F_s,i . d = k_s (V* t* - mean(u . d))
+    /// mu* = (1/N) sum_i F_s,i . d = k_s (mean(w) V* t* - mean(w u . d))
     /// ```
     ///
     /// If the drive springs differ, `w_i` being their relative stiffness, and of a rotation, with `g_i = z x r_i/r_max`:

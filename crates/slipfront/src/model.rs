@@ -74,7 +74,7 @@ impl Model {
     /// `sum r_i/r_max`, which makes mu* the torque of the drive springs over `P mu_s l^2 sum r_i`.
     pub fn mu_star_divisor(&self) -> f64 {
         match &self.drive.rotation {
-            None => self.slider.n_blocks(&self.lattice) as f64,
+            None => self.n_blocks() as f64,
             Some(rotation) => rotation.sum_radii,
         }
     }
@@ -98,12 +98,13 @@ impl Model {
     /// Level of mu* in steady sliding at V*:
     ///
     /// ```text
-    /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V*
+    /// L = mean(mu_ki F_n,i)/(P l^2 mu_s) + Omega V* mean(m_i)
     /// L = [sum_i mu_ki F_n,i r_i/(P l^2 mu_s) + Omega V* sum_i m_i r_i^2/r_max]/sum_i r_i    of a rotation
     /// ```
     pub fn steady_level(&self) -> f64 {
         let Some(rotation) = &self.drive.rotation else {
-            return self.surface.mean_kinetic_force() + self.damping * self.drive.v_star;
+            return self.surface.mean_kinetic_force()
+                + self.damping * self.drive.v_star * self.slider.mean_mass;
         };
         let force = |b: usize| {
             let relative = self.relative_radius(b);
@@ -114,8 +115,13 @@ impl Model {
         blocks.map(force).sum::<f64>() / rotation.sum_radii
     }
 
-    /// Time of the first slip of a block in contact on a surface without texture, exact; of a rank, of its own blocks. Of a drive at
-    /// constant speed with a spring on every block
+    /// Number of blocks of the whole lattice that exist.
+    pub fn n_blocks(&self) -> usize {
+        self.slider.n_blocks(&self.lattice)
+    }
+
+    /// Time of the first slip of a block in contact on a surface without texture, exact. Of a drive at constant speed along a
+    /// direction
     ///
     /// ```text
     /// t* = min_i max(mu_si, mu_ki) F_n,i/(k_s,i V*)
@@ -123,31 +129,23 @@ impl Model {
     ///
     /// and in general when the path of the drive is as long as it is here after this time.
     pub fn first_slip_estimate(&self) -> f64 {
-        if self.slider.drive_springs.is_none()
-            && self.slider.outline.is_none()
-            && self.drive.rotation.is_none()
-        {
-            let path = self.surface.min_slip_threshold() / self.drive.k_drive;
-            return match self.drive.program {
-                None => self.surface.min_slip_threshold() / (self.drive.k_drive * self.drive.v_star),
-                Some(_) => self.drive.time_of_path(path),
+        let (drive, surface) = (&self.drive, &self.surface);
+        if drive.rotation.is_none() {
+            return match drive.program {
+                None => surface.min_slip_threshold() / (drive.k_drive * drive.v_star),
+                Some(_) => drive.time_of_path(surface.min_slip_threshold() / drive.k_drive),
             };
         }
         let path = |b: usize| {
-            let limit = self.surface.static_limit(b).max(self.surface.kinetic_force(b));
-            limit / (self.drive.k_drive * self.slider.drive_spring(b) * self.relative_radius(b))
+            let limit = surface.static_limit(b).max(surface.kinetic_force(b));
+            limit / (drive.k_drive * self.slider.drive_spring(b) * self.relative_radius(b))
         };
-        let in_contact =
-            (0..self.surface.n_blocks()).filter(|&b| !self.surface.textured[b] && self.slider.exists(b));
-        self.drive
-            .time_of_path(in_contact.map(path).fold(f64::INFINITY, f64::min))
+        let in_contact = (0..surface.n_blocks()).filter(|&b| !surface.textured[b]);
+        drive.time_of_path(in_contact.map(path).fold(f64::INFINITY, f64::min))
     }
 
-    /// `r_i/r_max` of a rotation, else 1.
+    /// `r_i/r_max` of a rotation.
     fn relative_radius(&self, b: usize) -> f64 {
-        match self.drive.rotation {
-            None => 1.0,
-            Some(_) => length(self.drive.direction_at(&self.lattice, b)),
-        }
+        length(self.drive.direction_at(&self.lattice, b))
     }
 }

@@ -1,4 +1,4 @@
-//! What may differ from block to block of the slider, and its internal viscosity.
+//! What may differ from block to block of the slider, which blocks there are, and its internal viscosity.
 
 use std::ops::Range;
 
@@ -7,12 +7,14 @@ use crate::fixed_point::{FixedPoint, join, split};
 use crate::lattice::{Bond, Edge, Lattice};
 
 /// What may differ from block to block; arrays have one value per block. Without any of it, as in the paper, all blocks are alike.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Slider {
     /// Young's modulus `E_i/E`. A spring between blocks takes the harmonic mean of its ends.
     pub stiffness: Option<Vec<f64>>,
     /// Density, and so mass, `rho_i/rho`.
     pub density: Option<Vec<f64>>,
+    /// Mean of the masses of all blocks of the whole lattice that exist, in units of `rho l^3`.
+    pub mean_mass: f64,
     /// Drive springs that are not all alike.
     pub drive_springs: Option<DriveSprings>,
     /// The blocks that exist, if some do not.
@@ -39,28 +41,37 @@ pub struct Outline {
     pub n_blocks: usize,
 }
 
-impl DriveSprings {
-    /// Equal springs on the blocks of one edge of the lattice, for the rank that holds these `rows`.
-    pub fn at_edge(lattice: &Lattice, rows: &Range<usize>, edge: Edge) -> Self {
-        let relative = |b: usize| f64::from(u8::from(edge.distance(lattice, b) == 0));
+impl Default for Slider {
+    fn default() -> Self {
         Self {
-            relative: lattice.blocks_of(rows).map(relative).collect(),
-            sum: edge.n_blocks(lattice) as f64,
+            stiffness: None,
+            density: None,
+            mean_mass: 1.0,
+            drive_springs: None,
+            outline: None,
+            viscosity_time: 0.0,
         }
     }
+}
 
+impl DriveSprings {
     /// Of the blocks that this rank holds, called by all `ranks` at once: the sum has the same bits however many they are.
     pub fn new(relative: Vec<f64>, ranks: &dyn Communicator) -> Self {
-        let mut largest = [relative.iter().copied().fold(0.0, f64::max)];
-        ranks.largest(&mut largest);
-        let fixed_point = FixedPoint::new(largest[0]);
-        let mut words = split(fixed_point.sum(relative.len(), |b| relative[b]));
-        ranks.sum(&mut words);
         Self {
-            sum: fixed_point.value(join(words)),
+            sum: sum_over(relative.len(), |b| relative[b], ranks),
             relative,
         }
     }
+}
+
+/// Sum of numbers that are not negative, one of each of the `n` blocks of every rank, with the same bits however many ranks there are.
+fn sum_over(n: usize, number: impl Fn(usize) -> f64, ranks: &dyn Communicator) -> f64 {
+    let mut largest = [(0..n).map(&number).fold(0.0, f64::max)];
+    ranks.largest(&mut largest);
+    let fixed_point = FixedPoint::new(largest[0]);
+    let mut words = split(fixed_point.sum(n, number));
+    ranks.sum(&mut words);
+    fixed_point.value(join(words))
 }
 
 impl Outline {
@@ -73,9 +84,69 @@ impl Outline {
             exists,
         }
     }
+
+    /// Which blocks of some rows belong to the disc that fills the lattice: those whose centres lie within half its shorter side of
+    /// its middle.
+    ///
+    /// ```
+    /// use slipfront::{Lattice, Outline};
+    /// let disc = Outline::disc(&Lattice::free(4, 4), 0..4);
+    /// let corners = [0, 3, 12, 15];
+    /// assert!((0..16).all(|b| disc[b] != corners.contains(&b)));
+    /// ```
+    pub fn disc(lattice: &Lattice, rows: Range<usize>) -> Vec<bool> {
+        let (nx, ny) = (lattice.nx as isize, lattice.ny as isize);
+        let diameter = nx.min(ny);
+        // Twice the distances from the middle are integers.
+        let distance = |place: usize, count: isize| 2 * place as isize + 1 - count;
+        let is_inside = |b: usize| {
+            let (i, j) = lattice.column_row(b);
+            distance(i, nx).pow(2) + distance(j, ny).pow(2) <= diameter.pow(2)
+        };
+        lattice.blocks_of(&rows).map(is_inside).collect()
+    }
 }
 
 impl Slider {
+    /// Blocks of these moduli and densities within an outline, of those that this rank holds; called by all `ranks` at once. Each
+    /// drive spring is as stiff as its block: `k_s,i = k_s E_i/E`.
+    pub fn new(
+        stiffness: Option<Vec<f64>>,
+        density: Option<Vec<f64>>,
+        outline: Option<Outline>,
+        ranks: &dyn Communicator,
+    ) -> Self {
+        let mut slider = Self {
+            stiffness,
+            density,
+            outline,
+            ..Self::default()
+        };
+        if let Some(density) = &slider.density {
+            let mass = |b: usize| if slider.exists(b) { density[b] } else { 0.0 };
+            let masses = sum_over(density.len(), mass, ranks);
+            let blocks = sum_over(density.len(), |b| f64::from(u8::from(slider.exists(b))), ranks);
+            slider.mean_mass = masses / blocks;
+        }
+        let stiffness = slider.stiffness.as_ref().map(Vec::len);
+        if let Some(n) = stiffness.or(slider.outline.as_ref().map(|outline| outline.exists.len())) {
+            let relative = |b: usize| match &slider.stiffness {
+                _ if !slider.exists(b) => 0.0,
+                Some(modulus) => modulus[b],
+                None => 1.0,
+            };
+            slider.drive_springs = Some(DriveSprings::new((0..n).map(relative).collect(), ranks));
+        }
+        slider
+    }
+
+    /// Number of blocks of the whole lattice that exist.
+    pub fn n_blocks(&self, lattice: &Lattice) -> usize {
+        self.outline
+            .as_ref()
+            .map_or(lattice.n_blocks(), |outline| outline.n_blocks)
+    }
+
     /// Mass of block `b`, in units of `rho l^3`.
     pub fn mass(&self, b: usize) -> f64 {
         self.density.as_ref().map_or(1.0, |density| density[b])
@@ -90,11 +161,23 @@ impl Slider {
         if self.exists(b) { relative } else { 0.0 }
     }
 
-    /// Number of blocks of the whole lattice that exist.
-    pub fn n_blocks(&self, lattice: &Lattice) -> usize {
-        self.outline
-            .as_ref()
-            .map_or(lattice.n_blocks(), |outline| outline.n_blocks)
+    /// Takes the drive springs away from all blocks but some of those that this rank holds, called by all `ranks` at once.
+    pub fn attach(&mut self, n_blocks: usize, is_attached: impl Fn(usize) -> bool, ranks: &dyn Communicator) {
+        let relative = |b: usize| if is_attached(b) { self.drive_spring(b) } else { 0.0 };
+        self.drive_springs = Some(DriveSprings::new((0..n_blocks).map(relative).collect(), ranks));
+    }
+
+    /// [`attach`](Self::attach) the blocks of one edge of the lattice, on the rank that holds these `rows`.
+    pub fn attach_edge(
+        &mut self,
+        lattice: &Lattice,
+        rows: &Range<usize>,
+        edge: Edge,
+        ranks: &dyn Communicator,
+    ) {
+        let blocks = lattice.blocks_of(rows);
+        let is_at_edge = |b: usize| edge.distance(lattice, blocks.start + b) == 0;
+        self.attach(blocks.len(), is_at_edge, ranks);
     }
 
     /// Sum of [`drive_spring`](Self::drive_spring) over the whole lattice.

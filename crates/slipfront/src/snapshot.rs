@@ -48,7 +48,7 @@ impl Snapshot<'_> {
     }
 
     /// Writes `field` of every block, row by row from y = 0, into `values`: the same numbers as
-    /// [`Field::value`] of every [`block`](Self::block), rounded to `f32`.
+    /// [`Field::value`] of every [`block`](Self::block), rounded to `f32`; NaN where no block exists.
     ///
     /// # Panics
     /// If there is not one value per block.
@@ -64,8 +64,30 @@ impl Snapshot<'_> {
     /// Values of `field` in every `stride`-th row, several blocks of a row at a time: `write` is given the row, the column
     /// of the first value, and the values.
     pub(crate) fn read_rows(&self, field: Field, stride: usize, mut write: impl FnMut(usize, usize, &[f32])) {
+        let Some(outline) = &self.model.slider.outline else {
+            return self
+                .engine
+                .read_rows(self.model, self.step, field, stride, &mut write);
+        };
+        // Where there is no block there is no value.
+        const WIDTH: usize = 128;
+        let mut leave_out = |j: usize, i: usize, part: &[f32]| {
+            for (first, part) in (i..).step_by(WIDTH).zip(part.chunks(WIDTH)) {
+                let exists = &outline.exists[self.model.lattice.block(first, j)..];
+                let mut values = [f32::NAN; WIDTH];
+                for ((value, read), _) in values
+                    .iter_mut()
+                    .zip(part)
+                    .zip(exists)
+                    .filter(|(_, exists)| **exists)
+                {
+                    *value = *read;
+                }
+                write(j, first, &values[..part.len()]);
+            }
+        };
         self.engine
-            .read_rows(self.model, self.step, field, stride, &mut write);
+            .read_rows(self.model, self.step, field, stride, &mut leave_out);
     }
 
     /// Energies stored now.

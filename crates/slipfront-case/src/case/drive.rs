@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use slipfront::lattice::K_DRIVE;
-use slipfront::{Communicator, Drive, DriveSprings, Lattice, Program, Rotation, Scales, Slider};
+use slipfront::{Communicator, Drive, Lattice, Program, Rotation, Scales, Slider};
 
 use super::groups::{Groups, within};
 use super::inputs::Inputs;
@@ -33,32 +33,28 @@ pub(super) fn attached(
     read_mask(file, "drive.attach_file", &mask, inputs, watch).map(Some)
 }
 
-/// The drive springs of these rows, called by all ranks at once; none if every block has one.
-pub(super) fn drive_springs(
+/// Leaves drive springs to the blocks of these rows alone that the case attaches, called by all ranks at once.
+pub(super) fn attach(
+    slider: &mut Slider,
     file: &CaseFile,
     lattice: &Lattice,
     rows: &Range<usize>,
     attached: Option<Vec<bool>>,
     ranks: &dyn Communicator,
-) -> Result<Option<DriveSprings>, CaseError> {
-    let edge = file.drive.edge();
-    let springs = match attached {
-        None => edge.map(|edge| DriveSprings::at_edge(lattice, rows, edge)),
-        Some(attached) => {
-            let relative = attached.into_iter().map(|attached| f64::from(u8::from(attached)));
-            Some(DriveSprings::new(relative.collect(), ranks))
-        }
-    };
-    match springs {
-        Some(springs) if springs.sum == 0.0 => {
-            let sentence = "the file leaves no block attached, so that nothing pulls the slider: 1 or a dark pixel attaches a block";
-            Err(file.source.error("drive.attach_file", sentence))
-        }
-        springs => Ok(springs),
+) -> Result<(), CaseError> {
+    match (attached, file.drive.edge()) {
+        (Some(attached), _) => slider.attach(attached.len(), |b| attached[b], ranks),
+        (None, Some(edge)) => slider.attach_edge(lattice, rows, edge, ranks),
+        (None, None) => {}
     }
+    if slider.sum_of_drive_springs(lattice) == 0.0 {
+        let sentence = "the file attaches no block, so that nothing pulls the slider: 1 or a dark pixel attaches a block";
+        return Err(file.source.error("drive.attach_file", sentence));
+    }
+    Ok(())
 }
 
-/// The drive of a slider that is complete but for it.
+/// The drive of a slider. Springs that are not all alike have what they have together in proportion to their relative stiffness.
 pub(super) fn drive(
     file: &CaseFile,
     scales: &Scales,
@@ -67,7 +63,6 @@ pub(super) fn drive(
     lattice: &Lattice,
     slider: &Slider,
 ) -> Result<Drive, CaseError> {
-    let n_attached = slider.sum_of_drive_springs(lattice);
     let key = match file.drive.stiffness {
         DriveStiffness::Auto | DriveStiffness::Each(_) => "drive.stiffness",
         DriveStiffness::EachStar(_) => "drive.stiffness_star",
@@ -75,7 +70,7 @@ pub(super) fn drive(
         DriveStiffness::TotalStar(_) => "drive.total_stiffness_star",
     };
     let k_drive = match total(file, scales) {
-        Some(total) => total / n_attached,
+        Some(total) => total / slider.sum_of_drive_springs(lattice),
         None => each(file, scales),
     };
     within(

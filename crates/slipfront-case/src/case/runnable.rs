@@ -9,7 +9,7 @@ use slipfront::{Communicator, FrictionLaw, Kernel, Lattice, Model, Scales, Slide
 
 use super::budget::Budget;
 use super::coefficients::{coefficients, contact};
-use super::drive::{attached, drive, drive_springs, refuse_large_angles};
+use super::drive::{attach, attached, drive, refuse_large_angles};
 use super::groups::Groups;
 use super::inputs::{Input, Inputs, NamedFiles};
 use super::kernel::kernel;
@@ -162,17 +162,21 @@ impl Case {
             Ok((meshed, coefficients, contact, attached(&file, &inputs, watch)?))
         });
         let ((meshed, asked_percent), coefficients, contact, attached) = ranks.agree(made)?;
-        let surface = Surface::of_ranks(coefficients, meshed.textured, contact, ranks.communicator)
-            .map_err(|error| file.source.error("texture", error.to_string()))?;
+        let mut slider = Slider::default();
+        attach(&mut slider, &file, &lattice, &rows, attached, ranks.communicator)?;
+        let surface = Surface::of_ranks(
+            coefficients,
+            meshed.textured,
+            contact,
+            &slider,
+            ranks.communicator,
+        )
+        .map_err(|error| file.source.error("texture", error.to_string()))?;
         let texture = TextureReport {
             asked_percent,
             meshed_percent: surface.texture_percent(),
             clipped: meshed.clipped,
             empty: empty_on_all(&meshed.empty, file.texture.len(), ranks.communicator),
-        };
-        let slider = Slider {
-            drive_springs: drive_springs(&file, &lattice, &rows, attached, ranks.communicator)?,
-            ..Slider::default()
         };
         let drive = drive(&file, &scales, &groups, &time_plan, &lattice, &slider)?;
         refuse_large_angles(&file, &drive, groups.epsilon, time_plan.end_star())?;

@@ -4,8 +4,12 @@
 //! `P mu_s l^2`). The tests under `tests/physics` hold the kernels against them.
 
 mod edge_drive;
+mod sliders;
 
-pub use edge_drive::precursor_load;
+pub use self::edge_drive::precursor_load;
+pub use self::sliders::{
+    PairMode, composite_peak, graded_first_slip_time_star, lagged_decay_rate, pair_modes, viscous_decay_rate,
+};
 
 use crate::lattice::{K_DIAGONAL, K_DRIVE, K_STRAIGHT};
 use crate::scales::damping;

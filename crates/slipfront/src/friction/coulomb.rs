@@ -62,6 +62,16 @@ impl Integrator {
         }
     }
 
+    /// That of a block of another mass: damping goes with the mass.
+    #[inline(always)]
+    pub(crate) fn of_mass(self, mass: f64) -> Self {
+        Self {
+            force_to_velocity: self.force_to_velocity / mass,
+            velocity_to_force: self.velocity_to_force * mass,
+            ..self
+        }
+    }
+
     /// Velocity at `t + dt/2` under a force alone (Eqs. 5-8): `(c- v + dt F/m)/c+`.
     #[inline(always)]
     fn accelerate(&self, velocity: [f64; 2], force: [f64; 2]) -> [f64; 2] {

@@ -36,6 +36,11 @@ pub(crate) trait Engine: Send + Sync {
     /// Largest square of a contact stress of a block in contact at any step so far.
     fn stress_square_max(&self, model: &Model, number: u64) -> f64;
 
+    /// Power that the dampers between blocks take at the present step, `-sum F_v . v`; of a kernel that knows none, 0.
+    fn viscous_power(&self) -> f64 {
+        0.0
+    }
+
     /// Bounds that a checkpoint keeps, of a kernel that has any.
     fn motion_bounds(&self) -> Option<MotionBounds>;
 

@@ -19,6 +19,8 @@ pub struct Energies {
     pub friction_loss: f64,
     /// Lost to damping since the start.
     pub damping_loss: f64,
+    /// Lost to the dampers between blocks since the start.
+    pub viscous_loss: f64,
     /// Energy stored at the start.
     pub stored_at_start: f64,
 }
@@ -34,13 +36,13 @@ impl Energies {
     /// of a slip, at most `(mu_k F_n dt)^2/2`. While all blocks slide the error is that of rounding.
     pub fn error(&self) -> f64 {
         let supplied = self.work.abs() + self.stored_at_start;
-        let missing =
-            self.work - (self.stored.total() - self.stored_at_start) - self.friction_loss - self.damping_loss;
+        let losses = self.friction_loss + self.damping_loss + self.viscous_loss;
+        let missing = self.work - (self.stored.total() - self.stored_at_start) - losses;
         if supplied > 0.0 { missing / supplied } else { 0.0 }
     }
 }
 
-/// The pull of the drive at one instant, and powers: of a constant force, of friction and of damping.
+/// The pull of the drive at one instant, and powers: of a constant force, of friction, of damping and of the dampers between blocks.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Powers {
     /// `sum F_s . d`, the force that moves along the path of the drive; of a rotation the torque over the largest radius.
@@ -48,6 +50,7 @@ struct Powers {
     constant_force: f64,
     friction: f64,
     damping: f64,
+    viscous: f64,
 }
 
 impl Powers {
@@ -63,6 +66,7 @@ impl Powers {
             constant_force: dot(model.drive.constant_force, totals.velocity),
             friction: -totals.friction_power,
             damping: model.damping * totals.velocity_square,
+            viscous: now.engine.viscous_power(),
         }
     }
 }
@@ -86,6 +90,7 @@ impl Ledger {
                 self.totals.work += half * (before.work(speed) + powers.work(speed));
                 self.totals.friction_loss += half * (before.friction + powers.friction);
                 self.totals.damping_loss += half * (before.damping + powers.damping);
+                self.totals.viscous_loss += half * (before.viscous + powers.viscous);
             }
             None => self.totals.stored_at_start = now.stored_energy().total(),
         }

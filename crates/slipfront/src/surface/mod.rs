@@ -22,13 +22,14 @@ use self::whole::Whole;
 use crate::communicator::{Alone, Communicator};
 use crate::error::SurfaceError;
 use crate::lattice::Lattice;
+use crate::slider::Slider;
 
 /// Friction of every block; arrays have one value per block that this process holds.
 ///
 /// Its methods on the whole surface tell what the arrays were when it was made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
-    /// Whether a block lies over a texture and so has no contact with the substrate.
+    /// Whether a block has no contact with the substrate: it lies over a texture, or does not exist.
     pub textured: Vec<bool>,
     /// Local static coefficients `mu_si`; 0 over a texture.
     pub mu_static: Vec<f64>,
@@ -51,18 +52,20 @@ impl Surface {
         load: Load,
         mu_static_mean: f64,
     ) -> Result<Self, SurfaceError> {
-        Self::of_ranks(coefficients, textured, Contact::new(load, mu_static_mean), &Alone)
+        let contact = Contact::new(load, mu_static_mean);
+        Self::of_ranks(coefficients, textured, contact, &Slider::default(), &Alone)
     }
 
-    /// The surface of the blocks that this rank holds, called by all `ranks` of a lattice at once. What depends on the
-    /// whole surface has the same bits on all of them, however many they are. Fails when no block is left in contact.
+    /// The surface under the blocks of `slider` that this rank holds, called by all `ranks` of a lattice at once. What depends on
+    /// the whole surface has the same bits on all of them, however many they are. Fails when no block is left in contact.
     ///
     /// # Panics
     /// Unless coefficients, texture and pressures are of the same number of blocks.
     pub fn of_ranks(
         mut coefficients: Coefficients,
-        textured: Vec<bool>,
+        mut textured: Vec<bool>,
         contact: Contact,
+        slider: &Slider,
         ranks: &dyn Communicator,
     ) -> Result<Self, SurfaceError> {
         let n = textured.len();
@@ -74,11 +77,22 @@ impl Surface {
             [n; 2],
             "coefficients, pressures and texture belong to different lattices"
         );
+        if let Some(outline) = &slider.outline {
+            for (textured, exists) in textured.iter_mut().zip(&outline.exists) {
+                *textured |= !exists;
+            }
+        }
         for b in (0..n).filter(|&b| textured[b]) {
             coefficients.mu_static[b] = 0.0;
             coefficients.mu_kinetic[b] = 0.0;
         }
-        let whole = Whole::find(&coefficients, &textured, contact.pressure.as_deref(), ranks);
+        let whole = Whole::find(
+            &coefficients,
+            &textured,
+            contact.pressure.as_deref(),
+            slider.outline.as_ref(),
+            ranks,
+        );
         if whole.sum_pressure[1] <= 0.0 {
             let n_blocks = whole.n_blocks;
             return Err(SurfaceError::NoContact { n_blocks });
@@ -93,7 +107,8 @@ impl Surface {
             min_slip_threshold: f64::NAN,
         };
         let in_contact = (0..n).into_par_iter().filter(|&b| !surface.textured[b]);
-        let thresholds = in_contact.map(|b| surface.static_limit(b).max(surface.kinetic_force(b)));
+        let thresholds = in_contact
+            .map(|b| surface.static_limit(b).max(surface.kinetic_force(b)) / slider.drive_spring(b));
         let mut largest_negative = [-thresholds.reduce(|| f64::INFINITY, f64::min)];
         ranks.largest(&mut largest_negative);
         surface.min_slip_threshold = -largest_negative[0];
@@ -178,12 +193,12 @@ impl Surface {
         self.whole.sum_kinetic / self.whole.n_contact as f64
     }
 
-    /// Mean of the local pressures over all blocks, in units of `P`.
+    /// Mean of the local pressures over all blocks that exist, in units of `P`.
     pub fn mean_pressure(&self) -> f64 {
         self.whole.sum_pressure[0] / self.whole.n_blocks as f64
     }
 
-    /// Mean kinetic friction over all blocks, textured ones included: `mean(mu_ki F_n,i + tau_ak l^2)` in units of `P mu_s l^2`.
+    /// Mean kinetic friction over all blocks that exist, textured ones included: `mean(mu_ki F_n,i + tau_ak l^2)` in units of `P mu_s l^2`.
     pub fn mean_kinetic_force(&self) -> f64 {
         let whole = &self.whole;
         let sum = whole.sum_kinetic_pressure / self.contact.mu_static_mean * self.load_factor;
@@ -191,7 +206,7 @@ impl Surface {
     }
 
     /// The smallest force that makes a block in contact slip, the larger of its static threshold and its kinetic friction
-    /// (D12), over the whole surface.
+    /// (D12), over the whole surface; each over the relative stiffness of the drive spring that exerts it.
     pub fn min_slip_threshold(&self) -> f64 {
         self.min_slip_threshold
     }

@@ -8,10 +8,12 @@ use rayon::prelude::*;
 use super::coefficients::Coefficients;
 use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, join, split};
+use crate::slider::Outline;
 
 /// Numbers of the whole surface, the same to the last bit on every rank and for any number of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Whole {
+    /// Blocks that exist.
     pub(super) n_blocks: usize,
     pub(super) n_contact: usize,
     pub(super) negative_draws: usize,
@@ -21,7 +23,7 @@ pub(super) struct Whole {
     pub(super) sum_kinetic: f64,
     /// `sum mu_ki p_i/P` over the blocks in contact.
     pub(super) sum_kinetic_pressure: f64,
-    /// `sum p_i/P` over all blocks, and over those in contact.
+    /// `sum p_i/P` over all blocks that exist, and over those in contact.
     pub(super) sum_pressure: [f64; 2],
 }
 
@@ -32,17 +34,23 @@ const PART: usize = 1 << 16;
 const SUMS: usize = 5;
 
 impl Whole {
-    /// Found with all other ranks that hold a part of the surface, of coefficients that are 0 over a texture, and of local
-    /// pressures in units of `P`, 1 everywhere if there are none.
+    /// Found with all other ranks that hold a part of the surface, of coefficients that are 0 over a texture and where there is no
+    /// block, which counts as textured, and of local pressures in units of `P`, 1 everywhere if there are none.
     pub(super) fn find(
         coefficients: &Coefficients,
         textured: &[bool],
         pressure: Option<&[f64]>,
+        outline: Option<&Outline>,
         ranks: &dyn Communicator,
     ) -> Self {
         let [mu_static, mu_kinetic] = [&coefficients.mu_static, &coefficients.mu_kinetic];
         let terms = |b: usize| {
-            let p = pressure.map_or(1.0, |pressure| pressure[b]);
+            let exists = outline.is_none_or(|outline| outline.exists[b]);
+            let p = match pressure {
+                _ if !exists => 0.0,
+                Some(pressure) => pressure[b],
+                None => 1.0,
+            };
             let contact = if textured[b] { 0.0 } else { p };
             [mu_static[b], mu_kinetic[b], mu_kinetic[b] * p, p, contact]
         };
@@ -74,7 +82,7 @@ impl Whole {
         ranks.sum(words.as_flattened_mut());
         let value = |k: usize| fixed[k].value(join(words[k]));
         Self {
-            n_blocks: words[SUMS][0] as usize,
+            n_blocks: outline.map_or(words[SUMS][0] as usize, |outline| outline.n_blocks),
             n_contact: words[SUMS][1] as usize,
             negative_draws: words[SUMS + 1][0] as usize,
             sum_static: value(0),
@@ -102,7 +110,7 @@ mod tests {
         }
         coefficients.mu_static[PART + 1] = 1e6;
         (coefficients.mu_static[n - 1], coefficients.mu_kinetic[n - 1]) = (0.0, 1.0);
-        let found = Whole::find(&coefficients, &textured, None, &Alone);
+        let found = Whole::find(&coefficients, &textured, None, None, &Alone);
         let expected = Whole {
             n_blocks: n,
             n_contact: n - 3,
@@ -115,7 +123,7 @@ mod tests {
         assert_eq!(found, expected);
         // Half the pressure on every other block, from the first on; of those without contact, one has the whole.
         let pressure: Vec<f64> = (0..n).map(|b| if b % 2 == 0 { 0.5 } else { 1.0 }).collect();
-        let found = Whole::find(&coefficients, &textured, Some(&pressure), &Alone);
+        let found = Whole::find(&coefficients, &textured, Some(&pressure), None, &Alone);
         let all = 0.5 * (n.div_ceil(2)) as f64 + (n / 2) as f64;
         assert_eq!(found.sum_pressure, [all, all - 2.0]);
         // The last block has an even index and the coefficient 1.

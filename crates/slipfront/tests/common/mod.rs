@@ -11,8 +11,8 @@ use slipfront::surface::{
     mesh, mesh_watched, pressure_along,
 };
 use slipfront::{
-    Communicator, Drive, Edges, Execution, FrictionLaw, Lattice, Model, Simulation, State, Stop, Surface,
-    VectorField, scales,
+    Communicator, Drive, Edges, Execution, FrictionLaw, Lattice, Model, Outline, Simulation, State, Stop,
+    Surface, VectorField, scales,
 };
 
 /// A slider at rest, stepped by the kernel that this binary tests.
@@ -39,6 +39,8 @@ pub(crate) struct Slider {
     pub(crate) blocks: [usize; 2],
     pub(crate) edges: [Edges; 2],
     pub(crate) textures: Vec<Texture>,
+    /// What differs from block to block, of the whole lattice.
+    pub(crate) body: slipfront::Slider,
     pub(crate) load: Load,
     /// Axis and relative slope of a pressure that rises along it.
     pub(crate) pressure: Option<(usize, f64)>,
@@ -61,6 +63,7 @@ impl Default for Slider {
             blocks: [25, 25],
             edges: [Edges::Free; 2],
             textures: Vec::new(),
+            body: slipfront::Slider::default(),
             load: Load::Redistributed,
             pressure: None,
             adhesion: Adhesion::default(),
@@ -119,7 +122,8 @@ impl Slider {
     pub(crate) fn surface(&self) -> Surface {
         let lattice = self.lattice();
         let textured = mesh(&lattice, &self.textures).textured;
-        Surface::of_ranks(self.coefficients(), textured, self.contact(0..lattice.ny), &Alone).unwrap()
+        let contact = self.contact(0..lattice.ny);
+        Surface::of_ranks(self.coefficients(), textured, contact, &self.body, &Alone).unwrap()
     }
 
     /// Load and adhesion of some rows.
@@ -133,14 +137,18 @@ impl Slider {
     }
 
     pub(crate) fn model(&self) -> Model {
-        Model::new(
+        let model = Model::new(
             self.lattice(),
             self.surface(),
             Drive::at_angle(self.v_star, self.degrees),
             scales::damping(self.omega_star),
             self.epsilon,
             self.law,
-        )
+        );
+        Model {
+            slider: self.body.clone(),
+            ..model
+        }
     }
 
     /// The model of one of several ranks.
@@ -149,8 +157,8 @@ impl Slider {
         let rows = lattice.rows_of(rank);
         let Ok(meshed) = mesh_watched::<Infallible>(&lattice, &rows, &self.textures, &mut |_| Ok(()));
         let coefficients = self.coefficients_of(lattice.blocks_of(&rows));
-        let surface =
-            Surface::of_ranks(coefficients, meshed.textured, self.contact(rows.clone()), rank).unwrap();
+        let contact = self.contact(rows.clone());
+        let surface = Surface::of_ranks(coefficients, meshed.textured, contact, &self.body, rank).unwrap();
         Model::of_rows(
             lattice,
             rows,
@@ -215,6 +223,23 @@ impl Slider {
         let from = KineticStart::Auto.time_star(&simulation.peak(), self.v_star);
         history.kinetic(from, self.dt_star)
     }
+}
+
+/// A slider of `n` blocks that all differ: moduli from 0.25 to 1, densities from 0.5 to 1.5; one block in nine does not exist if it
+/// has an outline.
+pub(crate) fn varied(n: usize, has_outline: bool) -> slipfront::Slider {
+    let wave = |k: f64, low: f64, high: f64| -> Vec<f64> {
+        let one = |b: usize| 0.5 * (low + high) + 0.5 * (high - low) * (k * b as f64 + 2.0).sin();
+        (0..n).map(one).collect()
+    };
+    let exists = || (0..n).map(|b| b * b % 9 != 4).collect();
+    let outline = has_outline.then(|| Outline::new(exists(), &Alone));
+    slipfront::Slider::new(
+        Some(wave(1.3, 0.25, 1.0)),
+        Some(wave(2.3, 0.5, 1.5)),
+        outline,
+        &Alone,
+    )
 }
 
 /// Blocks displaced by up to `size`, every `apart`-th of them with a velocity.

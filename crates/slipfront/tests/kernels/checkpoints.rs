@@ -6,7 +6,7 @@ use slipfront::observe::frames::Selection;
 use slipfront::observe::{Curve, Field, Instants, KineticHistory, KineticStart, Scheduled};
 use slipfront::{Execution, FrictionLaw, Simulation, Stop};
 
-use crate::common::{Slider, cavity};
+use crate::common::{Slider, cavity, varied};
 use crate::{FUSED, REFERENCE, bits, resumed, stopped_and_resumed};
 
 fn slider(law: FrictionLaw) -> Slider {
@@ -47,7 +47,27 @@ fn the_reference_kernel_under_every_law(
     #[values(FrictionLaw::Projection, FrictionLaw::Reversal, FrictionLaw::Literal)] law: FrictionLaw,
     #[values(1, 7)] every: u64,
 ) {
-    let slider = slider(law);
+    goes_on_from_checkpoints(&slider(law), every);
+}
+
+/// Blocks that all differ, with dampers beside their springs.
+fn unequal(has_outline: bool) -> slipfront::Slider {
+    slipfront::Slider {
+        viscosity_time: 0.2,
+        ..varied(120, has_outline)
+    }
+}
+
+#[rstest]
+fn sliders_of_unequal_blocks(#[values(1, 7)] every: u64, #[values(false, true)] has_outline: bool) {
+    let slider = Slider {
+        body: unequal(has_outline),
+        ..slider(FrictionLaw::Projection)
+    };
+    goes_on_from_checkpoints(&slider, every);
+}
+
+fn goes_on_from_checkpoints(slider: &Slider, every: u64) {
     let (model, dt_star) = (slider.model(), slider.dt_star);
     let start = || Simulation::with_execution(model.clone(), dt_star, None, REFERENCE);
     let (mut plain, mut stopped) = (start(), start());
@@ -76,8 +96,12 @@ fn the_reference_kernel_under_every_law(
 fn observers_see_every_instant_once(
     #[values(REFERENCE, FUSED)] execution: Execution,
     #[values(1, 13, 250)] piece: u64,
+    #[values(slipfront::Slider::default(), unequal(false))] body: slipfront::Slider,
 ) {
-    let slider = slider(FrictionLaw::Projection);
+    let slider = Slider {
+        body,
+        ..slider(FrictionLaw::Projection)
+    };
     let (model, dt_star) = (slider.model(), slider.dt_star);
     let last_step = slider.steps(6.0);
     let stop = Stop::at_step(last_step);

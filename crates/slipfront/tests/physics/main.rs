@@ -11,17 +11,24 @@ use slipfront::Kernel;
 /// The kernel of the simulations of this binary.
 const KERNEL: Kernel = Kernel::Fused;
 
+mod composite;
+mod edge_drive;
 mod energy;
 mod first_slip;
 mod front_speed;
+mod graded;
 mod lattice_waves;
 mod load_and_adhesion;
 mod observables;
+mod oracle_sliders;
+mod outline;
 mod scale_invariance;
 mod shapes;
 mod slip_cycle;
 mod springs;
+mod stability;
 mod steady_sliding;
 mod straight_groove;
 mod symmetry;
 mod texture;
+mod viscosity;

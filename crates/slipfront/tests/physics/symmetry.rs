@@ -2,10 +2,11 @@
 //! bit, through onset and far beyond.
 
 use rstest::rstest;
-use slipfront::surface::{Coefficients, Load, Texture, mesh};
-use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Surface, scales};
+use slipfront::communicator::Alone;
+use slipfront::surface::{Coefficients, Contact, Load, Texture, mesh};
+use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Outline, Surface, scales};
 
-use crate::common::{Slider, at_rest, cavity};
+use crate::common::{Slider, at_rest, cavity, varied};
 
 /// A symmetry of the square: first a mirror at the x axis, if any, then quarter turns to the left.
 #[derive(Clone, Copy, Debug)]
@@ -61,31 +62,63 @@ fn models(slider: &Slider, operation: Operation) -> [Model; 2] {
         let to = image(operation, slider.blocks, &turned, &lattice, b);
         (mu_static[to], mu_kinetic[to], cut[to]) = (drawn.mu_static[b], drawn.mu_kinetic[b], over);
     }
+    let images: Vec<usize> = (0..n)
+        .map(|b| image(operation, slider.blocks, &turned, &lattice, b))
+        .collect();
     let drive = Drive::at_angle(slider.v_star, slider.degrees);
     let turned_drive = Drive {
         direction: operation.vector(drive.direction),
         ..drive.clone()
     };
-    let model = |lattice, coefficients, textured, drive| {
-        let surface = Surface::new(coefficients, textured, Load::Redistributed, 1.0).unwrap();
-        Model::new(
+    let model = |lattice, body: slipfront::Slider, coefficients, textured, drive| {
+        let contact = Contact::new(Load::Redistributed, 1.0);
+        let surface = Surface::of_ranks(coefficients, textured, contact, &body, &Alone).unwrap();
+        let model = Model::new(
             lattice,
             surface,
             drive,
             scales::damping(slider.omega_star),
             slider.epsilon,
             slider.law,
-        )
+        );
+        Model {
+            slider: body,
+            ..model
+        }
     };
     [
-        model(lattice, drawn, textured, drive),
+        model(lattice, slider.body.clone(), drawn, textured, drive),
         model(
             turned,
+            moved(&slider.body, &images),
             Coefficients::given(mu_static, mu_kinetic),
             cut,
             turned_drive,
         ),
     ]
+}
+
+/// The slider whose blocks have gone to these places.
+fn moved(body: &slipfront::Slider, to: &[usize]) -> slipfront::Slider {
+    fn moved<T: Copy + Default>(values: &[T], to: &[usize]) -> Vec<T> {
+        let mut moved = vec![T::default(); to.len()];
+        for (value, &to) in values.iter().zip(to) {
+            moved[to] = *value;
+        }
+        moved
+    }
+    let moved_field = |field: &Option<Vec<f64>>| field.as_ref().map(|values| moved(values, to));
+    let outline = body.outline.as_ref();
+    let outline = outline.map(|outline| Outline::new(moved(&outline.exists, to), &Alone));
+    slipfront::Slider {
+        viscosity_time: body.viscosity_time,
+        ..slipfront::Slider::new(
+            moved_field(&body.stiffness),
+            moved_field(&body.density),
+            outline,
+            &Alone,
+        )
+    }
 }
 
 fn image(operation: Operation, blocks: [usize; 2], turned: &Lattice, lattice: &Lattice, b: usize) -> usize {
@@ -152,6 +185,37 @@ fn every_symmetry_of_the_square_is_exact(
         edges,
         degrees,
         textures: vec![off_centre(blocks)],
+        ..Slider::default()
+    };
+    assert_turns_exactly(
+        &slider,
+        Operation { mirror, quarters },
+        slider.steps(5.0) as usize,
+    );
+}
+
+/// Blocks that all differ, some of which do not exist, with dampers beside their springs.
+#[rstest]
+fn sliders_of_unequal_blocks_too(
+    #[values((false, 1), (false, 2), (true, 0), (true, 1))] (mirror, quarters): (bool, usize),
+    #[values(0.0, 0.3)] viscosity_time: f64,
+    #[values(true, false)] has_outline: bool,
+) {
+    let blocks = [8, 13];
+    let edges = if has_outline {
+        [Edges::Free; 2]
+    } else {
+        [Edges::Periodic, Edges::Free]
+    };
+    let slider = Slider {
+        blocks,
+        edges,
+        degrees: 30.0,
+        textures: vec![off_centre(blocks)],
+        body: slipfront::Slider {
+            viscosity_time,
+            ..varied(104, has_outline)
+        },
         ..Slider::default()
     };
     assert_turns_exactly(

@@ -10,24 +10,34 @@ use slipfront::Kernel;
 /// The kernel of the simulations of this binary.
 const KERNEL: Kernel = Kernel::Reference;
 
+#[path = "../physics/composite.rs"]
+mod composite;
 #[path = "../physics/energy.rs"]
 mod energy;
 #[path = "../physics/first_slip.rs"]
 mod first_slip;
 #[path = "../physics/front_speed.rs"]
 mod front_speed;
+#[path = "../physics/graded.rs"]
+mod graded;
 #[path = "../physics/lattice_waves.rs"]
 mod lattice_waves;
 #[path = "../physics/load_and_adhesion.rs"]
 mod load_and_adhesion;
 #[path = "../physics/observables.rs"]
 mod observables;
+#[path = "../physics/oracle_sliders.rs"]
+mod oracle_sliders;
+#[path = "../physics/outline.rs"]
+mod outline;
 #[path = "../physics/scale_invariance.rs"]
 mod scale_invariance;
 #[path = "../physics/shapes.rs"]
 mod shapes;
 #[path = "../physics/slip_cycle.rs"]
 mod slip_cycle;
+#[path = "../physics/stability.rs"]
+mod stability;
 #[path = "../physics/steady_sliding.rs"]
 mod steady_sliding;
 #[path = "../physics/straight_groove.rs"]
@@ -36,3 +46,5 @@ mod straight_groove;
 mod symmetry;
 #[path = "../physics/texture.rs"]
 mod texture;
+#[path = "../physics/viscosity.rs"]
+mod viscosity;

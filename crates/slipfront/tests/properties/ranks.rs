@@ -16,7 +16,7 @@ fn make(slider: &Slider, rank: &dyn Communicator) -> (Meshed, Surface) {
         mesh_watched::<std::convert::Infallible>(&lattice, &rows, &slider.textures, &mut |_| Ok(()));
     let coefficients = slider.coefficients_of(lattice.blocks_of(&rows));
     let textured = meshed.textured.clone();
-    let surface = Surface::of_ranks(coefficients, textured, slider.contact(rows), rank);
+    let surface = Surface::of_ranks(coefficients, textured, slider.contact(rows), &slider.body, rank);
     (meshed, surface.unwrap())
 }
 

@@ -6,17 +6,20 @@
 
 mod drive;
 mod springs;
+mod weighted;
 
 use fearless_simd::{Level, dispatch};
 
 use self::drive::DrivenBlocks;
-use self::springs::{lattice_energy, lattice_forces};
+use self::springs::{damper_forces, lattice_energy, lattice_forces};
+use self::weighted::weighted_sum;
 use super::block::{Block, Field};
 use super::engine::Engine;
 use super::totals::{StoredEnergy, Totals};
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::fixed_point;
 use crate::friction::{BlockState, Friction, FrictionLaw, Integrator, Law, Literal, Projection, Reversal};
+use crate::lattice::Bond;
 use crate::model::Model;
 use crate::reductions;
 use crate::state::State;
@@ -36,6 +39,12 @@ pub(crate) struct Reference {
     /// `mu_k F_n`.
     kinetic_force: Vec<f64>,
     driven: DrivenBlocks,
+    /// Relative stiffness of the spring of every block along each bond, if they are not all alike.
+    relative_springs: Option<[Vec<f64>; 4]>,
+    /// Forces of the dampers beside the springs, if there are any.
+    dampers: Option<VectorField>,
+    /// Power that these take.
+    viscous_power: f64,
     first_slip: Vec<f64>,
     stress_square_max: f64,
 }
@@ -44,6 +53,7 @@ pub(crate) struct Reference {
 #[derive(Clone, Debug, PartialEq)]
 struct Forces {
     drive: VectorField,
+    /// Of the springs between blocks and the dampers beside them.
     lattice: VectorField,
     friction: VectorField,
     /// Velocities after the update within a step; between steps those before it.
@@ -57,6 +67,8 @@ impl Reference {
     pub(crate) fn new(model: &Model, dt_star: f64, state: State) -> Self {
         let n = model.lattice.n_blocks();
         let zeros = || VectorField::zeros(n);
+        let slider = &model.slider;
+        let springs = || Bond::ALL.map(|bond| slider.springs_along(&model.lattice, &bond));
         Self {
             dt_star,
             started: false,
@@ -72,6 +84,9 @@ impl Reference {
             static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
             kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
             driven: DrivenBlocks::of(model),
+            relative_springs: (!slider.has_equal_springs()).then(springs),
+            dampers: (slider.viscosity_time > 0.0).then(zeros),
+            viscous_power: 0.0,
             first_slip: vec![f64::NAN; n],
             stress_square_max: 0.0,
         }
@@ -112,19 +127,21 @@ impl Reference {
         }
         let displacement = &self.state.displacement;
         self.driven
-            .forces(&model.drive, displacement, time_star, &mut self.forces.drive);
-        lattice_forces(
-            model,
-            &self.state,
-            &mut self.forces.lattice,
-            &mut self.forces.springs,
-        );
+            .forces(model, displacement, time_star, &mut self.forces.drive);
+        let Forces { lattice, springs, .. } = &mut self.forces;
+        let relative = self.relative_springs.as_ref();
+        lattice_forces(model, &self.state, relative, lattice, springs);
+        if let Some(dampers) = &mut self.dampers {
+            damper_forces(model, &self.state, relative, dampers, springs);
+            add_to(&mut lattice.x, &dampers.x);
+            add_to(&mut lattice.y, &dampers.y);
+        }
         let integrator = Integrator::new(model.damping, self.dt_star);
         match model.friction {
             Friction::Coulomb(coulomb) => match coulomb.law {
-                FrictionLaw::Projection => self.friction_forces(&Projection, &integrator),
-                FrictionLaw::Reversal => self.friction_forces(&Reversal, &integrator),
-                FrictionLaw::Literal => self.friction_forces(&Literal, &integrator),
+                FrictionLaw::Projection => self.friction_forces(model, &Projection, integrator),
+                FrictionLaw::Reversal => self.friction_forces(model, &Reversal, integrator),
+                FrictionLaw::Literal => self.friction_forces(model, &Literal, integrator),
             },
             Friction::RateAndState(_) | Friction::ContactSprings(_) => todo!(),
         }
@@ -133,7 +150,15 @@ impl Reference {
 
     /// Eqs. 4-7: friction and damping, and the velocity half a step later.
     #[inline(always)]
-    fn friction_forces<L: Law>(&mut self, law: &L, integrator: &Integrator) {
+    fn friction_forces<L: Law>(&mut self, model: &Model, law: &L, integrator: Integrator) {
+        match &model.slider.density {
+            None => self.friction_of_masses(law, |_| integrator),
+            Some(mass) => self.friction_of_masses(law, |b| integrator.of_mass(mass[b])),
+        }
+    }
+
+    #[inline(always)]
+    fn friction_of_masses<L: Law>(&mut self, law: &L, integrator: impl Fn(usize) -> Integrator) {
         let (forces, before) = (&mut self.forces, &self.state.velocity);
         let (drive, lattice) = (&forces.drive, &forces.lattice);
         apply_friction(
@@ -167,8 +192,9 @@ impl Reference {
         let [lx, ly] = components(&self.forces.lattice, n);
         let [fx, fy] = components(&self.forces.friction, n);
         let (textured, slides) = (&model.surface.textured[..n], &self.forces.slides[..n]);
-        let sums = |[x, y]: [&[f64]; 2]| self.driven.sums(n, |b| x[b], |b| y[b]);
-        let squares = |[x, y]: [&[f64]; 2]| fixed_point::sum(n, |b| x[b] * x[b] + y[b] * y[b]);
+        let mass = model.slider.density.as_deref();
+        let driven = |[x, y]: [&[f64]; 2]| self.driven.sums(model, n, |b| x[b], |b| y[b]);
+        let squares = |[x, y]: [&[f64]; 2]| weighted_sum(n, mass, |b| x[b] * x[b] + y[b] * y[b]);
         let (vx, vy) = (|b: usize| 0.5 * (bx[b] + ax[b]), |b: usize| 0.5 * (by[b] + ay[b]));
         let slipping = slides.iter().zip(textured);
         let stress_square = reductions::largest(n, |b| {
@@ -176,20 +202,28 @@ impl Reference {
             if textured[b] { 0.0 } else { x * x + y * y }
         });
         self.stress_square_max = self.stress_square_max.max(stress_square);
+        if let Some(dampers) = &self.dampers {
+            let [dx, dy] = components(dampers, n);
+            self.viscous_power = -fixed_point::sum(n, |b| dx[b] * vx(b) + dy[b] * vy(b));
+        }
         Totals {
-            displacement: sums([ux, uy]),
-            velocity: self.driven.sums(n, vx, vy),
-            velocity_after: sums([ax, ay]),
-            velocity_square: fixed_point::sum(n, |b| vx(b) * vx(b) + vy(b) * vy(b)),
+            displacement: driven([ux, uy]),
+            velocity: self.driven.sums(model, n, vx, vy),
+            velocity_after: driven([ax, ay]),
+            velocity_square: weighted_sum(n, mass, |b| vx(b) * vx(b) + vy(b) * vy(b)),
             friction_power: fixed_point::sum(n, |b| fx[b] * vx(b) + fy[b] * vy(b)),
             n_sliding: slides.iter().filter(|&&slides| slides).count(),
             n_slipping: slipping
                 .filter(|&(slides, textured)| *slides && !textured)
                 .count(),
-            stored_energy: energies.then(|| StoredEnergy {
-                kinetic: 0.25 * (squares([bx, by]) + squares([ax, ay])),
-                lattice: lattice_energy(&model.lattice, &self.state.displacement, model.epsilon),
-                drive_springs: self.driven.energy(&model.drive, [ux, uy], time_star),
+            stored_energy: energies.then(|| {
+                let displacement = &self.state.displacement;
+                let springs = self.relative_springs.as_ref();
+                StoredEnergy {
+                    kinetic: 0.25 * (squares([bx, by]) + squares([ax, ay])),
+                    lattice: lattice_energy(&model.lattice, displacement, springs, model.epsilon),
+                    drive_springs: self.driven.energy(model, [ux, uy], time_star),
+                }
             }),
         }
     }
@@ -252,6 +286,10 @@ impl Engine for Reference {
         self.stress_square_max
     }
 
+    fn viscous_power(&self) -> f64 {
+        self.viscous_power
+    }
+
     fn motion_bounds(&self) -> Option<MotionBounds> {
         None
     }
@@ -265,6 +303,14 @@ impl Engine for Reference {
 #[inline(always)]
 fn components(field: &VectorField, n: usize) -> [&[f64]; 2] {
     [&field.x[..n], &field.y[..n]]
+}
+
+#[inline(always)]
+fn add_to(values: &mut [f64], others: &[f64]) {
+    values
+        .iter_mut()
+        .zip(others)
+        .for_each(|(value, other)| *value += other);
 }
 
 /// Eq. 8: `u(t + dt) = u(t) + dt v(t + dt/2)`.
@@ -284,7 +330,7 @@ fn move_blocks(state: &mut State, dt_star: f64) {
 #[allow(clippy::too_many_arguments)] // Separate slices are known not to overlap, so that the loop is vectorised.
 fn apply_friction<L: Law>(
     law: &L,
-    integrator: &Integrator,
+    integrator: impl Fn(usize) -> Integrator,
     thresholds: [&[f64]; 2],
     velocity: [&[f64]; 2],
     forces: [&[f64]; 4],
@@ -306,7 +352,7 @@ fn apply_friction<L: Law>(
                 static_limit: static_limit[b],
                 kinetic_force: kinetic_force[b],
             },
-            integrator,
+            &integrator(b),
         );
         [friction_x[b], friction_y[b]] = update.friction;
         [after_x[b], after_y[b]] = update.velocity;

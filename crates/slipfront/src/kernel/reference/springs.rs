@@ -1,46 +1,100 @@
 //! The springs between blocks (Eq. 3): forces and energy.
 
+use std::array;
+
 use crate::fixed_point;
 use crate::lattice::{Bond, Edges, Lattice};
 use crate::model::Model;
 use crate::state::State;
 use crate::vector_field::VectorField;
 
-/// Eq. 3: `F_c = sum_j k_ij (r_ij - d_ij) e_ij` over the eight neighbours, every spring computed once.
+/// Eq. 3: `F_c = sum_j k_ij (r_ij - d_ij) e_ij` over the eight neighbours, every spring computed once. `relative`: stiffness of each
+/// over that of its bond, if they are not all alike.
 #[inline(always)]
 pub(super) fn lattice_forces(
     model: &Model,
     state: &State,
+    relative: Option<&[Vec<f64>; 4]>,
     force: &mut VectorField,
     springs: &mut [VectorField; 4],
 ) {
-    let lattice = &model.lattice;
+    let (u, epsilon) = (&state.displacement, model.epsilon);
     for (bond, spring) in Bond::ALL.iter().zip(springs.iter_mut()) {
-        spring_forces(lattice, bond, &state.displacement, model.epsilon, spring);
+        let law = |e: [f64; 2]| bond.force(e, epsilon);
+        along_bond(&model.lattice, bond, [&u.x, &u.y], law, spring);
+    }
+    sum_all(&model.lattice, relative, force, springs);
+}
+
+/// Forces of dampers beside all springs (Kelvin-Voigt), `F_v = sum_j tau_v k_ij (e_ij . (v_j - v_i)) e_ij`, of the velocities half a
+/// step before.
+#[inline(always)]
+pub(super) fn damper_forces(
+    model: &Model,
+    state: &State,
+    relative: Option<&[Vec<f64>; 4]>,
+    force: &mut VectorField,
+    dampers: &mut [VectorField; 4],
+) {
+    let (u, v) = (&state.displacement, &state.velocity);
+    let (epsilon, time) = (model.epsilon, model.slider.viscosity_time);
+    for (bond, damper) in Bond::ALL.iter().zip(dampers.iter_mut()) {
+        let law = |[ex, ey, wx, wy]: [f64; 4]| {
+            bond.damper_force([ex, ey], [wx, wy], epsilon)
+                .map(|force| time * force)
+        };
+        along_bond(&model.lattice, bond, [&u.x, &u.y, &v.x, &v.y], law, damper);
+    }
+    sum_all(&model.lattice, relative, force, dampers);
+}
+
+/// Sums what acts along the bonds of every block, after it was made `relative` times as strong.
+#[inline(always)]
+fn sum_all(
+    lattice: &Lattice,
+    relative: Option<&[Vec<f64>; 4]>,
+    force: &mut VectorField,
+    springs: &mut [VectorField; 4],
+) {
+    for (relative, spring) in relative.into_iter().flatten().zip(springs.iter_mut()) {
+        for component in [&mut spring.x, &mut spring.y] {
+            component
+                .iter_mut()
+                .zip(relative)
+                .for_each(|(force, relative)| *force *= relative);
+        }
     }
     let [x, y] = [&*springs; 2];
     sum_springs(lattice, x.each_ref().map(|spring| &*spring.x), &mut force.x);
     sum_springs(lattice, y.each_ref().map(|spring| &*spring.y), &mut force.y);
 }
 
-/// Force on every block from its spring along `bond`; zero where a free edge leaves it out.
+/// Force on every block along `bond`, which `law` finds from the differences of some `fields` between its neighbour there and the
+/// block itself; zero where a free edge leaves the neighbour out.
 #[inline(always)]
-fn spring_forces(lattice: &Lattice, bond: &Bond, u: &VectorField, epsilon: f64, spring: &mut VectorField) {
+fn along_bond<const FIELDS: usize>(
+    lattice: &Lattice,
+    bond: &Bond,
+    fields: [&[f64]; FIELDS],
+    law: impl Fn([f64; FIELDS]) -> [f64; 2],
+    force: &mut VectorField,
+) {
     // In block order the neighbours of all blocks are equally far away: one loop for all rows. What it finds at the ends of
     // the rows is replaced afterwards.
     let shift = lattice.shift(bond).min(lattice.n_blocks());
     let n = lattice.n_blocks() - shift;
-    bond_forces(
-        bond,
-        epsilon,
-        [&u.x[..n], &u.y[..n]],
-        [&u.x[shift..shift + n], &u.y[shift..shift + n]],
-        [&mut spring.x[..n], &mut spring.y[..n]],
+    let (own, ahead) = (
+        fields.map(|field| &field[..n]),
+        fields.map(|field| &field[shift..shift + n]),
     );
+    let (fx, fy) = (&mut force.x[..n], &mut force.y[..n]);
+    for k in 0..n {
+        [fx[k], fy[k]] = law(array::from_fn(|field| ahead[field][k] - own[field][k]));
+    }
     let mut replace = |i: usize, j: usize| {
         let b = lattice.block(i, j);
-        [spring.x[b], spring.y[b]] = match lattice.neighbour(i, j, bond.offset) {
-            Some(other) => bond.force([u.x[other] - u.x[b], u.y[other] - u.y[b]], epsilon),
+        [force.x[b], force.y[b]] = match lattice.neighbour(i, j, bond.offset) {
+            Some(other) => law(fields.map(|field| field[other] - field[b])),
             None => [0.0, 0.0],
         };
     };
@@ -50,18 +104,14 @@ fn spring_forces(lattice: &Lattice, bond: &Bond, u: &VectorField, epsilon: f64, 
         _ => {}
     }
     if bond.offset[1] == 1 {
-        (0..lattice.nx).for_each(|i| replace(i, lattice.ny - 1));
-    }
-}
-
-/// Forces along one bond on blocks displaced by `u`, from their neighbours displaced by `v`.
-#[inline(always)]
-fn bond_forces(bond: &Bond, epsilon: f64, u: [&[f64]; 2], v: [&[f64]; 2], force: [&mut [f64]; 2]) {
-    let [fx, fy] = force;
-    let n = fx.len();
-    let (ux, uy, vx, vy, fy) = (&u[0][..n], &u[1][..n], &v[0][..n], &v[1][..n], &mut fy[..n]);
-    for k in 0..n {
-        [fx[k], fy[k]] = bond.force([vx[k] - ux[k], vy[k] - uy[k]], epsilon);
+        match lattice.edges[1] {
+            Edges::Periodic => (0..lattice.nx).for_each(|i| replace(i, lattice.ny - 1)),
+            Edges::Free => {
+                let top = lattice.block(0, lattice.ny - 1);
+                force.x[top..].fill(0.0);
+                force.y[top..].fill(0.0);
+            }
+        }
     }
 }
 
@@ -78,6 +128,11 @@ fn sum_springs(lattice: &Lattice, springs: [&[f64]; 4], total: &mut [f64]) {
         *spring = &spring[from..from + n];
     }
     add_pairs(own, behind, &mut total[first..]);
+    if lattice.edges[1] == Edges::Free {
+        // Below the bottom row there is nothing, and the neighbour behind along the row is the block before.
+        let row = springs.map(|spring| &spring[1..lattice.nx]);
+        add_bottom_row(row, &springs[0][..lattice.nx - 1], &mut total[1..lattice.nx]);
+    }
     let mut replace = |i: usize, j: usize| {
         let pair = |bond: usize| {
             let Bond { offset: [di, dj], .. } = Bond::ALL[bond];
@@ -88,7 +143,10 @@ fn sum_springs(lattice: &Lattice, springs: [&[f64]; 4], total: &mut [f64]) {
         };
         total[lattice.block(i, j)] = (pair(0) + pair(1)) + (pair(2) + pair(3));
     };
-    (0..lattice.nx).for_each(|i| replace(i, 0));
+    replace(0, 0);
+    if lattice.edges[1] == Edges::Periodic {
+        (1..lattice.nx).for_each(|i| replace(i, 0));
+    }
     // At free edges the loop found springs of force zero, which is right; along a periodic axis neighbours wrap around.
     (1..lattice.ny).for_each(|j| replace(0, j));
     if lattice.edges[0] == Edges::Periodic {
@@ -106,11 +164,38 @@ fn add_pairs(own: [&[f64]; 4], behind: [&[f64]; 4], total: &mut [f64]) {
     }
 }
 
-/// Energy of all springs between blocks at displacements `u`.
 #[inline(always)]
-pub(super) fn lattice_energy(lattice: &Lattice, u: &VectorField, epsilon: f64) -> f64 {
+fn add_bottom_row(own: [&[f64]; 4], before: &[f64], total: &mut [f64]) {
+    let n = total.len();
+    let ([e, north, ne, nw], w) = (own.map(|spring| &spring[..n]), &before[..n]);
+    for k in 0..n {
+        total[k] = ((e[k] - w[k]) + north[k]) + (ne[k] + nw[k]);
+    }
+}
+
+/// Energy of all springs between blocks at displacements `u`. `relative`: stiffness of each over that of its bond, if they are not
+/// all alike.
+#[inline(always)]
+pub(super) fn lattice_energy(
+    lattice: &Lattice,
+    u: &VectorField,
+    relative: Option<&[Vec<f64>; 4]>,
+    epsilon: f64,
+) -> f64 {
     let energy = |bond: &Bond, b: usize, n: usize| bond.energy([u.x[n] - u.x[b], u.y[n] - u.y[b]], epsilon);
-    let row_energy = |bond: &Bond, j: usize| -> f64 {
+    match relative {
+        None => sum_energies(lattice, |bond, b, n| energy(&Bond::ALL[bond], b, n)),
+        Some(relative) => sum_energies(lattice, |bond, b, n| {
+            relative[bond][b] * energy(&Bond::ALL[bond], b, n)
+        }),
+    }
+}
+
+/// Sum of the energies of all springs, of which `energy` is given the number of the bond, the block and its neighbour.
+#[inline(always)]
+fn sum_energies(lattice: &Lattice, energy: impl Fn(usize, usize, usize) -> f64) -> f64 {
+    let row_energy = |number: usize, j: usize| -> f64 {
+        let bond = &Bond::ALL[number];
         // One block of the row may have its neighbour beyond the end of the row. The neighbours of all others are equally far away.
         let (end, first) = match bond.offset[0] {
             1 => (Some(lattice.nx - 1), 0),
@@ -119,7 +204,7 @@ pub(super) fn lattice_energy(lattice: &Lattice, u: &VectorField, epsilon: f64) -
         };
         let beyond = end.and_then(|i| {
             Some(energy(
-                bond,
+                number,
                 lattice.block(i, j),
                 lattice.neighbour(i, j, bond.offset)?,
             ))
@@ -132,12 +217,11 @@ pub(super) fn lattice_energy(lattice: &Lattice, u: &VectorField, epsilon: f64) -
         };
         let along = neighbour.map_or(0.0, |neighbour| {
             let block = lattice.block(first, j);
-            fixed_point::sum(inside, |k| energy(bond, block + k, neighbour + k))
+            fixed_point::sum(inside, |k| energy(number, block + k, neighbour + k))
         });
         along + beyond.unwrap_or(0.0)
     };
-    Bond::ALL
-        .iter()
+    (0..Bond::ALL.len())
         .map(|bond| (0..lattice.ny).map(|j| row_energy(bond, j)).sum::<f64>())
         .sum()
 }

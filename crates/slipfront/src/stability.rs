@@ -1,0 +1,64 @@
+//! The largest time step with which a slider is stable.
+
+use crate::friction::Friction;
+use crate::lattice::{Bond, dt_star_limit};
+use crate::model::Model;
+
+/// Largest stable time step of a block, from the largest eigenvalue `springs` of `2 sum_j k_ij e_ij e_ij^T/m_i` over the springs to its
+/// neighbours, `held`, the stiffness of the springs that hold it to the drive and to the substrate over its mass, and the time
+/// `tau_v` of the dampers beside the former, which lag by half a step:
+///
+/// ```text
+/// (dt^2 + 2 tau_v dt) springs + dt^2 held = 4
+/// ```
+///
+/// The first term bounds what the neighbours contribute whatever their motion, since `(x - y)^2 <= 2 x^2 + 2 y^2`.
+///
+/// ```
+/// use slipfront::stability::stable_step;
+/// // A block in the middle of the paper's slider: springs 4.5, a drive spring of 0.375.
+/// assert!((stable_step(4.5, 0.375, 0.0) - 0.9058).abs() < 5e-5);
+/// assert!((stable_step(4.5, 0.375, 0.365) - 0.6295).abs() < 5e-5);
+/// ```
+pub fn stable_step(springs: f64, held: f64, viscosity_time: f64) -> f64 {
+    let all = springs + held;
+    let lag = viscosity_time * springs;
+    4.0 / (lag + (lag * lag + 4.0 * all).sqrt())
+}
+
+impl Model {
+    /// The bound below which a time step must stay: the least [`stable_step`] of all blocks, and no more than
+    /// [`dt_star_limit`], the one of the paper's slider. Friction and damping do not lower it.
+    pub fn stable_step_limit(&self) -> f64 {
+        let (lattice, slider) = (&self.lattice, &self.slider);
+        let contact = match self.friction {
+            Friction::ContactSprings(springs) => springs.stiffness,
+            Friction::Coulomb(_) | Friction::RateAndState(_) => 0.0,
+        };
+        let of_block = |b: usize| {
+            let (i, j) = lattice.column_row(b);
+            // xx, yy and xy of the sum over all springs of the block.
+            let mut sum = [0.0; 3];
+            for bond in Bond::ALL {
+                for sign in [1, -1] {
+                    let offset = bond.offset.map(|step| sign * step);
+                    let Some(other) = lattice.neighbour(i, j, offset) else {
+                        continue;
+                    };
+                    let [x, y] = bond.rest.map(|component| component / bond.rest_length);
+                    let stiffness = 2.0 * bond.stiffness * slider.spring(b, other) / slider.mass(b);
+                    for (sum, product) in sum.iter_mut().zip([x * x, y * y, x * y]) {
+                        *sum += stiffness * product;
+                    }
+                }
+            }
+            let [xx, yy, xy] = sum;
+            let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+            let springs = mean + (half * half + xy * xy).sqrt();
+            let held = (self.drive.k_drive * slider.drive_spring(b) + contact) / slider.mass(b);
+            stable_step(springs, held, slider.viscosity_time)
+        };
+        let blocks = lattice.blocks_of(&self.rows).filter(|&b| slider.exists(b));
+        blocks.map(of_block).fold(dt_star_limit(), f64::min)
+    }
+}

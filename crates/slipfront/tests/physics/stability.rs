@@ -1,0 +1,102 @@
+//! The largest stable time step.
+
+use rstest::rstest;
+use slipfront::lattice::{K_DRIVE, dt_star_limit};
+use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Slider, State, Surface};
+
+use crate::common::{from_state, thrown, varied};
+
+fn floating(edges: Edges, slider: Slider) -> Model {
+    let lattice = Lattice::with_edges(6, 4, [edges; 2]);
+    let surface = Surface::uniform(&lattice, 0.0, 0.0);
+    let drive = Drive::along_x(0.0);
+    let plain = Model::new(lattice, surface, drive, 0.0, 0.0, FrictionLaw::Projection);
+    Model { slider, ..plain }
+}
+
+/// Largest displacement during the last steps of a run in steps of `dt`, from displacements of at most 1.
+fn growth(model: &Model, dt: f64, steps: usize) -> f64 {
+    let mut state = thrown(24, 1.0, 1);
+    state.velocity = State::at_rest(24).velocity;
+    let mut simulation = from_state(model, dt, state);
+    let mut largest = 0.0_f64;
+    for step in 0..steps {
+        simulation.step();
+        if step + 20 > steps {
+            let u = simulation.state().displacement;
+            let size = |u: &f64| if u.is_finite() { u.abs() } else { f64::INFINITY };
+            largest = u.x.iter().chain(&u.y).map(size).fold(largest, f64::max);
+        }
+    }
+    largest
+}
+
+/// Equal blocks with periodic edges have a wave that reaches the bound: it is strict. Just below the limit the undamped oscillation
+/// beats with an amplitude of 1/sqrt(1 - (dt/limit)^2) = 22 at 0.999 of it, of each of the waves that make up the start.
+#[rstest]
+#[case(0.0, 0.9058)]
+#[case(0.365, 0.6295)]
+#[case(2.0, 0.21025)]
+fn the_bound_of_equal_blocks_is_strict(#[case] viscosity_time: f64, #[case] limit: f64) {
+    let slider = Slider {
+        viscosity_time,
+        ..Slider::default()
+    };
+    let model = floating(Edges::Periodic, slider);
+    let found = model.stable_step_limit();
+    assert!((found - limit).abs() < 5e-5, "{found}");
+    assert!(found <= dt_star_limit());
+    assert!(growth(&model, 0.999 * found, 4000) < 100.0);
+    assert!(growth(&model, 1.01 * found, 4000) > 1e6);
+}
+
+/// Heavy, soft blocks do not raise the limit; light, stiff ones lower it: lambda_max = 4.5 E/rho + k_s E/rho.
+#[rstest]
+#[case(0.1, 1.0, 0.9058)]
+#[case(4.0, 1.0, 0.4529)]
+#[case(2.0, 0.125, 0.22645)]
+fn stiffness_over_density_decides(#[case] stiffness: f64, #[case] density: f64, #[case] limit: f64) {
+    let slider = Slider::new(
+        Some(vec![stiffness; 24]),
+        Some(vec![density; 24]),
+        None,
+        &slipfront::communicator::Alone,
+    );
+    let found = floating(Edges::Periodic, slider).stable_step_limit();
+    assert!((found - limit).abs() < 5e-5, "{found}");
+}
+
+/// Of blocks that all differ it is safe. A light block among heavy ones swings alone, at half of what the bound takes of its
+/// neighbours: the bound is too strict by the square root of 2, or by 2 where the dampers decide.
+#[rstest]
+fn the_bound_of_unequal_blocks_is_safe(
+    #[values(0.0, 0.2)] viscosity_time: f64,
+    #[values(0.02, 0.5)] lightest: f64,
+) {
+    let mut slider = varied(24, false);
+    let density = (0..24).map(|b| lightest + f64::from(b * b % 7)).collect();
+    slider.density = Some(density);
+    slider.viscosity_time = viscosity_time;
+    let model = floating(Edges::Free, slider);
+    let limit = model.stable_step_limit();
+    assert!(limit < dt_star_limit());
+    assert!(growth(&model, 0.999 * limit, 4000) < 100.0);
+    assert!(growth(&model, 2.1 * limit, 4000) > 1e6);
+}
+
+/// A block alone is held by its drive spring: 2/sqrt(k_s) = 3.27 is above the limit that no slider exceeds.
+#[test]
+fn no_slider_exceeds_the_limit_of_the_paper() {
+    let lattice = Lattice::free(1, 1);
+    let surface = Surface::uniform(&lattice, 1.0, 0.5);
+    let model = Model::new(
+        lattice,
+        surface,
+        Drive::along_x(0.03),
+        0.0,
+        0.0,
+        FrictionLaw::Projection,
+    );
+    assert_eq!(model.stable_step_limit(), dt_star_limit());
+    assert!((slipfront::stability::stable_step(0.0, K_DRIVE, 0.0) - 3.266).abs() < 1e-3);
+}
