@@ -2,8 +2,10 @@
 //!
 //! Pictures are always drawn from the files, so that those of a run and those of `slipfront plot` are equal.
 
+use std::borrow::Cow;
 use std::path::Path;
 
+use slipfront::Outline;
 use slipfront::communicator::{Alone, Communicator};
 use slipfront_case::case::Case;
 use slipfront_case::disk;
@@ -41,7 +43,10 @@ pub fn write(
 /// Summary, series and events, the first results of a run, by one of its ranks.
 pub fn write_tables(case: &Case, record: &Record, folder: &mut RunFolder) -> Result<(), ResultsError> {
     folder.write(SUMMARY, &disk::json(&record.summary))?;
-    let rows = record.rows.iter().map(|row| SeriesRow::new(row, &case.scales));
+    let rows = record
+        .rows
+        .iter()
+        .map(|row| SeriesRow::new(row, &case.scales, &case.model));
     folder.write(SERIES, &series::to_csv(rows)?)?;
     match &record.precursors {
         Some(precursors) => Ok(folder.write(
@@ -78,6 +83,17 @@ pub fn write_case(case: &Case, folder: &mut RunFolder) -> Result<(), ResultsErro
     Ok(folder.sync()?)
 }
 
+/// Numbers of all blocks, where some of them do not exist with what stands in their place.
+fn within<'a, T: Copy>(values: &'a [T], outline: Option<&Outline>, outside: T) -> Cow<'a, [T]> {
+    let Some(outline) = outline else {
+        return Cow::Borrowed(values);
+    };
+    let values = values.iter().zip(&outline.exists);
+    values
+        .map(|(value, exists)| if *exists { *value } else { outside })
+        .collect()
+}
+
 /// Writes the fields to a temporary file of the run in folder `out`, each rank its own rows; the first one has the file. They are
 /// moved out of the record.
 pub fn write_fields(
@@ -87,6 +103,7 @@ pub fn write_fields(
     communicator: &dyn Communicator,
 ) -> Result<Option<TempPath>, FieldsError> {
     let surface = &case.model.surface;
+    let outline = case.model.slider.outline.as_ref();
     let names = &case.output.fields;
     let scale = record.contact_stress_max;
     let frames: Vec<FieldFrame> = std::mem::take(&mut record.frames)
@@ -102,9 +119,9 @@ pub fn write_fields(
         time_unit_s: case.scales.time(),
         names,
         statics: StaticFields {
-            textured: &surface.textured,
-            mu_static: &surface.mu_static,
-            mu_kinetic: &surface.mu_kinetic,
+            textured: &within(&surface.textured, outline, false),
+            mu_static: &within(&surface.mu_static, outline, f64::NAN),
+            mu_kinetic: &within(&surface.mu_kinetic, outline, f64::NAN),
             first_slip_time_star: &record.first_slip_time_star,
         },
         frames: &frames,

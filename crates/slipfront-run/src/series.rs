@@ -4,9 +4,9 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
-use slipfront::Scales;
+use serde::{Deserialize, Deserializer, Serialize};
 use slipfront::observe::CurveRow;
+use slipfront::{Model, Scales};
 use thiserror::Error;
 
 use crate::names::SERIES;
@@ -42,6 +42,14 @@ pub struct SeriesRow {
     pub friction_loss_j: f64,
     /// Lost to damping since the start, J.
     pub damping_loss_j: f64,
+    /// Lost to the dampers between blocks since the start, J, if there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    pub viscous_loss_j: Option<f64>,
+}
+
+/// The number of a column that a series need not have: a series that has it has it in every row.
+fn given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    f64::deserialize(deserializer).map(Some)
 }
 
 /// A series that cannot be read.
@@ -57,9 +65,10 @@ pub struct SeriesError {
 }
 
 impl SeriesRow {
-    /// A recorded row with its units.
-    pub fn new(row: &CurveRow, scales: &Scales) -> Self {
+    /// A recorded row of a run of this model with its units.
+    pub fn new(row: &CurveRow, scales: &Scales, model: &Model) -> Self {
         let energy = scales.energy();
+        let viscous_loss = row.energies.viscous_loss * energy;
         Self {
             step: row.step,
             time_star: row.time_star,
@@ -74,6 +83,7 @@ impl SeriesRow {
             drive_spring_energy_j: row.energies.stored.drive_springs * energy,
             friction_loss_j: row.energies.friction_loss * energy,
             damping_loss_j: row.energies.damping_loss * energy,
+            viscous_loss_j: model.slider.is_viscous().then_some(viscous_loss),
         }
     }
 }
@@ -196,6 +206,22 @@ mod tests {
             );
         }
         assert_eq!(rows_of::<SeriesRow>(text.as_slice()).unwrap(), rows);
+    }
+
+    #[test]
+    fn a_series_has_a_column_in_all_rows_or_in_none() {
+        let row = |viscous_loss_j| SeriesRow {
+            viscous_loss_j,
+            ..SeriesRow::default()
+        };
+        for rows in [[row(None); 2], [row(Some(0.5)), row(Some(f64::MIN_POSITIVE))]] {
+            let text = to_csv(rows.into_iter()).unwrap();
+            assert_eq!(rows_of::<SeriesRow>(text.as_slice()).unwrap(), rows);
+        }
+        let text = to_csv([row(Some(0.5)); 2].into_iter()).unwrap();
+        let text = String::from_utf8(text).unwrap();
+        let cut = text.strip_suffix("0.5\n").unwrap().to_owned() + "\n";
+        assert!(rows_of::<SeriesRow>(cut.as_bytes()).is_err());
     }
 
     #[test]

@@ -84,6 +84,9 @@ pub struct Summary {
     pub friction_loss_j: f64,
     /// Lost to damping, J.
     pub damping_loss_j: f64,
+    /// Lost to the dampers between blocks, J, if there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub viscous_loss_j: Option<f64>,
     /// Of a drive that rotates: mu* and its derivatives are the torque over P mu_s l^2 times the sum of all radii.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
@@ -270,7 +273,7 @@ impl SummaryObservers {
             sigma_static_star: case.groups.sigma_static_star,
             sigma_kinetic_star: case.groups.sigma_kinetic_star,
             epsilon: case.groups.epsilon,
-            n_blocks: case.model.lattice.n_blocks(),
+            n_blocks: case.model.n_blocks(),
             texture_percent: case.texture.meshed_percent,
             texture_percent_asked: case.texture.asked_percent,
             dt_star: case.time_plan.dt_star,
@@ -281,6 +284,11 @@ impl SummaryObservers {
             work_j: energies.work * energy,
             friction_loss_j: energies.friction_loss * energy,
             damping_loss_j: energies.damping_loss * energy,
+            viscous_loss_j: case
+                .model
+                .slider
+                .is_viscous()
+                .then_some(energies.viscous_loss * energy),
             motion: case.model.drive.rotation.map(|_| Motion::Rotation),
             precursors: self.precursors(),
             cycles: self.cycles(),

@@ -5,8 +5,9 @@
 
 use std::fs;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
-use slipfront_run::study::{Plan, StudyFile};
+use slipfront_run::study::{self, Plan, Quantity, Records, StudyFile};
 
 /// The studies of the documentation and of `cases/studies` can be run, and every key of a study is explained.
 #[test]
@@ -52,6 +53,25 @@ fn studies_are_true() {
         "variants",
     ] {
         assert!(text.contains(&format!("`{key}`")), "`{key}` is not explained");
+    }
+}
+
+/// A few grooves lower static friction as one does, many weaken the effect. Measured before by another build; the digits given are
+/// those of the figures.
+#[test]
+fn many_grooves_weaken_the_effect() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/studies/grooves.toml");
+    let study = StudyFile::load(&file).unwrap();
+    let plan = Plan::new(&study, None).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let records = Records::open(folder.path()).unwrap();
+    let never = AtomicBool::new(false);
+    let results = study::execute(&plan, &records, folder.path(), &never, &mut |_| {}).unwrap();
+    let reductions = [37.4, 38.5, 38.4, 39.3, 32.0, 15.1];
+    assert_eq!(results.points.len(), reductions.len());
+    for (point, expected) in reductions.into_iter().enumerate() {
+        let found = results.value(point, 0, Quantity::Reduction).unwrap();
+        assert!((found - expected).abs() <= 0.05, "{found}, expected {expected}");
     }
 }
 

@@ -43,7 +43,7 @@ impl CurvePoint {
         };
         let share = model.driven_share();
         let pull = [0, 1].map(|axis| drive.k_drive * (position[axis] * share - mean[axis]));
-        let n_blocks = model.slider.n_blocks(&model.lattice) as f64;
+        let n_blocks = model.n_blocks() as f64;
         Self {
             mu_star: dot(pull, [dx, dy]),
             mu_lateral_star: dot(pull, [-dy, dx]),

@@ -112,10 +112,17 @@ impl Slider {
     /// drive spring is as stiff as its block: `k_s,i = k_s E_i/E`.
     pub fn new(
         stiffness: Option<Vec<f64>>,
-        density: Option<Vec<f64>>,
+        mut density: Option<Vec<f64>>,
         outline: Option<Outline>,
         ranks: &dyn Communicator,
     ) -> Self {
+        if let (Some(density), Some(outline)) = (&mut density, &outline) {
+            // Nothing acts on what does not exist, but no force over no mass would be no number.
+            let outside = density.iter_mut().zip(&outline.exists);
+            outside
+                .filter(|(_, exists)| !**exists)
+                .for_each(|(density, _)| *density = 1.0);
+        }
         let mut slider = Self {
             stiffness,
             density,
@@ -138,6 +145,25 @@ impl Slider {
             slider.drive_springs = Some(DriveSprings::new((0..n).map(relative).collect(), ranks));
         }
         slider
+    }
+
+    /// A property that changes linearly along an axis, at the middle of every block of some rows: `from` at the edge where the axis
+    /// begins, `to` at the other.
+    ///
+    /// ```
+    /// use slipfront::{Lattice, Slider};
+    /// assert_eq!(Slider::grade(&Lattice::free(2, 2), 0..2, 0, [1.0, 3.0]), [1.5, 2.5, 1.5, 2.5]);
+    /// assert_eq!(Slider::grade(&Lattice::free(2, 2), 1..2, 1, [1.0, 3.0]), [2.5, 2.5]);
+    /// ```
+    pub fn grade(lattice: &Lattice, rows: Range<usize>, axis: usize, [from, to]: [f64; 2]) -> Vec<f64> {
+        let count = [lattice.nx, lattice.ny][axis];
+        // Of whole numbers, so that the opposite grade is the mirror image to the last bit.
+        let at = |place: usize| {
+            let (before, behind) = (2 * place + 1, 2 * (count - place) - 1);
+            (from * behind as f64 + to * before as f64) / (2 * count) as f64
+        };
+        let columns = |j: usize| (0..lattice.nx).map(move |i| at([i, j][axis]));
+        rows.flat_map(columns).collect()
     }
 
     /// Number of blocks of the whole lattice that exist.
@@ -190,6 +216,11 @@ impl Slider {
     /// Whether block `b` exists.
     pub fn exists(&self, b: usize) -> bool {
         self.outline.as_ref().is_none_or(|outline| outline.exists[b])
+    }
+
+    /// Whether there are dampers beside the springs between blocks.
+    pub fn is_viscous(&self) -> bool {
+        self.viscosity_time > 0.0
     }
 
     /// Whether all springs between blocks are those of the paper.

@@ -1,8 +1,9 @@
 //! The largest time step with which a slider is stable.
 
 use crate::friction::Friction;
-use crate::lattice::{Bond, dt_star_limit};
+use crate::lattice::{Bond, K_DRIVE, dt_star_limit};
 use crate::model::Model;
+use crate::slider::Slider;
 
 /// Largest stable time step of a block, from the largest eigenvalue `springs` of `2 sum_j k_ij e_ij e_ij^T/m_i` over the springs to its
 /// neighbours, `held`, the stiffness of the springs that hold it to the drive and to the substrate over its mass, and the time
@@ -35,6 +36,10 @@ impl Model {
             Friction::ContactSprings(springs) => springs.stiffness,
             Friction::Coulomb(_) | Friction::RateAndState(_) => 0.0,
         };
+        let is_plain = self.slider == Slider::default() && contact == 0.0;
+        if is_plain && self.drive.k_drive <= K_DRIVE {
+            return dt_star_limit();
+        }
         let of_block = |b: usize| {
             let (i, j) = lattice.column_row(b);
             // xx, yy and xy of the sum over all springs of the block.

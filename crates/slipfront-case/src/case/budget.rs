@@ -15,7 +15,7 @@ use super::output::{MAX_MAPS, Output, Snapshots};
 use super::ranks::Ranks;
 use super::textures::count_masks;
 use super::time_plan::TimePlan;
-use crate::case_file::{Attached, AttachedEdge, CaseError, CaseFile, Motion};
+use crate::case_file::{Attached, AttachedEdge, CaseError, CaseFile, Motion, Outline};
 use crate::machine::{available_memory, can_be_had, free_disk};
 use crate::number_format::{byte_size, count};
 
@@ -26,6 +26,37 @@ const FLAG: f64 = size_of::<bool>() as f64;
 
 /// [`slipfront::Surface`] under an equal pressure.
 const SURFACE: f64 = FLAG + 2.0 * NUMBER;
+/// Bytes of [`slipfront::Slider`] per block: moduli, densities, and the blocks that exist; the stiffness of drive springs that follows
+/// from moduli and outline.
+fn slider_bytes(file: &CaseFile) -> f64 {
+    let slider = &file.slider;
+    let has = |property: bool| f64::from(u8::from(property));
+    let stiffness = slider.stiffness_field.is_some() || slider.stiffness_grade.is_some();
+    let density = slider.density_field.is_some() || slider.density_grade.is_some();
+    let outline = slider.outline != Outline::Rectangle;
+    let driven = stiffness || outline || file.drive.attached != Attached::At(AttachedEdge::All);
+    NUMBER * (has(stiffness) + has(density) + has(driven)) + FLAG * has(outline)
+}
+
+/// Bytes of the reference kernel per block, with springs that differ, with dampers, and with directions of a rotation.
+fn reference_bytes(file: &CaseFile) -> f64 {
+    let slider = &file.slider;
+    let graded = slider.stiffness_field.is_some() || slider.stiffness_grade.is_some();
+    let springs = match graded || slider.outline != Outline::Rectangle {
+        true => 4.0 * NUMBER,
+        false => 0.0,
+    };
+    let dampers = match slider.viscosity_time_star > 0.0 {
+        true => 2.0 * NUMBER,
+        false => 0.0,
+    };
+    let directions = match file.drive.motion {
+        Motion::Translation => 0.0,
+        Motion::Rotation => 2.0 * NUMBER,
+    };
+    REFERENCE + springs + dampers + directions
+}
+
 /// The fused kernel: two vectors, two thresholds, a step; masks, vectors of eight and tiles take 3.6 together.
 const FUSED: f64 = 6.5 * NUMBER + 3.6;
 /// The reference kernel: two vectors of state, eight of forces, two thresholds, a time.
@@ -42,10 +73,12 @@ const AVERAGED: f64 = FLAG + NUMBER + VALUE;
 /// What never changes in the file, where textured takes 16 bits.
 const STATICS_ON_DISK: f64 = 2.0 + 3.0 * NUMBER;
 
-/// A row of `series.csv`: 13 columns of at most 24 characters and what separates them.
-const ROW_TEXT: f64 = 13.0 * 25.0;
-/// A row of `series.csv` in memory: 13 numbers.
-const SERIES_ROW: f64 = 13.0 * NUMBER;
+/// Columns of `series.csv`, without the one that a viscous slider has.
+const COLUMNS: f64 = 13.0;
+/// A number of `series.csv`: at most 24 characters, and what separates it.
+const NUMBER_TEXT: f64 = 25.0;
+/// A row of `series.csv` in memory: its numbers, and one that need not be there.
+const SERIES_ROW: f64 = (COLUMNS + 2.0) * NUMBER;
 /// Stretches of the history of mu* and their copies while an uncertainty is sought.
 const HISTORY: f64 = 1024.0 * 1024.0;
 
@@ -73,7 +106,7 @@ const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
 pub struct Budget {
     /// Blocks of the rows that this process holds.
     blocks: f64,
-    /// Bytes of the surface per block.
+    /// Bytes of the surface and of the slider per block.
     surface: f64,
     /// Bytes of the kernel per block.
     kernel: f64,
@@ -90,6 +123,8 @@ pub struct Budget {
     frames: f64,
     fields: f64,
     rows: f64,
+    /// Bytes of a row of the series as text.
+    row_text: f64,
     /// Maps that are drawn.
     maps: f64,
     /// Bytes of the files that the case reads, of which there will be copies.
@@ -135,10 +170,6 @@ impl Budget {
     ) -> Self {
         let kept = |indices: Range<usize>| frames::kept(indices, output.stride).len() as f64;
         let last_step = time_plan.last_step;
-        let drive_springs = match file.drive.attached {
-            Attached::At(AttachedEdge::All) => 0.0,
-            _ => NUMBER,
-        };
         let n_frames = match &output.snapshots {
             Snapshots::Instants => 6.0,
             Snapshots::At(steps) => steps.len() as f64,
@@ -151,21 +182,22 @@ impl Budget {
             all_cells: kept(0..lattice.nx) * kept(0..lattice.ny),
             is_shared: ranks.communicator.size() > 1,
             ranks_on_node: ranks.on_node as f64,
-            surface: match file.load.profile.is_some() || file.load.pressure_field.is_some() {
-                true => SURFACE + NUMBER,
-                false => SURFACE,
-            } + drive_springs,
+            surface: slider_bytes(file)
+                + match file.load.profile.is_some() || file.load.pressure_field.is_some() {
+                    true => SURFACE + NUMBER,
+                    false => SURFACE,
+                },
             kernel: match kernel(file) {
                 Kernel::Fused => FUSED,
-                Kernel::Reference => REFERENCE,
-            } + match file.drive.motion {
-                Motion::Translation => drive_springs,
-                // Relative stiffness and direction; radii of the blocks before.
-                Motion::Rotation => 3.0 * NUMBER,
+                Kernel::Reference => reference_bytes(file),
             },
             frames: n_frames,
             fields: output.fields.len() as f64,
             rows: (last_step / output.series_stride) as f64 + 2.0,
+            row_text: match file.slider.viscosity_time_star > 0.0 {
+                true => (COLUMNS + 1.0) * NUMBER_TEXT,
+                false => COLUMNS * NUMBER_TEXT,
+            },
             maps: match output.fields.contains(&Field::ContactStress) {
                 true => n_frames.min(MAX_MAPS as f64),
                 false => 0.0,
@@ -220,9 +252,9 @@ impl Budget {
                 remedy: "raise `output.series`",
                 bytes: [
                     0.0,
-                    grown(rows) * row + grown(rows * ROW_TEXT),
+                    grown(rows) * row + grown(rows * self.row_text),
                     grown(rows) * (row + DRAWN_ROW),
-                    rows * ROW_TEXT,
+                    rows * self.row_text,
                     rows * row,
                 ],
             },

@@ -11,7 +11,7 @@ use super::inputs::Inputs;
 use super::textures::{Watch, read_mask};
 use super::time_plan::TimePlan;
 use crate::case_file::{
-    Attached, CaseError, CaseFile, DEFAULT_THRESHOLD, DriveSpeed, DriveStiffness, Mask, Motion, SpeedSegment,
+    Attached, CaseError, CaseFile, DEFAULT_THRESHOLD, DriveSpeed, DriveStiffness, Motion,
 };
 
 /// Largest angle, in rad, by which a drive may turn: the far ends move along tangents, not along circles.
@@ -26,11 +26,7 @@ pub(super) fn attached(
     let Attached::File(name) = &file.drive.attached else {
         return Ok(None);
     };
-    let mask = Mask {
-        file: name.clone(),
-        threshold: DEFAULT_THRESHOLD,
-    };
-    read_mask(file, "drive.attach_file", &mask, inputs, watch).map(Some)
+    read_mask(file, "drive.attach_file", name, DEFAULT_THRESHOLD, inputs, watch).map(Some)
 }
 
 /// Leaves drive springs to the blocks of these rows alone that the case attaches, called by all ranks at once.
@@ -59,7 +55,6 @@ pub(super) fn drive(
     file: &CaseFile,
     scales: &Scales,
     groups: &Groups,
-    time_plan: &TimePlan,
     lattice: &Lattice,
     slider: &Slider,
 ) -> Result<Drive, CaseError> {
@@ -80,10 +75,6 @@ pub(super) fn drive(
         k_drive,
         1e-12..=1e6,
     )?;
-    let program = match &file.drive.speed {
-        DriveSpeed::Program(segments) => Some(Arc::new(program(file, segments, time_plan)?)),
-        DriveSpeed::VStar(_) | DriveSpeed::Speed(_) => None,
-    };
     let rotation = match file.drive.motion {
         Motion::Translation => None,
         Motion::Rotation if slider.n_blocks(lattice) == 1 => {
@@ -94,7 +85,6 @@ pub(super) fn drive(
     };
     Ok(Drive {
         k_drive,
-        program,
         rotation,
         ..Drive::at_angle(groups.v_star, file.drive.direction)
     })
@@ -118,25 +108,29 @@ fn each(file: &CaseFile, scales: &Scales) -> f64 {
     }
 }
 
-/// `sum k_s/(k_2 N)`, by which a drive loads the slider faster or more slowly than the paper's; none if it depends on what a file
-/// attaches.
-pub(super) fn loading_share(file: &CaseFile, scales: &Scales, lattice: &Lattice) -> Option<f64> {
+/// `sum k_s/(k_2 N)` of equal blocks, by which a drive loads the slider faster or more slowly than the paper's, if a file that attaches
+/// blocks attached all.
+pub(super) fn loading_share(file: &CaseFile, scales: &Scales, lattice: &Lattice) -> f64 {
     let n_blocks = lattice.n_blocks() as f64;
-    let n_attached = match (&file.drive.attached, file.drive.edge()) {
-        (Attached::File(_), _) => None,
-        (Attached::At(_), Some(edge)) => Some(edge.n_blocks(lattice) as f64),
-        (Attached::At(_), None) => Some(n_blocks),
-    };
-    let sum = total(file, scales).or_else(|| Some(n_attached? * each(file, scales)));
-    Some(sum? / (n_blocks * K_DRIVE))
+    let n_attached = file
+        .drive
+        .edge()
+        .map_or(n_blocks, |edge| edge.n_blocks(lattice) as f64);
+    let sum = total(file, scales).unwrap_or_else(|| n_attached * each(file, scales));
+    sum / (n_blocks * K_DRIVE)
 }
 
-/// The program of the file, with speeds that change where steps begin.
-fn program(file: &CaseFile, segments: &[SpeedSegment], time_plan: &TimePlan) -> Result<Program, CaseError> {
+/// The program of the case, if it has one, with speeds that change where steps begin.
+pub(super) fn program(file: &CaseFile, time_plan: &TimePlan) -> Result<Option<Arc<Program>>, CaseError> {
+    let DriveSpeed::Program(segments) = &file.drive.speed else {
+        return Ok(None);
+    };
     let mut before = 0.0;
     let mut parts = Vec::with_capacity(segments.len());
     for segment in segments {
-        let until = segment.until_star.map(|until| time_plan.step_at(until));
+        let until = segment
+            .until_star
+            .map(|until| (until / time_plan.dt_star).round());
         if until.is_some_and(|until| until <= before) {
             let sentence = format!(
                 "the speed {:?} of the program lasts less than a step of dt* = {}: speeds change where steps begin",
@@ -148,7 +142,7 @@ fn program(file: &CaseFile, segments: &[SpeedSegment], time_plan: &TimePlan) -> 
         let until_star = until.map_or(f64::INFINITY, |until| until * time_plan.dt_star);
         parts.push((segment.v_star, until_star));
     }
-    Ok(Program::new(parts))
+    Ok(Some(Arc::new(Program::new(parts))))
 }
 
 /// Refuses a rotation by an angle that is not small.

@@ -66,6 +66,7 @@ impl NamedFiles {
             digests: Vec::new(),
         };
         let files = CaseFile::files_mut(
+            &mut file.slider,
             &mut file.load,
             &mut file.drive,
             &mut file.friction,
@@ -93,6 +94,7 @@ impl NamedFiles {
         ranks.communicator.sum(self.digests.as_flattened_mut());
         let mut inputs: Vec<Input> = Vec::new();
         let files = CaseFile::files_mut(
+            &mut file.slider,
             &mut file.load,
             &mut file.drive,
             &mut file.friction,

@@ -9,6 +9,7 @@ mod kernel;
 mod output;
 mod ranks;
 mod runnable;
+mod slider;
 mod textures;
 mod time_plan;
 mod warnings;

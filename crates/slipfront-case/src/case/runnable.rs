@@ -5,18 +5,19 @@ use std::path::Path;
 use std::sync::Arc;
 
 use slipfront::scales::damping;
-use slipfront::{Communicator, FrictionLaw, Kernel, Lattice, Model, Scales, Slider, Surface};
+use slipfront::{Communicator, Lattice, Model, Scales, Surface};
 
 use super::budget::Budget;
 use super::coefficients::{coefficients, contact};
-use super::drive::{attach, attached, drive, refuse_large_angles};
+use super::drive::{attach, attached, drive, program, refuse_large_angles};
 use super::groups::Groups;
 use super::inputs::{Input, Inputs, NamedFiles};
-use super::kernel::kernel;
+use super::kernel::beyond_fused;
 use super::output::Output;
 use super::ranks::Ranks;
+use super::slider::GivenBlocks;
 use super::textures::{self, Watch};
-use super::time_plan::TimePlan;
+use super::time_plan::{Dynamics, TimePlan};
 use crate::arrays::Slab;
 use crate::case_file::{CaseError, CaseFile};
 
@@ -136,16 +137,7 @@ impl Case {
         // Nothing is allocated before all ranks have looked at the memory that they share.
         let planned = Derived::of(&file, &lattice, &rows, &ranks, to_run)
             .and_then(|derived| Ok((derived, NamedFiles::find(&mut file, folder, &lattice, &ranks)?)));
-        let (
-            Derived {
-                scales,
-                groups,
-                time_plan,
-                output,
-                mut budget,
-            },
-            named,
-        ) = ranks.agree(planned)?;
+        let (Derived { scales, groups, plan }, named) = ranks.agree(planned)?;
         let inputs = Inputs {
             files: named.share(&mut file, &ranks),
             slab: Slab {
@@ -154,15 +146,16 @@ impl Case {
                 rows: rows.clone(),
             },
         };
-        budget.inputs = inputs.files.iter().map(|input| input.length as f64).sum();
 
-        let made = textures::mesh(&file, &scales, &lattice, &inputs, watch).and_then(|meshed| {
+        let blocks = ranks.agree(GivenBlocks::read(&file, &lattice, &inputs, watch))?;
+        let mut slider = blocks.slider(&file, ranks.communicator)?;
+        let n_blocks = slider.n_blocks(&lattice);
+        let made = textures::mesh(&file, &scales, &lattice, n_blocks, &inputs, watch).and_then(|meshed| {
             let coefficients = coefficients(&file, &groups, &lattice, &inputs)?;
             let contact = contact(&file, &scales, &lattice, &inputs)?;
             Ok((meshed, coefficients, contact, attached(&file, &inputs, watch)?))
         });
         let ((meshed, asked_percent), coefficients, contact, attached) = ranks.agree(made)?;
-        let mut slider = Slider::default();
         attach(&mut slider, &file, &lattice, &rows, attached, ranks.communicator)?;
         let surface = Surface::of_ranks(
             coefficients,
@@ -178,8 +171,7 @@ impl Case {
             clipped: meshed.clipped,
             empty: empty_on_all(&meshed.empty, file.texture.len(), ranks.communicator),
         };
-        let drive = drive(&file, &scales, &groups, &time_plan, &lattice, &slider)?;
-        refuse_large_angles(&file, &drive, groups.epsilon, time_plan.end_star())?;
+        let drive = drive(&file, &scales, &groups, &lattice, &slider)?;
         let mut model = Model::of_rows(
             lattice,
             rows,
@@ -190,6 +182,16 @@ impl Case {
             file.friction.law,
         );
         model.slider = slider;
+        let plan = ranks.agree(plan.of_model(&file, &model, &scales, &groups, &ranks))?;
+        let Plan {
+            time_plan,
+            output,
+            mut budget,
+            ..
+        } = plan;
+        model.drive.program = program(&file, &time_plan)?;
+        refuse_large_angles(&file, &model.drive, groups.epsilon, time_plan.end_star())?;
+        budget.inputs = inputs.files.iter().map(|input| input.length as f64).sum();
         Ok(Self {
             name: name.to_owned(),
             file,
@@ -220,9 +222,67 @@ impl Case {
 struct Derived {
     scales: Scales,
     groups: Groups,
+    plan: Plan,
+}
+
+/// Steps, results, and the memory that they take.
+struct Plan {
+    dynamics: Dynamics,
+    /// Whether there must be memory to run it.
+    to_run: bool,
     time_plan: TimePlan,
     output: Output,
     budget: Budget,
+}
+
+impl Plan {
+    /// This plan, or another one if blocks that differ need it.
+    fn of_model(
+        self,
+        file: &CaseFile,
+        model: &Model,
+        scales: &Scales,
+        groups: &Groups,
+        ranks: &Ranks,
+    ) -> Result<Self, CaseError> {
+        let dynamics = Dynamics::of(model);
+        if dynamics == self.dynamics {
+            return Ok(self);
+        }
+        let time_plan = TimePlan::of(file, scales, groups, dynamics)?;
+        Self::checked(
+            file,
+            &model.lattice,
+            &model.rows,
+            ranks,
+            (dynamics, time_plan),
+            self.to_run,
+        )
+    }
+
+    /// Refuses what there is no memory for.
+    fn checked(
+        file: &CaseFile,
+        lattice: &Lattice,
+        rows: &Range<usize>,
+        ranks: &Ranks,
+        (dynamics, time_plan): (Dynamics, TimePlan),
+        to_run: bool,
+    ) -> Result<Self, CaseError> {
+        let output = Output::of(file, &time_plan)?;
+        let budget = Budget::new(lattice, rows, ranks, file, &time_plan, &output);
+        if to_run {
+            budget.check_memory(file, false)?;
+        }
+        budget.check_making(file)?;
+        Ok(Self {
+            dynamics,
+            to_run,
+            time_plan,
+            output,
+            budget,
+        })
+    }
 }
 
 impl Derived {
@@ -251,34 +311,23 @@ impl Derived {
             );
             return Err(file.source.error("slider.blocks", sentence));
         }
-        if n_ranks > 1 && kernel(file) != Kernel::Fused {
-            let (key, sentence) = match file.friction.law {
-                FrictionLaw::Projection => (
-                    "drive",
-                    "a lattice is divided among ranks under a drive of constant speed and direction, attached to all blocks, alone: \
-                     take one rank, or that drive",
-                ),
-                _ => (
-                    "friction.law",
-                    "a lattice is divided among ranks under the law \"projection\" alone: take one rank, or that law",
-                ),
-            };
-            return Err(file.source.error(key, sentence));
+        match beyond_fused(file) {
+            Some("friction.law") if n_ranks > 1 => {
+                let sentence = "a lattice is divided among ranks under the law \"projection\" alone: take one rank, or that law";
+                return Err(file.source.error("friction.law", sentence));
+            }
+            Some(key) if n_ranks > 1 => {
+                let sentence = format!(
+                    "a lattice is not divided among ranks with `{key}`: take one rank, or leave it out"
+                );
+                return Err(file.source.error(key, sentence));
+            }
+            _ => {}
         }
-        let time_plan = TimePlan::of(file, &scales, &groups, lattice)?;
-        let output = Output::of(file, &time_plan)?;
-        let budget = Budget::new(lattice, rows, ranks, file, &time_plan, &output);
-        if to_run {
-            budget.check_memory(file, false)?;
-        }
-        budget.check_making(file)?;
-        Ok(Self {
-            scales,
-            groups,
-            time_plan,
-            output,
-            budget,
-        })
+        let dynamics = Dynamics::of_file(file, &scales, &groups, lattice);
+        let time_plan = TimePlan::of(file, &scales, &groups, dynamics)?;
+        let plan = Plan::checked(file, lattice, rows, ranks, (dynamics, time_plan), to_run)?;
+        Ok(Self { scales, groups, plan })
     }
 }
 

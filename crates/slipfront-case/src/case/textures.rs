@@ -16,12 +16,13 @@ use crate::{arrays, case_file};
 /// Told the share that is done of laying the texture over the blocks; `false` ends it.
 pub type Watch<'a> = dyn FnMut(f64) -> bool + 'a;
 
-/// The textured blocks of the rows that this rank holds, and the area of all textures as asked for, % (see
-/// [`TextureReport`](super::runnable::TextureReport)); masks are read.
+/// The textured blocks of the rows that this rank holds, and the area of all textures as asked for, % of that of the `n_blocks` that
+/// exist (see [`TextureReport`](super::runnable::TextureReport)); masks are read.
 pub(super) fn mesh(
     file: &CaseFile,
     scales: &Scales,
     lattice: &Lattice,
+    n_blocks: usize,
     inputs: &Inputs,
     watch: &mut Watch,
 ) -> Result<(surface::Meshed, Option<f64>), CaseError> {
@@ -30,8 +31,8 @@ pub(super) fn mesh(
     let mut masks = Masks::default();
     for (index, texture) in file.texture.iter().enumerate() {
         let (shape, percent) = match texture {
-            case_file::Texture::Cavity(cavity) => cavity_in_blocks(cavity, scales, lattice),
-            case_file::Texture::Groove(groove) => groove_in_blocks(groove, scales, lattice),
+            case_file::Texture::Cavity(cavity) => cavity_in_blocks(cavity, scales, lattice, n_blocks),
+            case_file::Texture::Groove(groove) => groove_in_blocks(groove, scales, lattice, n_blocks),
             case_file::Texture::Polygon(polygon) => {
                 let points = polygon.points.iter().map(|point| in_blocks(scales, point));
                 (surface::Texture::Polygon(points.collect()), None)
@@ -85,22 +86,24 @@ impl<'a> Masks<'a> {
             Entry::Occupied(known) => return Ok(Arc::clone(known.get())),
             Entry::Vacant(entry) => entry,
         };
-        let read = read_mask(file, &format!("texture.{index}.file"), mask, inputs, watch)?;
+        let key = format!("texture.{index}.file");
+        let read = read_mask(file, &key, &mask.file, mask.threshold, inputs, watch)?;
         Ok(Arc::clone(entry.insert(Arc::new(read))))
     }
 }
 
-/// The dark pixels of an image, or the ones of an array, which `key` names.
+/// Reads an image or array of this name, which `key` gives it: whether each block is dark, or 1.
 pub(super) fn read_mask(
     file: &CaseFile,
     key: &str,
-    mask: &Mask,
+    name: &str,
+    threshold: f64,
     inputs: &Inputs,
     watch: &mut Watch,
 ) -> Result<Vec<bool>, CaseError> {
-    inputs.read(file, key, &mask.file, |path, source, slab| match is_array(path) {
+    inputs.read(file, key, name, |path, source, slab| match is_array(path) {
         true => arrays::mask_npy(path, source, slab),
-        false => arrays::mask_png(path, source, mask.threshold, slab, &mut |share| {
+        false => arrays::mask_png(path, source, threshold, slab, &mut |share| {
             watch(share).then_some(()).ok_or(ArrayError::Stopped)
         }),
     })
@@ -136,8 +139,8 @@ fn cavity_in_blocks(
     cavity: &case_file::Cavity,
     scales: &Scales,
     lattice: &Lattice,
+    n_blocks: usize,
 ) -> (surface::Texture, Option<f64>) {
-    let n_blocks = lattice.n_blocks();
     let array = cavity.array.map(|count| count as usize);
     let count = array[0] * array[1];
     let (s, w) = (cavity.s, cavity.w);
@@ -170,10 +173,13 @@ fn groove_in_blocks(
     groove: &case_file::Groove,
     scales: &Scales,
     lattice: &Lattice,
+    n_blocks: usize,
 ) -> (surface::Texture, Option<f64>) {
+    // A groove is as long as the lattice: the share of it that the slider fills is that of its area.
+    let share = n_blocks as f64 / lattice.n_blocks() as f64;
     let breadth = match groove.orientation {
-        surface::Orientation::Across => lattice.nx as f64,
-        surface::Orientation::Along => lattice.ny as f64,
+        surface::Orientation::Across => lattice.nx as f64 * share,
+        surface::Orientation::Along => lattice.ny as f64 * share,
     };
     let (width, percent) = match &groove.size {
         case_file::GrooveSize::Coverage(percent) => (breadth * percent / 100.0, *percent),

@@ -2,11 +2,12 @@
 
 use slipfront::lattice::dt_star_limit;
 use slipfront::observe::KineticStart;
-use slipfront::{Lattice, Scales, Stop, StopReason};
+use slipfront::{Lattice, Model, Scales, Stop, StopReason};
 
 use super::drive::loading_share;
 use super::groups::Groups;
 use crate::case_file::{AutoOr, CaseError, CaseFile, DriveSpeed, RunTime, Step};
+use crate::number_format::four_digits;
 
 /// Duration and time step of a run, its end and the window of the kinetic friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +22,35 @@ pub struct TimePlan {
     pub kinetic: KineticStart,
 }
 
+/// What a time plan must know of the model, which is made after the memory that the plan takes is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Dynamics {
+    /// The step must be less.
+    step_limit: f64,
+    /// Speed in which waiting times are counted.
+    loading_speed: f64,
+}
+
+impl Dynamics {
+    /// Of equal blocks, as far as the file tells.
+    pub(super) fn of_file(file: &CaseFile, scales: &Scales, groups: &Groups, lattice: &Lattice) -> Self {
+        Self {
+            step_limit: dt_star_limit(),
+            loading_speed: groups.v_star * loading_share(file, scales, lattice),
+        }
+    }
+
+    pub(super) fn of(model: &Model) -> Self {
+        Self {
+            step_limit: model.stable_step_limit(),
+            loading_speed: model.loading_speed(),
+        }
+    }
+}
+
+/// The step of "auto", where it is stable.
+const AUTO_STEP: f64 = 0.1;
+
 /// Longest run, in steps, of which the kernel keeps the numbers in 32 bits.
 const MAX_STEPS: f64 = 4e9;
 
@@ -30,25 +60,27 @@ impl TimePlan {
         file: &CaseFile,
         scales: &Scales,
         groups: &Groups,
-        lattice: &Lattice,
+        dynamics: Dynamics,
     ) -> Result<Self, CaseError> {
         let time = &file.time;
+        let limit = dynamics.step_limit;
+        let auto = if AUTO_STEP < limit { AUTO_STEP } else { 0.5 * limit };
         let dt_star = match time.step {
-            Step::Auto => 0.1,
+            Step::Auto => auto,
             Step::Paper => 2.0 / 3.0 * groups.v_star,
             Step::Number(dt_star) => dt_star,
         };
-        if dt_star >= dt_star_limit() {
+        if dt_star >= limit {
             let sentence = format!(
-                "the step dt* = {dt_star:.4} is not stable: it must be less than {:.4}; \"auto\" takes 0.1",
-                dt_star_limit()
+                "the step dt* = {dt_star:.4} is not stable: it must be less than {limit:.4}; \"auto\" takes {}",
+                four_digits(auto)
             );
             return Err(file.source.error("time.step", sentence));
         }
         let (key, end_star) = match &time.duration {
             RunTime::Star(AutoOr::Auto) => (
                 "time.duration_star",
-                auto_duration(file, scales, groups, lattice)?,
+                auto_duration(file, scales, dynamics.loading_speed),
             ),
             RunTime::Star(AutoOr::Number(duration)) => ("time.duration_star", *duration),
             RunTime::Duration(duration) => ("time.duration", duration.si() / scales.time()),
@@ -84,11 +116,6 @@ impl TimePlan {
         })
     }
 
-    /// The number of the step nearest to a time.
-    pub(super) fn step_at(&self, time_star: f64) -> f64 {
-        (time_star / self.dt_star).round()
-    }
-
     /// t* of the last step.
     pub fn end_star(&self) -> f64 {
         self.last_step as f64 * self.dt_star
@@ -97,24 +124,14 @@ impl TimePlan {
 
 /// 8/V* shows onset and sliding of the paper's slider. A drive that loads more slowly and adhesion delay the onset; under a program
 /// of speeds it is counted from the last of them.
-fn auto_duration(
-    file: &CaseFile,
-    scales: &Scales,
-    groups: &Groups,
-    lattice: &Lattice,
-) -> Result<f64, CaseError> {
-    let Some(share) = loading_share(file, scales, lattice) else {
-        let sentence = "how fast these blocks load the slider is known only when the file has been read: set `time.duration_star`, \
-                        or `drive.total_stiffness_star`";
-        return Err(file.source.error("drive.attach_file", sentence));
-    };
+fn auto_duration(file: &CaseFile, scales: &Scales, loading_speed: f64) -> f64 {
     let delay = 1.0 + file.friction.adhesion.si() / scales.stress();
-    let from = match &file.drive.speed {
+    let last = match &file.drive.speed {
         DriveSpeed::Program(segments) => segments
             .iter()
             .filter_map(|segment| segment.until_star)
             .next_back(),
-        _ => None,
+        DriveSpeed::VStar(_) | DriveSpeed::Speed(_) => None,
     };
-    Ok(from.unwrap_or(0.0) + 8.0 / (groups.v_star * share) * delay)
+    last.unwrap_or(0.0) + 8.0 / loading_speed * delay
 }

@@ -48,7 +48,7 @@ impl Case {
         warn(dt_star > 0.5, &|| {
             format!("dt* = {dt_star} is stable but coarse: with 0.1, mu_s* is good to 1e-3")
         });
-        let n_blocks = self.model.lattice.n_blocks();
+        let n_blocks = self.model.n_blocks();
         warn(n_blocks < FEW_BLOCKS, &|| {
             format!(
                 "{} few: edges weigh heavily below {FEW_BLOCKS} (Fig. 5 of the paper)",

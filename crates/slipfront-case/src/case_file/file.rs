@@ -83,6 +83,7 @@ impl CaseFile {
 
     /// Every file that these tables of a case name, relative to the case file, and the key that names it.
     pub fn files_mut<'a>(
+        slider: &'a mut Slider,
         load: &'a mut Load,
         drive: &'a mut Drive,
         friction: &'a mut Friction,
@@ -94,6 +95,9 @@ impl CaseFile {
             _ => None,
         });
         let fields = [
+            ("slider.outline_file", &mut slider.outline_file),
+            ("slider.stiffness_field", &mut slider.stiffness_field),
+            ("slider.density_field", &mut slider.density_field),
             ("load.pressure_field", &mut load.pressure_field),
             ("friction.mu_static_field", &mut friction.mu_static_field),
             ("friction.mu_kinetic_field", &mut friction.mu_kinetic_field),
@@ -116,7 +120,7 @@ impl CaseFile {
         let check = |table| Check::new(&self.source, table, table);
         self.slider.check(&check("slider"))?;
         self.load.check(&check("load"))?;
-        self.drive.check(&check("drive"), &self.slider.edges)?;
+        self.drive.check(&check("drive"), &self.slider)?;
         self.friction.check(&check("friction"))?;
         for (index, texture) in self.texture.iter().enumerate() {
             let path = format!("texture.{index}");

@@ -17,6 +17,7 @@ use slipfront::{Edges, FrictionLaw, StopReason};
 use super::drive::{AttachedEdge, Motion};
 
 use super::probe::names_of;
+use super::slider::Outline;
 
 /// A range of numbers.
 pub type Bounds = (Bound<f64>, Bound<f64>);
@@ -148,6 +149,10 @@ const MAX_LENGTH: f64 = 1e9;
 /// TOML's largest integer.
 const MAX_SEED: u64 = i64::MAX.unsigned_abs();
 
+/// Least and largest property of a block over that of the whole slider.
+pub(crate) const MIN_RELATIVE: f64 = 1e-6;
+pub(crate) const MAX_RELATIVE: f64 = 1e6;
+
 const POSITIVE_TIME: Bounds = above(0.0, MAX_TIME_STAR);
 const COVERAGE: Kind = number(between(0.0, 100.0), "it is in percent of the whole area");
 const DEGREES: Kind = number(within(-360.0, 360.0), "it is in degrees from x towards y");
@@ -167,6 +172,12 @@ const DRIVE_STIFFNESS: Kind = number(above(0.0, 1e6), "that of the paper is 0.37
 pub(super) const PROGRAM_SPEED: Kind = number(within(-10.0, 10.0), "the paper's runs have 0.01 to 0.2");
 /// The end of a segment of a program.
 pub(super) const UNTIL: Kind = number(POSITIVE_TIME, "it is a time t*");
+/// A property of a block over that of the whole slider.
+pub(super) const RELATIVE_PROPERTY: Kind = number(
+    within(MIN_RELATIVE, MAX_RELATIVE),
+    "it is relative, so that 1 changes nothing",
+);
+const GRADE: Kind = Kind::Special("`{ along = \"x\", from = 1, to = 0.1 }`; 1e-6 to 1e6");
 const SHEAR_STRENGTH: Kind = quantity("Pa", within(0.0, 1e15));
 
 /// Every section of a case file.
@@ -196,6 +207,15 @@ const SLIDER: &[Key] = &[
     key("damping_rate", "", quantity("1/s", within(0.0, 1e24)), "damping with its unit")
         .or("omega_star").title("damping", "\u{3a9}", "1/s"),
     key("edges", "\"free\"", Kind::Words(names_of::<Edges>), "what lies beyond the edges that bound x and those that bound y"),
+    key("outline", "\"rectangle\"", Kind::Words(names_of::<Outline>), "shape of the slider: blocks outside do not exist"),
+    key("outline_file", "", Kind::File(&["png", "npy"]), "the shape as a mask: dark pixels, or 1 in an array, are blocks"),
+    key("viscosity_time_star", "0", number(within(0.0, 1e3), "it is a time in t*, of the order of 0.1 where it matters"),
+        "damping constant of a damper beside every spring between blocks over the spring's stiffness")
+        .title("viscosity", "\u{3c4}\u{1d65}*", ""),
+    key("stiffness_field", "", ARRAY, "Young's modulus over `young_modulus`, block by block").or("stiffness_grade"),
+    key("stiffness_grade", "", GRADE, "the same, from one edge to the other").or("stiffness_field"),
+    key("density_field", "", ARRAY, "density over `density`, block by block").or("density_grade"),
+    key("density_grade", "", GRADE, "the same, from one edge to the other").or("density_field"),
 ];
 
 #[rustfmt::skip]

@@ -31,6 +31,7 @@ pub use drive::{Attached, AttachedEdge, Drive, DriveSpeed, DriveStiffness, Motio
 pub use error::{CaseError, Invalid, Place};
 pub use file::{CaseFile, ParsedCase};
 pub use key_table::{Bounds, Key, Kind, SECTIONS, Section, Title, names_a_file, title_of};
+pub(crate) use key_table::{MAX_RELATIVE, MIN_RELATIVE};
 pub use keys::{
     STUDY_TABLES, TABLES as CASE_TABLES, exclude_each_other, header_below, partners_of,
     unknown as unknown_key, unknown_table as unknown_case_table,
@@ -40,7 +41,7 @@ pub use motion::{Along, Friction, KineticFriction, Load, Profile};
 pub use output::{Output, Snapshots};
 pub use overrides::Override;
 pub use probe::names_of;
-pub use slider::{Damping, Slider};
+pub use slider::{Damping, Grade, Outline, Slider};
 pub use source::Source;
 pub use tables::Tables;
 pub use texture::{

@@ -6,7 +6,9 @@ use slipfront::Edges;
 use super::check::Check;
 use super::choice::keys_with_choice;
 use super::error::CaseError;
-use super::values::{Pair, pair};
+use super::key_table::RELATIVE_PROPERTY;
+use super::motion::Along;
+use super::values::{Pair, pair, word};
 use crate::number_format::count;
 use crate::quantity::{Density, Length, Pressure, Rate};
 
@@ -26,6 +28,45 @@ pub struct Slider {
     pub damping: Damping,
     /// The lattice's edges that bound x and those that bound y.
     pub edges: [Edges; 2],
+    /// Shape of the slider.
+    pub outline: Outline,
+    /// The file of an outline that is a mask: `.png` or `.npy`.
+    pub outline_file: Option<String>,
+    /// Damping constant of the damper beside every spring between blocks over the stiffness of the spring (`tau_v`), in t*.
+    pub viscosity_time_star: f64,
+    /// A file of Young's moduli over `young_modulus`, block by block: `.npy` or `.csv`, shape (ny, nx).
+    pub stiffness_field: Option<String>,
+    /// A relative modulus that changes along an axis.
+    pub stiffness_grade: Option<Grade>,
+    /// A file of densities over `density`, block by block: `.npy` or `.csv`, shape (ny, nx).
+    pub density_field: Option<String>,
+    /// A relative density that changes along an axis.
+    pub density_grade: Option<Grade>,
+}
+
+/// The shape of the slider: blocks outside do not exist.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outline {
+    /// All blocks.
+    Rectangle,
+    /// The disc that fills as many blocks along x as along y.
+    Disc,
+    /// The blocks of a file.
+    Mask,
+}
+
+/// A property relative to that of the whole slider that changes linearly along an axis, from one edge to the other.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Grade {
+    /// The axis.
+    #[serde(deserialize_with = "word")]
+    pub along: Along,
+    /// At the edge where the axis begins, 1e-6 to 1e6.
+    pub from: f64,
+    /// At the other edge, 1e-6 to 1e6.
+    pub to: f64,
 }
 
 /// How strongly the motion is damped.
@@ -69,7 +110,55 @@ impl Slider {
         check.value("block_size", &self.block_size)?;
         check.value("young_modulus", &self.young_modulus)?;
         check.value("density", &self.density)?;
-        self.damping.check(check)
+        self.damping.check(check)?;
+        check.value("viscosity_time_star", &self.viscosity_time_star)?;
+        let properties = [
+            (
+                "stiffness_field",
+                &self.stiffness_field,
+                "stiffness_grade",
+                &self.stiffness_grade,
+            ),
+            (
+                "density_field",
+                &self.density_field,
+                "density_grade",
+                &self.density_grade,
+            ),
+        ];
+        for (field, file, grade, ends) in properties {
+            check.value(field, file)?;
+            if let Some(Grade { from, to, .. }) = ends {
+                check.value_of(&RELATIVE_PROPERTY, &format!("{grade}.from"), from)?;
+                check.value_of(&RELATIVE_PROPERTY, &format!("{grade}.to"), to)?;
+            }
+        }
+        self.check_outline(check)
+    }
+
+    fn check_outline(&self, check: &Check) -> Result<(), CaseError> {
+        check.value("outline_file", &self.outline_file)?;
+        let [nx, ny] = self.blocks;
+        match (self.outline, &self.outline_file) {
+            (Outline::Mask, None) => check.refuse("outline", |key| {
+                format!("`{key}` = \"mask\" needs `outline_file`, the image or array that says which blocks exist")
+            }),
+            (Outline::Rectangle | Outline::Disc, Some(_)) => check.refuse("outline_file", |key| {
+                format!("`{key}` is not read: it belongs to `outline` = \"mask\"; set that, or leave the file out")
+            }),
+            (Outline::Disc, None) if nx != ny => check.refuse("blocks", |key| {
+                format!("`{key}` is [{nx}, {ny}]: a disc has as many blocks along x as along y")
+            }),
+            (Outline::Disc | Outline::Mask, _) if self.edges.contains(&Edges::Periodic) => {
+                check.refuse("outline", |key| {
+                    format!(
+                        "`{key}` has no meaning with periodic edges, where a slider has no end: take `edges` = \"free\", or \
+                         leave it out"
+                    )
+                })
+            }
+            _ => Ok(()),
+        }
     }
 }
 
@@ -87,6 +176,19 @@ keys_with_choice! {
         }),
         #[serde(serialize_with = "write_edges", deserialize_with = "read_edges")]
         edges: [Edges; 2],
+        #[serde(deserialize_with = "word")]
+        outline: Outline,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        outline_file: Option<String>,
+        viscosity_time_star: f64,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        stiffness_field: Option<String>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        stiffness_grade: Option<Grade>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        density_field: Option<String>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        density_grade: Option<Grade>,
     }
 }
 

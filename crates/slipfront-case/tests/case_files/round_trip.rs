@@ -6,8 +6,8 @@ use slipfront::surface::Orientation;
 use slipfront::{Edges, FrictionLaw, StopReason};
 use slipfront_case::case_file::{
     Along, Attached, AttachedEdge, AutoOr, CaseFile, Cavity, CavitySize, Center, Damping, Drive, DriveSpeed,
-    DriveStiffness, Friction, Groove, GrooveSize, KineticFriction, Load, Mask, Motion, Output, Polygon,
-    Profile, RunTime, Slider, Snapshots, Source, SpeedSegment, Step, Texture, Time,
+    DriveStiffness, Friction, Grade, Groove, GrooveSize, KineticFriction, Load, Mask, Motion, Outline,
+    Output, Polygon, Profile, RunTime, Slider, Snapshots, Source, SpeedSegment, Step, Texture, Time,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 
@@ -44,6 +44,16 @@ fn slider() -> impl Strategy<Value = Slider> {
         quantity(0, 23, &["1/s", "MHz"]).prop_map(Damping::Rate)
     ];
     let edge = || select(vec![Edges::Free, Edges::Periodic]);
+    let mask = file(&["png", "npy"]).prop_map(|file| (Outline::Mask, Some(file)));
+    let outline = prop_oneof![
+        Just((Outline::Rectangle, None)),
+        Just((Outline::Disc, None)),
+        mask
+    ];
+    let ends = || (select(vec![Along::X, Along::Y]), 1e-6..1e6, 1e-6..1e6);
+    let grade = || ends().prop_map(|(along, from, to)| (None, Some(Grade { along, from, to })));
+    let field = || prop::option::of(file(&["npy", "csv"])).prop_map(|field| (field, None));
+    let property = || prop_oneof![grade(), field()];
     (
         (3..60_000_u32, 3..60_000_u32),
         length(),
@@ -51,15 +61,43 @@ fn slider() -> impl Strategy<Value = Slider> {
         quantity(-6, 8, &["g/cm^3", "kg m^-3"]),
         damping,
         [edge(), edge()],
+        outline,
+        [property(), property()],
+        0.0..1e3,
     )
         .prop_map(
-            |((nx, ny), block_size, young_modulus, density, damping, edges)| Slider {
-                blocks: [nx, ny],
+            |(
+                (nx, ny),
                 block_size,
                 young_modulus,
                 density,
                 damping,
                 edges,
+                (outline, outline_file),
+                [(stiffness_field, stiffness_grade), (density_field, density_grade)],
+                viscosity_time_star,
+            )| Slider {
+                blocks: if outline == Outline::Disc {
+                    [nx; 2]
+                } else {
+                    [nx, ny]
+                },
+                block_size,
+                young_modulus,
+                density,
+                damping,
+                edges: if outline == Outline::Rectangle {
+                    edges
+                } else {
+                    [Edges::Free; 2]
+                },
+                outline,
+                outline_file,
+                viscosity_time_star,
+                stiffness_field,
+                stiffness_grade,
+                density_field,
+                density_grade,
             },
         )
 }

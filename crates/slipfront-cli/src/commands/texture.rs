@@ -55,7 +55,13 @@ impl Texture {
             return Err(Failure::input(anyhow::anyhow!(sentence)));
         }
         let lattice = &case.model.lattice;
-        arrays::write_mask_png(&self.out, lattice.nx, lattice.ny, &case.model.surface.textured).map_err(
+        // What does not exist has no contact either, but is no texture.
+        let (surface, slider) = (&case.model.surface, &case.model.slider);
+        let blocks = surface.textured.iter().enumerate();
+        let textured: Vec<bool> = blocks
+            .map(|(b, textured)| *textured && slider.exists(b))
+            .collect();
+        arrays::write_mask_png(&self.out, lattice.nx, lattice.ny, &textured).map_err(
             |error| match error {
                 ArrayError::Extension { .. } => Failure::input(error),
                 error => Failure::running(error),

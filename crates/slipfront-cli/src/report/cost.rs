@@ -1,6 +1,5 @@
 //! What `slipfront check` adds to the physics of a case.
 
-use slipfront::lattice::dt_star_limit;
 use slipfront_case::case::Case;
 use slipfront_case::machine::available_memory;
 use slipfront_case::number_format::{byte_size, four_digits, with_si_prefix};
@@ -42,7 +41,7 @@ fn scales(case: &Case) -> String {
         with_si_prefix(case.scales.displacement(), "m"),
         with_si_prefix(case.scales.stress(), "Pa"),
         four_digits(case.time_plan.dt_star),
-        dt_star_limit()
+        case.model.stable_step_limit()
     )
 }
 

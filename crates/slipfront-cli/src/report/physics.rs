@@ -2,7 +2,7 @@
 
 use slipfront::FrictionLaw;
 use slipfront_case::case::Case;
-use slipfront_case::case_file::{Attached, AttachedEdge, DriveStiffness, Motion};
+use slipfront_case::case_file::{Attached, AttachedEdge, DriveStiffness, Grade, Motion, Outline};
 use slipfront_case::number_format::{count, four_digits, with_si_prefix};
 
 /// The resolved physics of a case, as a tree.
@@ -39,14 +39,40 @@ fn slider(case: &Case) -> String {
     let size = with_si_prefix(case.scales.block_size, "m");
     let (nx, ny) = (lattice.nx, lattice.ny);
     let blocks = if nx * ny == 1 { "block" } else { "blocks" };
-    format!("{nx} x {ny} {blocks} of {size}, {edges} edges")
+    let file = &case.file.slider;
+    let within = |outline: &str| format!("{} within {outline} on ", case.model.n_blocks());
+    let outline = match (file.outline, &file.outline_file) {
+        (Outline::Rectangle, _) => String::new(),
+        (Outline::Mask, Some(name)) => within(name),
+        (Outline::Disc | Outline::Mask, _) => within("a disc"),
+    };
+    format!("{outline}{nx} x {ny} {blocks} of {size}, {edges} edges")
+}
+
+/// What follows a property of the material that is not the same everywhere.
+fn local(field: &Option<String>, grade: &Option<Grade>) -> String {
+    match (field, grade) {
+        (Some(file), _) => format!(" times {file}"),
+        (None, Some(Grade { along, from, to })) => {
+            let axis = format!("{along:?}").to_lowercase();
+            format!(" times {from} to {to} along {axis}")
+        }
+        (None, None) => String::new(),
+    }
 }
 
 fn material(case: &Case) -> String {
+    let slider = &case.file.slider;
+    let viscosity = match slider.viscosity_time_star > 0.0 {
+        true => format!(", tau_v* = {}", four_digits(slider.viscosity_time_star)),
+        false => String::new(),
+    };
     format!(
-        "E = {}, rho = {} kg/m^3, Omega* = {}",
+        "E = {}{}, rho = {} kg/m^3{}, Omega* = {}{viscosity}",
         with_si_prefix(case.scales.young_modulus, "Pa"),
+        local(&slider.stiffness_field, &slider.stiffness_grade),
         four_digits(case.scales.density),
+        local(&slider.density_field, &slider.density_grade),
         four_digits(case.groups.omega_star)
     )
 }

@@ -64,12 +64,12 @@ fn texts(
         let ending = name.rsplit('.').next().unwrap_or_default();
         *name = format!("{}.{ending}", hash.unwrap_or_default());
     };
-    let (mut load, mut drive) = (file.load.clone(), file.drive.clone());
+    let (mut slider, mut load, mut drive) = (file.slider.clone(), file.load.clone(), file.drive.clone());
     let (mut friction, mut texture) = (file.friction.clone(), file.texture.clone());
     friction.seed = 0;
-    CaseFile::files_mut(&mut load, &mut drive, &mut friction, &mut texture).for_each(contents);
+    CaseFile::files_mut(&mut slider, &mut load, &mut drive, &mut friction, &mut texture).for_each(contents);
     Ok([
-        text(&file.slider, known.map(|(file, texts)| (&file.slider, &texts[0])))?,
+        text(&slider, known.map(|(file, texts)| (&file.slider, &texts[0])))?,
         text(&load, None)?,
         text(&drive, None)?,
         text(&friction, None)?,

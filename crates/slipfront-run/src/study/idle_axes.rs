@@ -97,7 +97,12 @@ fn digest(case: &Case) -> blake3::Hash {
         number(from);
     }
     let surface = &model.surface;
+    let slider = &model.slider;
+    number(slider.viscosity_time);
     for block in 0..surface.n_blocks() {
+        number(slider.mass(block));
+        number(slider.drive_spring(block));
+        number(slider.spring(block, block));
         number(surface.normal_force(block));
         number(surface.static_limit(block));
         number(surface.kinetic_force(block));

@@ -1,5 +1,6 @@
 //! The numbers of a summary by name, for tables and statistics, and the other columns of these.
 
+use std::collections::HashMap;
 use std::sync::LazyLock;
 
 use serde_json::Value;
@@ -72,7 +73,8 @@ impl Quantity {
     }
 }
 
-/// The numbers of a summary in the order of [`known`]: the part of it that tables and statistics need.
+/// The numbers of a summary in the order of [`known`]: the part of it that tables and statistics need. Numbers that only some
+/// summaries have are not among them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SummaryValues {
     values: Box<[Option<f64>]>,
@@ -83,8 +85,10 @@ pub struct SummaryValues {
 
 impl SummaryValues {
     pub(super) fn of(summary: &Summary) -> Self {
+        let found: HashMap<_, _> = named(summary).into_iter().collect();
+        let values = known().iter().map(|name| found.get(name).copied().flatten());
         Self {
-            values: named(summary).into_iter().map(|(_, value)| value).collect(),
+            values: values.collect(),
             static_friction_star: summary.static_friction_star,
             transition: summary.transition,
         }
@@ -117,4 +121,28 @@ fn named(summary: &Summary) -> Vec<(String, Option<f64>)> {
 /// ```
 pub(super) fn reduction_percent(point: &SummaryValues, reference: &SummaryValues) -> f64 {
     100.0 * (reference.static_friction_star - point.static_friction_star) / reference.static_friction_star
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_that_few_summaries_have_shifts_no_other() {
+        let plain = Summary {
+            work_j: 2.0,
+            energy_error: 0.5,
+            steps: 7,
+            ..Summary::default()
+        };
+        let viscous = Summary {
+            viscous_loss_j: Some(3.0),
+            ..plain.clone()
+        };
+        assert_eq!(SummaryValues::of(&viscous), SummaryValues::of(&plain));
+        let Some(Quantity::Number(position)) = Quantity::named("steps") else {
+            panic!("a summary has a number of steps")
+        };
+        assert_eq!(SummaryValues::of(&viscous).get(position), Some(7.0));
+    }
 }

@@ -221,13 +221,13 @@ fn precursors_leave_kinetic_friction_behind(
     let (events, peak) = precursors(n, edge, slope, v_star, dt_star);
     let from_edge = if edge == Edge::Left { slope } else { -slope };
     let error = |event: &SlipEvent| {
-        let (_, mu_star) = event.after.unwrap();
-        0.7 * mu_star / precursor_load(event.length, 0.45, from_edge) - 1.0
+        let exact = precursor_load(event.length, 0.45, from_edge);
+        event.after.map(|(_, mu_star)| 0.7 * mu_star / exact - 1.0)
     };
     let compared = events
         .iter()
         .filter(|event| event.length > 0.2 && event.length < 1.0);
-    let errors: Vec<f64> = compared.map(error).collect();
+    let errors: Vec<f64> = compared.filter_map(error).collect();
     let rms = (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt();
     let largest = errors
         .iter()

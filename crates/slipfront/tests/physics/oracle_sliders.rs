@@ -164,6 +164,8 @@ fn case() -> impl Strategy<Value = Case> {
             move |(blocks, (viscosity, damping, epsilon, velocity), has_outline)| {
                 let mut exists: Vec<bool> = blocks.iter().map(|block| !has_outline || block.4).collect();
                 exists[0] = true;
+                // What does not exist may have any numbers.
+                let number = |b: usize, number: f64| if exists[b] { number } else { 0.0 };
                 let start = blocks.iter().zip(&exists).map(|(block, exists)| {
                     let [x, y] = if *exists { block.3 } else { [0.0; 2] };
                     [x, y, 0.0, 0.0]
@@ -175,8 +177,16 @@ fn case() -> impl Strategy<Value = Case> {
                         wraps[0] && nx > 3 && !has_outline,
                         wraps[1] && ny > 3 && !has_outline,
                     ],
-                    stiffness: blocks.iter().map(|block| block.0).collect(),
-                    mass: blocks.iter().map(|block| block.1).collect(),
+                    stiffness: blocks
+                        .iter()
+                        .enumerate()
+                        .map(|(b, block)| number(b, block.0))
+                        .collect(),
+                    mass: blocks
+                        .iter()
+                        .enumerate()
+                        .map(|(b, block)| number(b, block.1))
+                        .collect(),
                     mu: blocks.iter().map(|block| block.2).collect(),
                     start: start.collect(),
                     exists,

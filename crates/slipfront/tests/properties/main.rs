@@ -109,6 +109,7 @@ prop_compose! {
             blocks: [lattice.nx, lattice.ny],
             edges: lattice.edges,
             textures,
+            body: slipfront::Slider::default(),
             load: if kept { Load::Kept } else { Load::Redistributed },
             pressure,
             adhesion: adhesion.map_or(Adhesion::default(), |[of_static, of_kinetic]| Adhesion { of_static, of_kinetic }),

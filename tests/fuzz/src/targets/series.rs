@@ -39,6 +39,7 @@ pub(crate) fn csv(rows: u64) -> Vec<u8> {
             drive_spring_energy_j: 2.0,
             friction_loss_j: 0.1 + 0.2,
             damping_loss_j: f64::NAN,
+            viscous_loss_j: (rows == 3).then_some(1e-9),
         }
     };
     to_csv((0..rows).map(row)).unwrap()

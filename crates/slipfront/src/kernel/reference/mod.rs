@@ -85,7 +85,7 @@ impl Reference {
             kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
             driven: DrivenBlocks::of(model),
             relative_springs: (!slider.has_equal_springs()).then(springs),
-            dampers: (slider.viscosity_time > 0.0).then(zeros),
+            dampers: slider.is_viscous().then(zeros),
             viscous_power: 0.0,
             first_slip: vec![f64::NAN; n],
             stress_square_max: 0.0,

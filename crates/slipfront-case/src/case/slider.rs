@@ -1,0 +1,84 @@
+//! Stiffness, density and outline of the slider, from what its file says or from the files that it names.
+
+use slipfront::{Communicator, Lattice, Outline, Slider};
+
+use super::inputs::Inputs;
+use super::textures::{Watch, read_mask};
+use crate::case_file::{self, CaseError, CaseFile, DEFAULT_THRESHOLD, Grade};
+use crate::case_file::{MAX_RELATIVE, MIN_RELATIVE};
+
+/// What is given of the blocks that this rank holds.
+pub(super) struct GivenBlocks {
+    stiffness: Option<Vec<f64>>,
+    density: Option<Vec<f64>>,
+    exists: Option<Vec<bool>>,
+}
+
+impl GivenBlocks {
+    /// Reads the files, and refuses a property out of its bounds.
+    pub(super) fn read(
+        file: &CaseFile,
+        lattice: &Lattice,
+        inputs: &Inputs,
+        watch: &mut Watch,
+    ) -> Result<Self, CaseError> {
+        let slider = &file.slider;
+        let rows = || inputs.slab.rows.clone();
+        let exists = match (slider.outline, &slider.outline_file) {
+            (case_file::Outline::Disc, _) => Some(Outline::disc(lattice, rows())),
+            (case_file::Outline::Mask, Some(name)) => {
+                let key = "slider.outline_file";
+                Some(read_mask(file, key, name, DEFAULT_THRESHOLD, inputs, watch)?)
+            }
+            _ => None,
+        };
+        let property = |field: &str, name: &Option<String>, grade: &Option<Grade>| {
+            if let Some(Grade { along, from, to }) = *grade {
+                return Ok(Some(Slider::grade(lattice, rows(), along as usize, [from, to])));
+            }
+            let key = format!("slider.{field}");
+            let values = inputs.read_field(file, &key, name)?;
+            let bounds = MIN_RELATIVE..=MAX_RELATIVE;
+            let is_wrong = |b: &usize| {
+                let exists = exists.as_ref().is_none_or(|exists| exists[*b]);
+                exists
+                    && values
+                        .as_ref()
+                        .is_some_and(|values| !bounds.contains(&values[*b]))
+            };
+            if let Some(b) = (0..inputs.slab.n_blocks()).find(is_wrong) {
+                let (i, j) = lattice.column_row(b + inputs.slab.rows.start * lattice.nx);
+                let value = values.as_ref().map_or(f64::NAN, |values| values[b]);
+                let sentence = format!(
+                    "block ({i}, {j}) has {value:?}: it must be at least {MIN_RELATIVE:e} and at most {MAX_RELATIVE:e}; it is relative, \
+                     so that 1 changes nothing"
+                );
+                return Err(file.source.error(&key, sentence));
+            }
+            Ok(values)
+        };
+        Ok(Self {
+            stiffness: property(
+                "stiffness_field",
+                &slider.stiffness_field,
+                &slider.stiffness_grade,
+            )?,
+            density: property("density_field", &slider.density_field, &slider.density_grade)?,
+            exists,
+        })
+    }
+
+    /// The slider of these blocks, made by all ranks at once; refused if no rank has a block.
+    pub(super) fn slider(self, file: &CaseFile, ranks: &dyn Communicator) -> Result<Slider, CaseError> {
+        let outline = self.exists.map(|exists| Outline::new(exists, ranks));
+        if outline.as_ref().is_some_and(|outline| outline.n_blocks == 0) {
+            let sentence =
+                "no block exists: no pixel at the centre of a block is dark, and no number of an array is 1";
+            return Err(file.source.error("slider.outline_file", sentence));
+        }
+        Ok(Slider {
+            viscosity_time: file.slider.viscosity_time_star,
+            ..Slider::new(self.stiffness, self.density, outline, ranks)
+        })
+    }
+}
