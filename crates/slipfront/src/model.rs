@@ -129,8 +129,8 @@ impl Model {
         blocks.map(force).sum::<f64>() / rotation.sum_radii
     }
 
-    /// Time of the first slip of a block in contact on a surface without texture, exact; of a rank, of its own blocks. Of a drive at
-    /// constant speed with a spring on every block
+    /// Time of the first slip of a block in contact on a surface without texture, exact. Of a drive at constant speed along a
+    /// direction
     ///
     /// ```text
     /// t* = min_i max(mu_si, mu_ki) F_n,i/(k_s,i V*)
@@ -141,8 +141,7 @@ impl Model {
         let (k_drive, v_star) = (self.drive.k_drive, self.drive.v_star);
         let pull =
             |threshold: f64, k: f64| self.friction.first_slip_pull(&self.surface, threshold, k, v_star);
-        let is_equal = self.slider.drive_springs.is_none() && self.drive.rotation.is_none();
-        if is_equal {
+        if self.drive.rotation.is_none() {
             let pull = pull(self.surface.min_slip_threshold(), k_drive);
             return match self.drive.program {
                 None => pull / (k_drive * v_star),
@@ -158,17 +157,13 @@ impl Model {
                 f64::INFINITY
             }
         };
-        let in_contact =
-            (0..self.surface.n_blocks()).filter(|&b| !self.surface.textured[b] && self.slider.exists(b));
+        let in_contact = (0..self.surface.n_blocks()).filter(|&b| !self.surface.textured[b]);
         self.drive
             .time_of_path(in_contact.map(path).fold(f64::INFINITY, f64::min))
     }
 
-    /// `r_i/r_max` of a rotation, else 1.
+    /// `r_i/r_max` of a rotation.
     fn relative_radius(&self, b: usize) -> f64 {
-        match self.drive.rotation {
-            None => 1.0,
-            Some(_) => length(self.drive.direction_at(&self.lattice, b)),
-        }
+        length(self.drive.direction_at(&self.lattice, b))
     }
 }

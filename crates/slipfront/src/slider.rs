@@ -55,15 +55,6 @@ impl Default for Slider {
 }
 
 impl DriveSprings {
-    /// Equal springs on the blocks of one edge of the lattice, for the rank that holds these `rows`.
-    pub fn at_edge(lattice: &Lattice, rows: &Range<usize>, edge: Edge) -> Self {
-        let relative = |b: usize| f64::from(u8::from(edge.distance(lattice, b) == 0));
-        Self {
-            relative: lattice.blocks_of(rows).map(relative).collect(),
-            sum: edge.n_blocks(lattice) as f64,
-        }
-    }
-
     /// Of the blocks that this rank holds, called by all `ranks` at once: the sum has the same bits however many they are.
     pub fn new(relative: Vec<f64>, ranks: &dyn Communicator) -> Self {
         Self {
@@ -144,9 +135,10 @@ impl Slider {
             let blocks = sum_over(density.len(), |b| f64::from(u8::from(slider.exists(b))), ranks);
             slider.mean_mass = masses / blocks;
         }
-        if slider.stiffness.is_some() {
-            let relative = (0..slider.stiffness.as_ref().map_or(0, Vec::len)).map(|b| slider.modulus(b));
-            slider.drive_springs = Some(DriveSprings::new(relative.collect(), ranks));
+        let stiffness = slider.stiffness.as_ref().map(Vec::len);
+        if let Some(n) = stiffness.or(slider.outline.as_ref().map(|outline| outline.exists.len())) {
+            let relative = (0..n).map(|b| slider.modulus(b)).collect();
+            slider.drive_springs = Some(DriveSprings::new(relative, ranks));
         }
         slider
     }
@@ -200,16 +192,35 @@ impl Slider {
         }
     }
 
-    /// Whether block `b` exists.
-    pub fn exists(&self, b: usize) -> bool {
-        self.outline.as_ref().is_none_or(|outline| outline.exists[b])
+    /// Takes the drive springs away from all blocks but some of those that this rank holds, called by all `ranks` at once.
+    pub fn attach(&mut self, n_blocks: usize, is_attached: impl Fn(usize) -> bool, ranks: &dyn Communicator) {
+        let relative = |b: usize| if is_attached(b) { self.drive_spring(b) } else { 0.0 };
+        self.drive_springs = Some(DriveSprings::new((0..n_blocks).map(relative).collect(), ranks));
     }
 
-    /// Sum of [`drive_spring`](Self::drive_spring) over all blocks of the lattice.
+    /// [`attach`](Self::attach) the blocks of one edge of the lattice, on the rank that holds these `rows`.
+    pub fn attach_edge(
+        &mut self,
+        lattice: &Lattice,
+        rows: &Range<usize>,
+        edge: Edge,
+        ranks: &dyn Communicator,
+    ) {
+        let blocks = lattice.blocks_of(rows);
+        let is_at_edge = |b: usize| edge.distance(lattice, blocks.start + b) == 0;
+        self.attach(blocks.len(), is_at_edge, ranks);
+    }
+
+    /// Sum of [`drive_spring`](Self::drive_spring) over the whole lattice.
     pub fn sum_of_drive_springs(&self, lattice: &Lattice) -> f64 {
         self.drive_springs
             .as_ref()
-            .map_or_else(|| self.n_blocks(lattice) as f64, |springs| springs.sum)
+            .map_or(self.n_blocks(lattice) as f64, |springs| springs.sum)
+    }
+
+    /// Whether block `b` exists.
+    pub fn exists(&self, b: usize) -> bool {
+        self.outline.as_ref().is_none_or(|outline| outline.exists[b])
     }
 
     /// Whether there are dampers beside the springs between blocks.

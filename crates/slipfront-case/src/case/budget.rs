@@ -36,10 +36,11 @@ fn slider_bytes(file: &CaseFile) -> f64 {
     let stiffness = slider.stiffness_field.is_some() || slider.stiffness_grade.is_some();
     let density = slider.density_field.is_some() || slider.density_grade.is_some();
     let outline = slider.outline != Outline::Rectangle;
-    NUMBER * (has(stiffness) + has(density) + has(stiffness || outline)) + FLAG * has(outline)
+    let driven = stiffness || outline || file.drive.attached != Attached::At(AttachedEdge::All);
+    NUMBER * (has(stiffness) + has(density) + has(driven)) + FLAG * has(outline)
 }
 
-/// Bytes of the reference kernel per block, with springs that differ and with dampers.
+/// Bytes of the reference kernel per block, with springs that differ, with dampers, and with directions of a rotation.
 fn reference_bytes(file: &CaseFile) -> f64 {
     let slider = &file.slider;
     let graded = slider.stiffness_field.is_some() || slider.stiffness_grade.is_some();
@@ -51,7 +52,11 @@ fn reference_bytes(file: &CaseFile) -> f64 {
         true => 2.0 * NUMBER,
         false => 0.0,
     };
-    REFERENCE + springs + dampers
+    let directions = match file.drive.motion {
+        Motion::Translation => 0.0,
+        Motion::Rotation => 2.0 * NUMBER,
+    };
+    REFERENCE + springs + dampers + directions
 }
 
 /// Bytes of the fused kernel per block, with what it keeps of blocks that differ.
@@ -61,7 +66,8 @@ fn fused_bytes(file: &CaseFile) -> f64 {
         || slider.stiffness_grade.is_some()
         || slider.density_field.is_some()
         || slider.density_grade.is_some()
-        || file.friction.velocity.is_some();
+        || file.friction.velocity.is_some()
+        || file.drive.attached != Attached::At(AttachedEdge::All);
     match differ {
         // Four springs, the drive spring, mass and its inverse, kinetic friction at the present speed.
         true => FUSED + 8.0 * NUMBER,
@@ -216,10 +222,6 @@ impl Budget {
         let kept = |indices: Range<usize>| frames::kept(indices, output.stride).len() as f64;
         let last_step = time_plan.last_step;
         let [kept_by_law, saved_by_law] = of_friction(&file.friction);
-        let drive_springs = match file.drive.attached {
-            Attached::At(AttachedEdge::All) => 0.0,
-            _ => NUMBER,
-        };
         let n_frames = match &output.snapshots {
             Snapshots::Instants => 6.0,
             Snapshots::At(steps) => steps.len() as f64,
@@ -233,7 +235,6 @@ impl Budget {
             is_shared: ranks.communicator.size() > 1,
             ranks_on_node: ranks.on_node as f64,
             surface: slider_bytes(file)
-                + drive_springs
                 + match file.load.profile.is_some() || file.load.pressure_field.is_some() {
                     true => SURFACE + NUMBER,
                     false => SURFACE,
@@ -241,10 +242,6 @@ impl Budget {
             kernel: match kernel(file) {
                 Kernel::Fused => fused_bytes(file),
                 Kernel::Reference => reference_bytes(file) + kept_by_law * NUMBER,
-            } + match file.drive.motion {
-                Motion::Translation => drive_springs,
-                // Relative stiffness and direction; radii of the blocks before.
-                Motion::Rotation => 3.0 * NUMBER,
             },
             saved: SAVED + saved_by_law * NUMBER,
             frames: n_frames,

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use slipfront::lattice::K_DRIVE;
-use slipfront::{Communicator, Drive, DriveSprings, Lattice, Program, Rotation, Scales, Slider};
+use slipfront::{Communicator, Drive, Lattice, Program, Rotation, Scales, Slider};
 
 use super::groups::{Groups, within};
 use super::inputs::Inputs;
@@ -29,35 +29,28 @@ pub(super) fn attached(
     read_mask(file, "drive.attach_file", name, DEFAULT_THRESHOLD, inputs, watch).map(Some)
 }
 
-/// The drive springs of these rows, called by all ranks at once; none if every block has one.
-pub(super) fn drive_springs(
+/// Leaves drive springs to the blocks of these rows alone that the case attaches, called by all ranks at once.
+pub(super) fn attach(
+    slider: &mut Slider,
     file: &CaseFile,
     lattice: &Lattice,
     rows: &Range<usize>,
     attached: Option<Vec<bool>>,
-    slider: &Slider,
     ranks: &dyn Communicator,
-) -> Result<Option<DriveSprings>, CaseError> {
-    let mut relative = match (attached, file.drive.edge()) {
-        (Some(attached), _) => attached
-            .into_iter()
-            .map(|attached| f64::from(u8::from(attached)))
-            .collect(),
-        (None, Some(edge)) => DriveSprings::at_edge(lattice, rows, edge).relative,
-        (None, None) => return Ok(slider.drive_springs.clone()),
-    };
-    for (b, relative) in relative.iter_mut().enumerate() {
-        *relative *= slider.drive_spring(b);
+) -> Result<(), CaseError> {
+    match (attached, file.drive.edge()) {
+        (Some(attached), _) => slider.attach(attached.len(), |b| attached[b], ranks),
+        (None, Some(edge)) => slider.attach_edge(lattice, rows, edge, ranks),
+        (None, None) => {}
     }
-    let springs = DriveSprings::new(relative, ranks);
-    if springs.sum > 0.0 {
-        return Ok(Some(springs));
+    if slider.sum_of_drive_springs(lattice) == 0.0 {
+        let sentence = "the file attaches no block, so that nothing pulls the slider: 1 or a dark pixel attaches a block";
+        return Err(file.source.error("drive.attach_file", sentence));
     }
-    let sentence = "the file leaves no block attached, so that nothing pulls the slider: 1 or a dark pixel attaches a block";
-    Err(file.source.error("drive.attach_file", sentence))
+    Ok(())
 }
 
-/// The drive of a slider that is complete but for it, at a constant speed.
+/// The drive of a slider. Springs that are not all alike have what they have together in proportion to their relative stiffness.
 pub(super) fn drive(
     file: &CaseFile,
     scales: &Scales,
@@ -65,7 +58,6 @@ pub(super) fn drive(
     lattice: &Lattice,
     slider: &Slider,
 ) -> Result<Drive, CaseError> {
-    let n_attached = slider.sum_of_drive_springs(lattice);
     let key = match file.drive.stiffness {
         DriveStiffness::Auto | DriveStiffness::Each(_) => "drive.stiffness",
         DriveStiffness::EachStar(_) => "drive.stiffness_star",
@@ -73,7 +65,7 @@ pub(super) fn drive(
         DriveStiffness::TotalStar(_) => "drive.total_stiffness_star",
     };
     let k_drive = match total(file, scales) {
-        Some(total) => total / n_attached,
+        Some(total) => total / slider.sum_of_drive_springs(lattice),
         None => each(file, scales),
     };
     within(
@@ -116,7 +108,19 @@ fn each(file: &CaseFile, scales: &Scales) -> f64 {
     }
 }
 
-/// The program of the file, if it has one, with speeds that change where steps begin.
+/// `sum k_s/(k_2 N)` of equal blocks, by which a drive loads the slider faster or more slowly than the paper's, if a file that attaches
+/// blocks attached all.
+pub(super) fn loading_share(file: &CaseFile, scales: &Scales, lattice: &Lattice) -> f64 {
+    let n_blocks = lattice.n_blocks() as f64;
+    let n_attached = file
+        .drive
+        .edge()
+        .map_or(n_blocks, |edge| edge.n_blocks(lattice) as f64);
+    let sum = total(file, scales).unwrap_or_else(|| n_attached * each(file, scales));
+    sum / (n_blocks * K_DRIVE)
+}
+
+/// The program of the case, if it has one, with speeds that change where steps begin.
 pub(super) fn program(file: &CaseFile, time_plan: &TimePlan) -> Result<Option<Arc<Program>>, CaseError> {
     let DriveSpeed::Program(segments) = &file.drive.speed else {
         return Ok(None);
@@ -124,7 +128,9 @@ pub(super) fn program(file: &CaseFile, time_plan: &TimePlan) -> Result<Option<Ar
     let mut before = 0.0;
     let mut parts = Vec::with_capacity(segments.len());
     for segment in segments {
-        let until = segment.until_star.map(|until| time_plan.step_at(until));
+        let until = segment
+            .until_star
+            .map(|until| (until / time_plan.dt_star).round());
         if until.is_some_and(|until| until <= before) {
             let sentence = format!(
                 "the speed {:?} of the program lasts less than a step of dt* = {}: speeds change where steps begin",

@@ -5,11 +5,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use slipfront::scales::damping;
-use slipfront::{Communicator, Lattice, Model, Scales, Slider, Surface};
+use slipfront::{Communicator, Lattice, Model, Scales, Surface};
 
 use super::budget::Budget;
 use super::coefficients::{coefficients, contact};
-use super::drive::{attached, drive, drive_springs, program, refuse_large_angles};
+use super::drive::{attach, attached, drive, program, refuse_large_angles};
 use super::friction::law;
 use super::groups::Groups;
 use super::inputs::{Input, Inputs, NamedFiles};
@@ -149,7 +149,7 @@ impl Case {
         };
 
         let blocks = ranks.agree(GivenBlocks::read(&file, &lattice, &inputs, watch))?;
-        let slider = blocks.slider(&file, ranks.communicator)?;
+        let mut slider = blocks.slider(&file, ranks.communicator)?;
         let n_blocks = slider.n_blocks(&lattice);
         let made = textures::mesh(&file, &scales, &lattice, n_blocks, &inputs, watch).and_then(|meshed| {
             let coefficients = coefficients(&file, &groups, &lattice, &inputs)?;
@@ -157,6 +157,7 @@ impl Case {
             Ok((meshed, coefficients, contact, attached(&file, &inputs, watch)?))
         });
         let ((meshed, asked_percent), coefficients, contact, attached) = ranks.agree(made)?;
+        attach(&mut slider, &file, &lattice, &rows, attached, ranks.communicator)?;
         let surface = Surface::of_ranks(
             coefficients,
             meshed.textured,
@@ -170,10 +171,6 @@ impl Case {
             meshed_percent: surface.texture_percent(),
             clipped: meshed.clipped,
             empty: empty_on_all(&meshed.empty, file.texture.len(), ranks.communicator),
-        };
-        let slider = Slider {
-            drive_springs: drive_springs(&file, &lattice, &rows, attached, &slider, ranks.communicator)?,
-            ..slider
         };
         let drive = drive(&file, &scales, &groups, &lattice, &slider)?;
         let mut model = Model::of_rows(
@@ -193,9 +190,9 @@ impl Case {
             mut budget,
             ..
         } = plan;
-        budget.inputs = inputs.files.iter().map(|input| input.length as f64).sum();
         model.drive.program = program(&file, &time_plan)?;
         refuse_large_angles(&file, &model.drive, groups.epsilon, time_plan.end_star())?;
+        budget.inputs = inputs.files.iter().map(|input| input.length as f64).sum();
         Ok(Self {
             name: name.to_owned(),
             file,
@@ -328,7 +325,7 @@ impl Derived {
             }
             _ => {}
         }
-        let dynamics = Dynamics::of_equal_blocks(&groups);
+        let dynamics = Dynamics::of_file(file, &scales, &groups, lattice);
         let time_plan = TimePlan::of(file, &scales, &groups, dynamics)?;
         let plan = Plan::checked(file, lattice, rows, ranks, (dynamics, time_plan), to_run)?;
         Ok(Self { scales, groups, plan })

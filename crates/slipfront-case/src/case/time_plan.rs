@@ -2,8 +2,9 @@
 
 use slipfront::lattice::dt_star_limit;
 use slipfront::observe::KineticStart;
-use slipfront::{Model, Scales, Stop, StopReason};
+use slipfront::{Lattice, Model, Scales, Stop, StopReason};
 
+use super::drive::loading_share;
 use super::groups::Groups;
 use crate::case_file::{AutoOr, CaseError, CaseFile, DriveSpeed, RunTime, Step};
 use crate::number_format::four_digits;
@@ -31,11 +32,11 @@ pub(super) struct Dynamics {
 }
 
 impl Dynamics {
-    /// Of equal blocks.
-    pub(super) fn of_equal_blocks(groups: &Groups) -> Self {
+    /// Of equal blocks, as far as the file tells.
+    pub(super) fn of_file(file: &CaseFile, scales: &Scales, groups: &Groups, lattice: &Lattice) -> Self {
         Self {
             step_limit: dt_star_limit(),
-            loading_speed: groups.v_star,
+            loading_speed: groups.v_star * loading_share(file, scales, lattice),
         }
     }
 
@@ -77,7 +78,10 @@ impl TimePlan {
             return Err(file.source.error("time.step", sentence));
         }
         let (key, end_star) = match &time.duration {
-            RunTime::Star(AutoOr::Auto) => ("time.duration_star", auto_duration(file, scales, dynamics)),
+            RunTime::Star(AutoOr::Auto) => (
+                "time.duration_star",
+                auto_duration(file, scales, dynamics.loading_speed),
+            ),
             RunTime::Star(AutoOr::Number(duration)) => ("time.duration_star", *duration),
             RunTime::Duration(duration) => ("time.duration", duration.si() / scales.time()),
         };
@@ -112,11 +116,6 @@ impl TimePlan {
         })
     }
 
-    /// The number of the step nearest to a time.
-    pub(super) fn step_at(&self, time_star: f64) -> f64 {
-        (time_star / self.dt_star).round()
-    }
-
     /// t* of the last step.
     pub fn end_star(&self) -> f64 {
         self.last_step as f64 * self.dt_star
@@ -125,14 +124,14 @@ impl TimePlan {
 
 /// 8/V* shows onset and sliding of the paper's slider. A drive that loads more slowly and adhesion delay the onset; under a program
 /// of speeds it is counted from the last of them.
-fn auto_duration(file: &CaseFile, scales: &Scales, dynamics: Dynamics) -> f64 {
+fn auto_duration(file: &CaseFile, scales: &Scales, loading_speed: f64) -> f64 {
     let delay = 1.0 + file.friction.adhesion.si() / scales.stress();
-    let from = match &file.drive.speed {
+    let last = match &file.drive.speed {
         DriveSpeed::Program(segments) => segments
             .iter()
             .filter_map(|segment| segment.until_star)
             .next_back(),
-        _ => None,
+        DriveSpeed::VStar(_) | DriveSpeed::Speed(_) => None,
     };
-    from.unwrap_or(0.0) + 8.0 / dynamics.loading_speed * delay
+    last.unwrap_or(0.0) + 8.0 / loading_speed * delay
 }

@@ -6,6 +6,7 @@ use slipfront::{Edge, Edges};
 use super::check::Check;
 use super::error::CaseError;
 use super::key_table::{PROGRAM_SPEED, STIFFNESS, UNTIL};
+use super::slider::{Outline, Slider};
 use super::values::word;
 use crate::quantity::{QuantityError, Speed, Stiffness};
 
@@ -112,7 +113,7 @@ impl Drive {
         }
     }
 
-    pub(super) fn check(&self, check: &Check, edges: &[Edges; 2]) -> Result<(), CaseError> {
+    pub(super) fn check(&self, check: &Check, slider: &Slider) -> Result<(), CaseError> {
         match &self.speed {
             DriveSpeed::VStar(v_star) => check.value("v_star", v_star)?,
             DriveSpeed::Speed(speed) => check.value("speed", speed)?,
@@ -124,13 +125,20 @@ impl Drive {
                 format!("`{key}` has no meaning for `motion` = \"rotation\", which pulls every block another way: leave it out")
             });
         }
-        if self.motion == Motion::Rotation && edges.contains(&Edges::Periodic) {
+        if self.motion == Motion::Rotation && slider.edges.contains(&Edges::Periodic) {
             return check.refuse("motion", |key| {
                 format!("`{key}` = \"rotation\" needs an axis and ends all around: it has no meaning with periodic edges")
             });
         }
         if let Some(edge) = self.edge()
-            && edges[edge.axis()] == Edges::Periodic
+            && slider.outline != Outline::Rectangle
+        {
+            return check.refuse("attach", |key| {
+                format!("`{key}` names an edge of the lattice, which a slider with an outline does not have: say by `attach_file` which blocks are driven")
+            });
+        }
+        if let Some(edge) = self.edge()
+            && slider.edges[edge.axis()] == Edges::Periodic
         {
             let axis = ["x", "y"][edge.axis()];
             return check.refuse("attach", |key| {

@@ -121,7 +121,7 @@ impl CaseFile {
         let check = |table| Check::new(&self.source, table, table);
         self.slider.check(&check("slider"))?;
         self.load.check(&check("load"))?;
-        self.drive.check(&check("drive"), &self.slider.edges)?;
+        self.drive.check(&check("drive"), &self.slider)?;
         self.friction.check(&check("friction"))?;
         for (index, texture) in self.texture.iter().enumerate() {
             let path = format!("texture.{index}");

@@ -165,12 +165,6 @@ pub(super) const COORDINATE: Kind = quantity("m", within(-MAX_LENGTH, MAX_LENGTH
 const ARRAY: Kind = Kind::File(&["npy", "csv"]);
 /// A slope of a profile.
 pub(super) const RELATIVE_SLOPE: Kind = number(between(-1.0, 1.0), "1 would leave no load on an edge");
-/// A property of a block over that of the whole slider.
-pub(super) const RELATIVE_PROPERTY: Kind = number(
-    within(MIN_RELATIVE, MAX_RELATIVE),
-    "it is relative, so that 1 changes nothing",
-);
-const GRADE: Kind = Kind::Special("`{ along = \"x\", from = 1, to = 0.1 }`; 1e-6 to 1e6");
 /// A stiffness with its unit.
 pub(super) const STIFFNESS: Kind = quantity("N/m", within(1e-30, 1e30));
 const DRIVE_STIFFNESS: Kind = number(above(0.0, 1e6), "that of the paper is 0.375 on each block");
@@ -178,6 +172,12 @@ const DRIVE_STIFFNESS: Kind = number(above(0.0, 1e6), "that of the paper is 0.37
 pub(super) const PROGRAM_SPEED: Kind = number(within(-10.0, 10.0), "the paper's runs have 0.01 to 0.2");
 /// The end of a segment of a program.
 pub(super) const UNTIL: Kind = number(POSITIVE_TIME, "it is a time t*");
+/// A property of a block over that of the whole slider.
+pub(super) const RELATIVE_PROPERTY: Kind = number(
+    within(MIN_RELATIVE, MAX_RELATIVE),
+    "it is relative, so that 1 changes nothing",
+);
+const GRADE: Kind = Kind::Special("`{ along = \"x\", from = 1, to = 0.1 }`; 1e-6 to 1e6");
 const SHEAR_STRENGTH: Kind = quantity("Pa", within(0.0, 1e15));
 
 /// Every section of a case file.

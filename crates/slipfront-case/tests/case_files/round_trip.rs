@@ -5,9 +5,10 @@ use slipfront::observe::Field;
 use slipfront::surface::Orientation;
 use slipfront::{Edges, StopReason};
 use slipfront_case::case_file::{
-    Ageing, AgeingLaw, Along, AutoOr, CaseFile, Cavity, CavitySize, Center, Contact, Damping, Drive,
-    DriveSpeed, Friction, Grade, Groove, GrooveSize, KineticFriction, Law, Load, Mask, Outline, Output,
-    Polygon, Profile, RunTime, Slider, Snapshots, Source, Step, Texture, Time, Velocity, VelocityLaw,
+    Ageing, AgeingLaw, Along, Attached, AttachedEdge, AutoOr, CaseFile, Cavity, CavitySize, Center, Contact,
+    Damping, Drive, DriveSpeed, DriveStiffness, Friction, Grade, Groove, GrooveSize, KineticFriction, Law,
+    Load, Mask, Motion, Outline, Output, Polygon, Profile, RunTime, Slider, Snapshots, Source, SpeedSegment,
+    Step, Texture, Time, Velocity, VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 
@@ -125,11 +126,43 @@ fn load() -> impl Strategy<Value = Load> {
 }
 
 fn drive() -> impl Strategy<Value = Drive> {
+    // Times are sums, so that they rise.
+    let program =
+        prop::collection::vec((-10.0..10.0, 0.01..100.0), 1..6).prop_map(|parts: Vec<(f64, f64)>| {
+            let mut until = 0.0;
+            let count = parts.len();
+            let segments = parts.into_iter().enumerate().map(|(number, (v_star, lasts))| {
+                until += lasts;
+                let until_star = (number + 1 < count).then_some(until);
+                SpeedSegment { v_star, until_star }
+            });
+            DriveSpeed::Program(segments.collect())
+        });
     let speed = prop_oneof![
         (1e-6..1.35).prop_map(DriveSpeed::VStar),
-        quantity(-18, 5, &["mm/s", "m s^-1"]).prop_map(DriveSpeed::Speed)
+        quantity(-18, 5, &["mm/s", "m s^-1"]).prop_map(DriveSpeed::Speed),
+        program
     ];
-    (speed, -360.0..360.0).prop_map(|(speed, direction)| Drive { speed, direction })
+    // Edges and rotation exclude periodic sliders and directions; files of `good` have them.
+    let attached = prop_oneof![
+        Just(Attached::At(AttachedEdge::All)),
+        file(&["npy", "png"]).prop_map(Attached::File)
+    ];
+    let newtons = || quantity(-20, 20, &["N/m", "kN/mm"]);
+    let stiffness = prop_oneof![
+        Just(DriveStiffness::Auto),
+        newtons().prop_map(DriveStiffness::Each),
+        newtons().prop_map(DriveStiffness::Total),
+        (1e-9..1e6).prop_map(DriveStiffness::EachStar),
+        (1e-9..1e6).prop_map(DriveStiffness::TotalStar)
+    ];
+    (speed, -360.0..360.0, attached, stiffness).prop_map(|(speed, direction, attached, stiffness)| Drive {
+        speed,
+        direction,
+        motion: Motion::Translation,
+        attached,
+        stiffness,
+    })
 }
 
 fn friction() -> impl Strategy<Value = Friction> {

@@ -64,9 +64,8 @@ fn texts(
         let ending = name.rsplit('.').next().unwrap_or_default();
         *name = format!("{}.{ending}", hash.unwrap_or_default());
     };
-    let (mut slider, mut load) = (file.slider.clone(), file.load.clone());
-    let (mut drive, mut friction) = (file.drive.clone(), file.friction.clone());
-    let mut texture = file.texture.clone();
+    let (mut slider, mut load, mut drive) = (file.slider.clone(), file.load.clone(), file.drive.clone());
+    let (mut friction, mut texture) = (file.friction.clone(), file.texture.clone());
     friction.seed = 0;
     CaseFile::files_mut(&mut slider, &mut load, &mut drive, &mut friction, &mut texture).for_each(contents);
     Ok([

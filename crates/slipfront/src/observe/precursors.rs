@@ -68,7 +68,7 @@ impl Precursors {
         let mut reached = 0;
         now.read_rows(Field::Sliding, 1, |j, i, part| {
             let row = j * lattice.nx + i;
-            for (k, _) in part.iter().enumerate().filter(|(_, slides)| **slides != 0.0) {
+            for (k, _) in part.iter().enumerate().filter(|(_, slides)| **slides > 0.0) {
                 if !now.model.surface.textured[row + k] {
                     reached = reached.max(edge.distance(lattice, first + row + k) + 1);
                 }

@@ -15,6 +15,7 @@ mod ageing;
 mod composite;
 mod contact_springs;
 mod driven_fronts;
+mod edge_drive;
 mod energy;
 mod first_slip;
 mod front_speed;

@@ -1,127 +1,116 @@
 //! The drive springs (Eq. 2): forces, energy, and the sums over blocks that belong to them.
 
-use crate::drive::Drive;
-use crate::fixed_point;
+use super::weighted::weighted_sum;
 use crate::model::Model;
 use crate::vector_field::VectorField;
 
-/// What drives each block.
+/// What drives each block beyond the drive springs of its model.
 #[derive(Debug)]
-pub(super) enum DrivenBlocks {
-    /// Equal springs on all blocks.
-    Equally,
-    /// Springs of these relative stiffnesses.
-    BySprings(Vec<f64>),
-    /// Springs of these relative stiffnesses whose ends rotate.
-    Rotating {
-        relative: Vec<f64>,
-        /// `g`, see [`Drive::direction_at`].
-        direction: VectorField,
-    },
+pub(super) struct DrivenBlocks {
+    /// Of a drive that rotates `g`, see [`Drive::direction_at`](crate::Drive::direction_at).
+    direction: Option<VectorField>,
 }
 
 impl DrivenBlocks {
     pub(super) fn of(model: &Model) -> Self {
-        let (slider, lattice) = (&model.slider, &model.lattice);
-        let relative = || (0..lattice.n_blocks()).map(|b| slider.drive_spring(b)).collect();
-        if model.drive.rotation.is_some() {
+        let lattice = &model.lattice;
+        let direction = || {
             let directions = (0..lattice.n_blocks()).map(|b| model.drive.direction_at(lattice, b).into());
             let (x, y): (Vec<f64>, Vec<f64>) = directions.unzip();
-            return Self::Rotating {
-                relative: relative(),
-                direction: VectorField { x, y },
-            };
-        }
-        match slider.drive_springs.is_some() || slider.outline.is_some() {
-            true => Self::BySprings(relative()),
-            false => Self::Equally,
+            VectorField { x, y }
+        };
+        Self {
+            direction: model.drive.rotation.map(|_| direction()),
         }
     }
 
-    /// Eq. 2: `F_s = k_s (V t - u)`.
+    /// Eq. 2: `F_s = k_s,i (V t - u)`.
     #[inline(always)]
-    pub(super) fn forces(&self, drive: &Drive, u: &VectorField, time_star: f64, force: &mut VectorField) {
-        let (k_drive, constant) = (drive.k_drive, drive.constant_force);
-        let position = drive.position(time_star);
-        let equally = |force: &mut [f64], u: &[f64], axis: usize| {
-            for (f, u) in force.iter_mut().zip(u) {
-                *f = k_drive * (position[axis] - u) + constant[axis];
+    pub(super) fn forces(&self, model: &Model, u: &VectorField, time_star: f64, force: &mut VectorField) {
+        let (k_drive, [along, across]) = (model.drive.k_drive, model.drive.constant_force);
+        match &self.direction {
+            None => {
+                let position = model.drive.position(time_star);
+                let component = |force: &mut [f64], u: &[f64], position: f64, constant: f64| {
+                    for (f, u) in force.iter_mut().zip(u) {
+                        *f = k_drive * (position - u) + constant;
+                    }
+                };
+                component(&mut force.x, &u.x, position[0], along);
+                component(&mut force.y, &u.y, position[1], across);
             }
-        };
-        match self {
-            Self::Equally => {
-                equally(&mut force.x, &u.x, 0);
-                equally(&mut force.y, &u.y, 1);
-            }
-            Self::BySprings(relative) => {
-                equally(&mut force.x, &u.x, 0);
-                equally(&mut force.y, &u.y, 1);
-                multiply(&mut force.x, relative);
-                multiply(&mut force.y, relative);
-            }
-            Self::Rotating { relative, direction } => {
-                let path = drive.path(time_star);
-                let n = relative.len();
+            Some(direction) => {
+                let path = model.drive.path(time_star);
+                let n = u.x.len();
                 let (gx, gy) = (&direction.x[..n], &direction.y[..n]);
                 let (ux, uy) = (&u.x[..n], &u.y[..n]);
-                let [along, across] = constant;
                 for (b, f) in force.x[..n].iter_mut().enumerate() {
                     *f = k_drive * (path * gx[b] - ux[b]) + (along * gx[b] - across * gy[b]);
                 }
                 for (b, f) in force.y[..n].iter_mut().enumerate() {
                     *f = k_drive * (path * gy[b] - uy[b]) + (along * gy[b] + across * gx[b]);
                 }
-                multiply(&mut force.x, relative);
-                multiply(&mut force.y, relative);
+            }
+        }
+        if let Some(relative) = relative(model) {
+            for force in [&mut force.x, &mut force.y] {
+                force
+                    .iter_mut()
+                    .zip(relative)
+                    .for_each(|(f, relative)| *f *= relative);
             }
         }
     }
 
-    /// Energy of the springs, `(k_s/2) (V t - u)^2` of each, at displacements `u`.
+    /// Energy of the springs, `(k_s,i/2) (V t - u)^2` of each, at displacements `u`.
     #[inline(always)]
-    pub(super) fn energy(&self, drive: &Drive, [ux, uy]: [&[f64]; 2], time_star: f64) -> f64 {
+    pub(super) fn energy(&self, model: &Model, [ux, uy]: [&[f64]; 2], time_star: f64) -> f64 {
         let n = ux.len();
-        let [x, y] = drive.position(time_star);
-        let stretch = |b: usize| (x - ux[b]) * (x - ux[b]) + (y - uy[b]) * (y - uy[b]);
-        let sum = match self {
-            Self::Equally => fixed_point::sum(n, stretch),
-            Self::BySprings(relative) => fixed_point::sum(n, |b| relative[b] * stretch(b)),
-            Self::Rotating { relative, direction } => {
-                let path = drive.path(time_star);
+        let square = |x: f64, y: f64| x * x + y * y;
+        let sum = match &self.direction {
+            None => {
+                let [x, y] = model.drive.position(time_star);
+                weighted_sum(n, relative(model), |b| square(x - ux[b], y - uy[b]))
+            }
+            Some(direction) => {
+                let path = model.drive.path(time_star);
                 let (gx, gy) = (&direction.x[..n], &direction.y[..n]);
-                fixed_point::sum(n, |b| {
-                    let (x, y) = (path * gx[b] - ux[b], path * gy[b] - uy[b]);
-                    relative[b] * (x * x + y * y)
+                weighted_sum(n, relative(model), |b| {
+                    square(path * gx[b] - ux[b], path * gy[b] - uy[b])
                 })
             }
         };
-        0.5 * drive.k_drive * sum
+        0.5 * model.drive.k_drive * sum
     }
 
     /// Sums over `n` blocks of a vector of components `x` and `y`, weighted with the relative stiffness of the springs: both
     /// components, of a rotation those along the direction at each block and to its left.
     #[inline(always)]
-    pub(super) fn sums(&self, n: usize, x: impl Fn(usize) -> f64, y: impl Fn(usize) -> f64) -> [f64; 2] {
-        match self {
-            Self::Equally => [fixed_point::sum(n, x), fixed_point::sum(n, y)],
-            Self::BySprings(relative) => [
-                fixed_point::sum(n, |b| relative[b] * x(b)),
-                fixed_point::sum(n, |b| relative[b] * y(b)),
-            ],
-            Self::Rotating { relative, direction } => {
+    pub(super) fn sums(
+        &self,
+        model: &Model,
+        n: usize,
+        x: impl Fn(usize) -> f64,
+        y: impl Fn(usize) -> f64,
+    ) -> [f64; 2] {
+        let relative = relative(model);
+        match &self.direction {
+            None => [weighted_sum(n, relative, x), weighted_sum(n, relative, y)],
+            Some(direction) => {
                 let (gx, gy) = (&direction.x[..n], &direction.y[..n]);
                 [
-                    fixed_point::sum(n, |b| relative[b] * (gx[b] * x(b) + gy[b] * y(b))),
-                    fixed_point::sum(n, |b| relative[b] * (gx[b] * y(b) - gy[b] * x(b))),
+                    weighted_sum(n, relative, |b| gx[b] * x(b) + gy[b] * y(b)),
+                    weighted_sum(n, relative, |b| gx[b] * y(b) - gy[b] * x(b)),
                 ]
             }
         }
     }
 }
 
-#[inline(always)]
-fn multiply(values: &mut [f64], factors: &[f64]) {
-    for (value, factor) in values.iter_mut().zip(factors) {
-        *value *= factor;
-    }
+fn relative(model: &Model) -> Option<&[f64]> {
+    model
+        .slider
+        .drive_springs
+        .as_ref()
+        .map(|springs| &*springs.relative)
 }

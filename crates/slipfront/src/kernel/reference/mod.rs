@@ -11,6 +11,7 @@ mod forces;
 mod rate_and_state;
 mod springs;
 mod thresholds;
+mod weighted;
 
 use fearless_simd::{Level, dispatch};
 
@@ -18,6 +19,7 @@ use self::contact::Contact;
 use self::drive::DrivenBlocks;
 use self::forces::{Forces, components};
 use self::springs::{damper_forces, lattice_energy, lattice_forces};
+use self::weighted::weighted_sum;
 use super::block::{Block, Field};
 use super::engine::Engine;
 use super::totals::{ContactTotals, StoredEnergy, Totals};
@@ -138,7 +140,7 @@ impl Reference {
         }
         let displacement = &self.state.displacement;
         self.driven
-            .forces(&model.drive, displacement, time_star, &mut self.forces.drive);
+            .forces(model, displacement, time_star, &mut self.forces.drive);
         let Forces { lattice, springs, .. } = &mut self.forces;
         let relative = self.relative_springs.as_ref();
         lattice_forces(model, &self.state, relative, lattice, springs);
@@ -194,7 +196,7 @@ impl Reference {
         let [fx, fy] = components(&self.forces.friction, n);
         let (textured, slides) = (&model.surface.textured[..n], &self.forces.slides[..n]);
         let mass = model.slider.density.as_deref();
-        let sums = |[x, y]: [&[f64]; 2]| self.driven.sums(n, |b| x[b], |b| y[b]);
+        let driven = |[x, y]: [&[f64]; 2]| self.driven.sums(model, n, |b| x[b], |b| y[b]);
         let squares = |[x, y]: [&[f64]; 2]| weighted_sum(n, mass, |b| x[b] * x[b] + y[b] * y[b]);
         let (vx, vy) = (|b: usize| 0.5 * (bx[b] + ax[b]), |b: usize| 0.5 * (by[b] + ay[b]));
         let slipping = slides.iter().zip(textured);
@@ -208,9 +210,9 @@ impl Reference {
             self.viscous_power = -fixed_point::sum(n, |b| dx[b] * vx(b) + dy[b] * vy(b));
         }
         Totals {
-            displacement: sums([ux, uy]),
-            velocity: self.driven.sums(n, vx, vy),
-            velocity_after: sums([ax, ay]),
+            displacement: driven([ux, uy]),
+            velocity: self.driven.sums(model, n, vx, vy),
+            velocity_after: driven([ax, ay]),
             velocity_square: weighted_sum(n, mass, |b| vx(b) * vx(b) + vy(b) * vy(b)),
             friction_power: match self.contact {
                 // What these springs take is stored, or lost where they break.
@@ -221,15 +223,14 @@ impl Reference {
             n_slipping: slipping
                 .filter(|&(slides, textured)| *slides && !textured)
                 .count(),
-            stored_energy: energies.then(|| StoredEnergy {
-                kinetic: 0.25 * (squares([bx, by]) + squares([ax, ay])),
-                lattice: lattice_energy(
-                    &model.lattice,
-                    &self.state.displacement,
-                    self.relative_springs.as_ref(),
-                    model.epsilon,
-                ),
-                drive_springs: self.driven.energy(&model.drive, [ux, uy], time_star),
+            stored_energy: energies.then(|| {
+                let displacement = &self.state.displacement;
+                let springs = self.relative_springs.as_ref();
+                StoredEnergy {
+                    kinetic: 0.25 * (squares([bx, by]) + squares([ax, ay])),
+                    lattice: lattice_energy(&model.lattice, displacement, springs, model.epsilon),
+                    drive_springs: self.driven.energy(model, [ux, uy], time_star),
+                }
             }),
         }
     }
@@ -318,18 +319,6 @@ impl Engine for Reference {
     /// Half a step before the present instant, which is evaluated again when it resumes.
     fn checkpoint_velocity(&self, b: usize) -> [f64; 2] {
         self.forces.velocity.at(b)
-    }
-}
-
-/// Sum of `weight term` over the blocks; all weights are 1 if there are none.
-#[inline(always)]
-fn weighted_sum(n: usize, weights: Option<&[f64]>, term: impl Fn(usize) -> f64) -> f64 {
-    match weights {
-        None => fixed_point::sum(n, term),
-        Some(weights) => {
-            let weights = &weights[..n];
-            fixed_point::sum(n, |b| weights[b] * term(b))
-        }
     }
 }
 

@@ -111,7 +111,14 @@ fn along_bond(
         _ => {}
     }
     if bond.offset[1] == 1 {
-        (0..lattice.nx).for_each(|i| replace(i, lattice.ny - 1));
+        match lattice.edges[1] {
+            Edges::Periodic => (0..lattice.nx).for_each(|i| replace(i, lattice.ny - 1)),
+            Edges::Free => {
+                let top = lattice.block(0, lattice.ny - 1);
+                force.x[top..].fill(0.0);
+                force.y[top..].fill(0.0);
+            }
+        }
     }
 }
 
@@ -139,6 +146,11 @@ fn sum_springs(lattice: &Lattice, springs: [&[f64]; 4], total: &mut [f64]) {
         *spring = &spring[from..from + n];
     }
     add_pairs(own, behind, &mut total[first..]);
+    if lattice.edges[1] == Edges::Free {
+        // Below the bottom row there is nothing, and the neighbour behind along the row is the block before.
+        let row = springs.map(|spring| &spring[1..lattice.nx]);
+        add_bottom_row(row, &springs[0][..lattice.nx - 1], &mut total[1..lattice.nx]);
+    }
     let mut replace = |i: usize, j: usize| {
         let pair = |bond: usize| {
             let Bond { offset: [di, dj], .. } = Bond::ALL[bond];
@@ -149,7 +161,10 @@ fn sum_springs(lattice: &Lattice, springs: [&[f64]; 4], total: &mut [f64]) {
         };
         total[lattice.block(i, j)] = (pair(0) + pair(1)) + (pair(2) + pair(3));
     };
-    (0..lattice.nx).for_each(|i| replace(i, 0));
+    replace(0, 0);
+    if lattice.edges[1] == Edges::Periodic {
+        (1..lattice.nx).for_each(|i| replace(i, 0));
+    }
     // At free edges the loop found springs of force zero, which is right; along a periodic axis neighbours wrap around.
     (1..lattice.ny).for_each(|j| replace(0, j));
     if lattice.edges[0] == Edges::Periodic {
@@ -164,6 +179,15 @@ fn add_pairs(own: [&[f64]; 4], behind: [&[f64]; 4], total: &mut [f64]) {
     let [w, s, sw, se] = behind.map(|spring| &spring[..n]);
     for k in 0..n {
         total[k] = ((e[k] - w[k]) + (north[k] - s[k])) + ((ne[k] - sw[k]) + (nw[k] - se[k]));
+    }
+}
+
+#[inline(always)]
+fn add_bottom_row(own: [&[f64]; 4], before: &[f64], total: &mut [f64]) {
+    let n = total.len();
+    let ([e, north, ne, nw], w) = (own.map(|spring| &spring[..n]), &before[..n]);
+    for k in 0..n {
+        total[k] = ((e[k] - w[k]) + north[k]) + (ne[k] + nw[k]);
     }
 }
 
