@@ -32,6 +32,7 @@ pub mod scales;
 pub mod surface;
 
 mod drive;
+mod elementary;
 mod error;
 mod fixed_point;
 mod friction;

@@ -241,7 +241,8 @@ impl Derived {
             return Err(file.source.error("slider.blocks", sentence));
         }
         if n_ranks > 1 && kernel(file) != Kernel::Fused {
-            let sentence = "a lattice is divided among ranks under the law \"projection\" alone: take one rank, or that law";
+            let sentence = "a lattice is divided among ranks under the law \"projection\" alone, with rigid contact and without \
+                            `velocity` or `ageing`: take one rank, or that law";
             return Err(file.source.error("friction.law", sentence));
         }
         let time_plan = TimePlan::of(file, &scales, &groups)?;
