@@ -33,6 +33,7 @@ pub mod stability;
 pub mod surface;
 
 mod drive;
+mod elementary;
 mod error;
 mod fixed_point;
 mod friction;

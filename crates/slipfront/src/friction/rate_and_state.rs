@@ -1,5 +1,7 @@
 //! Friction that follows speed and the state of the contact.
 
+use crate::elementary::{exp, ln, mean_decay};
+
 /// Rate and state with the ageing law: `mu = mu_0 + a ln(V/V_0) + b ln(V_0 theta/D_c)`, `dtheta/dt = 1 - V theta/D_c`; coefficients
 /// over `mu_s`. The logarithm of the speed is regularised at V = 0,
 ///
@@ -24,12 +26,30 @@ pub struct RateAndState {
     pub slip_speed: f64,
 }
 
-/// Above this logarithm of its argument, `asinh x = ln(2 x)` to the last bit.
+/// Above this logarithm of its argument, `asinh x = ln(2 x)` to the last bit; and above this argument `sinh` has one exponential.
 const LARGE: f64 = 20.0;
 
-/// Newton steps that no solution needs: while the sine is more than the linear term each takes at least half a unit off the unknown,
-/// which begins less than 16 above the root for any `a` of 1e-8 and more; the last few double the digits.
+/// Newton steps that no solution needs: while the exponential is more than the linear term each takes at least half a unit off the
+/// unknown, which begins less than 16 above the root for any `a` of 1e-8 and more; the last few double the digits.
 const MAX_STEPS: usize = 40;
+
+/// Least speed of which there is a logarithm; blocks that would be slower do not move.
+const MIN_SPEED: f64 = 1e-300;
+
+/// `asinh(1)`.
+const ASINH_1: f64 = 0.881_373_587_019_543;
+
+/// Bounds of the logarithm of the factor of V: below, there is no friction, and above, its inverse is no more than the least speed.
+const LOG_FACTORS: [f64; 2] = [-300.0, 340.0];
+
+/// Speeds and magnitudes of friction of some blocks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sliding<const BLOCKS: usize> {
+    /// Speeds after a step.
+    pub(crate) speed: [f64; BLOCKS],
+    /// Magnitudes of friction.
+    pub(crate) friction: [f64; BLOCKS],
+}
 
 /// `asinh(exp(y))`, without overflow.
 fn asinh_of_exp(y: f64) -> f64 {
@@ -42,9 +62,9 @@ fn asinh_of_exp(y: f64) -> f64 {
 
 impl RateAndState {
     /// `ln` of the factor of V in the regularised law, `(mu_0 + b ln(V_0 theta/D_c))/a - ln(2 V_0)`.
-    #[inline]
+    #[inline(always)]
     fn log_factor(&self, theta: f64) -> f64 {
-        (self.mu_0 + self.b * libm::log(self.v_0 * theta / self.d_c)) / self.a - libm::log(2.0 * self.v_0)
+        (self.mu_0 + self.b * ln(self.v_0 * theta / self.d_c)) / self.a - ln(2.0 * self.v_0)
     }
 
     /// Coefficient at a speed and state, over `mu_s`.
@@ -79,18 +99,13 @@ impl RateAndState {
     /// assert_eq!(law.evolve(3.0, 0.0, 0.1), 3.1);
     /// assert!((law.evolve(5.0, 0.1, 2.0) - 5.0).abs() < 1e-14);
     /// ```
-    #[inline]
+    #[inline(always)]
     pub fn evolve(&self, theta: f64, speed: f64, dt: f64) -> f64 {
         let x = speed * dt / self.d_c;
-        if x > 0.0 {
-            let change = libm::expm1(-x);
-            theta + theta * change - dt * (change / x)
-        } else {
-            theta + dt
-        }
+        theta * exp(-x) + dt * mean_decay(x)
     }
 
-    /// The speed after a step and the force of friction, of a block whose speed would be `free` without friction:
+    /// The speeds after a step and the friction of some blocks, whose speeds would be `free` without friction:
     ///
     /// ```text
     /// v + g F_n mu(v, theta) = free
@@ -98,35 +113,59 @@ impl RateAndState {
     ///
     /// with the change of speed per force `g = dt/(m c+)`. With `w = mu/a` as the unknown, `v = sinh(w) e^-L`, and the equation is
     /// `h(w) = sinh(w) e^-L + g F_n a w - free = 0`. For w >= 0 this h rises and is convex, so that Newton's method from the right of
-    /// the root comes down to it step by step; it ends where rounding lets it come no further. It begins at
-    /// the lesser of the roots that each of the two terms alone would have, which is close.
-    #[inline]
-    pub(crate) fn slide(&self, free: f64, theta: f64, normal_force: f64, g: f64) -> (f64, f64) {
-        let per_unit = g * normal_force * self.a;
-        // Zero is also what is left of a block over a texture: no friction.
-        if free <= 0.0 || per_unit <= 0.0 {
-            return (free, 0.0);
+    /// the root comes down to it step by step; it ends where rounding lets it come no further, where it stays: a
+    /// block has the same bits whatever blocks are beside it. It begins at the lesser of the roots that each of the two terms alone
+    /// would have, of the first an upper bound, `asinh(e^y) <= max(y, 0) + asinh(1)`.
+    #[inline(always)]
+    pub(crate) fn slide<const BLOCKS: usize>(
+        &self,
+        free: &[f64; BLOCKS],
+        theta: &[f64; BLOCKS],
+        normal_force: &[f64; BLOCKS],
+        g: &[f64; BLOCKS],
+    ) -> Sliding<BLOCKS> {
+        let zeros = [0.0; BLOCKS];
+        let (mut speed, mut w, mut log_factor, mut inverse_square) = (zeros, zeros, zeros, zeros);
+        for k in 0..BLOCKS {
+            log_factor[k] = self.log_factor(theta[k]).max(LOG_FACTORS[0]);
+            let inverse = exp(-log_factor[k]);
+            let is_small = log_factor[k] < LOG_FACTORS[1];
+            inverse_square[k] = if is_small { inverse * inverse } else { 0.0 };
+            let without_load = (log_factor[k] + ln(free[k].max(MIN_SPEED))).max(0.0) + ASINH_1;
+            w[k] = (free[k] / (g[k] * normal_force[k] * self.a)).min(without_load);
         }
-        let log_factor = self.log_factor(theta);
-        let mut w = f64::min(free / per_unit, asinh_of_exp(log_factor + libm::log(free)));
-        let mut speed = free;
         for _ in 0..MAX_STEPS {
-            let rising = libm::exp(w - log_factor);
-            // Beside the other it is below the last bit.
-            let falling = if w > LARGE {
-                0.0
-            } else {
-                libm::exp(-w - log_factor)
-            };
-            speed = 0.5 * (rising - falling);
-            let error = speed + per_unit * w - free;
-            let next = w - error / (0.5 * (rising + falling) + per_unit);
-            if next >= w {
+            let mut has_moved = false;
+            for k in 0..BLOCKS {
+                let per_unit = g[k] * normal_force[k] * self.a;
+                let rising = exp(w[k] - log_factor[k]);
+                let falling = if w[k] > LARGE {
+                    0.0
+                } else {
+                    inverse_square[k] / rising
+                };
+                speed[k] = 0.5 * (rising - falling);
+                let error = speed[k] + per_unit * w[k] - free[k];
+                let next = w[k] - error / (0.5 * (rising + falling) + per_unit);
+                has_moved |= next < w[k];
+                w[k] = if next < w[k] { next } else { w[k] };
+            }
+            if !has_moved {
                 break;
             }
-            w = next;
         }
-        (speed, normal_force * self.a * w)
+        let mut friction = zeros;
+        for k in 0..BLOCKS {
+            // Nothing holds a block over a texture, and nothing moves one that would not move without friction.
+            let slides = (free[k] > MIN_SPEED) & (normal_force[k] > 0.0);
+            friction[k] = if slides {
+                normal_force[k] * self.a * w[k]
+            } else {
+                0.0
+            };
+            speed[k] = if slides { speed[k] } else { free[k] };
+        }
+        Sliding { speed, friction }
     }
 
     /// Stiffness per block below which steady sliding of a block at `speed` under the normal force `sigma` is unstable (Rice and

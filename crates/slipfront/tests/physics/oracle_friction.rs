@@ -137,7 +137,8 @@ impl World {
                     body.slides = high > law.slip_speed;
                     // The solution of the linear equation for theta; d_c/speed alone would be huge where it creeps.
                     let x = high * dt / law.d_c;
-                    body.theta = body.theta * (-x).exp() - dt * (-x).exp_m1() / x;
+                    let time = if x > 0.0 { -dt * (-x).exp_m1() / x } else { dt };
+                    body.theta = body.theta * (-x).exp() + time;
                 }
             }
         }

@@ -1,12 +1,17 @@
 //! Friction that follows speed and state.
 
-use super::forces::Forces;
+use std::ops::Range;
+
+use super::forces::{Forces, components};
 use crate::fixed_point;
-use crate::friction::{Integrator, RateAndState};
+use crate::friction::{Integrator, RateAndState, Sliding};
 use crate::kernel::totals::ContactTotals;
 use crate::model::Model;
 use crate::state::State;
 use crate::vector_field::{VectorField, length};
+
+/// Blocks whose speeds are found together, so that the processor works on some while it waits for others.
+const AT_ONCE: usize = 32;
 
 /// The state of all contacts, which is the memory of the law.
 #[derive(Debug)]
@@ -29,28 +34,60 @@ impl StateContact {
     }
 
     /// Takes the states forward over a step, at the speeds in its middle.
+    #[inline(always)]
     pub(super) fn evolve(&mut self, velocity: &VectorField, dt_star: f64) {
-        for (b, theta) in self.theta.iter_mut().enumerate() {
-            *theta = self.law.evolve(*theta, length(velocity.at(b)), dt_star);
+        let n = self.theta.len();
+        let [vx, vy] = components(velocity, n);
+        for b in 0..n {
+            self.theta[b] = self.law.evolve(self.theta[b], length([vx[b], vy[b]]), dt_star);
         }
     }
 
     /// Friction and the velocities half a step later. A block counts as sliding above the slip speed.
     #[inline(always)]
     pub(super) fn apply(&self, model: &Model, state: &State, integrator: &Integrator, forces: &mut Forces) {
-        let slider = &model.slider;
-        for b in 0..self.theta.len() {
+        for first in (0..self.theta.len()).step_by(AT_ONCE) {
+            let len = AT_ONCE.min(self.theta.len() - first);
+            self.apply_to(first..first + len, model, state, integrator, forces);
+        }
+    }
+
+    /// The same for at most [`AT_ONCE`] blocks.
+    #[inline(always)]
+    fn apply_to(
+        &self,
+        blocks: Range<usize>,
+        model: &Model,
+        state: &State,
+        integrator: &Integrator,
+        forces: &mut Forces,
+    ) {
+        let zeros = [0.0; AT_ONCE];
+        let (mut velocity, mut free) = ([zeros; 2], zeros);
+        // Where there is no block the values are those of one that is not moved.
+        let (mut theta, mut normal_force, mut g) = ([1.0; AT_ONCE], zeros, zeros);
+        for (k, b) in blocks.clone().enumerate() {
+            let integrator = integrator.of_mass(model.slider.mass(b));
             let (drive, lattice) = (forces.drive.at(b), forces.lattice.at(b));
-            let integrator = integrator.of_mass(slider.mass(b));
-            let force = [0, 1].map(|axis| drive[axis] + lattice[axis]);
-            let free = integrator.accelerate(state.velocity.at(b), force);
-            let free_speed = length(free);
-            let g = integrator.force_to_velocity;
-            let (speed, friction) = self.law.slide(free_speed, self.theta[b], self.normal_force[b], g);
-            let direction = free.map(|v| if free_speed > 0.0 { v / free_speed } else { 0.0 });
-            [forces.friction.x[b], forces.friction.y[b]] = direction.map(|d| -friction * d);
-            [forces.velocity.x[b], forces.velocity.y[b]] = direction.map(|d| speed * d);
-            forces.slides[b] = speed > self.law.slip_speed;
+            let force = [drive[0] + lattice[0], drive[1] + lattice[1]];
+            let moved = integrator.accelerate(state.velocity.at(b), force);
+            [velocity[0][k], velocity[1][k]] = moved;
+            free[k] = length(moved);
+            (theta[k], normal_force[k], g[k]) =
+                (self.theta[b], self.normal_force[b], integrator.force_to_velocity);
+        }
+        let Sliding { speed, friction } = self.law.slide(&free, &theta, &normal_force, &g);
+        for (k, b) in blocks.enumerate() {
+            let direction = [0, 1].map(|axis| {
+                if free[k] > 0.0 {
+                    velocity[axis][k] / free[k]
+                } else {
+                    0.0
+                }
+            });
+            [forces.friction.x[b], forces.friction.y[b]] = direction.map(|d| -friction[k] * d);
+            [forces.velocity.x[b], forces.velocity.y[b]] = direction.map(|d| speed[k] * d);
+            forces.slides[b] = speed[k] > self.law.slip_speed;
         }
     }
 
