@@ -127,6 +127,10 @@ fn what_is_said_is_what_is_taken() {
         "slider.blocks=[3,3];output.series=0.1;time.duration_star=8000;friction.contact='springs';friction.contact_stiffness_star=0.1",
         "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.ageing={law='logarithmic',beta=0.1,time_star=1};\
          friction.velocity={law='weakening',v_c_star=0.1,ratio=0.5}",
+        // Blocks that differ, in another kernel.
+        "slider.blocks=[500,500];slider.outline='disc';slider.viscosity_time_star=0.1;time.duration_star=1;output.snapshots=[]",
+        "slider.blocks=[500,500];slider.stiffness_grade={along='x',from=1,to=2};slider.density_grade={along='y',from=1,to=2};\
+         time.duration_star=1;output.snapshots=[]",
         // Snapshots.
         "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1}",
         "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1};output.stride=3",
