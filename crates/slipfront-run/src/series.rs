@@ -87,8 +87,8 @@ impl SeriesRow {
             drive_spring_energy_j: row.energies.stored.drive_springs * energy,
             friction_loss_j: row.energies.friction_loss * energy,
             damping_loss_j: row.energies.damping_loss * energy,
-            contact_spring_energy_j: has_springs.then(|| row.energies.contact_springs * energy),
-            broken_spring_loss_j: has_springs.then(|| row.energies.broken_springs_loss * energy),
+            contact_spring_energy_j: has_springs.then_some(row.energies.contact_springs * energy),
+            broken_spring_loss_j: has_springs.then_some(row.energies.broken_springs_loss * energy),
             mean_state_star: has_state.then_some(row.mean_state),
         }
     }

@@ -201,7 +201,7 @@ impl SummaryObservers {
             friction_loss_j: energies.friction_loss * energy,
             damping_loss_j: energies.damping_loss * energy,
             broken_spring_loss_j: matches!(friction, Friction::ContactSprings(_))
-                .then(|| energies.broken_springs_loss * energy),
+                .then_some(energies.broken_springs_loss * energy),
             mean_state_star: match friction {
                 Friction::RateAndState(_) => last.map(|row| row.mean_state),
                 _ => None,
