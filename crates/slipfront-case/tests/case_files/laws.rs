@@ -58,7 +58,7 @@ fn keys_become_the_law_in_units_of_the_model() {
     }
 }
 
-/// k_c = 0.0169 for a = 0.01, b = 0.02, D_c = 0.5 at V* = 0.03; it grows about as 1/D_c^2.
+/// The stiffness below which sliding is unstable is 0.038 at D_c = 0.5 and 2.6 at 0.02; the drive has 0.375.
 #[test]
 fn a_drive_that_is_too_soft_is_told() {
     let warns = |d_c: f64| {
