@@ -300,7 +300,7 @@ impl SummaryObservers {
                 .is_viscous()
                 .then_some(energies.viscous_loss * energy),
             broken_spring_loss_j: matches!(friction, Friction::ContactSprings(_))
-                .then(|| energies.broken_springs_loss * energy),
+                .then_some(energies.broken_springs_loss * energy),
             mean_state_star: match friction {
                 Friction::RateAndState(_) => last.map(|row| row.mean_state),
                 _ => None,

@@ -7,6 +7,7 @@ mod bad;
 mod good;
 mod hostile;
 mod keys;
+mod laws;
 mod reference;
 mod round_trip;
 

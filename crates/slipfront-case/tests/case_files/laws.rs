@@ -1,0 +1,71 @@
+//! Laws of friction that a case file asks for.
+
+use slipfront::{Ageing, ContactSprings, Coulomb, Friction, FrictionLaw, Kernel, RateAndState, Weakening};
+use slipfront_case::case::Case;
+
+fn case(text: &str) -> Case {
+    Case::parse(text, "case", &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+const RATE_AND_STATE: &str = "friction = { law = 'rate_and_state', mu_static = 0.5, a = 0.01, b = 0.02, d_c_star = 0.5, v_0_star = 0.02 }";
+
+/// Coefficients are over `mu_static`; what is not given follows from the rest.
+#[test]
+fn keys_become_the_law_in_units_of_the_model() {
+    let velocity = "velocity = { law = 'weakening', v_c_star = 0.1, ratio = 0.4 }";
+    let ageing = "ageing = { law = 'logarithmic', beta = 0.02, time_star = 3 }";
+    let varying = case(&format!("[friction]\n{velocity}\n{ageing}\n"));
+    let coulomb = Coulomb {
+        law: FrictionLaw::Projection,
+        weakening: Some(Weakening {
+            critical_speed: 0.1,
+            ratio: 0.4,
+        }),
+        ageing: Some(Ageing {
+            beta: 0.02,
+            time: 3.0,
+        }),
+    };
+    assert_eq!(varying.model.friction, Friction::Coulomb(coulomb));
+
+    let springs =
+        case("friction = { contact = 'springs', contact_stiffness_star = 0.2, redraw = true, seed = 7 }");
+    let expected = ContactSprings {
+        stiffness: 0.2,
+        redraw: Some(7),
+    };
+    assert_eq!(springs.model.friction, Friction::ContactSprings(expected));
+    assert_eq!(
+        (springs.groups.r_star, springs.groups.sigma_kinetic_star),
+        (0.0, 0.0)
+    );
+
+    let stateful = case(RATE_AND_STATE);
+    let expected = RateAndState {
+        a: 0.02,
+        b: 0.04,
+        d_c: 0.5,
+        v_0: 0.02,
+        mu_0: 1.0,
+        theta_0: 25.0,
+        slip_speed: 0.003,
+    };
+    assert_eq!(stateful.model.friction, Friction::RateAndState(expected));
+    assert_eq!(stateful.groups.sigma_static_star, 0.0);
+
+    for other in [varying, springs, stateful] {
+        assert_eq!(Kernel::Fused.for_model(&other.model), Kernel::Reference);
+    }
+}
+
+/// The stiffness below which sliding is unstable is 0.038 at D_c = 0.5 and 2.6 at 0.02; the drive has 0.375.
+#[test]
+fn a_drive_that_is_too_soft_is_told() {
+    let warns = |d_c: f64| {
+        let case = case(&RATE_AND_STATE.replace("d_c_star = 0.5", &format!("d_c_star = {d_c}")));
+        let mut warnings = case.warnings().into_iter();
+        warnings.any(|warning| warning.contains("stick-slip is to be expected"))
+    };
+    assert!(!warns(0.5));
+    assert!(warns(0.02));
+}
