@@ -5,11 +5,13 @@
 
 mod edge_drive;
 mod sliders;
+mod torsion;
 
 pub use self::edge_drive::precursor_load;
 pub use self::sliders::{
     PairMode, composite_peak, graded_first_slip_time_star, lagged_decay_rate, pair_modes, viscous_decay_rate,
 };
+pub use self::torsion::{torsion_first_slip, torsion_of_decoupled_disc};
 
 use crate::lattice::{K_DIAGONAL, K_DRIVE, K_STRAIGHT};
 use crate::scales::damping;
