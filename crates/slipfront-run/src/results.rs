@@ -141,6 +141,41 @@ mod tests {
 
     use super::*;
 
+    /// What does not exist has no values, and is no texture.
+    #[test]
+    fn blocks_outside_an_outline_have_no_values() {
+        let folder = tempfile::tempdir().unwrap();
+        let text = "slider.blocks = [6, 6]\nslider.outline = 'disc'\ntime.duration_star = 5\noutput.snapshots = [5]\n\
+                    [[texture]]\nshape = 'cavity'\ncoverage = 12.5";
+        let case = Case::parse(text, "case", &[]).unwrap();
+        let case = std::sync::Arc::new(case);
+        let mut record = crate::running::run(&case, 1).unwrap();
+        let out = folder.path().join("out");
+        let mut run = RunFolder::prepare(&out, false, &case.inputs).unwrap();
+        write_case(&case, &mut run).unwrap();
+        write(&case, &mut record, run, jiff::Timestamp::UNIX_EPOCH, 1).unwrap();
+        let fields = fields::read_fields(&out.join(FIELDS)).unwrap();
+        let slider = &case.model.slider;
+        let outside: Vec<usize> = (0..36).filter(|&b| !slider.exists(b)).collect();
+        assert_eq!(outside.len(), 36 - 32);
+        let middle = [14, 15, 20, 21];
+        for b in 0..36 {
+            let is_outside = outside.contains(&b);
+            assert_eq!(fields.textured[b], middle.contains(&b), "block {b}");
+            assert_eq!(fields.mu_static[b].is_nan(), is_outside);
+            assert_eq!(fields.mu_kinetic[b].is_nan(), is_outside);
+            for (field, values) in fields.names.iter().zip(&fields.frames[0].values) {
+                let is_blank =
+                    is_outside || (*field == slipfront::observe::Field::Traction && middle.contains(&b));
+                assert_eq!(values[b].is_nan(), is_blank, "{field:?} of block {b}");
+            }
+        }
+        assert_eq!(
+            (record.summary.n_blocks, record.summary.texture_percent),
+            (32, 12.5)
+        );
+    }
+
     /// A copy holds what the case was made of, or there is none.
     #[test]
     fn a_file_that_has_changed_since_is_not_copied() {

@@ -15,6 +15,11 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("nu", POISSON),
     ("poisson", POISSON),
     ("poisson_ratio", POISSON),
+    (
+        "gradient",
+        "a stiffness or density that changes along the slider is `slider.stiffness_grade` or `slider.density_grade`",
+    ),
+    ("tau_v", "the internal viscosity is `slider.viscosity_time_star`"),
     ("rho", "the density is `slider.density`"),
     (
         "mass",

@@ -186,6 +186,10 @@ mod tests {
             ("drive.direction", "[0, 10]"),
             ("slider.omega_star", "[0.1, 0.2]"),
             ("slider.edges", "['free', 'periodic']"),
+            ("slider.outline", "['rectangle', 'disc']"),
+            ("slider.viscosity_time_star", "[0, 0.1]"),
+            ("slider.density_grade.to", "[1, 0.5]"),
+            ("slider.stiffness_grade.to", "[1, 0.5]"),
             ("time.duration_star", "[10, 20]"),
             ("time.kinetic_from_star", "[200, 210]"),
             ("time.stop", "['end', 'after_onset']"),
@@ -193,7 +197,10 @@ mod tests {
             // Strains that show.
             ("load.pressure", "['1 GPa', '2 GPa']"),
         ] {
-            assert!(idle(&axis(key, list)).is_empty(), "{key}");
+            let grades = "{ along = 'x', from = 1, to = 1 }";
+            let base =
+                format!("base.slider.stiffness_grade = {grades}\nbase.slider.density_grade = {grades}\n");
+            assert!(idle(&format!("{base}{}", axis(key, list))).is_empty(), "{key}");
         }
         // Four blocks a side show no difference between these.
         let sized = "[[base.texture]]\nshape = 'cavity'\n";

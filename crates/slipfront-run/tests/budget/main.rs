@@ -119,6 +119,10 @@ fn what_is_said_is_what_is_taken() {
         // The lattice.
         "slider.blocks=[600,600];time.duration_star=1;output.snapshots=[]",
         "slider.blocks=[256,256];drive.v_star=0.3",
+        // Blocks that differ, in another kernel.
+        "slider.blocks=[500,500];slider.outline='disc';slider.viscosity_time_star=0.1;time.duration_star=1;output.snapshots=[]",
+        "slider.blocks=[500,500];slider.stiffness_grade={along='x',from=1,to=2};slider.density_grade={along='y',from=1,to=2};\
+         time.duration_star=1;output.snapshots=[]",
         // Snapshots.
         "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1}",
         "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1};output.stride=3",

@@ -179,7 +179,7 @@ fn a_rigid_translation_feels_nothing() {
         let model = floating(12, 8, 0.1, K_DRIVE, 1e-3, slider);
         let mut simulation = from_state(&model, 0.125, state);
         (0..300).for_each(|_| simulation.step());
-        assert_eq!(simulation.snapshot().totals.velocity_square > 0.0, true);
+        assert!(simulation.snapshot().totals.velocity_square > 0.0);
         simulation.state()
     };
     assert_eq!(run(0.0), run(0.3));

@@ -1,7 +1,5 @@
 //! The springs between blocks (Eq. 3): forces and energy.
 
-use std::array;
-
 use crate::fixed_point;
 use crate::lattice::{Bond, Edges, Lattice};
 use crate::model::Model;
@@ -20,8 +18,12 @@ pub(super) fn lattice_forces(
 ) {
     let (u, epsilon) = (&state.displacement, model.epsilon);
     for (bond, spring) in Bond::ALL.iter().zip(springs.iter_mut()) {
-        let law = |e: [f64; 2]| bond.force(e, epsilon);
-        along_bond(&model.lattice, bond, [&u.x, &u.y], law, spring);
+        let all = |n: usize, shift: usize, force: [&mut [f64]; 2]| {
+            let ahead = [&u.x[shift..shift + n], &u.y[shift..shift + n]];
+            bond_forces(bond, epsilon, [&u.x[..n], &u.y[..n]], ahead, force);
+        };
+        let one = |b: usize, other: usize| bond.force([u.x[other] - u.x[b], u.y[other] - u.y[b]], epsilon);
+        along_bond(&model.lattice, bond, all, one, spring);
     }
     sum_all(&model.lattice, relative, force, springs);
 }
@@ -39,11 +41,23 @@ pub(super) fn damper_forces(
     let (u, v) = (&state.displacement, &state.velocity);
     let (epsilon, time) = (model.epsilon, model.slider.viscosity_time);
     for (bond, damper) in Bond::ALL.iter().zip(dampers.iter_mut()) {
-        let law = |[ex, ey, wx, wy]: [f64; 4]| {
-            bond.damper_force([ex, ey], [wx, wy], epsilon)
-                .map(|force| time * force)
+        let one = |b: usize, other: usize| {
+            let e = [u.x[other] - u.x[b], u.y[other] - u.y[b]];
+            let w = [v.x[other] - v.x[b], v.y[other] - v.y[b]];
+            bond.damper_force(e, w, epsilon).map(|force| time * force)
         };
-        along_bond(&model.lattice, bond, [&u.x, &u.y, &v.x, &v.y], law, damper);
+        let all = |n: usize, shift: usize, [fx, fy]: [&mut [f64]; 2]| {
+            let fields = [&u.x, &u.y, &v.x, &v.y];
+            let [ux, uy, vx, vy] = fields.map(|field| &field[..n]);
+            let [next_ux, next_uy, next_vx, next_vy] = fields.map(|field| &field[shift..shift + n]);
+            let (fx, fy) = (&mut fx[..n], &mut fy[..n]);
+            for k in 0..n {
+                let e = [next_ux[k] - ux[k], next_uy[k] - uy[k]];
+                let w = [next_vx[k] - vx[k], next_vy[k] - vy[k]];
+                [fx[k], fy[k]] = bond.damper_force(e, w, epsilon).map(|force| time * force);
+            }
+        };
+        along_bond(&model.lattice, bond, all, one, damper);
     }
     sum_all(&model.lattice, relative, force, dampers);
 }
@@ -69,32 +83,25 @@ fn sum_all(
     sum_springs(lattice, y.each_ref().map(|spring| &*spring.y), &mut force.y);
 }
 
-/// Force on every block along `bond`, which `law` finds from the differences of some `fields` between its neighbour there and the
-/// block itself; zero where a free edge leaves the neighbour out.
+/// Force on every block along `bond`; zero where a free edge leaves its neighbour out. `all` finds the forces on the first blocks,
+/// given their number and how far away the neighbours of all of them are; `one` the force on a block from its neighbour.
 #[inline(always)]
-fn along_bond<const FIELDS: usize>(
+fn along_bond(
     lattice: &Lattice,
     bond: &Bond,
-    fields: [&[f64]; FIELDS],
-    law: impl Fn([f64; FIELDS]) -> [f64; 2],
+    all: impl FnOnce(usize, usize, [&mut [f64]; 2]),
+    one: impl Fn(usize, usize) -> [f64; 2],
     force: &mut VectorField,
 ) {
     // In block order the neighbours of all blocks are equally far away: one loop for all rows. What it finds at the ends of
     // the rows is replaced afterwards.
     let shift = lattice.shift(bond).min(lattice.n_blocks());
     let n = lattice.n_blocks() - shift;
-    let (own, ahead) = (
-        fields.map(|field| &field[..n]),
-        fields.map(|field| &field[shift..shift + n]),
-    );
-    let (fx, fy) = (&mut force.x[..n], &mut force.y[..n]);
-    for k in 0..n {
-        [fx[k], fy[k]] = law(array::from_fn(|field| ahead[field][k] - own[field][k]));
-    }
+    all(n, shift, [&mut force.x[..n], &mut force.y[..n]]);
     let mut replace = |i: usize, j: usize| {
         let b = lattice.block(i, j);
         [force.x[b], force.y[b]] = match lattice.neighbour(i, j, bond.offset) {
-            Some(other) => law(fields.map(|field| field[other] - field[b])),
+            Some(other) => one(b, other),
             None => [0.0, 0.0],
         };
     };
@@ -112,6 +119,17 @@ fn along_bond<const FIELDS: usize>(
                 force.y[top..].fill(0.0);
             }
         }
+    }
+}
+
+/// Forces along one bond on blocks displaced by `u`, from their neighbours displaced by `v`.
+#[inline(always)]
+fn bond_forces(bond: &Bond, epsilon: f64, u: [&[f64]; 2], v: [&[f64]; 2], force: [&mut [f64]; 2]) {
+    let [fx, fy] = force;
+    let n = fx.len();
+    let (ux, uy, vx, vy, fy) = (&u[0][..n], &u[1][..n], &v[0][..n], &v[1][..n], &mut fy[..n]);
+    for k in 0..n {
+        [fx[k], fy[k]] = bond.force([vx[k] - ux[k], vy[k] - uy[k]], epsilon);
     }
 }
 
