@@ -130,9 +130,7 @@ impl Drive {
                 format!("`{key}` = \"rotation\" needs an axis and ends all around: it has no meaning with periodic edges")
             });
         }
-        if let Some(edge) = self.edge()
-            && slider.outline != Outline::Rectangle
-        {
+        if self.edge().is_some() && slider.outline != Outline::Rectangle {
             return check.refuse("attach", |key| {
                 format!("`{key}` names an edge of the lattice, which a slider with an outline does not have: say by `attach_file` which blocks are driven")
             });
