@@ -67,7 +67,9 @@ struct Drawing {
 impl Drawing {
     /// One curve with its marks.
     fn draw_one(&mut self, curve: &FrictionCurve) {
-        let Panels { time, mu, sliding } = self.panels;
+        let Panels {
+            time, mu, sliding, ..
+        } = self.panels;
         let is_window = |window: &Kinetic| drawable(window.mean) && window.from < window.to;
         let window = curve.kinetic.filter(is_window);
         if let Some(window) = &window {
@@ -129,7 +131,9 @@ impl Drawing {
 
     /// Shades the window of kinetic friction in both panels, and the uncertainty of its mean.
     fn shade_window(&mut self, window: &Kinetic) {
-        let Panels { time, mu, sliding } = self.panels;
+        let Panels {
+            time, mu, sliding, ..
+        } = self.panels;
         let (from, to) = (time.clamped(window.from), time.clamped(window.to));
         for axis in [mu, sliding] {
             self.canvas
@@ -144,7 +148,9 @@ impl Drawing {
 
     /// Draws mu* and N*; labels keep off the former.
     fn draw_curve(&mut self, curve: &FrictionCurve, colour: Rgb) {
-        let Panels { time, mu, sliding } = &self.panels;
+        let Panels {
+            time, mu, sliding, ..
+        } = &self.panels;
         let friction = segments(&curve.time_star, &curve.mu_star, time, mu);
         friction.iter().for_each(|segment| self.placer.avoid(segment));
         let sliding = segments(&curve.time_star, &curve.sliding_percent, time, sliding);
@@ -306,6 +312,7 @@ mod tests {
         ];
         FrictionCurve {
             label: "a < b & $c$".to_string(),
+            is_torque: false,
             mu_star: time_star.iter().map(|&t| mu(t)).collect(),
             sliding_percent: time_star
                 .iter()

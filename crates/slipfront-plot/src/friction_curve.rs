@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 pub struct FrictionCurve {
     /// What the legend calls it; shown only beside other curves.
     pub label: String,
+    /// Whether mu* is a torque, of a drive that rotates.
+    pub is_torque: bool,
     /// t*, never falling.
     pub time_star: Vec<f64>,
     /// mu* at these times; NaN leaves a gap.

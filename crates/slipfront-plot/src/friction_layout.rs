@@ -18,6 +18,8 @@ pub(crate) struct Panels {
     pub(crate) time: Axis,
     pub(crate) mu: Axis,
     pub(crate) sliding: Axis,
+    /// Whether all curves are torques.
+    are_torques: bool,
 }
 
 impl Panels {
@@ -46,7 +48,12 @@ impl Panels {
         let right = COLUMN_WIDTH.round() - 28.0;
         let time = Axis::linear(from, to).placed(left, right);
         let time = time.placed(left, right_end(&time_ticks(&time), left, right, COLUMN_WIDTH));
-        Self { time, mu, sliding }
+        Self {
+            time,
+            mu,
+            sliding,
+            are_torques: !curves.is_empty() && curves.iter().all(|curve| curve.is_torque),
+        }
     }
 
     /// These panels, further down.
@@ -77,10 +84,13 @@ impl Panels {
 
     /// Ticks, numbers and titles.
     pub(crate) fn draw_axes(&self, canvas: &mut Canvas) {
-        let title = Text::math(
-            "friction \u{3bc}* = \u{3bc}/\u{27e8}\u{3bc}_s\u{27e9}",
-            SIZE_LABEL,
-        );
+        let title = match self.are_torques {
+            true => Text::plain("torque \u{3bc}*", SIZE_LABEL),
+            false => Text::math(
+                "friction \u{3bc}* = \u{3bc}/\u{27e8}\u{3bc}_s\u{27e9}",
+                SIZE_LABEL,
+            ),
+        };
         left_side(canvas, self.area(&self.mu), 0.0, &mu_ticks(&self.mu), &title);
         let title = Text::plain("sliding N* (%)", SIZE_LABEL);
         left_side(

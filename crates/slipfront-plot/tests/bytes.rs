@@ -24,6 +24,7 @@ fn curve() -> FrictionCurve {
     let time_star: Vec<f64> = (0..1000).map(|step| 0.25 * f64::from(step)).collect();
     FrictionCurve {
         label: "one curve".to_string(),
+        is_torque: false,
         mu_star: time_star
             .iter()
             .map(|t| (t / 80.0).min(0.9) + 0.1 * (t % 3.0) / 3.0)

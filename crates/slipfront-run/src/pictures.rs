@@ -12,7 +12,7 @@ use {
     slipfront::observe::Field,
     slipfront::{Edge, Edges},
     slipfront_case::case::{MAX_MAPS, memory_to_draw},
-    slipfront_case::case_file::{CaseFile, KineticFriction},
+    slipfront_case::case_file::{CaseFile, KineticFriction, Motion},
     slipfront_plot::{
         self as plot, CellMeans, FrictionCurve, Instant, Kinetic, Picture, Response, Responses, StressMap,
         StressMaps,
@@ -123,6 +123,7 @@ pub fn marked_curve(label: String, summary: &Summary) -> FrictionCurve {
     });
     FrictionCurve {
         label,
+        is_torque: summary.motion == Some(Motion::Rotation),
         first_slip_time_star: summary.first_slip_time_star,
         peak: summary.transition.then_some(peak),
         kinetic: kinetic.map(|([from, to], mean)| Kinetic {
