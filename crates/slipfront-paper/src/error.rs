@@ -1,6 +1,6 @@
 //! Errors of `slipfront paper`.
 
-use slipfront::RunError;
+use slipfront::{RunError, SurfaceError};
 use thiserror::Error;
 
 use slipfront_case::case_file::CaseError;
@@ -16,6 +16,8 @@ pub enum PaperError {
     Figure { given: String, known: String },
     #[error(transparent)]
     Case(#[from] CaseError),
+    #[error(transparent)]
+    Surface(#[from] SurfaceError),
     #[error(transparent)]
     Study(#[from] StudyError),
     #[error("the run {name} failed: {source}")]

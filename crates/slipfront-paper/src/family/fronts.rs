@@ -8,7 +8,7 @@ use slipfront::{Drive, FrictionLaw, Lattice, Model, State, Surface};
 use slipfront_plot::Responses;
 
 use super::answer::{Answer, Chapter};
-use super::runs::Run;
+use super::runs::Experiment;
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;
 use crate::number::Number;
@@ -32,7 +32,12 @@ fn speed(kappa: f64, prestress: f64) -> Result<f64, PaperError> {
     let mut state = State::at_rest(BLOCKS);
     state.velocity.x[..5].fill(0.5 * sound * (1.0 - KINETIC) / K_STRAIGHT);
     let steps = (1.5 * BLOCKS as f64 / (0.75 * sound) / DT_STAR) as u64;
-    let run = Run::of_model("fronts", Arc::new(model), DT_STAR, Some(state), steps)?;
+    let experiment = Experiment {
+        model: Arc::new(model),
+        dt_star: DT_STAR,
+        state: Some(state),
+    };
+    let run = experiment.run("fronts", steps, &mut [])?;
     let first = run.simulation.snapshot().first_slip_time_star();
     let (from, to) = (BLOCKS / 2, BLOCKS - 20);
     Ok((to - from) as f64 / (first[to] - first[from]) / sound)

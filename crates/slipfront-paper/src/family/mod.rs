@@ -4,11 +4,21 @@
 //! an equation that is derived in its text. The command is `slipfront family`; its page is `docs/validation/family.md`.
 
 mod adhesion;
+mod ageing;
 mod answer;
+mod blocks_that_differ;
+mod composite;
+mod contact_springs;
+mod edge_drive;
 mod fronts;
 mod load;
 mod page;
+mod patterns;
+mod program;
+mod rate_and_state;
 mod runs;
+mod torsion;
+mod weakening;
 
 pub use self::answer::{Answer, Chapter, Tolerance};
 pub use self::page::{docs_page, foreign_docs, summary, write_docs};
@@ -21,7 +31,21 @@ use crate::error::PaperError;
 type Compute = fn() -> Result<Chapter, PaperError>;
 
 /// All chapters, in the order of the page.
-const CHAPTERS: &[Compute] = &[load::chapter, adhesion::chapter, fronts::chapter];
+const CHAPTERS: &[Compute] = &[
+    edge_drive::chapter,
+    load::chapter,
+    program::chapter,
+    torsion::chapter,
+    blocks_that_differ::chapter,
+    composite::chapter,
+    patterns::chapter,
+    weakening::chapter,
+    ageing::chapter,
+    rate_and_state::chapter,
+    adhesion::chapter,
+    contact_springs::chapter,
+    fronts::chapter,
+];
 
 /// Computes all chapters, on as many threads as there are workers.
 ///

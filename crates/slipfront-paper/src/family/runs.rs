@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use slipfront::observe::{Curve, CurveRow, Scheduled};
-use slipfront::{Model, Simulation, State, Stop};
+use slipfront::observe::{Curve, CurveRow, Observer, Scheduled};
+use slipfront::{Execution, Model, Simulation, Snapshot, State, Stop};
 use slipfront_case::case::Case;
 
 use crate::error::PaperError;
@@ -17,35 +17,33 @@ pub(super) struct Run {
     pub(super) model: Arc<Model>,
 }
 
+/// A slider that no case describes.
+pub(super) struct Experiment {
+    pub(super) model: Arc<Model>,
+    pub(super) dt_star: f64,
+    /// At rest if there is none.
+    pub(super) state: Option<State>,
+}
+
 impl Run {
     /// Of a case: what a user would write.
     pub(super) fn of_case(name: &str, text: &str) -> Result<Self, PaperError> {
-        let case = Case::parse(text, name, &[])?;
-        let plan = &case.time_plan;
-        Self::of_model(name, Arc::clone(&case.model), plan.dt_star, None, plan.last_step)
+        Self::watched(name, text, &mut [])
     }
 
-    /// Of a slider that no case describes.
-    pub(super) fn of_model(
+    /// The same, seen by other observers at every step.
+    pub(super) fn watched(
         name: &str,
-        model: Arc<Model>,
-        dt_star: f64,
-        state: Option<State>,
-        last_step: u64,
+        text: &str,
+        others: &mut [&mut dyn Observer],
     ) -> Result<Self, PaperError> {
-        let execution = slipfront::Execution::default();
-        let mut simulation = Simulation::with_execution(Arc::clone(&model), dt_star, state, execution);
-        let mut curve = Curve::every(1);
-        let done = simulation.run(Stop::at_step(last_step), &mut [Scheduled::always(&mut curve)]);
-        done.map_err(|source| PaperError::Run {
-            name: name.to_owned(),
-            source,
-        })?;
-        Ok(Self {
-            simulation,
-            rows: curve.rows,
-            model,
-        })
+        let case = Case::parse(text, name, &[])?;
+        let experiment = Experiment {
+            model: Arc::clone(&case.model),
+            dt_star: case.time_plan.dt_star,
+            state: None,
+        };
+        experiment.run(name, case.time_plan.last_step, others)
     }
 
     /// When the first block slipped; NaN if none has.
@@ -56,8 +54,78 @@ impl Run {
             .unwrap_or(f64::NAN)
     }
 
+    /// The row of the first instant at which a block slides.
+    pub(super) fn first_sliding(&self) -> Option<&CurveRow> {
+        self.rows.iter().find(|row| row.point.n_sliding > 0)
+    }
+
+    /// mu* at the row nearest to a time.
+    pub(super) fn mu_star_at(&self, time_star: f64) -> f64 {
+        let after = self.rows.partition_point(|row| row.time_star < time_star - 1e-9);
+        self.rows.get(after).map_or(f64::NAN, |row| row.point.mu_star)
+    }
+
     /// The largest mu* of the run.
     pub(super) fn largest(&self) -> f64 {
         self.simulation.peak().mu_star_max
     }
+}
+
+impl Experiment {
+    /// Runs it to this step.
+    pub(super) fn run(
+        self,
+        name: &str,
+        last_step: u64,
+        others: &mut [&mut dyn Observer],
+    ) -> Result<Run, PaperError> {
+        let mut simulation = self.begin();
+        let mut curve = Curve::every(1);
+        let mut observers = vec![Scheduled::always(&mut curve)];
+        observers.extend(others.iter_mut().map(|observer| Scheduled::always(*observer)));
+        let done = simulation.run(Stop::at_step(last_step), &mut observers);
+        done.map_err(|source| PaperError::Run {
+            name: name.to_owned(),
+            source,
+        })?;
+        Ok(Run {
+            simulation,
+            rows: curve.rows,
+            model: self.model,
+        })
+    }
+
+    /// Its simulation at the first instant.
+    pub(super) fn begin(&self) -> Simulation {
+        let execution = Execution::default();
+        Simulation::with_execution(
+            Arc::clone(&self.model),
+            self.dt_star,
+            self.state.clone(),
+            execution,
+        )
+    }
+
+    /// What `value` is at these times, which follow one another.
+    pub(super) fn values(&self, times: &[f64], value: impl Fn(&Snapshot) -> f64) -> Vec<f64> {
+        let mut simulation = self.begin();
+        let at = |time: &f64| {
+            let step = (time / self.dt_star).round() as u64;
+            while simulation.snapshot().step < step {
+                simulation.step();
+            }
+            value(&simulation.snapshot())
+        };
+        times.iter().map(at).collect()
+    }
+}
+
+/// Rate at which an oscillation `x = A exp(s t) cos(w t + p)` grows, from four of its values a time `apart`: `x_2 = p x_1 - q x_0` with
+/// `q = exp(2 s apart)`.
+pub(super) fn growth(values: &[f64], apart: f64) -> f64 {
+    let &[x0, x1, x2, x3] = values else {
+        return f64::NAN;
+    };
+    let q = (x2 * x2 - x1 * x3) / (x1 * x1 - x0 * x2);
+    libm::log(q) / (2.0 * apart)
 }

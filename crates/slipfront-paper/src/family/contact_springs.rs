@@ -1,0 +1,94 @@
+//! Springs in contact.
+
+use std::sync::Arc;
+
+use slipfront::communicator::Alone;
+use slipfront::exact_solutions::{chain_slip_force, static_over_kinetic_of_springs};
+use slipfront::lattice::{K_DRIVE, K_STRAIGHT};
+use slipfront::surface::{Coefficients, Load};
+use slipfront::{ContactSprings, Drive, DriveSprings, Friction, Lattice, Model, Surface, scales};
+
+use super::answer::{Answer, Chapter};
+use super::runs::Experiment;
+use crate::error::PaperError;
+
+/// First peak over the mean of sliding of a rigid slider whose thresholds are spread over 1 - w to 1 + w.
+fn ratio(w: f64, redraw: Option<u64>) -> Result<f64, PaperError> {
+    let lattice = Lattice::free(20, 20);
+    // 7 and 400 have no common factor, so that each of 400 places is taken once.
+    let threshold = |b: usize| 1.0 + w * ((2 * ((2401 * b + 3) % 400) + 1) as f64 / 400.0 - 1.0);
+    let given = Coefficients::given((0..400).map(threshold).collect(), vec![0.0; 400]);
+    let surface = Surface::new(given, vec![false; 400], Load::Redistributed, 1.0)?;
+    let stiffness = 1e-3 * K_DRIVE;
+    let (v_star, dt_star, damping) = (10.0, 0.2, scales::damping(0.5));
+    let law = Friction::ContactSprings(ContactSprings { stiffness, redraw });
+    let model = Model::new(lattice, surface, Drive::along_x(v_star), damping, 0.0, law);
+    let experiment = Experiment {
+        model: Arc::new(model),
+        dt_star,
+        state: None,
+    };
+    let length = (1.0 / stiffness / v_star / dt_star) as usize;
+    let run = experiment.run("springs in contact", 50 * length as u64, &mut [])?;
+    let force = |row: &slipfront::observe::CurveRow| row.point.mu_star - damping * v_star;
+    // The slider begins at rest and is at its speed long before the first spring breaks.
+    let peak = run.rows[length / 2..].iter().map(force).fold(0.0, f64::max);
+    let sliding = &run.rows[10 * length..];
+    Ok(peak / (sliding.iter().map(force).sum::<f64>() / sliding.len() as f64))
+}
+
+/// Pull at which the first spring of a chain breaks that is driven at its first block.
+fn pull(n: usize, stiffness: f64) -> f64 {
+    let lattice = Lattice::free(n, 1);
+    let law = Friction::ContactSprings(ContactSprings {
+        stiffness,
+        redraw: None,
+    });
+    let surface = Surface::uniform(&lattice, 1.0, 0.0);
+    let mut model = Model::new(lattice, surface, Drive::along_x(2e-4), 0.5, 0.0, law);
+    let mut relative = vec![0.0; n];
+    relative[0] = 1.0;
+    model.slider.drive_springs = Some(DriveSprings::new(relative, &Alone));
+    let experiment = Experiment {
+        model: Arc::new(model),
+        dt_star: 0.2,
+        state: None,
+    };
+    let mut simulation = experiment.begin();
+    while simulation.snapshot().totals.n_slipping == 0 {
+        simulation.step();
+    }
+    simulation.snapshot().block(0).force_drive[0]
+}
+
+pub(super) fn chapter() -> Result<Chapter, PaperError> {
+    let mut answers = Vec::new();
+    for (redraw, which) in [(None, "kept"), (Some(5), "drawn anew")] {
+        for w in [0.05, 0.1, 0.2] {
+            let exact = static_over_kinetic_of_springs(w, redraw.is_some());
+            answers.push(Answer::new(
+                format!("static over kinetic friction of a rigid slider, w = {w}, thresholds {which}"),
+                [exact, ratio(w, redraw)?],
+                (
+                    4e-3 * exact,
+                    "springs are k_t/k_s = 0.001 soft, and the last of 40 cycles is cut off",
+                ),
+            ));
+        }
+    }
+    for n in [1, 2, 5, 20] {
+        let exact = chain_slip_force(n, K_STRAIGHT, 0.1);
+        answers.push(Answer::new(
+            format!("pull at which the first of {n} springs of a chain breaks, k_t = 0.1"),
+            [exact, pull(n, 0.1)],
+            (1e-3 * exact, "viscous force and growth in a step of a slow drive"),
+        ));
+    }
+    Ok(Chapter {
+        title: "Contacts that are springs",
+        name: "contact-springs",
+        text: include_str!("text/contact_springs.md"),
+        answers,
+        picture: None,
+    })
+}

@@ -1,0 +1,100 @@
+//! A drive that rotates.
+
+use std::sync::Arc;
+
+use slipfront::communicator::Alone;
+use slipfront::exact_solutions::{torsion_first_slip, torsion_of_decoupled_disc};
+use slipfront::{Drive, FrictionLaw, Lattice, Model, Outline, Rotation, Slider, Surface, scales};
+use slipfront_plot::Responses;
+
+use super::answer::{Answer, Chapter};
+use super::runs::{Experiment, Run};
+use crate::drawing::{Drawing, formula, measured};
+use crate::error::PaperError;
+use crate::number::Number;
+
+/// Distances of the blocks that exist from the middle.
+fn radii(model: &Model) -> Vec<f64> {
+    let half = [model.lattice.nx, model.lattice.ny].map(|count| 0.5 * count as f64);
+    let blocks = (0..model.lattice.n_blocks()).filter(|&b| model.slider.exists(b));
+    let radius = |b: usize| {
+        let (i, j) = model.lattice.column_row(b);
+        f64::hypot(i as f64 + 0.5 - half[0], j as f64 + 0.5 - half[1])
+    };
+    blocks.map(radius).collect()
+}
+
+/// Shares of the radius within which blocks still stick.
+const STUCK: [f64; 6] = [0.9, 0.8, 0.7, 0.6, 0.5, 0.4];
+
+/// A disc of 40 blocks across that are driven each on its own: their springs to each other are a million times softer.
+fn decoupled(r_star: f64) -> Experiment {
+    let lattice = Lattice::free(40, 40);
+    let outline = Outline::new(Outline::disc(&lattice, 0..40), &Alone);
+    let mut slider = Slider::new(None, None, Some(outline), &Alone);
+    slider.stiffness = Some(vec![1e-6; 1600]);
+    let surface = Surface::uniform(&lattice, 1.0, r_star);
+    let drive = Drive::along_x(1e-3);
+    let damping = scales::damping(2.0);
+    let mut model = Model::new(lattice, surface, drive, damping, 0.0, FrictionLaw::Projection);
+    model.drive.rotation = Some(Rotation::about_centroid(&lattice, &slider));
+    model.slider = slider;
+    Experiment {
+        model: Arc::new(model),
+        dt_star: 0.8,
+        state: None,
+    }
+}
+
+pub(super) fn chapter() -> Result<Chapter, PaperError> {
+    let mut answers = Vec::new();
+    let text = "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\n\
+                [slider]\nblocks = [20, 20]\noutline = \"disc\"\n[drive]\nmotion = \"rotation\"\n\
+                [time]\nstep = 0.02\nstop = \"onset\"";
+    let run = Run::of_case("torsion", text)?;
+    let exact = torsion_first_slip(&radii(&run.model));
+    let rise = exact * 0.375 * 0.03 * 0.02;
+    answers.push(Answer::new(
+        "torque at the first slip of a disc of 20 blocks across, over that of the whole load",
+        [
+            exact,
+            run.first_sliding().map_or(f64::NAN, |row| row.point.mu_star),
+        ],
+        (rise * (1.0 + 1e-9), "the torque of one step"),
+    ));
+    let mut curves = Vec::new();
+    let shares: Vec<f64> = (30..=100).map(|k| 0.01 * f64::from(k)).collect();
+    for r_star in [0.3, 0.9] {
+        let experiment = decoupled(r_star);
+        let first = experiment.model.first_slip_estimate();
+        let times = STUCK.map(|stuck| first / stuck);
+        let found = experiment.values(&times, |now| now.point.mu_star);
+        for (stuck, found) in STUCK.into_iter().zip(&found) {
+            answers.push(Answer::new(
+                format!("torque while blocks within {stuck} of the radius stick, R* = {r_star}"),
+                [torsion_of_decoupled_disc(stuck, r_star), *found],
+                (0.025, "a rim of 40 blocks across is round to half a block"),
+            ));
+        }
+        curves.push(formula(&format!("R* = {r_star}, exact"), &shares, |stuck| {
+            torsion_of_decoupled_disc(stuck, r_star)
+        }));
+        let found: Vec<Number> = found.into_iter().map(Number::exact).collect();
+        curves.push(measured(&format!("R* = {r_star}"), &STUCK, &found));
+    }
+    Ok(Chapter {
+        title: "Torsion",
+        name: "torsion",
+        text: include_str!("text/torsion.md"),
+        answers,
+        picture: Some((
+            "Torque of a disc whose blocks do not pull at each other, while those within a share of its radius still stick.",
+            Drawing::Responses(Responses {
+                x_title: "radius of the stuck part over that of the disc".to_owned(),
+                y_title: "torque over that of the whole load".to_owned(),
+                curves,
+                ..Responses::default()
+            }),
+        )),
+    })
+}

@@ -1,0 +1,88 @@
+//! Kinetic friction that falls with speed.
+
+use std::sync::Arc;
+
+use slipfront::exact_solutions::weakening_growth;
+use slipfront::lattice::K_DRIVE;
+use slipfront::{
+    Coulomb, Drive, Friction, FrictionLaw, Lattice, Model, State, Surface, VectorField, Weakening,
+};
+use slipfront_plot::Responses;
+
+use super::answer::{Answer, Chapter};
+use super::runs::{Experiment, growth};
+use crate::drawing::{Drawing, formula, measured};
+use crate::error::PaperError;
+use crate::number::Number;
+
+const LAW: Weakening = Weakening {
+    critical_speed: 0.1,
+    ratio: 0.4,
+};
+const V_STAR: f64 = 0.2;
+const DT_STAR: f64 = 0.01;
+const DAMPINGS: [f64; 5] = [0.0, 0.2, 0.3, 0.4, 0.6];
+
+/// Growth rate of a small disturbance of steady sliding of blocks that move as one.
+fn computed(damping: f64) -> f64 {
+    let lattice = Lattice::free(2, 2);
+    let friction = Friction::Coulomb(Coulomb {
+        law: FrictionLaw::Projection,
+        weakening: Some(LAW),
+        ageing: None,
+    });
+    let surface = Surface::uniform(&lattice, 1.0, 0.5);
+    let model = Model::new(lattice, surface, Drive::along_x(V_STAR), damping, 0.0, friction);
+    let behind = model.steady_level() / K_DRIVE;
+    let along_x = |x: f64| VectorField {
+        x: vec![x; 4],
+        y: vec![0.0; 4],
+    };
+    let experiment = Experiment {
+        model: Arc::new(model),
+        dt_star: DT_STAR,
+        state: Some(State {
+            displacement: along_x(1e-6 - behind),
+            velocity: along_x(V_STAR),
+        }),
+    };
+    let apart = 2.4;
+    let values = experiment.values(&[0.0, 1.0, 2.0, 3.0].map(|k| k * apart), |now| {
+        now.block(0).displacement[0] + behind - V_STAR * now.time_star
+    });
+    growth(&values, apart)
+}
+
+pub(super) fn chapter() -> Result<Chapter, PaperError> {
+    let exact = |damping: f64| weakening_growth(&LAW, 0.5, V_STAR, K_DRIVE, damping);
+    let found = DAMPINGS.map(computed);
+    let answers = DAMPINGS.into_iter().zip(found).map(|(damping, found)| {
+        Answer::new(
+            format!("growth rate of a disturbance of steady sliding at V* = 0.2, Ω = {damping}"),
+            [exact(damping), found],
+            (
+                0.02 * (0.01 + exact(damping).abs()),
+                "of first order: friction is that of the speed half a step before",
+            ),
+        )
+    });
+    let fine: Vec<f64> = (0..=60).map(|k| 0.01 * f64::from(k)).collect();
+    Ok(Chapter {
+        title: "Friction that falls with speed",
+        name: "weakening",
+        text: include_str!("text/weakening.md"),
+        answers: answers.collect(),
+        picture: Some((
+            "Growth rate of a small disturbance of steady sliding against damping: below the zero of the line it grows into stick-slip.",
+            Drawing::Responses(Responses {
+                x_title: "damping \u{3a9}".to_owned(),
+                y_title: "growth rate".to_owned(),
+                curves: vec![
+                    formula("exact", &fine, exact),
+                    measured("computed", &DAMPINGS, &found.map(Number::exact)),
+                ],
+                ..Responses::default()
+            }),
+        )),
+    })
+}
