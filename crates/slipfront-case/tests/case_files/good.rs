@@ -3,6 +3,7 @@ use std::path::Path;
 
 use slipfront::Edges;
 
+use slipfront_case::case::Case;
 use slipfront_case::case_file::{
     CaseFile, Cavity, CavitySize, Center, Damping, DriveSpeed, KineticFriction, RunTime, Snapshots, Texture,
 };
@@ -131,4 +132,23 @@ fn a_case_changed_in_code_is_checked_without_a_place() {
             .to_string()
             .starts_with("`friction.seed` is 18446744073709551615")
     );
+}
+
+/// The step is 0.1 where that is stable, and the run lasts as long as it takes to load the slider through its own drive springs.
+#[test]
+fn steps_and_durations_follow_the_blocks() {
+    let case = |modulus: f64| {
+        let grade = format!("{{ along = 'x', from = {modulus}, to = {modulus} }}");
+        let text = format!("slider.blocks = [4, 4]\nslider.stiffness_grade = {grade}");
+        Case::parse(&text, "case", &[]).unwrap()
+    };
+    for (modulus, step_limit) in [(0.5, 0.9058), (1.0, 0.9058), (80.0, 0.1013), (1000.0, 0.02864)] {
+        let found = case(modulus);
+        let limit = found.model.stable_step_limit();
+        assert!((limit / step_limit - 1.0).abs() < 1e-3, "{modulus}: {limit}");
+        let plan = found.time_plan;
+        assert_eq!(plan.dt_star, if limit > 0.1 { 0.1 } else { 0.5 * limit });
+        let duration = 8.0 / 0.03 / modulus;
+        assert!(duration <= plan.end_star() + 1e-6 && plan.end_star() < duration + plan.dt_star);
+    }
 }
