@@ -37,7 +37,8 @@ struct Pin {
     static_friction_star: f64,
     onset_time_star: f64,
     first_slip_time_star: f64,
-    kinetic_friction_star: f64,
+    /// None of a run that has no kinetic window.
+    kinetic_friction_star: Option<f64>,
     texture_percent: f64,
 }
 
@@ -48,21 +49,19 @@ impl Pin {
             static_friction_star: summary.static_friction_star,
             onset_time_star: summary.onset_time_star,
             first_slip_time_star: summary.first_slip_time_star.unwrap_or(f64::NAN),
-            kinetic_friction_star: summary.kinetic_friction_star.unwrap_or(f64::NAN),
+            kinetic_friction_star: summary.kinetic_friction_star,
             texture_percent: summary.texture_percent,
         }
     }
 
     /// As it stands in `pinned.toml`.
     fn lines(&self, name: &str) -> String {
+        let kinetic = self.kinetic_friction_star;
+        let kinetic = kinetic.map_or(String::new(), |mu| format!("kinetic_friction_star = {mu:?}\n"));
         format!(
             "[{name:?}]\nstatic_friction_star = {:?}\nonset_time_star = {:?}\nfirst_slip_time_star = {:?}\n\
-             kinetic_friction_star = {:?}\ntexture_percent = {:?}\n",
-            self.static_friction_star,
-            self.onset_time_star,
-            self.first_slip_time_star,
-            self.kinetic_friction_star,
-            self.texture_percent
+             {kinetic}texture_percent = {:?}\n",
+            self.static_friction_star, self.onset_time_star, self.first_slip_time_star, self.texture_percent
         )
     }
 
@@ -71,7 +70,10 @@ impl Pin {
         close(self.static_friction_star, found.static_friction_star)
             && close(self.onset_time_star, found.onset_time_star)
             && close(self.first_slip_time_star, found.first_slip_time_star)
-            && close(self.kinetic_friction_star, found.kinetic_friction_star)
+            && match (self.kinetic_friction_star, found.kinetic_friction_star) {
+                (Some(pinned), Some(found)) => close(pinned, found),
+                (pinned, found) => pinned == found,
+            }
             // A count of blocks.
             && self.texture_percent == found.texture_percent
     }

@@ -1,12 +1,17 @@
 //! Checkpoints of the reference kernel, of observers, and of another lattice. Those of the fused kernel are tested in
 //! `executions.rs`.
 
+use std::sync::Arc;
+
 use rstest::rstest;
+use slipfront::communicator::Alone;
 use slipfront::observe::frames::Selection;
-use slipfront::observe::{Curve, Field, Instants, KineticHistory, KineticStart, Scheduled};
+use slipfront::observe::{
+    Curve, Cycles, Field, Instants, KineticHistory, KineticStart, Precursors, Scheduled,
+};
 use slipfront::{
-    Ageing, ContactSprings, Coulomb, Execution, Friction, FrictionLaw, RateAndState, Simulation, Stop,
-    Weakening,
+    Ageing, ContactSprings, Coulomb, Edge, Execution, Friction, FrictionLaw, Program, RateAndState, Rotation,
+    Simulation, Stop, Weakening,
 };
 
 use crate::common::{Slider, cavity, varied};
@@ -208,4 +213,57 @@ fn a_checkpoint_of_another_kernel_does_not_fit() {
     let simulation = Simulation::with_execution(model.clone(), dt_star, None, FUSED);
     assert!(resumed(&simulation, &model, dt_star, FUSED).is_some());
     assert!(resumed(&simulation, &model, dt_star, REFERENCE).is_none());
+}
+
+/// Drives at an edge, by a program and in rotation, and what is observed of them, go on as if they had not been stopped.
+#[rstest]
+fn other_drives_and_their_observers(#[values(false, true)] turns: bool, #[values(1, 7)] every: u64) {
+    let slider = Slider {
+        textures: Vec::new(),
+        degrees: 0.0,
+        ..slider(FrictionLaw::Projection)
+    };
+    let mut model = slider.model();
+    let lattice = model.lattice;
+    model
+        .slider
+        .attach_edge(&lattice, &(0..lattice.ny), Edge::Left, &Alone);
+    model.drive.k_drive = 2.0;
+    let segments = [(0.1, 12.0), (0.0, 20.0), (0.2, f64::INFINITY)];
+    model.drive.program = Some(Arc::new(Program::new(segments)));
+    if turns {
+        model.drive.rotation = Some(Rotation::about_centroid(&lattice, &model.slider));
+    }
+    let observers = || (Precursors::new(Edge::Left), Cycles::default(), Curve::every(7));
+    let start = || Simulation::with_execution(model.clone(), 0.1, None, REFERENCE);
+    let (mut plain, mut whole) = (start(), observers());
+    let stop = Stop::at_step(600);
+    let (precursors, cycles, curve) = &mut whole;
+    let seen = &mut [
+        Scheduled::always(precursors),
+        Scheduled::always(cycles),
+        Scheduled::always(curve),
+    ];
+    plain.run(stop, seen).unwrap();
+    let (mut stopped, mut parts) = (start(), observers());
+    loop {
+        let (precursors, cycles, curve) = &mut parts;
+        let seen = &mut [
+            Scheduled::always(precursors),
+            Scheduled::always(cycles),
+            Scheduled::always(curve),
+        ];
+        if stopped.advance(stop, every, seen).unwrap().is_some() {
+            break;
+        }
+        stopped = stopped_and_resumed(&stopped, &model, 0.1, REFERENCE);
+        parts = postcard::from_bytes(&postcard::to_stdvec(&parts).unwrap()).unwrap();
+        let now = stopped.time_star();
+        assert!(parts.0.is_consistent_with(&Precursors::new(Edge::Left), now));
+        assert!(parts.1.is_consistent_with(now));
+    }
+    assert_eq!(everything(&stopped), everything(&plain));
+    assert_eq!((&parts.0, &parts.1), (&whole.0, &whole.1));
+    assert!(!whole.0.events().is_empty() && whole.1.cycles().len() == 2);
+    assert_eq!(postcard::to_stdvec(&parts.2), postcard::to_stdvec(&whole.2));
 }

@@ -152,15 +152,15 @@ fn a_disc_of_blocks_on_their_own_slips_from_the_rim(#[values(0.3, 0.9)] r_star: 
     assert!((peak - r_star.max(0.75)).abs() < 0.025, "{peak}");
 }
 
-/// Steady rotation: kinetic friction along the circles and damping, `[sum mu_k F_n r + Omega V sum r^2/r_max]/sum r`. Overdamped, so
-/// that it is reached. Across its circle a block at the speed v moves as if damped by `Omega + mu_k F_n/v`, and returns at k_s over
+/// Steady rotation: kinetic friction along the circles and damping, `[sum mu_k F_n r + Omega V sum r^2/r_max]/sum r`. All motions
+/// of the lattice are overdamped, Omega > 2 sqrt(6.5 k_1), so that the slow blocks next to the middle do not stick. Across its circle a block at the speed v moves as if damped by `Omega + mu_k F_n/v`, and returns at k_s over
 /// this; the slowest, next to the middle, is waited for until exp(-25) is left.
 #[test]
 fn the_level_of_steady_rotation_is_that_of_friction_and_damping() {
     let slider = Slider {
         blocks: [16, 16],
         body: disc(16),
-        omega_star: 1.5,
+        omega_star: 6.0,
         v_star: 0.1,
         epsilon: 0.0,
         ..Slider::default()
