@@ -5,7 +5,7 @@ use {
     crate::error::ResultsError,
     crate::fields::{self, FieldFrame, Reduction},
     crate::precursors::{self, PrecursorRow},
-    crate::series,
+    crate::series::{self, SeriesRow},
     crate::summary::{Summary, read_summary},
     rayon::prelude::*,
     slipfront::exact_solutions::precursor_load,
@@ -102,11 +102,13 @@ pub fn draw_friction(folders: &[PathBuf]) -> Result<Picture, ResultsError> {
 #[cfg(feature = "plot")]
 fn friction_curve(folder: &Path) -> Result<FrictionCurve, ResultsError> {
     let summary = read_summary(folder)?;
-    let rows = series::read_csv(&folder.join(SERIES))?;
+    let point = |row: SeriesRow| [row.time_star, row.mu_star, row.sliding_percent];
+    let points = series::read_rows(&folder.join(SERIES), SERIES, point)?;
+    let column = |k: usize| points.iter().map(|point| point[k]).collect();
     Ok(FrictionCurve {
-        time_star: rows.iter().map(|row| row.time_star).collect(),
-        mu_star: rows.iter().map(|row| row.mu_star).collect(),
-        sliding_percent: rows.iter().map(|row| row.sliding_percent).collect(),
+        time_star: column(0),
+        mu_star: column(1),
+        sliding_percent: column(2),
         ..marked_curve(folder.display().to_string(), &summary)
     })
 }
@@ -160,16 +162,17 @@ fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
     if fields.names.is_empty() || fields.frames.is_empty() {
         return Ok(None);
     }
-    let rows = series::read_csv(&folder.join(SERIES))?;
+    let point = |row: SeriesRow| (row.step, row.mu_star);
+    let rows = series::read_rows(&folder.join(SERIES), SERIES, point)?;
     let instants = read_summary(folder)?.instants;
     // A snapshot between the rows of a thinned series has no mu* of its own, unless it is an instant.
     let mu_star = |frame: &FieldFrame| {
         let mut of_instants = instants
             .iter()
             .filter(|instant| instant.time_star == frame.time_star);
-        let mut of_rows = rows.iter().filter(|row| row.step == frame.step);
+        let mut of_rows = rows.iter().filter(|(step, _)| *step == frame.step);
         let instant = of_instants.next().map(|instant| instant.mu_star);
-        let found = instant.or_else(|| of_rows.next().map(|row| row.mu_star));
+        let found = instant.or_else(|| of_rows.next().map(|(_, mu_star)| *mu_star));
         found.unwrap_or(f64::NAN)
     };
     let (nx, ny) = (fields.columns(), fields.rows());

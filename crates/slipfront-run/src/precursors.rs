@@ -61,5 +61,5 @@ pub fn to_csv(events: &[SlipEvent], scales: &Scales) -> Result<Vec<u8>, csv::Err
 
 /// Reads the events back.
 pub fn read_csv(path: &Path) -> Result<Vec<PrecursorRow>, SeriesError> {
-    read_rows(path, PRECURSORS)
+    read_rows(path, PRECURSORS, |row| row)
 }

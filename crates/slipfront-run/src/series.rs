@@ -137,12 +137,16 @@ pub fn estimate_rows(path: &Path) -> Result<f64, SeriesError> {
 
 /// Reads a series back.
 pub fn read_csv(path: &Path) -> Result<Vec<SeriesRow>, SeriesError> {
-    read_rows(path, SERIES)
+    read_rows(path, SERIES, |row| row)
 }
 
-/// Reads the rows of a table of a run, which is called `name` in its folder.
-pub(crate) fn read_rows<T: DeserializeOwned>(path: &Path, name: &'static str) -> Result<Vec<T>, SeriesError> {
-    let read = || rows_of(open_limited(path, u64::MAX)?);
+/// Reads the rows of a table of a run, which is called `name` in its folder, and keeps `part` of each.
+pub(crate) fn read_rows<T: DeserializeOwned, U>(
+    path: &Path,
+    name: &'static str,
+    part: impl Fn(T) -> U,
+) -> Result<Vec<U>, SeriesError> {
+    let read = || rows_of(open_limited(path, u64::MAX)?, part);
     read().map_err(|source| SeriesError {
         path: path.to_owned(),
         name,
@@ -150,11 +154,13 @@ pub(crate) fn read_rows<T: DeserializeOwned>(path: &Path, name: &'static str) ->
     })
 }
 
-fn rows_of<T: DeserializeOwned>(file: impl Read) -> Result<Vec<T>, csv::Error> {
+fn rows_of<T: DeserializeOwned, U>(file: impl Read, part: impl Fn(T) -> U) -> Result<Vec<U>, csv::Error> {
     let mut reader = csv::Reader::from_reader(BoundedLines { file, line_bytes: 0 });
     // The crate's own iterator takes names that cannot be read for none, and goes on with what follows them.
     let names = reader.headers()?.clone();
-    let rows = reader.records().map(|row| row?.deserialize(Some(&names)));
+    let rows = reader
+        .records()
+        .map(|row| Ok(part(row?.deserialize(Some(&names))?)));
     rows.collect()
 }
 
@@ -215,11 +221,11 @@ mod tests {
         for failing in 1..=pieces {
             let (file, reads) = (text.as_slice(), 0);
             assert!(
-                rows_of::<SeriesRow>(Failing { file, reads, failing }).is_err(),
+                rows_of(Failing { file, reads, failing }, |row: SeriesRow| row).is_err(),
                 "piece {failing} of {pieces}"
             );
         }
-        assert_eq!(rows_of::<SeriesRow>(text.as_slice()).unwrap(), rows);
+        assert_eq!(rows_of(text.as_slice(), |row: SeriesRow| row).unwrap(), rows);
     }
 
     #[test]
@@ -230,12 +236,12 @@ mod tests {
         };
         for rows in [[row(None); 2], [row(Some(0.5)), row(Some(f64::MIN_POSITIVE))]] {
             let text = to_csv(rows.into_iter()).unwrap();
-            assert_eq!(rows_of::<SeriesRow>(text.as_slice()).unwrap(), rows);
+            assert_eq!(rows_of(text.as_slice(), |row: SeriesRow| row).unwrap(), rows);
         }
         let text = to_csv([row(Some(0.5)); 2].into_iter()).unwrap();
         let text = String::from_utf8(text).unwrap();
         let cut = text.strip_suffix("0.5\n").unwrap().to_owned() + "\n";
-        assert!(rows_of::<SeriesRow>(cut.as_bytes()).is_err());
+        assert!(rows_of(cut.as_bytes(), |row: SeriesRow| row).is_err());
     }
 
     #[test]

@@ -126,13 +126,11 @@ const STATICS_ON_DISK: f64 = 2.0 + 3.0 * NUMBER;
 const COLUMN_TEXT: f64 = 25.0;
 /// Columns of every series.
 const COLUMNS: f64 = 13.0;
-/// A row of `series.csv` in memory: these numbers, and four that need not be there.
-const SERIES_ROW: f64 = (COLUMNS + 8.0) * NUMBER;
 /// Stretches of the history of mu* and their copies while an uncertainty is sought.
 const HISTORY: f64 = 1024.0 * 1024.0;
 
-/// A row of the series while it is drawn: as both pictures read it, and as the points of the curves.
-const DRAWN_ROW: f64 = 2.0 * SERIES_ROW + 3.0 * NUMBER;
+/// What both pictures read of a row of the series, and its points of the curves.
+const DRAWN_ROW: f64 = (3.0 + 2.0 + 3.0) * NUMBER;
 
 /// Primitives and pixels of the picture of the friction, and of the one of the stress. They do not depend on the
 /// lattice: more than 256 cells along a side are averaged (measured: 6.8 and 6.6 MB).

@@ -285,7 +285,7 @@ const FRICTION: &[Key] = &[
     key("b", "", number(within(0.0, 10.0), "it is a coefficient, of the order of 0.01"), "evolution effect of rate and state")
         .title("evolution effect", "b", ""),
     key("d_c_star", "", number(above(0.0, 1e9), "it is in units of P mu_s l/E"), "slip over which the state follows a change of speed")
-        .title("slip of the state", "D\u{1d9c}*", ""),
+        .title("slip of the state", "D*", ""),
     key("v_0_star", "", SPEED_STAR, "reference speed of rate and state").title("reference speed", "V\u{2080}*", ""),
     key("mu_0", "", number(within(0.0, 100.0), "it is a coefficient"), "coefficient of steady sliding at `v_0_star`")
         .title("coefficient of steady sliding", "\u{3bc}\u{2080}", ""),

@@ -7,7 +7,7 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("youngs_modulus", YOUNG),
     ("modulus", YOUNG),
     ("elastic_modulus", YOUNG),
-    ("stiffness", SPRINGS),
+    ("stiffness", STIFFNESS),
     ("spring_constant", SPRINGS),
     ("k", SPRINGS),
     ("k1", SPRINGS),
@@ -193,6 +193,7 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
 
 const YOUNG: &str = "Young's modulus is `slider.young_modulus`";
 const SPRINGS: &str = "the springs follow from `slider.young_modulus`";
+const STIFFNESS: &str = "the springs between blocks follow from `slider.young_modulus`, and `drive.stiffness` is that of the drive springs";
 const POISSON: &str = "Poisson's ratio is that of the lattice, 1/3, and cannot be set";
 const BLOCKS: &str = "the slider is `slider.blocks` = [25, 25] blocks of edge `slider.block_size`";
 const PRESSURE: &str = "the normal load is `load.pressure`, over the whole area";

@@ -12,9 +12,9 @@
 ///
 /// ```
 /// use slipfront::exact_solutions::precursor_load;
-/// // Half of a chain under an equal pressure bears half of the friction; the half with a quarter of the load, a quarter.
+/// // Half of a chain under an equal pressure bears half of the friction; the half with 3/8 of the load, 3/8.
 /// assert_eq!(precursor_load(0.5, 0.45, 0.0), 0.225);
-/// assert_eq!(precursor_load(0.5, 0.4, 0.5), 0.15);
+/// assert_eq!(precursor_load(0.5, 0.5, 0.5), 0.1875);
 /// ```
 pub fn precursor_load(length: f64, mu_kinetic: f64, relative_slope: f64) -> f64 {
     mu_kinetic * ((1.0 - relative_slope) * length + relative_slope * length * length)

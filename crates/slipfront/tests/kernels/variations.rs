@@ -39,11 +39,9 @@ fn with(slider: Slider, options: &[Variety]) -> Slider {
             Variety::Outline => {
                 let exists = (0..nx * ny).map(|b| b * b % 9 != 4).collect();
                 slider.body.outline = Some(Outline::new(exists, &Alone));
-                if let Some(springs) = &slider.body.drive_springs {
-                    let relative = (0..nx * ny).map(|b| slider.body.drive_spring(b)).collect();
-                    assert_eq!(springs.relative.len(), nx * ny);
-                    slider.body.drive_springs = Some(DriveSprings::new(relative, &Alone));
-                }
+                // Blocks outside have no drive springs.
+                let relative = (0..nx * ny).map(|b| slider.body.drive_spring(b)).collect();
+                slider.body.drive_springs = Some(DriveSprings::new(relative, &Alone));
             }
             Variety::Weakening => {
                 slider.weakening = Some(Weakening {

@@ -104,15 +104,7 @@ fn a_program_changes_nothing_but_the_speed() {
         (simulation.state(), simulation.snapshot().totals.n_slipping)
     };
     let (constant, _) = run(&[(0.2, END)]);
-    let mut plain = slipfront::Simulation::with_execution(
-        slider.model(),
-        0.1,
-        None,
-        slipfront::Execution {
-            kernel: slipfront::Kernel::Reference,
-            ..slipfront::Execution::default()
-        },
-    );
+    let mut plain = at_rest(&slider.model(), 0.1);
     plain.run(Stop::at_step(1000), &mut []).unwrap();
     assert_eq!(constant, plain.state());
     let (there, slipping) = run(&[(0.2, 50.0), (0.0, 70.0), (0.1, END)]);
