@@ -21,12 +21,15 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
              time.step = 0.01",
             100.0 * adhesion
         );
-        let found = Run::of_case("adhesion", &text)?.largest();
+        let found = Run::of_case("adhesion", &text)?.peak();
         smooth.push(Number::exact(found));
         answers.push(Answer::new(
             format!("μ_s* without texture, τ_a/(P μ̄_s) = {adhesion}"),
             [1.0 + adhesion, found],
-            (0.375 * 0.03 * 0.01, "the pull of one step"),
+            (
+                0.375 * (0.03 * 0.01 + 0.03 * 0.03 / (2.0 * (0.5 + adhesion))),
+                "the pull of one step, and of what springs stretch until the slider is as fast as the drive",
+            ),
         ));
     }
     for adhesion in STRENGTHS {

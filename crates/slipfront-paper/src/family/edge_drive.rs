@@ -21,7 +21,7 @@ fn precursors(slope: f64) -> Result<(Vec<[f64; 2]>, f64), PaperError> {
          [load]\nprofile = {{ along = \"x\", relative_slope = {slope} }}\n\
          [drive]\nv_star = 1\nattach = \"left\"\ntotal_stiffness_star = 0.00242\n\
          [friction]\nmu_static = 0.7\nmu_kinetic = {KINETIC}\nsigma_static_star = 0\nsigma_kinetic_star = 0\n\
-         [time]\nstep = 0.3\nduration_star = 32000"
+         [time]\nstep = 0.1\nduration_star = 34600"
     );
     let mut observer = Precursors::new(Edge::Left);
     let run = Run::watched("precursors", &text, &mut [&mut observer])?;

@@ -9,7 +9,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         format!("[[texture]]\nshape = \"groove\"\nwidth = \"{width} um\"\noffset = \"{offset} um\"\n")
     };
     let mut text = "slider.blocks = [60, 60]\nload.redistribute = true\nfriction.sigma_static_star = 0\n\
-                    friction.sigma_kinetic_star = 0\ntime.stop = \"onset\"\n"
+                    friction.sigma_kinetic_star = 0\ntime.stop = \"after_onset\"\n"
         .to_owned();
     let grooves = [
         (6.0, 0.0),

@@ -65,6 +65,11 @@ impl Run {
         self.rows.get(after).map_or(f64::NAN, |row| row.point.mu_star)
     }
 
+    /// mu* at its first peak.
+    pub(super) fn peak(&self) -> f64 {
+        self.simulation.peak().mu_star
+    }
+
     /// The largest mu* of the run.
     pub(super) fn largest(&self) -> f64 {
         self.simulation.peak().mu_star_max

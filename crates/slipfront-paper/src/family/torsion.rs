@@ -50,7 +50,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
     let mut answers = Vec::new();
     let text = "friction.sigma_static_star = 0\nfriction.sigma_kinetic_star = 0\n\
                 [slider]\nblocks = [20, 20]\noutline = \"disc\"\n[drive]\nmotion = \"rotation\"\n\
-                [time]\nstep = 0.02\nstop = \"onset\"";
+                [time]\nstep = 0.02\nstop = \"after_onset\"";
     let run = Run::of_case("torsion", text)?;
     let exact = torsion_first_slip(&radii(&run.model));
     let rise = exact * 0.375 * 0.03 * 0.02;

@@ -485,7 +485,7 @@ fn free_motion<S: Simd, const DIFFER: bool>(simd: S, step: Step, arrays: &mut Fr
         let before = load_vec2(simd, velocity, c);
         if DIFFER {
             drive = scale(load(simd, &variation.drive_springs[c]), drive);
-            force_to_velocity = force_to_velocity * load(simd, &variation.inverse_mass[c]);
+            force_to_velocity *= load(simd, &variation.inverse_mass[c]);
         }
         let force = add(drive, load_vec2(simd, lattice, c));
         let free = add(
@@ -575,7 +575,7 @@ fn friction_loop<S: Simd, const ENERGY: bool, const DIFFER: bool>(
         // Minus the friction force: kinetic friction of a sliding block, else the sum of the other forces.
         let mut velocity_to_force = splat(simd, step.integrator.velocity_to_force);
         if DIFFER {
-            velocity_to_force = velocity_to_force * load(simd, &variation.mass[c]);
+            velocity_to_force *= load(simd, &variation.mass[c]);
         }
         let kinetic = scale(removed_fraction * velocity_to_force, free);
         let against = select(slides, kinetic, force);

@@ -76,8 +76,7 @@ pub(super) fn read_rows<S: Simd, G: Geometry>(
     geometry: G,
     model: &Model,
     step: Step,
-    field: Field,
-    stride: usize,
+    (field, stride): (Field, usize),
     (layout, bands): (&Layout, &[Band]),
     write: &mut dyn FnMut(usize, usize, &[f32]),
 ) {

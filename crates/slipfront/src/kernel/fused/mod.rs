@@ -495,9 +495,9 @@ impl Engine for Fused {
         };
         if self.blocks_differ {
             let root = Differing(root);
-            dispatch!(self.level, simd => fields::read_rows(simd, root, model, step, field, stride, elements, write));
+            dispatch!(self.level, simd => fields::read_rows(simd, root, model, step, (field, stride), elements, write));
         } else {
-            dispatch!(self.level, simd => fields::read_rows(simd, root, model, step, field, stride, elements, write));
+            dispatch!(self.level, simd => fields::read_rows(simd, root, model, step, (field, stride), elements, write));
         }
     }
 
