@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::fixed_point::{FixedPoint, Window};
 use crate::kernel::totals::{ContactTotals, Totals};
 use crate::measure::Peak;
+use crate::model::Model;
 
 /// A run between two steps, without the numbers of its blocks: these are its columns.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,6 +24,13 @@ pub struct Checkpoint {
     pub(crate) stress_square_max: f64,
     /// Of the fused kernel.
     pub(crate) motion_bounds: Option<MotionBounds>,
+}
+
+impl Model {
+    /// Columns of a checkpoint: numbers that are kept of every block.
+    pub fn n_columns(&self) -> usize {
+        BlockColumn::ALL.len() + self.friction.n_columns()
+    }
 }
 
 /// A number that is kept of every block, whatever the law of friction. Behind them a law that remembers more has

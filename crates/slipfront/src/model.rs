@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use crate::checkpoint::BlockColumn;
 use crate::drive::Drive;
 use crate::friction::Friction;
 use crate::lattice::{K_DRIVE, Lattice};
@@ -69,11 +68,6 @@ impl Model {
             epsilon,
             friction: friction.into(),
         }
-    }
-
-    /// Columns of a checkpoint: numbers that are kept of every block.
-    pub fn n_columns(&self) -> usize {
-        BlockColumn::ALL.len() + self.friction.n_columns()
     }
 
     /// Number of blocks of the whole lattice that exist.

@@ -9,7 +9,6 @@ use slipfront::{Communicator, Drive, Lattice, Program, Rotation, Scales, Slider}
 use super::groups::{Groups, within};
 use super::inputs::Inputs;
 use super::textures::{Watch, read_mask};
-use super::time_plan::TimePlan;
 use crate::case_file::{
     Attached, CaseError, CaseFile, DEFAULT_THRESHOLD, DriveSpeed, DriveStiffness, Motion,
 };
@@ -121,25 +120,23 @@ pub(super) fn loading_share(file: &CaseFile, scales: &Scales, lattice: &Lattice)
 }
 
 /// The program of the case, if it has one, with speeds that change where steps begin.
-pub(super) fn program(file: &CaseFile, time_plan: &TimePlan) -> Result<Option<Arc<Program>>, CaseError> {
+pub(super) fn program(file: &CaseFile, dt_star: f64) -> Result<Option<Arc<Program>>, CaseError> {
     let DriveSpeed::Program(segments) = &file.drive.speed else {
         return Ok(None);
     };
     let mut before = 0.0;
     let mut parts = Vec::with_capacity(segments.len());
     for segment in segments {
-        let until = segment
-            .until_star
-            .map(|until| (until / time_plan.dt_star).round());
+        let until = segment.until_star.map(|until| (until / dt_star).round());
         if until.is_some_and(|until| until <= before) {
             let sentence = format!(
                 "the speed {:?} of the program lasts less than a step of dt* = {}: speeds change where steps begin",
-                segment.v_star, time_plan.dt_star
+                segment.v_star, dt_star
             );
             return Err(file.source.error("drive.program", sentence));
         }
         before = until.unwrap_or(before);
-        let until_star = until.map_or(f64::INFINITY, |until| until * time_plan.dt_star);
+        let until_star = until.map_or(f64::INFINITY, |until| until * dt_star);
         parts.push((segment.v_star, until_star));
     }
     Ok(Some(Arc::new(Program::new(parts))))

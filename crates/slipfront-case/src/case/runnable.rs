@@ -190,7 +190,7 @@ impl Case {
             mut budget,
             ..
         } = plan;
-        model.drive.program = program(&file, &time_plan)?;
+        model.drive.program = program(&file, time_plan.dt_star)?;
         refuse_large_angles(&file, &model.drive, groups.epsilon, time_plan.end_star())?;
         budget.inputs = inputs.files.iter().map(|input| input.length as f64).sum();
         Ok(Self {

@@ -6,8 +6,9 @@ use slipfront::{Edge, Edges};
 use super::check::Check;
 use super::error::CaseError;
 use super::key_table::{PROGRAM_SPEED, STIFFNESS, UNTIL};
-use super::slider::{Outline, Slider};
+use super::slider::Slider;
 use super::values::word;
+use super::words::{AttachedEdge, Motion, Outline};
 use crate::quantity::{QuantityError, Speed, Stiffness};
 
 /// `[drive]`: how the slider is pulled.
@@ -48,16 +49,6 @@ pub struct SpeedSegment {
     pub until_star: Option<f64>,
 }
 
-/// How the far ends of the drive springs move.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Motion {
-    /// Along the direction of the drive.
-    Translation,
-    /// About the middle of the slider.
-    Rotation,
-}
-
 /// The blocks that have a drive spring.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Attached {
@@ -65,22 +56,6 @@ pub enum Attached {
     At(AttachedEdge),
     /// `attach_file`: a `.png` (dark pixels are driven) or a `.npy` of shape (ny, nx) of 0 and 1 (driven), relative to the case file.
     File(String),
-}
-
-/// The words of `attach`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum AttachedEdge {
-    /// Every block.
-    All,
-    /// The blocks at x = 0.
-    Left,
-    /// Those at the largest x.
-    Right,
-    /// Those at y = 0.
-    Bottom,
-    /// Those at the largest y.
-    Top,
 }
 
 /// The stiffness of the drive springs.

@@ -9,6 +9,7 @@ use super::choice::keys_with_choice;
 use super::error::CaseError;
 use super::key_table::{BETA, MAX_R_STAR, RATIO, SPEED_STAR, TIME_STAR};
 use super::values::word;
+use super::words::{Contact, Law};
 use crate::quantity::Pressure;
 
 /// `[friction]`: the law and the local coefficients (Eqs. 1 and 4).
@@ -59,30 +60,6 @@ pub struct Friction {
     pub theta_0_star: Option<f64>,
     /// Speed above which a block counts as sliding, in the unit of V*; a tenth of V* if not given.
     pub slip_speed_star: Option<f64>,
-}
-
-/// The law of friction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Law {
-    /// Eq. 4, integrated implicitly.
-    Projection,
-    /// Eq. 4, explicit, for comparison.
-    Reversal,
-    /// Eq. 4 as printed, for comparison.
-    Literal,
-    /// Coefficients that follow speed and state.
-    RateAndState,
-}
-
-/// What holds a block until its threshold.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Contact {
-    /// It does not move.
-    Rigid,
-    /// A spring, which breaks.
-    Springs,
 }
 
 /// `velocity`: kinetic friction that falls with speed, mu_k [ratio + (1 - ratio)/(1 + v/v_c)].

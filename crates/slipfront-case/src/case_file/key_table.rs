@@ -14,10 +14,8 @@ use slipfront::observe::Field;
 use slipfront::surface::Orientation;
 use slipfront::{Edges, StopReason};
 
-use super::drive::{AttachedEdge, Motion};
-use super::friction::{Contact, Law};
 use super::probe::names_of;
-use super::slider::Outline;
+use super::words::{AttachedEdge, Contact, Law, Motion, Outline};
 
 /// A range of numbers.
 pub type Bounds = (Bound<f64>, Bound<f64>);

@@ -25,13 +25,14 @@ mod tables;
 mod texture;
 mod time;
 mod values;
+mod words;
 
 pub use depth::limit_nesting;
 pub use diagnose::syntax_error;
-pub use drive::{Attached, AttachedEdge, Drive, DriveSpeed, DriveStiffness, Motion, SpeedSegment};
+pub use drive::{Attached, Drive, DriveSpeed, DriveStiffness, SpeedSegment};
 pub use error::{CaseError, Invalid, Place};
 pub use file::{CaseFile, ParsedCase};
-pub use friction::{Ageing, AgeingLaw, Contact, Friction, KineticFriction, Law, Velocity, VelocityLaw};
+pub use friction::{Ageing, AgeingLaw, Friction, KineticFriction, Velocity, VelocityLaw};
 pub use key_table::{Bounds, Key, Kind, SECTIONS, Section, Title, names_a_file, title_of};
 pub(crate) use key_table::{MAX_RELATIVE, MIN_RELATIVE};
 pub use keys::{
@@ -43,7 +44,7 @@ pub use motion::{Along, Load, Profile};
 pub use output::{Output, Snapshots};
 pub use overrides::Override;
 pub use probe::names_of;
-pub use slider::{Damping, Grade, Outline, Slider};
+pub use slider::{Damping, Grade, Slider};
 pub use source::Source;
 pub use tables::Tables;
 pub use texture::{
@@ -51,6 +52,7 @@ pub use texture::{
 };
 pub use time::{RunTime, Step, Time};
 pub use values::AutoOr;
+pub use words::{AttachedEdge, Contact, Law, Motion, Outline};
 
 #[cfg(test)]
 mod tests;

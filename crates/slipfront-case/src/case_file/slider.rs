@@ -9,6 +9,7 @@ use super::error::CaseError;
 use super::key_table::RELATIVE_PROPERTY;
 use super::motion::Along;
 use super::values::{Pair, pair, word};
+use super::words::Outline;
 use crate::number_format::count;
 use crate::quantity::{Density, Length, Pressure, Rate};
 
@@ -42,18 +43,6 @@ pub struct Slider {
     pub density_field: Option<String>,
     /// A relative density that changes along an axis.
     pub density_grade: Option<Grade>,
-}
-
-/// The shape of the slider: blocks outside do not exist.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Outline {
-    /// All blocks.
-    Rectangle,
-    /// The disc that fills as many blocks along x as along y.
-    Disc,
-    /// The blocks of a file.
-    Mask,
 }
 
 /// A property relative to that of the whole slider that changes linearly along an axis, from one edge to the other.

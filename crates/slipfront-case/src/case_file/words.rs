@@ -1,0 +1,65 @@
+//! Keys that take one word of several.
+
+use serde::{Deserialize, Serialize};
+
+/// The shape of the slider: blocks outside do not exist.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outline {
+    /// All blocks.
+    Rectangle,
+    /// The disc that fills as many blocks along x as along y.
+    Disc,
+    /// The blocks of a file.
+    Mask,
+}
+
+/// The words of `attach`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AttachedEdge {
+    /// Every block.
+    All,
+    /// The blocks at x = 0.
+    Left,
+    /// Those at the largest x.
+    Right,
+    /// Those at y = 0.
+    Bottom,
+    /// Those at the largest y.
+    Top,
+}
+
+/// How the far ends of the drive springs move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Motion {
+    /// Along the direction of the drive.
+    Translation,
+    /// About the middle of the slider.
+    Rotation,
+}
+
+/// The law of friction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Law {
+    /// Eq. 4, integrated implicitly.
+    Projection,
+    /// Eq. 4, explicit, for comparison.
+    Reversal,
+    /// Eq. 4 as printed, for comparison.
+    Literal,
+    /// Coefficients that follow speed and state.
+    RateAndState,
+}
+
+/// What holds a block until its threshold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Contact {
+    /// It does not move.
+    Rigid,
+    /// A spring, which breaks.
+    Springs,
+}
