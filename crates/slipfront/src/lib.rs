@@ -39,6 +39,7 @@ mod fixed_point;
 mod friction;
 mod measure;
 mod model;
+mod moduli;
 mod reductions;
 mod simulation;
 mod slider;

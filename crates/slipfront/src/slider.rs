@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, join, split};
-use crate::lattice::{Bond, Edge, Lattice, harmonic_mean};
+use crate::lattice::{Edge, Lattice};
 
 /// What may differ from block to block; arrays have one value per block. Without any of it, as in the paper, all blocks are alike.
 #[derive(Clone, Debug, PartialEq)]
@@ -231,22 +231,5 @@ impl Slider {
     /// Whether all springs between blocks are those of the paper.
     pub fn has_equal_springs(&self) -> bool {
         self.stiffness.is_none() && self.outline.is_none()
-    }
-
-    /// Stiffness of the spring between two blocks over that of its [`Bond`]: the harmonic mean of their moduli, `2 E_i E_j/(E_i + E_j)`;
-    /// 0 if one of them does not exist.
-    pub fn spring(&self, b: usize, other: usize) -> f64 {
-        harmonic_mean(self.modulus(b), self.modulus(other))
-    }
-
-    /// [`spring`](Self::spring) from every block along `bond`; 0 where a free edge leaves it out.
-    pub fn springs_along(&self, lattice: &Lattice, bond: &Bond) -> Vec<f64> {
-        let along = |b: usize| {
-            let (i, j) = lattice.column_row(b);
-            lattice
-                .neighbour(i, j, bond.offset)
-                .map_or(0.0, |other| self.spring(b, other))
-        };
-        (0..lattice.n_blocks()).map(along).collect()
     }
 }

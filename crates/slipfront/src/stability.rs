@@ -1,8 +1,10 @@
 //! The largest time step with which a slider is stable.
 
+use crate::communicator::Communicator;
 use crate::friction::Friction;
 use crate::lattice::{Bond, K_DRIVE, dt_star_limit};
 use crate::model::Model;
+use crate::moduli::Moduli;
 use crate::slider::Slider;
 
 /// Largest stable time step of a block, from the largest eigenvalue `springs` of `2 sum_j k_ij e_ij e_ij^T/m_i` over the springs to its
@@ -30,7 +32,8 @@ pub fn stable_step(springs: f64, held: f64, viscosity_time: f64) -> f64 {
 impl Model {
     /// The bound below which a time step must stay: the least [`stable_step`] of all blocks, and no more than
     /// [`dt_star_limit`], the one of the paper's slider. Friction and damping do not lower it.
-    pub fn stable_step_limit(&self) -> f64 {
+    /// All `ranks` of a lattice must call this together.
+    pub fn stable_step_limit(&self, ranks: &dyn Communicator) -> f64 {
         let (lattice, slider) = (&self.lattice, &self.slider);
         let contact = match self.friction {
             Friction::ContactSprings(springs) => springs.stiffness,
@@ -40,18 +43,17 @@ impl Model {
         if is_plain && self.drive.k_drive <= K_DRIVE {
             return dt_star_limit();
         }
+        let moduli = Moduli::new(slider, lattice, &self.rows, ranks);
         let of_block = |b: usize| {
-            let (i, j) = lattice.column_row(b);
+            let (i, row) = lattice.column_row(b);
+            let place = [i, self.rows.start + row];
             // xx, yy and xy of the sum over all springs of the block.
             let mut sum = [0.0; 3];
             for bond in Bond::ALL {
                 for sign in [1, -1] {
-                    let offset = bond.offset.map(|step| sign * step);
-                    let Some(other) = lattice.neighbour(i, j, offset) else {
-                        continue;
-                    };
+                    let spring = moduli.spring(place, bond.offset.map(|step| sign * step));
                     let [x, y] = bond.rest.map(|component| component / bond.rest_length);
-                    let stiffness = 2.0 * bond.stiffness * slider.spring(b, other) / slider.mass(b);
+                    let stiffness = 2.0 * bond.stiffness * spring / slider.mass(b);
                     for (sum, product) in sum.iter_mut().zip([x * x, y * y, x * y]) {
                         *sum += stiffness * product;
                     }
@@ -63,7 +65,9 @@ impl Model {
             let held = (self.drive.k_drive * slider.drive_spring(b) + contact) / slider.mass(b);
             stable_step(springs, held, slider.viscosity_time)
         };
-        let blocks = lattice.blocks_of(&self.rows).filter(|&b| slider.exists(b));
-        blocks.map(of_block).fold(dt_star_limit(), f64::min)
+        let blocks = (0..self.surface.n_blocks()).filter(|&b| slider.exists(b));
+        let mut largest_negative = [-blocks.map(of_block).fold(dt_star_limit(), f64::min)];
+        ranks.largest(&mut largest_negative);
+        -largest_negative[0]
     }
 }

@@ -13,7 +13,7 @@ use super::drive::{attach, attached, drive, program, refuse_large_angles};
 use super::friction::law;
 use super::groups::Groups;
 use super::inputs::{Input, Inputs, NamedFiles};
-use super::kernel::beyond_ranks;
+use super::kernel::beyond_fused;
 use super::output::Output;
 use super::ranks::Ranks;
 use super::slider::GivenBlocks;
@@ -246,7 +246,7 @@ impl Plan {
         groups: &Groups,
         ranks: &Ranks,
     ) -> Result<Self, CaseError> {
-        let dynamics = Dynamics::of(model);
+        let dynamics = Dynamics::of(model, ranks.communicator);
         if dynamics == self.dynamics {
             return Ok(self);
         }
@@ -312,7 +312,7 @@ impl Derived {
             );
             return Err(file.source.error("slider.blocks", sentence));
         }
-        match beyond_ranks(file) {
+        match beyond_fused(file) {
             Some("friction.law") if n_ranks > 1 => {
                 let sentence = "a lattice is divided among ranks under the law \"projection\" alone: take one rank, or that law";
                 return Err(file.source.error("friction.law", sentence));

@@ -14,6 +14,8 @@ use crate::number_format::four_digits;
 pub struct TimePlan {
     /// The time step dt*.
     pub dt_star: f64,
+    /// What it must be less than.
+    pub step_limit: f64,
     /// Number of steps.
     pub last_step: u64,
     /// The condition that ends the run.
@@ -40,9 +42,10 @@ impl Dynamics {
         }
     }
 
-    pub(super) fn of(model: &Model) -> Self {
+    /// Of all blocks; all ranks must call this together.
+    pub(super) fn of(model: &Model, ranks: &dyn Communicator) -> Self {
         Self {
-            step_limit: model.stable_step_limit(),
+            step_limit: model.stable_step_limit(ranks),
             loading_speed: model.loading_speed(),
         }
     }
@@ -110,6 +113,7 @@ impl TimePlan {
         };
         Ok(TimePlan {
             dt_star,
+            step_limit: limit,
             last_step,
             stop,
             kinetic,

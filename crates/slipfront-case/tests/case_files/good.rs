@@ -144,7 +144,7 @@ fn steps_and_durations_follow_the_blocks() {
     };
     for (modulus, step_limit) in [(0.5, 0.9058), (1.0, 0.9058), (80.0, 0.1013), (1000.0, 0.02864)] {
         let found = case(modulus);
-        let limit = found.model.stable_step_limit();
+        let limit = found.time_plan.step_limit;
         assert!((limit / step_limit - 1.0).abs() < 1e-3, "{modulus}: {limit}");
         let plan = found.time_plan;
         assert_eq!(plan.dt_star, if limit > 0.1 { 0.1 } else { 0.5 * limit });

@@ -41,7 +41,7 @@ fn scales(case: &Case) -> String {
         with_si_prefix(case.scales.displacement(), "m"),
         with_si_prefix(case.scales.stress(), "Pa"),
         four_digits(case.time_plan.dt_star),
-        case.model.stable_step_limit()
+        case.time_plan.step_limit
     )
 }
 

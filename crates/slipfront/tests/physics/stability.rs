@@ -43,7 +43,7 @@ fn the_bound_of_equal_blocks_is_strict(#[case] viscosity_time: f64, #[case] limi
         ..Slider::default()
     };
     let model = floating(Edges::Periodic, slider);
-    let found = model.stable_step_limit();
+    let found = model.stable_step_limit(&Alone);
     assert!((found - limit).abs() < 5e-5, "{found}");
     assert!(found <= dt_star_limit());
     assert!(growth(&model, 0.999 * found, 4000) < 100.0);
@@ -62,7 +62,7 @@ fn stiffness_over_density_decides(#[case] stiffness: f64, #[case] density: f64, 
         None,
         &slipfront::communicator::Alone,
     );
-    let found = floating(Edges::Periodic, slider).stable_step_limit();
+    let found = floating(Edges::Periodic, slider).stable_step_limit(&Alone);
     assert!((found - limit).abs() < 5e-5, "{found}");
 }
 
@@ -78,7 +78,7 @@ fn the_bound_of_unequal_blocks_is_safe(
     slider.density = Some(density);
     slider.viscosity_time = viscosity_time;
     let model = floating(Edges::Free, slider);
-    let limit = model.stable_step_limit();
+    let limit = model.stable_step_limit(&Alone);
     assert!(limit < dt_star_limit());
     assert!(growth(&model, 0.999 * limit, 4000) < 100.0);
     assert!(growth(&model, 2.1 * limit, 4000) > 1e6);
@@ -97,6 +97,6 @@ fn no_slider_exceeds_the_limit_of_the_paper() {
         0.0,
         FrictionLaw::Projection,
     );
-    assert_eq!(model.stable_step_limit(), dt_star_limit());
+    assert_eq!(model.stable_step_limit(&Alone), dt_star_limit());
     assert!((slipfront::stability::stable_step(0.0, K_DRIVE, 0.0) - 3.266).abs() < 1e-3);
 }

@@ -15,12 +15,14 @@ use super::quanta::Quanta;
 use super::rest::{RestingVector, steps_until_slip};
 use super::springs::Geometry;
 use super::step::Step;
-use super::variations::{Moduli, Variation, Variations, weaken};
+use super::variations::{Variation, Variations, present, weaken};
 use super::vector::{Chunks, ChunksMut, LANES, Vec2x8, lane_max, load, load_vec2, splat, subtract};
 use crate::checkpoint::BlockColumn;
 use crate::fixed_point::FixedPoint;
 use crate::friction::Integrator;
 use crate::lattice::Bond;
+use crate::model::Model;
+use crate::moduli::Moduli;
 use crate::state::State;
 
 /// A tile after its latest sweep.
@@ -148,13 +150,13 @@ impl Band {
     /// The given tiles of a lattice in `state`, or at rest, with time steps of `dt_star`.
     pub(super) fn new(
         layout: &Layout,
+        model: &Model,
         moduli: &Moduli,
         blocks_differ: bool,
         state: Option<&State>,
         dt_star: f64,
         tiles: Range<usize>,
     ) -> Self {
-        let model = moduli.model;
         let first = tiles.start * TILE;
         let len = whole_vectors((tiles.end * TILE).min(layout.len()) - first);
         let halo = halo(layout);
@@ -162,7 +164,7 @@ impl Band {
         let bytes = || vec![0; len / LANES];
         let mut masks = [(); 4].map(|()| vec![0; (halo + len) / LANES]);
         for k in 0..halo + len {
-            let springs = moduli.present(layout, (first + k) as isize - halo as isize);
+            let springs = present(moduli, model, layout, (first + k) as isize - halo as isize);
             for (masks, present) in masks.iter_mut().zip(springs) {
                 masks[k / LANES] |= u8::from(present) << (k % LANES);
             }

@@ -11,7 +11,7 @@ use super::step::Step;
 use super::vector::{LANES, add, bits, is_zero, load, load_vec2, scale, select, square};
 use crate::fixed_point::FixedPoint;
 use crate::kernel::block::{Block, Field};
-use crate::lattice::Bond;
+use crate::lattice::{Bond, harmonic_mean};
 use crate::model::Model;
 use crate::vector_field::length;
 
@@ -48,7 +48,9 @@ fn lattice_force(model: &Model, b: usize, u: [f64; 2], displacement: impl Fn(usi
             |from: [f64; 2], to: [f64; 2]| bond.force([to[0] - from[0], to[1] - from[1]], model.epsilon);
         let neighbour = |offset| {
             let other = model.lattice.neighbour(i, j, offset)?;
-            Some((displacement(other), model.slider.spring(b, other)))
+            let slider = &model.slider;
+            let factor = harmonic_mean(slider.modulus(b), slider.modulus(other));
+            Some((displacement(other), factor))
         };
         let ahead = neighbour([di, dj]).map_or([0.0; 2], |(v, factor)| force(u, v).map(|f| factor * f));
         let behind = neighbour([-di, -dj]).map_or([0.0; 2], |(v, factor)| force(v, u).map(|f| factor * f));

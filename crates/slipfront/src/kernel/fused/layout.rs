@@ -140,24 +140,22 @@ impl Layout {
     }
 
     /// Row, counted from the first of these, and column of an element, ghosts included; the column counts from the first ghost.
-    pub(super) fn row_column(&self, element: isize) -> (isize, usize) {
+    fn row_column(&self, element: isize) -> (isize, usize) {
         let stride = self.stride as isize;
         (element.div_euclid(stride), element.rem_euclid(stride) as usize)
     }
 
-    /// The block at a place of [`row_column`](Self::row_column), or the one that is copied there; none beyond a free edge.
-    pub(super) fn block_around(&self, row: isize, column: usize) -> Option<usize> {
-        let (nx, rows) = (self.lattice.nx, self.rows as isize);
-        let row = if self.wraps_along_y() {
-            row.rem_euclid(rows)
-        } else {
-            row
-        };
-        if !(0..rows).contains(&row) || column >= nx + 2 * self.ghosts {
-            return None;
+    /// Column and row of the lattice of the block at an element, or of the one that is copied there. It may lie before the first or
+    /// after the last row; none beyond a free edge or between the rows.
+    pub(super) fn place(&self, element: isize) -> Option<[usize; 2]> {
+        let (nx, ny) = (self.lattice.nx, self.lattice.ny as isize);
+        let (row, column) = self.row_column(element);
+        let mut j = row + self.first_row as isize;
+        if self.is_periodic_along_y() {
+            j = j.rem_euclid(ny);
         }
-        let i = (column + nx - self.ghosts) % nx;
-        Some(self.lattice.block(i, row as usize))
+        let is_stored = (0..ny).contains(&j) && column < nx + 2 * self.ghosts;
+        is_stored.then(|| [(column + nx - self.ghosts) % nx, j as usize])
     }
 
     /// Which springs of an element to the east, north, north-east and north-west the lattice has. It may lie before the first or

@@ -59,6 +59,7 @@ use crate::kernel::engine::Engine;
 use crate::kernel::totals::{StoredEnergy, Totals};
 use crate::lattice::K_STRAIGHT;
 use crate::model::Model;
+use crate::moduli::Moduli;
 use crate::state::State;
 
 /// Steps between two measurements of displacements and their differences; in between they are bounded.
@@ -126,11 +127,11 @@ impl Fused {
     ) -> Self {
         let layout = Layout::new(&model.lattice, &model.rows);
         let (tiles, inner) = bands_of(&layout, threads);
-        let mut neighbours = Neighbours::new(communicator, &layout);
-        let moduli = neighbours.moduli(&layout, model);
+        let neighbours = Neighbours::new(communicator, &layout);
+        let moduli = Moduli::new(&model.slider, &model.lattice, &model.rows, &*neighbours.communicator);
         let largest = Largest::of(model, &*neighbours.communicator);
         let differ = blocks_differ(model, &largest);
-        let band = |tiles| Band::new(&layout, &moduli, differ, state, dt_star, tiles);
+        let band = |tiles| Band::new(&layout, model, &moduli, differ, state, dt_star, tiles);
         let bands: Vec<Band> = match threads {
             1 => tiles.into_iter().map(band).collect(),
             _ => tiles.into_par_iter().map(band).collect(),

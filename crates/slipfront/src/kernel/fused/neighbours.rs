@@ -4,9 +4,7 @@ use std::fmt::{Debug, Formatter};
 use std::sync::Arc;
 
 use super::layout::Layout;
-use super::variations::Moduli;
 use crate::communicator::Communicator;
-use crate::model::Model;
 
 /// Displacements of the row below the first of this rank and of the row above the last, ghosts included; none beyond a free edge.
 pub(super) struct Neighbours {
@@ -35,29 +33,6 @@ impl Neighbours {
             before: rows(),
             moved: Vec::with_capacity(2 * layout.stride),
         }
-    }
-
-    /// Young's moduli of the blocks and of those in the rows of the ranks beside, which hear those of this one.
-    pub(super) fn moduli<'a>(&mut self, layout: &Layout, model: &'a Model) -> Moduli<'a> {
-        let mut moduli = Moduli {
-            model,
-            beside: Default::default(),
-        };
-        if self.is_alone() || model.slider.has_equal_springs() {
-            return moduli;
-        }
-        let firsts = [0, layout.len() - layout.stride];
-        for (first, row) in firsts.into_iter().zip(&mut self.own) {
-            for (k, modulus) in row.iter_mut().enumerate() {
-                *modulus = [moduli.at(layout, (first + k) as isize), 0.0];
-            }
-        }
-        self.exchange(layout, &mut || ());
-        moduli.beside = self
-            .rows
-            .each_ref()
-            .map(|row| row.iter().map(|[modulus, _]| *modulus).collect());
-        moduli
     }
 
     /// Whether no other rank holds rows of the lattice.

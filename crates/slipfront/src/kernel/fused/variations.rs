@@ -14,8 +14,9 @@ use super::layout::Layout;
 use super::vector::{Chunks, ChunksMut, load, load_vec2, splat, square};
 use crate::communicator::Communicator;
 use crate::friction::{Friction, Weakening};
-use crate::lattice::harmonic_mean;
+use crate::lattice::Bond;
 use crate::model::Model;
+use crate::moduli::Moduli;
 
 /// Numbers of the elements of a band.
 #[derive(Debug)]
@@ -160,7 +161,7 @@ impl Variations {
             for (springs, factor) in variations
                 .springs
                 .iter_mut()
-                .zip(moduli.springs(layout, before + k as isize))
+                .zip(springs(moduli, layout, before + k as isize))
             {
                 springs[k] = factor;
             }
@@ -188,54 +189,23 @@ impl Variations {
     }
 }
 
-/// Young's moduli of the blocks of this rank and of the rows beside it, 0 of blocks that do not exist.
-pub(super) struct Moduli<'a> {
-    pub(super) model: &'a Model,
-    /// Those of the row below the first, and above the last, if other ranks hold them.
-    pub(super) beside: [Vec<f64>; 2],
+/// Which of the springs of an element to the east, north, north-east and north-west are there.
+pub(super) fn present(moduli: &Moduli, model: &Model, layout: &Layout, element: isize) -> [bool; 4] {
+    match &model.slider.outline {
+        None => layout.springs(element),
+        Some(_) => springs(moduli, layout, element).map(|factor| factor > 0.0),
+    }
 }
 
-impl Moduli<'_> {
-    /// Of an element, which may be a ghost or in a row beside those of this rank.
-    pub(super) fn at(&self, layout: &Layout, element: isize) -> f64 {
-        if self.model.slider.has_equal_springs() {
-            return 1.0;
-        }
-        let (row, column) = layout.row_column(element);
-        let rows = layout.rows() as isize;
-        let beside = |side: usize| self.beside[side].get(column).copied();
-        let other = match row {
-            -1 => beside(0),
-            _ if row == rows => beside(1),
-            _ => None,
-        };
-        other.unwrap_or_else(|| {
-            let block = layout.block_around(row, column);
-            block.map_or(0.0, |b| self.model.slider.modulus(b))
-        })
-    }
-
-    /// Which of the springs of an element are there.
-    pub(super) fn present(&self, layout: &Layout, element: isize) -> [bool; 4] {
-        match &self.model.slider.outline {
-            None => layout.springs(element),
-            Some(_) => self.springs(layout, element).map(|factor| factor > 0.0),
-        }
-    }
-
-    /// Stiffness of the springs of an element to the east, north, north-east and north-west over that of their bonds; 0 of those
-    /// that are not there.
-    pub(super) fn springs(&self, layout: &Layout, element: isize) -> [f64; 4] {
-        let own = self.at(layout, element);
-        let stride = layout.stride as isize;
-        let ends = [1, stride, stride + 1, stride - 1];
-        let present = layout.springs(element);
-        let mut springs = [0.0; 4];
-        for ((spring, end), present) in springs.iter_mut().zip(ends).zip(present) {
+/// Stiffness of these springs over that of their bonds; 0 of those that are not there.
+fn springs(moduli: &Moduli, layout: &Layout, element: isize) -> [f64; 4] {
+    let mut springs = [0.0; 4];
+    if let Some(place) = layout.place(element) {
+        for ((spring, bond), present) in springs.iter_mut().zip(Bond::ALL).zip(layout.springs(element)) {
             if present {
-                *spring = harmonic_mean(own, self.at(layout, element + end));
+                *spring = moduli.spring(place, bond.offset);
             }
         }
-        springs
     }
+    springs
 }

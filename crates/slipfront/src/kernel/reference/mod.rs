@@ -24,10 +24,12 @@ use super::block::{Block, Field};
 use super::engine::Engine;
 use super::totals::{ContactTotals, StoredEnergy, Totals};
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
+use crate::communicator::Alone;
 use crate::fixed_point;
 use crate::friction::{BlockState, FrictionLaw, Integrator, Law, Literal, Projection, Reversal};
 use crate::lattice::Bond;
 use crate::model::Model;
+use crate::moduli::Moduli;
 use crate::reductions;
 use crate::state::State;
 use crate::vector_field::VectorField;
@@ -62,7 +64,8 @@ impl Reference {
         let n = model.lattice.n_blocks();
         let zeros = || VectorField::zeros(n);
         let slider = &model.slider;
-        let springs = || Bond::ALL.map(|bond| slider.springs_along(&model.lattice, &bond));
+        let moduli = Moduli::new(slider, &model.lattice, &model.rows, &Alone);
+        let springs = || Bond::ALL.map(|bond| moduli.springs_along(&bond));
         Self {
             dt_star,
             started: false,
