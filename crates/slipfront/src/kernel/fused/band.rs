@@ -3,12 +3,12 @@
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use fearless_simd::{Simd, SimdBase, f64x8, i64x8};
+use fearless_simd::{Simd, SimdBase, i64x8};
 
 use super::aligned::{Aligned, Vectors};
 use super::blocks::{
-    FrictionLoop, LatticeLoop, Sums, friction, lattice_forces, or_else, spring, times_factor, upward_springs,
-    zero_missing,
+    FrictionLoop, LatticeLoop, Sums, friction_of_tile, lattice_forces, or_else, spring, times_factor,
+    upward_springs, zero_missing,
 };
 use super::layout::{Layout, TILE};
 use super::quanta::Quanta;
@@ -490,7 +490,12 @@ impl Band {
         self.lattice_forces::<S, G, ENERGY>(simd, geometry, t, scratch, energy);
         let ahead = self.tiles_ahead();
         let next = [t, t + ahead].map(|t| TILE * self.next_whole_tile(t).unwrap_or(t + 1));
-        self.friction::<S, G, ENERGY>(simd, step, quanta, (self.elements(t), next), scratch, &mut sums);
+        let arrays = self.friction_loop::<S, G>(simd, step, (self.elements(t), next), scratch);
+        if G::BLOCKS_DIFFER {
+            friction_of_tile::<S, ENERGY, true>(simd, &step, quanta, arrays, &mut sums);
+        } else {
+            friction_of_tile::<S, ENERGY, false>(simd, &step, quanta, arrays, &mut sums);
+        }
         let vectors = self.vectors(t).len();
         let tile = &mut self.tiles[t];
         tile.sums = sums.totals::<ENERGY>(quanta, vectors);
@@ -539,18 +544,16 @@ impl Band {
         }
     }
 
-    /// Eqs. 2 and 4-7 of some elements of a tile, whose lattice forces are at the beginning of the scratch array. `next` are the
-    /// first of those that need friction next, and of those that move next.
+    /// What Eqs. 2 and 4-7 of some elements of a tile need, whose lattice forces are at the beginning of the scratch array. `next`
+    /// are the first of those that need friction next, and of those that move next.
     #[inline(always)]
-    pub(super) fn friction<S: Simd, G: Geometry, const ENERGY: bool>(
-        &mut self,
+    pub(super) fn friction_loop<'a, S: Simd, G: Geometry>(
+        &'a mut self,
         simd: S,
         step: Step,
-        quanta: &Quanta,
         (elements, [next, moving_next]): (Range<usize>, [usize; 2]),
-        scratch: &mut Scratch,
-        sums: &mut Sums<i64x8<S>, f64x8<S>>,
-    ) {
+        scratch: &'a mut Scratch,
+    ) -> FrictionLoop<'a> {
         let (start, n) = (self.halo + elements.start, elements.len());
         let prefetched = [
             self.static_limit_squares.cache_lines(next),
@@ -575,7 +578,7 @@ impl Band {
             }
             variation = variations.of(elements.clone());
         }
-        let arrays = FrictionLoop {
+        FrictionLoop {
             displacement: chunks(&self.displacement, start, n),
             lattice: chunks(&scratch.lattice, 0, n),
             static_limit_squares: self.static_limit_squares[elements.clone()].as_chunks().0,
@@ -591,11 +594,6 @@ impl Band {
             removed_fraction: scratch.removed_fraction[..n].as_chunks_mut().0,
             prefetched,
             variation,
-        };
-        if G::BLOCKS_DIFFER {
-            friction::<S, ENERGY, true>(simd, &step, quanta, arrays, sums);
-        } else {
-            friction::<S, ENERGY, false>(simd, &step, quanta, arrays, sums);
         }
     }
 

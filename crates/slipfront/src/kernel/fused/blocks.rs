@@ -501,9 +501,9 @@ fn free_motion<S: Simd, const DIFFER: bool>(simd: S, step: Step, arrays: &mut Fr
     }
 }
 
-/// [`friction_loop`] as a function of its own, which sweeps by other formulas for springs share: it takes most of the time to compile.
+/// [`friction`] as a function of its own, which sweeps by other formulas for springs share: it takes most of the time to compile.
 #[inline(never)]
-pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
+pub(super) fn friction_of_tile<S: Simd, const ENERGY: bool, const DIFFER: bool>(
     simd: S,
     step: &Step,
     quanta: &Quanta,
@@ -512,14 +512,14 @@ pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
 ) {
     simd.vectorize(
         #[inline(always)]
-        || friction_loop::<S, ENERGY, DIFFER>(simd, *step, quanta, arrays, sums),
+        || friction::<S, ENERGY, DIFFER>(simd, *step, quanta, arrays, sums),
     );
 }
 
 /// Eqs. 2 and 4-7 by Moreau's time-stepping: the operations of [`crate::friction::Projection`], eight blocks at a time, and all
 /// sums that observers need at every step.
 #[inline(always)]
-fn friction_loop<S: Simd, const ENERGY: bool, const DIFFER: bool>(
+pub(super) fn friction<S: Simd, const ENERGY: bool, const DIFFER: bool>(
     simd: S,
     step: Step,
     quanta: &Quanta,

@@ -6,7 +6,9 @@
 use fearless_simd::{Simd, SimdBase};
 
 use super::band::{Band, Scratch, chunks, chunks_mut};
-use super::blocks::{Sums, displacement_sums, spring, times_factor, vector_energy};
+use super::blocks::{
+    Sums, displacement_sums, friction, friction_of_tile, spring, times_factor, vector_energy,
+};
 use super::layout::{TILE, VECTORS};
 use super::quanta::Quanta;
 use super::springs::Geometry;
@@ -88,7 +90,13 @@ impl Band {
             lattice_energy += energy - std::mem::replace(&mut self.lattice_energy[v], energy);
             let elements = v * LANES..(v + 1) * LANES;
             let next = [1, 1 + self.tiles_ahead()].map(|tiles| elements.start + tiles * TILE);
-            self.friction::<S, G, true>(simd, step, quanta, (elements, next), scratch, &mut sums);
+            let arrays = self.friction_loop::<S, G>(simd, step, (elements, next), scratch);
+            if G::BLOCKS_DIFFER {
+                friction_of_tile::<S, true, true>(simd, &step, quanta, arrays, &mut sums);
+            } else {
+                // For a single vector the call would cost more than it saves.
+                friction::<S, true, false>(simd, step, quanta, arrays, &mut sums);
+            }
             let rests = task.touched & bit == 0 && self.moving[v] == 0;
             self.active_from_step[v] = self.first_active_step(simd, step, v, scratch, 0, rests);
         }
