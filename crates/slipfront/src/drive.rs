@@ -1,8 +1,10 @@
 //! How the slider is pulled: the far ends of the drive springs, which move together.
 
+use std::ops::Range;
 use std::sync::Arc;
 
-use crate::fixed_point;
+use crate::communicator::Communicator;
+use crate::fixed_point::sum_over;
 use crate::lattice::{K_DRIVE, Lattice};
 use crate::slider::Slider;
 use crate::vector_field::{length, unit_vector};
@@ -57,31 +59,43 @@ pub struct Rotation {
 }
 
 impl Rotation {
-    /// About the middle of all blocks that exist.
-    pub fn about_centroid(lattice: &Lattice, slider: &Slider) -> Self {
-        let blocks: Vec<usize> = (0..lattice.n_blocks()).filter(|&b| slider.exists(b)).collect();
+    /// About the middle of all blocks of the whole lattice that exist, of which this rank holds some `rows`; called by all `ranks` at
+    /// once.
+    pub fn about_centroid(
+        lattice: &Lattice,
+        rows: &Range<usize>,
+        slider: &Slider,
+        ranks: &dyn Communicator,
+    ) -> Self {
+        let held = lattice.blocks_of(rows);
+        // Number of each in the whole lattice, and on this rank.
+        let blocks: Vec<(usize, usize)> = held.zip(0..).filter(|&(_, b)| slider.exists(b)).collect();
         // Twice the coordinates of the centres of blocks are odd whole numbers, which no order of summation rounds.
-        let twice = blocks.iter().fold([0, 0], |[x, y], &b| {
-            let (i, j) = lattice.column_row(b);
-            [x + 2 * i as u64 + 1, y + 2 * j as u64 + 1]
+        let mut sums = blocks.iter().fold([0, 0, 0], |[x, y, n], &(block, _)| {
+            let (i, j) = lattice.column_row(block);
+            [x + 2 * i as i64 + 1, y + 2 * j as i64 + 1, n + 1]
         });
+        ranks.sum(&mut sums);
+        let [x, y, n] = sums;
         let about_axis = Self {
-            centre: twice.map(|sum| sum as f64 / (2 * blocks.len()) as f64),
+            centre: [x, y].map(|sum| sum as f64 / (2 * n) as f64),
             radius: 1.0,
             sum_radii: f64::NAN,
             sum_squares: f64::NAN,
         };
         let radii: Vec<f64> = blocks
             .iter()
-            .map(|&b| length(about_axis.arm(lattice, b)))
+            .map(|&(block, _)| length(about_axis.arm(lattice, block)))
             .collect();
-        let radius = radii.iter().copied().fold(0.0, f64::max);
+        let mut radius = [radii.iter().copied().fold(0.0, f64::max)];
+        ranks.largest(&mut radius);
+        let [radius] = radius;
         let relative = |k: usize| radii[k] / radius;
         Self {
             radius,
-            sum_radii: fixed_point::sum(radii.len(), relative),
-            sum_squares: fixed_point::sum(radii.len(), |k| {
-                slider.drive_spring(blocks[k]) * (relative(k) * relative(k))
+            sum_radii: sum_over(ranks, radii.len(), relative),
+            sum_squares: sum_over(ranks, radii.len(), |k| {
+                slider.drive_spring(blocks[k].1) * (relative(k) * relative(k))
             }),
             ..about_axis
         }
@@ -189,7 +203,7 @@ impl Drive {
         [0, 1].map(|axis| self.k_drive * (position[axis] - u[axis]) + self.constant_force[axis])
     }
 
-    /// Displacement of the driven end over block `b` per path of the drive, `g`: the direction, or `z x r/r_max` of a rotation.
+    /// Displacement of the driven end over block `b` of the whole lattice per path of the drive, `g`: the direction, or `z x r/r_max` of a rotation.
     /// Power and work of the drive belong to `sum F_s . g`.
     pub fn direction_at(&self, lattice: &Lattice, b: usize) -> [f64; 2] {
         match &self.rotation {

@@ -6,6 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::communicator::{Alone, Communicator};
 use crate::reductions;
 
 /// Numbers of at most a given size as multiples of a quantum, which is a power of two.
@@ -125,10 +126,20 @@ impl Window {
 /// Sum of `term(k)` over `0..n`, the same for any order of the terms.
 #[inline(always)]
 pub(crate) fn sum(n: usize, term: impl Fn(usize) -> f64) -> f64 {
+    sum_over(&Alone, n, term)
+}
+
+/// The same over the blocks of all `ranks`, which call this together, each with its own `n` terms.
+#[inline(always)]
+pub(crate) fn sum_over(ranks: &dyn Communicator, n: usize, term: impl Fn(usize) -> f64) -> f64 {
     // A term that is no number makes the bound infinite.
     let size = |term: f64| if term.is_nan() { f64::INFINITY } else { term.abs() };
-    let fixed_point = FixedPoint::new(reductions::largest(n, |k| size(term(k))));
-    fixed_point.value(fixed_point.sum(n, term))
+    let mut largest = [reductions::largest(n, |k| size(term(k)))];
+    ranks.largest(&mut largest);
+    let fixed_point = FixedPoint::new(largest[0]);
+    let mut words = split(fixed_point.sum(n, term));
+    ranks.sum(&mut words);
+    fixed_point.value(join(words))
 }
 
 /// Bits of a sum in the lower of its two words.

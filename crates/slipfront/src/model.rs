@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
+use crate::communicator::Communicator;
 use crate::drive::Drive;
+use crate::fixed_point::sum_over;
 use crate::friction::Friction;
 use crate::lattice::{K_DRIVE, Lattice};
 use crate::slider::Slider;
@@ -107,8 +109,9 @@ impl Model {
     /// L = [sum_i mu_ki F_n,i r_i/(P l^2 mu_s) + Omega V* sum_i m_i r_i^2/r_max]/sum_i r_i    of a rotation
     /// ```
     ///
-    /// with the coefficient at V* of a law in which it depends on the speed, and half the mean threshold of springs in contact.
-    pub fn steady_level(&self) -> f64 {
+    /// with the coefficient at V* of a law in which it depends on the speed, and half the mean threshold of springs in contact. All `ranks` of a lattice
+    /// must call this together.
+    pub fn steady_level(&self, ranks: &dyn Communicator) -> f64 {
         let Some(rotation) = &self.drive.rotation else {
             let kinetic = self.friction.steady_force(&self.surface, self.drive.v_star);
             return kinetic + self.damping * self.drive.v_star * self.slider.mean_mass;
@@ -119,8 +122,10 @@ impl Model {
             let kinetic = self.friction.steady_force_of(&self.surface, b, speed);
             relative * (kinetic + self.damping * self.slider.mass(b) * speed)
         };
-        let blocks = (0..self.surface.n_blocks()).filter(|&b| self.slider.exists(b));
-        blocks.map(force).sum::<f64>() / rotation.sum_radii
+        let torque = sum_over(ranks, self.surface.n_blocks(), |b| {
+            if self.slider.exists(b) { force(b) } else { 0.0 }
+        });
+        torque / rotation.sum_radii
     }
 
     /// Time of the first slip of a block in contact on a surface without texture, exact. Of a drive at constant speed along a
@@ -130,8 +135,9 @@ impl Model {
     /// t* = min_i max(mu_si, mu_ki) F_n,i/(k_s,i V*)
     /// ```
     ///
-    /// and in general when the path of the drive is as long as it is here after this time.
-    pub fn first_slip_estimate(&self) -> f64 {
+    /// and in general when the path of the drive is as long as it is here after this time. All `ranks` of a lattice must call this
+    /// together.
+    pub fn first_slip_estimate(&self, ranks: &dyn Communicator) -> f64 {
         let (k_drive, v_star) = (self.drive.k_drive, self.drive.v_star);
         let pull =
             |threshold: f64, k: f64| self.friction.first_slip_pull(&self.surface, threshold, k, v_star);
@@ -152,12 +158,14 @@ impl Model {
             }
         };
         let in_contact = (0..self.surface.n_blocks()).filter(|&b| !self.surface.textured[b]);
-        self.drive
-            .time_of_path(in_contact.map(path).fold(f64::INFINITY, f64::min))
+        let mut negative = [-in_contact.map(path).fold(f64::INFINITY, f64::min)];
+        ranks.largest(&mut negative);
+        self.drive.time_of_path(-negative[0])
     }
 
-    /// `r_i/r_max` of a rotation.
+    /// `r_i/r_max` of block `b` of these rows, of a rotation.
     fn relative_radius(&self, b: usize) -> f64 {
-        length(self.drive.direction_at(&self.lattice, b))
+        let first = self.lattice.blocks_of(&self.rows).start;
+        length(self.drive.direction_at(&self.lattice, first + b))
     }
 }

@@ -17,7 +17,12 @@ pub(crate) struct Moduli<'a> {
 
 impl<'a> Moduli<'a> {
     /// Of the rows that this rank holds, called by all `ranks` at once, which tell each other those at their ends.
-    pub(crate) fn new(slider: &'a Slider, lattice: &Lattice, rows: &Range<usize>, ranks: &dyn Communicator) -> Self {
+    pub(crate) fn new(
+        slider: &'a Slider,
+        lattice: &Lattice,
+        rows: &Range<usize>,
+        ranks: &dyn Communicator,
+    ) -> Self {
         let mut moduli = Self {
             slider,
             lattice: *lattice,

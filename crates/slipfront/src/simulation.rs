@@ -53,8 +53,7 @@ impl Simulation {
     /// own rows, the state of their blocks and its connection with the others.
     ///
     /// # Panics
-    /// If there are several ranks and the reference kernel is to compute the run, or if a displacement or velocity of the state
-    /// is not finite.
+    /// If a displacement or velocity of the state is not finite.
     pub fn on_ranks(
         model: impl Into<Arc<Model>>,
         dt_star: f64,
@@ -70,7 +69,7 @@ impl Simulation {
         let mut engine = execution.begin(&model, dt_star, state, Arc::clone(&communicator));
         let totals = engine.step(&model, 0, true);
         let mut simulation = Self {
-            peak: Peak::new(model.steady_level()),
+            peak: Peak::new(model.steady_level(&*communicator)),
             model,
             dt_star,
             step: 0,

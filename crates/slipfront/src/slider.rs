@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::communicator::Communicator;
-use crate::fixed_point::{FixedPoint, join, split};
+use crate::fixed_point::sum_over;
 use crate::lattice::{Edge, Lattice};
 
 /// What may differ from block to block; arrays have one value per block. Without any of it, as in the paper, all blocks are alike.
@@ -58,20 +58,10 @@ impl DriveSprings {
     /// Of the blocks that this rank holds, called by all `ranks` at once: the sum has the same bits however many they are.
     pub fn new(relative: Vec<f64>, ranks: &dyn Communicator) -> Self {
         Self {
-            sum: sum_over(relative.len(), |b| relative[b], ranks),
+            sum: sum_over(ranks, relative.len(), |b| relative[b]),
             relative,
         }
     }
-}
-
-/// Sum of numbers that are not negative, one of each of the `n` blocks of every rank, with the same bits however many ranks there are.
-fn sum_over(n: usize, number: impl Fn(usize) -> f64, ranks: &dyn Communicator) -> f64 {
-    let mut largest = [(0..n).map(&number).fold(0.0, f64::max)];
-    ranks.largest(&mut largest);
-    let fixed_point = FixedPoint::new(largest[0]);
-    let mut words = split(fixed_point.sum(n, number));
-    ranks.sum(&mut words);
-    fixed_point.value(join(words))
 }
 
 impl Outline {
@@ -131,8 +121,8 @@ impl Slider {
         };
         if let Some(density) = &slider.density {
             let mass = |b: usize| if slider.exists(b) { density[b] } else { 0.0 };
-            let masses = sum_over(density.len(), mass, ranks);
-            let blocks = sum_over(density.len(), |b| f64::from(u8::from(slider.exists(b))), ranks);
+            let masses = sum_over(ranks, density.len(), mass);
+            let blocks = sum_over(ranks, density.len(), |b| f64::from(u8::from(slider.exists(b))));
             slider.mean_mass = masses / blocks;
         }
         let stiffness = slider.stiffness.as_ref().map(Vec::len);

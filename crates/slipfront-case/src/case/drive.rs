@@ -54,8 +54,9 @@ pub(super) fn drive(
     file: &CaseFile,
     scales: &Scales,
     groups: &Groups,
-    lattice: &Lattice,
+    (lattice, rows): (&Lattice, &Range<usize>),
     slider: &Slider,
+    ranks: &dyn Communicator,
 ) -> Result<Drive, CaseError> {
     let key = match file.drive.stiffness {
         DriveStiffness::Auto | DriveStiffness::Each(_) => "drive.stiffness",
@@ -80,7 +81,7 @@ pub(super) fn drive(
             let sentence = "a single block has no radius to turn about: take more, or \"translation\"";
             return Err(file.source.error("drive.motion", sentence));
         }
-        Motion::Rotation => Some(Rotation::about_centroid(lattice, slider)),
+        Motion::Rotation => Some(Rotation::about_centroid(lattice, rows, slider, ranks)),
     };
     Ok(Drive {
         k_drive,

@@ -20,6 +20,6 @@ pub use self::groups::Groups;
 pub use self::inputs::{Input, name_of_copy};
 pub use self::output::{MAX_MAPS, Output, Snapshots};
 pub use self::ranks::Ranks;
-pub use self::runnable::{Case, TextureReport};
+pub use self::runnable::{Case, Expected, TextureReport};
 pub use self::textures::Watch;
 pub use self::time_plan::TimePlan;

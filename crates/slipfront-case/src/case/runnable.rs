@@ -13,7 +13,6 @@ use super::drive::{attach, attached, drive, program, refuse_large_angles};
 use super::friction::law;
 use super::groups::Groups;
 use super::inputs::{Input, Inputs, NamedFiles};
-use super::kernel::beyond_fused;
 use super::output::Output;
 use super::ranks::Ranks;
 use super::slider::GivenBlocks;
@@ -37,6 +36,8 @@ pub struct Case {
     pub groups: Groups,
     /// The slider, and the surface of the rows that this process holds: all, unless it is one rank of several.
     pub model: Arc<Model>,
+    /// What is known of the run before it.
+    pub expected: Expected,
     /// Texture as asked and as meshed.
     pub texture: TextureReport,
     /// Duration and steps.
@@ -45,6 +46,15 @@ pub struct Case {
     pub output: Output,
     /// Memory and disk space that the run needs.
     pub budget: Budget,
+}
+
+/// What the model says of a run before it, of the whole lattice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expected {
+    /// [`Model::steady_level`].
+    pub steady_level: f64,
+    /// [`Model::first_slip_estimate`], t*.
+    pub first_slip_star: f64,
 }
 
 /// The texture as asked and as meshed.
@@ -172,7 +182,14 @@ impl Case {
             clipped: meshed.clipped,
             empty: empty_on_all(&meshed.empty, file.texture.len(), ranks.communicator),
         };
-        let drive = drive(&file, &scales, &groups, &lattice, &slider)?;
+        let drive = drive(
+            &file,
+            &scales,
+            &groups,
+            (&lattice, &rows),
+            &slider,
+            ranks.communicator,
+        )?;
         let mut model = Model::of_rows(
             lattice,
             rows,
@@ -192,6 +209,10 @@ impl Case {
         } = plan;
         model.drive.program = program(&file, time_plan.dt_star)?;
         refuse_large_angles(&file, &model.drive, groups.epsilon, time_plan.end_star())?;
+        let expected = Expected {
+            steady_level: model.steady_level(ranks.communicator),
+            first_slip_star: model.first_slip_estimate(ranks.communicator),
+        };
         budget.inputs = inputs.files.iter().map(|input| input.length as f64).sum();
         Ok(Self {
             name: name.to_owned(),
@@ -201,6 +222,7 @@ impl Case {
             scales,
             groups,
             model: Arc::new(model),
+            expected,
             texture,
             time_plan,
             output,
@@ -312,18 +334,10 @@ impl Derived {
             );
             return Err(file.source.error("slider.blocks", sentence));
         }
-        match beyond_fused(file) {
-            Some("friction.law") if n_ranks > 1 => {
-                let sentence = "a lattice is divided among ranks under the law \"projection\" alone: take one rank, or that law";
-                return Err(file.source.error("friction.law", sentence));
-            }
-            Some(key) if n_ranks > 1 => {
-                let sentence = format!(
-                    "a lattice is not divided among ranks with `{key}`: take one rank, or leave it out"
-                );
-                return Err(file.source.error(key, sentence));
-            }
-            _ => {}
+        if n_ranks > 1 && file.friction.redraw {
+            let sentence = "a spring that forms again takes the coefficient of any block of the slider, and a rank knows those of its own \
+                            rows alone: take one rank, or redraw = false";
+            return Err(file.source.error("friction.redraw", sentence));
         }
         let dynamics = Dynamics::of_file(file, &scales, &groups, lattice);
         let time_plan = TimePlan::of(file, &scales, &groups, dynamics)?;

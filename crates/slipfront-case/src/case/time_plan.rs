@@ -1,5 +1,6 @@
 //! Duration and time step of a case.
 
+use slipfront::communicator::Communicator;
 use slipfront::lattice::dt_star_limit;
 use slipfront::observe::KineticStart;
 use slipfront::{Lattice, Model, Scales, Stop, StopReason};

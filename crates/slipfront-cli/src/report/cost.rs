@@ -23,7 +23,7 @@ fn onset(case: &Case) -> String {
     };
     let mut text = String::new();
     if case.file.texture.is_empty() {
-        let (first, late) = at(case.model.first_slip_estimate());
+        let (first, late) = at(case.expected.first_slip_star);
         text += &format!("first slip        {first}{late}\n");
     }
     let (onset, late) = at(2.5 / case.model.loading_speed());
@@ -36,7 +36,7 @@ fn scales(case: &Case) -> String {
         "steady level      mu* = {}\n\
          scales            time {}, displacement {}, stress {}\n\
          stability         dt* = {} of at most {:.4}\n",
-        four_digits(case.model.steady_level()),
+        four_digits(case.expected.steady_level),
         with_si_prefix(case.scales.time(), "s"),
         with_si_prefix(case.scales.displacement(), "m"),
         with_si_prefix(case.scales.stress(), "Pa"),

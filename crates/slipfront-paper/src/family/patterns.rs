@@ -3,6 +3,7 @@
 use super::answer::{Answer, Chapter};
 use super::runs::Run;
 use crate::error::PaperError;
+use slipfront::communicator::Alone;
 
 pub(super) fn chapter() -> Result<Chapter, PaperError> {
     let groove = |width: f64, offset: f64| {
@@ -41,7 +42,10 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
         ),
         Answer::new(
             "steady level over R*: load is conserved whatever the pattern",
-            [1.0, (run.model.steady_level() - run.model.damping * 0.03) / 0.5],
+            [
+                1.0,
+                (run.model.steady_level(&Alone) - run.model.damping * 0.03) / 0.5,
+            ],
             (1e-13, "rounding of a sum"),
         ),
     ];

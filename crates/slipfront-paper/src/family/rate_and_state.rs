@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use slipfront::communicator::Alone;
 use slipfront::exact_solutions::{friction_after_speed_step, rate_and_state_growth};
 use slipfront::{Drive, Friction, Lattice, Model, RateAndState, State, Surface, VectorField, scales};
 use slipfront_plot::Responses;
@@ -35,7 +36,7 @@ fn computed(k_drive: f64, damping: f64) -> f64 {
     };
     let surface = Surface::uniform(&lattice, 1.0, 0.5);
     let model = Model::new(lattice, surface, drive, damping, 0.0, Friction::RateAndState(LAW));
-    let behind = model.steady_level() / k_drive;
+    let behind = model.steady_level(&Alone) / k_drive;
     let along_x = |x: f64| VectorField {
         x: vec![x; 4],
         y: vec![0.0; 4],

@@ -37,7 +37,7 @@ fn decoupled(r_star: f64) -> Experiment {
     let drive = Drive::along_x(1e-3);
     let damping = scales::damping(2.0);
     let mut model = Model::new(lattice, surface, drive, damping, 0.0, FrictionLaw::Projection);
-    model.drive.rotation = Some(Rotation::about_centroid(&lattice, &slider));
+    model.drive.rotation = Some(Rotation::about_centroid(&lattice, &model.rows, &slider, &Alone));
     model.slider = slider;
     Experiment {
         model: Arc::new(model),
@@ -66,7 +66,7 @@ pub(super) fn chapter() -> Result<Chapter, PaperError> {
     let shares: Vec<f64> = (30..=100).map(|k| 0.01 * f64::from(k)).collect();
     for r_star in [0.3, 0.9] {
         let experiment = decoupled(r_star);
-        let first = experiment.model.first_slip_estimate();
+        let first = experiment.model.first_slip_estimate(&Alone);
         let times = STUCK.map(|stuck| first / stuck);
         let found = experiment.values(&times, |now| now.point.mu_star);
         for (stuck, found) in STUCK.into_iter().zip(&found) {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use slipfront::communicator::Alone;
 use slipfront::exact_solutions::weakening_growth;
 use slipfront::lattice::K_DRIVE;
 use slipfront::{
@@ -33,7 +34,7 @@ fn computed(damping: f64) -> f64 {
     });
     let surface = Surface::uniform(&lattice, 1.0, 0.5);
     let model = Model::new(lattice, surface, Drive::along_x(V_STAR), damping, 0.0, friction);
-    let behind = model.steady_level() / K_DRIVE;
+    let behind = model.steady_level(&Alone) / K_DRIVE;
     let along_x = |x: f64| VectorField {
         x: vec![x; 4],
         y: vec![0.0; 4],

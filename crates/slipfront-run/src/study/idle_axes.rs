@@ -90,9 +90,6 @@ fn digest(case: &Case) -> blake3::Hash {
         number(segment.v_star);
         number(segment.from_star);
     }
-    for block in 0..model.surface.n_blocks() {
-        number(model.slider.drive_spring(block));
-    }
     if let KineticStart::At(from) = time.kinetic {
         number(from);
     }
@@ -102,7 +99,7 @@ fn digest(case: &Case) -> blake3::Hash {
     for block in 0..surface.n_blocks() {
         number(slider.mass(block));
         number(slider.drive_spring(block));
-        number(slider.spring(block, block));
+        number(slider.modulus(block));
         number(surface.normal_force(block));
         number(surface.static_limit(block));
         number(surface.kinetic_force(block));

@@ -16,14 +16,14 @@ pub struct ContactSprings {
 }
 
 impl ContactSprings {
-    /// Static threshold of the spring of a block that has broken `breaks` times. One that is drawn anew has the coefficient of a
+    /// Static threshold of the spring of a block that has broken `breaks` times; `number` is that of the block in the whole lattice. One that is drawn anew has the coefficient of a
     /// block in contact that seed, block and number of breaks choose at random, so that thresholds keep their distribution,
     /// drawn or given.
-    pub(crate) fn threshold(&self, surface: &Surface, block: usize, breaks: u64) -> f64 {
+    pub(crate) fn threshold(&self, surface: &Surface, block: usize, number: usize, breaks: u64) -> f64 {
         match self.redraw {
             Some(seed) if breaks > 0 && !surface.textured[block] => {
                 let mut key = [0; 32];
-                for (word, bytes) in [seed, block as u64, breaks].iter().zip(key.chunks_exact_mut(8)) {
+                for (word, bytes) in [seed, number as u64, breaks].iter().zip(key.chunks_exact_mut(8)) {
                     bytes.copy_from_slice(&word.to_le_bytes());
                 }
                 let mut random = ChaCha8Rng::from_seed(key);

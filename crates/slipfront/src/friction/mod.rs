@@ -13,7 +13,6 @@ pub(crate) use self::coulomb::{BlockState, Integrator, Law, Literal, Projection,
 pub use self::rate_and_state::RateAndState;
 pub(crate) use self::rate_and_state::Sliding;
 pub use self::weakening::Weakening;
-use crate::fixed_point;
 use crate::surface::Surface;
 
 /// The law of friction of all blocks.
@@ -62,10 +61,7 @@ impl Friction {
                 })
             }
             Self::RateAndState(law) => surface.mean_normal_force() * law.steady_coefficient(speed),
-            Self::ContactSprings(_) => {
-                let n = surface.n_blocks();
-                0.5 * fixed_point::sum(n, |b| surface.static_limit(b)) / n as f64
-            }
+            Self::ContactSprings(_) => 0.5 * surface.mean_static_force(),
         }
     }
 

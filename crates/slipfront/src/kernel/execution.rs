@@ -35,9 +35,6 @@ pub struct Execution {
     pub skips: bool,
 }
 
-/// Why several ranks cannot share a lattice.
-const NOT_DIVIDED: &str = "the reference kernel divides no lattice among ranks";
-
 impl Kernel {
     /// The kernel that computes a model when this one is asked for.
     pub fn for_model(self, model: &Model) -> Self {
@@ -76,9 +73,8 @@ impl Execution {
                 Box::new(kernel)
             }
             Kernel::Reference => {
-                assert_eq!(communicator.size(), 1, "{NOT_DIVIDED}");
-                let state = state.unwrap_or_else(|| State::at_rest(model.lattice.n_blocks()));
-                Box::new(Reference::new(model, dt_star, state))
+                let state = state.unwrap_or_else(|| State::at_rest(model.surface.n_blocks()));
+                Box::new(Reference::new(model, dt_star, state, communicator))
             }
         }
     }
@@ -101,8 +97,7 @@ impl Execution {
                 Ok(Some(Box::new(kernel)))
             }
             (Kernel::Reference, None) => {
-                assert_eq!(communicator.size(), 1, "{NOT_DIVIDED}");
-                let kernel = Reference::resume(model, dt_star, checkpoint, read)?;
+                let kernel = Reference::resume(model, dt_star, checkpoint, communicator, read)?;
                 Ok(Some(Box::new(kernel)))
             }
             _ => Ok(None),

@@ -216,6 +216,13 @@ impl Surface {
         (sum + whole.n_contact as f64 * self.contact.adhesion.of_kinetic) / whole.n_blocks as f64
     }
 
+    /// Mean static threshold over the same blocks: `mean(mu_si F_n,i + tau_as l^2)` in units of `P mu_s l^2`.
+    pub fn mean_static_force(&self) -> f64 {
+        let whole = &self.whole;
+        let sum = whole.sum_static_pressure / self.contact.mu_static_mean * self.load_factor;
+        (sum + whole.n_contact as f64 * self.contact.adhesion.of_static) / whole.n_blocks as f64
+    }
+
     /// Mean normal force over all blocks, textured ones included, in units of `P l^2`.
     pub fn mean_normal_force(&self) -> f64 {
         self.load_factor * self.whole.sum_pressure[1] / self.whole.n_blocks as f64

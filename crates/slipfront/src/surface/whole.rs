@@ -21,6 +21,8 @@ pub(super) struct Whole {
     pub(super) sum_static: f64,
     /// `sum mu_ki` over the blocks in contact.
     pub(super) sum_kinetic: f64,
+    /// `sum mu_si p_i/P` over the blocks in contact.
+    pub(super) sum_static_pressure: f64,
     /// `sum mu_ki p_i/P` over the blocks in contact.
     pub(super) sum_kinetic_pressure: f64,
     /// `sum p_i/P` over all blocks that exist, and over those in contact.
@@ -30,8 +32,8 @@ pub(super) struct Whole {
 /// Blocks that a thread looks at at once.
 const PART: usize = 1 << 16;
 
-/// Sums that are formed of a block: `mu_si`, `mu_ki`, `mu_ki p_i/P`, `p_i/P`, and `p_i/P` of a block in contact.
-const SUMS: usize = 5;
+/// Sums that are formed of a block: `mu_si`, `mu_ki`, `mu_ki p_i/P`, `p_i/P`, `p_i/P` of a block in contact, and `mu_si p_i/P`.
+const SUMS: usize = 6;
 
 impl Whole {
     /// Found with all other ranks that hold a part of the surface, of coefficients that are 0 over a texture and where there is no
@@ -52,7 +54,14 @@ impl Whole {
                 None => 1.0,
             };
             let contact = if textured[b] { 0.0 } else { p };
-            [mu_static[b], mu_kinetic[b], mu_kinetic[b] * p, p, contact]
+            [
+                mu_static[b],
+                mu_kinetic[b],
+                mu_kinetic[b] * p,
+                p,
+                contact,
+                mu_static[b] * p,
+            ]
         };
         // Neither maxima nor sums of integers depend on how the blocks are divided among threads.
         let parts = || {
@@ -87,6 +96,7 @@ impl Whole {
             negative_draws: words[SUMS + 1][0] as usize,
             sum_static: value(0),
             sum_kinetic: value(1),
+            sum_static_pressure: value(5),
             sum_kinetic_pressure: value(2),
             sum_pressure: [value(3), value(4)],
         }
@@ -117,6 +127,7 @@ mod tests {
             negative_draws: 0,
             sum_static: 1e6 + 2.0 * (n - 5) as f64,
             sum_kinetic: 1.0 + 3.0 * (n - 4) as f64,
+            sum_static_pressure: 1e6 + 2.0 * (n - 5) as f64,
             sum_kinetic_pressure: 1.0 + 3.0 * (n - 4) as f64,
             sum_pressure: [n as f64, (n - 3) as f64],
         };
@@ -126,7 +137,8 @@ mod tests {
         let found = Whole::find(&coefficients, &textured, Some(&pressure), None, &Alone);
         let all = 0.5 * (n.div_ceil(2)) as f64 + (n / 2) as f64;
         assert_eq!(found.sum_pressure, [all, all - 2.0]);
-        // The last block has an even index and the coefficient 1.
+        // The block of 10^6 has an odd index; the last has an even one, and the coefficients 0 and 1.
+        assert_eq!(found.sum_static_pressure, 2.0 * (all - 2.0 - 1.0 - 0.5) + 1e6);
         assert_eq!(found.sum_kinetic_pressure, 3.0 * (all - 2.0 - 0.5) + 0.5);
     }
 }

@@ -232,7 +232,12 @@ fn other_drives_and_their_observers(#[values(false, true)] turns: bool, #[values
     let segments = [(0.1, 12.0), (0.0, 20.0), (0.2, f64::INFINITY)];
     model.drive.program = Some(Arc::new(Program::new(segments)));
     if turns {
-        model.drive.rotation = Some(Rotation::about_centroid(&lattice, &model.slider));
+        model.drive.rotation = Some(Rotation::about_centroid(
+            &lattice,
+            &model.rows,
+            &model.slider,
+            &Alone,
+        ));
     }
     let observers = || (Precursors::new(Edge::Left), Cycles::default(), Curve::every(7));
     let start = || Simulation::with_execution(model.clone(), 0.1, None, REFERENCE);

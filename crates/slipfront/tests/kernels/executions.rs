@@ -10,7 +10,7 @@ use crate::{FUSED, bits, go, has_room, sliders, stopped_and_resumed};
 /// Everything that can be read of a run at one instant except for its state.
 pub(crate) fn shown(simulation: &Simulation) -> Vec<u64> {
     let now = simulation.snapshot();
-    let totals = now.totals;
+    let (totals, contact) = (now.totals, now.contact);
     let stored = totals.stored_energy.unwrap_or_default();
     let mut numbers = vec![
         now.point.mu_star,
@@ -23,6 +23,9 @@ pub(crate) fn shown(simulation: &Simulation) -> Vec<u64> {
         stored.lattice,
         stored.drive_springs,
         simulation.contact_stress_max(),
+        contact.spring_energy,
+        contact.broken_energy,
+        contact.mean_state,
     ];
     for pair in [totals.displacement, totals.velocity, totals.velocity_after] {
         numbers.extend(pair);

@@ -85,5 +85,6 @@ mod checkpoints;
 mod executions;
 mod fields;
 mod ranks;
+mod reference_on_ranks;
 mod sliders;
 mod variations;

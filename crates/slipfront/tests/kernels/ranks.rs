@@ -7,11 +7,11 @@ use std::sync::Arc;
 
 use rstest::rstest;
 use slipfront::checkpoint::Checkpoint;
-use slipfront::communicator::Threads;
+use slipfront::communicator::{Alone, Threads};
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{Field, Frame};
 use slipfront::surface::{Orientation, Texture};
-use slipfront::{Edges, Execution, RunError, Simulation, State, Stop, VectorField};
+use slipfront::{Communicator, Edges, Execution, Model, RunError, Simulation, State, Stop, VectorField};
 
 use crate::common::{Slider, cavity, groove};
 use crate::executions::{shown, state};
@@ -66,9 +66,22 @@ fn part(from: &State, blocks: Range<usize>) -> State {
     }
 }
 
+/// What a model has beyond those that a [`Slider`] describes; all ranks find it together.
+pub(crate) type Change = dyn Fn(&mut Model, &dyn Communicator) + Sync;
+
+fn with(mut model: Model, change: &Change, ranks: &dyn Communicator) -> Model {
+    change(&mut model, ranks);
+    model
+}
+
 pub(crate) fn assert_same(slider: &Slider, from: Option<&State>, steps: u64) {
+    assert_same_with(slider, &|_, _| (), from, steps);
+}
+
+pub(crate) fn assert_same_with(slider: &Slider, change: &Change, from: Option<&State>, steps: u64) {
     let dt_star = slider.dt_star;
-    let mut alone = Simulation::with_execution(slider.model(), dt_star, from.cloned(), FUSED);
+    let model = with(slider.model(), change, &Alone);
+    let mut alone = Simulation::with_execution(model, dt_star, from.cloned(), FUSED);
     let alone = watch(&mut alone, 1..steps + 1, None);
     assert!(
         alone.first_slip.iter().any(|&t| !f64::from_bits(t).is_nan()),
@@ -91,7 +104,7 @@ pub(crate) fn assert_same(slider: &Slider, from: Option<&State>, steps: u64) {
             ..FUSED
         };
         let ranks = Threads::run(size, |rank| {
-            let model = slider.model_of(rank);
+            let model = with(slider.model_of(rank), change, rank);
             let own = from.map(|from| part(from, model.lattice.blocks_of(&model.rows)));
             let mut simulation = Simulation::on_ranks(model, dt_star, own, execution, Arc::new(rank.clone()));
             watch(&mut simulation, 1..steps + 1, None)
@@ -240,7 +253,6 @@ fn save(simulation: &Simulation) -> Saved {
     (simulation.checkpoint(), columns(simulation))
 }
 
-/// Goes on on one rank after the other number, one among them, from the columns of all ranks before.
 #[rstest]
 fn checkpoints_go_on_on_any_number_of_ranks(#[values(0.1, 0.01)] v_star: f64) {
     let slider = Slider {
@@ -251,8 +263,14 @@ fn checkpoints_go_on_on_any_number_of_ranks(#[values(0.1, 0.01)] v_star: f64) {
         sigma_static_star: 0.1,
         ..Slider::default()
     };
+    assert_goes_on(&slider, &|_, _| ());
+}
+
+/// Goes on on one rank after the other number, one among them, from the columns of all ranks before.
+pub(crate) fn assert_goes_on(slider: &Slider, change: &Change) {
     let steps = slider.steps(4.0);
-    let mut simulation = Simulation::with_execution(slider.model(), slider.dt_star, None, FUSED);
+    let model = with(slider.model(), change, &Alone);
+    let mut simulation = Simulation::with_execution(model, slider.dt_star, None, FUSED);
     let alone = watch(&mut simulation, 1..steps + 1, None);
     let sizes = [1, 3, 2, 7, 1, 4];
     let length = steps / sizes.len() as u64 + 1;
@@ -260,7 +278,7 @@ fn checkpoints_go_on_on_any_number_of_ranks(#[values(0.1, 0.01)] v_star: f64) {
     for (k, &size) in sizes.iter().enumerate() {
         let steps = 1 + k as u64 * length..(1 + (k as u64 + 1) * length).min(steps + 1);
         let parts = Threads::run(size, |rank| {
-            let model = slider.model_of(rank);
+            let model = with(slider.model_of(rank), change, rank);
             let blocks = model.lattice.blocks_of(&model.rows);
             let communicator = Arc::new(rank.clone());
             let mut simulation = match &saved {

@@ -10,6 +10,7 @@
 mod common;
 
 use rstest::rstest;
+use slipfront::communicator::Alone;
 use slipfront::surface::{Coefficients, Distribution, Load, Orientation, Texture};
 use slipfront::{Drive, Edges, FrictionLaw, Kernel, Lattice, Model, Scales, Surface, scales};
 
@@ -328,7 +329,7 @@ fn strong_damping_ends_stick_slip(#[case] omega_star: f64, #[case] least: f64, #
             "{}",
             kinetic.sliding_percent
         );
-        let above = kinetic.mu_star - slider.model().steady_level();
+        let above = kinetic.mu_star - slider.model().steady_level(&Alone);
         assert!(
             omega_star < 1.0 || above.abs() < 2e-3,
             "{above} above steady sliding"

@@ -79,7 +79,7 @@ fn a_block_that_was_held_breaks_at_its_age(
     let late = next_slip(&mut at_rest(&model, dt)) - exact;
     assert!(-1e-9 < late && late < dt + 1e-9, "late by {late}");
     if hold == 0.0 {
-        assert!((model.first_slip_estimate() / exact - 1.0).abs() < 1e-14);
+        assert!((model.first_slip_estimate(&Alone) / exact - 1.0).abs() < 1e-14);
     }
 }
 

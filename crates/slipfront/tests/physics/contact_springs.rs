@@ -45,7 +45,7 @@ fn static_over_kinetic_friction_of_a_rigid_slider(
     let (v_star, dt, damping) = (10.0, 0.2, scales::damping(0.5));
     let model = spread(w, ContactSprings { stiffness, redraw }, damping, v_star);
     let viscous = damping * v_star;
-    assert!((model.steady_level() - (0.5 + viscous)).abs() < 1e-12);
+    assert!((model.steady_level(&Alone) - (0.5 + viscous)).abs() < 1e-12);
     let mut simulation = at_rest(&model, dt);
     let steps_per_length = (1.0 / stiffness / v_star / dt) as u64;
     let (mut peak, mut sum, mut count) = (0.0_f64, 0.0, 0);
@@ -80,7 +80,7 @@ fn the_weakest_spring_breaks_first() {
         simulation.step();
     }
     let found = simulation.time_star();
-    let off = (found - model.first_slip_estimate()).abs();
+    let off = (found - model.first_slip_estimate(&Alone)).abs();
     assert!(
         off < 1.0 / (K_DRIVE + 0.2_f64).sqrt() * (1.0 + 0.2) + 0.1,
         "{off}"

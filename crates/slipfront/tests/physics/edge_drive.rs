@@ -43,7 +43,7 @@ fn the_weakest_driven_block_slips_first(
         .min_by(|&a, &b| threshold(a).total_cmp(&threshold(b)))
         .unwrap();
     let exact = threshold(weakest) / (model.drive.k_drive * slider.v_star);
-    assert!((model.first_slip_estimate() / exact - 1.0).abs() < 1e-14);
+    assert!((model.first_slip_estimate(&Alone) / exact - 1.0).abs() < 1e-14);
     let mut simulation = at_rest(&model, slider.dt_star);
     while simulation.snapshot().totals.n_slipping == 0 {
         let now = simulation.snapshot();
@@ -94,9 +94,9 @@ fn the_level_of_steady_sliding_does_not_depend_on_the_place_of_the_drive() {
         .unwrap();
     let mu_star = simulation.snapshot().point.mu_star;
     assert!(
-        (mu_star / model.steady_level() - 1.0).abs() < 1e-4,
+        (mu_star / model.steady_level(&Alone) - 1.0).abs() < 1e-4,
         "{mu_star}, exactly {}",
-        model.steady_level()
+        model.steady_level(&Alone)
     );
 }
 

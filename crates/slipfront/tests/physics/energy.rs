@@ -2,6 +2,7 @@
 //! known exactly.
 
 use rstest::rstest;
+use slipfront::communicator::Alone;
 use slipfront::exact_solutions::SlipCycle;
 use slipfront::observe::energy::Energies;
 use slipfront::observe::{Curve, Scheduled};
@@ -51,7 +52,7 @@ fn the_ledger_closes(#[case] slider: Slider, #[case] bound: f64) {
 fn before_the_first_slip_all_work_is_in_the_drive_springs() {
     let slider = Slider::default();
     let model = slider.model();
-    let steps = (model.first_slip_estimate() / slider.dt_star) as u64;
+    let steps = (model.first_slip_estimate(&Alone) / slider.dt_star) as u64;
     let found = energies(&model, slider.dt_star, steps, State::at_rest(625));
     for (n, e) in found.iter().enumerate() {
         let reach = slider.v_star * n as f64 * slider.dt_star;

@@ -45,7 +45,10 @@ fn fields_of_ones_change_no_bit(
         (outcome.peak, outcome.rows)
     };
     assert_eq!(run(&plain), run(&ones));
-    assert_eq!(plain.model().steady_level(), ones.model().steady_level());
+    assert_eq!(
+        plain.model().steady_level(&Alone),
+        ones.model().steady_level(&Alone)
+    );
 }
 
 /// Moduli, masses and all friction times four, by powers of two: the same motion, to the last bit, as the plain slider has in the
@@ -97,7 +100,7 @@ fn the_block_with_the_least_threshold_for_its_spring_slips_first(#[values(0.0, 0
         .collect();
     let exact = graded_first_slip_time_star(&limits, stiffness, slider.v_star);
     let model = slider.model();
-    assert!((model.first_slip_estimate() / exact - 1.0).abs() < 1e-14);
+    assert!((model.first_slip_estimate(&Alone) / exact - 1.0).abs() < 1e-14);
     let mut simulation = at_rest(&model, slider.dt_star);
     while simulation.snapshot().earliest_first_slip().is_none() {
         simulation.step();
@@ -174,7 +177,7 @@ fn heavier_blocks_raise_the_drag(#[values(0.05, 0.1)] v_star: f64) {
     let drawn = slider.coefficients();
     let mean_kinetic = drawn.mu_kinetic.iter().sum::<f64>() / 120.0;
     let exact = steady_level(mean_kinetic, slider.omega_star, v_star * mean_mass);
-    assert!((slider.model().steady_level() - exact).abs() < 1e-13);
+    assert!((slider.model().steady_level(&Alone) - exact).abs() < 1e-13);
     let last = slider.run(120.0).rows.last().copied().unwrap();
     assert_eq!(last.point.sliding_percent, 100.0);
     assert!(

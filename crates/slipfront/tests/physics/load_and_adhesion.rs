@@ -3,6 +3,7 @@
 use rstest::rstest;
 use slipfront::Edges;
 use slipfront::Stop;
+use slipfront::communicator::Alone;
 use slipfront::exact_solutions::{Facing, groove_edge_factor};
 use slipfront::surface::{Adhesion, Orientation};
 
@@ -41,7 +42,7 @@ fn the_weakest_block_slips_first(
         .unwrap();
     let exact = threshold(weakest) / (0.375 * slider.v_star);
     let model = slider.model();
-    assert!((model.first_slip_estimate() / exact - 1.0).abs() < 1e-14);
+    assert!((model.first_slip_estimate(&Alone) / exact - 1.0).abs() < 1e-14);
     let mut simulation = at_rest(&model, slider.dt_star);
     simulation.run(Stop::at_step(slider.steps(5.0)), &mut []).unwrap();
     let now = simulation.snapshot();

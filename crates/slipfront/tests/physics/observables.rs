@@ -1,6 +1,7 @@
 //! What is measured on a run: the instants A-F, the end of the first peak, divergence, runs without an end.
 
 use rstest::rstest;
+use slipfront::communicator::Alone;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{Field, Instants, KineticHistory, KineticStart, Observer, Scheduled};
 use slipfront::{RunError, State, Stop, StopReason};
@@ -123,7 +124,7 @@ fn a_run_may_stop_as_soon_as_the_fall_is_seen() {
     assert_eq!(reason, Ok(StopReason::Onset));
     let rows = slider.run(8.0).rows;
     let (step, peak) = (simulation.snapshot().step as usize, simulation.peak());
-    let half_way = 0.5 * (peak.mu_star + model.steady_level());
+    let half_way = 0.5 * (peak.mu_star + model.steady_level(&Alone));
     assert!(rows[step].point.mu_star <= half_way && rows[step - 1].point.mu_star > half_way);
     let reason = at_rest(&model, slider.dt_star).run(Stop::after_onset(100), &mut []);
     assert_eq!(reason, Ok(StopReason::End));

@@ -60,7 +60,7 @@ fn a_rectangle_cut_out_is_a_smaller_lattice(
         slider: body,
         ..model.clone()
     };
-    assert_eq!(cut.steady_level(), model.steady_level());
+    assert_eq!(cut.steady_level(&Alone), model.steady_level(&Alone));
     let (mut one, mut other) = (at_rest(&model, 0.1), at_rest(&cut, 0.1));
     for step in 1..=small.steps(5.0) {
         one.run(Stop::at_step(step), &mut []).unwrap();

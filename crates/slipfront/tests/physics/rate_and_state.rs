@@ -1,6 +1,7 @@
 //! Friction that follows speed and state.
 
 use rstest::rstest;
+use slipfront::communicator::Alone;
 use slipfront::exact_solutions::{friction_after_speed_step, rate_and_state_growth};
 use slipfront::observe::Curve;
 use slipfront::surface::Load;
@@ -48,7 +49,7 @@ fn measured_growth(v: f64, k: f64, damping: f64, dt: f64, apart: f64) -> f64 {
     };
     let surface = Surface::uniform(&lattice, 1.0, 0.5);
     let model = Model::new(lattice, surface, drive, damping, 0.0, Friction::RateAndState(law));
-    let behind = model.steady_level() / k;
+    let behind = model.steady_level(&Alone) / k;
     let state = State {
         displacement: VectorField {
             x: vec![-behind + 1e-6; 4],
@@ -107,7 +108,7 @@ fn steady_sliding_has_the_level_of_the_law(#[values(Load::Redistributed, Load::K
         Load::Kept => model.surface.n_contact() as f64 / 80.0,
     };
     let exact = share * LAW.steady_coefficient(0.1) + scales::damping(2.0) * 0.1;
-    assert!((model.steady_level() - exact).abs() < 1e-14);
+    assert!((model.steady_level(&Alone) - exact).abs() < 1e-14);
     let mut simulation = at_rest(&model, slider.dt_star);
     let mut curve = Curve::every(1);
     slider.watch(&mut simulation, 40.0, &mut [&mut curve]);

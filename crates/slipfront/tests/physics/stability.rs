@@ -1,6 +1,7 @@
 //! The largest stable time step.
 
 use rstest::rstest;
+use slipfront::communicator::Alone;
 use slipfront::lattice::{K_DRIVE, dt_star_limit};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Slider, State, Surface};
 

@@ -1,6 +1,7 @@
 //! Steady sliding: mu_k* = mean(mu_ki)/mu_s + sqrt(3/4) Omega* V*, once damping is strong.
 
 use rstest::rstest;
+use slipfront::communicator::Alone;
 use slipfront::exact_solutions::steady_level;
 use slipfront::surface::{Adhesion, Load};
 
@@ -28,7 +29,7 @@ fn strong_damping_ends_in_steady_sliding(#[case] slider: Slider) {
         / n as f64
         + slider.adhesion.of_kinetic * surface.n_contact() as f64 / n as f64;
     let exact = steady_level(mean, slider.omega_star, slider.v_star);
-    assert!((slider.model().steady_level() - exact).abs() < 1e-13);
+    assert!((slider.model().steady_level(&Alone) - exact).abs() < 1e-13);
     let outcome = slider.run(20.0);
     let last = outcome.rows.last().unwrap().point;
     assert!((last.mu_star - exact).abs() < 1e-9, "{} {exact}", last.mu_star);

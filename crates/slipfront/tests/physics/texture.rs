@@ -1,6 +1,7 @@
 //! What a texture does to load, friction, counts and times; and the three readings of the friction law.
 
 use rstest::rstest;
+use slipfront::communicator::Alone;
 use slipfront::observe::Field;
 use slipfront::observe::frames::Selection;
 use slipfront::surface::{Load, Orientation};
@@ -83,7 +84,7 @@ fn textured_blocks_move_at_once(#[values(FrictionLaw::Projection, FrictionLaw::R
     let earliest = first.iter().copied().fold(f64::INFINITY, f64::min);
     assert_eq!(simulation.snapshot().earliest_first_slip(), Some(earliest));
     // The pull of the cavity's blocks makes its rim slip before an untextured surface would.
-    assert!(earliest < model.first_slip_estimate());
+    assert!(earliest < model.first_slip_estimate(&Alone));
 }
 
 /// Eq. 10 for a stuck block is the pull of its own drive spring; the traction shows the concentration at the

@@ -17,7 +17,12 @@ fn disc(across: usize) -> slipfront::Slider {
 
 fn turned(slider: &Slider) -> Model {
     let mut model = slider.model();
-    model.drive.rotation = Some(Rotation::about_centroid(&model.lattice, &model.slider));
+    model.drive.rotation = Some(Rotation::about_centroid(
+        &model.lattice,
+        &model.rows,
+        &model.slider,
+        &Alone,
+    ));
     model
 }
 
@@ -52,7 +57,7 @@ fn the_rim_slips_first(#[case] blocks: [usize; 2], #[case] body: slipfront::Slid
     }
     // The spring at the largest radius stretches by V t.
     let time_star = 1.0 / (0.375 * slider.v_star);
-    assert!((model.first_slip_estimate() / time_star - 1.0).abs() < 1e-14);
+    assert!((model.first_slip_estimate(&Alone) / time_star - 1.0).abs() < 1e-14);
     let mut simulation = at_rest(&model, 0.1);
     while simulation.snapshot().totals.n_slipping == 0 {
         simulation.step();
@@ -137,7 +142,7 @@ fn a_disc_of_blocks_on_their_own_slips_from_the_rim(#[values(0.3, 0.9)] r_star: 
     let model = turned(&slider);
     let mut simulation = at_rest(&model, 0.8);
     for stuck in [0.9, 0.7, 0.5, 0.35] {
-        let time_star = model.first_slip_estimate() / stuck;
+        let time_star = model.first_slip_estimate(&Alone) / stuck;
         simulation
             .run(Stop::at_step((time_star / 0.8) as u64), &mut [])
             .unwrap();
@@ -173,7 +178,7 @@ fn the_level_of_steady_rotation_is_that_of_friction_and_damping() {
         .map(|(b, r)| model.surface.kinetic_force(b) * r + model.damping * slider.v_star * r * r / largest)
         .sum();
     let exact = torque / radii.iter().sum::<f64>();
-    assert!((model.steady_level() / exact - 1.0).abs() < 1e-13);
+    assert!((model.steady_level(&Alone) / exact - 1.0).abs() < 1e-13);
     let slowest = slider.v_star * 0.5_f64.sqrt() / largest;
     let duration = 60.0 / slider.v_star + 25.0 * (model.damping + 0.6 / slowest) / 0.375;
     let mut simulation = at_rest(&model, 0.1);

@@ -1,6 +1,7 @@
 //! Kinetic friction that falls with speed.
 
 use rstest::rstest;
+use slipfront::communicator::Alone;
 use slipfront::exact_solutions::weakening_growth;
 use slipfront::lattice::K_DRIVE;
 use slipfront::{
@@ -28,7 +29,7 @@ fn measured_growth(v: f64, damping: f64, dt: f64) -> f64 {
     let lattice = Lattice::free(2, 2);
     let surface = Surface::uniform(&lattice, 1.0, 0.5);
     let model = Model::new(lattice, surface, Drive::along_x(v), damping, 0.0, weakening(LAW));
-    let behind = (model.steady_level()) / K_DRIVE;
+    let behind = (model.steady_level(&Alone)) / K_DRIVE;
     // So small that the law is linear to a millionth, so large that rounding is less.
     let amplitude = 1e-6;
     let state = State {
@@ -81,7 +82,7 @@ fn strong_damping_ends_at_the_level_of_the_law(#[values(0.0, 0.3)] adhesion: f64
     let mean = (0..n).map(|b| surface.mu_kinetic[b]).sum::<f64>() / n as f64;
     // mu_k(V*) = mu_k (0.4 + 0.6/2).
     let exact = 0.7 * mean + adhesion + scales::damping(6.0) * 0.1;
-    assert!((model.steady_level() - exact).abs() < 1e-14);
+    assert!((model.steady_level(&Alone) - exact).abs() < 1e-14);
     let mut simulation = crate::common::at_rest(&model, 0.1);
     slider.watch(&mut simulation, 40.0, &mut []);
     let now = simulation.snapshot();

@@ -9,6 +9,7 @@ mod meshes;
 mod ranks;
 
 use proptest::prelude::*;
+use slipfront::communicator::Alone;
 use slipfront::observe::Field;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{Curve, Instants, KineticHistory, KineticStart, Observer, Scheduled};
@@ -386,7 +387,7 @@ proptest! {
         };
         prop_assume!(has_contact(&slider));
         let outcome = slider.run(6.0);
-        let level = slider.model().steady_level();
+        let level = slider.model().steady_level(&Alone);
         let curve: Vec<f64> = outcome.rows.iter().map(|row| row.point.mu_star).collect();
         let largest_to = |n: usize| {
             (0..=n).fold(0, |best, k| if curve[k] > curve[best] { k } else { best })

@@ -128,7 +128,12 @@ impl Fused {
         let layout = Layout::new(&model.lattice, &model.rows);
         let (tiles, inner) = bands_of(&layout, threads);
         let neighbours = Neighbours::new(communicator, &layout);
-        let moduli = Moduli::new(&model.slider, &model.lattice, &model.rows, &*neighbours.communicator);
+        let moduli = Moduli::new(
+            &model.slider,
+            &model.lattice,
+            &model.rows,
+            &*neighbours.communicator,
+        );
         let largest = Largest::of(model, &*neighbours.communicator);
         let differ = blocks_differ(model, &largest);
         let band = |tiles| Band::new(&layout, model, &moduli, differ, state, dt_star, tiles);

@@ -158,10 +158,11 @@ impl Variations {
         };
         let before = elements.start as isize - halo as isize;
         for k in 0..halo + len {
-            for (springs, factor) in variations
-                .springs
-                .iter_mut()
-                .zip(springs(moduli, layout, before + k as isize))
+            for (springs, factor) in
+                variations
+                    .springs
+                    .iter_mut()
+                    .zip(springs(moduli, layout, before + k as isize))
             {
                 springs[k] = factor;
             }

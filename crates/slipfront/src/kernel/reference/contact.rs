@@ -16,13 +16,13 @@ pub(super) enum Contact {
 
 impl Contact {
     pub(super) fn new(model: &Model) -> Self {
-        let n = model.lattice.n_blocks();
+        let n = model.surface.n_blocks();
         match &model.friction {
             Friction::Coulomb(coulomb) => {
                 Self::Coulomb(Thresholds::new(coulomb, model.surface.adhesion(), n))
             }
             Friction::RateAndState(law) => Self::RateAndState(StateContact::new(*law, model)),
-            Friction::ContactSprings(law) => Self::Springs(SpringContact::new(*law, n)),
+            Friction::ContactSprings(law) => Self::Springs(SpringContact::new(*law, model)),
         }
     }
 

@@ -1,11 +1,13 @@
 //! Springs between the blocks and the substrate.
 
 use super::forces::{Forces, components};
-use crate::fixed_point;
+use crate::communicator::Communicator;
+use crate::fixed_point::sum_over;
 use crate::friction::{ContactSprings, Integrator};
 use crate::kernel::totals::ContactTotals;
 use crate::model::Model;
 use crate::state::State;
+use crate::surface::Surface;
 use crate::vector_field::{VectorField, dot};
 
 /// The springs of all blocks. Anchors and numbers of breaks are the memory of the law.
@@ -16,14 +18,18 @@ pub(super) struct SpringContact {
     pub(super) anchor: VectorField,
     /// How often it has broken: a whole number.
     pub(super) breaks: Vec<f64>,
+    /// Number of the first block of this rank in the whole lattice.
+    first_block: usize,
 }
 
 impl SpringContact {
-    pub(super) fn new(law: ContactSprings, n_blocks: usize) -> Self {
+    pub(super) fn new(law: ContactSprings, model: &Model) -> Self {
+        let n_blocks = model.surface.n_blocks();
         Self {
             law,
             anchor: VectorField::zeros(n_blocks),
             breaks: vec![0.0; n_blocks],
+            first_block: model.lattice.blocks_of(&model.rows).start,
         }
     }
 
@@ -44,14 +50,20 @@ impl SpringContact {
         for b in (0..breaks.len()).filter(|&b| breaks[b]) {
             [self.anchor.x[b], self.anchor.y[b]] = displacement.at(b);
             self.breaks[b] += 1.0;
-            threshold[b] = self.law.threshold(&model.surface, b, self.breaks[b] as u64);
+            threshold[b] = self.threshold(&model.surface, b);
         }
+    }
+
+    /// Threshold of the spring of a block after its breaks.
+    fn threshold(&self, surface: &Surface, b: usize) -> f64 {
+        let breaks = self.breaks[b] as u64;
+        self.law.threshold(surface, b, self.first_block + b, breaks)
     }
 
     /// Finds the thresholds that belong to the numbers of breaks.
     pub(super) fn find_thresholds(&self, model: &Model, threshold: &mut [f64]) {
         for (b, threshold) in threshold.iter_mut().enumerate() {
-            *threshold = self.law.threshold(&model.surface, b, self.breaks[b] as u64);
+            *threshold = self.threshold(&model.surface, b);
         }
     }
 
@@ -95,14 +107,20 @@ impl SpringContact {
 
     /// Energies of the springs that hold and of those that break at the present instant.
     #[inline(always)]
-    pub(super) fn totals(&self, model: &Model, displacement: &VectorField, breaks: &[bool]) -> ContactTotals {
+    pub(super) fn totals(
+        &self,
+        ranks: &dyn Communicator,
+        model: &Model,
+        displacement: &VectorField,
+        breaks: &[bool],
+    ) -> ContactTotals {
         let sum = |broken: bool| {
             let energy = |b: usize| {
                 let extension = self.extension(displacement, b);
                 let energy = 0.5 * self.stiffness(model.surface.textured[b]) * dot(extension, extension);
                 if breaks[b] == broken { energy } else { 0.0 }
             };
-            fixed_point::sum(breaks.len(), energy)
+            sum_over(ranks, breaks.len(), energy)
         };
         ContactTotals {
             spring_energy: sum(false),

@@ -1,6 +1,7 @@
 //! The drive springs (Eq. 2): forces, energy, and the sums over blocks that belong to them.
 
 use super::weighted::weighted_sum;
+use crate::communicator::Communicator;
 use crate::model::Model;
 use crate::vector_field::VectorField;
 
@@ -15,7 +16,8 @@ impl DrivenBlocks {
     pub(super) fn of(model: &Model) -> Self {
         let lattice = &model.lattice;
         let direction = || {
-            let directions = (0..lattice.n_blocks()).map(|b| model.drive.direction_at(lattice, b).into());
+            let blocks = lattice.blocks_of(&model.rows);
+            let directions = blocks.map(|b| model.drive.direction_at(lattice, b).into());
             let (x, y): (Vec<f64>, Vec<f64>) = directions.unzip();
             VectorField { x, y }
         };
@@ -64,18 +66,24 @@ impl DrivenBlocks {
 
     /// Energy of the springs, `(k_s,i/2) (V t - u)^2` of each, at displacements `u`.
     #[inline(always)]
-    pub(super) fn energy(&self, model: &Model, [ux, uy]: [&[f64]; 2], time_star: f64) -> f64 {
+    pub(super) fn energy(
+        &self,
+        ranks: &dyn Communicator,
+        model: &Model,
+        [ux, uy]: [&[f64]; 2],
+        time_star: f64,
+    ) -> f64 {
         let n = ux.len();
         let square = |x: f64, y: f64| x * x + y * y;
         let sum = match &self.direction {
             None => {
                 let [x, y] = model.drive.position(time_star);
-                weighted_sum(n, relative(model), |b| square(x - ux[b], y - uy[b]))
+                weighted_sum(ranks, n, relative(model), |b| square(x - ux[b], y - uy[b]))
             }
             Some(direction) => {
                 let path = model.drive.path(time_star);
                 let (gx, gy) = (&direction.x[..n], &direction.y[..n]);
-                weighted_sum(n, relative(model), |b| {
+                weighted_sum(ranks, n, relative(model), |b| {
                     square(path * gx[b] - ux[b], path * gy[b] - uy[b])
                 })
             }
@@ -83,11 +91,12 @@ impl DrivenBlocks {
         0.5 * model.drive.k_drive * sum
     }
 
-    /// Sums over `n` blocks of a vector of components `x` and `y`, weighted with the relative stiffness of the springs: both
+    /// Sums over the blocks of all ranks, `n` of this one, of a vector of components `x` and `y`, weighted with the relative stiffness of the springs: both
     /// components, of a rotation those along the direction at each block and to its left.
     #[inline(always)]
     pub(super) fn sums(
         &self,
+        ranks: &dyn Communicator,
         model: &Model,
         n: usize,
         x: impl Fn(usize) -> f64,
@@ -95,12 +104,15 @@ impl DrivenBlocks {
     ) -> [f64; 2] {
         let relative = relative(model);
         match &self.direction {
-            None => [weighted_sum(n, relative, x), weighted_sum(n, relative, y)],
+            None => [
+                weighted_sum(ranks, n, relative, x),
+                weighted_sum(ranks, n, relative, y),
+            ],
             Some(direction) => {
                 let (gx, gy) = (&direction.x[..n], &direction.y[..n]);
                 [
-                    weighted_sum(n, relative, |b| gx[b] * x(b) + gy[b] * y(b)),
-                    weighted_sum(n, relative, |b| gx[b] * y(b) - gy[b] * x(b)),
+                    weighted_sum(ranks, n, relative, |b| gx[b] * x(b) + gy[b] * y(b)),
+                    weighted_sum(ranks, n, relative, |b| gx[b] * y(b) - gy[b] * x(b)),
                 ]
             }
         }

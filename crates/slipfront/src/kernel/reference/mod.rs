@@ -8,24 +8,28 @@ mod contact;
 mod contact_springs;
 mod drive;
 mod forces;
+mod halo;
 mod rate_and_state;
 mod springs;
 mod thresholds;
 mod weighted;
+
+use std::sync::Arc;
 
 use fearless_simd::{Level, dispatch};
 
 use self::contact::Contact;
 use self::drive::DrivenBlocks;
 use self::forces::{Forces, components};
-use self::springs::{damper_forces, lattice_energy, lattice_forces};
+use self::halo::Halo;
+use self::springs::{OwnRows, damper_forces, lattice_energy, lattice_forces};
 use self::weighted::weighted_sum;
 use super::block::{Block, Field};
 use super::engine::Engine;
 use super::totals::{ContactTotals, StoredEnergy, Totals};
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
-use crate::communicator::Alone;
-use crate::fixed_point;
+use crate::communicator::Communicator;
+use crate::fixed_point::sum_over;
 use crate::friction::{BlockState, FrictionLaw, Integrator, Law, Literal, Projection, Reversal};
 use crate::lattice::Bond;
 use crate::model::Model;
@@ -34,9 +38,11 @@ use crate::reductions;
 use crate::state::State;
 use crate::vector_field::VectorField;
 
-/// The state of all blocks, and the forces of the latest step.
-#[derive(Debug)]
+/// The state of the blocks of this rank, and the forces of the latest step.
 pub(crate) struct Reference {
+    ranks: Arc<dyn Communicator>,
+    /// The rows of this rank with those beside them, if there are other ranks.
+    halo: Option<Halo>,
     dt_star: f64,
     /// Whether the first step has been evaluated, which does not move the blocks.
     started: bool,
@@ -49,9 +55,10 @@ pub(crate) struct Reference {
     kinetic_force: Vec<f64>,
     driven: DrivenBlocks,
     contact: Contact,
-    /// Relative stiffness of the spring of every block along each bond, if they are not all alike.
+    /// Relative stiffness of the spring of every block along each bond, if they are not all alike; of several ranks also those of the
+    /// halo.
     relative_springs: Option<[Vec<f64>; 4]>,
-    /// Forces of the dampers beside the springs, if there are any.
+    /// Forces of the dampers beside the springs, if there are any. Like those of the springs they are found for all blocks of a halo.
     dampers: Option<VectorField>,
     /// Power that these take.
     viscous_power: f64,
@@ -60,30 +67,42 @@ pub(crate) struct Reference {
 }
 
 impl Reference {
-    pub(crate) fn new(model: &Model, dt_star: f64, state: State) -> Self {
-        let n = model.lattice.n_blocks();
+    /// All `ranks` of a lattice must call this together, and then the same functions.
+    pub(crate) fn new(model: &Model, dt_star: f64, state: State, ranks: Arc<dyn Communicator>) -> Self {
+        let n = model.surface.n_blocks();
+        let halo = Halo::new(model, &ranks);
         let zeros = || VectorField::zeros(n);
+        let n_with_halo = halo.as_ref().map_or(n, |halo| halo.lattice.n_blocks());
+        let zeros_with_halo = || VectorField::zeros(n_with_halo);
         let slider = &model.slider;
-        let moduli = Moduli::new(slider, &model.lattice, &model.rows, &Alone);
-        let springs = || Bond::ALL.map(|bond| moduli.springs_along(&bond));
+        let moduli = Moduli::new(slider, &model.lattice, &model.rows, &*ranks);
+        let springs = || {
+            Bond::ALL.map(|bond| match &halo {
+                None => moduli.springs_along(&bond),
+                Some(halo) => halo.springs_along(&moduli, model, &bond),
+            })
+        };
+        let relative_springs = (!slider.has_equal_springs()).then(springs);
         Self {
+            ranks,
+            halo,
             dt_star,
             started: false,
             state,
             forces: Forces {
                 drive: zeros(),
-                lattice: zeros(),
+                lattice: zeros_with_halo(),
                 friction: zeros(),
                 velocity: zeros(),
                 slides: vec![false; n],
-                springs: [(); 4].map(|()| zeros()),
+                springs: [(); 4].map(|()| zeros_with_halo()),
             },
             static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
             kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
             driven: DrivenBlocks::of(model),
             contact: Contact::new(model),
-            relative_springs: (!slider.has_equal_springs()).then(springs),
-            dampers: slider.is_viscous().then(zeros),
+            relative_springs,
+            dampers: slider.is_viscous().then(zeros_with_halo),
             viscous_power: 0.0,
             first_slip: vec![f64::NAN; n],
             stress_square_max: 0.0,
@@ -95,12 +114,13 @@ impl Reference {
         model: &Model,
         dt_star: f64,
         checkpoint: &Checkpoint,
+        ranks: Arc<dyn Communicator>,
         mut read: impl FnMut(usize, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<Self, E> {
-        let n = model.lattice.n_blocks();
+        let n = model.surface.n_blocks();
         let mut kernel = Self {
             stress_square_max: checkpoint.stress_square_max,
-            ..Self::new(model, dt_star, State::at_rest(n))
+            ..Self::new(model, dt_star, State::at_rest(n), ranks)
         };
         BlockColumn::for_each_part(n, |column, first, values| {
             let array = match column {
@@ -144,14 +164,7 @@ impl Reference {
         let displacement = &self.state.displacement;
         self.driven
             .forces(model, displacement, time_star, &mut self.forces.drive);
-        let Forces { lattice, springs, .. } = &mut self.forces;
-        let relative = self.relative_springs.as_ref();
-        lattice_forces(model, &self.state, relative, lattice, springs);
-        if let Some(dampers) = &mut self.dampers {
-            damper_forces(model, &self.state, relative, dampers, springs);
-            add_to(&mut lattice.x, &dampers.x);
-            add_to(&mut lattice.y, &dampers.y);
-        }
+        self.find_lattice_forces(model);
         let integrator = Integrator::new(model.damping, self.dt_star);
         let (state, forces, masses) = (&self.state, &mut self.forces, model.slider.density.as_deref());
         match &mut self.contact {
@@ -179,6 +192,33 @@ impl Reference {
         std::mem::swap(&mut self.state.velocity, &mut self.forces.velocity);
     }
 
+    /// Forces of the springs between blocks and of the dampers beside them.
+    #[inline(always)]
+    fn find_lattice_forces(&mut self, model: &Model) {
+        if let Some(halo) = &mut self.halo {
+            halo.exchange(&self.state);
+        }
+        let halo = self.halo.as_ref();
+        let (lattice, state) =
+            halo.map_or((&model.lattice, &self.state), |halo| (&halo.lattice, &halo.state));
+        let relative = self.relative_springs.as_ref();
+        let Forces {
+            lattice: force,
+            springs,
+            ..
+        } = &mut self.forces;
+        lattice_forces(lattice, model.epsilon, state, relative, force, springs);
+        if let Some(dampers) = &mut self.dampers {
+            damper_forces(lattice, model, state, relative, dampers, springs);
+            add_to(&mut force.x, &dampers.x);
+            add_to(&mut force.y, &dampers.y);
+        }
+        if let Some(halo) = halo {
+            halo.keep_own(force);
+            self.dampers.iter_mut().for_each(|dampers| halo.keep_own(dampers));
+        }
+    }
+
     fn mark_first_slips(&mut self, model: &Model, time_star: f64) {
         let blocks = self.forces.slides.iter().zip(&model.surface.textured);
         for ((slides, textured), time) in blocks.zip(&mut self.first_slip) {
@@ -199,10 +239,19 @@ impl Reference {
         let [fx, fy] = components(&self.forces.friction, n);
         let (textured, slides) = (&model.surface.textured[..n], &self.forces.slides[..n]);
         let mass = model.slider.density.as_deref();
-        let driven = |[x, y]: [&[f64]; 2]| self.driven.sums(model, n, |b| x[b], |b| y[b]);
-        let squares = |[x, y]: [&[f64]; 2]| weighted_sum(n, mass, |b| x[b] * x[b] + y[b] * y[b]);
+        let ranks = &*self.ranks;
+        let driven = |[x, y]: [&[f64]; 2]| self.driven.sums(ranks, model, n, |b| x[b], |b| y[b]);
+        let squares = |[x, y]: [&[f64]; 2]| weighted_sum(ranks, n, mass, |b| x[b] * x[b] + y[b] * y[b]);
         let (vx, vy) = (|b: usize| 0.5 * (bx[b] + ax[b]), |b: usize| 0.5 * (by[b] + ay[b]));
         let slipping = slides.iter().zip(textured);
+        let mut counts = [
+            slides.iter().filter(|&&slides| slides).count() as i64,
+            slipping
+                .filter(|&(slides, textured)| *slides && !textured)
+                .count() as i64,
+        ];
+        ranks.sum(&mut counts);
+        let [n_sliding, n_slipping] = counts.map(|count| count as usize);
         let stress_square = reductions::largest(n, |b| {
             let (x, y) = (fx[b] + lx[b], fy[b] + ly[b]);
             if textured[b] { 0.0 } else { x * x + y * y }
@@ -210,29 +259,36 @@ impl Reference {
         self.stress_square_max = self.stress_square_max.max(stress_square);
         if let Some(dampers) = &self.dampers {
             let [dx, dy] = components(dampers, n);
-            self.viscous_power = -fixed_point::sum(n, |b| dx[b] * vx(b) + dy[b] * vy(b));
+            self.viscous_power = -sum_over(ranks, n, |b| dx[b] * vx(b) + dy[b] * vy(b));
         }
         Totals {
             displacement: driven([ux, uy]),
-            velocity: self.driven.sums(model, n, vx, vy),
+            velocity: self.driven.sums(ranks, model, n, vx, vy),
             velocity_after: driven([ax, ay]),
-            velocity_square: weighted_sum(n, mass, |b| vx(b) * vx(b) + vy(b) * vy(b)),
+            velocity_square: weighted_sum(ranks, n, mass, |b| vx(b) * vx(b) + vy(b) * vy(b)),
             friction_power: match self.contact {
                 // What these springs take is stored, or lost where they break.
                 Contact::Springs(_) => 0.0,
-                _ => fixed_point::sum(n, |b| fx[b] * vx(b) + fy[b] * vy(b)),
+                _ => sum_over(ranks, n, |b| fx[b] * vx(b) + fy[b] * vy(b)),
             },
-            n_sliding: slides.iter().filter(|&&slides| slides).count(),
-            n_slipping: slipping
-                .filter(|&(slides, textured)| *slides && !textured)
-                .count(),
+            n_sliding,
+            n_slipping,
             stored_energy: energies.then(|| {
-                let displacement = &self.state.displacement;
                 let springs = self.relative_springs.as_ref();
+                let (lattice, displacement, own) = match &self.halo {
+                    None => (&model.lattice, &self.state.displacement, model.rows.clone()),
+                    Some(halo) => (&halo.lattice, &halo.state.displacement, halo.own_rows()),
+                };
+                let own = OwnRows {
+                    ranks,
+                    n_rows: model.lattice.ny,
+                    first_row: model.rows.start,
+                    rows: own,
+                };
                 StoredEnergy {
                     kinetic: 0.25 * (squares([bx, by]) + squares([ax, ay])),
-                    lattice: lattice_energy(&model.lattice, displacement, springs, model.epsilon),
-                    drive_springs: self.driven.energy(model, [ux, uy], time_star),
+                    lattice: lattice_energy(lattice, own, displacement, springs, model.epsilon),
+                    drive_springs: self.driven.energy(ranks, model, [ux, uy], time_star),
                 }
             }),
         }
@@ -269,7 +325,8 @@ impl Engine for Reference {
         const WIDTH: usize = 128;
         let lattice = &model.lattice;
         let mut values = [0.0; WIDTH];
-        for j in (0..lattice.ny).step_by(stride) {
+        let is_read = |j: &usize| (model.rows.start + j).is_multiple_of(stride);
+        for j in (0..model.rows.len()).filter(is_read) {
             for i in (0..lattice.nx).step_by(WIDTH) {
                 let values = &mut values[..WIDTH.min(lattice.nx - i)];
                 for (value, b) in values.iter_mut().zip(lattice.block(i, j)..) {
@@ -296,7 +353,9 @@ impl Engine for Reference {
     }
 
     fn stress_square_max(&self, _: &Model, _: u64) -> f64 {
-        self.stress_square_max
+        let mut largest = [self.stress_square_max];
+        self.ranks.largest(&mut largest);
+        largest[0]
     }
 
     fn viscous_power(&self) -> f64 {
@@ -308,10 +367,13 @@ impl Engine for Reference {
     }
 
     fn contact_totals(&self, model: &Model) -> ContactTotals {
+        let ranks = &*self.ranks;
         match &self.contact {
             Contact::Coulomb(_) => ContactTotals::default(),
-            Contact::RateAndState(contact) => contact.totals(model),
-            Contact::Springs(springs) => springs.totals(model, &self.state.displacement, &self.forces.slides),
+            Contact::RateAndState(contact) => contact.totals(ranks, model),
+            Contact::Springs(springs) => {
+                springs.totals(ranks, model, &self.state.displacement, &self.forces.slides)
+            }
         }
     }
 

@@ -3,7 +3,8 @@
 use std::ops::Range;
 
 use super::forces::{Forces, components};
-use crate::fixed_point;
+use crate::communicator::Communicator;
+use crate::fixed_point::sum_over;
 use crate::friction::{Integrator, RateAndState, Sliding};
 use crate::kernel::totals::ContactTotals;
 use crate::model::Model;
@@ -25,7 +26,7 @@ pub(super) struct StateContact {
 
 impl StateContact {
     pub(super) fn new(law: RateAndState, model: &Model) -> Self {
-        let n = model.lattice.n_blocks();
+        let n = model.surface.n_blocks();
         Self {
             law,
             theta: vec![law.theta_0; n],
@@ -93,14 +94,11 @@ impl StateContact {
 
     /// The mean state of the blocks in contact.
     #[inline(always)]
-    pub(super) fn totals(&self, model: &Model) -> ContactTotals {
+    pub(super) fn totals(&self, ranks: &dyn Communicator, model: &Model) -> ContactTotals {
         let textured = &model.surface.textured;
-        let sum = fixed_point::sum(
-            self.theta.len(),
-            |b| {
-                if textured[b] { 0.0 } else { self.theta[b] }
-            },
-        );
+        let sum = sum_over(ranks, self.theta.len(), |b| {
+            if textured[b] { 0.0 } else { self.theta[b] }
+        });
         ContactTotals {
             mean_state: sum / model.surface.n_contact() as f64,
             ..ContactTotals::default()

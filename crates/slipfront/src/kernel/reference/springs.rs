@@ -1,5 +1,8 @@
 //! The springs between blocks (Eq. 3): forces and energy.
 
+use std::ops::Range;
+
+use crate::communicator::Communicator;
 use crate::fixed_point;
 use crate::lattice::{Bond, Edges, Lattice};
 use crate::model::Model;
@@ -10,28 +13,30 @@ use crate::vector_field::VectorField;
 /// over that of its bond, if they are not all alike.
 #[inline(always)]
 pub(super) fn lattice_forces(
-    model: &Model,
+    lattice: &Lattice,
+    epsilon: f64,
     state: &State,
     relative: Option<&[Vec<f64>; 4]>,
     force: &mut VectorField,
     springs: &mut [VectorField; 4],
 ) {
-    let (u, epsilon) = (&state.displacement, model.epsilon);
+    let u = &state.displacement;
     for (bond, spring) in Bond::ALL.iter().zip(springs.iter_mut()) {
         let all = |n: usize, shift: usize, force: [&mut [f64]; 2]| {
             let ahead = [&u.x[shift..shift + n], &u.y[shift..shift + n]];
             bond_forces(bond, epsilon, [&u.x[..n], &u.y[..n]], ahead, force);
         };
         let one = |b: usize, other: usize| bond.force([u.x[other] - u.x[b], u.y[other] - u.y[b]], epsilon);
-        along_bond(&model.lattice, bond, all, one, spring);
+        along_bond(lattice, bond, all, one, spring);
     }
-    sum_all(&model.lattice, relative, force, springs);
+    sum_all(lattice, relative, force, springs);
 }
 
 /// Forces of dampers beside all springs (Kelvin-Voigt), `F_v = sum_j tau_v k_ij (e_ij . (v_j - v_i)) e_ij`, of the velocities half a
 /// step before.
 #[inline(always)]
 pub(super) fn damper_forces(
+    lattice: &Lattice,
     model: &Model,
     state: &State,
     relative: Option<&[Vec<f64>; 4]>,
@@ -57,9 +62,9 @@ pub(super) fn damper_forces(
                 [fx[k], fy[k]] = bond.damper_force(e, w, epsilon).map(|force| time * force);
             }
         };
-        along_bond(&model.lattice, bond, all, one, damper);
+        along_bond(lattice, bond, all, one, damper);
     }
-    sum_all(&model.lattice, relative, force, dampers);
+    sum_all(lattice, relative, force, dampers);
 }
 
 /// Sums what acts along the bonds of every block, after it was made `relative` times as strong.
@@ -191,19 +196,44 @@ fn add_bottom_row(own: [&[f64]; 4], before: &[f64], total: &mut [f64]) {
     }
 }
 
+/// The rows of a lattice that this rank holds, of which `ranks` together hold `n_rows`.
+pub(super) struct OwnRows<'a> {
+    pub(super) ranks: &'a dyn Communicator,
+    /// Of the whole lattice.
+    pub(super) n_rows: usize,
+    /// Number of the first in the whole lattice.
+    pub(super) first_row: usize,
+    /// In the lattice that springs are summed over, which may have rows of other ranks.
+    pub(super) rows: Range<usize>,
+}
+
+impl OwnRows<'_> {
+    /// Sum of numbers of all rows, of which `of_row` gives those of this rank: in the same order for any number of ranks, and so with
+    /// the same bits.
+    fn sum(&self, of_row: impl Fn(usize) -> f64) -> f64 {
+        let mut bits = vec![0; self.n_rows];
+        for (bits, j) in bits[self.first_row..].iter_mut().zip(self.rows.clone()) {
+            *bits = of_row(j).to_bits() as i64;
+        }
+        self.ranks.sum(&mut bits);
+        bits.into_iter().map(|bits| f64::from_bits(bits as u64)).sum()
+    }
+}
+
 /// Energy of all springs between blocks at displacements `u`. `relative`: stiffness of each over that of its bond, if they are not
 /// all alike.
 #[inline(always)]
 pub(super) fn lattice_energy(
     lattice: &Lattice,
+    own: OwnRows,
     u: &VectorField,
     relative: Option<&[Vec<f64>; 4]>,
     epsilon: f64,
 ) -> f64 {
     let energy = |bond: &Bond, b: usize, n: usize| bond.energy([u.x[n] - u.x[b], u.y[n] - u.y[b]], epsilon);
     match relative {
-        None => sum_energies(lattice, |bond, b, n| energy(&Bond::ALL[bond], b, n)),
-        Some(relative) => sum_energies(lattice, |bond, b, n| {
+        None => sum_energies(lattice, own, |bond, b, n| energy(&Bond::ALL[bond], b, n)),
+        Some(relative) => sum_energies(lattice, own, |bond, b, n| {
             relative[bond][b] * energy(&Bond::ALL[bond], b, n)
         }),
     }
@@ -211,7 +241,7 @@ pub(super) fn lattice_energy(
 
 /// Sum of the energies of all springs, of which `energy` is given the number of the bond, the block and its neighbour.
 #[inline(always)]
-fn sum_energies(lattice: &Lattice, energy: impl Fn(usize, usize, usize) -> f64) -> f64 {
+fn sum_energies(lattice: &Lattice, own: OwnRows, energy: impl Fn(usize, usize, usize) -> f64) -> f64 {
     let row_energy = |number: usize, j: usize| -> f64 {
         let bond = &Bond::ALL[number];
         // One block of the row may have its neighbour beyond the end of the row. The neighbours of all others are equally far away.
@@ -240,6 +270,6 @@ fn sum_energies(lattice: &Lattice, energy: impl Fn(usize, usize, usize) -> f64) 
         along + beyond.unwrap_or(0.0)
     };
     (0..Bond::ALL.len())
-        .map(|bond| (0..lattice.ny).map(|j| row_energy(bond, j)).sum::<f64>())
+        .map(|bond| own.sum(|j| row_energy(bond, j)))
         .sum()
 }
