@@ -85,9 +85,9 @@ fn send(signal: &str, target: Target, child: &Child) {
     "more ranks (3) than rows of blocks (2)"
 )]
 #[case(
-    "run --set friction.law='reversal' -o results",
+    "run --set friction.contact='springs' --set friction.contact_stiffness_star=1 --set friction.redraw=true -o results",
     2,
-    "divided among ranks under the law"
+    "takes the coefficient of any block"
 )]
 #[case("run nowhere.toml", 2, "nowhere.toml")]
 fn several_ranks_speak_with_one_voice(#[case] line: &str, #[case] status: i32, #[case] sentence: &str) {
@@ -103,8 +103,9 @@ fn several_ranks_speak_with_one_voice(#[case] line: &str, #[case] status: i32, #
     assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
 }
 
-/// Shapes, edges, textures, masks and fields, directions, instants and snapshots at some rows, sums at every step, slow drives.
-const CASES: [(&str, &str); 6] = [
+/// Shapes, edges, textures, masks and fields, directions, instants and snapshots at some rows, sums at every step, slow drives; other
+/// drives and laws, which either kernel computes.
+const CASES: [(&str, &str); 8] = [
     ("baseline", ""),
     (
         "oblique",
@@ -131,6 +132,16 @@ const CASES: [(&str, &str); 6] = [
         "narrow",
         "slider.blocks = [1, 40]\ndrive.v_star = 0.05\ntime.duration_star = 100\n",
     ),
+    (
+        "edge",
+        "slider = { blocks = [21, 15], stiffness_grade = { along = 'y', from = 0.5, to = 1.5 } }\n\
+         drive = { v_star = 0.2, attach = 'bottom', direction = 90 }\ntime.duration_star = 200\n",
+    ),
+    (
+        "disc",
+        "slider = { blocks = [19, 19], outline = 'disc', viscosity_time_star = 0.2 }\ndrive = { v_star = 0.1, motion = 'rotation' }\n\
+         friction = { law = 'rate_and_state', a = 0.02, b = 0.03, d_c_star = 0.5, v_0_star = 0.1 }\ntime.duration_star = 60\n",
+    ),
 ];
 
 /// A folder with a case and the files that it reads.
@@ -155,7 +166,7 @@ fn folder_of(text: &str) -> TempDir {
 }
 
 #[rstest]
-fn a_run_on_ranks_writes_the_bytes_of_the_plain_command(#[values(0, 1, 2, 3, 4, 5)] case: usize) {
+fn a_run_on_ranks_writes_the_bytes_of_the_plain_command(#[values(0, 1, 2, 3, 4, 5, 6, 7)] case: usize) {
     let (name, text) = CASES[case];
     let folder = folder_of(text);
     run_plain(folder.path(), "run case.toml -o plain");

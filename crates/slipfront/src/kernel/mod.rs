@@ -1,6 +1,6 @@
 //! What advances the state of all blocks by one step.
 //!
-//! `reference.rs` follows the paper, one pass over the blocks per equation; `fused/` computes the same in one fast sweep.
+//! `reference/` follows the paper, one pass over the blocks per equation; `fused/` computes the same in one fast sweep.
 //! The [`Simulation`](crate::Simulation) steps whichever of the two its [`Execution`] says, through the functions of `engine.rs`.
 
 pub(crate) mod block;
