@@ -33,7 +33,7 @@ const WARM_UP: usize = 100;
 
 /// What differs from the plain model, one or several.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Choice {
+pub(crate) enum Choice {
     EdgeDrive,
     Program,
     Rotation,
@@ -53,7 +53,7 @@ enum Choice {
 use Choice::{Disc, Grading, LoadProfile, Viscosity};
 
 /// The options that are measured, with their names.
-const MEASURED: [(&str, &[Choice]); 19] = [
+pub(crate) const MEASURED: [(&str, &[Choice]); 19] = [
     ("plain", &[]),
     ("edge drive", &[Choice::EdgeDrive]),
     ("load profile", &[LoadProfile]),
@@ -81,7 +81,7 @@ const MEASURED: [(&str, &[Choice]); 19] = [
     ),
 ];
 
-fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Error>> {
+pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Error>> {
     let has = |choice: Choice| choices.contains(&choice);
     let lattice = Lattice::free(size, size);
     let n = lattice.n_blocks();
@@ -162,7 +162,7 @@ fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Error>> {
 }
 
 /// Every block at the speed of the drive, and behind it by what it takes to keep it there.
-fn steady_state(model: &Model) -> State {
+pub(crate) fn steady_state(model: &Model) -> State {
     let behind = match model.friction {
         Friction::ContactSprings(_) => 0.0,
         _ => -model.steady_level() / model.drive.k_drive,

@@ -131,6 +131,68 @@ pub(crate) fn sum(n: usize, term: impl Fn(usize) -> f64) -> f64 {
     fixed_point.value(fixed_point.sum(n, term))
 }
 
+/// A sum over blocks that is found at every step, part by part. Its terms hardly ever outgrow the power of two that bounds them, or
+/// fall below it: they are added up with the bound of the step before, while the largest is found, and once more if that was another.
+/// So the sum is that of [`sum`], whatever was before.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RunningSum {
+    bound: FixedPoint,
+    /// Bits of the largest size of a term so far. As integers they have the order of the sizes, beyond which lie those of no number.
+    largest: i64,
+    sum: i128,
+}
+
+impl RunningSum {
+    /// Adds `term(k)` over `0..n`, at most [`MAX_TERMS`].
+    #[inline(always)]
+    pub(crate) fn add(&mut self, n: usize, term: impl Fn(usize) -> f64) {
+        const SIZE: u64 = i64::MAX as u64;
+        debug_assert!(n <= MAX_TERMS, "{n} terms may be more than a word holds");
+        let shift = self.bound.shift();
+        let (mut largest, mut sum) = (self.largest, 0_u64);
+        for k in 0..n {
+            let term = term(k);
+            largest = largest.max((term.to_bits() & SIZE) as i64);
+            sum = sum.wrapping_add((term + shift).to_bits());
+        }
+        self.largest = largest;
+        let shifts = shift.to_bits().wrapping_mul(n as u64);
+        self.sum += i128::from(sum.wrapping_sub(shifts) as i64);
+    }
+
+    /// Begins again with no terms, and with the bound that all those before had. Returns whether they were added up with this bound.
+    fn restart(&mut self) -> bool {
+        let bound = FixedPoint::new(f64::from_bits(self.largest as u64));
+        let was_bound = bound.limit.to_bits() == self.bound.limit.to_bits();
+        *self = Self {
+            bound,
+            ..Self::default()
+        };
+        was_bound
+    }
+
+    /// The sums of all terms that were added; none if a bound was another, so that all have to be added once more.
+    #[inline(always)]
+    pub(crate) fn finish<const N: usize>(sums: &mut [Self; N]) -> Option<[f64; N]> {
+        let (mut found, mut were_bounds) = ([0.0; N], true);
+        for (found, sum) in found.iter_mut().zip(sums) {
+            *found = sum.bound.value(sum.sum);
+            were_bounds &= sum.restart();
+        }
+        were_bounds.then_some(found)
+    }
+}
+
+impl Default for RunningSum {
+    fn default() -> Self {
+        Self {
+            bound: FixedPoint::new(0.0),
+            largest: 0,
+            sum: 0,
+        }
+    }
+}
+
 /// Bits of a sum in the lower of its two words.
 const LOW_BITS: u32 = 40;
 

@@ -1,5 +1,6 @@
 //! The reference kernel: one pass over the blocks per equation, to be read along with the paper.
 //!
+//! The passes go over one part of the blocks after the other, so that what one has found is in the cache for the next.
 //! A step moves the blocks (Eq. 8), finds the forces on them (Eqs. 2, 3) and lets friction and damping act (Eqs. 4-7).
 //! Forces of opposite neighbours are summed in pairs, straight ones before diagonal ones, so that the trajectory of a rotated
 //! or mirrored problem is the rotated or mirrored trajectory, with the same bits.
@@ -13,24 +14,48 @@ mod springs;
 mod thresholds;
 mod weighted;
 
+use std::ops::Range;
+
 use fearless_simd::{Level, dispatch};
 
 use self::contact::Contact;
 use self::drive::DrivenBlocks;
-use self::forces::{Forces, components};
+use self::forces::{Forces, part, part_mut};
 use self::springs::{damper_forces, lattice_energy, lattice_forces};
-use self::weighted::weighted_sum;
+use self::weighted::add_weighted;
 use super::block::{Block, Field};
 use super::engine::Engine;
 use super::totals::{ContactTotals, StoredEnergy, Totals};
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
-use crate::fixed_point;
+use crate::fixed_point::RunningSum;
 use crate::friction::{BlockState, FrictionLaw, Integrator, Law, Literal, Projection, Reversal};
-use crate::lattice::Bond;
+use crate::lattice::{Bond, Lattice};
 use crate::model::Model;
 use crate::reductions;
 use crate::state::State;
 use crate::vector_field::VectorField;
+
+/// Blocks of a part, unless a row has more.
+const PART: usize = 512;
+
+/// All blocks, part by part. A part has whole rows, so that no neighbour in the row of a block lies in a later part.
+fn parts(lattice: &Lattice) -> impl Iterator<Item = Range<usize>> {
+    let (n, rows) = (lattice.n_blocks(), (PART / lattice.nx).max(1));
+    (0..n)
+        .step_by(rows * lattice.nx)
+        .map(move |first| first..n.min(first + rows * lattice.nx))
+}
+
+/// Dampers beside the springs between blocks.
+#[derive(Debug)]
+struct Dampers {
+    force: VectorField,
+    /// Of the damper along each bond.
+    bonds: [VectorField; 4],
+}
+
+/// Sums over blocks that every step finds.
+type Sums = [RunningSum; 12];
 
 /// The state of all blocks, and the forces of the latest step.
 #[derive(Debug)]
@@ -49,10 +74,15 @@ pub(crate) struct Reference {
     contact: Contact,
     /// Relative stiffness of the spring of every block along each bond, if they are not all alike.
     relative_springs: Option<[Vec<f64>; 4]>,
-    /// Forces of the dampers beside the springs, if there are any.
-    dampers: Option<VectorField>,
-    /// Power that these take.
+    dampers: Option<Dampers>,
+    sums: Sums,
+    /// Those of energies: kinetic half a step before and after, and of the drive springs.
+    energy_sums: [RunningSum; 3],
+    /// Room for the energies of a row.
+    row: Vec<f64>,
+    /// Power that the dampers take.
     viscous_power: f64,
+    contact_totals: ContactTotals,
     first_slip: Vec<f64>,
     stress_square_max: f64,
 }
@@ -80,8 +110,15 @@ impl Reference {
             driven: DrivenBlocks::of(model),
             contact: Contact::new(model),
             relative_springs: (!slider.has_equal_springs()).then(springs),
-            dampers: slider.is_viscous().then(zeros),
+            dampers: slider.is_viscous().then(|| Dampers {
+                force: zeros(),
+                bonds: [(); 4].map(|()| zeros()),
+            }),
+            sums: Sums::default(),
+            energy_sums: Default::default(),
+            row: vec![0.0; model.lattice.nx],
             viscous_power: 0.0,
+            contact_totals: ContactTotals::default(),
             first_slip: vec![f64::NAN; n],
             stress_square_max: 0.0,
         }
@@ -123,115 +160,256 @@ impl Reference {
         Ok(kernel)
     }
 
+    /// Moves the blocks, unless it is the first step, and finds the forces on them, their next velocities, and the sums over them.
     #[inline(always)]
-    fn advance_and_evaluate(&mut self, model: &Model, time_star: f64) {
+    fn advance(&mut self, model: &Model, time_star: f64, energies: bool) -> Totals {
+        let lattice = &model.lattice;
         if std::mem::replace(&mut self.started, true) {
-            match &mut self.contact {
-                Contact::Coulomb(_) => {}
-                Contact::RateAndState(contact) => contact.evolve(&self.state.velocity, self.dt_star),
-                Contact::Springs(springs) => springs.form_again(
-                    model,
-                    &self.state.displacement,
-                    &self.forces.slides,
-                    &mut self.static_limit,
-                ),
+            for blocks in parts(lattice) {
+                self.move_blocks(model, &blocks);
             }
-            move_blocks(&mut self.state, self.dt_star);
         }
+        let (mut n_sliding, mut n_slipping, mut is_evaluated) = (0, 0, false);
+        let found = loop {
+            for blocks in parts(lattice) {
+                if !is_evaluated {
+                    self.evaluate(model, &blocks, time_star);
+                    let [sliding, slipping] = self.count(model, &blocks, time_star);
+                    n_sliding += sliding;
+                    n_slipping += slipping;
+                }
+                self.add_up(model, &blocks);
+            }
+            is_evaluated = true;
+            if let Some(found) = RunningSum::finish(&mut self.sums) {
+                break found;
+            }
+        };
+        let [
+            ux,
+            uy,
+            vx,
+            vy,
+            ax,
+            ay,
+            square,
+            friction,
+            viscous,
+            held,
+            broken,
+            states,
+        ] = found;
+        self.viscous_power = 0.0 - viscous;
+        self.contact_totals = ContactTotals {
+            spring_energy: held,
+            broken_energy: broken,
+            mean_state: states / model.surface.n_contact() as f64,
+        };
+        let stored_energy = energies.then(|| self.stored_energy(model, time_star));
+        std::mem::swap(&mut self.state.velocity, &mut self.forces.velocity);
+        Totals {
+            displacement: [ux, uy],
+            velocity: [vx, vy],
+            velocity_after: [ax, ay],
+            velocity_square: square,
+            friction_power: friction,
+            n_sliding,
+            n_slipping,
+            stored_energy,
+        }
+    }
+
+    /// Lets the law of friction remember what some blocks did in the step before, and moves them.
+    #[inline(always)]
+    fn move_blocks(&mut self, model: &Model, blocks: &Range<usize>) {
+        let State {
+            displacement,
+            velocity,
+        } = &mut self.state;
+        match &mut self.contact {
+            Contact::Coulomb(_) => {}
+            Contact::RateAndState(contact) => contact.evolve(blocks, velocity, self.dt_star),
+            Contact::Springs(springs) => {
+                let (breaks, threshold) = (&self.forces.slides, &mut self.static_limit);
+                springs.form_again(model, blocks, displacement, breaks, threshold);
+            }
+        }
+        move_blocks(displacement, velocity, blocks, self.dt_star);
+    }
+
+    /// Finds the forces on some blocks, and their next velocities.
+    #[inline(always)]
+    fn evaluate(&mut self, model: &Model, blocks: &Range<usize>, time_star: f64) {
         let displacement = &self.state.displacement;
-        self.driven
-            .forces(model, displacement, time_star, &mut self.forces.drive);
+        let drive = &mut self.forces.drive;
+        self.driven.forces(model, blocks, displacement, time_star, drive);
         let Forces { lattice, springs, .. } = &mut self.forces;
         let relative = self.relative_springs.as_ref();
-        lattice_forces(model, &self.state, relative, lattice, springs);
-        if let Some(dampers) = &mut self.dampers {
-            damper_forces(model, &self.state, relative, dampers, springs);
-            add_to(&mut lattice.x, &dampers.x);
-            add_to(&mut lattice.y, &dampers.y);
+        lattice_forces(model, blocks, &self.state, relative, lattice, springs);
+        if let Some(Dampers { force, bonds }) = &mut self.dampers {
+            damper_forces(model, blocks, &self.state, relative, force, bonds);
+            add_to(lattice, force, blocks);
         }
         let integrator = Integrator::new(model.damping, self.dt_star);
-        let (state, forces, masses) = (&self.state, &mut self.forces, model.slider.density.as_deref());
+        match &model.slider.density {
+            None => self.apply_friction(blocks, |_| integrator, time_star, model),
+            Some(masses) => {
+                let masses = &masses[blocks.clone()];
+                self.apply_friction(blocks, |k| integrator.of_mass(masses[k]), time_star, model);
+            }
+        }
+    }
+
+    /// Eqs. 4-7: friction and damping, and the velocity half a step later, of some blocks. `integrator`: of the first, the second
+    /// and so on of them.
+    #[inline(always)]
+    fn apply_friction(
+        &mut self,
+        blocks: &Range<usize>,
+        integrator: impl Fn(usize) -> Integrator,
+        time_star: f64,
+        model: &Model,
+    ) {
+        let (state, forces) = (&self.state, &mut self.forces);
         match &mut self.contact {
             Contact::Coulomb(thresholds) => {
-                thresholds.update(&self.static_limit, &self.kinetic_force, state, forces, time_star);
-                let now = thresholds.now(&self.static_limit, &self.kinetic_force);
+                let (young, at_rest) = (&self.static_limit, &self.kinetic_force);
+                thresholds.update(blocks, young, at_rest, state, forces, time_star);
+                let now = thresholds.now(young, at_rest);
                 match thresholds.law {
                     FrictionLaw::Projection => {
-                        friction_forces(&Projection, &integrator, masses, now, state, forces);
+                        friction_forces(&Projection, integrator, blocks, now, state, forces);
                     }
                     FrictionLaw::Reversal => {
-                        friction_forces(&Reversal, &integrator, masses, now, state, forces);
+                        friction_forces(&Reversal, integrator, blocks, now, state, forces);
                     }
                     FrictionLaw::Literal => {
-                        friction_forces(&Literal, &integrator, masses, now, state, forces);
+                        friction_forces(&Literal, integrator, blocks, now, state, forces);
                     }
                 }
-                thresholds.note_stops(state, forces, time_star);
+                thresholds.note_stops(blocks, state, forces, time_star);
             }
-            Contact::RateAndState(contact) => contact.apply(model, state, &integrator, forces),
+            Contact::RateAndState(contact) => contact.apply(blocks, state, integrator, forces),
             Contact::Springs(springs) => {
-                springs.apply(model, state, &self.static_limit, &integrator, forces);
-            }
-        }
-        std::mem::swap(&mut self.state.velocity, &mut self.forces.velocity);
-    }
-
-    fn mark_first_slips(&mut self, model: &Model, time_star: f64) {
-        let blocks = self.forces.slides.iter().zip(&model.surface.textured);
-        for ((slides, textured), time) in blocks.zip(&mut self.first_slip) {
-            if *slides && !textured && time.is_nan() {
-                *time = time_star;
+                springs.apply(model, blocks, state, &self.static_limit, integrator, forces);
             }
         }
     }
 
-    /// Sums over all blocks at the present step.
+    /// How many of some blocks slide, and how many of these are in contact; notes the first slips of these.
     #[inline(always)]
-    fn measure(&mut self, model: &Model, time_star: f64, energies: bool) -> Totals {
-        let n = self.static_limit.len();
-        let [ux, uy] = components(&self.state.displacement, n);
-        let [bx, by] = components(&self.forces.velocity, n);
-        let [ax, ay] = components(&self.state.velocity, n);
-        let [lx, ly] = components(&self.forces.lattice, n);
-        let [fx, fy] = components(&self.forces.friction, n);
-        let (textured, slides) = (&model.surface.textured[..n], &self.forces.slides[..n]);
-        let mass = model.slider.density.as_deref();
-        let driven = |[x, y]: [&[f64]; 2]| self.driven.sums(model, n, |b| x[b], |b| y[b]);
-        let squares = |[x, y]: [&[f64]; 2]| weighted_sum(n, mass, |b| x[b] * x[b] + y[b] * y[b]);
-        let (vx, vy) = (|b: usize| 0.5 * (bx[b] + ax[b]), |b: usize| 0.5 * (by[b] + ay[b]));
-        let slipping = slides.iter().zip(textured);
-        let stress_square = reductions::largest(n, |b| {
-            let (x, y) = (fx[b] + lx[b], fy[b] + ly[b]);
-            if textured[b] { 0.0 } else { x * x + y * y }
+    fn count(&mut self, model: &Model, blocks: &Range<usize>, time_star: f64) -> [usize; 2] {
+        let n = blocks.len();
+        let textured = &model.surface.textured[blocks.clone()][..n];
+        let slides = &self.forces.slides[blocks.clone()][..n];
+        let first_slip = &mut self.first_slip[blocks.clone()][..n];
+        let (mut n_sliding, mut n_slipping) = (0_u32, 0_u32);
+        for k in 0..n {
+            let slips = slides[k] & !textured[k];
+            n_sliding += u32::from(slides[k]);
+            n_slipping += u32::from(slips);
+            let is_first = slips & first_slip[k].is_nan();
+            first_slip[k] = if is_first { time_star } else { first_slip[k] };
+        }
+        [n_sliding as usize, n_slipping as usize]
+    }
+
+    /// Adds up what every step sums over blocks, after their next velocities are known.
+    #[inline(always)]
+    fn add_up(&mut self, model: &Model, blocks: &Range<usize>) {
+        let n = blocks.len();
+        let [ux, uy] = part(&self.state.displacement, blocks);
+        let [bx, by] = part(&self.state.velocity, blocks);
+        let [ax, ay] = part(&self.forces.velocity, blocks);
+        let [lx, ly] = part(&self.forces.lattice, blocks);
+        let [fx, fy] = part(&self.forces.friction, blocks);
+        let (ux, uy, bx, by, ax, ay) = (&ux[..n], &uy[..n], &bx[..n], &by[..n], &ax[..n], &ay[..n]);
+        let (lx, ly, fx, fy) = (&lx[..n], &ly[..n], &fx[..n], &fy[..n]);
+        let textured = &model.surface.textured[blocks.clone()][..n];
+        let masses = model
+            .slider
+            .density
+            .as_ref()
+            .map(|masses| &masses[blocks.clone()]);
+        let (vx, vy) = (|k: usize| 0.5 * (bx[k] + ax[k]), |k: usize| 0.5 * (by[k] + ay[k]));
+        let [
+            ux_sum,
+            uy_sum,
+            vx_sum,
+            vy_sum,
+            ax_sum,
+            ay_sum,
+            square,
+            friction,
+            viscous,
+            held,
+            broken,
+            states,
+        ] = &mut self.sums;
+        let driven = &self.driven;
+        driven.add(model, blocks, |k| ux[k], |k| uy[k], [ux_sum, uy_sum]);
+        driven.add(model, blocks, vx, vy, [vx_sum, vy_sum]);
+        driven.add(model, blocks, |k| ax[k], |k| ay[k], [ax_sum, ay_sum]);
+        add_weighted(square, n, masses, |k| vx(k) * vx(k) + vy(k) * vy(k));
+        match &self.contact {
+            Contact::Coulomb(_) => {}
+            Contact::RateAndState(contact) => contact.add_states(model, blocks, states),
+            Contact::Springs(springs) => {
+                let (displacement, breaks) = (&self.state.displacement, &self.forces.slides);
+                springs.add_energies(model, blocks, displacement, breaks, [held, broken]);
+            }
+        }
+        // What springs to the substrate take is stored, or lost where they break.
+        if !matches!(self.contact, Contact::Springs(_)) {
+            friction.add(n, |k| fx[k] * vx(k) + fy[k] * vy(k));
+        }
+        if let Some(dampers) = &self.dampers {
+            let [dx, dy] = part(&dampers.force, blocks);
+            let (dx, dy) = (&dx[..n], &dy[..n]);
+            viscous.add(n, |k| dx[k] * vx(k) + dy[k] * vy(k));
+        }
+        let stress_square = reductions::largest(n, |k| {
+            let (x, y) = (fx[k] + lx[k], fy[k] + ly[k]);
+            if textured[k] { 0.0 } else { x * x + y * y }
         });
         self.stress_square_max = self.stress_square_max.max(stress_square);
-        if let Some(dampers) = &self.dampers {
-            let [dx, dy] = components(dampers, n);
-            self.viscous_power = -fixed_point::sum(n, |b| dx[b] * vx(b) + dy[b] * vy(b));
-        }
-        Totals {
-            displacement: driven([ux, uy]),
-            velocity: self.driven.sums(model, n, vx, vy),
-            velocity_after: driven([ax, ay]),
-            velocity_square: weighted_sum(n, mass, |b| vx(b) * vx(b) + vy(b) * vy(b)),
-            friction_power: match self.contact {
-                // What these springs take is stored, or lost where they break.
-                Contact::Springs(_) => 0.0,
-                _ => fixed_point::sum(n, |b| fx[b] * vx(b) + fy[b] * vy(b)),
-            },
-            n_sliding: slides.iter().filter(|&&slides| slides).count(),
-            n_slipping: slipping
-                .filter(|&(slides, textured)| *slides && !textured)
-                .count(),
-            stored_energy: energies.then(|| {
-                let displacement = &self.state.displacement;
-                let springs = self.relative_springs.as_ref();
-                StoredEnergy {
-                    kinetic: 0.25 * (squares([bx, by]) + squares([ax, ay])),
-                    lattice: lattice_energy(&model.lattice, displacement, springs, model.epsilon),
-                    drive_springs: self.driven.energy(model, [ux, uy], time_star),
-                }
-            }),
+    }
+
+    /// Energies of all blocks, after their next velocities are known.
+    #[inline(always)]
+    fn stored_energy(&mut self, model: &Model, time_star: f64) -> StoredEnergy {
+        let displacement = &self.state.displacement;
+        let [before, after, drive_springs] = loop {
+            let [before, after, drive_springs] = &mut self.energy_sums;
+            for blocks in parts(&model.lattice) {
+                let n = blocks.len();
+                let masses = model
+                    .slider
+                    .density
+                    .as_ref()
+                    .map(|masses| &masses[blocks.clone()]);
+                let [bx, by] = part(&self.state.velocity, &blocks).map(|component| &component[..n]);
+                let [ax, ay] = part(&self.forces.velocity, &blocks).map(|component| &component[..n]);
+                add_weighted(before, n, masses, |k| bx[k] * bx[k] + by[k] * by[k]);
+                add_weighted(after, n, masses, |k| ax[k] * ax[k] + ay[k] * ay[k]);
+                self.driven
+                    .add_squares(model, &blocks, displacement, time_star, drive_springs);
+            }
+            if let Some(found) = RunningSum::finish(&mut self.energy_sums) {
+                break found;
+            }
+        };
+        let relative = self.relative_springs.as_ref();
+        StoredEnergy {
+            kinetic: 0.25 * (before + after),
+            lattice: lattice_energy(
+                &model.lattice,
+                displacement,
+                relative,
+                model.epsilon,
+                &mut self.row,
+            ),
+            drive_springs: 0.5 * model.drive.k_drive * drive_springs,
         }
     }
 }
@@ -239,10 +417,7 @@ impl Reference {
 impl Engine for Reference {
     fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals {
         let time_star = number as f64 * self.dt_star;
-        let level = Level::new();
-        dispatch!(level, _ => self.advance_and_evaluate(model, time_star));
-        self.mark_first_slips(model, time_star);
-        dispatch!(level, _ => self.measure(model, time_star, energies))
+        dispatch!(Level::new(), _ => self.advance(model, time_star, energies))
     }
 
     fn block(&self, _: &Model, _: u64, b: usize) -> Block {
@@ -304,12 +479,8 @@ impl Engine for Reference {
         None
     }
 
-    fn contact_totals(&self, model: &Model) -> ContactTotals {
-        match &self.contact {
-            Contact::Coulomb(_) => ContactTotals::default(),
-            Contact::RateAndState(contact) => contact.totals(model),
-            Contact::Springs(springs) => springs.totals(model, &self.state.displacement, &self.forces.slides),
-        }
+    fn contact_totals(&self, _: &Model) -> ContactTotals {
+        self.contact_totals
     }
 
     fn memory(&self) -> Vec<&[f64]> {
@@ -323,65 +494,49 @@ impl Engine for Reference {
 }
 
 #[inline(always)]
-fn add_to(values: &mut [f64], others: &[f64]) {
-    values
-        .iter_mut()
-        .zip(others)
-        .for_each(|(value, other)| *value += other);
+fn add_to(field: &mut VectorField, other: &VectorField, blocks: &Range<usize>) {
+    for (values, others) in part_mut(field, blocks).into_iter().zip(part(other, blocks)) {
+        values
+            .iter_mut()
+            .zip(others)
+            .for_each(|(value, other)| *value += other);
+    }
 }
 
 /// Eq. 8: `u(t + dt) = u(t) + dt v(t + dt/2)`.
 #[inline(always)]
-fn move_blocks(state: &mut State, dt_star: f64) {
-    let (displacement, velocity) = (&mut state.displacement, &state.velocity);
-    for (u, v) in [
-        (&mut displacement.x, &velocity.x),
-        (&mut displacement.y, &velocity.y),
-    ] {
+fn move_blocks(displacement: &mut VectorField, velocity: &VectorField, blocks: &Range<usize>, dt_star: f64) {
+    for (u, v) in part_mut(displacement, blocks)
+        .into_iter()
+        .zip(part(velocity, blocks))
+    {
         u.iter_mut().zip(v).for_each(|(u, v)| *u += dt_star * v);
     }
 }
 
-/// Eqs. 4-7: friction and damping, and the velocity half a step later, of blocks with these masses; 1 if there are none.
+/// Applies the friction law to some blocks: finds friction, velocities and which slide from thresholds, velocities and forces.
 #[inline(always)]
 fn friction_forces<L: Law>(
     law: &L,
-    integrator: &Integrator,
-    masses: Option<&[f64]>,
-    thresholds: [&[f64]; 2],
-    state: &State,
-    forces: &mut Forces,
-) {
-    match masses {
-        None => friction_of_masses(law, |_| *integrator, thresholds, state, forces),
-        Some(masses) => {
-            friction_of_masses(law, |b| integrator.of_mass(masses[b]), thresholds, state, forces);
-        }
-    }
-}
-
-#[inline(always)]
-fn friction_of_masses<L: Law>(
-    law: &L,
     integrator: impl Fn(usize) -> Integrator,
+    blocks: &Range<usize>,
     thresholds: [&[f64]; 2],
     state: &State,
     forces: &mut Forces,
 ) {
-    let (drive, lattice, before) = (&forces.drive, &forces.lattice, &state.velocity);
     apply_friction(
         law,
         integrator,
-        thresholds,
-        [&before.x, &before.y],
-        [&drive.x, &drive.y, &lattice.x, &lattice.y],
-        [&mut forces.friction.x, &mut forces.friction.y],
-        [&mut forces.velocity.x, &mut forces.velocity.y],
-        &mut forces.slides,
+        thresholds.map(|array| &array[blocks.clone()]),
+        part(&state.velocity, blocks),
+        [part(&forces.drive, blocks), part(&forces.lattice, blocks)],
+        part_mut(&mut forces.friction, blocks),
+        part_mut(&mut forces.velocity, blocks),
+        &mut forces.slides[blocks.clone()],
     );
 }
 
-/// Applies the friction law to every block: finds friction, velocities and which slide from thresholds, velocities and forces.
+/// The same, given separate slices.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)] // Separate slices are known not to overlap, so that the loop is vectorised.
 fn apply_friction<L: Law>(
@@ -389,7 +544,7 @@ fn apply_friction<L: Law>(
     integrator: impl Fn(usize) -> Integrator,
     thresholds: [&[f64]; 2],
     velocity: [&[f64]; 2],
-    forces: [&[f64]; 4],
+    forces: [[&[f64]; 2]; 2],
     friction: [&mut [f64]; 2],
     after: [&mut [f64]; 2],
     slides: &mut [bool],
@@ -397,21 +552,21 @@ fn apply_friction<L: Law>(
     let n = slides.len();
     let [static_limit, kinetic_force] = thresholds.map(|array| &array[..n]);
     let [vx, vy] = velocity.map(|array| &array[..n]);
-    let [drive_x, drive_y, lattice_x, lattice_y] = forces.map(|array| &array[..n]);
+    let [[drive_x, drive_y], [lattice_x, lattice_y]] = forces.map(|force| force.map(|array| &array[..n]));
     let [friction_x, friction_y] = friction.map(|array| &mut array[..n]);
     let [after_x, after_y] = after.map(|array| &mut array[..n]);
-    for b in 0..n {
+    for k in 0..n {
         let update = law.update(
             &BlockState {
-                velocity: [vx[b], vy[b]],
-                force: [drive_x[b] + lattice_x[b], drive_y[b] + lattice_y[b]],
-                static_limit: static_limit[b],
-                kinetic_force: kinetic_force[b],
+                velocity: [vx[k], vy[k]],
+                force: [drive_x[k] + lattice_x[k], drive_y[k] + lattice_y[k]],
+                static_limit: static_limit[k],
+                kinetic_force: kinetic_force[k],
             },
-            &integrator(b),
+            &integrator(k),
         );
-        [friction_x[b], friction_y[b]] = update.friction;
-        [after_x[b], after_y[b]] = update.velocity;
-        slides[b] = update.slides;
+        [friction_x[k], friction_y[k]] = update.friction;
+        [after_x[k], after_y[k]] = update.velocity;
+        slides[k] = update.slides;
     }
 }
