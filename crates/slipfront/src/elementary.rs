@@ -69,15 +69,22 @@ pub(crate) fn ln(x: f64) -> f64 {
     n * LN_2[0] + (n * LN_2[1] + s * polynomial(c, s * s))
 }
 
+/// Below, [`small_mean_decay`] leaves out what is beyond the last digit.
+pub(crate) const SMALL_DECAY: f64 = 0.5;
+
 /// `(1 - e^-x)/x` of x >= 0, 1 at 0.
 #[inline(always)]
 pub(crate) fn mean_decay(x: f64) -> f64 {
-    /// Below, the terms of the series that are left out are beyond the last digit.
-    const SMALL: f64 = 0.5;
-    let c: [f64; 14] = std::array::from_fn(|k| INVERSE_FACTORIALS[k + 1]);
-    let series = polynomial(c, -x.min(SMALL));
+    let series = small_mean_decay(x.min(SMALL_DECAY));
     let quotient = (1.0 - exp(-x)) / x;
-    if x < SMALL { series } else { quotient }
+    if x < SMALL_DECAY { series } else { quotient }
+}
+
+/// The same below [`SMALL_DECAY`].
+#[inline(always)]
+pub(crate) fn small_mean_decay(x: f64) -> f64 {
+    let c: [f64; 14] = std::array::from_fn(|k| INVERSE_FACTORIALS[k + 1]);
+    polynomial(c, -x)
 }
 
 #[cfg(test)]

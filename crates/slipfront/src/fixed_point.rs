@@ -142,6 +142,78 @@ pub(crate) fn sum_over(ranks: &dyn Communicator, n: usize, term: impl Fn(usize) 
     fixed_point.value(join(words))
 }
 
+/// A sum over blocks that is found at every step, part by part. Its terms hardly ever outgrow the power of two that bounds them, or
+/// fall below it: they are added up with the bound of the step before, while the largest is found, and once more if that was another.
+/// So the sum is that of [`sum`], whatever was before.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RunningSum {
+    bound: FixedPoint,
+    /// Bits of the largest size of a term so far. As integers they have the order of the sizes, beyond which lie those of no number.
+    largest: i64,
+    sum: i128,
+}
+
+impl RunningSum {
+    /// Adds `term(k)` over `0..n`, at most [`MAX_TERMS`].
+    #[inline(always)]
+    pub(crate) fn add(&mut self, n: usize, term: impl Fn(usize) -> f64) {
+        const SIZE: u64 = i64::MAX as u64;
+        debug_assert!(n <= MAX_TERMS, "{n} terms may be more than a word holds");
+        let shift = self.bound.shift();
+        let (mut largest, mut sum) = (self.largest, 0_u64);
+        for k in 0..n {
+            let term = term(k);
+            largest = largest.max((term.to_bits() & SIZE) as i64);
+            sum = sum.wrapping_add((term + shift).to_bits());
+        }
+        self.largest = largest;
+        let shifts = shift.to_bits().wrapping_mul(n as u64);
+        self.sum += i128::from(sum.wrapping_sub(shifts) as i64);
+    }
+
+    /// Size of the largest term so far; infinite if one is no number.
+    fn largest(&self) -> f64 {
+        let size = f64::from_bits(self.largest as u64);
+        if size.is_nan() { f64::INFINITY } else { size }
+    }
+
+    /// Begins again with no terms, and with the bound of those before, of which this is the largest. Returns whether they were added up
+    /// with this bound.
+    fn restart(&mut self, largest: f64) -> bool {
+        let bound = FixedPoint::new(largest);
+        let was_bound = bound.limit.to_bits() == self.bound.limit.to_bits();
+        *self = Self {
+            bound,
+            ..Self::default()
+        };
+        was_bound
+    }
+
+    /// The sums of all terms that all `ranks` have added; none if a bound was another, so that all have to be added once more.
+    pub(crate) fn finish<const N: usize>(ranks: &dyn Communicator, sums: &mut [Self; N]) -> Option<[f64; N]> {
+        let mut largest = sums.each_ref().map(Self::largest);
+        ranks.largest(&mut largest);
+        let mut words = sums.each_ref().map(|sum| split(sum.sum));
+        ranks.sum(words.as_flattened_mut());
+        let (mut found, mut were_bounds) = ([0.0; N], true);
+        for (k, sum) in sums.iter_mut().enumerate() {
+            found[k] = sum.bound.value(join(words[k]));
+            were_bounds &= sum.restart(largest[k]);
+        }
+        were_bounds.then_some(found)
+    }
+}
+
+impl Default for RunningSum {
+    fn default() -> Self {
+        Self {
+            bound: FixedPoint::new(0.0),
+            largest: 0,
+            sum: 0,
+        }
+    }
+}
+
 /// Bits of a sum in the lower of its two words.
 const LOW_BITS: u32 = 40;
 

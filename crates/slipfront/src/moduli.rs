@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::communicator::Communicator;
-use crate::lattice::{Bond, Edges, Lattice, harmonic_mean};
+use crate::lattice::{Edges, Lattice, harmonic_mean};
 use crate::slider::Slider;
 
 /// Moduli of the blocks of some rows and of those below the first and above the last, `E_i/E`; 0 of blocks that do not exist.
@@ -57,12 +57,6 @@ impl<'a> Moduli<'a> {
         }
         let side = usize::from((j + 1) % self.lattice.ny != self.rows.start);
         self.beside[side].get(i).copied().unwrap_or(0.0)
-    }
-
-    /// [`spring`](Self::spring) from every block of these rows along `bond`.
-    pub(crate) fn springs_along(&self, bond: &Bond) -> Vec<f64> {
-        let row = |j: usize| (0..self.lattice.nx).map(move |i| self.spring([i, j], bond.offset));
-        self.rows.clone().flat_map(row).collect()
     }
 
     /// Stiffness of the spring from block (i, j) of these rows to the block `offset` away over that of its bond, the harmonic mean of

@@ -86,25 +86,15 @@ pub(crate) trait Law {
     fn update(&self, block: &BlockState, integrator: &Integrator) -> Update;
 }
 
-/// The block sticks: friction balances all other forces.
-#[inline(always)]
-fn stuck(force: [f64; 2]) -> Update {
-    Update {
-        velocity: [0.0, 0.0],
-        friction: [-force[0], -force[1]],
-        slides: false,
-    }
-}
-
 /// Friction of magnitude `kinetic_force` against the direction of `motion`.
 #[inline(always)]
 fn friction_against(motion: [f64; 2], kinetic_force: f64) -> [f64; 2] {
     let speed = length(motion);
-    if speed > 0.0 {
-        motion.map(|component| -kinetic_force * component / speed)
-    } else {
-        [0.0, 0.0]
-    }
+    let component = |component: f64| {
+        let friction = -kinetic_force * component / speed;
+        if speed > 0.0 { friction } else { 0.0 }
+    };
+    [component(motion[0]), component(motion[1])]
 }
 
 /// Moreau's time-stepping: friction reduces the velocity that the block would have without it by
@@ -149,25 +139,20 @@ fn select(first: bool, one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
 pub(crate) struct Reversal;
 
 impl Law for Reversal {
+    /// Without branches, as that of [`Projection`].
     #[inline(always)]
     fn update(&self, block: &BlockState, integrator: &Integrator) -> Update {
-        let total = length(block.force);
-        let starts = block.velocity == [0.0, 0.0];
-        if starts && total <= block.static_limit.max(block.kinetic_force) {
-            return stuck(block.force);
-        }
-        let friction = friction_against(
-            if starts { block.force } else { block.velocity },
-            block.kinetic_force,
-        );
-        let velocity = integrator.accelerate(block.velocity, add(block.force, friction));
-        if !starts && dot(velocity, block.velocity) <= 0.0 && total <= block.static_limit {
-            return stuck(block.force);
-        }
+        let (force, total) = (block.force, length(block.force));
+        let starts = is_zero(block.velocity);
+        let friction = friction_against(select(starts, force, block.velocity), block.kinetic_force);
+        let velocity = integrator.accelerate(block.velocity, add(force, friction));
+        let stays = starts & (total <= block.static_limit.max(block.kinetic_force));
+        let turns = !starts & (dot(velocity, block.velocity) <= 0.0) & (total <= block.static_limit);
+        let sticks = stays | turns;
         Update {
-            velocity,
-            friction,
-            slides: velocity != [0.0, 0.0],
+            velocity: select(sticks, [0.0, 0.0], velocity),
+            friction: select(sticks, [-force[0], -force[1]], friction),
+            slides: !sticks & !is_zero(velocity),
         }
     }
 }
@@ -176,22 +161,18 @@ impl Law for Reversal {
 pub(crate) struct Literal;
 
 impl Law for Literal {
+    /// Without branches, as that of [`Projection`].
     #[inline(always)]
     fn update(&self, block: &BlockState, integrator: &Integrator) -> Update {
-        let starts = block.velocity == [0.0, 0.0];
-        let friction = if length(block.force) <= block.static_limit {
-            [-block.force[0], -block.force[1]]
-        } else {
-            friction_against(
-                if starts { block.force } else { block.velocity },
-                block.kinetic_force,
-            )
-        };
-        let velocity = integrator.accelerate(block.velocity, add(block.force, friction));
+        let (force, starts) = (block.force, is_zero(block.velocity));
+        let kinetic = friction_against(select(starts, force, block.velocity), block.kinetic_force);
+        let balances = length(force) <= block.static_limit;
+        let friction = select(balances, [-force[0], -force[1]], kinetic);
+        let velocity = integrator.accelerate(block.velocity, add(force, friction));
         Update {
             velocity,
             friction,
-            slides: velocity != [0.0, 0.0],
+            slides: !is_zero(velocity),
         }
     }
 }

@@ -11,7 +11,7 @@ pub use self::contact_springs::ContactSprings;
 pub use self::coulomb::FrictionLaw;
 pub(crate) use self::coulomb::{BlockState, Integrator, Law, Literal, Projection, Reversal};
 pub use self::rate_and_state::RateAndState;
-pub(crate) use self::rate_and_state::Sliding;
+pub(crate) use self::rate_and_state::{LogFactors, Sliding};
 pub use self::weakening::Weakening;
 use crate::surface::Surface;
 

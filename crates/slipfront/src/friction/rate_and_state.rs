@@ -1,6 +1,7 @@
 //! Friction that follows speed and the state of the contact.
 
-use crate::elementary::{exp, ln, mean_decay};
+use crate::elementary::{SMALL_DECAY, exp, ln, mean_decay, small_mean_decay};
+use crate::reductions;
 
 /// Rate and state with the ageing law: `mu = mu_0 + a ln(V/V_0) + b ln(V_0 theta/D_c)`, `dtheta/dt = 1 - V theta/D_c`; coefficients
 /// over `mu_s`. The logarithm of the speed is regularised at V = 0,
@@ -29,18 +30,24 @@ pub struct RateAndState {
 /// Above this logarithm of its argument, `asinh x = ln(2 x)` to the last bit; and above this argument `sinh` has one exponential.
 const LARGE: f64 = 20.0;
 
-/// Newton steps that no solution needs: while the exponential is more than the linear term each takes at least half a unit off the
-/// unknown, which begins less than 16 above the root for any `a` of 1e-8 and more; the last few double the digits.
+/// Steps that no solution needs: far from the root each takes two units off the unknown, which begins less than 16 above it or 7
+/// below for any `a` of 1e-8 and more, and comes no farther beyond it than 22; the last few triple the digits.
 const MAX_STEPS: usize = 40;
+
+/// After a step of this size the error, which is below its third power, is beyond the last digit.
+const LAST_STEP: f64 = 1e-5;
+
+/// The speed before is a good guess of the next if it is more than this share of the speed without friction.
+const SLOW: f64 = 1e-3;
 
 /// Least speed of which there is a logarithm; blocks that would be slower do not move.
 const MIN_SPEED: f64 = 1e-300;
 
-/// `asinh(1)`.
-const ASINH_1: f64 = 0.881_373_587_019_543;
+/// Least logarithm of the factor of V: below, there is no friction.
+const MIN_LOG_FACTOR: f64 = -300.0;
 
-/// Bounds of the logarithm of the factor of V: below, there is no friction, and above, its inverse is no more than the least speed.
-const LOG_FACTORS: [f64; 2] = [-300.0, 340.0];
+/// `[c_0, c_1]` of the logarithm of the factor of V as a function of the state, `c_0 + c_1 ln(theta)`.
+pub(crate) type LogFactors = [f64; 2];
 
 /// Speeds and magnitudes of friction of some blocks.
 #[derive(Clone, Copy, Debug)]
@@ -49,6 +56,12 @@ pub(crate) struct Sliding<const BLOCKS: usize> {
     pub(crate) speed: [f64; BLOCKS],
     /// Magnitudes of friction.
     pub(crate) friction: [f64; BLOCKS],
+}
+
+/// `x e^-step` of a step of at most [`LAST_STEP`].
+#[inline(always)]
+fn decayed(x: f64, step: f64) -> f64 {
+    x - x * (step * (1.0 - step * (0.5 - step / 6.0)))
 }
 
 /// `asinh(exp(y))`, without overflow.
@@ -61,10 +74,16 @@ fn asinh_of_exp(y: f64) -> f64 {
 }
 
 impl RateAndState {
+    /// What does not change from block to block of [`log_factor`](Self::log_factor).
+    pub(crate) fn log_factors(&self) -> LogFactors {
+        let at_one = (self.mu_0 + self.b * ln(self.v_0 / self.d_c)) / self.a - ln(2.0 * self.v_0);
+        [at_one, self.b / self.a]
+    }
+
     /// `ln` of the factor of V in the regularised law, `(mu_0 + b ln(V_0 theta/D_c))/a - ln(2 V_0)`.
     #[inline(always)]
-    fn log_factor(&self, theta: f64) -> f64 {
-        (self.mu_0 + self.b * ln(self.v_0 * theta / self.d_c)) / self.a - ln(2.0 * self.v_0)
+    fn log_factor([at_one, slope]: LogFactors, theta: f64) -> f64 {
+        at_one + slope * ln(theta)
     }
 
     /// Coefficient at a speed and state, over `mu_s`.
@@ -78,7 +97,7 @@ impl RateAndState {
     /// assert!((law.coefficient(0.03 * 1_f64.exp(), steady) - 0.61).abs() < 1e-15);
     /// ```
     pub fn coefficient(&self, speed: f64, theta: f64) -> f64 {
-        self.a * asinh_of_exp(self.log_factor(theta) + libm::log(speed))
+        self.a * asinh_of_exp(Self::log_factor(self.log_factors(), theta) + libm::log(speed))
     }
 
     /// Coefficient of steady sliding at a speed: that of the state `D_c/V`.
@@ -102,70 +121,148 @@ impl RateAndState {
     #[inline(always)]
     pub fn evolve(&self, theta: f64, speed: f64, dt: f64) -> f64 {
         let x = speed * dt / self.d_c;
-        theta * exp(-x) + dt * mean_decay(x)
+        let mean_decay = mean_decay(x);
+        let decay = if x < SMALL_DECAY {
+            1.0 - x * mean_decay
+        } else {
+            exp(-x)
+        };
+        theta * decay + dt * mean_decay
     }
 
-    /// The speeds after a step and the friction of some blocks, whose speeds would be `free` without friction:
+    /// [`evolve`](Self::evolve) of some blocks.
+    #[inline(always)]
+    pub(crate) fn evolve_all(&self, theta: &mut [f64], speed: &[f64], dt: f64) {
+        let n = theta.len();
+        let speed = &speed[..n];
+        // Slip over a step is nearly always short, which takes no exponential.
+        if reductions::largest(n, |k| speed[k] * dt / self.d_c) < SMALL_DECAY {
+            for k in 0..n {
+                let x = speed[k] * dt / self.d_c;
+                let mean_decay = small_mean_decay(x);
+                theta[k] = theta[k] * (1.0 - x * mean_decay) + dt * mean_decay;
+            }
+        } else {
+            for k in 0..n {
+                theta[k] = self.evolve(theta[k], speed[k], dt);
+            }
+        }
+    }
+
+    /// The speeds after a step and the friction of some blocks, whose speeds would be `free` without friction and were `before`:
     ///
     /// ```text
     /// v + g F_n mu(v, theta) = free
     /// ```
     ///
-    /// with the change of speed per force `g = dt/(m c+)`. With `w = mu/a` as the unknown, `v = sinh(w) e^-L`, and the equation is
-    /// `h(w) = sinh(w) e^-L + g F_n a w - free = 0`. For w >= 0 this h rises and is convex, so that Newton's method from the right of
-    /// the root comes down to it step by step; it ends where rounding lets it come no further, where it stays: a
-    /// block has the same bits whatever blocks are beside it. It begins at the lesser of the roots that each of the two terms alone
-    /// would have, of the first an upper bound, `asinh(e^y) <= max(y, 0) + asinh(1)`.
+    /// with the change of speed per force `g = dt/(m c+)`. With `w = mu/a` and `L` the [`log_factor`](Self::log_factor),
+    /// `v = sinh(w) e^-L`. The unknown is `y = w - L`, near `ln(2 v)`, in which
+    ///
+    /// ```text
+    /// h(y) = (e^y - e^-(y + 2 L))/2 + g F_n a (L + y) - free = 0
+    /// ```
+    ///
+    /// is solved by Halley's method. It begins at the speed before, or, if this was much less, at the speed without friction. After a
+    /// [`LAST_STEP`] a block stays where it is: it has the same bits whatever blocks are beside it.
     #[inline(always)]
     pub(crate) fn slide<const BLOCKS: usize>(
         &self,
-        free: &[f64; BLOCKS],
+        factors: LogFactors,
+        [free, before]: [&[f64; BLOCKS]; 2],
         theta: &[f64; BLOCKS],
         normal_force: &[f64; BLOCKS],
         g: &[f64; BLOCKS],
     ) -> Sliding<BLOCKS> {
         let zeros = [0.0; BLOCKS];
-        let (mut speed, mut w, mut log_factor, mut inverse_square) = (zeros, zeros, zeros, zeros);
+        let (mut log_factor, mut per_unit) = (zeros, zeros);
+        // The two exponentials, and the latest step.
+        let (mut y, mut rising, mut falling, mut step) = (zeros, zeros, zeros, [f64::INFINITY; BLOCKS]);
+        let mut may_fall = false;
         for k in 0..BLOCKS {
-            log_factor[k] = self.log_factor(theta[k]).max(LOG_FACTORS[0]);
-            let inverse = exp(-log_factor[k]);
-            let is_small = log_factor[k] < LOG_FACTORS[1];
-            inverse_square[k] = if is_small { inverse * inverse } else { 0.0 };
-            let without_load = (log_factor[k] + ln(free[k].max(MIN_SPEED))).max(0.0) + ASINH_1;
-            w[k] = (free[k] / (g[k] * normal_force[k] * self.a)).min(without_load);
+            log_factor[k] = Self::log_factor(factors, theta[k]).max(MIN_LOG_FACTOR);
+            per_unit[k] = g[k] * normal_force[k] * self.a;
+            let is_slow = before[k] <= SLOW * free[k];
+            let guess = if is_slow { free[k] } else { before[k].min(free[k]) };
+            rising[k] = 2.0 * guess.max(MIN_SPEED);
+            y[k] = ln(rising[k]);
+            may_fall |= log_factor[k] + y[k] <= LARGE;
+        }
+        // What few blocks need stands behind a condition on all; the others do not change by it.
+        if may_fall {
+            for k in 0..BLOCKS {
+                let guess = 0.5 * rising[k];
+                let whole = guess + (guess * guess + exp(-2.0 * log_factor[k])).sqrt();
+                let falls = log_factor[k] + y[k] <= LARGE;
+                rising[k] = if falls { whole } else { rising[k] };
+                y[k] = if falls { ln(whole.max(MIN_SPEED)) } else { y[k] };
+            }
+        }
+        // No friction is more than what stops a block.
+        let is_beyond = |k: usize, y: f64| per_unit[k] * (log_factor[k] + y) > free[k];
+        if (0..BLOCKS).fold(false, |any, k| any | is_beyond(k, y[k])) {
+            for k in 0..BLOCKS {
+                let most = free[k] / per_unit[k] - log_factor[k];
+                let is_beyond = is_beyond(k, y[k]);
+                y[k] = if is_beyond { most } else { y[k] };
+                rising[k] = if is_beyond { exp(most) } else { rising[k] };
+            }
         }
         for _ in 0..MAX_STEPS {
-            let mut has_moved = false;
-            for k in 0..BLOCKS {
-                let per_unit = g[k] * normal_force[k] * self.a;
-                let rising = exp(w[k] - log_factor[k]);
-                let falling = if w[k] > LARGE {
-                    0.0
-                } else {
-                    inverse_square[k] / rising
-                };
-                speed[k] = 0.5 * (rising - falling);
-                let error = speed[k] + per_unit * w[k] - free[k];
-                let next = w[k] - error / (0.5 * (rising + falling) + per_unit);
-                has_moved |= next < w[k];
-                w[k] = if next < w[k] { next } else { w[k] };
+            if (0..BLOCKS).fold(false, |any, k| any | (log_factor[k] + y[k] <= LARGE)) {
+                for k in 0..BLOCKS {
+                    let w = log_factor[k] + y[k];
+                    let now = if w <= LARGE {
+                        exp(-(log_factor[k] + w))
+                    } else {
+                        0.0
+                    };
+                    falling[k] = if step[k].abs() > LAST_STEP {
+                        now
+                    } else {
+                        falling[k]
+                    };
+                }
+            } else {
+                falling = zeros;
             }
-            if !has_moved {
+            let mut goes_on = false;
+            for k in 0..BLOCKS {
+                let [sinh, cosh] = [rising[k] - falling[k], rising[k] + falling[k]].map(|sum| 0.5 * sum);
+                let error = sinh + per_unit[k] * (log_factor[k] + y[k]) - free[k];
+                let slope = cosh + per_unit[k];
+                let next = error * slope / (slope * slope - 0.5 * error * sinh);
+                step[k] = if step[k].abs() > LAST_STEP { next } else { 0.0 };
+                y[k] -= step[k];
+                goes_on |= step[k].abs() > LAST_STEP;
+                rising[k] = decayed(rising[k], step[k]);
+                falling[k] = decayed(falling[k], -step[k]);
+            }
+            if !goes_on {
                 break;
             }
+            for k in 0..BLOCKS {
+                rising[k] = if step[k].abs() > LAST_STEP {
+                    exp(y[k])
+                } else {
+                    rising[k]
+                };
+            }
         }
-        let mut friction = zeros;
+        let mut sliding = Sliding {
+            speed: *free,
+            friction: zeros,
+        };
         for k in 0..BLOCKS {
             // Nothing holds a block over a texture, and nothing moves one that would not move without friction.
             let slides = (free[k] > MIN_SPEED) & (normal_force[k] > 0.0);
-            friction[k] = if slides {
-                normal_force[k] * self.a * w[k]
-            } else {
-                0.0
-            };
-            speed[k] = if slides { speed[k] } else { free[k] };
+            let (speed, friction) = (
+                0.5 * (rising[k] - falling[k]),
+                normal_force[k] * self.a * (log_factor[k] + y[k]),
+            );
+            sliding.speed[k] = if slides { speed } else { free[k] };
+            sliding.friction[k] = if slides { friction } else { 0.0 };
         }
-        Sliding { speed, friction }
+        sliding
     }
 
     /// Stiffness per block below which steady sliding of a block at `speed` under the normal force `sigma` is unstable (Rice and

@@ -366,7 +366,7 @@ impl Band {
             }
             if task.sparse {
                 self.sparse_tile(simd, geometry, step, quanta, t, &mut scratch);
-            } else if energies || task.settles || G::BLOCKS_DIFFER {
+            } else if energies || task.settles {
                 self.tile::<S, G, true>(simd, geometry, step, quanta, t, &mut scratch);
             } else {
                 self.tile::<S, G, false>(simd, geometry, step, quanta, t, &mut scratch);

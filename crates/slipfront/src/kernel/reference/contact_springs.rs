@@ -1,10 +1,10 @@
 //! Springs between the blocks and the substrate.
 
-use super::forces::{Forces, components};
-use crate::communicator::Communicator;
-use crate::fixed_point::sum_over;
+use std::ops::Range;
+
+use super::forces::{Forces, part, part_mut};
+use crate::fixed_point::RunningSum;
 use crate::friction::{ContactSprings, Integrator};
-use crate::kernel::totals::ContactTotals;
 use crate::model::Model;
 use crate::state::State;
 use crate::surface::Surface;
@@ -39,15 +39,24 @@ impl SpringContact {
         if textured { 0.0 } else { self.law.stiffness }
     }
 
-    /// Lets the springs that break at the present instant form again where their blocks are now.
+    /// Lets those springs of some blocks that break at the present instant form again where their blocks are now.
+    #[inline(always)]
     pub(super) fn form_again(
         &mut self,
         model: &Model,
+        blocks: &Range<usize>,
         displacement: &VectorField,
         breaks: &[bool],
         threshold: &mut [f64],
     ) {
-        for b in (0..breaks.len()).filter(|&b| breaks[b]) {
+        // Most parts have none.
+        if !breaks[blocks.clone()]
+            .iter()
+            .fold(false, |any, breaks| any | breaks)
+        {
+            return;
+        }
+        for b in blocks.clone().filter(|&b| breaks[b]) {
             [self.anchor.x[b], self.anchor.y[b]] = displacement.at(b);
             self.breaks[b] += 1.0;
             threshold[b] = self.threshold(&model.surface, b);
@@ -67,65 +76,69 @@ impl SpringContact {
         }
     }
 
-    /// Forces of the springs and velocities half a step later; a block counts as sliding in the step in which its spring breaks. Such
-    /// a spring pulls for the half of the step that lies before the break, which keeps the balance of energy to second order.
+    /// Forces of the springs of some blocks and velocities half a step later; a block counts as sliding in the step in which its spring
+    /// breaks. Such a spring pulls for the half of the step that lies before the break, which keeps the balance of energy to second
+    /// order.
     #[inline(always)]
     pub(super) fn apply(
         &self,
         model: &Model,
+        blocks: &Range<usize>,
         state: &State,
         threshold: &[f64],
-        integrator: &Integrator,
+        integrator: impl Fn(usize) -> Integrator,
         forces: &mut Forces,
     ) {
-        let n = threshold.len();
-        let ([ux, uy], [ax, ay]) = (components(&state.displacement, n), components(&self.anchor, n));
-        let ([vx, vy], textured) = (components(&state.velocity, n), &model.surface.textured[..n]);
-        let ([dx, dy], [lx, ly]) = (components(&forces.drive, n), components(&forces.lattice, n));
-        let (friction, after) = (&mut forces.friction, &mut forces.velocity);
-        let [fx, fy] = [&mut friction.x[..n], &mut friction.y[..n]];
-        let [wx, wy] = [&mut after.x[..n], &mut after.y[..n]];
-        let slides = &mut forces.slides[..n];
-        for b in 0..n {
-            let stiffness = self.stiffness(textured[b]);
-            let pull = [stiffness * (ux[b] - ax[b]), stiffness * (uy[b] - ay[b])];
-            let breaks = dot(pull, pull) > threshold[b] * threshold[b];
+        let n = blocks.len();
+        let ([ux, uy], [ax, ay]) = (part(&state.displacement, blocks), part(&self.anchor, blocks));
+        let ([vx, vy], [dx, dy]) = (part(&state.velocity, blocks), part(&forces.drive, blocks));
+        let [lx, ly] = part(&forces.lattice, blocks);
+        let (ux, uy, ax, ay, vx, vy) = (&ux[..n], &uy[..n], &ax[..n], &ay[..n], &vx[..n], &vy[..n]);
+        let (dx, dy, lx, ly) = (&dx[..n], &dy[..n], &lx[..n], &ly[..n]);
+        let (threshold, textured) = (
+            &threshold[blocks.clone()][..n],
+            &model.surface.textured[blocks.clone()][..n],
+        );
+        let ([fx, fy], [wx, wy]) = (
+            part_mut(&mut forces.friction, blocks),
+            part_mut(&mut forces.velocity, blocks),
+        );
+        let (fx, fy, wx, wy) = (&mut fx[..n], &mut fy[..n], &mut wx[..n], &mut wy[..n]);
+        let slides = &mut forces.slides[blocks.clone()][..n];
+        for k in 0..n {
+            let stiffness = self.stiffness(textured[k]);
+            let pull = [stiffness * (ux[k] - ax[k]), stiffness * (uy[k] - ay[k])];
+            let breaks = dot(pull, pull) > threshold[k] * threshold[k];
             let share = if breaks { -0.5 } else { -1.0 };
-            [fx[b], fy[b]] = [share * pull[0], share * pull[1]];
-            let force = [dx[b] + lx[b] + fx[b], dy[b] + ly[b] + fy[b]];
-            let integrator = integrator.of_mass(model.slider.mass(b));
-            [wx[b], wy[b]] = integrator.accelerate([vx[b], vy[b]], force);
-            slides[b] = breaks;
+            [fx[k], fy[k]] = [share * pull[0], share * pull[1]];
+            let force = [dx[k] + lx[k] + fx[k], dy[k] + ly[k] + fy[k]];
+            [wx[k], wy[k]] = integrator(k).accelerate([vx[k], vy[k]], force);
+            slides[k] = breaks;
         }
     }
 
+    /// Adds the energies of those springs of some blocks that hold, and of those that break at the present instant.
     #[inline(always)]
-    fn extension(&self, displacement: &VectorField, b: usize) -> [f64; 2] {
-        let ([ux, uy], [ax, ay]) = (displacement.at(b), self.anchor.at(b));
-        [ux - ax, uy - ay]
-    }
-
-    /// Energies of the springs that hold and of those that break at the present instant.
-    #[inline(always)]
-    pub(super) fn totals(
+    pub(super) fn add_energies(
         &self,
-        ranks: &dyn Communicator,
         model: &Model,
+        blocks: &Range<usize>,
         displacement: &VectorField,
         breaks: &[bool],
-    ) -> ContactTotals {
-        let sum = |broken: bool| {
-            let energy = |b: usize| {
-                let extension = self.extension(displacement, b);
-                let energy = 0.5 * self.stiffness(model.surface.textured[b]) * dot(extension, extension);
-                if breaks[b] == broken { energy } else { 0.0 }
-            };
-            sum_over(ranks, breaks.len(), energy)
+        [held, broken]: [&mut RunningSum; 2],
+    ) {
+        let n = blocks.len();
+        let ([ux, uy], [ax, ay]) = (part(displacement, blocks), part(&self.anchor, blocks));
+        let (ux, uy, ax, ay) = (&ux[..n], &uy[..n], &ax[..n], &ay[..n]);
+        let (textured, breaks) = (
+            &model.surface.textured[blocks.clone()][..n],
+            &breaks[blocks.clone()][..n],
+        );
+        let energy = |k: usize| {
+            let extension = [ux[k] - ax[k], uy[k] - ay[k]];
+            0.5 * self.stiffness(textured[k]) * dot(extension, extension)
         };
-        ContactTotals {
-            spring_energy: sum(false),
-            broken_energy: sum(true),
-            mean_state: 0.0,
-        }
+        held.add(n, |k| if breaks[k] { 0.0 } else { energy(k) });
+        broken.add(n, |k| if breaks[k] { energy(k) } else { 0.0 });
     }
 }

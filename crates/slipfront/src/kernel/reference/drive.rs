@@ -1,7 +1,10 @@
 //! The drive springs (Eq. 2): forces, energy, and the sums over blocks that belong to them.
 
-use super::weighted::weighted_sum;
-use crate::communicator::Communicator;
+use std::ops::Range;
+
+use super::forces::{part, part_mut};
+use super::weighted::add_weighted;
+use crate::fixed_point::RunningSum;
 use crate::model::Model;
 use crate::vector_field::VectorField;
 
@@ -26,103 +29,109 @@ impl DrivenBlocks {
         }
     }
 
-    /// Eq. 2: `F_s = k_s,i (V t - u)`.
+    /// Eq. 2: `F_s = k_s,i (V t - u)`, of some blocks.
     #[inline(always)]
-    pub(super) fn forces(&self, model: &Model, u: &VectorField, time_star: f64, force: &mut VectorField) {
-        let (k_drive, [along, across]) = (model.drive.k_drive, model.drive.constant_force);
-        match &self.direction {
-            None => {
-                let position = model.drive.position(time_star);
-                let component = |force: &mut [f64], u: &[f64], position: f64, constant: f64| {
-                    for (f, u) in force.iter_mut().zip(u) {
-                        *f = k_drive * (position - u) + constant;
-                    }
-                };
-                component(&mut force.x, &u.x, position[0], along);
-                component(&mut force.y, &u.y, position[1], across);
-            }
-            Some(direction) => {
-                let path = model.drive.path(time_star);
-                let n = u.x.len();
-                let (gx, gy) = (&direction.x[..n], &direction.y[..n]);
-                let (ux, uy) = (&u.x[..n], &u.y[..n]);
-                for (b, f) in force.x[..n].iter_mut().enumerate() {
-                    *f = k_drive * (path * gx[b] - ux[b]) + (along * gx[b] - across * gy[b]);
-                }
-                for (b, f) in force.y[..n].iter_mut().enumerate() {
-                    *f = k_drive * (path * gy[b] - uy[b]) + (along * gy[b] + across * gx[b]);
-                }
-            }
-        }
-        if let Some(relative) = relative(model) {
-            for force in [&mut force.x, &mut force.y] {
-                force
-                    .iter_mut()
-                    .zip(relative)
-                    .for_each(|(f, relative)| *f *= relative);
-            }
-        }
-    }
-
-    /// Energy of the springs, `(k_s,i/2) (V t - u)^2` of each, at displacements `u`.
-    #[inline(always)]
-    pub(super) fn energy(
+    pub(super) fn forces(
         &self,
-        ranks: &dyn Communicator,
         model: &Model,
-        [ux, uy]: [&[f64]; 2],
+        blocks: &Range<usize>,
+        u: &VectorField,
         time_star: f64,
-    ) -> f64 {
-        let n = ux.len();
-        let square = |x: f64, y: f64| x * x + y * y;
-        let sum = match &self.direction {
+        force: &mut VectorField,
+    ) {
+        let (k_drive, [along, across]) = (model.drive.k_drive, model.drive.constant_force);
+        let n = blocks.len();
+        let ([fx, fy], [ux, uy]) = (part_mut(force, blocks), part(u, blocks));
+        let (fx, fy, ux, uy) = (&mut fx[..n], &mut fy[..n], &ux[..n], &uy[..n]);
+        match &self.direction {
             None => {
                 let [x, y] = model.drive.position(time_star);
-                weighted_sum(ranks, n, relative(model), |b| square(x - ux[b], y - uy[b]))
+                for k in 0..n {
+                    fx[k] = k_drive * (x - ux[k]) + along;
+                    fy[k] = k_drive * (y - uy[k]) + across;
+                }
             }
             Some(direction) => {
                 let path = model.drive.path(time_star);
-                let (gx, gy) = (&direction.x[..n], &direction.y[..n]);
-                weighted_sum(ranks, n, relative(model), |b| {
-                    square(path * gx[b] - ux[b], path * gy[b] - uy[b])
-                })
+                let [gx, gy] = part(direction, blocks);
+                let (gx, gy) = (&gx[..n], &gy[..n]);
+                for k in 0..n {
+                    fx[k] = k_drive * (path * gx[k] - ux[k]) + (along * gx[k] - across * gy[k]);
+                    fy[k] = k_drive * (path * gy[k] - uy[k]) + (along * gy[k] + across * gx[k]);
+                }
             }
-        };
-        0.5 * model.drive.k_drive * sum
+        }
+        if let Some(relative) = relative(model, blocks) {
+            let relative = &relative[..n];
+            for k in 0..n {
+                fx[k] *= relative[k];
+                fy[k] *= relative[k];
+            }
+        }
     }
 
-    /// Sums over the blocks of all ranks, `n` of this one, of a vector of components `x` and `y`, weighted with the relative stiffness of the springs: both
+    /// Adds `(V t - u)^2` of the springs of some blocks, each weighted with its relative stiffness.
+    #[inline(always)]
+    pub(super) fn add_squares(
+        &self,
+        model: &Model,
+        blocks: &Range<usize>,
+        u: &VectorField,
+        time_star: f64,
+        sum: &mut RunningSum,
+    ) {
+        let ([ux, uy], n) = (part(u, blocks), blocks.len());
+        let (ux, uy) = (&ux[..n], &uy[..n]);
+        match &self.direction {
+            None => {
+                let [x, y] = model.drive.position(time_star);
+                add_weighted(sum, n, relative(model, blocks), |k| square(x - ux[k], y - uy[k]));
+            }
+            Some(direction) => {
+                let path = model.drive.path(time_star);
+                let [gx, gy] = part(direction, blocks);
+                let (gx, gy) = (&gx[..n], &gy[..n]);
+                add_weighted(sum, n, relative(model, blocks), |k| {
+                    square(path * gx[k] - ux[k], path * gy[k] - uy[k])
+                });
+            }
+        }
+    }
+
+    /// Adds a vector of components `x` and `y` of some blocks, weighted with the relative stiffness of the springs: both
     /// components, of a rotation those along the direction at each block and to its left.
     #[inline(always)]
-    pub(super) fn sums(
+    pub(super) fn add(
         &self,
-        ranks: &dyn Communicator,
         model: &Model,
-        n: usize,
+        blocks: &Range<usize>,
         x: impl Fn(usize) -> f64,
         y: impl Fn(usize) -> f64,
-    ) -> [f64; 2] {
-        let relative = relative(model);
+        [along, across]: [&mut RunningSum; 2],
+    ) {
+        let (n, relative) = (blocks.len(), relative(model, blocks));
         match &self.direction {
-            None => [
-                weighted_sum(ranks, n, relative, x),
-                weighted_sum(ranks, n, relative, y),
-            ],
+            None => {
+                add_weighted(along, n, relative, x);
+                add_weighted(across, n, relative, y);
+            }
             Some(direction) => {
-                let (gx, gy) = (&direction.x[..n], &direction.y[..n]);
-                [
-                    weighted_sum(ranks, n, relative, |b| gx[b] * x(b) + gy[b] * y(b)),
-                    weighted_sum(ranks, n, relative, |b| gx[b] * y(b) - gy[b] * x(b)),
-                ]
+                let [gx, gy] = part(direction, blocks);
+                let (gx, gy) = (&gx[..n], &gy[..n]);
+                add_weighted(along, n, relative, |k| gx[k] * x(k) + gy[k] * y(k));
+                add_weighted(across, n, relative, |k| gx[k] * y(k) - gy[k] * x(k));
             }
         }
     }
 }
 
-fn relative(model: &Model) -> Option<&[f64]> {
-    model
-        .slider
-        .drive_springs
-        .as_ref()
-        .map(|springs| &*springs.relative)
+#[inline(always)]
+fn square(x: f64, y: f64) -> f64 {
+    x * x + y * y
+}
+
+#[inline(always)]
+fn relative<'a>(model: &'a Model, blocks: &Range<usize>) -> Option<&'a [f64]> {
+    let springs = model.slider.drive_springs.as_ref()?;
+    Some(&springs.relative[blocks.clone()])
 }

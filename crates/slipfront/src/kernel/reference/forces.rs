@@ -1,5 +1,7 @@
 //! The forces of a step.
 
+use std::ops::Range;
+
 use crate::vector_field::VectorField;
 
 /// Forces at t_n and the outcome of the update that starts there; one value per block.
@@ -16,8 +18,14 @@ pub(super) struct Forces {
     pub(super) springs: [VectorField; 4],
 }
 
-/// The first `n` values of each component.
+/// Each component over some blocks.
 #[inline(always)]
-pub(super) fn components(field: &VectorField, n: usize) -> [&[f64]; 2] {
-    [&field.x[..n], &field.y[..n]]
+pub(super) fn part<'a>(field: &'a VectorField, blocks: &Range<usize>) -> [&'a [f64]; 2] {
+    [&field.x[blocks.clone()], &field.y[blocks.clone()]]
+}
+
+/// The same, to be filled.
+#[inline(always)]
+pub(super) fn part_mut<'a>(field: &'a mut VectorField, blocks: &Range<usize>) -> [&'a mut [f64]; 2] {
+    [&mut field.x[blocks.clone()], &mut field.y[blocks.clone()]]
 }

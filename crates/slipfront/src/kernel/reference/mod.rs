@@ -1,5 +1,6 @@
 //! The reference kernel: one pass over the blocks per equation, to be read along with the paper.
 //!
+//! The passes go over one part of the blocks after the other, so that what one has found is in the cache for the next.
 //! A step moves the blocks (Eq. 8), finds the forces on them (Eqs. 2, 3) and lets friction and damping act (Eqs. 4-7).
 //! Forces of opposite neighbours are summed in pairs, straight ones before diagonal ones, so that the trajectory of a rotated
 //! or mirrored problem is the rotated or mirrored trajectory, with the same bits.
@@ -8,28 +9,29 @@ mod contact;
 mod contact_springs;
 mod drive;
 mod forces;
-mod halo;
 mod rate_and_state;
+mod rows;
 mod springs;
 mod thresholds;
 mod weighted;
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use fearless_simd::{Level, dispatch};
 
 use self::contact::Contact;
 use self::drive::DrivenBlocks;
-use self::forces::{Forces, components};
-use self::halo::Halo;
-use self::springs::{OwnRows, damper_forces, lattice_energy, lattice_forces};
-use self::weighted::weighted_sum;
+use self::forces::{Forces, part, part_mut};
+use self::rows::Rows;
+use self::springs::{damper_forces, lattice_energy, lattice_forces};
+use self::weighted::add_weighted;
 use super::block::{Block, Field};
 use super::engine::Engine;
 use super::totals::{ContactTotals, StoredEnergy, Totals};
 use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::communicator::Communicator;
-use crate::fixed_point::sum_over;
+use crate::fixed_point::RunningSum;
 use crate::friction::{BlockState, FrictionLaw, Integrator, Law, Literal, Projection, Reversal};
 use crate::lattice::Bond;
 use crate::model::Model;
@@ -38,11 +40,32 @@ use crate::reductions;
 use crate::state::State;
 use crate::vector_field::VectorField;
 
+/// Blocks of a part, unless a row has more.
+const PART: usize = 512;
+
+/// All blocks of this rank, part by part. A part has whole rows, so that no neighbour in the row of a block lies in a later part.
+fn parts(model: &Model) -> impl Iterator<Item = Range<usize>> + use<> {
+    let (n, nx) = (model.surface.n_blocks(), model.lattice.nx);
+    let length = (PART / nx).max(1) * nx;
+    (0..n)
+        .step_by(length)
+        .map(move |first| first..n.min(first + length))
+}
+
+/// Dampers beside the springs between blocks.
+#[derive(Debug)]
+struct Dampers {
+    force: VectorField,
+    /// Of the damper along each bond.
+    bonds: [VectorField; 4],
+}
+
+/// Sums over blocks that every step finds.
+type Sums = [RunningSum; 12];
+
 /// The state of the blocks of this rank, and the forces of the latest step.
 pub(crate) struct Reference {
-    ranks: Arc<dyn Communicator>,
-    /// The rows of this rank with those beside them, if there are other ranks.
-    halo: Option<Halo>,
+    rows: Rows,
     dt_star: f64,
     /// Whether the first step has been evaluated, which does not move the blocks.
     started: bool,
@@ -55,13 +78,17 @@ pub(crate) struct Reference {
     kinetic_force: Vec<f64>,
     driven: DrivenBlocks,
     contact: Contact,
-    /// Relative stiffness of the spring of every block along each bond, if they are not all alike; of several ranks also those of the
-    /// halo.
+    /// Relative stiffness of the spring of every block of the rows along each bond, if they are not all alike.
     relative_springs: Option<[Vec<f64>; 4]>,
-    /// Forces of the dampers beside the springs, if there are any. Like those of the springs they are found for all blocks of a halo.
-    dampers: Option<VectorField>,
-    /// Power that these take.
+    dampers: Option<Dampers>,
+    sums: Sums,
+    /// Those of energies: kinetic half a step before and after, and of the drive springs.
+    energy_sums: [RunningSum; 3],
+    /// Room for the energies of a row.
+    row: Vec<f64>,
+    /// Power that the dampers take.
     viscous_power: f64,
+    contact_totals: ContactTotals,
     first_slip: Vec<f64>,
     stress_square_max: f64,
 }
@@ -70,42 +97,41 @@ impl Reference {
     /// All `ranks` of a lattice must call this together, and then the same functions.
     pub(crate) fn new(model: &Model, dt_star: f64, state: State, ranks: Arc<dyn Communicator>) -> Self {
         let n = model.surface.n_blocks();
-        let halo = Halo::new(model, &ranks);
+        let rows = Rows::new(model, ranks);
         let zeros = || VectorField::zeros(n);
-        let n_with_halo = halo.as_ref().map_or(n, |halo| halo.lattice.n_blocks());
-        let zeros_with_halo = || VectorField::zeros(n_with_halo);
+        let bonds = || [(); 4].map(|()| VectorField::zeros(rows.lattice.n_blocks()));
         let slider = &model.slider;
-        let moduli = Moduli::new(slider, &model.lattice, &model.rows, &*ranks);
-        let springs = || {
-            Bond::ALL.map(|bond| match &halo {
-                None => moduli.springs_along(&bond),
-                Some(halo) => halo.springs_along(&moduli, model, &bond),
-            })
-        };
-        let relative_springs = (!slider.has_equal_springs()).then(springs);
+        let moduli = Moduli::new(slider, &model.lattice, &model.rows, rows.ranks());
+        let relative = || Bond::ALL.map(|bond| rows.springs_along(&moduli, &bond));
         Self {
-            ranks,
-            halo,
             dt_star,
             started: false,
             state,
             forces: Forces {
                 drive: zeros(),
-                lattice: zeros_with_halo(),
+                lattice: zeros(),
                 friction: zeros(),
                 velocity: zeros(),
                 slides: vec![false; n],
-                springs: [(); 4].map(|()| zeros_with_halo()),
+                springs: bonds(),
             },
             static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
             kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
             driven: DrivenBlocks::of(model),
             contact: Contact::new(model),
-            relative_springs,
-            dampers: slider.is_viscous().then(zeros_with_halo),
+            relative_springs: (!slider.has_equal_springs()).then(relative),
+            dampers: slider.is_viscous().then(|| Dampers {
+                force: zeros(),
+                bonds: bonds(),
+            }),
+            sums: Sums::default(),
+            energy_sums: Default::default(),
+            row: vec![0.0; model.lattice.nx],
             viscous_power: 0.0,
+            contact_totals: ContactTotals::default(),
             first_slip: vec![f64::NAN; n],
             stress_square_max: 0.0,
+            rows,
         }
     }
 
@@ -146,151 +172,258 @@ impl Reference {
         Ok(kernel)
     }
 
+    /// Moves the blocks, unless it is the first step, and finds the forces on them, their next velocities, and the sums over them.
     #[inline(always)]
-    fn advance_and_evaluate(&mut self, model: &Model, time_star: f64) {
+    fn advance(&mut self, model: &Model, time_star: f64, energies: bool) -> Totals {
         if std::mem::replace(&mut self.started, true) {
-            match &mut self.contact {
-                Contact::Coulomb(_) => {}
-                Contact::RateAndState(contact) => contact.evolve(&self.state.velocity, self.dt_star),
-                Contact::Springs(springs) => springs.form_again(
-                    model,
-                    &self.state.displacement,
-                    &self.forces.slides,
-                    &mut self.static_limit,
-                ),
+            for blocks in parts(model) {
+                self.move_blocks(model, &blocks);
             }
-            move_blocks(&mut self.state, self.dt_star);
         }
-        let displacement = &self.state.displacement;
-        self.driven
-            .forces(model, displacement, time_star, &mut self.forces.drive);
-        self.find_lattice_forces(model);
-        let integrator = Integrator::new(model.damping, self.dt_star);
-        let (state, forces, masses) = (&self.state, &mut self.forces, model.slider.density.as_deref());
-        match &mut self.contact {
-            Contact::Coulomb(thresholds) => {
-                thresholds.update(&self.static_limit, &self.kinetic_force, state, forces, time_star);
-                let now = thresholds.now(&self.static_limit, &self.kinetic_force);
-                match thresholds.law {
-                    FrictionLaw::Projection => {
-                        friction_forces(&Projection, &integrator, masses, now, state, forces);
-                    }
-                    FrictionLaw::Reversal => {
-                        friction_forces(&Reversal, &integrator, masses, now, state, forces);
-                    }
-                    FrictionLaw::Literal => {
-                        friction_forces(&Literal, &integrator, masses, now, state, forces);
-                    }
+        self.rows.exchange(&self.state);
+        let (mut counts, mut is_evaluated) = ([0; 2], false);
+        let found = loop {
+            for blocks in parts(model) {
+                if !is_evaluated {
+                    self.evaluate(model, &blocks, time_star);
+                    self.count(model, &blocks, time_star, &mut counts);
                 }
-                thresholds.note_stops(state, forces, time_star);
+                self.add_up(model, &blocks);
             }
-            Contact::RateAndState(contact) => contact.apply(model, state, &integrator, forces),
-            Contact::Springs(springs) => {
-                springs.apply(model, state, &self.static_limit, &integrator, forces);
+            is_evaluated = true;
+            if let Some(found) = RunningSum::finish(self.rows.ranks(), &mut self.sums) {
+                break found;
             }
-        }
-        std::mem::swap(&mut self.state.velocity, &mut self.forces.velocity);
-    }
-
-    /// Forces of the springs between blocks and of the dampers beside them.
-    #[inline(always)]
-    fn find_lattice_forces(&mut self, model: &Model) {
-        if let Some(halo) = &mut self.halo {
-            halo.exchange(&self.state);
-        }
-        let halo = self.halo.as_ref();
-        let (lattice, state) =
-            halo.map_or((&model.lattice, &self.state), |halo| (&halo.lattice, &halo.state));
-        let relative = self.relative_springs.as_ref();
-        let Forces {
-            lattice: force,
-            springs,
-            ..
-        } = &mut self.forces;
-        lattice_forces(lattice, model.epsilon, state, relative, force, springs);
-        if let Some(dampers) = &mut self.dampers {
-            damper_forces(lattice, model, state, relative, dampers, springs);
-            add_to(&mut force.x, &dampers.x);
-            add_to(&mut force.y, &dampers.y);
-        }
-        if let Some(halo) = halo {
-            halo.keep_own(force);
-            self.dampers.iter_mut().for_each(|dampers| halo.keep_own(dampers));
-        }
-    }
-
-    fn mark_first_slips(&mut self, model: &Model, time_star: f64) {
-        let blocks = self.forces.slides.iter().zip(&model.surface.textured);
-        for ((slides, textured), time) in blocks.zip(&mut self.first_slip) {
-            if *slides && !textured && time.is_nan() {
-                *time = time_star;
-            }
-        }
-    }
-
-    /// Sums over all blocks at the present step.
-    #[inline(always)]
-    fn measure(&mut self, model: &Model, time_star: f64, energies: bool) -> Totals {
-        let n = self.static_limit.len();
-        let [ux, uy] = components(&self.state.displacement, n);
-        let [bx, by] = components(&self.forces.velocity, n);
-        let [ax, ay] = components(&self.state.velocity, n);
-        let [lx, ly] = components(&self.forces.lattice, n);
-        let [fx, fy] = components(&self.forces.friction, n);
-        let (textured, slides) = (&model.surface.textured[..n], &self.forces.slides[..n]);
-        let mass = model.slider.density.as_deref();
-        let ranks = &*self.ranks;
-        let driven = |[x, y]: [&[f64]; 2]| self.driven.sums(ranks, model, n, |b| x[b], |b| y[b]);
-        let squares = |[x, y]: [&[f64]; 2]| weighted_sum(ranks, n, mass, |b| x[b] * x[b] + y[b] * y[b]);
-        let (vx, vy) = (|b: usize| 0.5 * (bx[b] + ax[b]), |b: usize| 0.5 * (by[b] + ay[b]));
-        let slipping = slides.iter().zip(textured);
-        let mut counts = [
-            slides.iter().filter(|&&slides| slides).count() as i64,
-            slipping
-                .filter(|&(slides, textured)| *slides && !textured)
-                .count() as i64,
-        ];
-        ranks.sum(&mut counts);
+        };
+        let [
+            ux,
+            uy,
+            vx,
+            vy,
+            ax,
+            ay,
+            square,
+            friction,
+            viscous,
+            held,
+            broken,
+            states,
+        ] = found;
+        self.rows.ranks().sum(&mut counts);
         let [n_sliding, n_slipping] = counts.map(|count| count as usize);
-        let stress_square = reductions::largest(n, |b| {
-            let (x, y) = (fx[b] + lx[b], fy[b] + ly[b]);
-            if textured[b] { 0.0 } else { x * x + y * y }
-        });
-        self.stress_square_max = self.stress_square_max.max(stress_square);
-        if let Some(dampers) = &self.dampers {
-            let [dx, dy] = components(dampers, n);
-            self.viscous_power = -sum_over(ranks, n, |b| dx[b] * vx(b) + dy[b] * vy(b));
-        }
+        self.viscous_power = 0.0 - viscous;
+        self.contact_totals = ContactTotals {
+            spring_energy: held,
+            broken_energy: broken,
+            mean_state: states / model.surface.n_contact() as f64,
+        };
+        let stored_energy = energies.then(|| self.stored_energy(model, time_star));
+        std::mem::swap(&mut self.state.velocity, &mut self.forces.velocity);
         Totals {
-            displacement: driven([ux, uy]),
-            velocity: self.driven.sums(ranks, model, n, vx, vy),
-            velocity_after: driven([ax, ay]),
-            velocity_square: weighted_sum(ranks, n, mass, |b| vx(b) * vx(b) + vy(b) * vy(b)),
-            friction_power: match self.contact {
-                // What these springs take is stored, or lost where they break.
-                Contact::Springs(_) => 0.0,
-                _ => sum_over(ranks, n, |b| fx[b] * vx(b) + fy[b] * vy(b)),
-            },
+            displacement: [ux, uy],
+            velocity: [vx, vy],
+            velocity_after: [ax, ay],
+            velocity_square: square,
+            friction_power: friction,
             n_sliding,
             n_slipping,
-            stored_energy: energies.then(|| {
-                let springs = self.relative_springs.as_ref();
-                let (lattice, displacement, own) = match &self.halo {
-                    None => (&model.lattice, &self.state.displacement, model.rows.clone()),
-                    Some(halo) => (&halo.lattice, &halo.state.displacement, halo.own_rows()),
-                };
-                let own = OwnRows {
-                    ranks,
-                    n_rows: model.lattice.ny,
-                    first_row: model.rows.start,
-                    rows: own,
-                };
-                StoredEnergy {
-                    kinetic: 0.25 * (squares([bx, by]) + squares([ax, ay])),
-                    lattice: lattice_energy(lattice, own, displacement, springs, model.epsilon),
-                    drive_springs: self.driven.energy(ranks, model, [ux, uy], time_star),
+            stored_energy,
+        }
+    }
+
+    /// Lets the law of friction remember what some blocks did in the step before, and moves them.
+    #[inline(always)]
+    fn move_blocks(&mut self, model: &Model, blocks: &Range<usize>) {
+        let State {
+            displacement,
+            velocity,
+        } = &mut self.state;
+        match &mut self.contact {
+            Contact::Coulomb(_) => {}
+            Contact::RateAndState(contact) => contact.evolve(blocks, velocity, self.dt_star),
+            Contact::Springs(springs) => {
+                let (breaks, threshold) = (&self.forces.slides, &mut self.static_limit);
+                springs.form_again(model, blocks, displacement, breaks, threshold);
+            }
+        }
+        move_blocks(displacement, velocity, blocks, self.dt_star);
+    }
+
+    /// Finds the forces on some blocks, and their next velocities.
+    #[inline(always)]
+    fn evaluate(&mut self, model: &Model, blocks: &Range<usize>, time_star: f64) {
+        let displacement = &self.state.displacement;
+        let drive = &mut self.forces.drive;
+        self.driven.forces(model, blocks, displacement, time_star, drive);
+        let Forces { lattice, springs, .. } = &mut self.forces;
+        let (rows, relative) = (&self.rows, self.relative_springs.as_ref());
+        let state = rows.state(&self.state);
+        lattice_forces(model, rows, blocks, state, relative, lattice, springs);
+        if let Some(Dampers { force, bonds }) = &mut self.dampers {
+            damper_forces(model, rows, blocks, state, relative, force, bonds);
+            add_to(lattice, force, blocks);
+        }
+        let integrator = Integrator::new(model.damping, self.dt_star);
+        match &model.slider.density {
+            None => self.apply_friction(blocks, |_| integrator, time_star, model),
+            Some(masses) => {
+                let masses = &masses[blocks.clone()];
+                self.apply_friction(blocks, |k| integrator.of_mass(masses[k]), time_star, model);
+            }
+        }
+    }
+
+    /// Eqs. 4-7: friction and damping, and the velocity half a step later, of some blocks. `integrator`: of the first, the second
+    /// and so on of them.
+    #[inline(always)]
+    fn apply_friction(
+        &mut self,
+        blocks: &Range<usize>,
+        integrator: impl Fn(usize) -> Integrator,
+        time_star: f64,
+        model: &Model,
+    ) {
+        let (state, forces) = (&self.state, &mut self.forces);
+        match &mut self.contact {
+            Contact::Coulomb(thresholds) => {
+                let (young, at_rest) = (&self.static_limit, &self.kinetic_force);
+                thresholds.update(blocks, young, at_rest, state, forces, time_star);
+                let now = thresholds.now(young, at_rest);
+                match thresholds.law {
+                    FrictionLaw::Projection => {
+                        friction_forces(&Projection, integrator, blocks, now, state, forces);
+                    }
+                    FrictionLaw::Reversal => {
+                        friction_forces(&Reversal, integrator, blocks, now, state, forces);
+                    }
+                    FrictionLaw::Literal => {
+                        friction_forces(&Literal, integrator, blocks, now, state, forces);
+                    }
                 }
-            }),
+                thresholds.note_stops(blocks, state, forces, time_star);
+            }
+            Contact::RateAndState(contact) => contact.apply(blocks, state, integrator, forces),
+            Contact::Springs(springs) => {
+                springs.apply(model, blocks, state, &self.static_limit, integrator, forces);
+            }
+        }
+    }
+
+    /// Counts which of some blocks slide, and which of these are in contact; notes the first slips of these.
+    #[inline(always)]
+    fn count(&mut self, model: &Model, blocks: &Range<usize>, time_star: f64, counts: &mut [i64; 2]) {
+        let n = blocks.len();
+        let textured = &model.surface.textured[blocks.clone()][..n];
+        let slides = &self.forces.slides[blocks.clone()][..n];
+        let first_slip = &mut self.first_slip[blocks.clone()][..n];
+        let (mut n_sliding, mut n_slipping) = (0_u32, 0_u32);
+        for k in 0..n {
+            let slips = slides[k] & !textured[k];
+            n_sliding += u32::from(slides[k]);
+            n_slipping += u32::from(slips);
+            let is_first = slips & first_slip[k].is_nan();
+            first_slip[k] = if is_first { time_star } else { first_slip[k] };
+        }
+        counts[0] += i64::from(n_sliding);
+        counts[1] += i64::from(n_slipping);
+    }
+
+    /// Adds up what every step sums over blocks, after their next velocities are known.
+    #[inline(always)]
+    fn add_up(&mut self, model: &Model, blocks: &Range<usize>) {
+        let n = blocks.len();
+        let [ux, uy] = part(&self.state.displacement, blocks);
+        let [bx, by] = part(&self.state.velocity, blocks);
+        let [ax, ay] = part(&self.forces.velocity, blocks);
+        let [lx, ly] = part(&self.forces.lattice, blocks);
+        let [fx, fy] = part(&self.forces.friction, blocks);
+        let (ux, uy, bx, by, ax, ay) = (&ux[..n], &uy[..n], &bx[..n], &by[..n], &ax[..n], &ay[..n]);
+        let (lx, ly, fx, fy) = (&lx[..n], &ly[..n], &fx[..n], &fy[..n]);
+        let textured = &model.surface.textured[blocks.clone()][..n];
+        let masses = model
+            .slider
+            .density
+            .as_ref()
+            .map(|masses| &masses[blocks.clone()]);
+        let (vx, vy) = (|k: usize| 0.5 * (bx[k] + ax[k]), |k: usize| 0.5 * (by[k] + ay[k]));
+        let [
+            ux_sum,
+            uy_sum,
+            vx_sum,
+            vy_sum,
+            ax_sum,
+            ay_sum,
+            square,
+            friction,
+            viscous,
+            held,
+            broken,
+            states,
+        ] = &mut self.sums;
+        let driven = &self.driven;
+        driven.add(model, blocks, |k| ux[k], |k| uy[k], [ux_sum, uy_sum]);
+        driven.add(model, blocks, vx, vy, [vx_sum, vy_sum]);
+        driven.add(model, blocks, |k| ax[k], |k| ay[k], [ax_sum, ay_sum]);
+        add_weighted(square, n, masses, |k| vx(k) * vx(k) + vy(k) * vy(k));
+        match &self.contact {
+            Contact::Coulomb(_) => {}
+            Contact::RateAndState(contact) => contact.add_states(model, blocks, states),
+            Contact::Springs(springs) => {
+                let (displacement, breaks) = (&self.state.displacement, &self.forces.slides);
+                springs.add_energies(model, blocks, displacement, breaks, [held, broken]);
+            }
+        }
+        // What springs to the substrate take is stored, or lost where they break.
+        if !matches!(self.contact, Contact::Springs(_)) {
+            friction.add(n, |k| fx[k] * vx(k) + fy[k] * vy(k));
+        }
+        if let Some(dampers) = &self.dampers {
+            let [dx, dy] = part(&dampers.force, blocks);
+            let (dx, dy) = (&dx[..n], &dy[..n]);
+            viscous.add(n, |k| dx[k] * vx(k) + dy[k] * vy(k));
+        }
+        let stress_square = reductions::largest(n, |k| {
+            let (x, y) = (fx[k] + lx[k], fy[k] + ly[k]);
+            if textured[k] { 0.0 } else { x * x + y * y }
+        });
+        self.stress_square_max = self.stress_square_max.max(stress_square);
+    }
+
+    /// Energies of all blocks, after their next velocities are known.
+    #[inline(always)]
+    fn stored_energy(&mut self, model: &Model, time_star: f64) -> StoredEnergy {
+        let displacement = &self.state.displacement;
+        let [before, after, drive_springs] = loop {
+            let [before, after, drive_springs] = &mut self.energy_sums;
+            for blocks in parts(model) {
+                let n = blocks.len();
+                let masses = model
+                    .slider
+                    .density
+                    .as_ref()
+                    .map(|masses| &masses[blocks.clone()]);
+                let [bx, by] = part(&self.state.velocity, &blocks).map(|component| &component[..n]);
+                let [ax, ay] = part(&self.forces.velocity, &blocks).map(|component| &component[..n]);
+                add_weighted(before, n, masses, |k| bx[k] * bx[k] + by[k] * by[k]);
+                add_weighted(after, n, masses, |k| ax[k] * ax[k] + ay[k] * ay[k]);
+                self.driven
+                    .add_squares(model, &blocks, displacement, time_star, drive_springs);
+            }
+            if let Some(found) = RunningSum::finish(self.rows.ranks(), &mut self.energy_sums) {
+                break found;
+            }
+        };
+        let relative = self.relative_springs.as_ref();
+        StoredEnergy {
+            kinetic: 0.25 * (before + after),
+            lattice: lattice_energy(
+                &self.rows,
+                &self.rows.state(&self.state).displacement,
+                relative,
+                model.epsilon,
+                &mut self.row,
+            ),
+            drive_springs: 0.5 * model.drive.k_drive * drive_springs,
         }
     }
 }
@@ -298,10 +431,7 @@ impl Reference {
 impl Engine for Reference {
     fn step(&mut self, model: &Model, number: u64, energies: bool) -> Totals {
         let time_star = number as f64 * self.dt_star;
-        let level = Level::new();
-        dispatch!(level, _ => self.advance_and_evaluate(model, time_star));
-        self.mark_first_slips(model, time_star);
-        dispatch!(level, _ => self.measure(model, time_star, energies))
+        dispatch!(Level::new(), _ => self.advance(model, time_star, energies))
     }
 
     fn block(&self, _: &Model, _: u64, b: usize) -> Block {
@@ -354,7 +484,7 @@ impl Engine for Reference {
 
     fn stress_square_max(&self, _: &Model, _: u64) -> f64 {
         let mut largest = [self.stress_square_max];
-        self.ranks.largest(&mut largest);
+        self.rows.ranks().largest(&mut largest);
         largest[0]
     }
 
@@ -366,15 +496,8 @@ impl Engine for Reference {
         None
     }
 
-    fn contact_totals(&self, model: &Model) -> ContactTotals {
-        let ranks = &*self.ranks;
-        match &self.contact {
-            Contact::Coulomb(_) => ContactTotals::default(),
-            Contact::RateAndState(contact) => contact.totals(ranks, model),
-            Contact::Springs(springs) => {
-                springs.totals(ranks, model, &self.state.displacement, &self.forces.slides)
-            }
-        }
+    fn contact_totals(&self, _: &Model) -> ContactTotals {
+        self.contact_totals
     }
 
     fn memory(&self) -> Vec<&[f64]> {
@@ -388,65 +511,49 @@ impl Engine for Reference {
 }
 
 #[inline(always)]
-fn add_to(values: &mut [f64], others: &[f64]) {
-    values
-        .iter_mut()
-        .zip(others)
-        .for_each(|(value, other)| *value += other);
+fn add_to(field: &mut VectorField, other: &VectorField, blocks: &Range<usize>) {
+    for (values, others) in part_mut(field, blocks).into_iter().zip(part(other, blocks)) {
+        values
+            .iter_mut()
+            .zip(others)
+            .for_each(|(value, other)| *value += other);
+    }
 }
 
 /// Eq. 8: `u(t + dt) = u(t) + dt v(t + dt/2)`.
 #[inline(always)]
-fn move_blocks(state: &mut State, dt_star: f64) {
-    let (displacement, velocity) = (&mut state.displacement, &state.velocity);
-    for (u, v) in [
-        (&mut displacement.x, &velocity.x),
-        (&mut displacement.y, &velocity.y),
-    ] {
+fn move_blocks(displacement: &mut VectorField, velocity: &VectorField, blocks: &Range<usize>, dt_star: f64) {
+    for (u, v) in part_mut(displacement, blocks)
+        .into_iter()
+        .zip(part(velocity, blocks))
+    {
         u.iter_mut().zip(v).for_each(|(u, v)| *u += dt_star * v);
     }
 }
 
-/// Eqs. 4-7: friction and damping, and the velocity half a step later, of blocks with these masses; 1 if there are none.
+/// Applies the friction law to some blocks: finds friction, velocities and which slide from thresholds, velocities and forces.
 #[inline(always)]
 fn friction_forces<L: Law>(
     law: &L,
-    integrator: &Integrator,
-    masses: Option<&[f64]>,
-    thresholds: [&[f64]; 2],
-    state: &State,
-    forces: &mut Forces,
-) {
-    match masses {
-        None => friction_of_masses(law, |_| *integrator, thresholds, state, forces),
-        Some(masses) => {
-            friction_of_masses(law, |b| integrator.of_mass(masses[b]), thresholds, state, forces);
-        }
-    }
-}
-
-#[inline(always)]
-fn friction_of_masses<L: Law>(
-    law: &L,
     integrator: impl Fn(usize) -> Integrator,
+    blocks: &Range<usize>,
     thresholds: [&[f64]; 2],
     state: &State,
     forces: &mut Forces,
 ) {
-    let (drive, lattice, before) = (&forces.drive, &forces.lattice, &state.velocity);
     apply_friction(
         law,
         integrator,
-        thresholds,
-        [&before.x, &before.y],
-        [&drive.x, &drive.y, &lattice.x, &lattice.y],
-        [&mut forces.friction.x, &mut forces.friction.y],
-        [&mut forces.velocity.x, &mut forces.velocity.y],
-        &mut forces.slides,
+        thresholds.map(|array| &array[blocks.clone()]),
+        part(&state.velocity, blocks),
+        [part(&forces.drive, blocks), part(&forces.lattice, blocks)],
+        part_mut(&mut forces.friction, blocks),
+        part_mut(&mut forces.velocity, blocks),
+        &mut forces.slides[blocks.clone()],
     );
 }
 
-/// Applies the friction law to every block: finds friction, velocities and which slide from thresholds, velocities and forces.
+/// The same, given separate slices.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)] // Separate slices are known not to overlap, so that the loop is vectorised.
 fn apply_friction<L: Law>(
@@ -454,7 +561,7 @@ fn apply_friction<L: Law>(
     integrator: impl Fn(usize) -> Integrator,
     thresholds: [&[f64]; 2],
     velocity: [&[f64]; 2],
-    forces: [&[f64]; 4],
+    forces: [[&[f64]; 2]; 2],
     friction: [&mut [f64]; 2],
     after: [&mut [f64]; 2],
     slides: &mut [bool],
@@ -462,21 +569,21 @@ fn apply_friction<L: Law>(
     let n = slides.len();
     let [static_limit, kinetic_force] = thresholds.map(|array| &array[..n]);
     let [vx, vy] = velocity.map(|array| &array[..n]);
-    let [drive_x, drive_y, lattice_x, lattice_y] = forces.map(|array| &array[..n]);
+    let [[drive_x, drive_y], [lattice_x, lattice_y]] = forces.map(|force| force.map(|array| &array[..n]));
     let [friction_x, friction_y] = friction.map(|array| &mut array[..n]);
     let [after_x, after_y] = after.map(|array| &mut array[..n]);
-    for b in 0..n {
+    for k in 0..n {
         let update = law.update(
             &BlockState {
-                velocity: [vx[b], vy[b]],
-                force: [drive_x[b] + lattice_x[b], drive_y[b] + lattice_y[b]],
-                static_limit: static_limit[b],
-                kinetic_force: kinetic_force[b],
+                velocity: [vx[k], vy[k]],
+                force: [drive_x[k] + lattice_x[k], drive_y[k] + lattice_y[k]],
+                static_limit: static_limit[k],
+                kinetic_force: kinetic_force[k],
             },
-            &integrator(b),
+            &integrator(k),
         );
-        [friction_x[b], friction_y[b]] = update.friction;
-        [after_x[b], after_y[b]] = update.velocity;
-        slides[b] = update.slides;
+        [friction_x[k], friction_y[k]] = update.friction;
+        [after_x[k], after_y[k]] = update.velocity;
+        slides[k] = update.slides;
     }
 }

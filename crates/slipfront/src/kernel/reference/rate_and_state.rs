@@ -2,11 +2,9 @@
 
 use std::ops::Range;
 
-use super::forces::{Forces, components};
-use crate::communicator::Communicator;
-use crate::fixed_point::sum_over;
-use crate::friction::{Integrator, RateAndState, Sliding};
-use crate::kernel::totals::ContactTotals;
+use super::forces::{Forces, part, part_mut};
+use crate::fixed_point::RunningSum;
+use crate::friction::{Integrator, LogFactors, RateAndState, Sliding};
 use crate::model::Model;
 use crate::state::State;
 use crate::vector_field::{VectorField, length};
@@ -18,6 +16,7 @@ const AT_ONCE: usize = 32;
 #[derive(Debug)]
 pub(super) struct StateContact {
     law: RateAndState,
+    log_factors: LogFactors,
     /// `theta`, t*.
     pub(super) theta: Vec<f64>,
     /// `F_n`; 0 over a texture.
@@ -29,27 +28,44 @@ impl StateContact {
         let n = model.surface.n_blocks();
         Self {
             law,
+            log_factors: law.log_factors(),
             theta: vec![law.theta_0; n],
             normal_force: (0..n).map(|b| model.surface.normal_force(b)).collect(),
         }
     }
 
-    /// Takes the states forward over a step, at the speeds in its middle.
+    /// Takes the states of some blocks forward over a step, at the speeds in its middle.
     #[inline(always)]
-    pub(super) fn evolve(&mut self, velocity: &VectorField, dt_star: f64) {
-        let n = self.theta.len();
-        let [vx, vy] = components(velocity, n);
-        for b in 0..n {
-            self.theta[b] = self.law.evolve(self.theta[b], length([vx[b], vy[b]]), dt_star);
+    pub(super) fn evolve(&mut self, blocks: &Range<usize>, velocity: &VectorField, dt_star: f64) {
+        for first in blocks.clone().step_by(AT_ONCE) {
+            let blocks = first..blocks.end.min(first + AT_ONCE);
+            let (n, [vx, vy]) = (blocks.len(), part(velocity, &blocks));
+            let (vx, vy) = (&vx[..n], &vy[..n]);
+            let mut speed = [0.0; AT_ONCE];
+            for k in 0..n {
+                speed[k] = length([vx[k], vy[k]]);
+            }
+            self.law.evolve_all(&mut self.theta[blocks], &speed[..n], dt_star);
         }
     }
 
-    /// Friction and the velocities half a step later. A block counts as sliding above the slip speed.
+    /// Friction and the velocities half a step later of some blocks. A block counts as sliding above the slip speed.
     #[inline(always)]
-    pub(super) fn apply(&self, model: &Model, state: &State, integrator: &Integrator, forces: &mut Forces) {
-        for first in (0..self.theta.len()).step_by(AT_ONCE) {
-            let len = AT_ONCE.min(self.theta.len() - first);
-            self.apply_to(first..first + len, model, state, integrator, forces);
+    pub(super) fn apply(
+        &self,
+        blocks: &Range<usize>,
+        state: &State,
+        integrator: impl Fn(usize) -> Integrator,
+        forces: &mut Forces,
+    ) {
+        for first in blocks.clone().step_by(AT_ONCE) {
+            let end = blocks.end.min(first + AT_ONCE);
+            self.apply_to(
+                &(first..end),
+                state,
+                |k| integrator(first - blocks.start + k),
+                forces,
+            );
         }
     }
 
@@ -57,51 +73,56 @@ impl StateContact {
     #[inline(always)]
     fn apply_to(
         &self,
-        blocks: Range<usize>,
-        model: &Model,
+        blocks: &Range<usize>,
         state: &State,
-        integrator: &Integrator,
+        integrator: impl Fn(usize) -> Integrator,
         forces: &mut Forces,
     ) {
-        let zeros = [0.0; AT_ONCE];
-        let (mut velocity, mut free) = ([zeros; 2], zeros);
-        // Where there is no block the values are those of one that is not moved.
-        let (mut theta, mut normal_force, mut g) = ([1.0; AT_ONCE], zeros, zeros);
-        for (k, b) in blocks.clone().enumerate() {
-            let integrator = integrator.of_mass(model.slider.mass(b));
-            let (drive, lattice) = (forces.drive.at(b), forces.lattice.at(b));
-            let force = [drive[0] + lattice[0], drive[1] + lattice[1]];
-            let moved = integrator.accelerate(state.velocity.at(b), force);
+        let n = blocks.len();
+        let (zeros, ones) = ([0.0; AT_ONCE], [1.0; AT_ONCE]);
+        // Where there is no block the values are those of one that nothing holds.
+        let (mut velocity, mut free, mut before) = ([zeros; 2], ones, ones);
+        let (mut theta, mut normal_force, mut g) = (ones, zeros, zeros);
+        let ([vx, vy], [dx, dy]) = (part(&state.velocity, blocks), part(&forces.drive, blocks));
+        let [lx, ly] = part(&forces.lattice, blocks);
+        theta[..n].copy_from_slice(&self.theta[blocks.clone()]);
+        normal_force[..n].copy_from_slice(&self.normal_force[blocks.clone()]);
+        for k in 0..n {
+            let integrator = integrator(k);
+            let moved = integrator.accelerate([vx[k], vy[k]], [dx[k] + lx[k], dy[k] + ly[k]]);
             [velocity[0][k], velocity[1][k]] = moved;
-            free[k] = length(moved);
-            (theta[k], normal_force[k], g[k]) =
-                (self.theta[b], self.normal_force[b], integrator.force_to_velocity);
+            (free[k], before[k]) = (length(moved), length([vx[k], vy[k]]));
+            g[k] = integrator.force_to_velocity;
         }
-        let Sliding { speed, friction } = self.law.slide(&free, &theta, &normal_force, &g);
-        for (k, b) in blocks.enumerate() {
-            let direction = [0, 1].map(|axis| {
-                if free[k] > 0.0 {
-                    velocity[axis][k] / free[k]
-                } else {
-                    0.0
-                }
-            });
-            [forces.friction.x[b], forces.friction.y[b]] = direction.map(|d| -friction[k] * d);
-            [forces.velocity.x[b], forces.velocity.y[b]] = direction.map(|d| speed[k] * d);
-            forces.slides[b] = speed[k] > self.law.slip_speed;
+        let Sliding { speed, friction } = {
+            let speeds = [&free, &before];
+            self.law
+                .slide(self.log_factors, speeds, &theta, &normal_force, &g)
+        };
+        let ([fx, fy], [wx, wy]) = (
+            part_mut(&mut forces.friction, blocks),
+            part_mut(&mut forces.velocity, blocks),
+        );
+        let (fx, fy, wx, wy) = (&mut fx[..n], &mut fy[..n], &mut wx[..n], &mut wy[..n]);
+        let slides = &mut forces.slides[blocks.clone()][..n];
+        for k in 0..n {
+            let moves = free[k] >= f64::MIN_POSITIVE;
+            let inverse = if moves { 1.0 / free[k] } else { 0.0 };
+            let (x, y) = (inverse * velocity[0][k], inverse * velocity[1][k]);
+            (fx[k], fy[k]) = (-friction[k] * x, -friction[k] * y);
+            (wx[k], wy[k]) = (speed[k] * x, speed[k] * y);
+            slides[k] = speed[k] > self.law.slip_speed;
         }
     }
 
-    /// The mean state of the blocks in contact.
+    /// Adds the states of those of some blocks that are in contact.
     #[inline(always)]
-    pub(super) fn totals(&self, ranks: &dyn Communicator, model: &Model) -> ContactTotals {
-        let textured = &model.surface.textured;
-        let sum = sum_over(ranks, self.theta.len(), |b| {
-            if textured[b] { 0.0 } else { self.theta[b] }
-        });
-        ContactTotals {
-            mean_state: sum / model.surface.n_contact() as f64,
-            ..ContactTotals::default()
-        }
+    pub(super) fn add_states(&self, model: &Model, blocks: &Range<usize>, sum: &mut RunningSum) {
+        let n = blocks.len();
+        let (theta, textured) = (
+            &self.theta[blocks.clone()][..n],
+            &model.surface.textured[blocks.clone()][..n],
+        );
+        sum.add(n, |k| if textured[k] { 0.0 } else { theta[k] });
     }
 }

@@ -2,178 +2,254 @@
 
 use std::ops::Range;
 
-use crate::communicator::Communicator;
+use super::forces::{part, part_mut};
+use super::rows::Rows;
 use crate::fixed_point;
 use crate::lattice::{Bond, Edges, Lattice};
 use crate::model::Model;
 use crate::state::State;
 use crate::vector_field::VectorField;
 
-/// Eq. 3: `F_c = sum_j k_ij (r_ij - d_ij) e_ij` over the eight neighbours, every spring computed once. `relative`: stiffness of each
-/// over that of its bond, if they are not all alike.
+/// Eq. 3: `F_c = sum_j k_ij (r_ij - d_ij) e_ij` over the eight neighbours, every spring computed once. Of some blocks, after those before
+/// them. `relative`: stiffness of each over that of its bond, if they are not all alike.
 #[inline(always)]
 pub(super) fn lattice_forces(
-    lattice: &Lattice,
-    epsilon: f64,
+    model: &Model,
+    rows: &Rows,
+    blocks: &Range<usize>,
     state: &State,
     relative: Option<&[Vec<f64>; 4]>,
     force: &mut VectorField,
     springs: &mut [VectorField; 4],
 ) {
-    let u = &state.displacement;
-    for (bond, spring) in Bond::ALL.iter().zip(springs.iter_mut()) {
-        let all = |n: usize, shift: usize, force: [&mut [f64]; 2]| {
-            let ahead = [&u.x[shift..shift + n], &u.y[shift..shift + n]];
-            bond_forces(bond, epsilon, [&u.x[..n], &u.y[..n]], ahead, force);
-        };
-        let one = |b: usize, other: usize| bond.force([u.x[other] - u.x[b], u.y[other] - u.y[b]], epsilon);
-        along_bond(lattice, bond, all, one, spring);
-    }
-    sum_all(lattice, relative, force, springs);
+    let spring = Spring {
+        u: &state.displacement,
+        epsilon: model.epsilon,
+    };
+    sum_all(rows, blocks, &spring, relative, force, springs);
 }
 
 /// Forces of dampers beside all springs (Kelvin-Voigt), `F_v = sum_j tau_v k_ij (e_ij . (v_j - v_i)) e_ij`, of the velocities half a
-/// step before.
+/// step before; as [`lattice_forces`].
 #[inline(always)]
 pub(super) fn damper_forces(
-    lattice: &Lattice,
     model: &Model,
+    rows: &Rows,
+    blocks: &Range<usize>,
     state: &State,
     relative: Option<&[Vec<f64>; 4]>,
     force: &mut VectorField,
     dampers: &mut [VectorField; 4],
 ) {
-    let (u, v) = (&state.displacement, &state.velocity);
-    let (epsilon, time) = (model.epsilon, model.slider.viscosity_time);
-    for (bond, damper) in Bond::ALL.iter().zip(dampers.iter_mut()) {
-        let one = |b: usize, other: usize| {
-            let e = [u.x[other] - u.x[b], u.y[other] - u.y[b]];
-            let w = [v.x[other] - v.x[b], v.y[other] - v.y[b]];
-            bond.damper_force(e, w, epsilon).map(|force| time * force)
-        };
-        let all = |n: usize, shift: usize, [fx, fy]: [&mut [f64]; 2]| {
-            let fields = [&u.x, &u.y, &v.x, &v.y];
-            let [ux, uy, vx, vy] = fields.map(|field| &field[..n]);
-            let [next_ux, next_uy, next_vx, next_vy] = fields.map(|field| &field[shift..shift + n]);
-            let (fx, fy) = (&mut fx[..n], &mut fy[..n]);
-            for k in 0..n {
-                let e = [next_ux[k] - ux[k], next_uy[k] - uy[k]];
-                let w = [next_vx[k] - vx[k], next_vy[k] - vy[k]];
-                [fx[k], fy[k]] = bond.damper_force(e, w, epsilon).map(|force| time * force);
-            }
-        };
-        along_bond(lattice, bond, all, one, damper);
-    }
-    sum_all(lattice, relative, force, dampers);
+    let damper = Damper {
+        u: &state.displacement,
+        v: &state.velocity,
+        epsilon: model.epsilon,
+        time: model.slider.viscosity_time,
+    };
+    sum_all(rows, blocks, &damper, relative, force, dampers);
 }
 
-/// Sums what acts along the bonds of every block, after it was made `relative` times as strong.
-#[inline(always)]
-fn sum_all(
-    lattice: &Lattice,
-    relative: Option<&[Vec<f64>; 4]>,
-    force: &mut VectorField,
-    springs: &mut [VectorField; 4],
-) {
-    for (relative, spring) in relative.into_iter().flatten().zip(springs.iter_mut()) {
-        for component in [&mut spring.x, &mut spring.y] {
-            component
-                .iter_mut()
-                .zip(relative)
-                .for_each(|(force, relative)| *force *= relative);
+/// What acts between a block and its neighbour along a bond.
+trait Connection {
+    /// The force on a block from its neighbour.
+    fn one(&self, bond: &Bond, b: usize, other: usize) -> [f64; 2];
+
+    /// The same of consecutive blocks, whose neighbours are all equally far away.
+    fn many(&self, bond: &Bond, blocks: &Range<usize>, neighbours: &Range<usize>, force: [&mut [f64]; 2]);
+}
+
+/// A spring, given displacements.
+struct Spring<'a> {
+    u: &'a VectorField,
+    epsilon: f64,
+}
+
+/// A damper beside a spring, given displacements and velocities.
+struct Damper<'a> {
+    u: &'a VectorField,
+    v: &'a VectorField,
+    epsilon: f64,
+    time: f64,
+}
+
+impl Connection for Spring<'_> {
+    #[inline(always)]
+    fn one(&self, bond: &Bond, b: usize, other: usize) -> [f64; 2] {
+        bond.force(difference(self.u, b, other), self.epsilon)
+    }
+
+    #[inline(always)]
+    fn many(&self, bond: &Bond, blocks: &Range<usize>, neighbours: &Range<usize>, [fx, fy]: [&mut [f64]; 2]) {
+        let n = fx.len();
+        let ([ux, uy], [next_ux, next_uy]) = (part(self.u, blocks), part(self.u, neighbours));
+        let (ux, uy, next_ux, next_uy, fy) = (&ux[..n], &uy[..n], &next_ux[..n], &next_uy[..n], &mut fy[..n]);
+        for k in 0..n {
+            [fx[k], fy[k]] = bond.force([next_ux[k] - ux[k], next_uy[k] - uy[k]], self.epsilon);
         }
     }
-    let [x, y] = [&*springs; 2];
-    sum_springs(lattice, x.each_ref().map(|spring| &*spring.x), &mut force.x);
-    sum_springs(lattice, y.each_ref().map(|spring| &*spring.y), &mut force.y);
 }
 
-/// Force on every block along `bond`; zero where a free edge leaves its neighbour out. `all` finds the forces on the first blocks,
-/// given their number and how far away the neighbours of all of them are; `one` the force on a block from its neighbour.
+impl Damper<'_> {
+    #[inline(always)]
+    fn force(&self, bond: &Bond, e: [f64; 2], w: [f64; 2]) -> [f64; 2] {
+        let [x, y] = bond.damper_force(e, w, self.epsilon);
+        [self.time * x, self.time * y]
+    }
+}
+
+impl Connection for Damper<'_> {
+    #[inline(always)]
+    fn one(&self, bond: &Bond, b: usize, other: usize) -> [f64; 2] {
+        self.force(bond, difference(self.u, b, other), difference(self.v, b, other))
+    }
+
+    #[inline(always)]
+    fn many(&self, bond: &Bond, blocks: &Range<usize>, neighbours: &Range<usize>, [fx, fy]: [&mut [f64]; 2]) {
+        let n = fx.len();
+        let ([ux, uy], [next_ux, next_uy]) = (part(self.u, blocks), part(self.u, neighbours));
+        let ([vx, vy], [next_vx, next_vy]) = (part(self.v, blocks), part(self.v, neighbours));
+        let (ux, uy, next_ux, next_uy) = (&ux[..n], &uy[..n], &next_ux[..n], &next_uy[..n]);
+        let (vx, vy, next_vx, next_vy, fy) = (&vx[..n], &vy[..n], &next_vx[..n], &next_vy[..n], &mut fy[..n]);
+        for k in 0..n {
+            let e = [next_ux[k] - ux[k], next_uy[k] - uy[k]];
+            let w = [next_vx[k] - vx[k], next_vy[k] - vy[k]];
+            [fx[k], fy[k]] = self.force(bond, e, w);
+        }
+    }
+}
+
+#[inline(always)]
+fn difference(field: &VectorField, b: usize, other: usize) -> [f64; 2] {
+    [field.x[other] - field.x[b], field.y[other] - field.y[b]]
+}
+
+/// Sums what acts along the bonds of every block, `relative` times as strong. What acts along those of the blocks before is known.
+#[inline(always)]
+fn sum_all(
+    rows: &Rows,
+    blocks: &Range<usize>,
+    connection: &impl Connection,
+    relative: Option<&[Vec<f64>; 4]>,
+    force: &mut VectorField,
+    bonds: &mut [VectorField; 4],
+) {
+    let (lattice, [force_x, force_y]) = (&rows.lattice, part_mut(force, blocks));
+    let (is_first, blocks) = (blocks.start == 0, &rows.among_all(blocks));
+    let behind = is_first.then(|| rows.behind());
+    for blocks in behind.iter().chain([blocks]) {
+        for (number, along) in bonds.iter_mut().enumerate() {
+            along_bond(lattice, blocks, &Bond::ALL[number], connection, along);
+            if let Some(relative) = relative {
+                let relative = &relative[number][blocks.clone()];
+                for component in part_mut(along, blocks) {
+                    let forces = component.iter_mut().zip(relative);
+                    forces.for_each(|(force, relative)| *force *= relative);
+                }
+            }
+        }
+    }
+    let [x, y] = [&*bonds; 2];
+    sum_springs(lattice, blocks, x.each_ref().map(|along| &*along.x), force_x);
+    sum_springs(lattice, blocks, y.each_ref().map(|along| &*along.y), force_y);
+}
+
+/// Those of some blocks that stand in column `i`.
+#[inline(always)]
+fn in_column(lattice: &Lattice, blocks: &Range<usize>, i: usize) -> impl Iterator<Item = usize> {
+    let before = (blocks.start + lattice.nx - i - 1) / lattice.nx;
+    (before * lattice.nx + i..blocks.end).step_by(lattice.nx)
+}
+
+/// The part of some blocks from `first` on and before `end`.
+#[inline(always)]
+fn between(blocks: &Range<usize>, first: usize, end: usize) -> Range<usize> {
+    let end = end.min(blocks.end);
+    first.max(blocks.start).min(end)..end
+}
+
+/// Force on some blocks along `bond`; zero where a free edge leaves its neighbour out.
 #[inline(always)]
 fn along_bond(
     lattice: &Lattice,
+    blocks: &Range<usize>,
     bond: &Bond,
-    all: impl FnOnce(usize, usize, [&mut [f64]; 2]),
-    one: impl Fn(usize, usize) -> [f64; 2],
+    connection: &impl Connection,
     force: &mut VectorField,
 ) {
     // In block order the neighbours of all blocks are equally far away: one loop for all rows. What it finds at the ends of
     // the rows is replaced afterwards.
-    let shift = lattice.shift(bond).min(lattice.n_blocks());
-    let n = lattice.n_blocks() - shift;
-    all(n, shift, [&mut force.x[..n], &mut force.y[..n]]);
-    let mut replace = |i: usize, j: usize| {
-        let b = lattice.block(i, j);
+    let (n, shift) = (lattice.n_blocks(), lattice.shift(bond));
+    let inside = between(blocks, blocks.start, n.saturating_sub(shift));
+    let neighbours = inside.start + shift..inside.end + shift;
+    if !inside.is_empty() {
+        connection.many(bond, &inside, &neighbours, part_mut(force, &inside));
+    }
+    let mut replace = |b: usize| {
+        let (i, j) = lattice.column_row(b);
         [force.x[b], force.y[b]] = match lattice.neighbour(i, j, bond.offset) {
-            Some(other) => one(b, other),
+            Some(other) => connection.one(bond, b, other),
             None => [0.0, 0.0],
         };
     };
     match bond.offset[0] {
-        1 => (0..lattice.ny).for_each(|j| replace(lattice.nx - 1, j)),
-        -1 => (0..lattice.ny).for_each(|j| replace(0, j)),
+        1 => in_column(lattice, blocks, lattice.nx - 1).for_each(&mut replace),
+        -1 => in_column(lattice, blocks, 0).for_each(&mut replace),
         _ => {}
     }
     if bond.offset[1] == 1 {
+        let top = between(blocks, lattice.block(0, lattice.ny - 1), n);
         match lattice.edges[1] {
-            Edges::Periodic => (0..lattice.nx).for_each(|i| replace(i, lattice.ny - 1)),
-            Edges::Free => {
-                let top = lattice.block(0, lattice.ny - 1);
-                force.x[top..].fill(0.0);
-                force.y[top..].fill(0.0);
-            }
+            Edges::Periodic => top.for_each(replace),
+            Edges::Free => part_mut(force, &top)
+                .into_iter()
+                .for_each(|force| force.fill(0.0)),
         }
     }
 }
 
-/// Forces along one bond on blocks displaced by `u`, from their neighbours displaced by `v`.
+/// Adds the eight springs of some blocks: along each bond that to the neighbour ahead, less that of the neighbour behind.
 #[inline(always)]
-fn bond_forces(bond: &Bond, epsilon: f64, u: [&[f64]; 2], v: [&[f64]; 2], force: [&mut [f64]; 2]) {
-    let [fx, fy] = force;
-    let n = fx.len();
-    let (ux, uy, vx, vy, fy) = (&u[0][..n], &u[1][..n], &v[0][..n], &v[1][..n], &mut fy[..n]);
-    for k in 0..n {
-        [fx[k], fy[k]] = bond.force([vx[k] - ux[k], vy[k] - uy[k]], epsilon);
-    }
-}
-
-/// Adds the eight springs of every block: along each bond that to the neighbour ahead, less that of the neighbour behind.
-#[inline(always)]
-fn sum_springs(lattice: &Lattice, springs: [&[f64]; 4], total: &mut [f64]) {
+fn sum_springs(lattice: &Lattice, blocks: &Range<usize>, springs: [&[f64]; 4], total: &mut [f64]) {
     // One loop for all rows again, from the first block whose neighbours behind it all have indices from 0.
-    let first = lattice.shift(&Bond::NORTH_EAST).min(lattice.n_blocks());
-    let n = lattice.n_blocks() - first;
-    let own = springs.map(|spring| &spring[first..]);
-    let mut behind = springs;
+    let inside = between(blocks, lattice.shift(&Bond::NORTH_EAST), blocks.end);
+    let (own, mut behind) = (springs.map(|spring| &spring[inside.clone()]), springs);
     for (spring, bond) in behind.iter_mut().zip(&Bond::ALL) {
-        let from = first - lattice.shift(bond).min(first);
-        *spring = &spring[from..from + n];
+        let from = inside.start - lattice.shift(bond).min(inside.start);
+        *spring = &spring[from..from + inside.len()];
     }
-    add_pairs(own, behind, &mut total[first..]);
+    add_pairs(own, behind, &mut total[inside.start - blocks.start..]);
     if lattice.edges[1] == Edges::Free {
         // Below the bottom row there is nothing, and the neighbour behind along the row is the block before.
-        let row = springs.map(|spring| &spring[1..lattice.nx]);
-        add_bottom_row(row, &springs[0][..lattice.nx - 1], &mut total[1..lattice.nx]);
+        let bottom = between(blocks, 1, lattice.nx);
+        if !bottom.is_empty() {
+            let row = springs.map(|spring| &spring[bottom.clone()]);
+            let before = &springs[0][bottom.start - 1..bottom.end - 1];
+            add_bottom_row(
+                row,
+                before,
+                &mut total[bottom.start - blocks.start..][..bottom.len()],
+            );
+        }
     }
-    let mut replace = |i: usize, j: usize| {
+    let mut replace = |b: usize| {
+        let (i, j) = lattice.column_row(b);
         let pair = |bond: usize| {
             let Bond { offset: [di, dj], .. } = Bond::ALL[bond];
             let behind = lattice
                 .neighbour(i, j, [-di, -dj])
                 .map_or(0.0, |b| springs[bond][b]);
-            springs[bond][lattice.block(i, j)] - behind
+            springs[bond][b] - behind
         };
-        total[lattice.block(i, j)] = (pair(0) + pair(1)) + (pair(2) + pair(3));
+        total[b - blocks.start] = (pair(0) + pair(1)) + (pair(2) + pair(3));
     };
-    replace(0, 0);
     if lattice.edges[1] == Edges::Periodic {
-        (1..lattice.nx).for_each(|i| replace(i, 0));
+        between(blocks, 0, lattice.nx).for_each(&mut replace);
     }
     // At free edges the loop found springs of force zero, which is right; along a periodic axis neighbours wrap around.
-    (1..lattice.ny).for_each(|j| replace(0, j));
+    in_column(lattice, blocks, 0).for_each(&mut replace);
     if lattice.edges[0] == Edges::Periodic {
-        (1..lattice.ny).for_each(|j| replace(lattice.nx - 1, j));
+        in_column(lattice, blocks, lattice.nx - 1).for_each(&mut replace);
     }
 }
 
@@ -196,54 +272,20 @@ fn add_bottom_row(own: [&[f64]; 4], before: &[f64], total: &mut [f64]) {
     }
 }
 
-/// The rows of a lattice that this rank holds, of which `ranks` together hold `n_rows`.
-pub(super) struct OwnRows<'a> {
-    pub(super) ranks: &'a dyn Communicator,
-    /// Of the whole lattice.
-    pub(super) n_rows: usize,
-    /// Number of the first in the whole lattice.
-    pub(super) first_row: usize,
-    /// In the lattice that springs are summed over, which may have rows of other ranks.
-    pub(super) rows: Range<usize>,
-}
-
-impl OwnRows<'_> {
-    /// Sum of numbers of all rows, of which `of_row` gives those of this rank: in the same order for any number of ranks, and so with
-    /// the same bits.
-    fn sum(&self, of_row: impl Fn(usize) -> f64) -> f64 {
-        let mut bits = vec![0; self.n_rows];
-        for (bits, j) in bits[self.first_row..].iter_mut().zip(self.rows.clone()) {
-            *bits = of_row(j).to_bits() as i64;
-        }
-        self.ranks.sum(&mut bits);
-        bits.into_iter().map(|bits| f64::from_bits(bits as u64)).sum()
-    }
-}
-
-/// Energy of all springs between blocks at displacements `u`. `relative`: stiffness of each over that of its bond, if they are not
-/// all alike.
+/// Energy of all springs between blocks of the whole lattice at displacements `u`. `relative`: stiffness of each over that of its bond, if they are not
+/// all alike. `row`: room for the energies of a row.
 #[inline(always)]
 pub(super) fn lattice_energy(
-    lattice: &Lattice,
-    own: OwnRows,
+    rows: &Rows,
     u: &VectorField,
     relative: Option<&[Vec<f64>; 4]>,
     epsilon: f64,
+    row: &mut [f64],
 ) -> f64 {
-    let energy = |bond: &Bond, b: usize, n: usize| bond.energy([u.x[n] - u.x[b], u.y[n] - u.y[b]], epsilon);
-    match relative {
-        None => sum_energies(lattice, own, |bond, b, n| energy(&Bond::ALL[bond], b, n)),
-        Some(relative) => sum_energies(lattice, own, |bond, b, n| {
-            relative[bond][b] * energy(&Bond::ALL[bond], b, n)
-        }),
-    }
-}
-
-/// Sum of the energies of all springs, of which `energy` is given the number of the bond, the block and its neighbour.
-#[inline(always)]
-fn sum_energies(lattice: &Lattice, own: OwnRows, energy: impl Fn(usize, usize, usize) -> f64) -> f64 {
-    let row_energy = |number: usize, j: usize| -> f64 {
+    let lattice = &rows.lattice;
+    let mut row_energy = |number: usize, j: usize| -> f64 {
         let bond = &Bond::ALL[number];
+        let relative = relative.map(|relative| &*relative[number]);
         // One block of the row may have its neighbour beyond the end of the row. The neighbours of all others are equally far away.
         let (end, first) = match bond.offset[0] {
             1 => (Some(lattice.nx - 1), 0),
@@ -251,11 +293,9 @@ fn sum_energies(lattice: &Lattice, own: OwnRows, energy: impl Fn(usize, usize, u
             _ => (None, 0),
         };
         let beyond = end.and_then(|i| {
-            Some(energy(
-                number,
-                lattice.block(i, j),
-                lattice.neighbour(i, j, bond.offset)?,
-            ))
+            let b = lattice.block(i, j);
+            let energy = bond.energy(difference(u, b, lattice.neighbour(i, j, bond.offset)?), epsilon);
+            Some(relative.map_or(energy, |relative| relative[b] * energy))
         });
         let inside = lattice.nx - usize::from(end.is_some());
         let neighbour = if inside > 0 {
@@ -264,12 +304,34 @@ fn sum_energies(lattice: &Lattice, own: OwnRows, energy: impl Fn(usize, usize, u
             None
         };
         let along = neighbour.map_or(0.0, |neighbour| {
-            let block = lattice.block(first, j);
-            fixed_point::sum(inside, |k| energy(number, block + k, neighbour + k))
+            let (b, row) = (lattice.block(first, j), &mut row[..inside]);
+            let blocks = b..b + inside;
+            energies(
+                bond,
+                epsilon,
+                part(u, &blocks),
+                part(u, &(neighbour..neighbour + inside)),
+                row,
+            );
+            if let Some(relative) = relative {
+                let weighted = row.iter_mut().zip(&relative[blocks]);
+                weighted.for_each(|(energy, relative)| *energy *= relative);
+            }
+            fixed_point::sum(inside, |k| row[k])
         });
         along + beyond.unwrap_or(0.0)
     };
     (0..Bond::ALL.len())
-        .map(|bond| own.sum(|j| row_energy(bond, j)))
+        .map(|bond| rows.sum(|j| row_energy(bond, j)))
         .sum()
+}
+
+/// Energies of the springs along one bond of blocks displaced by `u`, to their neighbours displaced by `v`.
+#[inline(always)]
+fn energies(bond: &Bond, epsilon: f64, u: [&[f64]; 2], v: [&[f64]; 2], energy: &mut [f64]) {
+    let n = energy.len();
+    let (ux, uy, vx, vy) = (&u[0][..n], &u[1][..n], &v[0][..n], &v[1][..n]);
+    for k in 0..n {
+        energy[k] = bond.energy([vx[k] - ux[k], vy[k] - uy[k]], epsilon);
+    }
 }

@@ -1,10 +1,12 @@
 //! Thresholds of Coulomb's law that follow speed and age.
 
-use super::forces::Forces;
+use std::ops::Range;
+
+use super::forces::{Forces, part};
 use crate::friction::{Ageing, Coulomb, FrictionLaw, Weakening};
 use crate::state::State;
 use crate::surface::Adhesion;
-use crate::vector_field::VectorField;
+use crate::vector_field::{VectorField, dot, length};
 
 /// Coulomb's law, with thresholds at the present step where they are not those of the surface.
 #[derive(Debug)]
@@ -51,10 +53,11 @@ impl Thresholds {
         }
     }
 
-    /// Finds the thresholds at the present instant, from those of age 0 and at rest.
+    /// Finds the thresholds of some blocks at the present instant, from those of age 0 and at rest.
     #[inline(always)]
     pub(super) fn update(
         &mut self,
+        blocks: &Range<usize>,
         young: &[f64],
         at_rest: &[f64],
         state: &State,
@@ -62,10 +65,11 @@ impl Thresholds {
         time_star: f64,
     ) {
         if let Some(weakened) = &mut self.weakened {
-            weakened.update(at_rest, &state.velocity);
+            weakened.update(blocks, at_rest, &state.velocity);
         }
         if let Some(aged) = &mut self.aged {
             aged.update(
+                blocks,
                 young,
                 &state.velocity,
                 [&forces.drive, &forces.lattice],
@@ -84,11 +88,17 @@ impl Thresholds {
         ]
     }
 
-    /// Notes the blocks that stop now, if their age matters.
+    /// Notes those of some blocks that stop now, if their age matters.
     #[inline(always)]
-    pub(super) fn note_stops(&mut self, state: &State, forces: &Forces, time_star: f64) {
+    pub(super) fn note_stops(
+        &mut self,
+        blocks: &Range<usize>,
+        state: &State,
+        forces: &Forces,
+        time_star: f64,
+    ) {
         if let Some(aged) = &mut self.aged {
-            aged.note_stops(&state.velocity, &forces.slides, time_star);
+            aged.note_stops(blocks, &state.velocity, &forces.slides, time_star);
         }
     }
 }
@@ -96,12 +106,14 @@ impl Thresholds {
 impl Weakened {
     /// Kinetic friction at the velocities half a step before.
     #[inline(always)]
-    fn update(&mut self, at_rest: &[f64], velocity: &VectorField) {
-        let n = self.kinetic_force.len();
-        let (at_rest, vx, vy) = (&at_rest[..n], &velocity.x[..n], &velocity.y[..n]);
-        for b in 0..n {
-            let speed = (vx[b] * vx[b] + vy[b] * vy[b]).sqrt();
-            self.kinetic_force[b] = self.law.kinetic_force(at_rest[b], self.adhesion, speed);
+    fn update(&mut self, blocks: &Range<usize>, at_rest: &[f64], velocity: &VectorField) {
+        let (n, [vx, vy]) = (blocks.len(), part(velocity, blocks));
+        let (at_rest, vx, vy) = (&at_rest[blocks.clone()][..n], &vx[..n], &vy[..n]);
+        let kinetic_force = &mut self.kinetic_force[blocks.clone()][..n];
+        for k in 0..n {
+            kinetic_force[k] = self
+                .law
+                .kinetic_force(at_rest[k], self.adhesion, length([vx[k], vy[k]]));
         }
     }
 }
@@ -109,30 +121,46 @@ impl Weakened {
 impl Aged {
     /// Static thresholds of the blocks that are stuck and whose force exceeds what they had at age 0: only there does age matter.
     #[inline(always)]
-    fn update(&mut self, young: &[f64], velocity: &VectorField, forces: [&VectorField; 2], time_star: f64) {
-        let n = self.static_limit.len();
-        let (young, vx, vy) = (&young[..n], &velocity.x[..n], &velocity.y[..n]);
-        let [[dx, dy], [lx, ly]] = forces.map(|force| [&force.x[..n], &force.y[..n]]);
-        for b in 0..n {
-            let [x, y] = [dx[b] + lx[b], dy[b] + ly[b]];
-            let is_stuck = (vx[b] == 0.0) & (vy[b] == 0.0);
-            self.static_limit[b] = if is_stuck & (x * x + y * y > young[b] * young[b]) {
-                let age = time_star - self.stopped_at[b];
-                self.law.static_limit(young[b], self.adhesion, age)
-            } else {
-                young[b]
-            };
+    fn update(
+        &mut self,
+        blocks: &Range<usize>,
+        young: &[f64],
+        velocity: &VectorField,
+        forces: [&VectorField; 2],
+        time_star: f64,
+    ) {
+        let (n, [vx, vy], [[dx, dy], [lx, ly]]) = (
+            blocks.len(),
+            part(velocity, blocks),
+            forces.map(|force| part(force, blocks)),
+        );
+        let (young, vx, vy) = (&young[blocks.clone()][..n], &vx[..n], &vy[..n]);
+        let (dx, dy, lx, ly) = (&dx[..n], &dy[..n], &lx[..n], &ly[..n]);
+        let is_old = |k: usize| {
+            let force = [dx[k] + lx[k], dy[k] + ly[k]];
+            (vx[k] == 0.0) & (vy[k] == 0.0) & (dot(force, force) > young[k] * young[k])
+        };
+        let static_limit = &mut self.static_limit[blocks.clone()][..n];
+        static_limit.copy_from_slice(young);
+        // There are few of them, which have their logarithms one by one.
+        let n_old: u32 = (0..n).map(|k| u32::from(is_old(k))).sum();
+        if n_old > 0 {
+            for k in (0..n).filter(|&k| is_old(k)) {
+                let age = time_star - self.stopped_at[blocks.start + k];
+                static_limit[k] = self.law.static_limit(young[k], self.adhesion, age);
+            }
         }
     }
 
     /// Notes the blocks that stop now. Evaluated again from the same velocities, a step notes the same.
     #[inline(always)]
-    fn note_stops(&mut self, before: &VectorField, slides: &[bool], time_star: f64) {
-        let n = self.stopped_at.len();
-        let (vx, vy, slides) = (&before.x[..n], &before.y[..n], &slides[..n]);
-        for b in 0..n {
-            let stops = ((vx[b] != 0.0) | (vy[b] != 0.0)) & !slides[b];
-            self.stopped_at[b] = if stops { time_star } else { self.stopped_at[b] };
+    fn note_stops(&mut self, blocks: &Range<usize>, before: &VectorField, slides: &[bool], time_star: f64) {
+        let (n, [vx, vy]) = (blocks.len(), part(before, blocks));
+        let (vx, vy, slides) = (&vx[..n], &vy[..n], &slides[blocks.clone()][..n]);
+        let stopped_at = &mut self.stopped_at[blocks.clone()][..n];
+        for k in 0..n {
+            let stops = ((vx[k] != 0.0) | (vy[k] != 0.0)) & !slides[k];
+            stopped_at[k] = if stops { time_star } else { stopped_at[k] };
         }
     }
 }

@@ -1,21 +1,20 @@
 //! Sums over blocks that do not all count alike.
 
-use crate::communicator::Communicator;
-use crate::fixed_point::sum_over;
+use crate::fixed_point::RunningSum;
 
-/// Sum of `weight term` over the blocks of all ranks; all weights are 1 if there are none.
+/// Adds `weight term(k)` of `n` blocks; all weights are 1 if there are none.
 #[inline(always)]
-pub(super) fn weighted_sum(
-    ranks: &dyn Communicator,
+pub(super) fn add_weighted(
+    sum: &mut RunningSum,
     n: usize,
     weights: Option<&[f64]>,
     term: impl Fn(usize) -> f64,
-) -> f64 {
+) {
     match weights {
-        None => sum_over(ranks, n, term),
+        None => sum.add(n, term),
         Some(weights) => {
             let weights = &weights[..n];
-            sum_over(ranks, n, |b| weights[b] * term(b))
+            sum.add(n, |k| weights[k] * term(k));
         }
     }
 }

@@ -1,0 +1,237 @@
+//! Cost of a step of every option: other drives, sliders and laws of friction.
+//!
+//! ```console
+//! $ cargo run --release -p slipfront --example option_cost -- 1 50 200 1024
+//! ```
+//!
+//! The first number is that of the threads, the others are sizes: square sliders with the coefficients of Fig. 3. They begin in steady
+//! sliding, and after a hundred steps some blocks stick and others slip. Every block is computed at every step. The options are measured
+//! by turns, and the best of each counts: nanoseconds per step and block of the lattice, and how many times as long it takes as the
+//! plain model on the fused kernel. What that kernel does not compute stands below the plain model on the reference kernel.
+
+use std::error::Error;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use slipfront::communicator::Alone;
+use slipfront::surface::{Adhesion, Coefficients, Contact, Distribution, Load, pressure_along};
+use slipfront::{
+    Ageing, ContactSprings, Coulomb, Drive, Edge, Execution, Friction, FrictionLaw, Kernel, Lattice, Model,
+    Outline, Program, RateAndState, Rotation, Simulation, Slider, State, Surface, VectorField, Weakening,
+    scales,
+};
+
+const V_STAR: f64 = 0.03;
+const DT_STAR: f64 = 0.1;
+
+/// Time for which each option runs between two looks at the clock.
+const SLICE: Duration = Duration::from_millis(60);
+/// How often every option has its turn.
+const TURNS: usize = 5;
+/// Steps after which a simulation that begins in steady sliding is measured.
+const WARM_UP: usize = 100;
+
+/// What differs from the plain model, one or several.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Choice {
+    EdgeDrive,
+    Program,
+    Rotation,
+    LoadProfile,
+    Adhesion,
+    Grading,
+    Disc,
+    Viscosity,
+    Weakening,
+    Ageing,
+    Reversal,
+    Literal,
+    RateAndState,
+    ContactSprings,
+}
+
+use Choice::{Disc, Grading, LoadProfile, Viscosity};
+
+/// The options that are measured, with their names.
+pub(crate) const MEASURED: [(&str, &[Choice]); 19] = [
+    ("plain", &[]),
+    ("edge drive", &[Choice::EdgeDrive]),
+    ("load profile", &[LoadProfile]),
+    ("program", &[Choice::Program]),
+    ("adhesion", &[Choice::Adhesion]),
+    ("weakening", &[Choice::Weakening]),
+    ("grading", &[Grading]),
+    ("disc", &[Disc]),
+    ("graded disc, weakening", &[Grading, Disc, Choice::Weakening]),
+    ("plain, reference kernel", &[]),
+    ("reversal", &[Choice::Reversal]),
+    ("literal", &[Choice::Literal]),
+    ("viscosity", &[Viscosity]),
+    ("rotation of a disc", &[Disc, Choice::Rotation]),
+    ("ageing", &[Choice::Ageing]),
+    ("rate and state", &[Choice::RateAndState]),
+    ("contact springs", &[Choice::ContactSprings]),
+    (
+        "graded disc, rotation, viscosity, ageing",
+        &[Grading, Disc, Choice::Rotation, Viscosity, Choice::Ageing],
+    ),
+    (
+        "graded disc, rotation, viscosity, rate and state",
+        &[Grading, Disc, Choice::Rotation, Viscosity, Choice::RateAndState],
+    ),
+];
+
+pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Error>> {
+    let has = |choice: Choice| choices.contains(&choice);
+    let lattice = Lattice::free(size, size);
+    let n = lattice.n_blocks();
+    let (rows, damping) = (0..lattice.ny, scales::damping(0.1));
+    let graded = |from_to: [f64; 2]| has(Grading).then(|| Slider::grade(&lattice, rows.clone(), 0, from_to));
+    let outline = has(Disc).then(|| Outline::new(Outline::disc(&lattice, rows.clone()), &Alone));
+    let mut slider = Slider::new(graded([1.0, 0.5]), graded([1.2, 0.8]), outline, &Alone);
+    if has(Choice::EdgeDrive) {
+        slider.attach_edge(&lattice, &rows, Edge::Left, &Alone);
+    }
+    if has(Viscosity) {
+        slider.viscosity_time = 0.1;
+    }
+    let gauss = |mean: f64| Distribution {
+        mean,
+        deviation: 0.05 * mean,
+    };
+    let contact = Contact {
+        pressure: has(LoadProfile).then(|| pressure_along(&lattice, rows.clone(), 0, 0.5)),
+        adhesion: if has(Choice::Adhesion) {
+            Adhesion {
+                of_static: 0.2,
+                of_kinetic: 0.1,
+            }
+        } else {
+            Adhesion::default()
+        },
+        ..Contact::new(Load::Redistributed, 1.0)
+    };
+    let drawn = Coefficients::draw(n, gauss(1.0), gauss(0.5), 1);
+    let surface = Surface::of_ranks(drawn, vec![false; n], contact, &slider, &Alone)?;
+    let coulomb = Coulomb {
+        law: if has(Choice::Reversal) {
+            FrictionLaw::Reversal
+        } else if has(Choice::Literal) {
+            FrictionLaw::Literal
+        } else {
+            FrictionLaw::Projection
+        },
+        weakening: has(Choice::Weakening).then_some(Weakening {
+            critical_speed: 0.1,
+            ratio: 0.5,
+        }),
+        ageing: has(Choice::Ageing).then_some(Ageing {
+            beta: 0.02,
+            time: 1.0,
+        }),
+    };
+    let d_c = 0.5;
+    let friction = if has(Choice::RateAndState) {
+        Friction::RateAndState(RateAndState {
+            a: 0.01,
+            b: 0.02,
+            d_c,
+            v_0: V_STAR,
+            mu_0: 0.6,
+            theta_0: d_c / V_STAR,
+            slip_speed: 1e-3,
+        })
+    } else if has(Choice::ContactSprings) {
+        Friction::ContactSprings(ContactSprings {
+            stiffness: 1.0,
+            redraw: None,
+        })
+    } else {
+        Friction::Coulomb(coulomb)
+    };
+    let mut model = Model::new(lattice, surface, Drive::along_x(V_STAR), damping, 1e-6, friction);
+    model.slider = slider;
+    if has(Choice::Rotation) {
+        model.drive.rotation = Some(Rotation::about_centroid(&lattice, &model.slider));
+    }
+    if has(Choice::Program) {
+        let segments = [(V_STAR, 5.0), (0.5 * V_STAR, 9.0), (V_STAR, f64::INFINITY)];
+        model.drive.program = Some(Arc::new(Program::new(segments)));
+    }
+    Ok(model)
+}
+
+/// Every block at the speed of the drive, and behind it by what it takes to keep it there.
+pub(crate) fn steady_state(model: &Model) -> State {
+    let behind = match model.friction {
+        Friction::ContactSprings(_) => 0.0,
+        _ => -model.steady_level() / model.drive.k_drive,
+    };
+    let field = |factor: f64| {
+        let directions = (0..model.surface.n_blocks()).map(|b| model.drive.direction_at(&model.lattice, b));
+        let (x, y): (Vec<f64>, Vec<f64>) = directions.map(|[x, y]| (factor * x, factor * y)).unzip();
+        VectorField { x, y }
+    };
+    State {
+        displacement: field(behind),
+        velocity: field(model.drive.v_star),
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let numbers: Vec<usize> = std::env::args()
+        .skip(1)
+        .map(|word| word.parse())
+        .collect::<Result<_, _>>()?;
+    let [threads, sizes @ ..] = numbers.as_slice() else {
+        return Err("usage: option_cost THREADS SIZE...".into());
+    };
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(*threads)
+        .build_global()?;
+    for &size in sizes {
+        print_costs(size, *threads)?;
+    }
+    Ok(())
+}
+
+fn print_costs(size: usize, threads: usize) -> Result<(), Box<dyn Error>> {
+    let mut simulations = Vec::new();
+    for (name, choices) in MEASURED {
+        let model = model(size, choices)?;
+        let is_plain_reference = name.ends_with("reference kernel");
+        let execution = Execution {
+            kernel: if is_plain_reference {
+                Kernel::Reference
+            } else {
+                Kernel::Fused
+            },
+            threads,
+            skips: false,
+        };
+        let state = Some(steady_state(&model));
+        let mut simulation = Simulation::with_execution(model, DT_STAR, state, execution);
+        (0..WARM_UP).for_each(|_| simulation.step());
+        simulations.push(simulation);
+    }
+    let mut best = vec![f64::INFINITY; simulations.len()];
+    for _ in 0..TURNS {
+        for (best, simulation) in best.iter_mut().zip(&mut simulations) {
+            let (began, mut steps) = (Instant::now(), 0);
+            while began.elapsed() < SLICE {
+                (0..10).for_each(|_| simulation.step());
+                steps += 10;
+            }
+            let nanoseconds = began.elapsed().as_secs_f64() * 1e9;
+            *best = best.min(nanoseconds / f64::from(steps) / (size * size) as f64);
+        }
+    }
+    println!(
+        "{size} x {size} blocks, {threads} threads, {}: ns per block and step, times plain",
+        slipfront::simd_width()
+    );
+    for ((name, _), time) in MEASURED.iter().zip(&best) {
+        println!("{name:50} {time:7.2} {:6.2}", time / best[0]);
+    }
+    Ok(())
+}
