@@ -152,7 +152,7 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
     let mut model = Model::new(lattice, surface, Drive::along_x(V_STAR), damping, 1e-6, friction);
     model.slider = slider;
     if has(Choice::Rotation) {
-        model.drive.rotation = Some(Rotation::about_centroid(&lattice, &model.slider));
+        model.drive.rotation = Some(Rotation::about_centroid(&lattice, &model.rows, &model.slider, &Alone));
     }
     if has(Choice::Program) {
         let segments = [(V_STAR, 5.0), (0.5 * V_STAR, 9.0), (V_STAR, f64::INFINITY)];
@@ -165,7 +165,7 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
 pub(crate) fn steady_state(model: &Model) -> State {
     let behind = match model.friction {
         Friction::ContactSprings(_) => 0.0,
-        _ => -model.steady_level() / model.drive.k_drive,
+        _ => -model.steady_level(&Alone) / model.drive.k_drive,
     };
     let field = |factor: f64| {
         let directions = (0..model.surface.n_blocks()).map(|b| model.drive.direction_at(&model.lattice, b));
