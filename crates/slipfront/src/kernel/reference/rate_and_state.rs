@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::forces::{Forces, part, part_mut};
+use super::weighted::Scratch;
 use crate::fixed_point::RunningSum;
 use crate::friction::{Integrator, LogFactors, RateAndState, Sliding};
 use crate::model::Model;
@@ -117,12 +118,19 @@ impl StateContact {
 
     /// Adds the states of those of some blocks that are in contact.
     #[inline(always)]
-    pub(super) fn add_states(&self, model: &Model, blocks: &Range<usize>, sum: &mut RunningSum) {
-        let n = blocks.len();
-        let (theta, textured) = (
-            &self.theta[blocks.clone()][..n],
-            &model.surface.textured[blocks.clone()][..n],
-        );
-        sum.add(n, |k| if textured[k] { 0.0 } else { theta[k] });
+    pub(super) fn add_states(
+        &self,
+        model: &Model,
+        blocks: &Range<usize>,
+        sum: &mut RunningSum,
+        scratch: &mut Scratch,
+    ) {
+        let (n, theta) = (blocks.len(), &self.theta[blocks.clone()]);
+        let (theta, textured) = (&theta[..n], &model.surface.textured[blocks.clone()][..n]);
+        let states = &mut scratch.terms[..n];
+        for k in 0..n {
+            states[k] = if textured[k] { 0.0 } else { theta[k] };
+        }
+        sum.add(states);
     }
 }
