@@ -161,14 +161,15 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
     Ok(model)
 }
 
-/// Every block at the speed of the drive, and behind it by what it takes to keep it there.
+/// Every block at the speed of the drive, more or less, and behind it by what it takes to keep it there.
 pub(crate) fn steady_state(model: &Model) -> State {
     let behind = match model.friction {
         Friction::ContactSprings(_) => 0.0,
         _ => -model.steady_level() / model.drive.k_drive,
     };
-    let field = |factor: f64| {
+    let field = |factor: f64, scatter: f64| {
         let at = |b: usize| {
+            let factor = factor * (1.0 + scatter * ((b * 7919 % 1000) as f64 / 500.0 - 1.0));
             let [x, y] = model.drive.direction_at(&model.lattice, b);
             let factor = if model.slider.exists(b) { factor } else { 0.0 };
             (factor * x, factor * y)
@@ -177,8 +178,8 @@ pub(crate) fn steady_state(model: &Model) -> State {
         VectorField { x, y }
     };
     State {
-        displacement: field(behind),
-        velocity: field(model.drive.v_star),
+        displacement: field(behind, 0.0),
+        velocity: field(model.drive.v_star, 0.5),
     }
 }
 

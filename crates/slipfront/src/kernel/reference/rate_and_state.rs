@@ -42,11 +42,14 @@ impl StateContact {
             let blocks = first..blocks.end.min(first + AT_ONCE);
             let (n, [vx, vy]) = (blocks.len(), part(velocity, &blocks));
             let (vx, vy) = (&vx[..n], &vy[..n]);
-            let mut speed = [0.0; AT_ONCE];
+            let (mut speed, mut theta) = ([0.0; AT_ONCE], [1.0; AT_ONCE]);
             for k in 0..n {
                 speed[k] = length([vx[k], vy[k]]);
             }
-            self.law.evolve_all(&mut self.theta[blocks], &speed[..n], dt_star);
+            let own = &mut self.theta[blocks];
+            theta[..n].copy_from_slice(own);
+            self.law.evolve_all(&mut theta, &speed, dt_star);
+            own.copy_from_slice(&theta[..n]);
         }
     }
 
