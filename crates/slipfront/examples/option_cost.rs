@@ -24,10 +24,10 @@ use slipfront::{
 const V_STAR: f64 = 0.03;
 const DT_STAR: f64 = 0.1;
 
-/// Time for which each option runs between two looks at the clock.
-const SLICE: Duration = Duration::from_millis(60);
+/// Time for which each option runs at a time: so short that most other programs do not interrupt it.
+const SLICE: Duration = Duration::from_millis(2);
 /// How often every option has its turn.
-const TURNS: usize = 5;
+const TURNS: usize = 150;
 /// Steps after which a simulation that begins in steady sliding is measured.
 const WARM_UP: usize = 100;
 
@@ -152,7 +152,12 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
     let mut model = Model::new(lattice, surface, Drive::along_x(V_STAR), damping, 1e-6, friction);
     model.slider = slider;
     if has(Choice::Rotation) {
-        model.drive.rotation = Some(Rotation::about_centroid(&lattice, &model.rows, &model.slider, &Alone));
+        model.drive.rotation = Some(Rotation::about_centroid(
+            &lattice,
+            &model.rows,
+            &model.slider,
+            &Alone,
+        ));
     }
     if has(Choice::Program) {
         let segments = [(V_STAR, 5.0), (0.5 * V_STAR, 9.0), (V_STAR, f64::INFINITY)];
@@ -161,20 +166,25 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
     Ok(model)
 }
 
-/// Every block at the speed of the drive, and behind it by what it takes to keep it there.
+/// Every block at the speed of the drive, more or less, and behind it by what it takes to keep it there.
 pub(crate) fn steady_state(model: &Model) -> State {
     let behind = match model.friction {
         Friction::ContactSprings(_) => 0.0,
         _ => -model.steady_level(&Alone) / model.drive.k_drive,
     };
-    let field = |factor: f64| {
-        let directions = (0..model.surface.n_blocks()).map(|b| model.drive.direction_at(&model.lattice, b));
-        let (x, y): (Vec<f64>, Vec<f64>) = directions.map(|[x, y]| (factor * x, factor * y)).unzip();
+    let field = |factor: f64, scatter: f64| {
+        let at = |b: usize| {
+            let factor = factor * (1.0 + scatter * ((b * 7919 % 1000) as f64 / 500.0 - 1.0));
+            let [x, y] = model.drive.direction_at(&model.lattice, b);
+            let factor = if model.slider.exists(b) { factor } else { 0.0 };
+            (factor * x, factor * y)
+        };
+        let (x, y): (Vec<f64>, Vec<f64>) = (0..model.surface.n_blocks()).map(at).unzip();
         VectorField { x, y }
     };
     State {
-        displacement: field(behind),
-        velocity: field(model.drive.v_star),
+        displacement: field(behind, 0.0),
+        velocity: field(model.drive.v_star, 0.5),
     }
 }
 
@@ -219,8 +229,8 @@ fn print_costs(size: usize, threads: usize) -> Result<(), Box<dyn Error>> {
         for (best, simulation) in best.iter_mut().zip(&mut simulations) {
             let (began, mut steps) = (Instant::now(), 0);
             while began.elapsed() < SLICE {
-                (0..10).for_each(|_| simulation.step());
-                steps += 10;
+                simulation.step();
+                steps += 1;
             }
             let nanoseconds = began.elapsed().as_secs_f64() * 1e9;
             *best = best.min(nanoseconds / f64::from(steps) / (size * size) as f64);

@@ -65,7 +65,7 @@ pub(crate) fn ln(x: f64) -> f64 {
     let n = f64::from_bits((bits >> 52) | TO_WHOLE.to_bits()) - (TO_WHOLE + 1023.0);
     let m = f64::from_bits((bits & MANTISSA).wrapping_add(LEAST));
     let s = (m - 1.0) / (m + 1.0);
-    let c: [f64; 12] = std::array::from_fn(|k| 2.0 / (2 * k + 1) as f64);
+    let c: [f64; 10] = std::array::from_fn(|k| 2.0 / (2 * k + 1) as f64);
     n * LN_2[0] + (n * LN_2[1] + s * polynomial(c, s * s))
 }
 

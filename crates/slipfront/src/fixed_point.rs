@@ -154,21 +154,21 @@ pub(crate) struct RunningSum {
 }
 
 impl RunningSum {
-    /// Adds `term(k)` over `0..n`, at most [`MAX_TERMS`].
+    /// Adds these terms.
     #[inline(always)]
-    pub(crate) fn add(&mut self, n: usize, term: impl Fn(usize) -> f64) {
+    pub(crate) fn add(&mut self, terms: &[f64]) {
         const SIZE: u64 = i64::MAX as u64;
-        debug_assert!(n <= MAX_TERMS, "{n} terms may be more than a word holds");
         let shift = self.bound.shift();
-        let (mut largest, mut sum) = (self.largest, 0_u64);
-        for k in 0..n {
-            let term = term(k);
-            largest = largest.max((term.to_bits() & SIZE) as i64);
-            sum = sum.wrapping_add((term + shift).to_bits());
+        for terms in terms.chunks(MAX_TERMS) {
+            let (mut largest, mut sum) = (self.largest, 0_u64);
+            for term in terms {
+                largest = largest.max((term.to_bits() & SIZE) as i64);
+                sum = sum.wrapping_add((term + shift).to_bits());
+            }
+            self.largest = largest;
+            let shifts = shift.to_bits().wrapping_mul(terms.len() as u64);
+            self.sum += i128::from(sum.wrapping_sub(shifts) as i64);
         }
-        self.largest = largest;
-        let shifts = shift.to_bits().wrapping_mul(n as u64);
-        self.sum += i128::from(sum.wrapping_sub(shifts) as i64);
     }
 
     /// Size of the largest term so far; infinite if one is no number.

@@ -1,7 +1,6 @@
 //! Friction that follows speed and the state of the contact.
 
 use crate::elementary::{SMALL_DECAY, exp, ln, mean_decay, small_mean_decay};
-use crate::reductions;
 
 /// Rate and state with the ageing law: `mu = mu_0 + a ln(V/V_0) + b ln(V_0 theta/D_c)`, `dtheta/dt = 1 - V theta/D_c`; coefficients
 /// over `mu_s`. The logarithm of the speed is regularised at V = 0,
@@ -120,7 +119,7 @@ impl RateAndState {
     /// ```
     #[inline(always)]
     pub fn evolve(&self, theta: f64, speed: f64, dt: f64) -> f64 {
-        let x = speed * dt / self.d_c;
+        let x = speed * (dt / self.d_c);
         let mean_decay = mean_decay(x);
         let decay = if x < SMALL_DECAY {
             1.0 - x * mean_decay
@@ -132,18 +131,22 @@ impl RateAndState {
 
     /// [`evolve`](Self::evolve) of some blocks.
     #[inline(always)]
-    pub(crate) fn evolve_all(&self, theta: &mut [f64], speed: &[f64], dt: f64) {
-        let n = theta.len();
-        let speed = &speed[..n];
+    pub(crate) fn evolve_all<const BLOCKS: usize>(
+        &self,
+        theta: &mut [f64; BLOCKS],
+        speed: &[f64; BLOCKS],
+        dt: f64,
+    ) {
         // Slip over a step is nearly always short, which takes no exponential.
-        if reductions::largest(n, |k| speed[k] * dt / self.d_c) < SMALL_DECAY {
-            for k in 0..n {
-                let x = speed[k] * dt / self.d_c;
+        let per_speed = dt / self.d_c;
+        if (0..BLOCKS).fold(true, |all, k| all & (speed[k] * per_speed < SMALL_DECAY)) {
+            for k in 0..BLOCKS {
+                let x = speed[k] * per_speed;
                 let mean_decay = small_mean_decay(x);
                 theta[k] = theta[k] * (1.0 - x * mean_decay) + dt * mean_decay;
             }
         } else {
-            for k in 0..n {
+            for k in 0..BLOCKS {
                 theta[k] = self.evolve(theta[k], speed[k], dt);
             }
         }

@@ -492,7 +492,8 @@ impl Band {
         let next = [t, t + ahead].map(|t| TILE * self.next_whole_tile(t).unwrap_or(t + 1));
         let arrays = self.friction_loop::<S, G>(simd, step, (self.elements(t), next), scratch);
         if G::BLOCKS_DIFFER {
-            friction_of_tile::<S, ENERGY, true>(simd, &step, quanta, arrays, &mut sums);
+            // With all energies: compiled once more without them, it would save little.
+            friction_of_tile::<S, true, true>(simd, &step, quanta, arrays, &mut sums);
         } else {
             friction_of_tile::<S, ENERGY, false>(simd, &step, quanta, arrays, &mut sums);
         }

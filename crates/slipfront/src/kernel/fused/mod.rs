@@ -646,11 +646,11 @@ fn sweep(
         (Springs::SquareRoot, false) => {
             dispatch!(level, simd => band.sweep(simd, root, step, quanta, energies));
         }
-        // The longer series is as exact. One sweep less to compile counts for more than the few per cent that the other saves.
-        (Springs::ShortSeries | Springs::LongSeries, true) => {
-            dispatch!(level, simd => band.sweep(simd, Differing(long), step, quanta, energies));
+        (Springs::ShortSeries, true) => {
+            dispatch!(level, simd => band.sweep(simd, Differing(short), step, quanta, energies));
         }
-        (Springs::SquareRoot, true) => {
+        // One sweep less to compile counts for more than what the longer series would save at larger strains.
+        (Springs::LongSeries | Springs::SquareRoot, true) => {
             dispatch!(level, simd => band.sweep(simd, Differing(root), step, quanta, energies));
         }
     }

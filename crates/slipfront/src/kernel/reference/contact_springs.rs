@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::forces::{Forces, part, part_mut};
+use super::weighted::Scratch;
 use crate::fixed_point::RunningSum;
 use crate::friction::{ContactSprings, Integrator};
 use crate::model::Model;
@@ -126,6 +127,7 @@ impl SpringContact {
         displacement: &VectorField,
         breaks: &[bool],
         [held, broken]: [&mut RunningSum; 2],
+        scratch: &mut Scratch,
     ) {
         let n = blocks.len();
         let ([ux, uy], [ax, ay]) = (part(displacement, blocks), part(&self.anchor, blocks));
@@ -134,11 +136,14 @@ impl SpringContact {
             &model.surface.textured[blocks.clone()][..n],
             &breaks[blocks.clone()][..n],
         );
-        let energy = |k: usize| {
+        let (of_held, of_broken) = (&mut scratch.terms[..n], &mut scratch.products[..n]);
+        for k in 0..n {
             let extension = [ux[k] - ax[k], uy[k] - ay[k]];
-            0.5 * self.stiffness(textured[k]) * dot(extension, extension)
-        };
-        held.add(n, |k| if breaks[k] { 0.0 } else { energy(k) });
-        broken.add(n, |k| if breaks[k] { energy(k) } else { 0.0 });
+            let energy = 0.5 * self.stiffness(textured[k]) * dot(extension, extension);
+            of_held[k] = if breaks[k] { 0.0 } else { energy };
+            of_broken[k] = if breaks[k] { energy } else { 0.0 };
+        }
+        held.add(of_held);
+        broken.add(of_broken);
     }
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::forces::{part, part_mut};
-use super::weighted::add_weighted;
+use super::weighted::{Scratch, add_weighted, dot_products};
 use crate::fixed_point::RunningSum;
 use crate::model::Model;
 use crate::vector_field::VectorField;
@@ -79,55 +79,60 @@ impl DrivenBlocks {
         u: &VectorField,
         time_star: f64,
         sum: &mut RunningSum,
+        scratch: &mut Scratch,
     ) {
         let ([ux, uy], n) = (part(u, blocks), blocks.len());
-        let (ux, uy) = (&ux[..n], &uy[..n]);
+        let (ux, uy, squares) = (&ux[..n], &uy[..n], &mut scratch.terms[..n]);
         match &self.direction {
             None => {
                 let [x, y] = model.drive.position(time_star);
-                add_weighted(sum, n, relative(model, blocks), |k| square(x - ux[k], y - uy[k]));
+                for k in 0..n {
+                    let (x, y) = (x - ux[k], y - uy[k]);
+                    squares[k] = x * x + y * y;
+                }
             }
             Some(direction) => {
                 let path = model.drive.path(time_star);
                 let [gx, gy] = part(direction, blocks);
                 let (gx, gy) = (&gx[..n], &gy[..n]);
-                add_weighted(sum, n, relative(model, blocks), |k| {
-                    square(path * gx[k] - ux[k], path * gy[k] - uy[k])
-                });
+                for k in 0..n {
+                    let (x, y) = (path * gx[k] - ux[k], path * gy[k] - uy[k]);
+                    squares[k] = x * x + y * y;
+                }
             }
         }
+        add_weighted(sum, squares, relative(model, blocks), &mut scratch.products);
     }
 
-    /// Adds a vector of components `x` and `y` of some blocks, weighted with the relative stiffness of the springs: both
-    /// components, of a rotation those along the direction at each block and to its left.
+    /// Adds the two components of a vector of some blocks, weighted with the relative stiffness of the springs; of a rotation those
+    /// along the direction at each block and to its left.
     #[inline(always)]
     pub(super) fn add(
         &self,
         model: &Model,
         blocks: &Range<usize>,
-        x: impl Fn(usize) -> f64,
-        y: impl Fn(usize) -> f64,
+        [x, y]: [&[f64]; 2],
         [along, across]: [&mut RunningSum; 2],
+        scratch: &mut Scratch,
     ) {
         let (n, relative) = (blocks.len(), relative(model, blocks));
         match &self.direction {
             None => {
-                add_weighted(along, n, relative, x);
-                add_weighted(across, n, relative, y);
+                add_weighted(along, x, relative, &mut scratch.products);
+                add_weighted(across, y, relative, &mut scratch.products);
             }
             Some(direction) => {
-                let [gx, gy] = part(direction, blocks);
-                let (gx, gy) = (&gx[..n], &gy[..n]);
-                add_weighted(along, n, relative, |k| gx[k] * x(k) + gy[k] * y(k));
-                add_weighted(across, n, relative, |k| gx[k] * y(k) - gy[k] * x(k));
+                let ([gx, gy], terms) = (part(direction, blocks), &mut scratch.terms[..n]);
+                dot_products([gx, gy], [x, y], terms);
+                add_weighted(along, terms, relative, &mut scratch.products);
+                let (gx, gy, x, y) = (&gx[..n], &gy[..n], &x[..n], &y[..n]);
+                for k in 0..n {
+                    terms[k] = gx[k] * y[k] - gy[k] * x[k];
+                }
+                add_weighted(across, terms, relative, &mut scratch.products);
             }
         }
     }
-}
-
-#[inline(always)]
-fn square(x: f64, y: f64) -> f64 {
-    x * x + y * y
 }
 
 #[inline(always)]

@@ -25,7 +25,7 @@ use self::drive::DrivenBlocks;
 use self::forces::{Forces, part, part_mut};
 use self::rows::Rows;
 use self::springs::{damper_forces, lattice_energy, lattice_forces};
-use self::weighted::add_weighted;
+use self::weighted::{Scratch, add_weighted, dot_products};
 use super::block::{Block, Field};
 use super::engine::Engine;
 use super::totals::{ContactTotals, StoredEnergy, Totals};
@@ -43,13 +43,16 @@ use crate::vector_field::VectorField;
 /// Blocks of a part, unless a row has more.
 const PART: usize = 512;
 
-/// All blocks of this rank, part by part. A part has whole rows, so that no neighbour in the row of a block lies in a later part.
+/// Blocks of each part but the last. A part has whole rows, so that no neighbour in the row of a block lies in a later part.
+fn part_len(model: &Model) -> usize {
+    let nx = model.lattice.nx;
+    (PART / nx).max(1) * nx
+}
+
+/// All blocks of this rank, part by part.
 fn parts(model: &Model) -> impl Iterator<Item = Range<usize>> + use<> {
-    let (n, nx) = (model.surface.n_blocks(), model.lattice.nx);
-    let length = (PART / nx).max(1) * nx;
-    (0..n)
-        .step_by(length)
-        .map(move |first| first..n.min(first + length))
+    let (n, len) = (model.surface.n_blocks(), part_len(model));
+    (0..n).step_by(len).map(move |first| first..n.min(first + len))
 }
 
 /// Dampers beside the springs between blocks.
@@ -84,8 +87,7 @@ pub(crate) struct Reference {
     sums: Sums,
     /// Those of energies: kinetic half a step before and after, and of the drive springs.
     energy_sums: [RunningSum; 3],
-    /// Room for the energies of a row.
-    row: Vec<f64>,
+    scratch: Scratch,
     /// Power that the dampers take.
     viscous_power: f64,
     contact_totals: ContactTotals,
@@ -126,7 +128,7 @@ impl Reference {
             }),
             sums: Sums::default(),
             energy_sums: Default::default(),
-            row: vec![0.0; model.lattice.nx],
+            scratch: Scratch::new(part_len(model).min(n)),
             viscous_power: 0.0,
             contact_totals: ContactTotals::default(),
             first_slip: vec![f64::NAN; n],
@@ -331,28 +333,26 @@ impl Reference {
     /// Adds up what every step sums over blocks, after their next velocities are known.
     #[inline(always)]
     fn add_up(&mut self, model: &Model, blocks: &Range<usize>) {
-        let n = blocks.len();
-        let [ux, uy] = part(&self.state.displacement, blocks);
-        let [bx, by] = part(&self.state.velocity, blocks);
-        let [ax, ay] = part(&self.forces.velocity, blocks);
-        let [lx, ly] = part(&self.forces.lattice, blocks);
-        let [fx, fy] = part(&self.forces.friction, blocks);
-        let (ux, uy, bx, by, ax, ay) = (&ux[..n], &uy[..n], &bx[..n], &by[..n], &ax[..n], &ay[..n]);
-        let (lx, ly, fx, fy) = (&lx[..n], &ly[..n], &fx[..n], &fy[..n]);
-        let textured = &model.surface.textured[blocks.clone()][..n];
-        let masses = model
-            .slider
-            .density
-            .as_ref()
-            .map(|masses| &masses[blocks.clone()]);
-        let (vx, vy) = (|k: usize| 0.5 * (bx[k] + ax[k]), |k: usize| 0.5 * (by[k] + ay[k]));
+        let (n, scratch) = (blocks.len(), &mut self.scratch);
+        let ([bx, by], [ax, ay]) = (
+            part(&self.state.velocity, blocks),
+            part(&self.forces.velocity, blocks),
+        );
+        let (bx, by, ax, ay) = (&bx[..n], &by[..n], &ax[..n], &ay[..n]);
+        let mut velocity = std::mem::take(&mut scratch.velocity);
+        let (vx, vy) = (&mut velocity.x[..n], &mut velocity.y[..n]);
+        for k in 0..n {
+            vx[k] = 0.5 * (bx[k] + ax[k]);
+            vy[k] = 0.5 * (by[k] + ay[k]);
+        }
+        let now = [&*vx, &*vy];
         let [
-            ux_sum,
-            uy_sum,
-            vx_sum,
-            vy_sum,
-            ax_sum,
-            ay_sum,
+            ux,
+            uy,
+            vx,
+            vy,
+            wx,
+            wy,
             square,
             friction,
             viscous,
@@ -360,33 +360,55 @@ impl Reference {
             broken,
             states,
         ] = &mut self.sums;
-        let driven = &self.driven;
-        driven.add(model, blocks, |k| ux[k], |k| uy[k], [ux_sum, uy_sum]);
-        driven.add(model, blocks, vx, vy, [vx_sum, vy_sum]);
-        driven.add(model, blocks, |k| ax[k], |k| ay[k], [ax_sum, ay_sum]);
-        add_weighted(square, n, masses, |k| vx(k) * vx(k) + vy(k) * vy(k));
+        let (driven, displacement) = (&self.driven, &self.state.displacement);
+        driven.add(model, blocks, part(displacement, blocks), [ux, uy], scratch);
+        driven.add(model, blocks, now, [vx, vy], scratch);
+        driven.add(model, blocks, [ax, ay], [wx, wy], scratch);
+        let masses = model
+            .slider
+            .density
+            .as_ref()
+            .map(|masses| &masses[blocks.clone()]);
+        dot_products(now, now, &mut scratch.terms[..n]);
+        add_weighted(square, &scratch.terms[..n], masses, &mut scratch.products);
         match &self.contact {
             Contact::Coulomb(_) => {}
-            Contact::RateAndState(contact) => contact.add_states(model, blocks, states),
+            Contact::RateAndState(contact) => contact.add_states(model, blocks, states, scratch),
             Contact::Springs(springs) => {
-                let (displacement, breaks) = (&self.state.displacement, &self.forces.slides);
-                springs.add_energies(model, blocks, displacement, breaks, [held, broken]);
+                let breaks = &self.forces.slides;
+                springs.add_energies(model, blocks, displacement, breaks, [held, broken], scratch);
             }
         }
+        let terms = &mut scratch.terms[..n];
         // What springs to the substrate take is stored, or lost where they break.
         if !matches!(self.contact, Contact::Springs(_)) {
-            friction.add(n, |k| fx[k] * vx(k) + fy[k] * vy(k));
+            dot_products(part(&self.forces.friction, blocks), now, terms);
+            friction.add(terms);
         }
         if let Some(dampers) = &self.dampers {
-            let [dx, dy] = part(&dampers.force, blocks);
-            let (dx, dy) = (&dx[..n], &dy[..n]);
-            viscous.add(n, |k| dx[k] * vx(k) + dy[k] * vy(k));
+            dot_products(part(&dampers.force, blocks), now, terms);
+            viscous.add(terms);
         }
-        let stress_square = reductions::largest(n, |k| {
+        scratch.velocity = velocity;
+        self.find_largest_stress(model, blocks);
+    }
+
+    /// Eq. 10: the largest contact stress of a block in contact at any step.
+    #[inline(always)]
+    fn find_largest_stress(&mut self, model: &Model, blocks: &Range<usize>) {
+        let (n, squares) = (blocks.len(), &mut self.scratch.terms);
+        let ([fx, fy], [lx, ly]) = (
+            part(&self.forces.friction, blocks),
+            part(&self.forces.lattice, blocks),
+        );
+        let (fx, fy, lx, ly, squares) = (&fx[..n], &fy[..n], &lx[..n], &ly[..n], &mut squares[..n]);
+        let textured = &model.surface.textured[blocks.clone()][..n];
+        for k in 0..n {
             let (x, y) = (fx[k] + lx[k], fy[k] + ly[k]);
-            if textured[k] { 0.0 } else { x * x + y * y }
-        });
-        self.stress_square_max = self.stress_square_max.max(stress_square);
+            squares[k] = if textured[k] { 0.0 } else { x * x + y * y };
+        }
+        let largest = reductions::largest(n, |k| squares[k]);
+        self.stress_square_max = self.stress_square_max.max(largest);
     }
 
     /// Energies of all blocks, after their next velocities are known.
@@ -396,18 +418,22 @@ impl Reference {
         let [before, after, drive_springs] = loop {
             let [before, after, drive_springs] = &mut self.energy_sums;
             for blocks in parts(model) {
-                let n = blocks.len();
+                let (n, scratch) = (blocks.len(), &mut self.scratch);
                 let masses = model
                     .slider
                     .density
                     .as_ref()
                     .map(|masses| &masses[blocks.clone()]);
-                let [bx, by] = part(&self.state.velocity, &blocks).map(|component| &component[..n]);
-                let [ax, ay] = part(&self.forces.velocity, &blocks).map(|component| &component[..n]);
-                add_weighted(before, n, masses, |k| bx[k] * bx[k] + by[k] * by[k]);
-                add_weighted(after, n, masses, |k| ax[k] * ax[k] + ay[k] * ay[k]);
+                for (velocity, sum) in [
+                    (&self.state.velocity, &mut *before),
+                    (&self.forces.velocity, &mut *after),
+                ] {
+                    let velocity = part(velocity, &blocks);
+                    dot_products(velocity, velocity, &mut scratch.terms[..n]);
+                    add_weighted(sum, &scratch.terms[..n], masses, &mut scratch.products);
+                }
                 self.driven
-                    .add_squares(model, &blocks, displacement, time_star, drive_springs);
+                    .add_squares(model, &blocks, displacement, time_star, drive_springs, scratch);
             }
             if let Some(found) = RunningSum::finish(self.rows.ranks(), &mut self.energy_sums) {
                 break found;
@@ -421,7 +447,7 @@ impl Reference {
                 &self.rows.state(&self.state).displacement,
                 relative,
                 model.epsilon,
-                &mut self.row,
+                &mut self.scratch.terms,
             ),
             drive_springs: 0.5 * model.drive.k_drive * drive_springs,
         }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::forces::{Forces, part, part_mut};
+use super::weighted::Scratch;
 use crate::fixed_point::RunningSum;
 use crate::friction::{Integrator, LogFactors, RateAndState, Sliding};
 use crate::model::Model;
@@ -41,11 +42,14 @@ impl StateContact {
             let blocks = first..blocks.end.min(first + AT_ONCE);
             let (n, [vx, vy]) = (blocks.len(), part(velocity, &blocks));
             let (vx, vy) = (&vx[..n], &vy[..n]);
-            let mut speed = [0.0; AT_ONCE];
+            let (mut speed, mut theta) = ([0.0; AT_ONCE], [1.0; AT_ONCE]);
             for k in 0..n {
                 speed[k] = length([vx[k], vy[k]]);
             }
-            self.law.evolve_all(&mut self.theta[blocks], &speed[..n], dt_star);
+            let own = &mut self.theta[blocks];
+            theta[..n].copy_from_slice(own);
+            self.law.evolve_all(&mut theta, &speed, dt_star);
+            own.copy_from_slice(&theta[..n]);
         }
     }
 
@@ -117,12 +121,19 @@ impl StateContact {
 
     /// Adds the states of those of some blocks that are in contact.
     #[inline(always)]
-    pub(super) fn add_states(&self, model: &Model, blocks: &Range<usize>, sum: &mut RunningSum) {
-        let n = blocks.len();
-        let (theta, textured) = (
-            &self.theta[blocks.clone()][..n],
-            &model.surface.textured[blocks.clone()][..n],
-        );
-        sum.add(n, |k| if textured[k] { 0.0 } else { theta[k] });
+    pub(super) fn add_states(
+        &self,
+        model: &Model,
+        blocks: &Range<usize>,
+        sum: &mut RunningSum,
+        scratch: &mut Scratch,
+    ) {
+        let (n, theta) = (blocks.len(), &self.theta[blocks.clone()]);
+        let (theta, textured) = (&theta[..n], &model.surface.textured[blocks.clone()][..n]);
+        let states = &mut scratch.terms[..n];
+        for k in 0..n {
+            states[k] = if textured[k] { 0.0 } else { theta[k] };
+        }
+        sum.add(states);
     }
 }

@@ -185,25 +185,42 @@ fn along_bond(
     if !inside.is_empty() {
         connection.many(bond, &inside, &neighbours, part_mut(force, &inside));
     }
-    let mut replace = |b: usize| {
-        let (i, j) = lattice.column_row(b);
-        [force.x[b], force.y[b]] = match lattice.neighbour(i, j, bond.offset) {
-            Some(other) => connection.one(bond, b, other),
-            None => [0.0, 0.0],
-        };
+    let column = match bond.offset[0] {
+        1 => Some(lattice.nx - 1),
+        -1 => Some(0),
+        _ => None,
     };
-    match bond.offset[0] {
-        1 => in_column(lattice, blocks, lattice.nx - 1).for_each(&mut replace),
-        -1 => in_column(lattice, blocks, 0).for_each(&mut replace),
-        _ => {}
+    if let Some(i) = column {
+        replace(lattice, 0, in_column(lattice, blocks, i), bond, connection, force);
     }
     if bond.offset[1] == 1 {
         let top = between(blocks, lattice.block(0, lattice.ny - 1), n);
-        match lattice.edges[1] {
-            Edges::Periodic => top.for_each(replace),
-            Edges::Free => part_mut(force, &top)
-                .into_iter()
-                .for_each(|force| force.fill(0.0)),
+        replace(lattice, 1, top, bond, connection, force);
+    }
+}
+
+/// Forces along `bond` on blocks at the end of an axis.
+#[inline(always)]
+fn replace(
+    lattice: &Lattice,
+    axis: usize,
+    blocks: impl Iterator<Item = usize>,
+    bond: &Bond,
+    connection: &impl Connection,
+    force: &mut VectorField,
+) {
+    match lattice.edges[axis] {
+        Edges::Free => {
+            for b in blocks {
+                [force.x[b], force.y[b]] = [0.0, 0.0];
+            }
+        }
+        Edges::Periodic => {
+            for b in blocks {
+                let (i, j) = lattice.column_row(b);
+                let other = lattice.neighbour(i, j, bond.offset);
+                [force.x[b], force.y[b]] = other.map_or([0.0, 0.0], |other| connection.one(bond, b, other));
+            }
         }
     }
 }
@@ -246,10 +263,16 @@ fn sum_springs(lattice: &Lattice, blocks: &Range<usize>, springs: [&[f64]; 4], t
     if lattice.edges[1] == Edges::Periodic {
         between(blocks, 0, lattice.nx).for_each(&mut replace);
     }
-    // At free edges the loop found springs of force zero, which is right; along a periodic axis neighbours wrap around.
-    in_column(lattice, blocks, 0).for_each(&mut replace);
-    if lattice.edges[0] == Edges::Periodic {
-        in_column(lattice, blocks, lattice.nx - 1).for_each(&mut replace);
+    match lattice.edges[0] {
+        // Beyond free edges the loop found springs of force zero, which is right; it begins after the first block of the second row.
+        Edges::Free => {
+            let firsts = [0, lattice.nx].into_iter();
+            firsts.filter(|b| blocks.contains(b)).for_each(replace);
+        }
+        Edges::Periodic => {
+            in_column(lattice, blocks, 0).for_each(&mut replace);
+            in_column(lattice, blocks, lattice.nx - 1).for_each(&mut replace);
+        }
     }
 }
 

@@ -30,6 +30,8 @@ pub(super) struct Aged {
     law: Ageing,
     adhesion: f64,
     static_limit: Vec<f64>,
+    /// Whose thresholds these ages raise.
+    is_old: Vec<bool>,
     /// When a block that is stuck has stopped, t*. The memory of the law.
     pub(super) stopped_at: Vec<f64>,
 }
@@ -48,6 +50,7 @@ impl Thresholds {
                 law,
                 adhesion: adhesion.of_static,
                 static_limit: zeros(),
+                is_old: vec![false; n_blocks],
                 stopped_at: zeros(),
             }),
         }
@@ -136,19 +139,19 @@ impl Aged {
         );
         let (young, vx, vy) = (&young[blocks.clone()][..n], &vx[..n], &vy[..n]);
         let (dx, dy, lx, ly) = (&dx[..n], &dy[..n], &lx[..n], &ly[..n]);
-        let is_old = |k: usize| {
+        let (static_limit, is_old) = (
+            &mut self.static_limit[blocks.clone()][..n],
+            &mut self.is_old[blocks.clone()][..n],
+        );
+        for k in 0..n {
             let force = [dx[k] + lx[k], dy[k] + ly[k]];
-            (vx[k] == 0.0) & (vy[k] == 0.0) & (dot(force, force) > young[k] * young[k])
-        };
-        let static_limit = &mut self.static_limit[blocks.clone()][..n];
-        static_limit.copy_from_slice(young);
-        // There are few of them, which have their logarithms one by one.
-        let n_old: u32 = (0..n).map(|k| u32::from(is_old(k))).sum();
-        if n_old > 0 {
-            for k in (0..n).filter(|&k| is_old(k)) {
-                let age = time_star - self.stopped_at[blocks.start + k];
-                static_limit[k] = self.law.static_limit(young[k], self.adhesion, age);
-            }
+            is_old[k] = (vx[k] == 0.0) & (vy[k] == 0.0) & (dot(force, force) > young[k] * young[k]);
+            static_limit[k] = young[k];
+        }
+        // They are few, and have their logarithms one by one.
+        for k in (0..n).filter(|&k| is_old[k]) {
+            let age = time_star - self.stopped_at[blocks.start + k];
+            static_limit[k] = self.law.static_limit(young[k], self.adhesion, age);
         }
     }
 

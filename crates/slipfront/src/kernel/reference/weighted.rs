@@ -1,20 +1,54 @@
 //! Sums over blocks that do not all count alike.
 
 use crate::fixed_point::RunningSum;
+use crate::vector_field::VectorField;
 
-/// Adds `weight term(k)` of `n` blocks; all weights are 1 if there are none.
+/// Room for numbers of the blocks of a part.
+#[derive(Debug)]
+pub(super) struct Scratch {
+    /// Velocities at t_n.
+    pub(super) velocity: VectorField,
+    pub(super) terms: Vec<f64>,
+    pub(super) products: Vec<f64>,
+}
+
+impl Scratch {
+    pub(super) fn new(n_blocks: usize) -> Self {
+        Self {
+            velocity: VectorField::zeros(n_blocks),
+            terms: vec![0.0; n_blocks],
+            products: vec![0.0; n_blocks],
+        }
+    }
+}
+
+/// Adds a term of each of some blocks times its weight; all weights are 1 if there are none. There is room for the products.
 #[inline(always)]
 pub(super) fn add_weighted(
     sum: &mut RunningSum,
-    n: usize,
+    terms: &[f64],
     weights: Option<&[f64]>,
-    term: impl Fn(usize) -> f64,
+    products: &mut [f64],
 ) {
     match weights {
-        None => sum.add(n, term),
+        None => sum.add(terms),
         Some(weights) => {
-            let weights = &weights[..n];
-            sum.add(n, |k| weights[k] * term(k));
+            let n = terms.len();
+            let (weights, products) = (&weights[..n], &mut products[..n]);
+            for k in 0..n {
+                products[k] = weights[k] * terms[k];
+            }
+            sum.add(products);
         }
+    }
+}
+
+/// Products of vectors of some blocks, `a_x b_x + a_y b_y`.
+#[inline(always)]
+pub(super) fn dot_products(a: [&[f64]; 2], b: [&[f64]; 2], products: &mut [f64]) {
+    let n = products.len();
+    let ([ax, ay], [bx, by]) = (a.map(|a| &a[..n]), b.map(|b| &b[..n]));
+    for k in 0..n {
+        products[k] = ax[k] * bx[k] + ay[k] * by[k];
     }
 }
