@@ -254,6 +254,29 @@ mod tests {
         }
     }
 
+    /// Larger terms, smaller ones, none, and some that are no numbers: after whatever came before, the sum is that of the terms alone.
+    #[test]
+    fn a_running_sum_is_the_sum_of_its_step() {
+        let scales = [1.0, 1e-3, 1.5e-3, 1e9, 0.0, f64::NAN, 2.0, f64::INFINITY, 1e-12];
+        let mut sums = [RunningSum::default(); 2];
+        for (step, scale) in scales.into_iter().enumerate() {
+            let terms: Vec<f64> = (0..3 * MAX_TERMS + 5)
+                .map(|k| scale * ((k * 7919 + step) % 1000) as f64 - 0.3)
+                .collect();
+            let found = loop {
+                for part in terms.chunks(600) {
+                    sums[0].add(part);
+                }
+                sums[1].add(&[scale]);
+                if let Some(found) = RunningSum::finish(&mut sums) {
+                    break found;
+                }
+            };
+            let exact = [sum(terms.len(), |k| terms[k]), sum(1, |_| scale)];
+            assert_eq!(found.map(f64::to_bits), exact.map(f64::to_bits), "{scale}");
+        }
+    }
+
     #[test]
     fn without_a_bound_there_is_no_sum() {
         for bad in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN, 1e305] {

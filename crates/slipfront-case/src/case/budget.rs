@@ -48,8 +48,9 @@ fn reference_bytes(file: &CaseFile) -> f64 {
         true => 4.0 * NUMBER,
         false => 0.0,
     };
+    // Their sum, and that along each of the four bonds.
     let dampers = match slider.viscosity_time_star > 0.0 {
-        true => 2.0 * NUMBER,
+        true => 10.0 * NUMBER,
         false => 0.0,
     };
     let directions = match file.drive.motion {
@@ -87,8 +88,8 @@ fn of_friction(friction: &Friction) -> [f64; 2] {
     let each = [
         // Kinetic friction at the present speed.
         (friction.velocity.is_some(), [1.0, 0.0]),
-        // The threshold at the present age, and when the block has stopped.
-        (friction.ageing.is_some(), [2.0, 1.0]),
+        // The threshold at the present age, whether age counts, and when the block has stopped.
+        (friction.ageing.is_some(), [2.0 + FLAG / NUMBER, 1.0]),
         // State and load.
         (friction.law == Law::RateAndState, [2.0, 1.0]),
         // The anchor of its spring, and how often this has broken.

@@ -178,14 +178,27 @@ impl RateAndState {
     ) -> Sliding<BLOCKS> {
         let zeros = [0.0; BLOCKS];
         let (mut log_factor, mut per_unit) = (zeros, zeros);
+        // Nothing holds a block over a texture, and nothing moves one that would not move without friction.
+        let is_held = |k: usize| (free[k] > MIN_SPEED) & (normal_force[k] > 0.0);
+        let mut target = [1.0; BLOCKS];
         // The two exponentials, and the latest step.
         let (mut y, mut rising, mut falling, mut step) = (zeros, zeros, zeros, [f64::INFINITY; BLOCKS]);
         let mut may_fall = false;
         for k in 0..BLOCKS {
             log_factor[k] = Self::log_factor(factors, theta[k]).max(MIN_LOG_FACTOR);
-            per_unit[k] = g[k] * normal_force[k] * self.a;
-            let is_slow = before[k] <= SLOW * free[k];
-            let guess = if is_slow { free[k] } else { before[k].min(free[k]) };
+            let is_held = is_held(k);
+            per_unit[k] = if is_held {
+                g[k] * normal_force[k] * self.a
+            } else {
+                0.0
+            };
+            target[k] = if is_held { free[k] } else { 1.0 };
+            let is_slow = !is_held | (before[k] <= SLOW * free[k]);
+            let guess = if is_slow {
+                target[k]
+            } else {
+                before[k].min(free[k])
+            };
             rising[k] = 2.0 * guess.max(MIN_SPEED);
             y[k] = ln(rising[k]);
             may_fall |= log_factor[k] + y[k] <= LARGE;
@@ -201,10 +214,10 @@ impl RateAndState {
             }
         }
         // No friction is more than what stops a block.
-        let is_beyond = |k: usize, y: f64| per_unit[k] * (log_factor[k] + y) > free[k];
+        let is_beyond = |k: usize, y: f64| per_unit[k] * (log_factor[k] + y) > target[k];
         if (0..BLOCKS).fold(false, |any, k| any | is_beyond(k, y[k])) {
             for k in 0..BLOCKS {
-                let most = free[k] / per_unit[k] - log_factor[k];
+                let most = target[k] / per_unit[k] - log_factor[k];
                 let is_beyond = is_beyond(k, y[k]);
                 y[k] = if is_beyond { most } else { y[k] };
                 rising[k] = if is_beyond { exp(most) } else { rising[k] };
@@ -231,7 +244,7 @@ impl RateAndState {
             let mut goes_on = false;
             for k in 0..BLOCKS {
                 let [sinh, cosh] = [rising[k] - falling[k], rising[k] + falling[k]].map(|sum| 0.5 * sum);
-                let error = sinh + per_unit[k] * (log_factor[k] + y[k]) - free[k];
+                let error = sinh + per_unit[k] * (log_factor[k] + y[k]) - target[k];
                 let slope = cosh + per_unit[k];
                 let next = error * slope / (slope * slope - 0.5 * error * sinh);
                 step[k] = if step[k].abs() > LAST_STEP { next } else { 0.0 };
@@ -256,14 +269,13 @@ impl RateAndState {
             friction: zeros,
         };
         for k in 0..BLOCKS {
-            // Nothing holds a block over a texture, and nothing moves one that would not move without friction.
-            let slides = (free[k] > MIN_SPEED) & (normal_force[k] > 0.0);
+            let is_held = is_held(k);
             let (speed, friction) = (
                 0.5 * (rising[k] - falling[k]),
                 normal_force[k] * self.a * (log_factor[k] + y[k]),
             );
-            sliding.speed[k] = if slides { speed } else { free[k] };
-            sliding.friction[k] = if slides { friction } else { 0.0 };
+            sliding.speed[k] = if is_held { speed } else { free[k] };
+            sliding.friction[k] = if is_held { friction } else { 0.0 };
         }
         sliding
     }
@@ -287,5 +299,107 @@ impl RateAndState {
         let weakening = (self.b - self.a) * sigma - viscous;
         let inertia = speed * speed / ((sigma * self.a + viscous) * self.d_c);
         (weakening / self.d_c * (1.0 + inertia)).max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAW: RateAndState = RateAndState {
+        a: 0.01,
+        b: 0.02,
+        d_c: 0.5,
+        v_0: 0.03,
+        mu_0: 0.6,
+        theta_0: 1.0,
+        slip_speed: 1e-3,
+    };
+
+    /// Speeds, speeds before, states and loads of blocks that creep, slide, begin to, stop, float, or are no block.
+    const BLOCKS: [[f64; 4]; 12] = [
+        [0.03, 0.03, 16.7, 1.0],
+        [0.03, 0.029, 16.0, 1.0],
+        [0.03, 0.0, 16.7, 1.0],
+        [1e-12, 0.5, 1e6, 1.0],
+        [2.0, 1e-4, 1e-3, 1.0],
+        [0.1, 0.1, 1.0, 0.0],
+        [0.0, 0.0, 16.7, 1.0],
+        [0.0, 0.0, 1.0, 0.0],
+        [1e-30, 1e-29, 1e-20, 3.0],
+        [1e-60, 0.0, 16.7, 1e-6],
+        [0.5, 20.0, 1e-12, 50.0],
+        [0.02, 0.04, 20.0, 0.7],
+    ];
+
+    /// Change of speed per force.
+    const G: f64 = 0.1;
+
+    /// The speeds without friction that leave these speeds.
+    fn free_speeds(law: &RateAndState) -> [f64; 12] {
+        BLOCKS.map(|[speed, _, theta, load]| {
+            let friction = if speed > 0.0 {
+                load * law.coefficient(speed, theta)
+            } else {
+                0.0
+            };
+            speed + G * friction
+        })
+    }
+
+    /// At the speed that is found friction is that of the law, and both together take the block from its free speed. A speed is as
+    /// exact as the logarithm of its factor, of 100 and more; below it by as much as free speed and friction cancel.
+    #[test]
+    fn speed_and_friction_fulfil_the_law() {
+        for a in [0.01, 0.1, 1e-3] {
+            let law = RateAndState { a, ..LAW };
+            let free = free_speeds(&law);
+            let column = |number: usize| BLOCKS.map(|block| block[number]);
+            let found = law.slide(
+                law.log_factors(),
+                [&free, &column(1)],
+                &column(2),
+                &column(3),
+                &[G; 12],
+            );
+            for (k, [exact, _, theta, load]) in BLOCKS.into_iter().enumerate() {
+                let (speed, friction) = (found.speed[k], found.friction[k]);
+                let rounding = 4.0 * f64::EPSILON * free[k];
+                assert!((speed + G * friction - free[k]).abs() <= rounding, "{a} {k}");
+                if speed > 0.0 && load > 0.0 {
+                    let of_law = load * law.coefficient(speed, theta);
+                    assert!(
+                        (friction - of_law).abs() <= 1e-14 * of_law + 1e-14 * load * a,
+                        "{a} {k}: {friction} {of_law}"
+                    );
+                }
+                let slope = if exact > 0.0 { G * load * a / exact } else { 0.0 };
+                let bound = 1e-12 * exact + rounding / (1.0 + slope);
+                assert!((speed - exact).abs() <= bound, "{a} {k}: {speed:e} {exact:e}");
+            }
+        }
+    }
+
+    /// Bits of a block do not depend on those beside it.
+    #[test]
+    fn blocks_have_the_same_bits_alone() {
+        let (free, factors) = (free_speeds(&LAW), LAW.log_factors());
+        let column = |number: usize| BLOCKS.map(|block| block[number]);
+        let together = LAW.slide(factors, [&free, &column(1)], &column(2), &column(3), &[G; 12]);
+        let mut theta = column(2);
+        LAW.evolve_all(&mut theta, &column(0), 30.0);
+        for (k, [speed, before, state, load]) in BLOCKS.into_iter().enumerate() {
+            let alone = LAW.slide(factors, [&[free[k]], &[before]], &[state], &[load], &[G]);
+            assert_eq!(alone.speed[0].to_bits(), together.speed[k].to_bits(), "{k}");
+            assert_eq!(alone.friction[0].to_bits(), together.friction[k].to_bits(), "{k}");
+            let mut alone = [state];
+            LAW.evolve_all(&mut alone, &[speed], 30.0);
+            assert_eq!(alone[0].to_bits(), theta[k].to_bits(), "{k}");
+            assert_eq!(
+                alone[0].to_bits(),
+                LAW.evolve(state, speed, 30.0).to_bits(),
+                "{k}"
+            );
+        }
     }
 }
