@@ -268,7 +268,7 @@ mod tests {
                     sums[0].add(part);
                 }
                 sums[1].add(&[scale]);
-                if let Some(found) = RunningSum::finish(&mut sums) {
+                if let Some(found) = RunningSum::finish(&Alone, &mut sums) {
                     break found;
                 }
             };
