@@ -13,6 +13,8 @@ pub mod clock;
 pub mod columns;
 pub mod error;
 pub mod fields;
+#[cfg(feature = "plot")]
+pub mod friction_picture;
 pub mod manifest;
 pub mod names;
 pub mod pictures;

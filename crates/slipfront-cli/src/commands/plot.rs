@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use slipfront_case::case::PROGRAM;
 use slipfront_case::disk::{is_same, read_limited, write_atomic};
 use slipfront_case::machine::available_of;
 use slipfront_case::number_format::byte_size;
 use slipfront_plot::Picture;
+use slipfront_run::friction_picture::{self, Against, Overlay, Units};
 use slipfront_run::names::MANIFEST;
 use slipfront_run::pictures;
 use slipfront_run::run_folder::inspection::Inspection;
@@ -17,21 +18,46 @@ use crate::failure::Failure;
 use crate::print::print_message;
 use crate::threads::set_threads;
 
-/// Draw the pictures of a run again, or the friction curves of several runs over each other
+/// Draw the pictures of a run again, or the friction curves of one or several runs over each other, on axes of your choice
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront plot results/baseline
-  slipfront plot results/circle results/groove_across -o results/overlay")]
+  slipfront plot results/circle results/groove_across -o results/overlay
+  slipfront plot results/circle --units si --against displacement -o results/newtons")]
 pub(crate) struct Plot {
     /// Run folders
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
-    /// Folder for the pictures [default: the run's own; results/overlay for several]
+    /// Draw friction alone, in these units
+    #[arg(long)]
+    units: Option<UnitsName>,
+    /// Draw friction alone, against this [default: time, or where runs of different materials can be compared]
+    #[arg(long)]
+    against: Option<AgainstName>,
+    /// Folder for the pictures [default: the run's own; results/overlay for several and for friction alone]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Replace pictures that stand there
     #[arg(long)]
     force: bool,
+}
+
+/// Units of the axes.
+#[derive(Clone, Copy, ValueEnum)]
+enum UnitsName {
+    /// Dimensionless
+    Star,
+    /// Newtons, and seconds or metres
+    Si,
+}
+
+/// The horizontal axis.
+#[derive(Clone, Copy, ValueEnum)]
+enum AgainstName {
+    /// Time
+    Time,
+    /// Path of the drive
+    Displacement,
 }
 
 impl Plot {
@@ -46,10 +72,24 @@ impl Plot {
         }
         expect_memory(&self.folders)?;
         let (out, drawn) = match self.folders.as_slice() {
-            [folder] => (folder.clone(), pictures::draw(folder).map_err(Failure::input)?),
+            [folder] if self.units.is_none() && self.against.is_none() => {
+                (folder.clone(), pictures::draw(folder).map_err(Failure::input)?)
+            }
             folders => {
-                let friction = pictures::draw_friction(folders).map_err(Failure::input)?;
-                (PathBuf::from("results/overlay"), vec![("friction", friction)])
+                let units = match self.units {
+                    None | Some(UnitsName::Star) => Units::Star,
+                    Some(UnitsName::Si) => Units::Si,
+                };
+                let against = self.against.map(|name| match name {
+                    AgainstName::Time => Against::Time,
+                    AgainstName::Displacement => Against::Displacement,
+                });
+                let overlay = friction_picture::overlay(folders, units, against);
+                let Overlay { picture, note } = overlay.map_err(Failure::input)?;
+                if let Some(note) = note {
+                    print_message(&format!("note: {note}\n"));
+                }
+                (PathBuf::from("results/overlay"), vec![("friction", picture)])
             }
         };
         let out = self.out.unwrap_or(out);
