@@ -7,6 +7,7 @@ use slipfront_case::number_format::si_prefix;
 use slipfront_plot::{self as plot, FrictionAxes, FrictionCurve, Instant, Kinetic, Picture};
 
 use crate::error::ResultsError;
+use crate::measured::{Measure, Record};
 use crate::names::SERIES;
 use crate::series::{self, SeriesRow};
 use crate::summary::{SiSummary, Summary, read_summary};
@@ -31,8 +32,32 @@ pub enum Against {
     Displacement,
 }
 
+/// A measured record that is laid over curves in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// What the legend calls it.
+    pub label: String,
+    /// Times or displacements, with forces or coefficients.
+    pub record: Record,
+    /// Which of the latter.
+    pub measure: Measure,
+    /// What is added to its times or displacements, in SI units; none for what makes it fit the first run best.
+    pub shift: Option<f64>,
+}
+
+/// How a measured record fits, in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// What was added to its times or displacements.
+    pub shift: f64,
+    /// Root mean square of what it differs by from each run, over the points that lie within it; none if there are none.
+    pub misfits: Vec<Option<f64>>,
+}
+
 /// A picture, and a sentence that says on which axes if they are not those that were to be expected.
 pub struct Overlay {
+    /// How a record fits that was laid over the curves.
+    pub fit: Option<Fit>,
     /// The picture.
     pub picture: Picture,
     /// The sentence.
@@ -52,6 +77,17 @@ struct Scale {
     against: Against,
     /// Of each run: of times or paths, and of friction.
     factors: Vec<[f64; 2]>,
+    /// What the axes count, in SI units; 1 without units.
+    prefixes: [f64; 2],
+}
+
+impl Scale {
+    fn curves(&self, runs: &[Run]) -> Vec<FrictionCurve> {
+        let curves = runs.iter().zip(&self.factors);
+        curves
+            .map(|(run, factors)| run.curve(self.against, *factors))
+            .collect()
+    }
 }
 
 /// Draws the friction curves of run folders over each other.
@@ -65,18 +101,125 @@ pub fn overlay(folders: &[PathBuf], units: Units, against: Option<Against>) -> R
     let runs: Result<Vec<Run>, _> = folders.iter().map(|folder| Run::read(folder)).collect();
     let runs = runs?;
     let (scale, note) = match units {
-        Units::Si => (in_si(&runs, against.unwrap_or_default())?, None),
+        Units::Si => (in_si(&runs, against.unwrap_or_default(), Measure::Force)?, None),
         Units::Star => dimensionless(&runs, against)?,
     };
-    let curves = runs.iter().zip(&scale.factors);
-    let curves: Vec<_> = curves
-        .map(|(run, factors)| run.curve(scale.against, *factors))
-        .collect();
-    let picture = plot::friction(&curves, &scale.axes).map_err(|source| ResultsError::Picture {
+    let (picture, fit) = (draw(&scale, &scale.curves(&runs))?, None);
+    Ok(Overlay { fit, picture, note })
+}
+
+/// Draws the friction curves of run folders and a measured record over each other, in SI units.
+///
+/// # Errors
+/// As for [`overlay`].
+pub fn overlay_measured(
+    folders: &[PathBuf],
+    against: Against,
+    measured: &Measured,
+) -> Result<Overlay, ResultsError> {
+    let runs: Result<Vec<Run>, _> = folders.iter().map(|folder| Run::read(folder)).collect();
+    let runs = runs?;
+    let scale = in_si(&runs, against, measured.measure)?;
+    let mut curves = scale.curves(&runs);
+    let [along, up] = scale.prefixes;
+    let Record { x, y } = &measured.record;
+    let first = (&curves[0].x[..], &curves[0].friction[..]);
+    let scaled = (
+        x.iter().map(|x| x / along).collect::<Vec<_>>(),
+        y.iter().map(|y| y / up).collect::<Vec<_>>(),
+    );
+    let shift = match measured.shift {
+        Some(shift) => shift / along,
+        None => best_shift((&scaled.0, &scaled.1), first),
+    };
+    let misfits = curves.iter().map(|curve| {
+        let misfit = misfit((&scaled.0, &scaled.1), (&curve.x, &curve.friction), shift);
+        misfit.map(|misfit| up * misfit)
+    });
+    let fit = Fit {
+        shift: along * shift,
+        misfits: misfits.collect(),
+    };
+    curves.push(FrictionCurve {
+        label: measured.label.clone(),
+        sliding_percent: vec![f64::NAN; x.len()],
+        x: scaled.0.iter().map(|x| x + shift).collect(),
+        friction: scaled.1,
+        ..FrictionCurve::default()
+    });
+    let picture = draw(&scale, &curves)?;
+    Ok(Overlay {
+        fit: Some(fit),
+        picture,
+        note: None,
+    })
+}
+
+fn draw(scale: &Scale, curves: &[FrictionCurve]) -> Result<Picture, ResultsError> {
+    plot::friction(curves, &scale.axes).map_err(|source| ResultsError::Picture {
         name: "friction",
         source,
-    })?;
-    Ok(Overlay { picture, note })
+    })
+}
+
+/// Value at `x` of a curve whose abscissae never fall, between its points in proportion; none beyond its ends.
+fn value_at((xs, ys): (&[f64], &[f64]), x: f64) -> Option<f64> {
+    let after = xs.partition_point(|&other| other < x);
+    let (&from, &to) = (xs.get(after.saturating_sub(1))?, xs.get(after)?);
+    if x < from {
+        return None;
+    }
+    let share = if to > from { (x - from) / (to - from) } else { 0.0 };
+    let (y, end) = (ys[after.saturating_sub(1)], ys[after]);
+    Some(y + share * (end - y))
+}
+
+/// Root mean square of the difference between a record, shifted, and a curve, over the points of the record within the curve.
+fn misfit((xs, ys): (&[f64], &[f64]), curve: (&[f64], &[f64]), shift: f64) -> Option<f64> {
+    let differences = xs
+        .iter()
+        .zip(ys)
+        .filter_map(|(x, y)| Some(value_at(curve, x + shift)? - y));
+    let (mut sum, mut n) = (0.0, 0_u32);
+    for difference in differences {
+        (sum, n) = (sum + difference * difference, n + 1);
+    }
+    (n > 0).then(|| (sum / f64::from(n)).sqrt())
+}
+
+/// The shift with the least [`misfit`] among those at which record and curve have at least half of the shorter one in common.
+fn best_shift(record: (&[f64], &[f64]), curve: (&[f64], &[f64])) -> f64 {
+    const POINTS: usize = 2000;
+    const SHIFTS: u32 = 400;
+    const ROUNDS: u32 = 40;
+    // Some points tell as much as all, sooner.
+    let thin = |values: &[f64]| -> Vec<f64> {
+        let step = values.len().div_ceil(POINTS);
+        values.iter().step_by(step).copied().collect()
+    };
+    let (xs, ys) = (thin(record.0), thin(record.1));
+    let ends = |values: &[f64]| [values.first(), values.last()].map(|end| end.copied().unwrap_or_default());
+    let ([from, to], [start, end]) = (ends(record.0), ends(curve.0));
+    let common = 0.5 * (to - from).min(end - start);
+    let (low, high) = (start - to + common, end - from - common);
+    let badness = |shift: f64| misfit((&xs, &ys), curve, shift).unwrap_or(f64::INFINITY);
+    let step = (high - low) / f64::from(SHIFTS);
+    let shifts = (0..=SHIFTS).map(|k| low + step * f64::from(k));
+    let best = shifts
+        .min_by(|a, b| badness(*a).total_cmp(&badness(*b)))
+        .unwrap_or(low);
+    // Golden section around the best of them.
+    let (mut low, mut high) = ((best - step).max(low), (best + step).min(high));
+    let ratio = 0.5 * (5_f64.sqrt() - 1.0);
+    for _ in 0..ROUNDS {
+        let (inner, outer) = (high - ratio * (high - low), low + ratio * (high - low));
+        if badness(inner) <= badness(outer) {
+            high = outer;
+        } else {
+            low = inner;
+        }
+    }
+    0.5 * (low + high)
 }
 
 /// Draws the friction curve of a run folder against t*.
@@ -223,12 +366,13 @@ fn dimensionless(runs: &[Run], asked: Option<Against>) -> Result<(Scale, Option<
         axes,
         against,
         factors,
+        prefixes: [1.0; 2],
     };
     Ok((scale, note.map(str::to_owned)))
 }
 
-/// Axes of newtons and of seconds or metres, with the prefixes that suit the largest numbers.
-fn in_si(runs: &[Run], against: Against) -> Result<Scale, ResultsError> {
+/// Axes of newtons, or of coefficients, and of seconds or metres, with the prefixes that suit the largest numbers.
+fn in_si(runs: &[Run], against: Against, measure: Measure) -> Result<Scale, ResultsError> {
     let turns = runs.iter().all(Run::is_rotation);
     if let Some(run) = runs.iter().find(|run| run.is_rotation() != turns) {
         return Err(ResultsError::NotComparable(run.folder.clone()));
@@ -241,6 +385,7 @@ fn in_si(runs: &[Run], against: Against) -> Result<Scale, ResultsError> {
             Against::Displacement => si.displacement_unit_m,
         };
         let up = match si.static_torque_n_m {
+            _ if measure == Measure::Coefficient => si.stress_unit_pa / si.pressure_pa,
             Some(torque) => torque / run.summary.static_friction_star,
             None => si.stress_unit_pa * si.area_m2,
         };
@@ -253,24 +398,31 @@ fn in_si(runs: &[Run], against: Against) -> Result<Scale, ResultsError> {
         });
         sizes.filter(|size| size.is_finite()).fold(0.0, f64::max)
     };
-    let prefixes = [(against as usize, 0), (2, 1)].map(|(column, axis)| si_prefix(largest(column, axis)));
+    let mut prefixes = [(against as usize, 0), (2, 1)].map(|(column, axis)| si_prefix(largest(column, axis)));
+    if measure == Measure::Coefficient {
+        prefixes[1] = (1.0, "");
+    }
     for factors in &mut factors {
         for (factor, (unit, _)) in factors.iter_mut().zip(prefixes) {
             *factor /= unit;
         }
     }
     let [along, up] = prefixes.map(|(_, prefix)| if prefix == "u" { "\u{b5}" } else { prefix });
-    let (quantity, letter, unit) = if turns {
-        ("torque", 'M', format!("{up}N m"))
-    } else {
-        ("friction force", 'F', format!("{up}N"))
+    let (quantity, letter, unit) = match turns {
+        _ if measure == Measure::Coefficient => ("friction coefficient \u{3bc}", '\u{3bc}', String::new()),
+        true => ("torque", 'M', format!("{up}N m")),
+        false => ("friction force", 'F', format!("{up}N")),
+    };
+    let in_unit = |before: &str, after: &str| match unit.as_str() {
+        "" => String::new(),
+        unit => format!("{before}{unit}{after}"),
     };
     let axes = FrictionAxes {
         x: match against {
             Against::Time => format!("time ({along}s)"),
             Against::Displacement => format!("drive displacement ({along}m)"),
         },
-        friction: format!("{quantity} ({unit})"),
+        friction: format!("{quantity}{}", in_unit(" (", ")")),
         peak: format!("{letter}_s"),
         kinetic: format!("{letter}_k"),
         unit: format!(" {unit}"),
@@ -279,5 +431,6 @@ fn in_si(runs: &[Run], against: Against) -> Result<Scale, ResultsError> {
         axes,
         against,
         factors,
+        prefixes: prefixes.map(|(unit, _)| unit),
     })
 }

@@ -16,6 +16,8 @@ pub mod fields;
 #[cfg(feature = "plot")]
 pub mod friction_picture;
 pub mod manifest;
+#[cfg(feature = "plot")]
+pub mod measured;
 pub mod names;
 pub mod pictures;
 pub mod precursors;
