@@ -252,7 +252,7 @@ fn expect_memory(folders: &[PathBuf]) -> Result<(), Failure> {
 fn expect_results(folder: &Path) -> Result<(), Failure> {
     if folder.is_file() {
         return Err(Failure::input(anyhow::anyhow!(
-            "{} is a file: plot takes folders of finished runs, whose series.csv it draws, and no other curves",
+            "{} is a file: plot takes folders of finished runs, and a measured record with --data",
             folder.display()
         )));
     }
