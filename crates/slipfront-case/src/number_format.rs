@@ -95,17 +95,21 @@ pub fn with_interval(value: f64, interval: Option<[f64; 2]>, digits: usize) -> S
 
 /// A quantity to four digits, with an SI prefix: 0.025 s is `25 ms`.
 pub fn with_si_prefix(value: f64, unit: &str) -> String {
-    const PREFIXES: [&str; 13] = ["a", "f", "p", "n", "u", "m", "", "k", "M", "G", "T", "P", "E"];
-    let magnitude = value.abs();
-    if !magnitude.is_normal() {
+    if !value.is_normal() {
         return format!("{value} {unit}");
     }
-    let step = (magnitude.log10() / 3.0 + 1e-9).floor().clamp(-6.0, 6.0);
-    format!(
-        "{} {}{unit}",
-        four_digits(value / 1000f64.powf(step)),
-        PREFIXES[(step + 6.0) as usize]
-    )
+    let (factor, prefix) = si_prefix(value);
+    format!("{} {prefix}{unit}", four_digits(value / factor))
+}
+
+/// The SI prefix of a quantity of this size, and by what it multiplies a unit; none of 0 and of what is no number.
+pub fn si_prefix(value: f64) -> (f64, &'static str) {
+    const PREFIXES: [&str; 13] = ["a", "f", "p", "n", "u", "m", "", "k", "M", "G", "T", "P", "E"];
+    if !value.is_normal() {
+        return (1.0, "");
+    }
+    let step = (value.abs().log10() / 3.0 + 1e-9).floor().clamp(-6.0, 6.0);
+    (1000f64.powf(step), PREFIXES[(step + 6.0) as usize])
 }
 
 /// A number of things: 1 block, 2 blocks.

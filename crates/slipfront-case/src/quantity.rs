@@ -194,7 +194,6 @@ macro_rules! quantities {
         const NAMED: &[(Dimension, &str)] = &[
             $(($dimension, $label),)*
             (Dimension::new(1, 0, 0), "a mass"),
-            (Dimension::new(1, 1, -2), "a force"),
         ];
     };
 }
@@ -212,6 +211,8 @@ quantities! {
     Duration: Dimension::new(0, 0, 1), "a time", "84 ns", "s";
     /// A stiffness, read into N/m.
     Stiffness: Dimension::new(1, 0, -2), "a stiffness", "2 N/m", "N/m";
+    /// A force, read into N.
+    Force: Dimension::new(1, 1, -2), "a force", "0.3 N", "N";
     /// A rate, read into 1/s.
     Rate: Dimension::new(0, 0, -1), "a rate", "3e8 1/s", "1/s";
 }

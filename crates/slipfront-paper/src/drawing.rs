@@ -6,7 +6,8 @@ use crate::error::PaperError;
 use crate::number::Number;
 
 use slipfront_plot::{
-    BarChart, FieldMap, FieldMaps, FrictionCurve, Picture, PictureError, Response, Responses, Shape, Sketch,
+    BarChart, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, Picture, PictureError, Response, Responses,
+    Shape, Sketch,
 };
 
 /// The contents of a picture.
@@ -33,7 +34,7 @@ impl Drawing {
     /// When there is nothing to draw.
     pub fn draw(&self) -> Result<Picture, PictureError> {
         match self {
-            Self::Curves(curves) => slipfront_plot::friction(curves),
+            Self::Curves(curves) => slipfront_plot::friction(curves, &FrictionAxes::default()),
             Self::Maps(maps) => slipfront_plot::field_maps(maps),
             Self::Responses(responses) => slipfront_plot::response(responses),
             Self::Bars(chart) => slipfront_plot::bars(chart),
@@ -52,8 +53,8 @@ impl Drawing {
             Self::Curves(curves) => {
                 table.write_record(["curve", "time_star", "mu_star", "sliding_percent"])?;
                 for curve in curves {
-                    for (k, time) in curve.time_star.iter().enumerate() {
-                        table.serialize((&curve.label, time, curve.mu_star[k], curve.sliding_percent[k]))?;
+                    for (k, time) in curve.x.iter().enumerate() {
+                        table.serialize((&curve.label, time, curve.friction[k], curve.sliding_percent[k]))?;
                     }
                 }
             }

@@ -11,7 +11,7 @@ use crate::statistics::{deviation, largest};
 use slipfront::observe::Field;
 use slipfront_case::case::{Case, Snapshots};
 use slipfront_plot::{FieldMap, FrictionCurve};
-use slipfront_run::pictures::marked_curve;
+use slipfront_run::friction_picture::marked_curve;
 use slipfront_run::running::Record;
 
 /// A case that ends at the last of these times, with its fields at these alone.
@@ -100,8 +100,8 @@ impl Run {
     pub(super) fn lettered_curve(&self, label: &str) -> FrictionCurve {
         let rows = &self.record.rows;
         FrictionCurve {
-            time_star: rows.iter().map(|row| row.time_star).collect(),
-            mu_star: rows.iter().map(|row| row.point.mu_star).collect(),
+            x: rows.iter().map(|row| row.time_star).collect(),
+            friction: rows.iter().map(|row| row.point.mu_star).collect(),
             sliding_percent: rows.iter().map(|row| row.point.sliding_percent).collect(),
             ..marked_curve(label.to_owned(), &self.record.summary)
         }

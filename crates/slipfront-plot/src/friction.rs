@@ -1,8 +1,8 @@
-//! Friction and the share of sliding blocks against time.
+//! Friction and the share of sliding blocks against time or path.
 
 use crate::axis::drawable;
 use crate::canvas::Canvas;
-use crate::friction_curve::{FrictionCurve, Kinetic};
+use crate::friction_curve::{FrictionAxes, FrictionCurve, Kinetic};
 use crate::friction_layout::Panels;
 use crate::geometry::{Align, Area, Point};
 use crate::label_placement::{Candidate, Placer, around};
@@ -19,7 +19,7 @@ const DOT: f64 = 7.0;
 /// The kinetic window's shade.
 const SHADE: Rgb = [0x9a, 0xa5, 0xb1];
 
-/// Draws mu* and, below it, N* against t*, as wide as a journal's column (85 mm).
+/// Draws friction and, below it, N* against time or path, as wide as a journal's column (85 mm).
 ///
 /// One curve is drawn with all it knows: first slip, peak, kinetic window, lettered instants. Several are
 /// drawn over each other with their peaks, the lettered instants if only one has any, and a legend above. Curves
@@ -29,25 +29,29 @@ const SHADE: Rgb = [0x9a, 0xa5, 0xb1];
 /// # Errors
 ///
 /// No curve, or a curve whose columns differ in length.
-pub fn friction(curves: &[FrictionCurve]) -> Result<Picture, PictureError> {
+pub fn friction(curves: &[FrictionCurve], axes: &FrictionAxes) -> Result<Picture, PictureError> {
     if curves.is_empty() {
         return Err(PictureError::Nothing("curve"));
     }
     for curve in curves {
-        let columns = [("mu*", curve.mu_star.len()), ("N*", curve.sliding_percent.len())];
-        check_columns(&curve.label, ("times", curve.time_star.len()), &columns)?;
+        let columns = [
+            ("friction", curve.friction.len()),
+            ("N*", curve.sliding_percent.len()),
+        ];
+        check_columns(&curve.label, ("abscissae", curve.x.len()), &columns)?;
     }
     let panels = Panels::of(curves);
     let named = curves.iter().filter(|_| curves.len() > 1);
     let names: Vec<_> = named.map(|curve| (curve.label.as_str(), Sample::Line)).collect();
-    let legend = Legend::of("", &names, panels.time.start, panels.time.end);
+    let legend = Legend::of("", &names, panels.x.start, panels.x.end);
     let panels = panels.lowered(legend.height);
     let mut drawing = Drawing {
         canvas: Canvas::new(COLUMN_WIDTH, panels.bottom()),
         panels,
+        axes,
         placer: Placer::new(panels.area(&panels.mu)),
     };
-    panels.draw_axes(&mut drawing.canvas);
+    panels.draw_axes(&mut drawing.canvas, axes);
     legend.draw(&mut drawing.canvas);
     match curves {
         [curve] => drawing.draw_one(curve),
@@ -57,26 +61,29 @@ pub fn friction(curves: &[FrictionCurve]) -> Result<Picture, PictureError> {
     drawing.canvas.finish()
 }
 
-struct Drawing {
+struct Drawing<'a> {
     canvas: Canvas,
     panels: Panels,
+    axes: &'a FrictionAxes,
     /// Places the labels in the panel of friction.
     placer: Placer,
 }
 
-impl Drawing {
+impl Drawing<'_> {
     /// One curve with its marks.
     fn draw_one(&mut self, curve: &FrictionCurve) {
         let Panels {
-            time, mu, sliding, ..
+            x: across,
+            mu,
+            sliding,
         } = self.panels;
         let is_window = |window: &Kinetic| drawable(window.mean) && window.from < window.to;
         let window = curve.kinetic.filter(is_window);
         if let Some(window) = &window {
             self.shade_window(window);
         }
-        let first_slip = curve.first_slip_time_star.filter(|&slip| time.contains(slip));
-        let first_slip = first_slip.map(|slip| time.at(slip));
+        let first_slip = curve.first_slip.filter(|&slip| across.contains(slip));
+        let first_slip = first_slip.map(|slip| across.at(slip));
         if let Some(x) = first_slip {
             for axis in [mu, sliding] {
                 self.canvas
@@ -87,15 +94,17 @@ impl Drawing {
         self.draw_curve(curve, CURVES[0]);
         if let Some(window) = &window {
             // Over the curve, which would hide it.
-            let ends = [window.from, window.to].map(|t| (time.clamped(t), mu.clamped(window.mean)));
+            let ends = [window.from, window.to].map(|t| (across.clamped(t), mu.clamped(window.mean)));
             self.canvas.line(ends[0], ends[1], WIDTH_MARK, CURVES[1]);
             self.placer.avoid(&ends);
         }
-        let marks = Marks::of(&self.panels, curve, curve.peak);
+        let marks = Marks::of(&self.panels, self.axes, curve, curve.peak);
         self.keep_free(&marks.dots);
         // Labels that can go in fewest places come first.
         if let Some(window) = &window {
-            let text = Text::math(&format!("\u{3bc}_k* = {}", with_uncertainty(window)), SIZE_LABEL);
+            let FrictionAxes { kinetic, unit, .. } = self.axes;
+            let label = format!("{kinetic} = {}{unit}", with_uncertainty(window));
+            let text = Text::math(&label, SIZE_LABEL);
             self.write(&text, along_window(&self.panels, &text, window), CURVES[1]);
         }
         self.label_points(&marks.peak, &marks.dots);
@@ -122,7 +131,7 @@ impl Drawing {
         // Letters of two curves could not be told apart.
         let mut lettered = curves.iter().filter(|curve| !curve.instants.is_empty());
         if let (Some(curve), None) = (lettered.next(), lettered.next()) {
-            let marks = Marks::of(&self.panels, curve, None);
+            let marks = Marks::of(&self.panels, self.axes, curve, None);
             self.keep_free(&marks.dots);
             self.label_points(&marks.instants, &marks.dots);
             self.draw_dots(&marks.dots);
@@ -132,9 +141,11 @@ impl Drawing {
     /// Shades the window of kinetic friction in both panels, and the uncertainty of its mean.
     fn shade_window(&mut self, window: &Kinetic) {
         let Panels {
-            time, mu, sliding, ..
+            x: across,
+            mu,
+            sliding,
         } = self.panels;
-        let (from, to) = (time.clamped(window.from), time.clamped(window.to));
+        let (from, to) = (across.clamped(window.from), across.clamped(window.to));
         for axis in [mu, sliding] {
             self.canvas
                 .fill(Area::between(from, to, axis.start, axis.end), SHADE, 0.25);
@@ -146,14 +157,16 @@ impl Drawing {
         }
     }
 
-    /// Draws mu* and N*; labels keep off the former.
+    /// Draws friction and N*; labels keep off the former.
     fn draw_curve(&mut self, curve: &FrictionCurve, colour: Rgb) {
         let Panels {
-            time, mu, sliding, ..
+            x: across,
+            mu,
+            sliding,
         } = &self.panels;
-        let friction = segments(&curve.time_star, &curve.mu_star, time, mu);
+        let friction = segments(&curve.x, &curve.friction, across, mu);
         friction.iter().for_each(|segment| self.placer.avoid(segment));
-        let sliding = segments(&curve.time_star, &curve.sliding_percent, time, sliding);
+        let sliding = segments(&curve.x, &curve.sliding_percent, across, sliding);
         for segment in friction.into_iter().chain(sliding) {
             match segment[..] {
                 [point] => self.canvas.dot(point, 0.6 * DOT, colour),
@@ -208,11 +221,11 @@ struct Marks {
 
 impl Marks {
     /// The instants of a curve that lie in the panel, and its peak if one is given.
-    fn of(panels: &Panels, curve: &FrictionCurve, peak: Option<Point>) -> Self {
-        let peak = peak.and_then(|(t, value)| Some((panels.point((t, value))?, value)));
+    fn of(panels: &Panels, axes: &FrictionAxes, curve: &FrictionCurve, peak: Option<Point>) -> Self {
+        let peak = peak.and_then(|(x, value)| Some((panels.point((x, value))?, value)));
         let (mut dots, mut instants, mut at_peak) = (Vec::new(), Vec::new(), Vec::new());
         for instant in &curve.instants {
-            let Some(at) = panels.point((instant.time_star, instant.mu_star)) else {
+            let Some(at) = panels.point((instant.x, instant.friction)) else {
                 continue;
             };
             dots.push(at);
@@ -227,7 +240,8 @@ impl Marks {
         dots.extend(peak.map(|(at, _)| at));
         let colon = if at_peak.is_empty() { "" } else { ": " };
         let label = |(at, value): (Point, f64)| {
-            let label = format!("{}{colon}\u{3bc}_s* = {}", at_peak.join(", "), number(value, 3));
+            let (letters, FrictionAxes { peak, unit, .. }) = (at_peak.join(", "), axes);
+            let label = format!("{letters}{colon}{peak} = {}{unit}", number(value, 3));
             (at, Text::math(&label, SIZE_LABEL))
         };
         Self {
@@ -246,7 +260,7 @@ fn box_of(text: &Text) -> (f64, f64) {
 /// Places for a label of the window: within it if it is wide enough, rather above the mean than below.
 fn along_window(panels: &Panels, text: &Text, window: &Kinetic) -> Vec<Candidate> {
     let panel = panels.area(&panels.mu);
-    let (from, to) = (panels.time.clamped(window.from), panels.time.clamped(window.to));
+    let (from, to) = (panels.x.clamped(window.from), panels.x.clamped(window.to));
     let mean = panels.mu.clamped(window.mean);
     let (width, height) = box_of(text);
     let room = (panel.x + MARGIN, panel.right() - MARGIN - width);
@@ -294,9 +308,13 @@ mod tests {
     use super::*;
     use crate::friction_curve::Instant;
 
+    fn drawn(curves: &[FrictionCurve]) -> Result<Picture, PictureError> {
+        friction(curves, &FrictionAxes::default())
+    }
+
     /// A curve like a real run's: a ramp, a peak, a fall, sliding.
     fn run() -> FrictionCurve {
-        let time_star: Vec<f64> = (0..=534).map(|step| 0.5 * f64::from(step)).collect();
+        let x: Vec<f64> = (0..=534).map(|step| 0.5 * f64::from(step)).collect();
         let mu = |t: f64| match t {
             ..78.0 => 0.883 * t / 78.0,
             ..84.0 => 0.883 - 0.08 * (t - 78.0),
@@ -312,14 +330,10 @@ mod tests {
         ];
         FrictionCurve {
             label: "a < b & $c$".to_string(),
-            is_torque: false,
-            mu_star: time_star.iter().map(|&t| mu(t)).collect(),
-            sliding_percent: time_star
-                .iter()
-                .map(|&t| if t < 71.0 { 0.0 } else { 40.0 })
-                .collect(),
-            time_star,
-            first_slip_time_star: Some(71.0),
+            friction: x.iter().map(|&t| mu(t)).collect(),
+            sliding_percent: x.iter().map(|&t| if t < 71.0 { 0.0 } else { 40.0 }).collect(),
+            x,
+            first_slip: Some(71.0),
             peak: Some((78.0, 0.883)),
             kinetic: Some(Kinetic {
                 from: 161.0,
@@ -330,18 +344,18 @@ mod tests {
             instants: letters
                 .map(|(letter, t)| Instant {
                     letter,
-                    time_star: t,
-                    mu_star: mu(t),
+                    x: t,
+                    friction: mu(t),
                 })
                 .to_vec(),
         }
     }
 
     fn curve(points: &[(f64, f64)]) -> FrictionCurve {
-        let (time_star, mu_star) = points.iter().copied().unzip();
+        let (x, friction) = points.iter().copied().unzip();
         FrictionCurve {
-            time_star,
-            mu_star,
+            x,
+            friction,
             sliding_percent: vec![0.0; points.len()],
             ..FrictionCurve::default()
         }
@@ -365,12 +379,12 @@ mod tests {
 
     #[test]
     fn the_same_curve_gives_the_same_bytes() {
-        assert_eq!(friction(&[run()]).unwrap(), friction(&[run()]).unwrap());
+        assert_eq!(drawn(&[run()]).unwrap(), drawn(&[run()]).unwrap());
     }
 
     #[test]
     fn every_mark_is_written_once_and_apart_from_the_others() {
-        let svg = friction(&[run()]).unwrap().svg;
+        let svg = drawn(&[run()]).unwrap().svg;
         // C is the peak and shares its label.
         let letters = ["A", "B", "C: \u{3bc}", "D", "E", "F"].map(|letter| written_at(&svg, letter).unwrap());
         for (index, a) in letters.iter().enumerate() {
@@ -393,13 +407,13 @@ mod tests {
             letter: 'B',
             ..uniform.instants[2]
         };
-        let svg = friction(&[uniform]).unwrap().svg;
+        let svg = drawn(&[uniform]).unwrap().svg;
         assert!(written_at(&svg, "B, C: \u{3bc}").is_some() && written_at(&svg, "B").is_none());
     }
 
     #[test]
     fn several_curves_have_a_legend_and_the_letters_of_at_most_one() {
-        let svg = |other: FrictionCurve| friction(&[run(), other]).unwrap().svg;
+        let svg = |other: FrictionCurve| drawn(&[run(), other]).unwrap().svg;
         let (one, two) = (svg(curve(&[(0.0, 0.0), (300.0, 1.0)])), svg(run()));
         assert!(one.contains(">a &lt; b &amp; $c$</text>"));
         assert!(written_at(&one, "A").is_some() && written_at(&two, "A").is_none());
@@ -417,7 +431,7 @@ mod tests {
             curve(&[(0.0, f64::MAX), (f64::INFINITY, f64::MIN), (2.0, 1.0)]),
             FrictionCurve {
                 peak: Some((9.0, f64::NAN)),
-                first_slip_time_star: Some(f64::NAN),
+                first_slip: Some(f64::NAN),
                 kinetic: Some(Kinetic {
                     from: f64::NAN,
                     to: 1.0,
@@ -426,28 +440,25 @@ mod tests {
                 }),
                 instants: vec![Instant {
                     letter: '\u{0}',
-                    time_star: f64::INFINITY,
-                    mu_star: 0.0,
+                    x: f64::INFINITY,
+                    friction: 0.0,
                 }],
                 ..curve(&[(0.0, 0.0), (1.0, 1.0)])
             },
         ];
         for curve in &odd {
-            let svg = friction(std::slice::from_ref(curve)).unwrap().svg;
+            let svg = drawn(std::slice::from_ref(curve)).unwrap().svg;
             assert!(!svg.contains("NaN") && !svg.contains("inf\""), "{curve:?}");
         }
-        friction(&odd).unwrap();
+        drawn(&odd).unwrap();
     }
 
     #[test]
     fn columns_of_different_length_are_refused() {
         let mut bad = curve(&[(0.0, 0.0), (1.0, 1.0)]);
         bad.sliding_percent.pop();
-        let error = friction(&[bad]).unwrap_err().to_string();
-        assert_eq!(error, "curve `` has 2 times but 1 values of N*");
-        assert_eq!(
-            friction(&[]).unwrap_err().to_string(),
-            "there is no curve to draw"
-        );
+        let error = drawn(&[bad]).unwrap_err().to_string();
+        assert_eq!(error, "curve `` has 2 abscissae but 1 values of N*");
+        assert_eq!(drawn(&[]).unwrap_err().to_string(), "there is no curve to draw");
     }
 }

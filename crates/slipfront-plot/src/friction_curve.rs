@@ -2,22 +2,49 @@
 
 use serde::{Deserialize, Serialize};
 
-/// One run's curve; everything is dimensionless.
+/// What the axes of a friction picture count, and what its labels call the marks: texts in which the character after an underscore
+/// is a subscript.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrictionAxes {
+    /// Title of the horizontal axis.
+    pub x: String,
+    /// Title of the vertical axis of friction.
+    pub friction: String,
+    /// Symbol of the peak.
+    pub peak: String,
+    /// Symbol of kinetic friction.
+    pub kinetic: String,
+    /// Unit of both, with the space before it; empty for none.
+    pub unit: String,
+}
+
+impl Default for FrictionAxes {
+    /// mu* against t*.
+    fn default() -> Self {
+        Self {
+            x: "dimensionless time t*".to_owned(),
+            friction: "friction \u{3bc}* = \u{3bc}/\u{27e8}\u{3bc}_s\u{27e9}".to_owned(),
+            peak: "\u{3bc}_s*".to_owned(),
+            kinetic: "\u{3bc}_k*".to_owned(),
+            unit: String::new(),
+        }
+    }
+}
+
+/// One run's curve, in the units of the axes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrictionCurve {
     /// What the legend calls it; shown only beside other curves.
     pub label: String,
-    /// Whether mu* is a torque, of a drive that rotates.
-    pub is_torque: bool,
-    /// t*, never falling.
-    pub time_star: Vec<f64>,
-    /// mu* at these times; NaN leaves a gap.
-    pub mu_star: Vec<f64>,
-    /// N* at these times, in percent.
+    /// Time, or path of the drive.
+    pub x: Vec<f64>,
+    /// Friction there; NaN leaves a gap.
+    pub friction: Vec<f64>,
+    /// N* there, in percent.
     pub sliding_percent: Vec<f64>,
-    /// When the first block in contact slips.
-    pub first_slip_time_star: Option<f64>,
-    /// The peak: (`t_s*`, `mu_s*`).
+    /// Where the first block in contact slips.
+    pub first_slip: Option<f64>,
+    /// Where the peak is, and friction there.
     pub peak: Option<(f64, f64)>,
     /// The window of kinetic friction.
     pub kinetic: Option<Kinetic>,
@@ -25,14 +52,14 @@ pub struct FrictionCurve {
     pub instants: Vec<Instant>,
 }
 
-/// Kinetic friction: the mean of mu* over a window of t*.
+/// Kinetic friction: its mean over a window.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Kinetic {
     /// Where the window begins.
     pub from: f64,
     /// Where the window ends.
     pub to: f64,
-    /// `mu_k*`.
+    /// The mean.
     pub mean: f64,
     /// Its standard uncertainty, if known.
     pub uncertainty: Option<f64>,
@@ -43,8 +70,8 @@ pub struct Kinetic {
 pub struct Instant {
     /// Its letter.
     pub letter: char,
-    /// When it is.
-    pub time_star: f64,
-    /// mu* at that time.
-    pub mu_star: f64,
+    /// Where it is.
+    pub x: f64,
+    /// Friction there.
+    pub friction: f64,
 }

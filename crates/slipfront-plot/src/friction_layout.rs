@@ -1,9 +1,9 @@
-//! The two panels of a friction picture: mu* above, N* below, on one time axis.
+//! The two panels of a friction picture: friction above, N* below, on one axis of time or path.
 
 use crate::axis::{Axis, range};
 use crate::canvas::Canvas;
 use crate::frame::{LOWER_ROOM, left_room, left_side, lower_title, right_end};
-use crate::friction_curve::FrictionCurve;
+use crate::friction_curve::{FrictionAxes, FrictionCurve};
 use crate::geometry::{Area, Point};
 use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, SIZE_LABEL, TICK_LENGTH, WIDTH_LEADER};
 use crate::text::Text;
@@ -15,23 +15,21 @@ const GAP: f64 = 34.0;
 
 #[derive(Clone, Copy)]
 pub(crate) struct Panels {
-    pub(crate) time: Axis,
+    pub(crate) x: Axis,
     pub(crate) mu: Axis,
     pub(crate) sliding: Axis,
-    /// Whether all curves are torques.
-    are_torques: bool,
 }
 
 impl Panels {
     /// Panels that hold all curves and their marks, at the top of the picture.
     pub(crate) fn of(curves: &[FrictionCurve]) -> Self {
-        let (from, to) = range(curves.iter().flat_map(|curve| curve.time_star.iter().copied()));
+        let (from, to) = range(curves.iter().flat_map(|curve| curve.x.iter().copied()));
         let values = curves.iter().flat_map(|curve| {
             let marks = [
                 curve.kinetic.map(|window| window.mean),
                 curve.peak.map(|(_, mu)| mu),
             ];
-            curve.mu_star.iter().copied().chain(marks.into_iter().flatten())
+            curve.friction.iter().copied().chain(marks.into_iter().flatten())
         });
         let (mut lo, hi) = range(values);
         // Friction is read against zero, unless that would flatten it.
@@ -44,16 +42,11 @@ impl Panels {
         let mu = Axis::linear(if lo == 0.0 { lo } else { lo - room }, hi + room).placed(mu_bottom, MARGIN);
         let sliding = Axis::linear(0.0, 100.0).placed(sliding_top + HEIGHT_SLIDING, sliding_top);
         let left = left_room(&[mu_ticks(&mu), sliding_ticks(&sliding)].concat());
-        // The last number on the time axis may stand half beyond its end.
+        // The last number on the axis may stand half beyond its end.
         let right = COLUMN_WIDTH.round() - 28.0;
-        let time = Axis::linear(from, to).placed(left, right);
-        let time = time.placed(left, right_end(&time_ticks(&time), left, right, COLUMN_WIDTH));
-        Self {
-            time,
-            mu,
-            sliding,
-            are_torques: !curves.is_empty() && curves.iter().all(|curve| curve.is_torque),
-        }
+        let x = Axis::linear(from, to).placed(left, right);
+        let x = x.placed(left, right_end(&x_ticks(&x), left, right, COLUMN_WIDTH));
+        Self { x, mu, sliding }
     }
 
     /// These panels, further down.
@@ -68,13 +61,13 @@ impl Panels {
 
     /// The panel of friction or of sliding.
     pub(crate) fn area(&self, axis: &Axis) -> Area {
-        Area::between(self.time.start, self.time.end, axis.start, axis.end)
+        Area::between(self.x.start, self.x.end, axis.start, axis.end)
     }
 
-    /// The pixel of a time and a friction that both lie in the panel.
-    pub(crate) fn point(&self, (t, mu): Point) -> Option<Point> {
-        let is_inside = self.time.contains(t) && self.mu.contains(mu);
-        is_inside.then(|| (self.time.at(t), self.mu.at(mu)))
+    /// The pixel of a point that lies in the panel of friction.
+    pub(crate) fn point(&self, (x, mu): Point) -> Option<Point> {
+        let is_inside = self.x.contains(x) && self.mu.contains(mu);
+        is_inside.then(|| (self.x.at(x), self.mu.at(mu)))
     }
 
     /// Where the picture ends.
@@ -83,14 +76,8 @@ impl Panels {
     }
 
     /// Ticks, numbers and titles.
-    pub(crate) fn draw_axes(&self, canvas: &mut Canvas) {
-        let title = match self.are_torques {
-            true => Text::plain("torque \u{3bc}*", SIZE_LABEL),
-            false => Text::math(
-                "friction \u{3bc}* = \u{3bc}/\u{27e8}\u{3bc}_s\u{27e9}",
-                SIZE_LABEL,
-            ),
-        };
+    pub(crate) fn draw_axes(&self, canvas: &mut Canvas, axes: &FrictionAxes) {
+        let title = Text::math(&axes.friction, SIZE_LABEL);
         left_side(canvas, self.area(&self.mu), 0.0, &mu_ticks(&self.mu), &title);
         let title = Text::plain("sliding N* (%)", SIZE_LABEL);
         left_side(
@@ -101,11 +88,11 @@ impl Panels {
             &title,
         );
         let foot = self.mu.start;
-        for (x, text) in time_ticks(&self.time) {
+        for (x, text) in x_ticks(&self.x) {
             canvas.tick_below((x, self.sliding.start), &text);
             canvas.line((x, foot), (x, foot + TICK_LENGTH), WIDTH_LEADER, BLACK);
         }
-        let title = Text::plain("dimensionless time t*", SIZE_LABEL);
+        let title = Text::math(&axes.x, SIZE_LABEL);
         lower_title(canvas, self.area(&self.sliding), &title);
     }
 
@@ -117,8 +104,8 @@ impl Panels {
     }
 }
 
-fn time_ticks(time: &Axis) -> Vec<Tick> {
-    time.ticks(Direction::X, MAX_STEPS)
+fn x_ticks(x: &Axis) -> Vec<Tick> {
+    x.ticks(Direction::X, MAX_STEPS)
 }
 
 fn mu_ticks(mu: &Axis) -> Vec<Tick> {
@@ -134,19 +121,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_number_on_the_time_axis_is_cut_off() {
+    fn no_number_on_the_horizontal_axis_is_cut_off() {
         for end in [0.3, 100.0, 267.0, 2000.0, 4000.0, 30_000.0, 999_999.0, 1e9, 3e-7] {
             let curve = FrictionCurve {
-                time_star: vec![0.0, end],
-                mu_star: vec![0.0, 1.0],
+                x: vec![0.0, end],
+                friction: vec![0.0, 1.0],
                 sliding_percent: vec![0.0, 100.0],
                 ..FrictionCurve::default()
             };
             let panels = Panels::of(&[curve]);
-            for (x, text) in time_ticks(&panels.time) {
-                assert!(x + 0.5 * text.width() <= COLUMN_WIDTH, "t* = {end}");
+            for (x, text) in x_ticks(&panels.x) {
+                assert!(x + 0.5 * text.width() <= COLUMN_WIDTH, "{end}");
             }
-            assert!(panels.time.end > 0.8 * COLUMN_WIDTH, "t* = {end}");
+            assert!(panels.x.end > 0.8 * COLUMN_WIDTH, "{end}");
         }
     }
 }

@@ -42,7 +42,7 @@ pub use bars::{Bar, BarChart, BarGroup, bars};
 pub use cell_means::CellMeans;
 pub use field_maps::{FieldMap, FieldMaps, field_maps};
 pub use friction::friction;
-pub use friction_curve::{FrictionCurve, Instant, Kinetic};
+pub use friction_curve::{FrictionAxes, FrictionCurve, Instant, Kinetic};
 pub use heat_map::{HeatAxis, HeatMap, heat_map};
 pub use picture::{Picture, PictureError};
 pub use quantity_labels::{QuantityLabel, has_glyphs};

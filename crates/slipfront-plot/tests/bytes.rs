@@ -3,9 +3,9 @@
 //! The digests change with the look of the pictures, and with the version of the crate that compresses the PNG.
 
 use slipfront_plot::{
-    Bar, BarChart, BarGroup, FieldMap, FieldMaps, FrictionCurve, HeatAxis, HeatMap, Instant, Kinetic,
-    Picture, Response, Responses, Shape, StressMap, StressMaps, bars, field_maps, friction, heat_map,
-    response, shapes, stress,
+    Bar, BarChart, BarGroup, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, HeatAxis, HeatMap, Instant,
+    Kinetic, Picture, Response, Responses, Shape, StressMap, StressMaps, bars, field_maps, friction,
+    heat_map, response, shapes, stress,
 };
 
 /// The first digits of the hashes of both files.
@@ -21,17 +21,16 @@ fn numbers(count: usize) -> Vec<f64> {
 }
 
 fn curve() -> FrictionCurve {
-    let time_star: Vec<f64> = (0..1000).map(|step| 0.25 * f64::from(step)).collect();
+    let x: Vec<f64> = (0..1000).map(|step| 0.25 * f64::from(step)).collect();
     FrictionCurve {
         label: "one curve".to_string(),
-        is_torque: false,
-        mu_star: time_star
+        friction: x
             .iter()
             .map(|t| (t / 80.0).min(0.9) + 0.1 * (t % 3.0) / 3.0)
             .collect(),
         sliding_percent: numbers(1000).iter().map(|number| 100.0 * number).collect(),
-        time_star,
-        first_slip_time_star: Some(60.0),
+        x,
+        first_slip: Some(60.0),
         peak: Some((80.0, 0.95)),
         kinetic: Some(Kinetic {
             from: 150.0,
@@ -41,8 +40,8 @@ fn curve() -> FrictionCurve {
         }),
         instants: vec![Instant {
             letter: 'A',
-            time_star: 20.0,
-            mu_star: 0.25,
+            x: 20.0,
+            friction: 0.25,
         }],
     }
 }
@@ -142,8 +141,11 @@ fn outlines() -> [Shape; 1] {
 #[test]
 fn every_kind_of_picture_has_its_bytes() {
     let found = [
-        ("friction", friction(&[curve()])),
-        ("frictions", friction(&[curve(), curve()])),
+        ("friction", friction(&[curve()], &FrictionAxes::default())),
+        (
+            "frictions",
+            friction(&[curve(), curve()], &FrictionAxes::default()),
+        ),
         ("stress", stress(&stress_maps())),
         ("fields", field_maps(&maps())),
         ("response", response(&responses())),

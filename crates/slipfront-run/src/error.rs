@@ -31,6 +31,14 @@ pub enum ResultsError {
         path: PathBuf,
         source: serde_json::Error,
     },
+    #[error(
+        "{0} has no units in its summary and series: it was written by an older version; run its case.toml again"
+    )]
+    NoUnits(PathBuf),
+    #[error(
+        "forces and torques have no axis in common: {0} is a rotation or not, other than the runs beside it"
+    )]
+    NotComparable(PathBuf),
     #[cfg(feature = "plot")]
     #[error("cannot draw {name}: {source}")]
     Picture {

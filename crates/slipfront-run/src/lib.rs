@@ -13,7 +13,11 @@ pub mod clock;
 pub mod columns;
 pub mod error;
 pub mod fields;
+#[cfg(feature = "plot")]
+pub mod friction_picture;
 pub mod manifest;
+#[cfg(feature = "plot")]
+pub mod measured;
 pub mod names;
 pub mod pictures;
 pub mod precursors;

@@ -4,19 +4,17 @@
 use {
     crate::error::ResultsError,
     crate::fields::{self, FieldFrame, Reduction},
+    crate::friction_picture,
     crate::precursors::{self, PrecursorRow},
     crate::series::{self, SeriesRow},
-    crate::summary::{Summary, read_summary},
+    crate::summary::read_summary,
     rayon::prelude::*,
     slipfront::exact_solutions::precursor_load,
     slipfront::observe::Field,
     slipfront::{Edge, Edges},
     slipfront_case::case::{MAX_MAPS, memory_to_draw},
-    slipfront_case::case_file::{CaseFile, KineticFriction, Motion},
-    slipfront_plot::{
-        self as plot, CellMeans, FrictionCurve, Instant, Kinetic, Picture, Response, Responses, StressMap,
-        StressMaps,
-    },
+    slipfront_case::case_file::{CaseFile, KineticFriction},
+    slipfront_plot::{self as plot, CellMeans, Picture, Response, Responses, StressMap, StressMaps},
     std::path::{Path, PathBuf},
 };
 
@@ -39,7 +37,7 @@ pub static RUN_PICTURES: &[RunPicture] = &[
         name: "friction",
         shows: "friction and sliding blocks against time",
         #[cfg(feature = "plot")]
-        draw: |folder| draw_friction(&[folder.to_owned()]).map(Some),
+        draw: |folder| friction_picture::of_run(folder).map(Some),
     },
     RunPicture {
         name: "stress",
@@ -87,56 +85,6 @@ pub fn draw(folder: &Path) -> Result<Vec<(&'static str, Picture)>, ResultsError>
         }
     }
     Ok(pictures)
-}
-
-/// Draws the friction curves of several run folders over each other.
-#[cfg(feature = "plot")]
-pub fn draw_friction(folders: &[PathBuf]) -> Result<Picture, ResultsError> {
-    let curves: Result<Vec<_>, _> = folders.iter().map(|folder| friction_curve(folder)).collect();
-    plot::friction(&curves?).map_err(|source| ResultsError::Picture {
-        name: "friction",
-        source,
-    })
-}
-
-#[cfg(feature = "plot")]
-fn friction_curve(folder: &Path) -> Result<FrictionCurve, ResultsError> {
-    let summary = read_summary(folder)?;
-    let point = |row: SeriesRow| [row.time_star, row.mu_star, row.sliding_percent];
-    let points = series::read_rows(&folder.join(SERIES), SERIES, point)?;
-    let column = |k: usize| points.iter().map(|point| point[k]).collect();
-    Ok(FrictionCurve {
-        time_star: column(0),
-        mu_star: column(1),
-        sliding_percent: column(2),
-        ..marked_curve(folder.display().to_string(), &summary)
-    })
-}
-
-/// All that a summary knows of a curve, without its points.
-#[cfg(feature = "plot")]
-pub fn marked_curve(label: String, summary: &Summary) -> FrictionCurve {
-    let kinetic = summary.kinetic_window_star.zip(summary.kinetic_friction_star);
-    let peak = (summary.onset_time_star, summary.static_friction_star);
-    let instants = summary.instants.iter().map(|instant| Instant {
-        letter: instant.instant,
-        time_star: instant.time_star,
-        mu_star: instant.mu_star,
-    });
-    FrictionCurve {
-        label,
-        is_torque: summary.motion == Some(Motion::Rotation),
-        first_slip_time_star: summary.first_slip_time_star,
-        peak: summary.transition.then_some(peak),
-        kinetic: kinetic.map(|([from, to], mean)| Kinetic {
-            from,
-            to,
-            mean,
-            uncertainty: summary.kinetic_friction_star_uncertainty,
-        }),
-        instants: instants.collect(),
-        ..FrictionCurve::default()
-    }
 }
 
 /// Maps are read as the means that are drawn, so that they take no more memory for a larger lattice.

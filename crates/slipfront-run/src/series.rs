@@ -22,12 +22,24 @@ pub struct SeriesRow {
     pub time_star: f64,
     /// Time, s.
     pub time_s: f64,
+    /// How far the drive has moved, m; of a rotation at its largest radius.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub drive_displacement_m: Option<f64>,
     /// mu* (Eq. 9 over mu_s).
     pub mu_star: f64,
     /// mu (Eq. 9).
     pub friction_coefficient: f64,
     /// The component of mu* across the drive.
     pub mu_lateral_star: f64,
+    /// Friction along the drive, N; none of a drive that rotates.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub friction_force_n: Option<f64>,
+    /// Friction across the drive, N.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub lateral_force_n: Option<f64>,
+    /// Torque of friction, N m, of a drive that rotates.
+    #[serde(default, deserialize_with = "number", skip_serializing_if = "Option::is_none")]
+    pub torque_n_m: Option<f64>,
     /// N*, %.
     pub sliding_percent: f64,
     /// Work of the drive since the start, J.
@@ -56,7 +68,7 @@ pub struct SeriesRow {
     pub mean_state_star: Option<f64>,
 }
 
-/// A number of a column that a series need not have; one that has it has a number in every row.
+/// A number of a column that a series need not have, since it belongs to an option or is younger than the file; one that has it has a number in every row.
 fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
     f64::deserialize(deserializer).map(Some)
 }
@@ -80,13 +92,22 @@ impl SeriesRow {
         let has_springs = matches!(model.friction, Friction::ContactSprings(_));
         let has_state = matches!(model.friction, Friction::RateAndState(_));
         let viscous_loss = row.energies.viscous_loss * energy;
+        let force = scales.force() * model.mu_star_divisor();
+        let arm = model
+            .drive
+            .rotation
+            .map(|rotation| rotation.radius * scales.block_size);
         Self {
             step: row.step,
             time_star: row.time_star,
             time_s: row.time_star * scales.time(),
+            drive_displacement_m: Some(model.drive.path(row.time_star) * scales.displacement()),
             mu_star: row.point.mu_star,
             friction_coefficient: row.point.mu_star * scales.mu_static_mean,
             mu_lateral_star: row.point.mu_lateral_star,
+            friction_force_n: arm.is_none().then_some(row.point.mu_star * force),
+            lateral_force_n: arm.is_none().then_some(row.point.mu_lateral_star * force),
+            torque_n_m: arm.map(|arm| row.point.mu_star * force * arm),
             sliding_percent: row.point.sliding_percent,
             work_j: row.energies.work * energy,
             kinetic_energy_j: row.energies.stored.kinetic * energy,

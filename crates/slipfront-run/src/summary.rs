@@ -50,6 +50,9 @@ pub struct Summary {
     pub transition: bool,
     /// The instants A-F that were found.
     pub instants: Vec<InstantSummary>,
+    /// Units of the starred quantities and what is measured in a laboratory; none in summaries of older versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub si: Option<SiSummary>,
     /// V*.
     pub v_star: f64,
     /// R*.
@@ -106,6 +109,41 @@ pub struct Summary {
     pub warnings: Vec<String>,
     /// Version of slipfront.
     pub version: String,
+}
+
+/// A run in SI units.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SiSummary {
+    /// P, Pa.
+    pub pressure_pa: f64,
+    /// E, Pa.
+    pub young_modulus_pa: f64,
+    /// rho, kg/m^3.
+    pub density_kg_m3: f64,
+    /// l, m.
+    pub block_size_m: f64,
+    /// Area of all blocks, m^2.
+    pub area_m2: f64,
+    /// Load that the blocks in contact carry, N.
+    pub normal_force_n: f64,
+    /// Largest friction of the first peak, N; none of a drive that rotates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub static_friction_force_n: Option<f64>,
+    /// Mean friction over the kinetic window, N.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kinetic_friction_force_n: Option<f64>,
+    /// Torque of the first peak, N m, of a drive that rotates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub static_torque_n_m: Option<f64>,
+    /// One unit of t*, s.
+    pub time_unit_s: f64,
+    /// One unit of displacement, m.
+    pub displacement_unit_m: f64,
+    /// One unit of stress, P mu_s, Pa.
+    pub stress_unit_pa: f64,
+    /// Largest contact stress of a block at any time, tau_c, Pa.
+    pub contact_stress_max_pa: f64,
 }
 
 /// One of the instants A-F.
@@ -257,6 +295,8 @@ impl SummaryObservers {
                 sliding_percent: frame.point.sliding_percent,
             })
             .collect();
+        let kinetic_star = kinetic.map(|kinetic| kinetic.mu_star);
+        let si = si(case, peak.mu_star, kinetic_star, simulation.contact_stress_max());
         let after_run = after_run(reason, &peak, first_slip, kinetic, &energies);
         Summary {
             static_friction_star: peak.mu_star,
@@ -274,6 +314,7 @@ impl SummaryObservers {
             mu_star_max: peak.mu_star_max,
             transition: peak.ended,
             instants,
+            si: Some(si),
             v_star: case.groups.v_star,
             r_star: case.groups.r_star,
             omega_star: case.groups.omega_star,
@@ -308,6 +349,31 @@ impl SummaryObservers {
             warnings: [case.warnings(), after_run].concat(),
             version: VERSION.to_owned(),
         }
+    }
+}
+
+fn si(case: &Case, static_star: f64, kinetic_star: Option<f64>, contact_stress_max: f64) -> SiSummary {
+    let (scales, model) = (&case.scales, &case.model);
+    let area = model.n_blocks() as f64 * scales.block_size * scales.block_size;
+    let force = scales.force() * model.mu_star_divisor();
+    let arm = model
+        .drive
+        .rotation
+        .map(|rotation| rotation.radius * scales.block_size);
+    SiSummary {
+        pressure_pa: scales.pressure,
+        young_modulus_pa: scales.young_modulus,
+        density_kg_m3: scales.density,
+        block_size_m: scales.block_size,
+        area_m2: area,
+        normal_force_n: model.surface.mean_normal_force() * scales.pressure * area,
+        static_friction_force_n: arm.is_none().then_some(static_star * force),
+        kinetic_friction_force_n: kinetic_star.filter(|_| arm.is_none()).map(|star| star * force),
+        static_torque_n_m: arm.map(|arm| static_star * force * arm),
+        time_unit_s: scales.time(),
+        displacement_unit_m: scales.displacement(),
+        stress_unit_pa: scales.stress(),
+        contact_stress_max_pa: contact_stress_max * scales.stress(),
     }
 }
 

@@ -14,7 +14,11 @@ use slipfront_run::study::{self, Plan, Quantity, Records, StudyFile};
 fn studies_are_true() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut seen = 0;
-    for page in ["docs/reference/study-file.md", "docs/guide/studies.md"] {
+    for page in [
+        "docs/reference/study-file.md",
+        "docs/guide/studies.md",
+        "docs/guide/experiment.md",
+    ] {
         let text = fs::read_to_string(root.join(page)).unwrap();
         for rest in text.split("```toml study\n").skip(1) {
             let block = rest.split("```").next().unwrap();

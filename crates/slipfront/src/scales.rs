@@ -51,9 +51,14 @@ impl Scales {
         self.pressure * self.mu_static_mean
     }
 
+    /// One unit of force, `P mu_s l^2`, N.
+    pub fn force(&self) -> f64 {
+        self.stress() * self.block_size * self.block_size
+    }
+
     /// One unit of energy, `P mu_s l^2` times `P mu_s l/E`, J.
     pub fn energy(&self) -> f64 {
-        self.stress() * self.block_size * self.block_size * self.displacement()
+        self.force() * self.displacement()
     }
 
     /// One unit of stiffness, `E l`, N/m.

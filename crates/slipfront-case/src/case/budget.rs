@@ -126,7 +126,7 @@ const STATICS_ON_DISK: f64 = 2.0 + 3.0 * NUMBER;
 /// A column of `series.csv`: at most 24 characters and what separates it from the next.
 const COLUMN_TEXT: f64 = 25.0;
 /// Columns of every series.
-const COLUMNS: f64 = 13.0;
+const COLUMNS: f64 = 16.0;
 /// Stretches of the history of mu* and their copies while an uncertainty is sought.
 const HISTORY: f64 = 1024.0 * 1024.0;
 

@@ -2,12 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use slipfront_case::case::PROGRAM;
 use slipfront_case::disk::{is_same, read_limited, write_atomic};
 use slipfront_case::machine::available_of;
-use slipfront_case::number_format::byte_size;
+use slipfront_case::number_format::{byte_size, four_digits, with_si_prefix};
 use slipfront_plot::Picture;
+use slipfront_run::friction_picture::{self, Against, Fit, Measured, Overlay, Units};
+use slipfront_run::measured::{Column, Measure, MeasuredError, Record};
 use slipfront_run::names::MANIFEST;
 use slipfront_run::pictures;
 use slipfront_run::run_folder::inspection::Inspection;
@@ -17,21 +19,83 @@ use crate::failure::Failure;
 use crate::print::print_message;
 use crate::threads::set_threads;
 
-/// Draw the pictures of a run again, or the friction curves of several runs over each other
+/// Draw the pictures of a run again, or the friction curves of one or several runs over each other, on axes of your choice
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront plot results/baseline
-  slipfront plot results/circle results/groove_across -o results/overlay")]
+  slipfront plot results/circle results/groove_across -o results/overlay
+  slipfront plot results/circle --units si --against displacement -o results/newtons
+  slipfront plot results/circle --data force.csv --x time_s --y force_n")]
 pub(crate) struct Plot {
     /// Run folders
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
-    /// Folder for the pictures [default: the run's own; results/overlay for several]
+    /// Draw friction alone, in these units
+    #[arg(long)]
+    units: Option<UnitsName>,
+    /// Draw friction alone, against this [default: time, or where runs of different materials can be compared]
+    #[arg(long)]
+    against: Option<AgainstName>,
+    /// A measured record to draw with the curves, in SI units: a table of text (.csv)
+    #[arg(long, value_name = "FILE", requires_all = ["x", "y"])]
+    data: Option<PathBuf>,
+    /// Its column of times, or of displacements with `--against displacement`: name or number from 1
+    #[arg(long, value_name = "COLUMN", requires = "data")]
+    x: Option<String>,
+    /// Its column of forces, or of coefficients with `--y-unit 1`
+    #[arg(long, value_name = "COLUMN", requires = "data")]
+    y: Option<String>,
+    /// Unit of the former [default: that in its header]
+    #[arg(long, value_name = "UNIT", requires = "data")]
+    x_unit: Option<String>,
+    /// Unit of the latter [default: that in its header]
+    #[arg(long, value_name = "UNIT", requires = "data")]
+    y_unit: Option<String>,
+    /// Factor of the latter: -1 turns its sign
+    #[arg(
+        long,
+        value_name = "NUMBER",
+        requires = "data",
+        default_value_t = 1.0,
+        allow_negative_numbers = true
+    )]
+    y_factor: f64,
+    /// What is added to the latter after that, in N or 1
+    #[arg(
+        long,
+        value_name = "NUMBER",
+        requires = "data",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
+    y_offset: f64,
+    /// What is added to its times or displacements, in s or m [default: what fits the first run best]
+    #[arg(long, value_name = "NUMBER", requires = "data", allow_negative_numbers = true)]
+    shift: Option<f64>,
+    /// Folder for the pictures [default: the run's own; results/overlay for several and for friction alone]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Replace pictures that stand there
     #[arg(long)]
     force: bool,
+}
+
+/// Units of the axes.
+#[derive(Clone, Copy, ValueEnum)]
+enum UnitsName {
+    /// Dimensionless
+    Star,
+    /// Newtons, and seconds or metres
+    Si,
+}
+
+/// The horizontal axis.
+#[derive(Clone, Copy, ValueEnum)]
+enum AgainstName {
+    /// Time
+    Time,
+    /// Path of the drive
+    Displacement,
 }
 
 impl Plot {
@@ -46,10 +110,18 @@ impl Plot {
         }
         expect_memory(&self.folders)?;
         let (out, drawn) = match self.folders.as_slice() {
-            [folder] => (folder.clone(), pictures::draw(folder).map_err(Failure::input)?),
+            [folder] if self.units.is_none() && self.against.is_none() && self.data.is_none() => {
+                (folder.clone(), pictures::draw(folder).map_err(Failure::input)?)
+            }
             folders => {
-                let friction = pictures::draw_friction(folders).map_err(Failure::input)?;
-                (PathBuf::from("results/overlay"), vec![("friction", friction)])
+                let Overlay { picture, note, fit } = self.overlay(folders)?;
+                if let Some(note) = note {
+                    print_message(&format!("note: {note}\n"));
+                }
+                if let (Some(fit), Some(data)) = (fit, &self.data) {
+                    print_message(&self.fit_report(&fit, data));
+                }
+                (PathBuf::from("results/overlay"), vec![("friction", picture)])
             }
         };
         let out = self.out.unwrap_or(out);
@@ -88,6 +160,80 @@ impl Plot {
     }
 }
 
+impl Plot {
+    fn against(&self) -> Option<Against> {
+        self.against.map(|name| match name {
+            AgainstName::Time => Against::Time,
+            AgainstName::Displacement => Against::Displacement,
+        })
+    }
+
+    /// Friction alone, on the axes that were asked for, with a measured record if there is one.
+    fn overlay(&self, folders: &[PathBuf]) -> Result<Overlay, Failure> {
+        let drawn = match (self.units, &self.data) {
+            (Some(UnitsName::Star), Some(_)) => {
+                let sentence = "a measured record has units, and is drawn in them: leave `--units star` out";
+                return Err(Failure::input(anyhow::anyhow!(sentence)));
+            }
+            (_, Some(path)) => {
+                let measured = self.measured(path).map_err(Failure::input)?;
+                friction_picture::overlay_measured(folders, self.against().unwrap_or_default(), &measured)
+            }
+            (Some(UnitsName::Si), None) => friction_picture::overlay(folders, Units::Si, self.against()),
+            (_, None) => friction_picture::overlay(folders, Units::Star, self.against()),
+        };
+        drawn.map_err(Failure::input)
+    }
+
+    fn measures(&self) -> [Measure; 2] {
+        let x = match self.against() {
+            Some(Against::Displacement) => Measure::Displacement,
+            Some(Against::Time) | None => Measure::Time,
+        };
+        let y = match self.y_unit.as_deref() {
+            Some("1") => Measure::Coefficient,
+            _ => Measure::Force,
+        };
+        [x, y]
+    }
+
+    fn measured(&self, path: &Path) -> Result<Measured, MeasuredError> {
+        let column = |name: &Option<String>, unit: &Option<String>| Column {
+            name: name.clone().unwrap_or_default(),
+            unit: unit.clone(),
+        };
+        let (x, y) = (column(&self.x, &self.x_unit), column(&self.y, &self.y_unit));
+        let mut record = Record::read(path, [&x, &y], self.measures())?;
+        for y in &mut record.y {
+            *y = self.y_factor * *y + self.y_offset;
+        }
+        let [_, measure] = self.measures();
+        Ok(Measured {
+            label: path.display().to_string(),
+            record,
+            measure,
+            shift: self.shift,
+        })
+    }
+
+    /// How a measured record fits each run.
+    fn fit_report(&self, fit: &Fit, data: &Path) -> String {
+        let [x, y] = self.measures().map(Measure::unit);
+        let quantity = |value: f64, unit: &str| match unit {
+            "1" => four_digits(value),
+            unit => with_si_prefix(value, unit),
+        };
+        let mut text = format!("{}: shifted by {}\n", data.display(), quantity(fit.shift, x));
+        for (folder, misfit) in self.folders.iter().zip(&fit.misfits) {
+            let misfit = misfit.map_or("no point within its curve".to_owned(), |misfit| {
+                format!("RMS misfit {}", quantity(misfit, y))
+            });
+            text += &format!("  {}: {misfit}\n", folder.display());
+        }
+        text
+    }
+}
+
 /// Refuses pictures for which there is no memory.
 fn expect_memory(folders: &[PathBuf]) -> Result<(), Failure> {
     let needed = PROGRAM + pictures::memory(folders).map_err(Failure::input)?;
@@ -106,7 +252,7 @@ fn expect_memory(folders: &[PathBuf]) -> Result<(), Failure> {
 fn expect_results(folder: &Path) -> Result<(), Failure> {
     if folder.is_file() {
         return Err(Failure::input(anyhow::anyhow!(
-            "{} is a file: plot takes folders of finished runs, whose series.csv it draws, and no other curves",
+            "{} is a file: plot takes folders of finished runs, and a measured record with --data",
             folder.display()
         )));
     }

@@ -229,7 +229,9 @@ fn plot_says_what_it_takes() {
     workspace.write("measured.csv", "t,mu\n0,0\n");
     let said = workspace.fail("plot a measured.csv", 2);
     assert!(
-        said.contains("measured.csv is a file: plot takes folders of finished runs"),
+        said.contains(
+            "measured.csv is a file: plot takes folders of finished runs, and a measured record with --data"
+        ),
         "{said}"
     );
 }

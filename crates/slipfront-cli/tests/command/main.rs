@@ -16,6 +16,7 @@ mod input;
 mod looks;
 mod output;
 mod paper;
+mod plot;
 mod repetition;
 mod study;
 mod texture;

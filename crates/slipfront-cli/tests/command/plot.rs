@@ -1,0 +1,148 @@
+//! `slipfront plot`: pictures again, curves over each other, on axes with units, beside a measured record.
+
+use crate::support::workspace::Workspace;
+
+#[test]
+fn plot_draws_the_pictures_of_the_run_again() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o a");
+    let before = workspace.files("a");
+    for name in ["friction.svg", "friction.png", "stress.svg", "stress.png"] {
+        std::fs::remove_file(workspace.path("a").join(name)).unwrap();
+    }
+    let said = workspace.succeed("plot a");
+    assert_eq!(said.lines().count(), 4, "{said}");
+    assert!(before == workspace.files("a"));
+    workspace.succeed("plot a -o pictures");
+    assert_eq!(workspace.read("pictures/stress.svg"), before["stress.svg"]);
+}
+
+#[test]
+fn plot_lays_two_runs_over_each_other() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o slow");
+    workspace.succeed("run small.toml -o fast --set drive.v_star=0.2");
+    let said = workspace.succeed("plot slow fast");
+    assert_eq!(
+        said,
+        "results/overlay/friction.svg\nresults/overlay/friction.png\n"
+    );
+    assert_eq!(workspace.files("results/overlay").len(), 2);
+    let svg = String::from_utf8(workspace.read("results/overlay/friction.svg")).unwrap();
+    assert!(svg.contains(">slow<") && svg.contains(">fast<"));
+}
+
+#[test]
+fn plot_refuses_what_is_no_run() {
+    let workspace = Workspace::small();
+    assert!(workspace.fail("plot nowhere", 2).contains("summary.json"));
+    workspace.succeed("run small.toml -o a");
+    workspace.write("a/fields.nc", "CDF");
+    assert!(workspace.fail("plot a", 2).contains("fields.nc"));
+    workspace.write("a/series.csv", "step,time_star\n1,2\n");
+    assert!(workspace.fail("plot a", 2).contains("series.csv"));
+}
+
+fn svg(workspace: &Workspace, folder: &str) -> String {
+    String::from_utf8(workspace.read(&format!("{folder}/friction.svg"))).unwrap()
+}
+
+/// A column of the series of a run.
+fn column(workspace: &Workspace, folder: &str, name: &str) -> Vec<f64> {
+    let text = String::from_utf8(workspace.read(&format!("{folder}/series.csv"))).unwrap();
+    let mut lines = text.lines();
+    let place = lines
+        .next()
+        .unwrap()
+        .split(',')
+        .position(|column| column == name)
+        .unwrap();
+    lines
+        .map(|line| line.split(',').nth(place).unwrap().parse().unwrap())
+        .collect()
+}
+
+#[test]
+fn curves_are_drawn_in_newtons_and_metres() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o a");
+    workspace.succeed("plot a --units si -o si");
+    // 0.89 of 100 kPa times 30 um^2 in about 8 ns.
+    assert!(
+        svg(&workspace, "si").contains(">friction force (\u{b5}N)<")
+            && svg(&workspace, "si").contains(">time (ns)<")
+    );
+    workspace.succeed("plot a --units si --against displacement -o path");
+    assert!(svg(&workspace, "path").contains(">drive displacement (pm)<"));
+    workspace.succeed("plot a --against displacement -o star");
+    assert!(svg(&workspace, "star").contains(">drive displacement in units of P"));
+    workspace.succeed("run small.toml --set drive.motion=rotation -o turned");
+    workspace.succeed("plot turned --units si -o torque");
+    assert!(svg(&workspace, "torque").contains(">torque (pN m)<"));
+    let said = workspace.fail("plot a turned --units si", 2);
+    assert!(
+        said.contains("forces and torques have no axis in common: turned"),
+        "{said}"
+    );
+    // The run's own pictures stay as they were.
+    workspace.succeed("verify a");
+}
+
+#[test]
+fn runs_of_different_materials_are_drawn_where_they_can_be_compared() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o a");
+    workspace
+        .succeed("run small.toml -o steel --set slider.young_modulus='210 GPa' --set friction.mu_static=0.6");
+    let said = workspace.succeed("plot a steel");
+    assert!(
+        said.contains("note: the runs have different materials: friction is drawn as mu"),
+        "{said}"
+    );
+    let svg = svg(&workspace, "results/overlay");
+    assert!(
+        svg.contains(">friction \u{3bc}<") && svg.contains(">drive displacement in units of P"),
+        "{svg}"
+    );
+}
+
+/// A record made of a run is that run, shifted, with another sign, in other units and with decimal commas.
+#[test]
+fn a_measured_record_finds_its_place() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o a");
+    let (times, forces) = (
+        column(&workspace, "a", "time_s"),
+        column(&workspace, "a", "friction_force_n"),
+    );
+    let rows = times.iter().zip(&forces).skip(100).take(500);
+    let rows = rows.map(|(time, force)| format!("{};{}\n", 1e9 * time - 3.0, -1e6 * force).replace('.', ","));
+    workspace.write(
+        "force.csv",
+        "t [ns];F [uN]\n".to_owned() + &rows.collect::<String>(),
+    );
+    let said = workspace.succeed("plot a --data force.csv --x t --y F --y-factor -1 -o both");
+    assert!(said.contains("force.csv: shifted by 3 ns\n"), "{said}");
+    let misfit = said
+        .lines()
+        .find_map(|line| line.strip_prefix("  a: RMS misfit "))
+        .unwrap();
+    // Far below the friction of microns: what the search for the shift leaves.
+    assert!(
+        misfit.ends_with(" fN") || misfit.ends_with(" aN") || misfit.ends_with(" pN"),
+        "{misfit}"
+    );
+    assert!(svg(&workspace, "both").contains(">force.csv<"));
+    let said = workspace.succeed("plot a --data force.csv --x 1 --y 2 --y-factor -1 --shift 0 -o apart");
+    assert!(
+        said.contains("shifted by 0 s") && !said.contains("RMS misfit 0"),
+        "{said}"
+    );
+    let said = workspace.fail("plot a --data force.csv --x t --y load", 2);
+    assert!(
+        said.contains("has no column `load`: its columns are t [ns], F [uN], or 1 to 2"),
+        "{said}"
+    );
+    let said = workspace.fail("plot a --units star --data force.csv --x t --y F", 2);
+    assert!(said.contains("leave `--units star` out"), "{said}");
+}

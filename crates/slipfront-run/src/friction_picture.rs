@@ -1,0 +1,436 @@
+//! The picture of friction curves, on the axes that a user asks for or on which runs of different materials can be compared.
+
+use std::path::{Path, PathBuf};
+
+use slipfront_case::case_file::Motion;
+use slipfront_case::number_format::si_prefix;
+use slipfront_plot::{self as plot, FrictionAxes, FrictionCurve, Instant, Kinetic, Picture};
+
+use crate::error::ResultsError;
+use crate::measured::{Measure, Record};
+use crate::names::SERIES;
+use crate::series::{self, SeriesRow};
+use crate::summary::{SiSummary, Summary, read_summary};
+
+/// What the axes count in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Units {
+    /// Dimensionless quantities.
+    #[default]
+    Star,
+    /// Newtons, and seconds or metres.
+    Si,
+}
+
+/// What friction is drawn against.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Against {
+    /// Time.
+    #[default]
+    Time,
+    /// The path of the drive.
+    Displacement,
+}
+
+/// A measured record that is laid over curves in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// What the legend calls it.
+    pub label: String,
+    /// Times or displacements, with forces or coefficients.
+    pub record: Record,
+    /// Which of the latter.
+    pub measure: Measure,
+    /// What is added to its times or displacements, in SI units; none for what makes it fit the first run best.
+    pub shift: Option<f64>,
+}
+
+/// How a measured record fits, in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// What was added to its times or displacements.
+    pub shift: f64,
+    /// Root mean square of what it differs by from each run, over the points that lie within it; none if there are none.
+    pub misfits: Vec<Option<f64>>,
+}
+
+/// A picture, and a sentence that says on which axes if they are not those that were to be expected.
+pub struct Overlay {
+    /// How a record fits that was laid over the curves.
+    pub fit: Option<Fit>,
+    /// The picture.
+    pub picture: Picture,
+    /// The sentence.
+    pub note: Option<String>,
+}
+
+/// A run and its curve: t*, path of the drive in units of displacement, mu*, N*.
+struct Run {
+    folder: PathBuf,
+    summary: Summary,
+    rows: Vec<[f64; 4]>,
+}
+
+/// By what the numbers of a run are multiplied, and the names of the axes.
+struct Scale {
+    axes: FrictionAxes,
+    against: Against,
+    /// Of each run: of times or paths, and of friction.
+    factors: Vec<[f64; 2]>,
+    /// What the axes count, in SI units; 1 without units.
+    prefixes: [f64; 2],
+}
+
+impl Scale {
+    fn curves(&self, runs: &[Run]) -> Vec<FrictionCurve> {
+        let curves = runs.iter().zip(&self.factors);
+        curves
+            .map(|(run, factors)| run.curve(self.against, *factors))
+            .collect()
+    }
+}
+
+/// Draws the friction curves of run folders over each other.
+///
+/// Without units and abscissa of their own, runs of different materials are drawn where they can be compared: if their mean local
+/// coefficients differ, as mu; if their units of time do, against the path of the drive.
+///
+/// # Errors
+/// When a folder cannot be read, or its run has not what is asked for.
+pub fn overlay(folders: &[PathBuf], units: Units, against: Option<Against>) -> Result<Overlay, ResultsError> {
+    let runs: Result<Vec<Run>, _> = folders.iter().map(|folder| Run::read(folder)).collect();
+    let runs = runs?;
+    let (scale, note) = match units {
+        Units::Si => (in_si(&runs, against.unwrap_or_default(), Measure::Force)?, None),
+        Units::Star => dimensionless(&runs, against)?,
+    };
+    let (picture, fit) = (draw(&scale, &scale.curves(&runs))?, None);
+    Ok(Overlay { fit, picture, note })
+}
+
+/// Draws the friction curves of run folders and a measured record over each other, in SI units.
+///
+/// # Errors
+/// As for [`overlay`].
+pub fn overlay_measured(
+    folders: &[PathBuf],
+    against: Against,
+    measured: &Measured,
+) -> Result<Overlay, ResultsError> {
+    let runs: Result<Vec<Run>, _> = folders.iter().map(|folder| Run::read(folder)).collect();
+    let runs = runs?;
+    let scale = in_si(&runs, against, measured.measure)?;
+    let mut curves = scale.curves(&runs);
+    let [along, up] = scale.prefixes;
+    let Record { x, y } = &measured.record;
+    let first = (&curves[0].x[..], &curves[0].friction[..]);
+    let scaled = (
+        x.iter().map(|x| x / along).collect::<Vec<_>>(),
+        y.iter().map(|y| y / up).collect::<Vec<_>>(),
+    );
+    let shift = match measured.shift {
+        Some(shift) => shift / along,
+        None => best_shift((&scaled.0, &scaled.1), first),
+    };
+    let misfits = curves.iter().map(|curve| {
+        let misfit = misfit((&scaled.0, &scaled.1), (&curve.x, &curve.friction), shift);
+        misfit.map(|misfit| up * misfit)
+    });
+    let fit = Fit {
+        shift: along * shift,
+        misfits: misfits.collect(),
+    };
+    curves.push(FrictionCurve {
+        label: measured.label.clone(),
+        sliding_percent: vec![f64::NAN; x.len()],
+        x: scaled.0.iter().map(|x| x + shift).collect(),
+        friction: scaled.1,
+        ..FrictionCurve::default()
+    });
+    let picture = draw(&scale, &curves)?;
+    Ok(Overlay {
+        fit: Some(fit),
+        picture,
+        note: None,
+    })
+}
+
+fn draw(scale: &Scale, curves: &[FrictionCurve]) -> Result<Picture, ResultsError> {
+    plot::friction(curves, &scale.axes).map_err(|source| ResultsError::Picture {
+        name: "friction",
+        source,
+    })
+}
+
+/// Value at `x` of a curve whose abscissae never fall, between its points in proportion; none beyond its ends.
+fn value_at((xs, ys): (&[f64], &[f64]), x: f64) -> Option<f64> {
+    let after = xs.partition_point(|&other| other < x);
+    let (&from, &to) = (xs.get(after.saturating_sub(1))?, xs.get(after)?);
+    if x < from {
+        return None;
+    }
+    let share = if to > from { (x - from) / (to - from) } else { 0.0 };
+    let (y, end) = (ys[after.saturating_sub(1)], ys[after]);
+    Some(y + share * (end - y))
+}
+
+/// Root mean square of the difference between a record, shifted, and a curve, over the points of the record within the curve.
+fn misfit((xs, ys): (&[f64], &[f64]), curve: (&[f64], &[f64]), shift: f64) -> Option<f64> {
+    let differences = xs
+        .iter()
+        .zip(ys)
+        .filter_map(|(x, y)| Some(value_at(curve, x + shift)? - y));
+    let (mut sum, mut n) = (0.0, 0_u32);
+    for difference in differences {
+        (sum, n) = (sum + difference * difference, n + 1);
+    }
+    (n > 0).then(|| (sum / f64::from(n)).sqrt())
+}
+
+/// The shift with the least [`misfit`] among those at which record and curve have at least half of the shorter one in common.
+fn best_shift(record: (&[f64], &[f64]), curve: (&[f64], &[f64])) -> f64 {
+    const POINTS: usize = 2000;
+    const SHIFTS: u32 = 400;
+    const ROUNDS: u32 = 40;
+    // Some points tell as much as all, sooner.
+    let thin = |values: &[f64]| -> Vec<f64> {
+        let step = values.len().div_ceil(POINTS);
+        values.iter().step_by(step).copied().collect()
+    };
+    let (xs, ys) = (thin(record.0), thin(record.1));
+    let ends = |values: &[f64]| [values.first(), values.last()].map(|end| end.copied().unwrap_or_default());
+    let ([from, to], [start, end]) = (ends(record.0), ends(curve.0));
+    let common = 0.5 * (to - from).min(end - start);
+    let (low, high) = (start - to + common, end - from - common);
+    let badness = |shift: f64| misfit((&xs, &ys), curve, shift).unwrap_or(f64::INFINITY);
+    let step = (high - low) / f64::from(SHIFTS);
+    let shifts = (0..=SHIFTS).map(|k| low + step * f64::from(k));
+    let best = shifts
+        .min_by(|a, b| badness(*a).total_cmp(&badness(*b)))
+        .unwrap_or(low);
+    // Golden section around the best of them.
+    let (mut low, mut high) = ((best - step).max(low), (best + step).min(high));
+    let ratio = 0.5 * (5_f64.sqrt() - 1.0);
+    for _ in 0..ROUNDS {
+        let (inner, outer) = (high - ratio * (high - low), low + ratio * (high - low));
+        if badness(inner) <= badness(outer) {
+            high = outer;
+        } else {
+            low = inner;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Draws the friction curve of a run folder against t*.
+pub(crate) fn of_run(folder: &Path) -> Result<Picture, ResultsError> {
+    overlay(&[folder.to_owned()], Units::Star, Some(Against::Time)).map(|overlay| overlay.picture)
+}
+
+/// All that a summary knows of a curve of mu* against t*, without its points.
+pub fn marked_curve(label: String, summary: &Summary) -> FrictionCurve {
+    let kinetic = summary.kinetic_window_star.zip(summary.kinetic_friction_star);
+    let peak = (summary.onset_time_star, summary.static_friction_star);
+    let instants = summary.instants.iter().map(|instant| Instant {
+        letter: instant.instant,
+        x: instant.time_star,
+        friction: instant.mu_star,
+    });
+    FrictionCurve {
+        label,
+        first_slip: summary.first_slip_time_star,
+        peak: summary.transition.then_some(peak),
+        kinetic: kinetic.map(|([from, to], mean)| Kinetic {
+            from,
+            to,
+            mean,
+            uncertainty: summary.kinetic_friction_star_uncertainty,
+        }),
+        instants: instants.collect(),
+        ..FrictionCurve::default()
+    }
+}
+
+impl Run {
+    fn read(folder: &Path) -> Result<Self, ResultsError> {
+        let summary = read_summary(folder)?;
+        let unit = summary.si.as_ref().map_or(f64::NAN, |si| si.displacement_unit_m);
+        let row = |row: SeriesRow| {
+            let path = row.drive_displacement_m.map_or(f64::NAN, |path| path / unit);
+            [row.time_star, path, row.mu_star, row.sliding_percent]
+        };
+        Ok(Self {
+            rows: series::read_rows(&folder.join(SERIES), SERIES, row)?,
+            folder: folder.to_owned(),
+            summary,
+        })
+    }
+
+    fn is_rotation(&self) -> bool {
+        self.summary.motion == Some(Motion::Rotation)
+    }
+
+    /// Its units, which older versions did not write.
+    fn si(&self) -> Result<&SiSummary, ResultsError> {
+        let found = self.summary.si.as_ref();
+        found.ok_or_else(|| ResultsError::NoUnits(self.folder.clone()))
+    }
+
+    /// Path of the drive at a time, between two rows of the series in proportion.
+    fn path_at(&self, time_star: f64) -> f64 {
+        let after = self.rows.partition_point(|row| row[0] < time_star);
+        let after = after.min(self.rows.len() - 1);
+        let (before, after) = (self.rows[after.saturating_sub(1)], self.rows[after]);
+        let span = after[0] - before[0];
+        let share = if span > 0.0 {
+            (time_star - before[0]) / span
+        } else {
+            0.0
+        };
+        before[1] + share * (after[1] - before[1])
+    }
+
+    /// The curve with its marks, on axes of these factors.
+    fn curve(&self, against: Against, [along, up]: [f64; 2]) -> FrictionCurve {
+        let x = |time_star: f64| match against {
+            Against::Time => along * time_star,
+            Against::Displacement => along * self.path_at(time_star),
+        };
+        let column = |k: usize, factor: f64| self.rows.iter().map(|row| factor * row[k]).collect();
+        let mut curve = FrictionCurve {
+            x: column(against as usize, along),
+            friction: column(2, up),
+            sliding_percent: column(3, 1.0),
+            ..marked_curve(self.folder.display().to_string(), &self.summary)
+        };
+        curve.first_slip = curve.first_slip.map(x);
+        curve.peak = curve.peak.map(|(time, mu)| (x(time), up * mu));
+        if let Some(window) = &mut curve.kinetic {
+            (window.from, window.to) = (x(window.from), x(window.to));
+            window.mean *= up;
+            window.uncertainty = window.uncertainty.map(|uncertainty| up * uncertainty);
+        }
+        for instant in &mut curve.instants {
+            (instant.x, instant.friction) = (x(instant.x), up * instant.friction);
+        }
+        curve
+    }
+}
+
+/// Axes without units, and why they are not mu* against t*.
+fn dimensionless(runs: &[Run], asked: Option<Against>) -> Result<(Scale, Option<String>), ResultsError> {
+    let units: Vec<Option<&SiSummary>> = runs.iter().map(|run| run.summary.si.as_ref()).collect();
+    let differs = |unit: fn(&SiSummary) -> f64| {
+        let mut known = units.iter().flatten().map(|si| unit(si));
+        let first = known.next();
+        known.any(|other| Some(other) != first)
+    };
+    let mean_static = |si: &SiSummary| si.stress_unit_pa / si.pressure_pa;
+    let all_known = units.iter().all(Option::is_some);
+    let other_friction = all_known && differs(mean_static);
+    let other_time = all_known && asked.is_none() && differs(|si| si.time_unit_s);
+    let against = match asked {
+        Some(against) => against,
+        None if other_time => Against::Displacement,
+        None => Against::Time,
+    };
+    if against == Against::Displacement {
+        runs.iter().try_for_each(|run| run.si().map(|_| ()))?;
+    }
+    let mut axes = FrictionAxes::default();
+    if runs.iter().all(Run::is_rotation) {
+        axes.friction = "torque \u{3bc}*".to_owned();
+    }
+    if other_friction {
+        axes.friction = "friction \u{3bc}".to_owned();
+        (axes.peak, axes.kinetic) = ("\u{3bc}_s".to_owned(), "\u{3bc}_k".to_owned());
+    }
+    if against == Against::Displacement {
+        axes.x = "drive displacement in units of P\u{27e8}\u{3bc}_s\u{27e9}l/E".to_owned();
+    }
+    let up = |si: &Option<&SiSummary>| si.filter(|_| other_friction).map_or(1.0, mean_static);
+    let factors = units.iter().map(|si| [1.0, up(si)]).collect();
+    let note = match [other_friction, other_time] {
+        [false, false] => None,
+        [true, false] => {
+            Some("the mean static coefficients of the runs differ: friction is drawn as mu, not as mu*")
+        }
+        [false, true] => Some(
+            "the units of time of the runs differ: friction is drawn against the displacement of the drive in units of P mu_s l/E",
+        ),
+        [true, true] => Some(
+            "the runs have different materials: friction is drawn as mu against the displacement of the drive in units of P mu_s l/E",
+        ),
+    };
+    let scale = Scale {
+        axes,
+        against,
+        factors,
+        prefixes: [1.0; 2],
+    };
+    Ok((scale, note.map(str::to_owned)))
+}
+
+/// Axes of newtons, or of coefficients, and of seconds or metres, with the prefixes that suit the largest numbers.
+fn in_si(runs: &[Run], against: Against, measure: Measure) -> Result<Scale, ResultsError> {
+    let turns = runs.iter().all(Run::is_rotation);
+    if let Some(run) = runs.iter().find(|run| run.is_rotation() != turns) {
+        return Err(ResultsError::NotComparable(run.folder.clone()));
+    }
+    let mut factors = Vec::with_capacity(runs.len());
+    for run in runs {
+        let si = run.si()?;
+        let along = match against {
+            Against::Time => si.time_unit_s,
+            Against::Displacement => si.displacement_unit_m,
+        };
+        let up = match si.static_torque_n_m {
+            _ if measure == Measure::Coefficient => si.stress_unit_pa / si.pressure_pa,
+            Some(torque) => torque / run.summary.static_friction_star,
+            None => si.stress_unit_pa * si.area_m2,
+        };
+        factors.push([along, up]);
+    }
+    let largest = |column: usize, axis: usize| {
+        let sizes = runs.iter().zip(&factors).flat_map(|(run, factors)| {
+            let factor = factors[axis];
+            run.rows.iter().map(move |row| (factor * row[column]).abs())
+        });
+        sizes.filter(|size| size.is_finite()).fold(0.0, f64::max)
+    };
+    let mut prefixes = [(against as usize, 0), (2, 1)].map(|(column, axis)| si_prefix(largest(column, axis)));
+    if measure == Measure::Coefficient {
+        prefixes[1] = (1.0, "");
+    }
+    for factors in &mut factors {
+        for (factor, (unit, _)) in factors.iter_mut().zip(prefixes) {
+            *factor /= unit;
+        }
+    }
+    let [along, up] = prefixes.map(|(_, prefix)| if prefix == "u" { "\u{b5}" } else { prefix });
+    let (quantity, letter, unit) = match turns {
+        _ if measure == Measure::Coefficient => ("friction coefficient \u{3bc}", '\u{3bc}', String::new()),
+        true => ("torque", 'M', format!("{up}N m")),
+        false => ("friction force", 'F', format!("{up}N")),
+    };
+    let in_unit = |before: &str, after: &str| match unit.as_str() {
+        "" => String::new(),
+        unit => format!("{before}{unit}{after}"),
+    };
+    let axes = FrictionAxes {
+        x: match against {
+            Against::Time => format!("time ({along}s)"),
+            Against::Displacement => format!("drive displacement ({along}m)"),
+        },
+        friction: format!("{quantity}{}", in_unit(" (", ")")),
+        peak: format!("{letter}_s"),
+        kinetic: format!("{letter}_k"),
+        unit: format!(" {unit}"),
+    };
+    Ok(Scale {
+        axes,
+        against,
+        factors,
+        prefixes: prefixes.map(|(unit, _)| unit),
+    })
+}

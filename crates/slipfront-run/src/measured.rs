@@ -1,0 +1,353 @@
+//! A measured record: two columns of a table, such as force against time.
+
+use std::path::{Path, PathBuf};
+
+use csv::{ByteRecord, ReaderBuilder, Trim};
+use slipfront_case::disk::open_limited;
+use slipfront_case::quantity::{Duration, Force, Length, QuantityError};
+use slipfront_case::text::{display_path, truncated};
+use thiserror::Error;
+
+/// A column as a user names it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// Its name in the header, with or without the unit there, or its number from 1.
+    pub name: String,
+    /// Its unit, if the header has none or another is meant.
+    pub unit: Option<String>,
+}
+
+/// What a column counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// s.
+    Time,
+    /// m.
+    Displacement,
+    /// N.
+    Force,
+    /// 1.
+    Coefficient,
+}
+
+/// Why a table is no record.
+#[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum MeasuredError {
+    #[error("cannot read {}: {source}", display_path(path))]
+    Read { path: PathBuf, source: csv::Error },
+    #[error("{} has no column `{name}`: {known}", display_path(path))]
+    Column {
+        path: PathBuf,
+        name: String,
+        known: String,
+    },
+    #[error(
+        "nothing tells the unit of column `{column}` of {}: give it with --{axis}-unit, such as `--{axis}-unit {example}`",
+        display_path(path)
+    )]
+    NoUnit {
+        path: PathBuf,
+        column: String,
+        axis: &'static str,
+        example: &'static str,
+    },
+    #[error("the unit of column `{column}` of {}: {why}", display_path(path))]
+    Unit {
+        path: PathBuf,
+        column: String,
+        why: String,
+    },
+    #[error("line {line} of {}: {text:?} is no number", display_path(path))]
+    Value { path: PathBuf, line: u64, text: String },
+    #[error(
+        "line {line} of {}: the time or displacement falls, from {before} to {value} in SI units; a record goes forwards",
+        display_path(path)
+    )]
+    Falls {
+        path: PathBuf,
+        line: u64,
+        before: f64,
+        value: f64,
+    },
+    #[error(
+        "{} has {found} lines of numbers; a record has at least two",
+        display_path(path)
+    )]
+    TooShort { path: PathBuf, found: usize },
+}
+
+/// Two columns in SI units, of which the first never falls.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// Times or displacements.
+    pub x: Vec<f64>,
+    /// Forces or coefficients.
+    pub y: Vec<f64>,
+}
+
+impl Measure {
+    /// Its SI unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Time => "s",
+            Self::Displacement => "m",
+            Self::Force => "N",
+            Self::Coefficient => "1",
+        }
+    }
+
+    /// The size of a unit in SI units.
+    fn factor(self, unit: &str) -> Result<f64, QuantityError> {
+        let one = format!("1 {unit}");
+        match self {
+            Self::Time => one.parse::<Duration>().map(|time| time.si()),
+            Self::Displacement => one.parse::<Length>().map(|length| length.si()),
+            Self::Force => one.parse::<Force>().map(|force| force.si()),
+            Self::Coefficient if unit == "1" => Ok(1.0),
+            Self::Coefficient => Err(QuantityError::Unit {
+                text: unit.to_owned(),
+                why: "a coefficient has the unit 1",
+            }),
+        }
+    }
+}
+
+impl Record {
+    /// Reads two columns of a table whose fields are separated by commas, semicolons, tabs or blanks; where it is not commas,
+    /// numbers may have decimal commas. Lines that begin with `#`, and those without a number in one of the columns, count as none.
+    ///
+    /// # Errors
+    /// When the table cannot be read, has not these columns, or has something else than numbers in them; when no unit is known.
+    pub fn read(path: &Path, columns: [&Column; 2], measures: [Measure; 2]) -> Result<Self, MeasuredError> {
+        let failed = |source: csv::Error| MeasuredError::Read {
+            path: path.to_owned(),
+            source,
+        };
+        let separator = separator(path).map_err(|source| failed(source.into()))?;
+        let open = || open_limited(path, u64::MAX);
+        let mut table = ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .comment(Some(b'#'))
+            .trim(Trim::All)
+            .delimiter(separator)
+            .from_reader(open().map_err(|source| failed(source.into()))?);
+        let (mut places, mut factors) = ([0; 2], [1.0; 2]);
+        let mut record = Self {
+            x: Vec::new(),
+            y: Vec::new(),
+        };
+        let mut row = ByteRecord::new();
+        let mut is_first = true;
+        while table.read_byte_record(&mut row).map_err(failed)? {
+            let fields: Vec<String> = row
+                .iter()
+                .map(|field| {
+                    String::from_utf8_lossy(field)
+                        .trim_start_matches('\u{feff}')
+                        .to_owned()
+                })
+                .filter(|field| separator != b' ' || !field.is_empty())
+                .collect();
+            let number = |field: &str| number(field, separator);
+            if std::mem::take(&mut is_first) {
+                let has_names = fields
+                    .iter()
+                    .any(|field| !field.is_empty() && number(field).is_none());
+                let names = if has_names { &fields[..] } else { &[] };
+                for (k, axis) in ["x", "y"].into_iter().enumerate() {
+                    places[k] = place(path, columns[k], names, fields.len())?;
+                    factors[k] = factor(path, columns[k], names.get(places[k]), measures[k], axis)?;
+                }
+                if has_names {
+                    continue;
+                }
+            }
+            let line = row.position().map_or(0, csv::Position::line);
+            let field = |k: usize| fields.get(places[k]).map_or("", String::as_str);
+            if (0..2).any(|k| field(k).is_empty()) {
+                continue;
+            }
+            let value = |k: usize| {
+                let value = number(field(k)).ok_or_else(|| MeasuredError::Value {
+                    path: path.to_owned(),
+                    line,
+                    text: truncated(field(k)),
+                })?;
+                Ok(factors[k] * value)
+            };
+            let (x, y) = (value(0)?, value(1)?);
+            if let Some(&before) = record.x.last().filter(|before| x < **before) {
+                return Err(MeasuredError::Falls {
+                    path: path.to_owned(),
+                    line,
+                    before,
+                    value: x,
+                });
+            }
+            record.x.push(x);
+            record.y.push(y);
+        }
+        match record.x.len() {
+            found @ 0..2 => Err(MeasuredError::TooShort {
+                path: path.to_owned(),
+                found,
+            }),
+            _ => Ok(record),
+        }
+    }
+}
+
+/// What separates the fields of a table, by the first line that is no comment.
+fn separator(path: &Path) -> std::io::Result<u8> {
+    use std::io::{BufRead, Read};
+    const LINE_MAX_BYTES: u64 = 1 << 16;
+    let mut file = std::io::BufReader::new(open_limited(path, u64::MAX)?.take(LINE_MAX_BYTES));
+    let mut line = Vec::new();
+    while file.read_until(b'\n', &mut line)? > 0 && (line.starts_with(b"#") || line.trim_ascii().is_empty()) {
+        line.clear();
+    }
+    let found = [b';', b'\t', b',']
+        .into_iter()
+        .find(|separator| line.contains(separator));
+    Ok(found.unwrap_or(b' '))
+}
+
+/// A finite number, with a decimal point, or a decimal comma where commas separate nothing.
+fn number(field: &str, separator: u8) -> Option<f64> {
+    let value = match separator {
+        b',' => field.parse(),
+        _ => field.replace(',', ".").parse(),
+    };
+    value.ok().filter(|value: &f64| value.is_finite())
+}
+
+/// Position of a column among so many, whose names these are if they have any.
+fn place(path: &Path, column: &Column, names: &[String], n: usize) -> Result<usize, MeasuredError> {
+    let wanted = column.name.to_lowercase();
+    let is_named = |name: &String| {
+        let name = name.to_lowercase();
+        name == wanted || split_unit(&name).0 == wanted
+    };
+    if let Some(place) = names.iter().position(is_named) {
+        return Ok(place);
+    }
+    match column.name.parse::<usize>() {
+        Ok(number) if (1..=n).contains(&number) => Ok(number - 1),
+        _ => Err(MeasuredError::Column {
+            path: path.to_owned(),
+            name: truncated(&column.name),
+            known: match names {
+                [] => format!("it has no header; its columns are 1 to {n}"),
+                names => format!("its columns are {}, or 1 to {n}", truncated(&names.join(", "))),
+            },
+        }),
+    }
+}
+
+/// A column's name without its unit, and the unit: `Force (N)`, `force [N]`, `F / N`, `force_n`.
+fn split_unit(name: &str) -> (&str, Option<&str>) {
+    let in_brackets = [('(', ')'), ('[', ']')].into_iter().find_map(|(open, close)| {
+        let (before, rest) = name.split_once(open)?;
+        Some((before.trim(), rest.strip_suffix(close)?.trim()))
+    });
+    let behind = || {
+        name.split_once(" / ")
+            .map(|(before, unit)| (before.trim(), unit.trim()))
+    };
+    let suffix = || name.rsplit_once('_');
+    match in_brackets.or_else(behind).or_else(suffix) {
+        Some((before, unit)) => (before, Some(unit)),
+        None => (name, None),
+    }
+}
+
+/// The size of the unit of a column in SI units.
+fn factor(
+    path: &Path,
+    column: &Column,
+    header: Option<&String>,
+    measure: Measure,
+    axis: &'static str,
+) -> Result<f64, MeasuredError> {
+    let shown = || truncated(header.unwrap_or(&column.name));
+    if let Some(unit) = &column.unit {
+        return measure.factor(unit).map_err(|error| MeasuredError::Unit {
+            path: path.to_owned(),
+            column: shown(),
+            why: error.to_string(),
+        });
+    }
+    if measure == Measure::Coefficient {
+        return Ok(1.0);
+    }
+    let unit = header.and_then(|header| split_unit(header).1);
+    // Units of names are written small: force_n, time_ms. Where case decides, as between mN and MN, the unit has to be given.
+    let as_written = |unit: &str| measure.factor(unit).ok();
+    let of_name = |unit: &str| match (measure, unit) {
+        (Measure::Force, "n") => Some(1.0),
+        (Measure::Force, "kn") => Some(1e3),
+        _ => None,
+    };
+    let found = unit.and_then(|unit| as_written(unit).or_else(|| of_name(unit)));
+    found.ok_or_else(|| MeasuredError::NoUnit {
+        path: path.to_owned(),
+        column: shown(),
+        axis,
+        example: match measure {
+            Measure::Time => "ms",
+            Measure::Displacement => "um",
+            Measure::Force => "N",
+            Measure::Coefficient => "1",
+        },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use rstest::rstest;
+
+    use super::*;
+
+    fn read(text: &str, names: [&str; 2], units: [Option<&str>; 2]) -> Result<Record, MeasuredError> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("force.csv");
+        std::fs::write(&path, text).unwrap();
+        let [x, y] = [0, 1].map(|k| Column {
+            name: names[k].to_owned(),
+            unit: units[k].map(str::to_owned),
+        });
+        Record::read(&path, [&x, &y], [Measure::Time, Measure::Force])
+    }
+
+    #[rstest]
+    #[case::names("time_ms,force_n\n0,0.5\n2,1\n", ["time_ms", "force"])]
+    #[case::decimal_commas("Zeit [ms];Kraft [N]\n0;0,5\n2;1,0\n", ["zeit", "2"])]
+    #[case::brackets("\u{feff}# a comment\nt (ms),Force (kN),x\n0,0.0005,a\n2,0.001,b\n", ["t", "force"])]
+    #[case::tabs("n\tt / ms\tF / mN\n1\t0\t500\n2\t2\t1000\n", ["t", "F"])]
+    #[case::gaps("time_ms,force_n\n0,0.5\n1,\n\n2,1\n", ["1", "2"])]
+    fn tables_of_many_kinds(#[case] text: &str, #[case] names: [&str; 2]) {
+        let record = read(text, names, [None; 2]).unwrap();
+        assert_eq!(record.x, [0.0, 0.002]);
+        assert_eq!(record.y, [0.5, 1.0]);
+    }
+
+    #[test]
+    fn units_may_be_given() {
+        let record = read("0 500\n2 1000\n", ["1", "2"], [Some("ms"), Some("mN")]).unwrap();
+        assert_eq!((record.x, record.y), (vec![0.0, 0.002], vec![0.5, 1.0]));
+    }
+
+    #[rstest]
+    #[case::column("time_s,force_n\n0,1\n1,2\n", ["time", "load"], "has no column `load`: its columns are time_s, force_n, or 1 to 2")]
+    #[case::unit("time_s,force\n0,1\n1,2\n", ["time", "force"], "give it with --y-unit, such as `--y-unit N`")]
+    #[case::ambiguous("time_s,force_mn\n0,1\n1,2\n", ["time", "force"], "nothing tells the unit of column `force_mn`")]
+    #[case::number("time_s,force_n\n0,1\n1,two\n", ["time", "force"], "line 3 of")]
+    #[case::order("time_s,force_n\n1,1\n0,2\n", ["time", "force"], "falls, from 1 to 0")]
+    #[case::short("time_s,force_n\n1,1\n", ["time", "force"], "has 1 lines of numbers")]
+    fn what_is_wrong_is_said(#[case] text: &str, #[case] names: [&str; 2], #[case] sentence: &str) {
+        let error = read(text, names, [None; 2]).unwrap_err().to_string();
+        assert!(error.contains(sentence), "{error}");
+    }
+}
