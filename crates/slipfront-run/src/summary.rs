@@ -74,7 +74,7 @@ pub struct Summary {
     pub steps: u64,
     /// Seed of the random coefficients.
     pub seed: u64,
-    /// Negative draws of the coefficients that were set to 0.
+    /// Negative draws of the coefficients of blocks in contact that were set to 0.
     pub negative_draws: usize,
     /// Energy that is not accounted for, relative to the energy put in.
     pub energy_error: f64,
@@ -296,7 +296,7 @@ impl SummaryObservers {
             cycles: self.cycles(),
             viscous_loss_j: case
                 .model
-                .slider
+                .slider()
                 .is_viscous()
                 .then_some(energies.viscous_loss * energy),
             broken_spring_loss_j: matches!(friction, Friction::ContactSprings(_))
