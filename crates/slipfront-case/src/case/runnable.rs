@@ -247,18 +247,21 @@ impl Plan {
         ranks: &Ranks,
     ) -> Result<Self, CaseError> {
         let dynamics = Dynamics::of(model);
-        if dynamics == self.dynamics {
-            return Ok(self);
-        }
-        let time_plan = TimePlan::of(file, scales, groups, dynamics)?;
-        Self::checked(
-            file,
-            &model.lattice,
-            &model.rows,
-            ranks,
-            (dynamics, time_plan),
-            self.to_run,
-        )
+        let plan = if dynamics == self.dynamics {
+            self
+        } else {
+            let time_plan = TimePlan::of(file, scales, groups, dynamics)?;
+            Self::checked(
+                file,
+                &model.lattice,
+                &model.rows,
+                ranks,
+                (dynamics, time_plan),
+                self.to_run,
+            )?
+        };
+        plan.time_plan.check_end(file)?;
+        Ok(plan)
     }
 
     /// Refuses what there is no memory for.
