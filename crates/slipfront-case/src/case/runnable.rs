@@ -181,8 +181,8 @@ impl Case {
             damping(groups.omega_star),
             groups.epsilon,
             law(&file, &groups),
-        );
-        model.slider = slider;
+        )
+        .with_slider(slider);
         let plan = ranks.agree(plan.of_model(&file, &model, &scales, &groups, &ranks))?;
         let Plan {
             time_plan,

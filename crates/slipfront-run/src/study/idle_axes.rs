@@ -91,13 +91,13 @@ fn digest(case: &Case) -> blake3::Hash {
         number(segment.from_star);
     }
     for block in 0..model.surface.n_blocks() {
-        number(model.slider.drive_spring(block));
+        number(model.slider().drive_spring(block));
     }
     if let KineticStart::At(from) = time.kinetic {
         number(from);
     }
     let surface = &model.surface;
-    let slider = &model.slider;
+    let slider = model.slider();
     number(slider.viscosity_time);
     for block in 0..surface.n_blocks() {
         number(slider.mass(block));
