@@ -11,11 +11,11 @@ use {
     slipfront::exact_solutions::precursor_load,
     slipfront::observe::Field,
     slipfront::{Edge, Edges},
-    slipfront_case::case::{MAX_MAPS, memory_to_draw},
+    slipfront_case::case::{MAX_MAPS, mapped_field, memory_to_draw},
     slipfront_case::case_file::{CaseFile, KineticFriction, Motion},
     slipfront_plot::{
-        self as plot, CellMeans, FrictionCurve, Instant, Kinetic, Picture, Response, Responses, StressMap,
-        StressMaps,
+        self as plot, CellMeans, FrictionCurve, Instant, Kinetic, Picture, Response, Responses, Stress,
+        StressMap, StressMaps,
     },
     std::path::{Path, PathBuf},
 };
@@ -155,16 +155,25 @@ impl Reduction for CellMeans {
     }
 }
 
-/// Draws the stress maps of a run; none if it kept no contact stress.
+/// Draws the stress maps of a run; none if it kept no such field.
 #[cfg(feature = "plot")]
 fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
-    let fields = fields::read_maps::<CellMeans>(&folder.join(FIELDS), Field::ContactStress, MAX_MAPS)?;
+    let case = CaseFile::load(&folder.join(CASE), &[])?;
+    // The field, what it is, and its unit in the file.
+    let (field, stress, unit) = match mapped_field(&case) {
+        Field::Traction => {
+            let unit = case.load.pressure.si() * case.friction.mu_static;
+            (Field::Traction, Stress::Traction, unit as f32)
+        }
+        field => (field, Stress::Contact, 1.0),
+    };
+    let fields = fields::read_maps::<CellMeans>(&folder.join(FIELDS), field, MAX_MAPS)?;
     if fields.names.is_empty() || fields.frames.is_empty() {
         return Ok(None);
     }
     let point = |row: SeriesRow| (row.step, row.mu_star);
     let rows = series::read_rows(&folder.join(SERIES), SERIES, point)?;
-    let instants = read_summary(folder)?.instants;
+    let Summary { instants, motion, .. } = read_summary(folder)?;
     // A snapshot between the rows of a thinned series has no mu* of its own, unless it is an instant.
     let mu_star = |frame: &FieldFrame| {
         let mut of_instants = instants
@@ -180,7 +189,10 @@ fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
         mu_star: mu_star(&frame),
         label: frame.label,
         time_star: frame.time_star,
-        values: frame.values.into_iter().next().unwrap_or_default(),
+        values: {
+            let values = frame.values.into_iter().next().unwrap_or_default();
+            values.into_iter().map(|value| value / unit).collect()
+        },
     });
     let maps = StressMaps {
         nx,
@@ -188,6 +200,8 @@ fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
         block_size: fields.block_size * fields.stride as f64,
         textured: fields.textured,
         maps: maps.collect(),
+        stress,
+        is_torque: motion == Some(Motion::Rotation),
     };
     let drawn = plot::stress(&maps).map(Some);
     drawn.map_err(|source| ResultsError::Picture {
@@ -232,8 +246,8 @@ fn draw_precursors(folder: &Path) -> Result<Option<Picture>, ResultsError> {
         curves.push(curve("exact", points.collect(), true));
     }
     let drawn = plot::response(&Responses {
-        x_title: "load F\u{209c}/F\u{2099} after the event".to_owned(),
-        y_title: "length of the event L\u{209a}/L".to_owned(),
+        x_title: "tangential over normal force F\u{209c}/F\u{2099} after the event".to_owned(),
+        y_title: "length over that of the slider L\u{209a}/L".to_owned(),
         curves,
         ..Responses::default()
     });

@@ -4,7 +4,7 @@ use slipfront::observe::Field;
 
 use super::time_plan::TimePlan;
 use crate::case_file;
-use crate::case_file::{AutoOr, CaseError, CaseFile};
+use crate::case_file::{Attached, AttachedEdge, AutoOr, CaseError, CaseFile};
 
 /// Which results are written.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +32,15 @@ pub enum Snapshots {
 
 /// Most maps in the picture of the stress: of more snapshots, six spread over the run are shown.
 pub const MAX_MAPS: usize = 6;
+
+/// The field whose maps are drawn: the contact stress, and of a slider of which only some blocks have a drive spring the traction,
+/// since the contact stress of a stuck block is the pull of its own drive spring.
+pub fn mapped_field(file: &CaseFile) -> Field {
+    match file.drive.attached {
+        Attached::At(AttachedEdge::All) => Field::ContactStress,
+        Attached::At(_) | Attached::File(_) => Field::Traction,
+    }
+}
 
 /// Most rows of the series unless the case sets a spacing.
 const SERIES_ROWS: u64 = 20_000;
