@@ -278,7 +278,7 @@ const VISCOSITY: &str =
     "the internal viscosity is `slider.viscosity_time_star`; damping of any motion is `slider.omega_star`";
 const SPRINGS_OF_EACH: &str = "the springs between blocks follow from `slider.young_modulus`, those of the drive are `drive.stiffness`, and those \
                                of contacts are `friction.contact` = \"springs\"";
-const OUTLINE: &str = "a slider that is no rectangle has an `slider.outline`";
+const OUTLINE: &str = "the shape of a slider that is no rectangle is `slider.outline`";
 const ROTATION: &str = "a drive that turns is `drive.motion` = \"rotation\", with `drive.v_star` at the largest radius; its torque is a result";
 const ATTACH: &str = "which blocks the drive pulls is `drive.attach` = \"left\", \"right\", \"bottom\" or \"top\", or `drive.attach_file`";
 const PROGRAM: &str = "speeds that follow one another, 0 for a hold, are `drive.program` = [{ v_star = 0.03, until_star = 200 }, { v_star = 0 }]";
