@@ -158,14 +158,16 @@ impl Reduction for CellMeans {
 /// Draws the stress maps of a run; none if it kept no such field.
 #[cfg(feature = "plot")]
 fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
-    let case = CaseFile::load(&folder.join(CASE), &[])?;
+    // Files that have lost their case can be drawn as well.
+    let path = folder.join(CASE);
+    let case = path.exists().then(|| CaseFile::load(&path, &[])).transpose()?;
     // The field, what it is, and its unit in the file.
-    let (field, stress, unit) = match mapped_field(&case) {
-        Field::Traction => {
+    let (field, stress, unit) = match case.filter(|case| mapped_field(case) == Field::Traction) {
+        Some(case) => {
             let unit = case.load.pressure.si() * case.friction.mu_static;
             (Field::Traction, Stress::Traction, unit as f32)
         }
-        field => (field, Stress::Contact, 1.0),
+        None => (Field::ContactStress, Stress::Contact, 1.0),
     };
     let fields = fields::read_maps::<CellMeans>(&folder.join(FIELDS), field, MAX_MAPS)?;
     if fields.names.is_empty() || fields.frames.is_empty() {

@@ -150,7 +150,8 @@ fn what_is_said_is_what_is_taken() {
             let file = CaseFile::parse("", "case", &overrides).unwrap();
             let case = Arc::new(Case::new(file, "case", folder.path(), &mut |_| true, Ranks::ALONE).unwrap());
             let mut record = running::run(&case, 1).unwrap();
-            let out = RunFolder::prepare(&out, false, &case.inputs).unwrap();
+            let mut out = RunFolder::prepare(&out, false, &case.inputs).unwrap();
+            results::write_case(&case, &mut out).unwrap();
             results::write(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();
             (case.budget.memory(), case.budget.disk())
         });
