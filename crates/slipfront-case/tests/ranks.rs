@@ -141,7 +141,7 @@ fn ranks_make_the_case_that_one_process_makes(#[case] text: &str) {
 )]
 #[case::mask(
     "texture = [{ shape = 'mask', file = 'c.npy' }]",
-    "where 0 or 1, 1 being textured, is wanted"
+    "where 0 or 1, 1 as of a dark pixel, is wanted"
 )]
 #[case::no_contact(
     "texture = [{ shape = 'groove', width = '100 um' }]",

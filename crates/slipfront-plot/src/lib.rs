@@ -49,4 +49,4 @@ pub use quantity_labels::{QuantityLabel, has_glyphs};
 pub use response::{Response, Responses, response};
 pub use shapes::{Shape, shapes};
 pub use sketch::{Sketch, Stroke, StrokeStyle, sketch};
-pub use stress::{StressMap, StressMaps, stress};
+pub use stress::{Stress, StressMap, StressMaps, stress};

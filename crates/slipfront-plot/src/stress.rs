@@ -23,9 +23,7 @@ const MAX_HEIGHT: f64 = 620.0;
 const MIN_RATIO: f64 = 1.0 / 6.0;
 /// A side shorter than this has fewer numbers.
 const SHORT_SIDE: f64 = 130.0;
-/// The ends of the colour scale.
-const RANGE: [f64; 2] = [0.0, 1.0];
-/// It is numbered in at most so many steps.
+/// The colour scale is numbered in at most so many steps.
 const BAR_STEPS: usize = 5;
 
 /// One map of the contact stress.
@@ -37,12 +35,22 @@ pub struct StressMap {
     pub time_star: f64,
     /// mu* at that time; not written if NaN.
     pub mu_star: f64,
-    /// Mean `tau_c*` of every [cell](CellMeans), row by row from y = 0; NaN is left blank.
+    /// Mean of every [cell](CellMeans), row by row from y = 0; NaN is left blank.
     pub values: Vec<f32>,
 }
 
+/// What the values of a map are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stress {
+    /// Contact stress `tau_c*`, over the largest of the run.
+    #[default]
+    Contact,
+    /// Traction `tau_f* = |F_f|/(P mu_s l^2)`, blank over a texture.
+    Traction,
+}
+
 /// Maps of one lattice.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct StressMaps {
     /// Blocks along x.
     pub nx: usize,
@@ -54,10 +62,14 @@ pub struct StressMaps {
     pub textured: Vec<bool>,
     /// The maps, in the order in which they are drawn.
     pub maps: Vec<StressMap>,
+    /// What their values are.
+    pub stress: Stress,
+    /// Whether mu* is a torque, of a drive that rotates.
+    pub is_torque: bool,
 }
 
 /// Draws the maps in one row (in more, if there are more than six), at most as wide as a journal's text (175
-/// mm), all on one colour scale from 0 to 1, the textured area outlined.
+/// mm), all on one colour scale from 0 to 1, or to the largest traction, the textured area outlined.
 ///
 /// A lattice more than six times as long as wide is drawn as if it were six times.
 ///
@@ -71,19 +83,22 @@ pub fn stress(maps: &StressMaps) -> Result<Picture, PictureError> {
     let mut canvas = Canvas::new(layout.width, layout.height);
     let cells = Cells::of(maps.nx, maps.ny, &maps.textured);
     for (map, &area) in maps.maps.iter().zip(&layout.areas) {
-        cells.draw(&mut canvas, area, &map.values, RANGE);
+        cells.draw(&mut canvas, area, &map.values, layout.range);
         canvas.frame(area);
         let mut label = title(map);
         let room = layout.pitch_x - 0.5 * GAP;
         if label.width() > room {
             label = Text::shortened(&map.label, SIZE_LABEL, room);
         }
-        draw_titles(&mut canvas, area, &label, &friction(map));
+        draw_titles(&mut canvas, area, &label, &friction(map, maps.is_torque));
     }
     layout.draw_axes(&mut canvas);
     // As tall as all rows.
-    colour_bar(&mut canvas, layout.bar, RANGE, BAR_STEPS);
-    let title = Text::math("\u{3c4}_c*", SIZE_LABEL);
+    colour_bar(&mut canvas, layout.bar, layout.range, BAR_STEPS);
+    let title = match maps.stress {
+        Stress::Contact => Text::math("\u{3c4}_c*", SIZE_LABEL),
+        Stress::Traction => Text::math("\u{3c4}_f*", SIZE_LABEL),
+    };
     canvas.text(&title, (layout.bar.centre().0, TOP - 22.0), Align::Middle, BLACK);
     canvas.finish()
 }
@@ -114,6 +129,8 @@ struct Layout {
     pitch_x: f64,
     areas: Vec<Area>,
     bar: Area,
+    /// The ends of the colour scale.
+    range: [f64; 2],
     /// The slider's sides along x and y, in `unit`.
     sides: [Axis; 2],
     unit: &'static str,
@@ -131,8 +148,9 @@ impl Layout {
         let rows = maps.maps.len().div_ceil(MAX_COLUMNS);
         let ratio = (length_y / length_x).clamp(MIN_RATIO, 1.0 / MIN_RATIO);
 
+        let range = [0.0, largest(maps)];
         let left = left_room(&sides[1].placed(MAX_HEIGHT, 0.0).ticks(Direction::Y, 4));
-        let right = GAP + bar_room(RANGE, BAR_STEPS, MAX_HEIGHT) + MARGIN;
+        let right = GAP + bar_room(range, BAR_STEPS, MAX_HEIGHT) + MARGIN;
         let room = (TEXT_WIDTH - left - right + GAP) / columns as f64;
         let map_width = (room - GAP).min(MAX_WIDTH).min(MAX_HEIGHT / ratio).round();
         let map_height = (map_width * ratio).round();
@@ -156,6 +174,7 @@ impl Layout {
             pitch_x,
             areas: (0..maps.maps.len()).map(area).collect(),
             bar: Area::new(bar_x, TOP, BAR_WIDTH, lowest.max(BAR_MIN_HEIGHT)),
+            range,
             sides,
             unit,
         }
@@ -201,11 +220,25 @@ fn title(map: &StressMap) -> Text {
 }
 
 /// The second line over a map; empty if the friction is not known.
-fn friction(map: &StressMap) -> Text {
+fn friction(map: &StressMap, is_torque: bool) -> Text {
+    let what = if is_torque { "torque " } else { "" };
     match map.mu_star.is_finite() {
-        true => Text::plain(&format!("\u{3bc}* = {}", number(map.mu_star, 3)), SIZE_TICK),
+        true => Text::plain(&format!("{what}\u{3bc}* = {}", number(map.mu_star, 3)), SIZE_TICK),
         false => Text::default(),
     }
+}
+
+/// The upper end of the colour scale: 1 of the contact stress, and of the traction the largest there is.
+fn largest(maps: &StressMaps) -> f64 {
+    let values = maps.maps.iter().flat_map(|map| &map.values);
+    let largest = match maps.stress {
+        Stress::Contact => 0.0,
+        Stress::Traction => values
+            .copied()
+            .filter(|value| value.is_finite())
+            .fold(0.0, f32::max),
+    };
+    if largest > 0.0 { f64::from(largest) } else { 1.0 }
 }
 
 /// The unit in which a length reads well, and how many of it make a metre.
@@ -238,7 +271,24 @@ mod tests {
             block_size: 1e-6,
             textured,
             maps: (0..count).map(map).collect(),
+            ..StressMaps::default()
         }
+    }
+
+    /// Of a drive that rotates, and of one that pulls at some blocks only.
+    #[test]
+    fn other_drives_have_other_titles_and_another_scale() {
+        let mut maps = maps(4, 4, 2);
+        (maps.is_torque, maps.stress) = (true, Stress::Traction);
+        maps.maps[1].values[3] = 1.25;
+        maps.maps[0].values[2] = f32::NAN;
+        assert_eq!(Layout::of(&maps).range, [0.0, 1.25]);
+        let svg = stress(&maps).unwrap().svg;
+        assert!(svg.contains(">torque \u{3bc}* = 0.500</text>") && !svg.contains("NaN"));
+        // A slider that nothing has pulled yet.
+        maps.maps.iter_mut().for_each(|map| map.values.fill(0.0));
+        assert_eq!(Layout::of(&maps).range, [0.0, 1.0]);
+        stress(&maps).unwrap();
     }
 
     #[test]

@@ -59,6 +59,7 @@ fn stress_maps() -> StressMaps {
         block_size: 1e-6,
         textured: (0..30 * 20).map(|block| block % 30 < 10 && block > 200).collect(),
         maps: vec![map("A"), map("B")],
+        ..StressMaps::default()
     }
 }
 

@@ -279,8 +279,9 @@ impl Run {
     /// Path of the drive at a time, between two rows of the series in proportion.
     fn path_at(&self, time_star: f64) -> f64 {
         let after = self.rows.partition_point(|row| row[0] < time_star);
-        let after = after.min(self.rows.len() - 1);
-        let (before, after) = (self.rows[after.saturating_sub(1)], self.rows[after]);
+        let after = after.min(self.rows.len().saturating_sub(1));
+        let row = |k: usize| self.rows.get(k).copied().unwrap_or([f64::NAN; 4]);
+        let (before, after) = (row(after.saturating_sub(1)), row(after));
         let span = after[0] - before[0];
         let share = if span > 0.0 {
             (time_star - before[0]) / span

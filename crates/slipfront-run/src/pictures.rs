@@ -7,14 +7,14 @@ use {
     crate::friction_picture,
     crate::precursors::{self, PrecursorRow},
     crate::series::{self, SeriesRow},
-    crate::summary::read_summary,
+    crate::summary::{Summary, read_summary},
     rayon::prelude::*,
     slipfront::exact_solutions::precursor_load,
     slipfront::observe::Field,
     slipfront::{Edge, Edges},
-    slipfront_case::case::{MAX_MAPS, memory_to_draw},
-    slipfront_case::case_file::{CaseFile, KineticFriction},
-    slipfront_plot::{self as plot, CellMeans, Picture, Response, Responses, StressMap, StressMaps},
+    slipfront_case::case::{MAX_MAPS, mapped_field, memory_to_draw},
+    slipfront_case::case_file::{CaseFile, KineticFriction, Motion},
+    slipfront_plot::{self as plot, CellMeans, Picture, Response, Responses, Stress, StressMap, StressMaps},
     std::path::{Path, PathBuf},
 };
 
@@ -103,16 +103,27 @@ impl Reduction for CellMeans {
     }
 }
 
-/// Draws the stress maps of a run; none if it kept no contact stress.
+/// Draws the stress maps of a run; none if it kept no such field.
 #[cfg(feature = "plot")]
 fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
-    let fields = fields::read_maps::<CellMeans>(&folder.join(FIELDS), Field::ContactStress, MAX_MAPS)?;
+    // Files that have lost their case can be drawn as well.
+    let path = folder.join(CASE);
+    let case = path.exists().then(|| CaseFile::load(&path, &[])).transpose()?;
+    // The field, what it is, and its unit in the file.
+    let (field, stress, unit) = match case.filter(|case| mapped_field(case) == Field::Traction) {
+        Some(case) => {
+            let unit = case.load.pressure.si() * case.friction.mu_static;
+            (Field::Traction, Stress::Traction, unit as f32)
+        }
+        None => (Field::ContactStress, Stress::Contact, 1.0),
+    };
+    let fields = fields::read_maps::<CellMeans>(&folder.join(FIELDS), field, MAX_MAPS)?;
     if fields.names.is_empty() || fields.frames.is_empty() {
         return Ok(None);
     }
     let point = |row: SeriesRow| (row.step, row.mu_star);
     let rows = series::read_rows(&folder.join(SERIES), SERIES, point)?;
-    let instants = read_summary(folder)?.instants;
+    let Summary { instants, motion, .. } = read_summary(folder)?;
     // A snapshot between the rows of a thinned series has no mu* of its own, unless it is an instant.
     let mu_star = |frame: &FieldFrame| {
         let mut of_instants = instants
@@ -128,7 +139,10 @@ fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
         mu_star: mu_star(&frame),
         label: frame.label,
         time_star: frame.time_star,
-        values: frame.values.into_iter().next().unwrap_or_default(),
+        values: {
+            let values = frame.values.into_iter().next().unwrap_or_default();
+            values.into_iter().map(|value| value / unit).collect()
+        },
     });
     let maps = StressMaps {
         nx,
@@ -136,6 +150,8 @@ fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
         block_size: fields.block_size * fields.stride as f64,
         textured: fields.textured,
         maps: maps.collect(),
+        stress,
+        is_torque: motion == Some(Motion::Rotation),
     };
     let drawn = plot::stress(&maps).map(Some);
     drawn.map_err(|source| ResultsError::Picture {
@@ -180,8 +196,8 @@ fn draw_precursors(folder: &Path) -> Result<Option<Picture>, ResultsError> {
         curves.push(curve("exact", points.collect(), true));
     }
     let drawn = plot::response(&Responses {
-        x_title: "load F\u{209c}/F\u{2099} after the event".to_owned(),
-        y_title: "length of the event L\u{209a}/L".to_owned(),
+        x_title: "tangential over normal force F\u{209c}/F\u{2099} after the event".to_owned(),
+        y_title: "length over that of the slider L\u{209a}/L".to_owned(),
         curves,
         ..Responses::default()
     });

@@ -103,7 +103,7 @@ pub fn write_fields(
     communicator: &dyn Communicator,
 ) -> Result<Option<TempPath>, FieldsError> {
     let surface = &case.model.surface;
-    let outline = case.model.slider.outline.as_ref();
+    let outline = case.model.slider().outline.as_ref();
     let names = &case.output.fields;
     let scale = record.contact_stress_max;
     let frames: Vec<FieldFrame> = std::mem::take(&mut record.frames)
@@ -155,7 +155,7 @@ mod tests {
         write_case(&case, &mut run).unwrap();
         write(&case, &mut record, run, jiff::Timestamp::UNIX_EPOCH, 1).unwrap();
         let fields = fields::read_fields(&out.join(FIELDS)).unwrap();
-        let slider = &case.model.slider;
+        let slider = case.model.slider();
         let outside: Vec<usize> = (0..36).filter(|&b| !slider.exists(b)).collect();
         assert_eq!(outside.len(), 36 - 32);
         let middle = [14, 15, 20, 21];

@@ -115,7 +115,7 @@ impl SeriesRow {
             drive_spring_energy_j: row.energies.stored.drive_springs * energy,
             friction_loss_j: row.energies.friction_loss * energy,
             damping_loss_j: row.energies.damping_loss * energy,
-            viscous_loss_j: model.slider.is_viscous().then_some(viscous_loss),
+            viscous_loss_j: model.slider().is_viscous().then_some(viscous_loss),
             contact_spring_energy_j: has_springs.then_some(row.energies.contact_springs * energy),
             broken_spring_loss_j: has_springs.then_some(row.energies.broken_springs_loss * energy),
             mean_state_star: has_state.then_some(row.mean_state),

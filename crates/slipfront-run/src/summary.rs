@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use slipfront::observe::{
     Curve, Cycles, Energies, Frame, Kinetic, KineticHistory, NoUncertainty, Peak, Precursors, Scheduled,
+    SlipEvent,
 };
 use slipfront::{Friction, Simulation, StopReason};
 
@@ -77,7 +78,7 @@ pub struct Summary {
     pub steps: u64,
     /// Seed of the random coefficients.
     pub seed: u64,
-    /// Negative draws of the coefficients that were set to 0.
+    /// Negative draws of the coefficients of blocks in contact that were set to 0.
     pub negative_draws: usize,
     /// Energy that is not accounted for, relative to the energy put in.
     pub energy_error: f64,
@@ -170,6 +171,13 @@ pub struct PrecursorSummary {
     pub crossing_time_star: Option<f64>,
     /// mu* then.
     pub crossing_mu_star: Option<f64>,
+    /// How many events there were before that one, or in all if none crosses: precursors.
+    pub precursor_count: usize,
+    /// Length of the longest of these, over that of the slider.
+    pub precursor_length_max: Option<f64>,
+    /// mu* when the first event begins over mu* when the first one begins that crosses the whole slider: the load at nucleation over that
+    /// at the transition.
+    pub nucleation_load_ratio: Option<f64>,
 }
 
 /// A part of a program of speeds in which the drive moves forwards.
@@ -241,11 +249,24 @@ impl SummaryObservers {
     /// The events of slip of a slider driven at an edge.
     fn precursors(&self) -> Option<PrecursorSummary> {
         let precursors = self.precursors.as_ref()?;
-        let crossing = precursors.crossing();
+        let (events, crossing) = (precursors.events(), precursors.crossing());
+        let is_precursor = |event: &&SlipEvent| event.length < 1.0;
+        let before: Vec<f64> = events
+            .iter()
+            .take_while(is_precursor)
+            .map(|event| event.length)
+            .collect();
+        let crossing_mu_star = crossing.map(|event| event.mu_star_before);
+        let nucleation = events.first().map(|event| event.mu_star_before);
         Some(PrecursorSummary {
-            events: precursors.events().len(),
+            events: events.len(),
             crossing_time_star: crossing.map(|event| event.from_star),
-            crossing_mu_star: crossing.map(|event| event.mu_star_before),
+            crossing_mu_star,
+            precursor_count: before.len(),
+            precursor_length_max: before.into_iter().reduce(f64::max),
+            nucleation_load_ratio: nucleation
+                .zip(crossing_mu_star)
+                .map(|(first, crossing)| first / crossing),
         })
     }
 
@@ -337,7 +358,7 @@ impl SummaryObservers {
             cycles: self.cycles(),
             viscous_loss_j: case
                 .model
-                .slider
+                .slider()
                 .is_viscous()
                 .then_some(energies.viscous_loss * energy),
             broken_spring_loss_j: matches!(friction, Friction::ContactSprings(_))

@@ -18,8 +18,8 @@ pub struct Model {
     pub lattice: Lattice,
     /// The rows that this process holds: all, unless it is one rank of several.
     pub rows: Range<usize>,
-    /// What differs from block to block of these rows.
-    pub slider: Slider,
+    /// What differs from block to block of these rows; it fits them.
+    pub(crate) slider: Slider,
     /// Friction of every block of these rows.
     pub surface: Surface,
     /// How it is pulled.
@@ -33,7 +33,8 @@ pub struct Model {
 }
 
 impl Model {
-    /// Puts the parts together, with all blocks alike. The surface must be made for this lattice.
+    /// Puts the parts together, with all blocks alike; [`with_slider`](Self::with_slider) makes them differ. The surface must be made
+    /// for this lattice.
     pub fn new(
         lattice: Lattice,
         surface: Surface,
@@ -70,6 +71,21 @@ impl Model {
             epsilon,
             friction: friction.into(),
         }
+    }
+
+    /// This model of blocks that differ, for which the surface must be made.
+    ///
+    /// # Panics
+    /// Unless every array of the slider has one value for each block that this process holds, and drive springs are given with an
+    /// outline, 0 where there is no block.
+    pub fn with_slider(self, slider: Slider) -> Self {
+        slider.assert_fits(self.surface.n_blocks());
+        Self { slider, ..self }
+    }
+
+    /// What differs from block to block of the rows that this process holds.
+    pub fn slider(&self) -> &Slider {
+        &self.slider
     }
 
     /// Number of blocks of the whole lattice that exist.

@@ -152,6 +152,34 @@ impl Slider {
         rows.flat_map(columns).collect()
     }
 
+    /// Panics unless these are the properties of `n` blocks, with drive springs on those alone that exist.
+    pub(crate) fn assert_fits(&self, n: usize) {
+        let (springs, outline) = (self.drive_springs.as_ref(), self.outline.as_ref());
+        for (what, length) in [
+            ("moduli", self.stiffness.as_ref().map(Vec::len)),
+            ("densities", self.density.as_ref().map(Vec::len)),
+            ("drive springs", springs.map(|springs| springs.relative.len())),
+            (
+                "flags of the outline",
+                outline.map(|outline| outline.exists.len()),
+            ),
+        ] {
+            if let Some(length) = length {
+                assert_eq!(
+                    length, n,
+                    "the slider has {length} {what} for {n} blocks: give one each"
+                );
+            }
+        }
+        let pulls_nothing =
+            |b: usize| !self.exists(b) && springs.is_none_or(|springs| springs.relative[b] != 0.0);
+        if let Some(b) = (0..n).find(|&b| pulls_nothing(b)) {
+            panic!(
+                "block {b} does not exist, but has a drive spring: make the slider by `Slider::new`, which takes it away"
+            );
+        }
+    }
+
     /// Number of blocks of the whole lattice that exist.
     pub fn n_blocks(&self, lattice: &Lattice) -> usize {
         self.outline

@@ -75,6 +75,7 @@ replay! {
     fields
     summary
     series
+    precursors
     manifest
     journal
     plot

@@ -265,7 +265,7 @@ fn values_out_of_bounds_are_named() {
             text.contains(&format!("has {shown} in row 1, column 2")),
             "{text}"
         );
-        assert!(message(read_mask_npy(&path, 3, 2)).contains("0 or 1, 1 being textured"));
+        assert!(message(read_mask_npy(&path, 3, 2)).contains("0 or 1, 1 as of a dark pixel"));
     }
 }
 

@@ -7,11 +7,11 @@
 use std::ops::Range;
 use std::path::Path;
 
-use slipfront::observe::{CurveRow, Field, Frame, frames};
+use slipfront::observe::{CurveRow, Frame, SlipEvent, frames};
 use slipfront::{Kernel, Lattice};
 
 use super::kernel::kernel;
-use super::output::{MAX_MAPS, Output, Snapshots};
+use super::output::{MAX_MAPS, Output, Snapshots, mapped_field};
 use super::ranks::Ranks;
 use super::textures::count_masks;
 use super::time_plan::TimePlan;
@@ -130,6 +130,11 @@ const COLUMNS: f64 = 16.0;
 /// Stretches of the history of mu* and their copies while an uncertainty is sought.
 const HISTORY: f64 = 1024.0 * 1024.0;
 
+/// Columns of `precursors.csv`.
+const EVENT_COLUMNS: f64 = 8.0;
+/// Fewest steps from an event of slip to the next, on average (measured: 175 and more).
+const EVENT_STEPS: f64 = 50.0;
+
 /// What both pictures read of a row of the series, and its points of the curves.
 const DRAWN_ROW: f64 = (3.0 + 2.0 + 3.0) * NUMBER;
 
@@ -175,6 +180,8 @@ pub struct Budget {
     rows: f64,
     /// Bytes of a row in its file.
     row_text: f64,
+    /// Events of slip of a slider that is driven at an edge.
+    events: f64,
     /// Maps that are drawn.
     maps: f64,
     /// Bytes of the files that the case reads, of which there will be copies.
@@ -247,7 +254,11 @@ impl Budget {
             fields: output.fields.len() as f64,
             rows: (last_step / output.series_stride) as f64 + 2.0,
             row_text: COLUMN_TEXT * (COLUMNS + more_columns(file)),
-            maps: match output.fields.contains(&Field::ContactStress) {
+            events: match file.drive.edge() {
+                Some(_) => (last_step as f64 / EVENT_STEPS).ceil(),
+                None => 0.0,
+            },
+            maps: match output.fields.contains(&mapped_field(file)) {
                 true => n_frames.min(MAX_MAPS as f64),
                 false => 0.0,
             },
@@ -259,13 +270,14 @@ impl Budget {
     }
 
     /// What takes how many bytes in each phase.
-    fn parts(&self) -> [Part; 4] {
+    fn parts(&self) -> [Part; 5] {
         let (blocks, all_cells) = (self.blocks, self.all_cells);
         let (frames, fields, rows) = (self.frames, self.fields, self.rows);
         let drawn = all_cells.min(CELLS);
         let frame = size_of::<Frame>() as f64 + fields * size_of::<Vec<f32>>() as f64;
         let snapshots = |cells: f64| frames * fields * cells * VALUE + grown(frames) * frame;
         let row = size_of::<CurveRow>() as f64;
+        let (event, event_text) = (size_of::<SlipEvent>() as f64, COLUMN_TEXT * EVENT_COLUMNS);
         [
             Part {
                 key: "slider.blocks",
@@ -305,6 +317,19 @@ impl Budget {
                     grown(rows) * (row + DRAWN_ROW),
                     rows * self.row_text,
                     rows * row,
+                ],
+            },
+            Part {
+                key: "drive.attach",
+                what: |budget| count(budget.events as usize, "slip event"),
+                remedy: "shorten the run",
+                bytes: [
+                    0.0,
+                    grown(self.events) * event + grown(self.events * event_text),
+                    // As numbers, then as points.
+                    grown(self.events) * (EVENT_COLUMNS + 4.0) * NUMBER,
+                    self.events * event_text,
+                    self.events * event_text,
                 ],
             },
             Part {

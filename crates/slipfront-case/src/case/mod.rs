@@ -18,7 +18,7 @@ mod warnings;
 pub use self::budget::{Budget, PICTURE, PROGRAM, memory_to_draw};
 pub use self::groups::Groups;
 pub use self::inputs::{Input, name_of_copy};
-pub use self::output::{MAX_MAPS, Output, Snapshots};
+pub use self::output::{MAX_MAPS, Output, Snapshots, mapped_field};
 pub use self::ranks::Ranks;
 pub use self::runnable::{Case, Expected, TextureReport};
 pub use self::textures::Watch;

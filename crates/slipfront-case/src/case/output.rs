@@ -4,7 +4,7 @@ use slipfront::observe::Field;
 
 use super::time_plan::TimePlan;
 use crate::case_file;
-use crate::case_file::{AutoOr, CaseError, CaseFile};
+use crate::case_file::{Attached, AttachedEdge, AutoOr, CaseError, CaseFile};
 
 /// Which results are written.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,14 +33,22 @@ pub enum Snapshots {
 /// Most maps in the picture of the stress: of more snapshots, six spread over the run are shown.
 pub const MAX_MAPS: usize = 6;
 
+/// The field whose maps are drawn: the contact stress, and of a slider of which only some blocks have a drive spring the traction,
+/// since the contact stress of a stuck block is the pull of its own drive spring.
+pub fn mapped_field(file: &CaseFile) -> Field {
+    match file.drive.attached {
+        Attached::At(AttachedEdge::All) => Field::ContactStress,
+        Attached::At(_) | Attached::File(_) => Field::Traction,
+    }
+}
+
 /// Most rows of the series unless the case sets a spacing.
 const SERIES_ROWS: u64 = 20_000;
 
 impl Output {
-    /// The output that a case file asks for, refused when a time lies behind the end of the run, or a spacing is shorter
-    /// than a step.
+    /// The output that a case file asks for, refused when a spacing is shorter than a step.
     pub(super) fn of(file: &CaseFile, time_plan: &TimePlan) -> Result<Self, CaseError> {
-        let (dt_star, last_step) = (time_plan.dt_star, time_plan.last_step);
+        let dt_star = time_plan.dt_star;
         let spacing = |key: &str, time: f64| -> Result<u64, CaseError> {
             let steps = (time / dt_star).round();
             if steps >= 1.0 {
@@ -55,19 +63,12 @@ impl Output {
             case_file::Snapshots::Every(every) => Snapshots::Every(spacing("output.snapshots", *every)?),
             case_file::Snapshots::At(times) => {
                 let mut steps: Vec<u64> = times.iter().map(|time| (time / dt_star).round() as u64).collect();
-                if let Some((_, time)) = steps.iter().zip(times).find(|&(&step, _)| step > last_step) {
-                    let sentence = format!(
-                        "no snapshot can be taken at t* = {time}: the run ends at {:.4}",
-                        time_plan.end_star()
-                    );
-                    return Err(file.source.error("output.snapshots", sentence));
-                }
                 steps.dedup();
                 Snapshots::At(steps)
             }
         };
         let series_stride = match file.output.series {
-            AutoOr::Auto => last_step.div_ceil(SERIES_ROWS),
+            AutoOr::Auto => time_plan.last_step.div_ceil(SERIES_ROWS),
             AutoOr::Number(time) => spacing("output.series", time)?,
         };
         Ok(Output {

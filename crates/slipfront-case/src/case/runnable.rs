@@ -198,8 +198,8 @@ impl Case {
             damping(groups.omega_star),
             groups.epsilon,
             law(&file, &groups),
-        );
-        model.slider = slider;
+        )
+        .with_slider(slider);
         let plan = ranks.agree(plan.of_model(&file, &model, &scales, &groups, &ranks))?;
         let Plan {
             time_plan,
@@ -269,18 +269,21 @@ impl Plan {
         ranks: &Ranks,
     ) -> Result<Self, CaseError> {
         let dynamics = Dynamics::of(model, ranks.communicator);
-        if dynamics == self.dynamics {
-            return Ok(self);
-        }
-        let time_plan = TimePlan::of(file, scales, groups, dynamics)?;
-        Self::checked(
-            file,
-            &model.lattice,
-            &model.rows,
-            ranks,
-            (dynamics, time_plan),
-            self.to_run,
-        )
+        let plan = if dynamics == self.dynamics {
+            self
+        } else {
+            let time_plan = TimePlan::of(file, scales, groups, dynamics)?;
+            Self::checked(
+                file,
+                &model.lattice,
+                &model.rows,
+                ranks,
+                (dynamics, time_plan),
+                self.to_run,
+            )?
+        };
+        plan.time_plan.check_end(file)?;
+        Ok(plan)
     }
 
     /// Refuses what there is no memory for.

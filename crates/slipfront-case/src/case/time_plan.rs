@@ -7,7 +7,7 @@ use slipfront::{Lattice, Model, Scales, Stop, StopReason};
 
 use super::drive::loading_share;
 use super::groups::Groups;
-use crate::case_file::{AutoOr, CaseError, CaseFile, DriveSpeed, RunTime, Step};
+use crate::case_file::{AutoOr, CaseError, CaseFile, DriveSpeed, RunTime, Snapshots, Step};
 use crate::number_format::four_digits;
 
 /// Duration and time step of a run, its end and the window of the kinetic friction.
@@ -59,7 +59,7 @@ const AUTO_STEP: f64 = 0.1;
 const MAX_STEPS: f64 = 4e9;
 
 impl TimePlan {
-    /// The time plan of a case file, refused when the step is unstable, the run too long, or the kinetic window empty.
+    /// The time plan of a case file, refused when the step is unstable or the run too long.
     pub(super) fn of(
         file: &CaseFile,
         scales: &Scales,
@@ -100,12 +100,7 @@ impl TimePlan {
         }
         let kinetic = match time.kinetic_from_star {
             AutoOr::Auto => KineticStart::Auto,
-            AutoOr::Number(from) if from < end_star => KineticStart::At(from),
-            AutoOr::Number(from) => {
-                let sentence =
-                    format!("the kinetic window cannot begin at t* = {from}: the run ends at {end_star:.4}");
-                return Err(file.source.error("time.kinetic_from_star", sentence));
-            }
+            AutoOr::Number(from) => KineticStart::At(from),
         };
         let last_step = steps as u64;
         let stop = match time.stop {
@@ -119,6 +114,26 @@ impl TimePlan {
             stop,
             kinetic,
         })
+    }
+
+    /// Refuses a kinetic window and snapshots after the end of the run, which is known only of a plan that follows from the model.
+    pub(super) fn check_end(&self, file: &CaseFile) -> Result<(), CaseError> {
+        let end_star = self.end_star();
+        if let KineticStart::At(from) = self.kinetic
+            && from >= end_star
+        {
+            let sentence =
+                format!("the kinetic window cannot begin at t* = {from}: the run ends at {end_star:.4}");
+            return Err(file.source.error("time.kinetic_from_star", sentence));
+        }
+        let is_late = |time: &&f64| (**time / self.dt_star).round() > self.last_step as f64;
+        if let Snapshots::At(times) = &file.output.snapshots
+            && let Some(time) = times.iter().find(is_late)
+        {
+            let sentence = format!("no snapshot can be taken at t* = {time}: the run ends at {end_star:.4}");
+            return Err(file.source.error("output.snapshots", sentence));
+        }
+        Ok(())
     }
 
     /// t* of the last step.

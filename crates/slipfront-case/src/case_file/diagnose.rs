@@ -7,6 +7,7 @@ use super::error::CaseError;
 use super::key_table::{Key, Kind, Section};
 use super::keys;
 use super::source::Source;
+use super::synonyms::advice_on;
 use crate::text::truncated;
 
 /// What the parser says of common slips, by how its message begins, and what a user needs to know of them.
@@ -74,7 +75,7 @@ pub(super) fn value_error(
     let subject = path.unwrap_or(header);
     let key = path.and_then(|path| section?.key(path.rsplit('.').next()?));
     let sentence = if let Some((word, words)) = name_and_expected(&message, "unknown variant `") {
-        format!("`{subject}`: {}", unknown_word(&truncated(word), &words))
+        format!("`{subject}`: {}", unknown_word(&truncated(word), &words, subject))
     } else if let Some(expected) = expected_by(&message) {
         let whole = source.written(subject);
         let takes = key.and_then(|key| takes(key, &message));
@@ -103,12 +104,16 @@ fn name_and_expected<'m>(message: &'m str, start: &str) -> Option<(&'m str, Vec<
     Some((name, expected.split('`').skip(1).step_by(2).collect()))
 }
 
-fn unknown_word(word: &str, known: &[&str]) -> String {
+/// Advice on a word that is none of those `known` if it is about the table of its key, the `subject`.
+fn unknown_word(word: &str, known: &[&str], subject: &str) -> String {
     let quoted: Vec<String> = known.iter().map(|word| format!("\"{word}\"")).collect();
     let list = quoted.join(", ");
-    match keys::nearest(word, known) {
-        Some(near) => format!("unknown word {word:?}: did you mean \"{near}\"? It can be {list}"),
-        None => format!("unknown word {word:?}: it can be {list}"),
+    let table = subject.split('.').next().unwrap_or(subject);
+    let advice = advice_on(word).filter(|advice| advice.contains(&format!("`{table}.")));
+    match (keys::nearest(word, known), advice) {
+        (Some(near), _) => format!("unknown word {word:?}: did you mean \"{near}\"? It can be {list}"),
+        (None, Some(advice)) => format!("unknown word {word:?}: {advice}. It can be {list}"),
+        (None, None) => format!("unknown word {word:?}: it can be {list}"),
     }
 }
 

@@ -19,7 +19,26 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
         "gradient",
         "a stiffness or density that changes along the slider is `slider.stiffness_grade` or `slider.density_grade`",
     ),
-    ("tau_v", "the internal viscosity is `slider.viscosity_time_star`"),
+    ("tau_v", VISCOSITY),
+    ("viscosity", VISCOSITY),
+    ("viscous", VISCOSITY),
+    ("damping_internal", VISCOSITY),
+    ("internal_damping", VISCOSITY),
+    ("kelvin_voigt", VISCOSITY),
+    ("dashpot", VISCOSITY),
+    ("damper", VISCOSITY),
+    ("springs", SPRINGS_OF_EACH),
+    ("bonds", SPRINGS_OF_EACH),
+    (
+        "k_s",
+        "the stiffness of a drive spring is `drive.stiffness`, with its unit, or `drive.stiffness_star`; of all together `drive.total_stiffness`",
+    ),
+    (
+        "shape",
+        "the shape of the slider is `slider.outline`, that of a texture its `shape`",
+    ),
+    ("cutout", OUTLINE),
+    ("domain", OUTLINE),
     ("rho", "the density is `slider.density`"),
     (
         "mass",
@@ -41,12 +60,15 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ),
     (
         "omega",
-        "the damping is `slider.omega_star`, or `slider.damping_rate` with its unit",
+        "the damping is `slider.omega_star`, or `slider.damping_rate` with its unit; a drive that turns is `drive.motion` = \"rotation\"",
     ),
     ("boundary", "what lies beyond the edges is `slider.edges`"),
     ("periodic", "periodic edges are `slider.edges` = \"periodic\""),
     ("P", PRESSURE),
-    ("force", PRESSURE),
+    (
+        "force",
+        "the normal load is `load.pressure`, over the whole area; the drive has a speed, `drive.v_star`, and its force is a result",
+    ),
     ("normal_force", PRESSURE),
     ("normal_load", PRESSURE),
     ("weight", PRESSURE),
@@ -62,6 +84,31 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
         "the direction of the drive is `drive.direction`, and a cavity is turned by `texture.N.rotate`",
     ),
     ("theta", "the direction of the drive is `drive.direction`"),
+    ("torque", ROTATION),
+    ("torsion", ROTATION),
+    ("spin", ROTATION),
+    ("angular_velocity", ROTATION),
+    ("angular_speed", ROTATION),
+    (
+        "edge",
+        "what lies beyond the edges is `slider.edges`; the edge that is driven is `drive.attach`",
+    ),
+    ("push", ATTACH),
+    ("pull", ATTACH),
+    ("pusher", ATTACH),
+    ("attached", ATTACH),
+    ("driven", ATTACH),
+    ("hold", PROGRAM),
+    ("slide_hold_slide", PROGRAM),
+    ("velocity_steps", PROGRAM),
+    ("velocity_step", PROGRAM),
+    ("steps", PROGRAM),
+    ("schedule", PROGRAM),
+    ("segments", PROGRAM),
+    ("load_profile", PROFILE),
+    ("pressure_profile", PROFILE),
+    ("slope", PROFILE),
+    ("tilt", PROFILE),
     ("mu", FRICTION),
     ("friction_coefficient", FRICTION),
     ("coefficient", FRICTION),
@@ -169,11 +216,28 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ),
     ("weakening", WEAKENING),
     ("stribeck", WEAKENING),
+    ("weakening_speed", WEAKENING),
+    ("velocity_weakening", WEAKENING),
+    ("critical_speed", WEAKENING),
+    ("v_c", WEAKENING),
     ("aging", AGEING),
     ("healing", AGEING),
+    ("strengthening", AGEING),
+    ("cohesion", ADHESION),
+    ("adhesive", ADHESION),
+    ("tau_a", ADHESION),
+    ("shear_strength", ADHESION),
     ("contact_stiffness", CONTACT_SPRINGS),
     ("k_t", CONTACT_SPRINGS),
+    ("contact_springs", CONTACT_SPRINGS),
+    ("asperities", CONTACT_SPRINGS),
+    ("junctions", CONTACT_SPRINGS),
     ("rate_and_state", RATE_AND_STATE),
+    ("rsf", RATE_AND_STATE),
+    ("dieterich", RATE_AND_STATE),
+    ("ruina", RATE_AND_STATE),
+    ("rate_state", RATE_AND_STATE),
+    ("state", RATE_AND_STATE),
     ("d_c", "the slip of rate and state is `friction.d_c_star`"),
     ("dc", "the slip of rate and state is `friction.d_c_star`"),
     (
@@ -210,6 +274,17 @@ const AGEING: &str = "static friction that grows with age is `friction.ageing` =
 const CONTACT_SPRINGS: &str =
     "springs in contact are `friction.contact` = \"springs\", of stiffness `friction.contact_stiffness_star`";
 const RATE_AND_STATE: &str = "rate and state is `friction.law` = \"rate_and_state\"";
+const VISCOSITY: &str =
+    "the internal viscosity is `slider.viscosity_time_star`; damping of any motion is `slider.omega_star`";
+const SPRINGS_OF_EACH: &str = "the springs between blocks follow from `slider.young_modulus`, those of the drive are `drive.stiffness`, and those \
+                               of contacts are `friction.contact` = \"springs\"";
+const OUTLINE: &str = "the shape of a slider that is no rectangle is `slider.outline`";
+const ROTATION: &str = "a drive that turns is `drive.motion` = \"rotation\", with `drive.v_star` at the largest radius; its torque is a result";
+const ATTACH: &str = "which blocks the drive pulls is `drive.attach` = \"left\", \"right\", \"bottom\" or \"top\", or `drive.attach_file`";
+const PROGRAM: &str = "speeds that follow one another, 0 for a hold, are `drive.program` = [{ v_star = 0.03, until_star = 200 }, { v_star = 0 }]";
+const PROFILE: &str =
+    "a load that rises along the slider is `load.profile` = { along = \"x\", relative_slope = 0.5 }";
+const ADHESION: &str = "adhesion adds to static friction as `friction.adhesion`, and to kinetic friction as `friction.adhesion_kinetic`";
 const CIRCLE: &str = "a circle is `shape` = \"cavity\" with `coverage`, or with `lambda`, its radius";
 const GROOVE: &str = "a straight one is `shape` = \"groove\" with `coverage` or `width`";
 const RADIUS: &str = "the radius of a circle is `lambda`";

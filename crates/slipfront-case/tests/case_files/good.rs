@@ -152,3 +152,27 @@ fn steps_and_durations_follow_the_blocks() {
         assert!(duration <= plan.end_star() + 1e-6 && plan.end_star() < duration + plan.dt_star);
     }
 }
+
+/// Times are held against the end of the run as its own drive springs make it: later than 8/V* of a soft slider, earlier of a stiff
+/// one, whose moduli are known only when a file is read.
+#[test]
+fn times_are_held_against_the_end_of_the_run_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = |modulus: &str, key: &str| {
+        std::fs::write(
+            folder.path().join("moduli.csv"),
+            format!("{modulus},{modulus}\n").repeat(2),
+        )
+        .unwrap();
+        let text = "slider.blocks = [2, 2]\nslider.stiffness_field = \"moduli.csv\"\ndrive.v_star = 0.1";
+        Case::parse_in(text, "case", folder.path(), &[key.to_owned()])
+    };
+    // 8/V* is 80.
+    for key in ["time.kinetic_from_star=120", "output.snapshots=[120]"] {
+        assert!(case("0.5", key).is_ok(), "{key}");
+        let refused = case("1", key).unwrap_err().to_string();
+        assert!(refused.contains("t* = 120: the run ends at 80.0000"), "{refused}");
+    }
+    let refused = case("2", "time.kinetic_from_star=60").unwrap_err().to_string();
+    assert!(refused.contains("the run ends at 40.0000"), "{refused}");
+}

@@ -56,7 +56,7 @@ impl Texture {
         }
         let lattice = &case.model.lattice;
         // What does not exist has no contact either, but is no texture.
-        let (surface, slider) = (&case.model.surface, &case.model.slider);
+        let (surface, slider) = (&case.model.surface, case.model.slider());
         let blocks = surface.textured.iter().enumerate();
         let textured: Vec<bool> = blocks
             .map(|(b, textured)| *textured && slider.exists(b))

@@ -107,7 +107,7 @@ fn drive(case: &Case) -> String {
         DriveStiffness::Auto => String::new(),
         _ => format!(
             ", {} springs of k_s* = {}",
-            four_digits(case.model.slider.sum_of_drive_springs(&case.model.lattice)),
+            four_digits(case.model.slider().sum_of_drive_springs(&case.model.lattice)),
             four_digits(drive.k_drive)
         ),
     };

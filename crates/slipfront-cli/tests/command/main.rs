@@ -6,6 +6,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod attach_file;
 mod broken;
 #[cfg(unix)]
 mod checkpoints;

@@ -76,13 +76,10 @@ fn decay(viscosity_time: f64, dt_star: f64) -> f64 {
         0.0,
         FrictionLaw::Projection,
     );
-    let model = Model {
-        slider: Slider {
-            viscosity_time,
-            ..Slider::default()
-        },
-        ..plain
-    };
+    let model = plain.with_slider(Slider {
+        viscosity_time,
+        ..Slider::default()
+    });
     let mut state = State::at_rest(2);
     state.displacement.x = vec![0.5, -0.5];
     let experiment = Experiment {

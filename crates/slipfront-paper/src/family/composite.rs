@@ -42,7 +42,7 @@ fn largest(weak_rows: usize) -> Result<f64, PaperError> {
         FrictionLaw::Projection,
     );
     let experiment = Experiment {
-        model: Arc::new(Model { slider, ..plain }),
+        model: Arc::new(plain.with_slider(slider)),
         dt_star: DT_STAR,
         state: None,
     };

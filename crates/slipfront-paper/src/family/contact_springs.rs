@@ -6,7 +6,7 @@ use slipfront::communicator::Alone;
 use slipfront::exact_solutions::{chain_slip_force, static_over_kinetic_of_springs};
 use slipfront::lattice::{K_DRIVE, K_STRAIGHT};
 use slipfront::surface::{Coefficients, Load};
-use slipfront::{ContactSprings, Drive, DriveSprings, Friction, Lattice, Model, Surface, scales};
+use slipfront::{ContactSprings, Drive, Friction, Lattice, Model, Slider, Surface, scales};
 
 use super::answer::{Answer, Chapter};
 use super::runs::Experiment;
@@ -45,10 +45,9 @@ fn pull(n: usize, stiffness: f64) -> f64 {
         redraw: None,
     });
     let surface = Surface::uniform(&lattice, 1.0, 0.0);
-    let mut model = Model::new(lattice, surface, Drive::along_x(2e-4), 0.5, 0.0, law);
-    let mut relative = vec![0.0; n];
-    relative[0] = 1.0;
-    model.slider.drive_springs = Some(DriveSprings::new(relative, &Alone));
+    let mut slider = Slider::default();
+    slider.attach(n, |b| b == 0, &Alone);
+    let model = Model::new(lattice, surface, Drive::along_x(2e-4), 0.5, 0.0, law).with_slider(slider);
     let experiment = Experiment {
         model: Arc::new(model),
         dt_star: 0.2,

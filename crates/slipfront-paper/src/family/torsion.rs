@@ -16,7 +16,7 @@ use crate::number::Number;
 /// Distances of the blocks that exist from the middle.
 fn radii(model: &Model) -> Vec<f64> {
     let half = [model.lattice.nx, model.lattice.ny].map(|count| 0.5 * count as f64);
-    let blocks = (0..model.lattice.n_blocks()).filter(|&b| model.slider.exists(b));
+    let blocks = (0..model.lattice.n_blocks()).filter(|&b| model.slider().exists(b));
     let radius = |b: usize| {
         let (i, j) = model.lattice.column_row(b);
         f64::hypot(i as f64 + 0.5 - half[0], j as f64 + 0.5 - half[1])
@@ -37,10 +37,10 @@ fn decoupled(r_star: f64) -> Experiment {
     let drive = Drive::along_x(1e-3);
     let damping = scales::damping(2.0);
     let mut model = Model::new(lattice, surface, drive, damping, 0.0, FrictionLaw::Projection);
-    model.drive.rotation = Some(Rotation::about_centroid(&lattice, &model.rows, &slider, &Alone));
-    model.slider = slider;
+    let rotation = Rotation::about_centroid(&lattice, &model.rows, &slider, &Alone);
+    model.drive.rotation = Some(rotation);
     Experiment {
-        model: Arc::new(model),
+        model: Arc::new(model.with_slider(slider)),
         dt_star: 0.8,
         state: None,
     }

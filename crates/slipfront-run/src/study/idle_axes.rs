@@ -94,7 +94,7 @@ fn digest(case: &Case) -> blake3::Hash {
         number(from);
     }
     let surface = &model.surface;
-    let slider = &model.slider;
+    let slider = model.slider();
     number(slider.viscosity_time);
     for block in 0..surface.n_blocks() {
         number(slider.mass(block));

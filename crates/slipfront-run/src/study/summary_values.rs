@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use serde_json::Value;
 
-use crate::summary::Summary;
+use crate::summary::{PrecursorSummary, Summary};
 
 /// Reduction of mu_s* against the reference of the same seed, % (Eq. 16).
 pub const REDUCTION: &str = "static_reduction_percent";
@@ -23,7 +23,27 @@ const NOT_QUANTITIES: [&str; 9] = [
     "seed",
 ];
 
-/// Names of all numbers, in the order of the summary; the reduction comes last.
+/// Numbers of a slider that is driven at an edge. Tables have them only if one of their runs has them.
+const OF_PRECURSORS: [(&str, NumberOf); 3] = [
+    ("precursor_count", |precursors| {
+        Some(precursors.precursor_count as f64)
+    }),
+    ("precursor_length_max", |precursors| {
+        precursors.precursor_length_max
+    }),
+    ("nucleation_load_ratio", |precursors| {
+        precursors.nucleation_load_ratio
+    }),
+];
+
+type NumberOf = fn(&PrecursorSummary) -> Option<f64>;
+
+/// Whether tables have the quantity of this name only if one of their runs has it.
+pub(super) fn is_optional(name: &str) -> bool {
+    OF_PRECURSORS.iter().any(|(optional, _)| *optional == name)
+}
+
+/// Names of all numbers, in the order of the summary, then of its precursors; the reduction comes last.
 pub fn known() -> &'static [String] {
     static KNOWN: LazyLock<Vec<String>> = LazyLock::new(|| {
         let names = named(&Summary::default()).into_iter().map(|(name, _)| name);
@@ -112,7 +132,12 @@ fn named(summary: &Summary) -> Vec<(String, Option<f64>)> {
     };
     let fields = fields.into_iter();
     let kept = fields.filter(|(name, _)| !NOT_QUANTITIES.contains(&name.as_str()));
-    kept.map(|(name, value)| (name, number(value))).collect()
+    let numbers = kept.map(|(name, value)| (name, number(value)));
+    let precursors = OF_PRECURSORS.map(|(name, number_of)| {
+        let precursors = summary.precursors.as_ref();
+        (name.to_owned(), precursors.and_then(number_of))
+    });
+    numbers.chain(precursors).collect()
 }
 
 /// Reduction of mu_s* in % (Eq. 16), both runs on the same random surface:

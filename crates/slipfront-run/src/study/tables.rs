@@ -4,13 +4,13 @@ use std::io::Write;
 
 use super::plan::{Plan, Role};
 use super::study_results::StudyResults;
-use super::summary_values::{AFTER_AXES, BEFORE_AXES, Quantity, REDUCTION, STATISTICS, known};
+use super::summary_values::{AFTER_AXES, BEFORE_AXES, Quantity, STATISTICS, is_optional, known};
 
 /// `runs.csv`: for each run, references included, the levels of its point, the seed, whether it failed and why, and every
 /// number of its summary.
 pub(super) fn runs(plan: &Plan, results: &StudyResults, to: impl Write) -> csv::Result<()> {
     let mut table = csv::Writer::from_writer(to);
-    let quantities = quantities(plan);
+    let quantities = quantities(plan, results);
     let names = quantities.iter().map(|(name, _)| *name);
     let before = BEFORE_AXES.into_iter().chain(axis_columns(plan));
     table.write_record(before.chain(AFTER_AXES).chain(names))?;
@@ -44,12 +44,22 @@ pub(super) fn runs(plan: &Plan, results: &StudyResults, to: impl Write) -> csv::
     Ok(table.flush()?)
 }
 
-/// The quantities that the tables of a study have: a reduction only against a reference.
-fn quantities(plan: &Plan) -> Vec<(&'static str, Quantity)> {
+/// The quantities that the tables of a study have: a reduction only against a reference, and what few runs have only if there is
+/// one of them, or if it decides on replication.
+fn quantities(plan: &Plan, results: &StudyResults) -> Vec<(&'static str, Quantity)> {
+    let until = plan.settings.until.as_ref();
+    let is_there = |name: &str, quantity: Quantity| match quantity {
+        Quantity::Reduction => plan.has_reference(),
+        Quantity::Number(position) if is_optional(name) => {
+            let mut runs = results.runs.values().flatten();
+            until.is_some_and(|until| until.key == name) || runs.any(|values| values.get(position).is_some())
+        }
+        Quantity::Number(_) => true,
+    };
     known()
         .iter()
-        .filter(|name| plan.has_reference() || *name != REDUCTION)
         .filter_map(|name| Some((name.as_str(), Quantity::named(name)?)))
+        .filter(|(name, quantity)| is_there(name, *quantity))
         .collect()
 }
 
@@ -58,7 +68,7 @@ fn quantities(plan: &Plan) -> Vec<(&'static str, Quantity)> {
 pub(super) fn points(plan: &Plan, results: &StudyResults, to: impl Write) -> csv::Result<()> {
     let mut table = csv::Writer::from_writer(to);
     table.write_record(["point"].into_iter().chain(axis_columns(plan)).chain(STATISTICS))?;
-    let quantities = quantities(plan);
+    let quantities = quantities(plan, results);
     for (position, point) in plan.points.iter().enumerate() {
         for &(name, _) in &quantities {
             let sample = results.sample(plan, position, name);

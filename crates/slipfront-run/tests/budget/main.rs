@@ -131,6 +131,9 @@ fn what_is_said_is_what_is_taken() {
         "slider.blocks=[500,500];slider.outline='disc';slider.viscosity_time_star=0.1;time.duration_star=1;output.snapshots=[]",
         "slider.blocks=[500,500];slider.stiffness_grade={along='x',from=1,to=2};slider.density_grade={along='y',from=1,to=2};\
          time.duration_star=1;output.snapshots=[]",
+        // Events of slip.
+        "slider.blocks=[60,1];slider.viscosity_time_star=0.3;slider.omega_star=0;drive.attach='left';drive.v_star=1;\
+         drive.total_stiffness_star=0.004;time.step=0.6;time.duration_star=20000;output.snapshots=[];output.series=100",
         // Snapshots.
         "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1}",
         "slider.blocks=[400,400];time.duration_star=2;output.snapshots={every=0.1};output.stride=3",
@@ -147,7 +150,8 @@ fn what_is_said_is_what_is_taken() {
             let file = CaseFile::parse("", "case", &overrides).unwrap();
             let case = Arc::new(Case::new(file, "case", folder.path(), &mut |_| true, Ranks::ALONE).unwrap());
             let mut record = running::run(&case, 1).unwrap();
-            let out = RunFolder::prepare(&out, false, &case.inputs).unwrap();
+            let mut out = RunFolder::prepare(&out, false, &case.inputs).unwrap();
+            results::write_case(&case, &mut out).unwrap();
             results::write(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();
             (case.budget.memory(), case.budget.disk())
         });

@@ -37,7 +37,15 @@ impl Energies {
     /// ```
     ///
     /// It falls with the square of the time step: the balance misses the kinetic energy that a block loses in the last step
-    /// of a slip, at most `(mu_k F_n dt)^2/2`. While all blocks slide the error is that of rounding.
+    /// of a slip, at most `(mu_k F_n dt)^2/2`. As long as no block stops, linear springs let the errors of the steps cancel but for the
+    /// first and the present one: with the force **F** of the springs between blocks and to the drive, and the change of velocity from
+    /// half a step before to half a step after,
+    ///
+    /// ```text
+    /// missing = (dt/4) [(sum F . (v_after - v_before)) at the start - the same now]
+    /// ```
+    ///
+    /// which is that of rounding in steady sliding.
     pub fn error(&self) -> f64 {
         let supplied = self.work.abs() + self.stored_at_start;
         let stored = self.stored.total() + self.contact_springs;

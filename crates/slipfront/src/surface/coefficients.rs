@@ -17,27 +17,22 @@ pub struct Distribution {
 }
 
 impl Distribution {
-    /// Makes coefficients of standard normals, and counts the negative ones, which become 0.
-    fn scale(self, normals: impl Iterator<Item = f64>, coefficients: &mut [f64]) -> usize {
-        let mut negative = 0;
+    /// Makes coefficients of standard normals.
+    fn scale(self, normals: impl Iterator<Item = f64>, coefficients: &mut [f64]) {
         for (coefficient, z) in coefficients.iter_mut().zip(normals) {
-            let mu = self.mean + self.deviation * z;
-            negative += usize::from(mu < 0.0);
-            *coefficient = mu.max(0.0);
+            *coefficient = self.mean + self.deviation * z;
         }
-        negative
     }
 }
 
-/// Local coefficients of every block, as if there were no texture.
+/// Local coefficients of every block, as if there were no texture. Draws may be negative: [`Surface`](super::Surface) sets them to 0,
+/// and counts those of blocks in contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coefficients {
     /// `mu_si`, one per block.
     pub mu_static: Vec<f64>,
     /// `mu_ki`, one per block.
     pub mu_kinetic: Vec<f64>,
-    /// Negative draws that were set to 0, static and kinetic together.
-    pub negative_draws: usize,
 }
 
 /// Named random streams of one seed: drawing from one does not change the numbers of another.
@@ -57,7 +52,6 @@ impl Coefficients {
     /// Draws `mu_si` and `mu_ki` for `n_blocks` blocks, textured or not, in block order.
     ///
     /// The standard normals depend on `seed` and the index of the block alone; mean and deviation shift and scale them.
-    /// Negative values become 0 and are counted.
     pub fn draw(n_blocks: usize, mu_static: Distribution, mu_kinetic: Distribution, seed: u64) -> Self {
         Self::draw_blocks(0..n_blocks, mu_static, mu_kinetic, seed)
     }
@@ -72,11 +66,9 @@ impl Coefficients {
         let draw = |distribution: Distribution, stream: Stream| {
             let mut coefficients = vec![0.0; blocks.len()];
             let normals = |first| standard_normals(seed, stream, blocks.start + first);
-            let negative_draws = if blocks.len() > MAX_KEPT {
+            if blocks.len() > MAX_KEPT {
                 let parts = coefficients.par_chunks_mut(PART).enumerate();
-                parts
-                    .map(|(k, part)| distribution.scale(normals(k * PART), part))
-                    .sum()
+                parts.for_each(|(k, part)| distribution.scale(normals(k * PART), part));
             } else {
                 LAST_NORMALS.with_borrow_mut(|last| {
                     let (of_seed, of_blocks, kept) = &mut last[stream as usize];
@@ -85,17 +77,14 @@ impl Coefficients {
                         kept.extend(normals(0).take(blocks.len()));
                         (*of_seed, *of_blocks) = (seed, blocks.clone());
                     }
-                    distribution.scale(kept.iter().copied(), &mut coefficients)
-                })
-            };
-            (coefficients, negative_draws)
+                    distribution.scale(kept.iter().copied(), &mut coefficients);
+                });
+            }
+            coefficients
         };
-        let (mu_static, negative_static) = draw(mu_static, Stream::MuStatic);
-        let (mu_kinetic, negative_kinetic) = draw(mu_kinetic, Stream::MuKinetic);
         Self {
-            mu_static,
-            mu_kinetic,
-            negative_draws: negative_static + negative_kinetic,
+            mu_static: draw(mu_static, Stream::MuStatic),
+            mu_kinetic: draw(mu_kinetic, Stream::MuKinetic),
         }
     }
 
@@ -109,8 +98,24 @@ impl Coefficients {
         Self {
             mu_static,
             mu_kinetic,
-            negative_draws: 0,
         }
+    }
+
+    /// Sets the coefficients of textured blocks and negative draws to 0: number of the latter, static and kinetic together, of blocks
+    /// in contact.
+    pub(super) fn restrict(&mut self, textured: &[bool]) -> usize {
+        let restrict = |coefficients: &mut [f64]| -> usize {
+            let pairs = coefficients.par_iter_mut().zip(textured);
+            let is_negative = |(coefficient, &textured): (&mut f64, &bool)| {
+                let is_negative = *coefficient < 0.0;
+                if is_negative || textured {
+                    *coefficient = 0.0;
+                }
+                usize::from(is_negative && !textured)
+            };
+            pairs.map(is_negative).sum()
+        };
+        restrict(&mut self.mu_static) + restrict(&mut self.mu_kinetic)
     }
 }
 
@@ -197,6 +202,7 @@ mod tests {
         );
     }
 
+    /// Of blocks in contact alone: what is drawn for a textured block changes nothing.
     #[test]
     fn negative_draws_become_zero_and_are_counted() {
         let wide = Distribution {
@@ -204,12 +210,23 @@ mod tests {
             deviation: 1.0,
         };
         let drawn = Coefficients::draw(1000, wide, KINETIC, 3);
-        let zeros = drawn.mu_static.iter().filter(|&&mu| mu == 0.0).count();
-        assert_eq!(zeros, drawn.negative_draws);
-        assert!(
-            (350..550).contains(&zeros),
-            "about 46 % of such draws are negative, not {zeros} of 1000"
-        );
+        let textured: Vec<bool> = (0..1000).map(|b| b % 3 == 0).collect();
+        let mut restricted = drawn.clone();
+        let negative = restricted.restrict(&textured);
+        let in_contact = (0..1000).filter(|b| b % 3 != 0);
+        let zeros = in_contact.filter(|&b| restricted.mu_static[b] == 0.0).count();
+        assert_eq!(zeros, negative);
+        // 46 % of such draws of 666 blocks are 306 +- 13: five standard errors.
+        assert!(zeros.abs_diff(306) < 65, "{zeros}");
+        for b in 0..1000 {
+            let [static_draw, kinetic_draw] = [drawn.mu_static[b], drawn.mu_kinetic[b]];
+            let expected = if textured[b] {
+                [0.0; 2]
+            } else {
+                [static_draw.max(0.0), kinetic_draw]
+            };
+            assert_eq!([restricted.mu_static[b], restricted.mu_kinetic[b]], expected);
+        }
     }
 
     /// Draws of some blocks are a part of those of all, whether these are kept or not, and wherever the generator, which makes
@@ -234,9 +251,7 @@ mod tests {
                 for part in parts {
                     joined.mu_static.extend(part.mu_static);
                     joined.mu_kinetic.extend(part.mu_kinetic);
-                    joined.negative_draws += part.negative_draws;
                 }
-                assert!(joined.negative_draws > 0);
                 assert_eq!(joined, whole, "{cuts:?}");
             }
         }

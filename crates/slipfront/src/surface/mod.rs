@@ -43,7 +43,7 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Sets the coefficients of textured blocks to 0 and distributes the load, the same on all blocks before.
+    /// Sets the coefficients of textured blocks, and negative ones, to 0 and distributes the load, the same on all blocks before.
     ///
     /// `mu_static_mean` is the scale of all forces. Fails when no block is left in contact.
     pub fn new(
@@ -82,12 +82,10 @@ impl Surface {
                 *textured |= !exists;
             }
         }
-        for b in (0..n).filter(|&b| textured[b]) {
-            coefficients.mu_static[b] = 0.0;
-            coefficients.mu_kinetic[b] = 0.0;
-        }
+        let negative_draws = coefficients.restrict(&textured);
         let whole = Whole::find(
             &coefficients,
+            negative_draws,
             &textured,
             contact.pressure.as_deref(),
             slider.outline.as_ref(),
@@ -181,7 +179,7 @@ impl Surface {
         self.whole.n_contact
     }
 
-    /// Negative draws of coefficients of the whole surface that were set to 0, static and kinetic together.
+    /// Negative draws of coefficients that were set to 0, static and kinetic together, of all blocks of the whole surface in contact.
     pub fn negative_draws(&self) -> usize {
         self.whole.negative_draws
     }

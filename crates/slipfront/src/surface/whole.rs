@@ -36,10 +36,12 @@ const PART: usize = 1 << 16;
 const SUMS: usize = 6;
 
 impl Whole {
-    /// Found with all other ranks that hold a part of the surface, of coefficients that are 0 over a texture and where there is no
-    /// block, which counts as textured, and of local pressures in units of `P`, 1 everywhere if there are none.
+    /// Found with all other ranks that hold a part of the surface, of coefficients as [restricted](Coefficients::restrict), which
+    /// found this number of negative draws, and of local pressures in units of `P`, 1 everywhere if there are none. What does not
+    /// exist counts as textured.
     pub(super) fn find(
         coefficients: &Coefficients,
+        negative_draws: usize,
         textured: &[bool],
         pressure: Option<&[f64]>,
         outline: Option<&Outline>,
@@ -81,7 +83,7 @@ impl Whole {
         let added = |one: [i128; SUMS], other: [i128; SUMS]| array::from_fn(|k| one[k] + other[k]);
         let sums: [i128; SUMS] = parts().map(sum).reduce(|| [0; SUMS], added);
         let n_contact = parts().map(|blocks| textured[blocks].iter().filter(|&&textured| !textured).count());
-        let counts = [textured.len(), n_contact.sum(), coefficients.negative_draws];
+        let counts = [textured.len(), n_contact.sum(), negative_draws];
         let mut words = [[0; 2]; SUMS + 2];
         for (words, sum) in words.iter_mut().zip(sums) {
             *words = split(sum);
@@ -120,11 +122,11 @@ mod tests {
         }
         coefficients.mu_static[PART + 1] = 1e6;
         (coefficients.mu_static[n - 1], coefficients.mu_kinetic[n - 1]) = (0.0, 1.0);
-        let found = Whole::find(&coefficients, &textured, None, None, &Alone);
+        let found = Whole::find(&coefficients, 7, &textured, None, None, &Alone);
         let expected = Whole {
             n_blocks: n,
             n_contact: n - 3,
-            negative_draws: 0,
+            negative_draws: 7,
             sum_static: 1e6 + 2.0 * (n - 5) as f64,
             sum_kinetic: 1.0 + 3.0 * (n - 4) as f64,
             sum_static_pressure: 1e6 + 2.0 * (n - 5) as f64,
@@ -134,7 +136,7 @@ mod tests {
         assert_eq!(found, expected);
         // Half the pressure on every other block, from the first on; of those without contact, one has the whole.
         let pressure: Vec<f64> = (0..n).map(|b| if b % 2 == 0 { 0.5 } else { 1.0 }).collect();
-        let found = Whole::find(&coefficients, &textured, Some(&pressure), None, &Alone);
+        let found = Whole::find(&coefficients, 0, &textured, Some(&pressure), None, &Alone);
         let all = 0.5 * (n.div_ceil(2)) as f64 + (n / 2) as f64;
         assert_eq!(found.sum_pressure, [all, all - 2.0]);
         // The block of 10^6 has an odd index; the last has an even one, and the coefficients 0 and 1.

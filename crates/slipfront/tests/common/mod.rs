@@ -175,10 +175,7 @@ impl Slider {
             ageing: None,
         });
         let damping = scales::damping(self.omega_star);
-        Model {
-            slider: body,
-            ..Model::of_rows(lattice, rows, surface, drive, damping, self.epsilon, friction)
-        }
+        Model::of_rows(lattice, rows, surface, drive, damping, self.epsilon, friction).with_slider(body)
     }
 
     /// Steps to t* = `turns`/V*.

@@ -223,21 +223,15 @@ fn other_drives_and_their_observers(#[values(false, true)] turns: bool, #[values
         degrees: 0.0,
         ..slider(FrictionLaw::Projection)
     };
-    let mut model = slider.model();
-    let lattice = model.lattice;
-    model
-        .slider
-        .attach_edge(&lattice, &(0..lattice.ny), Edge::Left, &Alone);
+    let (lattice, mut body) = (slider.lattice(), slider.body.clone());
+    body.attach_edge(&lattice, &(0..lattice.ny), Edge::Left, &Alone);
+    let mut model = slider.model().with_slider(body);
     model.drive.k_drive = 2.0;
     let segments = [(0.1, 12.0), (0.0, 20.0), (0.2, f64::INFINITY)];
     model.drive.program = Some(Arc::new(Program::new(segments)));
     if turns {
-        model.drive.rotation = Some(Rotation::about_centroid(
-            &lattice,
-            &model.rows,
-            &model.slider,
-            &Alone,
-        ));
+        let rotation = Rotation::about_centroid(&lattice, &model.rows, model.slider(), &Alone);
+        model.drive.rotation = Some(rotation);
     }
     let observers = || (Precursors::new(Edge::Left), Cycles::default(), Curve::every(7));
     let start = || Simulation::with_execution(model.clone(), 0.1, None, REFERENCE);

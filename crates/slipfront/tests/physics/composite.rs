@@ -30,7 +30,7 @@ fn model(weak: usize, [mu_1, mu_2]: [f64; 2], r_star: f64, apart: bool) -> Model
         Surface::of_ranks(coefficients, vec![false; size * size], contact, &slider, &Alone).unwrap();
     let (drive, damping) = (Drive::along_x(V_STAR), scales::damping(OMEGA_STAR));
     let plain = Model::new(lattice, surface, drive, damping, 0.0, FrictionLaw::Projection);
-    Model { slider, ..plain }
+    plain.with_slider(slider)
 }
 
 fn largest(model: &Model) -> f64 {

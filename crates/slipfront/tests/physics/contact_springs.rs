@@ -7,7 +7,7 @@ use slipfront::lattice::{K_DRIVE, K_STRAIGHT};
 use slipfront::observe::Curve;
 use slipfront::surface::Coefficients;
 use slipfront::surface::Load;
-use slipfront::{ContactSprings, Drive, DriveSprings, Friction, Lattice, Model, Surface, scales};
+use slipfront::{ContactSprings, Drive, Friction, Lattice, Model, Surface, scales};
 
 use crate::common::{Slider, at_rest, cavity};
 
@@ -103,17 +103,10 @@ fn the_first_block_of_a_chain_that_is_pulled_there_breaks(#[values(1, 2, 5, 20)]
         redraw: None,
     };
     let surface = Surface::uniform(&lattice, 1.0, 0.0);
-    let mut model = Model::new(
-        lattice,
-        surface,
-        Drive::along_x(v_star),
-        0.5,
-        0.0,
-        Friction::ContactSprings(law),
-    );
-    let mut relative = vec![0.0; n];
-    relative[0] = 1.0;
-    model.slider.drive_springs = Some(DriveSprings::new(relative, &Alone));
+    let friction = Friction::ContactSprings(law);
+    let mut slider = slipfront::Slider::default();
+    slider.attach(n, |b| b == 0, &Alone);
+    let model = Model::new(lattice, surface, Drive::along_x(v_star), 0.5, 0.0, friction).with_slider(slider);
     let mut simulation = at_rest(&model, dt);
     while simulation.snapshot().totals.n_slipping == 0 {
         simulation.step();

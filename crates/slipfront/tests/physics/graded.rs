@@ -67,11 +67,8 @@ fn a_heavier_stiffer_and_rougher_slider_moves_the_same() {
     let contact = Contact::new(Load::Redistributed, 1.0);
     let surface = Surface::of_ranks(rough, vec![false; 144], contact, &body, &Alone).unwrap();
     let model = plain.model();
-    let heavy = Model {
-        surface,
-        slider: body,
-        ..model.clone()
-    };
+    let mut heavy = model.clone().with_slider(body);
+    heavy.surface = surface;
     let (mut one, mut other) = (at_rest(&model, plain.dt_star), at_rest(&heavy, plain.dt_star));
     for step in 0..plain.steps(5.0) {
         one.step();
@@ -127,10 +124,7 @@ fn two_blocks_have_the_modes_of_their_moduli_and_masses(
     let surface = Surface::of_ranks(none(), vec![false; 2], contact, &body, &Alone).unwrap();
     let drive = Drive::along_x(0.0);
     let plain = Model::new(lattice, surface, drive, 0.0, 0.0, FrictionLaw::Projection);
-    let model = Model {
-        slider: body,
-        ..plain
-    };
+    let model = plain.with_slider(body);
     let mode = pair_modes(stiffness, masses)[number];
     let dt = 0.1;
     let frequency = leapfrog_frequency(mode.omega_squared.sqrt(), dt);

@@ -112,7 +112,8 @@ proptest! {
         });
         model.drive.program = Some(Arc::new(Program::new(segments)));
         if turns {
-            model.drive.rotation = Some(Rotation::about_centroid(&lattice, &model.rows, &model.slider, &Alone));
+            let rotation = Rotation::about_centroid(&lattice, &model.rows, model.slider(), &Alone);
+            model.drive.rotation = Some(rotation);
         }
         let thresholds: Vec<_> = (0..lattice.n_blocks())
             .map(|b| [model.surface.static_limit(b), model.surface.kinetic_force(b)])

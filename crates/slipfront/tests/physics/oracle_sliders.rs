@@ -139,7 +139,7 @@ impl Case {
             displacement: VectorField { x, y },
             velocity: VectorField { x: vx, y: vy },
         };
-        let mut simulation = from_state(&Model { slider, ..plain }, DT, state);
+        let mut simulation = from_state(&plain.with_slider(slider), DT, state);
         (0..steps).for_each(|_| simulation.step());
         let found = simulation.state().displacement;
         (0..n).map(|b| found.at(b)).collect()

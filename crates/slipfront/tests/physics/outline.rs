@@ -53,13 +53,15 @@ fn a_rectangle_cut_out_is_a_smaller_lattice(
         model.surface.mean_static_coefficient()
     );
     assert_eq!(surface.min_slip_threshold(), model.surface.min_slip_threshold());
-    let cut = Model {
-        lattice: Lattice::free(nx, ny),
-        rows: 0..ny,
-        surface,
-        slider: body,
-        ..model.clone()
-    };
+    let lattice = Lattice::free(nx, ny);
+    let parts = (
+        model.drive.clone(),
+        model.damping,
+        model.epsilon,
+        model.friction.clone(),
+    );
+    let (drive, damping, epsilon, friction) = parts;
+    let cut = Model::new(lattice, surface, drive, damping, epsilon, friction).with_slider(body);
     assert_eq!(cut.steady_level(&Alone), model.steady_level(&Alone));
     let (mut one, mut other) = (at_rest(&model, 0.1), at_rest(&cut, 0.1));
     for step in 1..=small.steps(5.0) {
@@ -136,4 +138,22 @@ fn discs_are_round() {
     let largest = radii.iter().copied().fold(0.0, f64::max);
     let [first, second] = [1, 2].map(|power| radii.iter().map(|r| r.powi(power)).sum::<f64>());
     assert!((second / (largest * first) - 0.7577).abs() < 5e-5);
+}
+
+/// Sliders that are made by hand, not by `Slider::new`, are refused where they cannot be those of the model.
+#[rstest]
+#[case::another_lattice(Slider { stiffness: Some(vec![1.0; 5]), ..Slider::default() }, "the slider has 5 moduli for 4 blocks")]
+#[case::no_springs(Slider { drive_springs: None, ..within(vec![true, true, false, true]) }, "block 2 does not exist, but has a drive")]
+#[case::springs_outside(
+    Slider { outline: Some(Outline::new(vec![true, false, true, true], &Alone)), ..within(vec![true; 4]) },
+    "block 1 does not exist, but has a drive spring"
+)]
+fn impossible_sliders_are_refused(#[case] slider: Slider, #[case] words: &str) {
+    let model = common::Slider {
+        blocks: [2, 2],
+        ..common::Slider::default()
+    };
+    let refused = std::panic::catch_unwind(|| model.model().with_slider(slider)).unwrap_err();
+    let sentence = refused.downcast_ref::<String>().unwrap();
+    assert!(sentence.contains(words), "{sentence}");
 }

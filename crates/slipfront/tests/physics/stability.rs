@@ -11,8 +11,7 @@ fn floating(edges: Edges, slider: Slider) -> Model {
     let lattice = Lattice::with_edges(6, 4, [edges; 2]);
     let surface = Surface::uniform(&lattice, 0.0, 0.0);
     let drive = Drive::along_x(0.0);
-    let plain = Model::new(lattice, surface, drive, 0.0, 0.0, FrictionLaw::Projection);
-    Model { slider, ..plain }
+    Model::new(lattice, surface, drive, 0.0, 0.0, FrictionLaw::Projection).with_slider(slider)
 }
 
 /// Largest displacement during the last steps of a run in steps of `dt`, from displacements of at most 1.

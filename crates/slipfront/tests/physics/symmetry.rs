@@ -73,18 +73,8 @@ fn models(slider: &Slider, operation: Operation) -> [Model; 2] {
     let model = |lattice, body: slipfront::Slider, coefficients, textured, drive| {
         let contact = Contact::new(Load::Redistributed, 1.0);
         let surface = Surface::of_ranks(coefficients, textured, contact, &body, &Alone).unwrap();
-        let model = Model::new(
-            lattice,
-            surface,
-            drive,
-            scales::damping(slider.omega_star),
-            slider.epsilon,
-            slider.law,
-        );
-        Model {
-            slider: body,
-            ..model
-        }
+        let damping = scales::damping(slider.omega_star);
+        Model::new(lattice, surface, drive, damping, slider.epsilon, slider.law).with_slider(body)
     };
     [
         model(lattice, slider.body.clone(), drawn, textured, drive),

@@ -17,19 +17,15 @@ fn disc(across: usize) -> slipfront::Slider {
 
 fn turned(slider: &Slider) -> Model {
     let mut model = slider.model();
-    model.drive.rotation = Some(Rotation::about_centroid(
-        &model.lattice,
-        &model.rows,
-        &model.slider,
-        &Alone,
-    ));
+    let rotation = Rotation::about_centroid(&model.lattice, &model.rows, model.slider(), &Alone);
+    model.drive.rotation = Some(rotation);
     model
 }
 
 /// Distances of the blocks that exist from the middle of the lattice.
 fn radii(model: &Model) -> Vec<f64> {
     let half = [model.lattice.nx, model.lattice.ny].map(|n| 0.5 * n as f64);
-    let blocks = (0..model.lattice.n_blocks()).filter(|&b| model.slider.exists(b));
+    let blocks = (0..model.lattice.n_blocks()).filter(|&b| model.slider().exists(b));
     blocks
         .map(|b| {
             let (i, j) = model.lattice.column_row(b);
@@ -71,7 +67,7 @@ fn the_rim_slips_first(#[case] blocks: [usize; 2], #[case] body: slipfront::Slid
     );
     assert!(now.point.mu_lateral_star.abs() < 1e-13);
     let slips = now.first_slip_time_star();
-    let mut exists = (0..model.lattice.n_blocks()).filter(|&b| model.slider.exists(b));
+    let mut exists = (0..model.lattice.n_blocks()).filter(|&b| model.slider().exists(b));
     let largest = radii.iter().copied().fold(0.0, f64::max);
     let at_rim = exists.by_ref().zip(&radii).filter(|(_, r)| **r > largest - 1e-9);
     assert!(at_rim.map(|(b, _)| b).all(|b| !slips[b].is_nan()));
@@ -110,7 +106,7 @@ fn a_disc_of_thresholds_in_proportion_to_the_radius_slips_at_once() {
         Coefficients::given(mu, kinetic),
         vec![false; 400],
         Contact::new(Load::Redistributed, 1.0),
-        &model.slider,
+        model.slider(),
         &Alone,
     )
     .unwrap();
@@ -173,7 +169,7 @@ fn the_level_of_steady_rotation_is_that_of_friction_and_damping() {
     let model = turned(&slider);
     let radii = radii(&model);
     let largest = radii.iter().copied().fold(0.0, f64::max);
-    let blocks = (0..256).filter(|&b| model.slider.exists(b)).zip(&radii);
+    let blocks = (0..256).filter(|&b| model.slider().exists(b)).zip(&radii);
     let torque: f64 = blocks
         .map(|(b, r)| model.surface.kinetic_force(b) * r + model.damping * slider.v_star * r * r / largest)
         .sum();

@@ -26,8 +26,7 @@ fn floating(nx: usize, ny: usize, omega_star: f64, k_drive: f64, epsilon: f64, s
     };
     let surface = Surface::uniform(&lattice, 0.0, 0.0);
     let damping = scales::damping(omega_star);
-    let plain = Model::new(lattice, surface, drive, damping, epsilon, FrictionLaw::Projection);
-    Model { slider, ..plain }
+    Model::new(lattice, surface, drive, damping, epsilon, FrictionLaw::Projection).with_slider(slider)
 }
 
 fn damped(viscosity_time: f64) -> Slider {

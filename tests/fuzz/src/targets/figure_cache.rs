@@ -39,8 +39,8 @@ fn generated() -> Vec<Vec<u8>> {
     });
     let curve = FrictionCurve {
         label: "curve".to_owned(),
-        time_star: vec![0.0, 1.0],
-        mu_star: vec![0.0, f64::NAN],
+        x: vec![0.0, 1.0],
+        friction: vec![0.0, f64::NAN],
         sliding_percent: vec![0.0, 100.0],
         peak: Some((1.0, 0.5)),
         ..FrictionCurve::default()

@@ -15,7 +15,7 @@ mod study;
 use crate::Target;
 
 /// All targets, in the order in which a run reads and writes their files.
-pub const TARGETS: [Target; 16] = [
+pub const TARGETS: [Target; 17] = [
     case::CASE_FILE,
     case::CASE,
     study::STUDY_FILE,
@@ -29,6 +29,7 @@ pub const TARGETS: [Target; 16] = [
     fields::FIELDS,
     json::SUMMARY,
     series::SERIES,
+    series::PRECURSORS,
     json::MANIFEST,
     json::JOURNAL,
     plot::PLOT,

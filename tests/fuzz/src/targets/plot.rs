@@ -1,6 +1,7 @@
 //! Pictures from the files of a run folder.
 
-use slipfront_run::pictures::{draw, draw_friction};
+use slipfront_run::friction_picture::{Against, Units, overlay};
+use slipfront_run::pictures::draw;
 use slipfront_run::summary::summary_json;
 
 use super::json::summary;
@@ -8,7 +9,8 @@ use super::{fields, series};
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
 
-/// Summary, series and fields of a run in one input, separated by [`END`].
+/// Summary, series, events of slip and fields of a run in one input, separated by [`END`]; the case is one of two, by the length of the
+/// input.
 pub(crate) const PLOT: Target = Target {
     name: "plot",
     check: plot,
@@ -25,11 +27,18 @@ pub(crate) const PLOT: Target = Target {
     repetitions: 0,
 };
 
+/// A slider that is driven as a whole, and a chain that is pushed at its end.
+const CASES: [&str; 2] = [
+    "",
+    "slider.blocks = [12, 1]\ndrive.attach = 'left'\nfriction = { sigma_static_star = 0, sigma_kinetic_star = 0 }",
+];
+
 const END: &[u8] = b"\n==\n";
 
 fn generated() -> Vec<Vec<u8>> {
     let whole = |summary: &str, series: Vec<u8>, fields: Vec<u8>| {
-        [summary.as_bytes(), END, &series, END, &fields].concat()
+        let events = series::events_csv(3);
+        [summary.as_bytes(), END, &series, END, &events, END, &fields].concat()
     };
     let plain = summary_json(&summary());
     let mut seeds = vec![
@@ -61,7 +70,7 @@ fn generated() -> Vec<Vec<u8>> {
 
 fn plot(input: &[u8]) {
     let mut rest = input;
-    for name in ["summary.json", "series.csv"] {
+    for name in ["summary.json", "series.csv", "precursors.csv"] {
         let end = rest.windows(END.len()).position(|bytes| bytes == END);
         let at = end.unwrap_or(rest.len());
         scratch::file(&format!("plot/{name}"), &rest[..at]);
@@ -69,6 +78,8 @@ fn plot(input: &[u8]) {
     }
     let fields = scratch::file("plot/fields.nc", rest);
     let folder = fields.parent().unwrap();
+    let case = CASES[input.len() / 2 % 2];
+    scratch::file("plot/case.toml", case.as_bytes());
     match draw(folder) {
         Err(error) => readable(&error),
         Ok(pictures) => {
@@ -84,7 +95,16 @@ fn plot(input: &[u8]) {
                 );
             }
             if input.len() % 2 == 1 {
-                draw_friction(&[folder.to_owned(), folder.to_owned()]).unwrap();
+                let (one, two) = ([folder.to_owned()], [folder.to_owned(), folder.to_owned()]);
+                overlay(&two, Units::Star, None).unwrap();
+                for against in [Against::Time, Against::Displacement] {
+                    for units in [Units::Star, Units::Si] {
+                        // A summary of an older version has no units.
+                        if let Err(error) = overlay(&one, units, Some(against)) {
+                            readable(&error);
+                        }
+                    }
+                }
             }
         }
     }

@@ -1,5 +1,8 @@
-//! The curve of a run as CSV.
+//! The curve of a run, and the events of slip of a slider that is driven at an edge, as CSV.
 
+use slipfront::Scales;
+use slipfront::observe::SlipEvent;
+use slipfront_run::precursors;
 use slipfront_run::series::{SeriesRow, read_csv, to_csv};
 
 use crate::checks::readable;
@@ -21,6 +24,67 @@ pub(crate) const SERIES: Target = Target {
     repetitions: 60,
 };
 
+/// `precursors.csv`.
+pub(crate) const PRECURSORS: Target = Target {
+    name: "precursors",
+    check: events,
+    generated: || vec![events_csv(3), events_csv(1), events_csv(0)],
+    files: &[],
+    dictionary: Some("table.dict"),
+    max_bytes: 4096,
+    memory: Memory {
+        bytes: 256 << 10,
+        per_byte: 256,
+    },
+    mutations: 2000,
+    repetitions: 60,
+};
+
+/// So many events, the last of which goes on.
+pub(crate) fn events_csv(count: u32) -> Vec<u8> {
+    let event = |number: u32| SlipEvent {
+        from_star: 16.5 * f64::from(number),
+        length: 0.25 * f64::from(number + 1),
+        mu_star_before: 0.1 * f64::from(number),
+        after: (number + 1 < count).then_some((16.5 * f64::from(number) + 0.1, 1e-300)),
+    };
+    let events: Vec<SlipEvent> = (0..count).map(event).collect();
+    let scales = Scales {
+        block_size: 1e-6,
+        young_modulus: 1e11,
+        density: 1e4,
+        pressure: 1e5,
+        mu_static_mean: 0.7,
+    };
+    precursors::to_csv(&events, &scales).unwrap()
+}
+
+/// Events that are read have the numbers that stand there: written as a row of the same columns they are read again as equal.
+fn events(input: &[u8]) {
+    let rows = match precursors::read_csv(&scratch::file("run/precursors.csv", input)) {
+        Ok(rows) => rows,
+        Err(error) => return readable(&error),
+    };
+    let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:?}"));
+    let mut printed = String::from_utf8(events_csv(0)).unwrap();
+    for row in &rows {
+        let numbers = [
+            row.time_star,
+            row.time_s,
+            row.length,
+            row.mu_star_before,
+            row.friction_coefficient_before,
+        ]
+        .map(Some);
+        let after = [row.mu_star_after, row.friction_coefficient_after, row.until_star];
+        let cells: Vec<String> = numbers.into_iter().chain(after).map(number).collect();
+        printed += &(cells.join(",") + "\n");
+    }
+    let again = precursors::read_csv(&scratch::file("run/precursors.csv", printed.as_bytes())).unwrap();
+    // Debug shows every bit but those of a NaN.
+    assert_eq!(format!("{again:?}"), format!("{rows:?}"));
+}
+
 /// A series of so many rows.
 pub(crate) fn csv(rows: u64) -> Vec<u8> {
     let row = |step: u64| {
@@ -29,9 +93,13 @@ pub(crate) fn csv(rows: u64) -> Vec<u8> {
             step,
             time_star,
             time_s: 3e-10 * time_star,
+            drive_displacement_m: (rows != 1).then_some(1e-12 * time_star),
             mu_star: 0.3 * step as f64,
             friction_coefficient: 0.3 * step as f64,
             mu_lateral_star: -0.0,
+            friction_force_n: Some(1e-9 * step as f64),
+            lateral_force_n: Some(-0.0),
+            torque_n_m: None,
             sliding_percent: 12.5 * step as f64,
             work_j: 1e-20,
             kinetic_energy_j: 1e-300,

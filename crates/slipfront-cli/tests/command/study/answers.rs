@@ -43,6 +43,41 @@ fn any_number_of_threads_gives_the_same_bytes() {
     );
 }
 
+/// Tables tell of precursors where a run has some: what its summary says. Without such a run they have no such columns.
+#[test]
+fn tables_tell_of_precursors() {
+    let study = |list: &str| {
+        format!(
+            "base.slider = {{ blocks = [12, 1], omega_star = 0, viscosity_time_star = 0.3 }}\nbase.time = {{ step = 0.3, duration_star = 900 }}\n\
+             base.friction.r_star = 0.2\nbase.drive = {{ v_star = 0.5, total_stiffness_star = 0.03 }}\nstudy.keep = 'all'\n\
+             [[axes]]\nkey = 'drive.attach'\nlist = {list}"
+        )
+    };
+    let workspace = Workspace::with_study(&study("['all', 'left']"));
+    workspace.succeed("study study.toml -o both");
+    let rows = workspace.results("both").table("runs.csv");
+    let columns = ["precursor_count", "precursor_length_max", "nucleation_load_ratio"];
+    for column in columns {
+        assert_eq!(rows[0][column], "", "{column} of a drive at all blocks");
+        let summary = workspace.read_text(&format!("both/runs/{}/summary.json", rows[1]["run"]));
+        let (_, number) = summary.split_once(&format!("\"{column}\": ")).unwrap();
+        let number = number.split([',', '\n']).next().unwrap();
+        assert_eq!(
+            rows[1][column].parse::<f64>().unwrap(),
+            number.parse::<f64>().unwrap(),
+            "{column}"
+        );
+    }
+    assert!(rows[1]["precursor_count"].parse::<f64>().unwrap() > 1.0);
+    let ratio: f64 = rows[1]["nucleation_load_ratio"].parse().unwrap();
+    assert!(0.0 < ratio && ratio < 1.0, "{ratio}");
+    workspace.succeed("verify both");
+    workspace.write("study.toml", study("['all']"));
+    workspace.succeed("study study.toml -o none");
+    let row = &workspace.results("none").table("runs.csv")[0];
+    assert!(columns.iter().all(|column| !row.contains_key(*column)));
+}
+
 #[test]
 fn where_the_interval_stays_wide_it_is_said() {
     let workspace = Workspace::with_study(&adaptive("1e-6", "4"));
