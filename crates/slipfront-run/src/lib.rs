@@ -13,6 +13,7 @@ pub mod clock;
 pub mod columns;
 pub mod error;
 pub mod fields;
+mod front;
 pub mod manifest;
 pub mod names;
 pub mod pictures;

@@ -14,13 +14,16 @@ use {
     slipfront_case::case::{MAX_MAPS, memory_to_draw},
     slipfront_case::case_file::{CaseFile, KineticFriction, Motion},
     slipfront_plot::{
-        self as plot, CellMeans, FrictionCurve, Instant, Kinetic, Picture, Response, Responses, StressMap,
-        StressMaps,
+        self as plot, CellMeans, FrictionCurve, FrontMap, Instant, Kinetic, Picture, Response, Responses,
+        SpaceTime, StressMap, StressMaps,
     },
-    std::path::{Path, PathBuf},
+    std::{
+        ops::Range,
+        path::{Path, PathBuf},
+    },
 };
 
-use crate::names::{CASE, FIELDS, PRECURSORS, SERIES, SUMMARY};
+use crate::names::{CASE, FIELDS, KYMOGRAPH, PRECURSORS, SERIES, SUMMARY};
 
 /// A picture of a run.
 pub struct RunPicture {
@@ -48,6 +51,12 @@ pub static RUN_PICTURES: &[RunPicture] = &[
         draw: draw_stress,
     },
     RunPicture {
+        name: "front",
+        shows: "first slips, and sliding against place and time",
+        #[cfg(feature = "plot")]
+        draw: draw_front,
+    },
+    RunPicture {
         name: "precursors",
         shows: "how far events of slip reach under the load",
         #[cfg(feature = "plot")]
@@ -56,7 +65,7 @@ pub static RUN_PICTURES: &[RunPicture] = &[
 ];
 
 /// The files that pictures are drawn from.
-pub const DRAWN_FROM: [&str; 5] = [CASE, SUMMARY, SERIES, PRECURSORS, FIELDS];
+pub const DRAWN_FROM: [&str; 6] = [CASE, SUMMARY, SERIES, PRECURSORS, KYMOGRAPH, FIELDS];
 
 impl RunPicture {
     /// Names of its files.
@@ -194,6 +203,73 @@ fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
         name: "stress",
         source,
     })
+}
+
+/// Rows of the kymograph that are shown at least, where the run has so many.
+#[cfg(feature = "plot")]
+const MIN_INSTANTS: usize = 32;
+
+/// Draws how slip has spread, in a run with a transition.
+#[cfg(feature = "plot")]
+fn draw_front(folder: &Path) -> Result<Option<Picture>, ResultsError> {
+    let (summary, path) = (read_summary(folder)?, folder.join(KYMOGRAPH));
+    if !summary.transition || !path.exists() {
+        return Ok(None);
+    }
+    let kymograph = fields::read_kymograph(&path)?;
+    let mut fields = fields::read_first_slips::<CellMeans>(&folder.join(FIELDS))?;
+    let first_slips = fields.frames.pop().and_then(|mut frame| frame.values.pop());
+    let map = FrontMap {
+        nx: fields.columns(),
+        ny: fields.rows(),
+        block_size: fields.block_size * fields.stride as f64,
+        textured: fields.textured,
+        first_slips: first_slips.unwrap_or_default(),
+        nucleations: summary
+            .nucleations
+            .iter()
+            .map(|site| [site.x_m, site.y_m])
+            .collect(),
+    };
+    let rows = rows_of_the_front(&kymograph.time_star, &summary);
+    let columns = kymograph.columns();
+    let ends = |values: &[f64]| {
+        let step = values.get(1).map_or(0.0, |second| second - values[0]);
+        [values.first(), values.last()]
+            .map(|end| end.copied().unwrap_or_default())
+            .into_iter()
+            .zip([-0.5 * step, 0.5 * step])
+            .map(|(end, more)| end + more)
+            .collect::<Vec<f64>>()
+    };
+    let pair = |values: Vec<f64>| [values[0], values[1]];
+    let space_time = SpaceTime {
+        place: match summary.motion {
+            Some(Motion::Rotation) => "distance from the axis".to_owned(),
+            _ => "place along the drive".to_owned(),
+        },
+        places: kymograph.places,
+        times: pair(ends(&kymograph.time_star[rows.clone()])),
+        columns,
+        shares: kymograph.sliding_share[rows.start * columns..rows.end * columns].to_vec(),
+    };
+    let drawn = plot::front(&map, &space_time).map(Some);
+    drawn.map_err(|source| ResultsError::Picture {
+        name: "front",
+        source,
+    })
+}
+
+/// The rows of a kymograph while the front passes, with half as long before and after it.
+#[cfg(feature = "plot")]
+fn rows_of_the_front(times: &[f64], summary: &Summary) -> Range<usize> {
+    let from = summary.first_slip_time_star.unwrap_or(summary.onset_time_star);
+    let to = (from + 1.2 * summary.front_duration_star.unwrap_or_default()).max(summary.onset_time_star);
+    let margin = 0.5 * (to - from);
+    let start = times.partition_point(|time| *time < from - margin);
+    let end = times.partition_point(|time| *time <= to + margin);
+    let more = MIN_INSTANTS.saturating_sub(end - start).div_ceil(2);
+    start.saturating_sub(more)..(end + more).min(times.len())
 }
 
 /// Draws how far the events of slip of a slider driven at an edge have reached, against the load after them; none of another run. An

@@ -39,6 +39,7 @@ mod fixed_point;
 mod friction;
 mod measure;
 mod model;
+mod position_bins;
 mod reductions;
 mod simulation;
 mod slider;
@@ -55,6 +56,7 @@ pub use friction::{Ageing, ContactSprings, Coulomb, Friction, FrictionLaw, RateA
 pub use kernel::{Execution, Kernel, simd_width};
 pub use lattice::{Edge, Edges, Lattice};
 pub use model::Model;
+pub use position_bins::PositionBins;
 pub use scales::Scales;
 pub use simulation::Simulation;
 pub use slider::{DriveSprings, Outline, Slider};

@@ -11,9 +11,10 @@ use crate::summary::Summary;
 pub const REDUCTION: &str = "static_reduction_percent";
 
 /// Entries of a summary that are not numbers, and the seed, whose mean has no meaning.
-const NOT_QUANTITIES: [&str; 8] = [
+const NOT_QUANTITIES: [&str; 9] = [
     "kinetic_window_star",
     "instants",
+    "nucleations",
     "motion",
     "precursors",
     "cycles",

@@ -84,6 +84,7 @@ mod against_reference;
 mod checkpoints;
 mod executions;
 mod fields;
+mod kymograph;
 mod ranks;
 mod sliders;
 mod variations;

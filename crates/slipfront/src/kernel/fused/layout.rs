@@ -145,6 +145,16 @@ impl Layout {
         (element.div_euclid(stride), element.rem_euclid(stride) as usize)
     }
 
+    /// Column and row of the lattice of the block `lanes` elements after a place of [`row_column`](Self::row_column), which is in the
+    /// same row or the next.
+    pub(super) fn place_after(&self, row: usize, column: usize, lanes: usize) -> (usize, usize) {
+        let column = column + lanes;
+        match column.checked_sub(self.stride) {
+            None => (column - self.ghosts, self.lattice_row(row)),
+            Some(column) => (column - self.ghosts, self.lattice_row(row + 1)),
+        }
+    }
+
     /// The block at a place of [`row_column`](Self::row_column), or the one that is copied there; none beyond a free edge.
     pub(super) fn block_around(&self, row: isize, column: usize) -> Option<usize> {
         let (nx, rows) = (self.lattice.nx, self.rows as isize);
