@@ -42,7 +42,7 @@ pub(crate) fn contours(values: &[f32], columns: usize, level: f64) -> Vec<Vec<Po
                 value(column + 1, row + 1),
                 value(column, row + 1),
             ];
-            if corners.iter().any(|value| value.is_nan()) {
+            if !corners.iter().all(|value| value.is_finite()) {
                 continue;
             }
             let cell = row * columns + column;

@@ -240,7 +240,11 @@ fn draw_map(canvas: &mut Canvas, map: &FrontMap, layout: &Layout) {
     let sides = [map.nx, map.ny].map(|count| count as f64 * map.block_size);
     // The first above all others.
     for (index, [x, y]) in map.nucleations.iter().enumerate().rev() {
-        let at = place(area, (x / sides[0], y / sides[1]));
+        let (x, y) = (x / sides[0], y / sides[1]);
+        if !((0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&y)) {
+            continue;
+        }
+        let at = place(area, (x, y));
         circle(canvas, at, MARK);
         if index == 0 {
             canvas.dot(at, RADIUS_MARKER, MARK);

@@ -77,11 +77,14 @@ impl RunPicture {
 /// Memory in which the friction curves of these run folders are drawn, or all pictures of a single one, in bytes.
 #[cfg(feature = "plot")]
 pub fn memory(folders: &[PathBuf]) -> Result<f64, ResultsError> {
-    let mut rows = 0.0;
+    let (mut rows, mut kymograph) = (0.0, 0);
     for folder in folders {
         rows += series::estimate_rows(&folder.join(SERIES))?;
+        kymograph = std::fs::metadata(folder.join(KYMOGRAPH))
+            .map_or(0, |file| file.len())
+            .max(kymograph);
     }
-    Ok(memory_to_draw(rows))
+    Ok(memory_to_draw(rows, kymograph as f64))
 }
 
 /// Draws the pictures of a run folder from its files, which must be there and undamaged.
@@ -233,23 +236,17 @@ fn draw_front(folder: &Path) -> Result<Option<Picture>, ResultsError> {
     };
     let rows = rows_of_the_front(&kymograph.time_star, &summary);
     let columns = kymograph.columns();
-    let ends = |values: &[f64]| {
-        let step = values.get(1).map_or(0.0, |second| second - values[0]);
-        [values.first(), values.last()]
-            .map(|end| end.copied().unwrap_or_default())
-            .into_iter()
-            .zip([-0.5 * step, 0.5 * step])
-            .map(|(end, more)| end + more)
-            .collect::<Vec<f64>>()
-    };
-    let pair = |values: Vec<f64>| [values[0], values[1]];
+    let times = &kymograph.time_star[rows.clone()];
+    let [first, last] = [times.first(), times.last()].map(|time| time.copied().unwrap_or_default());
+    // A row stands for the time around it.
+    let half = 0.5 * (last - first) / (times.len() as f64 - 1.0).max(1.0);
     let space_time = SpaceTime {
         place: match summary.motion {
             Some(Motion::Rotation) => "distance from the axis".to_owned(),
             _ => "place along the drive".to_owned(),
         },
         places: kymograph.places,
-        times: pair(ends(&kymograph.time_star[rows.clone()])),
+        times: [first - half, last + half],
         columns,
         shares: kymograph.sliding_share[rows.start * columns..rows.end * columns].to_vec(),
     };
@@ -260,16 +257,16 @@ fn draw_front(folder: &Path) -> Result<Option<Picture>, ResultsError> {
     })
 }
 
-/// The rows of a kymograph while the front passes, with half as long before and after it.
+/// The rows of a kymograph while the front passes, with a quarter of that time before and as much again after it.
 #[cfg(feature = "plot")]
 fn rows_of_the_front(times: &[f64], summary: &Summary) -> Range<usize> {
     let from = summary.first_slip_time_star.unwrap_or(summary.onset_time_star);
-    let to = (from + 1.2 * summary.front_duration_star.unwrap_or_default()).max(summary.onset_time_star);
-    let margin = 0.5 * (to - from);
-    let start = times.partition_point(|time| *time < from - margin);
-    let end = times.partition_point(|time| *time <= to + margin);
-    let more = MIN_INSTANTS.saturating_sub(end - start).div_ceil(2);
-    start.saturating_sub(more)..(end + more).min(times.len())
+    let passes = summary.front_duration_star.unwrap_or_default();
+    let duration = (1.2 * passes).max(summary.onset_time_star - from).max(0.0);
+    let start = times.partition_point(|time| *time < from - 0.25 * duration);
+    let end = times.partition_point(|time| *time <= from + 2.0 * duration);
+    let more = MIN_INSTANTS.saturating_sub(end.saturating_sub(start)).div_ceil(2);
+    start.saturating_sub(more)..(end.max(start) + more).min(times.len())
 }
 
 /// Draws how far the events of slip of a slider driven at an edge have reached, against the load after them; none of another run. An
