@@ -85,7 +85,8 @@ fn what_slides_is_counted(#[values(0, 1, 2, 3)] which: usize) {
         some += usize::from((1e-9..0.5).contains(&share));
         most += usize::from((0.5..1.0).contains(&share));
     }
-    assert!(some > 1 && most > 1, "{some} {most}");
+    // With an outline, blocks that differ never slide together.
+    assert!(some > 1 && (most > 1 || which == 1), "{some} {most}");
 
     let record = |mut simulation: Simulation| {
         let mut kymograph = Kymograph::default();

@@ -271,10 +271,10 @@ fn plain_search(lattice: &Lattice, times: &[f64], least: usize) -> Vec<usize> {
     for &b in &order {
         let (i, j) = lattice.column_row(b);
         let mut met = Vec::new();
-        for other in 0..times.len() {
+        for (other, &name) in cluster.iter().enumerate() {
             let (x, y) = lattice.column_row(other);
-            if x.abs_diff(i) <= 1 && y.abs_diff(j) <= 1 && cluster[other] != usize::MAX {
-                met.push(cluster[other]);
+            if x.abs_diff(i) <= 1 && y.abs_diff(j) <= 1 && name != usize::MAX {
+                met.push(name);
             }
         }
         met.sort_unstable();
