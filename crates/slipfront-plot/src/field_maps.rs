@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 use crate::canvas::Canvas;
 use crate::cell_means::CellMeans;
 use crate::frame::{BAR_MIN_HEIGHT, BAR_WIDTH, bar_room, colour_bar};
-use crate::geometry::{Align, Area, Point};
-use crate::lattice_map::{Cells, TITLE_ROOM, block_count, check_length, draw_titles, place, rimmed_line};
+use crate::geometry::{Align, Area};
+use crate::lattice_map::{Cells, MARK, TITLE_ROOM, block_count, check_length, circle, draw_titles, place};
 use crate::picture::{Picture, PictureError};
-use crate::style::{BLACK, MARGIN, RADIUS_MARKER, Rgb, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH};
+use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH};
 use crate::text::Text;
 
 const GAP: f64 = 26.0;
@@ -16,9 +16,6 @@ const GAP: f64 = 26.0;
 const MAX_WIDTH: f64 = 520.0;
 /// The colour bar is numbered in at most so many steps.
 const BAR_STEPS: usize = 5;
-/// The edge of a mark is drawn with so many corners.
-const MARK_CORNERS: usize = 24;
-const MARK: Rgb = [0xd5, 0x2b, 0x1e];
 
 /// Maps on one colour scale.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -119,23 +116,12 @@ fn draw_map(canvas: &mut Canvas, map: &FieldMap, area: Area, range: [f64; 2]) {
     Cells::of(nx, ny, &textured).draw(canvas, area, &means, range);
     for &[i, j] in &map.marks {
         let centre = ((i as f64 + 0.5) / map.nx as f64, (j as f64 + 0.5) / map.ny as f64);
-        draw_mark(canvas, place(area, centre));
+        circle(canvas, place(area, centre), MARK);
     }
     canvas.frame(area);
     let fitted = |text: &str, size| Text::shortened(text, size, area.width + 0.6 * GAP);
     let (label, note) = (fitted(&map.label, SIZE_LABEL), fitted(&map.note, SIZE_TICK));
     draw_titles(canvas, area, &label, &note);
-}
-
-/// A circle with a pale rim, seen on every colour of the ramp.
-fn draw_mark(canvas: &mut Canvas, (x, y): Point) {
-    let corner = |k: usize| {
-        let (sin, cos) = libm::sincos(std::f64::consts::TAU * k as f64 / MARK_CORNERS as f64);
-        (x + 1.5 * RADIUS_MARKER * cos, y + 1.5 * RADIUS_MARKER * sin)
-    };
-    let mut circle: Vec<Point> = (0..MARK_CORNERS).map(corner).collect();
-    circle.push(circle[0]);
-    rimmed_line(canvas, circle, MARK);
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use crate::color_image::{Image, level};
 use crate::geometry::{Align, Area, Point};
 use crate::mask_outline::outline;
 use crate::picture::PictureError;
-use crate::style::{BLACK, SIZE_LABEL, WHITE, WIDTH_MARK};
+use crate::style::{BLACK, RADIUS_MARKER, Rgb, SIZE_LABEL, WHITE, WIDTH_MARK};
 use crate::text::Text;
 
 /// The second line over a map stands so far above it, the first one so far.
@@ -31,6 +31,24 @@ pub(crate) fn check_length(what: &str, found: usize, expected: usize) -> Result<
         found,
         expected,
     })
+}
+
+/// Refuses what is no edge of a block, in metres.
+pub(crate) fn check_block_size(block_size: f64) -> Result<(), PictureError> {
+    if block_size > 0.0 && block_size < 1e9 {
+        return Ok(());
+    }
+    Err(PictureError::BlockSize(block_size.to_string()))
+}
+
+/// The unit in which a length reads well, and how many of it make a metre.
+pub(crate) fn unit_of(length: f64) -> (&'static str, f64) {
+    match length {
+        ..1e-6 => ("nm", 1e9),
+        ..1e-3 => ("\u{b5}m", 1e6),
+        ..1.0 => ("mm", 1e3),
+        _ => ("m", 1.0),
+    }
 }
 
 /// The cells in which a lattice is drawn: its blocks, or groups of them.
@@ -72,6 +90,22 @@ impl Cells {
 /// The point of a map at these fractions of the lattice's sides.
 pub(crate) fn place(area: Area, (x, y): Point) -> Point {
     (area.x + x * area.width, area.bottom() - y * area.height)
+}
+
+/// The colour of marks, seen on every colour of the ramp.
+pub(crate) const MARK: Rgb = [0xd5, 0x2b, 0x1e];
+/// The edge of a mark is drawn with so many corners.
+const MARK_CORNERS: usize = 24;
+
+/// A circle with a pale rim, seen on every colour of the ramp.
+pub(crate) fn circle(canvas: &mut Canvas, (x, y): Point, colour: Rgb) {
+    let corner = |k: usize| {
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * k as f64 / MARK_CORNERS as f64);
+        (x + 1.5 * RADIUS_MARKER * cos, y + 1.5 * RADIUS_MARKER * sin)
+    };
+    let mut circle: Vec<Point> = (0..MARK_CORNERS).map(corner).collect();
+    circle.push(circle[0]);
+    rimmed_line(canvas, circle, colour);
 }
 
 /// A line with a pale rim, seen on every colour of the ramp.

@@ -1,4 +1,4 @@
-//! Pictures for the eye and for print. Of a run: friction against time, and maps of contact stress. Of a
+//! Pictures for the eye and for print. Of a run: friction against time, maps of contact stress, and how slip has spread. Of a
 //! parametric study: response curves, heat maps, bars, all with their confidence intervals.
 //!
 //! Every picture is drawn once, on a canvas, and comes out as SVG and as PNG of the same physical size: a
@@ -11,6 +11,7 @@ mod canvas;
 mod category_axis;
 mod cell_means;
 mod color_image;
+mod contour;
 mod export;
 mod field_maps;
 mod font;
@@ -18,6 +19,7 @@ mod frame;
 mod friction;
 mod friction_curve;
 mod friction_layout;
+mod front;
 mod geometry;
 mod heat_map;
 mod label_placement;
@@ -43,6 +45,7 @@ pub use cell_means::CellMeans;
 pub use field_maps::{FieldMap, FieldMaps, field_maps};
 pub use friction::friction;
 pub use friction_curve::{FrictionAxes, FrictionCurve, Instant, Kinetic};
+pub use front::{FrontMap, SpaceTime, front};
 pub use heat_map::{HeatAxis, HeatMap, heat_map};
 pub use picture::{Picture, PictureError};
 pub use quantity_labels::{QuantityLabel, has_glyphs};

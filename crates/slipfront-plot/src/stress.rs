@@ -7,7 +7,9 @@ use crate::frame::{
     BAR_MIN_HEIGHT, BAR_WIDTH, LOWER_ROOM, bar_room, colour_bar, left_room, left_side, lower_side,
 };
 use crate::geometry::{Align, Area};
-use crate::lattice_map::{Cells, TITLE_ROOM, block_count, check_length, draw_titles};
+use crate::lattice_map::{
+    Cells, TITLE_ROOM, block_count, check_block_size, check_length, draw_titles, unit_of,
+};
 use crate::picture::{Picture, PictureError};
 use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH};
 use crate::text::{Text, number};
@@ -107,9 +109,7 @@ fn check(maps: &StressMaps) -> Result<(), PictureError> {
     block_count(maps.nx, maps.ny)?;
     let [columns, rows] = CellMeans::cells(maps.nx, maps.ny);
     let expected = columns * rows;
-    if !(maps.block_size > 0.0 && maps.block_size < 1e9) {
-        return Err(PictureError::BlockSize(maps.block_size.to_string()));
-    }
+    check_block_size(maps.block_size)?;
     if maps.maps.is_empty() {
         return Err(PictureError::Nothing("map"));
     }
@@ -239,16 +239,6 @@ fn largest(maps: &StressMaps) -> f64 {
             .fold(0.0, f32::max),
     };
     if largest > 0.0 { f64::from(largest) } else { 1.0 }
-}
-
-/// The unit in which a length reads well, and how many of it make a metre.
-fn unit_of(length: f64) -> (&'static str, f64) {
-    match length {
-        ..1e-6 => ("nm", 1e9),
-        ..1e-3 => ("\u{b5}m", 1e6),
-        ..1.0 => ("mm", 1e3),
-        _ => ("m", 1.0),
-    }
 }
 
 #[cfg(test)]

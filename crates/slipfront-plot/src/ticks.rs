@@ -109,7 +109,7 @@ pub(crate) fn apart(ticks: &[Tick], direction: Direction) -> bool {
 }
 
 /// The distance of round values from `lo` to `hi`, and the values.
-fn round_values(lo: f64, hi: f64, most: usize) -> (f64, Vec<f64>) {
+pub(crate) fn round_values(lo: f64, hi: f64, most: usize) -> (f64, Vec<f64>) {
     let step = round_step((hi - lo) / most.max(2) as f64);
     let first = (lo / step - 1e-9).ceil();
     let count = ((hi / step + 1e-9).floor() - first).clamp(0.0, 100.0) as usize;

@@ -10,6 +10,8 @@ pub const SUMMARY: &str = "summary.json";
 pub const SERIES: &str = "series.csv";
 /// The events of slip of a run that is driven at an edge.
 pub const PRECURSORS: &str = "precursors.csv";
+/// What slides against place and time.
+pub const KYMOGRAPH: &str = "kymograph.nc";
 /// The fields of a run, block by block.
 pub const FIELDS: &str = "fields.nc";
 /// The hidden subfolder of everything that belongs to a run which is not complete.

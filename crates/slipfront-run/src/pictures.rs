@@ -14,11 +14,17 @@ use {
     slipfront::{Edge, Edges},
     slipfront_case::case::{MAX_MAPS, mapped_field, memory_to_draw},
     slipfront_case::case_file::{CaseFile, KineticFriction, Motion},
-    slipfront_plot::{self as plot, CellMeans, Picture, Response, Responses, Stress, StressMap, StressMaps},
-    std::path::{Path, PathBuf},
+    slipfront_plot::{
+        self as plot, CellMeans, FrontMap, Picture, Response, Responses, SpaceTime, Stress, StressMap,
+        StressMaps,
+    },
+    std::{
+        ops::Range,
+        path::{Path, PathBuf},
+    },
 };
 
-use crate::names::{CASE, FIELDS, PRECURSORS, SERIES, SUMMARY};
+use crate::names::{CASE, FIELDS, KYMOGRAPH, PRECURSORS, SERIES, SUMMARY};
 
 /// A picture of a run.
 pub struct RunPicture {
@@ -46,6 +52,12 @@ pub static RUN_PICTURES: &[RunPicture] = &[
         draw: draw_stress,
     },
     RunPicture {
+        name: "front",
+        shows: "first slips, and sliding against place and time",
+        #[cfg(feature = "plot")]
+        draw: draw_front,
+    },
+    RunPicture {
         name: "precursors",
         shows: "how far events of slip reach under the load",
         #[cfg(feature = "plot")]
@@ -54,7 +66,7 @@ pub static RUN_PICTURES: &[RunPicture] = &[
 ];
 
 /// The files that pictures are drawn from.
-pub const DRAWN_FROM: [&str; 5] = [CASE, SUMMARY, SERIES, PRECURSORS, FIELDS];
+pub const DRAWN_FROM: [&str; 6] = [CASE, SUMMARY, SERIES, PRECURSORS, KYMOGRAPH, FIELDS];
 
 impl RunPicture {
     /// Names of its files.
@@ -66,11 +78,14 @@ impl RunPicture {
 /// Memory in which the friction curves of these run folders are drawn, or all pictures of a single one, in bytes.
 #[cfg(feature = "plot")]
 pub fn memory(folders: &[PathBuf]) -> Result<f64, ResultsError> {
-    let mut rows = 0.0;
+    let (mut rows, mut kymograph) = (0.0, 0);
     for folder in folders {
         rows += series::estimate_rows(&folder.join(SERIES))?;
+        kymograph = std::fs::metadata(folder.join(KYMOGRAPH))
+            .map_or(0, |file| file.len())
+            .max(kymograph);
     }
-    Ok(memory_to_draw(rows))
+    Ok(memory_to_draw(rows, kymograph as f64))
 }
 
 /// Draws the pictures of a run folder from its files, which must be there and undamaged.
@@ -158,6 +173,67 @@ fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
         name: "stress",
         source,
     })
+}
+
+/// Rows of the kymograph that are shown at least, where the run has so many.
+#[cfg(feature = "plot")]
+const MIN_INSTANTS: usize = 32;
+
+/// Draws how slip has spread, in a run with a transition.
+#[cfg(feature = "plot")]
+fn draw_front(folder: &Path) -> Result<Option<Picture>, ResultsError> {
+    let (summary, path) = (read_summary(folder)?, folder.join(KYMOGRAPH));
+    if !summary.transition || !path.exists() {
+        return Ok(None);
+    }
+    let kymograph = fields::read_kymograph(&path)?;
+    let mut fields = fields::read_first_slips::<CellMeans>(&folder.join(FIELDS))?;
+    let first_slips = fields.frames.pop().and_then(|mut frame| frame.values.pop());
+    let map = FrontMap {
+        nx: fields.columns(),
+        ny: fields.rows(),
+        block_size: fields.block_size * fields.stride as f64,
+        textured: fields.textured,
+        first_slips: first_slips.unwrap_or_default(),
+        nucleations: summary
+            .nucleations
+            .iter()
+            .map(|site| [site.x_m, site.y_m])
+            .collect(),
+    };
+    let rows = rows_of_the_front(&kymograph.time_star, &summary);
+    let columns = kymograph.columns();
+    let times = &kymograph.time_star[rows.clone()];
+    let [first, last] = [times.first(), times.last()].map(|time| time.copied().unwrap_or_default());
+    // A row stands for the time around it.
+    let half = 0.5 * (last - first) / (times.len() as f64 - 1.0).max(1.0);
+    let space_time = SpaceTime {
+        place: match summary.motion {
+            Some(Motion::Rotation) => "distance from the axis".to_owned(),
+            _ => "place along the drive".to_owned(),
+        },
+        places: kymograph.places,
+        times: [first - half, last + half],
+        columns,
+        shares: kymograph.sliding_share[rows.start * columns..rows.end * columns].to_vec(),
+    };
+    let drawn = plot::front(&map, &space_time).map(Some);
+    drawn.map_err(|source| ResultsError::Picture {
+        name: "front",
+        source,
+    })
+}
+
+/// The rows of a kymograph while the front passes, with a quarter of that time before and as much again after it.
+#[cfg(feature = "plot")]
+fn rows_of_the_front(times: &[f64], summary: &Summary) -> Range<usize> {
+    let from = summary.first_slip_time_star.unwrap_or(summary.onset_time_star);
+    let passes = summary.front_duration_star.unwrap_or_default();
+    let duration = (1.2 * passes).max(summary.onset_time_star - from).max(0.0);
+    let start = times.partition_point(|time| *time < from - 0.25 * duration);
+    let end = times.partition_point(|time| *time <= from + 2.0 * duration);
+    let more = MIN_INSTANTS.saturating_sub(end.saturating_sub(start)).div_ceil(2);
+    start.saturating_sub(more)..(end.max(start) + more).min(times.len())
 }
 
 /// Draws how far the events of slip of a slider driven at an edge have reached, against the load after them; none of another run. An

@@ -14,7 +14,7 @@ use tempfile::TempPath;
 use crate::error::ResultsError;
 use crate::fields::{self, FieldFrame, FieldsError, FieldsFile, StaticFields};
 use crate::manifest::Manifest;
-use crate::names::{CASE, FIELDS, PRECURSORS, SERIES, SUMMARY};
+use crate::names::{CASE, FIELDS, KYMOGRAPH, PRECURSORS, SERIES, SUMMARY};
 #[cfg(feature = "plot")]
 use crate::pictures;
 use crate::precursors;
@@ -40,7 +40,7 @@ pub fn write(
     }
 }
 
-/// Summary, series and events, the first results of a run, by one of its ranks.
+/// Summary, series, kymograph and events, the first results of a run, by one of its ranks.
 pub fn write_tables(case: &Case, record: &Record, folder: &mut RunFolder) -> Result<(), ResultsError> {
     folder.write(SUMMARY, &disk::json(&record.summary))?;
     let rows = record
@@ -48,6 +48,7 @@ pub fn write_tables(case: &Case, record: &Record, folder: &mut RunFolder) -> Res
         .iter()
         .map(|row| SeriesRow::new(row, &case.scales, &case.model));
     folder.write(SERIES, &series::to_csv(rows)?)?;
+    folder.write(KYMOGRAPH, &fields::kymograph_bytes(&record.kymograph, case))?;
     match &record.precursors {
         Some(precursors) => Ok(folder.write(
             PRECURSORS,

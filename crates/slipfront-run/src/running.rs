@@ -6,11 +6,12 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use slipfront::communicator::{Alone, Communicator};
 use slipfront::observe::frames::{Selection, kept};
-use slipfront::observe::{CurveRow, Frame, Frames, Instants, Precursors, Schedule, Scheduled};
+use slipfront::observe::{CurveRow, Frame, Frames, Instants, Kymograph, Precursors, Schedule, Scheduled};
 use slipfront::{Checkpoint, Execution, RunError, Simulation, Snapshot, Stop, StopReason};
 
 use crate::columns::Columns;
 use crate::fields::FieldFrame;
+use crate::front;
 use crate::summary::{Summary, SummaryObservers};
 use slipfront_case::case::{Case, Output, Snapshots};
 
@@ -23,6 +24,8 @@ pub struct Record {
     pub rows: Vec<CurveRow>,
     /// Events of slip of a slider driven at an edge.
     pub precursors: Option<Precursors>,
+    /// What slides against place along the drive and time.
+    pub kymograph: Kymograph,
     /// Fields in the order of time, each with the letters of the instants A-F that it shows.
     pub frames: Vec<(String, Frame)>,
     /// t* of the first slip of every block.
@@ -51,12 +54,14 @@ pub struct Running {
     stop: Stop,
     simulation: Simulation,
     observers: Observers,
+    communicator: Arc<dyn Communicator>,
 }
 
 /// What a run has recorded up to now.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Observers {
     summary: SummaryObservers,
+    kymograph: Kymograph,
     fields: Fields,
 }
 
@@ -110,6 +115,7 @@ impl Observers {
         };
         Self {
             summary: SummaryObservers::new(case, last_step),
+            kymograph: Kymograph::default(),
             fields,
         }
     }
@@ -123,7 +129,9 @@ impl Observers {
             _ => false,
         };
         let time_star = step as f64 * case.time_plan.dt_star;
-        fields && self.summary.is_consistent_with(&new.summary, step, time_star)
+        fields
+            && self.kymograph.is_consistent_with(&case.model, step)
+            && self.summary.is_consistent_with(&new.summary, step, time_star)
     }
 
     /// The numbers of blocks that a checkpoint keeps: those of the simulation, and those of every field of every frame.
@@ -149,6 +157,7 @@ impl Observers {
             Snapshots::Every(steps) => Schedule::Every(*steps),
         };
         let mut scheduled = self.summary.scheduled();
+        scheduled.push(self.kymograph.scheduled());
         scheduled.push(match &mut self.fields {
             Fields::Instants(instants) => Scheduled::new(schedule, &mut **instants),
             Fields::Frames(frames) => Scheduled::new(schedule, frames),
@@ -217,8 +226,15 @@ impl Running {
         Self {
             case: Arc::clone(case),
             stop,
-            simulation: Simulation::on_ranks(model, dt_star, None, execution(case, threads), communicator),
+            simulation: Simulation::on_ranks(
+                model,
+                dt_star,
+                None,
+                execution(case, threads),
+                Arc::clone(&communicator),
+            ),
             observers: Observers::new(case, last_step),
+            communicator,
         }
     }
 
@@ -248,7 +264,7 @@ impl Running {
             dt_star,
             &checkpoint,
             execution,
-            communicator,
+            Arc::clone(&communicator),
             |column, first, values| {
                 bytes.resize(size_of_val(values), 0);
                 read(blocks.offset(column, first_row, first), &mut bytes)?;
@@ -285,6 +301,7 @@ impl Running {
             stop: case.time_plan.stop,
             simulation,
             observers,
+            communicator,
         }))
     }
 
@@ -363,18 +380,31 @@ impl Running {
     /// What the run leaves behind, once it has ended. All ranks must call this together.
     pub fn record(self, reason: StopReason) -> Record {
         let (case, simulation) = (self.case, self.simulation);
-        let Observers { summary, fields } = self.observers;
+        let Observers {
+            summary,
+            kymograph,
+            fields,
+        } = self.observers;
         let (instants, frames) = match fields {
             Fields::Instants(instants) => (instants.found(), Vec::new()),
             Fields::Frames(frames) => (Vec::new(), frames.frames),
         };
+        let mut numbers = summary.end(&case, &simulation, reason, &instants);
+        let contact_stress_max = simulation.contact_stress_max();
+        let first_slip_time_star = simulation.into_first_slip_time_star();
+        if numbers.transition
+            && let Some(front) = front::of_ranks(&case, &first_slip_time_star, &*self.communicator)
+        {
+            numbers.add_front(&front, &case.scales);
+        }
         Record {
-            summary: summary.end(&case, &simulation, reason, &instants),
+            summary: numbers,
             rows: summary.curve.rows,
             precursors: summary.precursors,
+            kymograph,
             frames: lettered(instants, frames),
-            contact_stress_max: simulation.contact_stress_max(),
-            first_slip_time_star: simulation.into_first_slip_time_star(),
+            contact_stress_max,
+            first_slip_time_star,
         }
     }
 }

@@ -3,13 +3,15 @@
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use slipfront::lattice::shear_wave_speed;
 use slipfront::observe::{
-    Curve, Cycles, Energies, Frame, Kinetic, KineticHistory, NoUncertainty, Peak, Precursors, Scheduled,
-    SlipEvent,
+    Curve, Cycles, Distribution, Energies, Frame, Kinetic, KineticHistory, NoUncertainty, Peak, Precursors,
+    Scheduled, SlipEvent,
 };
-use slipfront::{Friction, Simulation, StopReason};
+use slipfront::{Friction, Scales, Simulation, StopReason};
 
 use crate::error::ResultsError;
+use crate::front::LatticeFront;
 use crate::names::SUMMARY;
 use crate::program::VERSION;
 use crate::run_folder::error::FolderError;
@@ -54,6 +56,31 @@ pub struct Summary {
     /// Units of the starred quantities and what is measured in a laboratory; none in summaries of older versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub si: Option<SiSummary>,
+    /// Sites at which slip has nucleated, of a run with a transition, as all that follows about the front.
+    pub nucleation_sites: Option<usize>,
+    /// Where it has first, x in m.
+    pub nucleation_x_m: Option<f64>,
+    /// y of that in m.
+    pub nucleation_y_m: Option<f64>,
+    /// All sites.
+    #[serde(default)]
+    pub nucleations: Vec<NucleationSummary>,
+    /// Median speed of the slip front over the speed of long shear waves.
+    pub front_speed_c_s: Option<f64>,
+    /// 5 % of the front is slower.
+    pub front_speed_low_c_s: Option<f64>,
+    /// 95 % of the front is slower.
+    pub front_speed_high_c_s: Option<f64>,
+    /// Median speed of the front, m/s.
+    pub front_speed_m_s: Option<f64>,
+    /// 5 % of the front is slower, m/s.
+    pub front_speed_low_m_s: Option<f64>,
+    /// 95 % of the front is slower, m/s.
+    pub front_speed_high_m_s: Option<f64>,
+    /// t* from 5 to 95 % of the first slips.
+    pub front_duration_star: Option<f64>,
+    /// The same in s.
+    pub front_duration_s: Option<f64>,
     /// V*.
     pub v_star: f64,
     /// R*.
@@ -159,6 +186,18 @@ pub struct InstantSummary {
     pub mu_star: f64,
     /// N*, %.
     pub sliding_percent: f64,
+}
+
+/// A site at which slip has nucleated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NucleationSummary {
+    /// x of its first block, m.
+    pub x_m: f64,
+    /// y of its first block, m.
+    pub y_m: f64,
+    /// t* of its first slip.
+    pub time_star: f64,
 }
 
 /// Events of slip of a slider driven at an edge.
@@ -369,6 +408,8 @@ impl SummaryObservers {
             },
             warnings: [case.warnings(), after_run].concat(),
             version: VERSION.to_owned(),
+            // The front is found when the simulation has given its memory back.
+            ..Summary::default()
         }
     }
 }
@@ -395,6 +436,38 @@ fn si(case: &Case, static_star: f64, kinetic_star: Option<f64>, contact_stress_m
         displacement_unit_m: scales.displacement(),
         stress_unit_pa: scales.stress(),
         contact_stress_max_pa: contact_stress_max * scales.stress(),
+    }
+}
+
+impl Summary {
+    /// Adds what is known of the front.
+    pub(crate) fn add_front(&mut self, front: &LatticeFront, scales: &Scales) {
+        let nucleations = front.nucleations.iter().map(|nucleation| NucleationSummary {
+            x_m: nucleation.place[0] * scales.block_size,
+            y_m: nucleation.place[1] * scales.block_size,
+            time_star: nucleation.time_star,
+        });
+        self.nucleations = nucleations.collect();
+        self.nucleation_sites = Some(self.nucleations.len());
+        let first = self.nucleations.first();
+        self.nucleation_x_m = first.map(|nucleation| nucleation.x_m);
+        self.nucleation_y_m = first.map(|nucleation| nucleation.y_m);
+        let speeds = |unit: f64| {
+            let speed = |of: fn(Distribution) -> f64| front.speed.map(|speed| of(speed) * unit);
+            [speed(|s| s.median), speed(|s| s.low), speed(|s| s.high)]
+        };
+        [
+            self.front_speed_c_s,
+            self.front_speed_low_c_s,
+            self.front_speed_high_c_s,
+        ] = speeds(1.0 / shear_wave_speed());
+        [
+            self.front_speed_m_s,
+            self.front_speed_low_m_s,
+            self.front_speed_high_m_s,
+        ] = speeds(scales.block_size / scales.time());
+        self.front_duration_star = Some(front.duration_star);
+        self.front_duration_s = Some(front.duration_star * scales.time());
     }
 }
 

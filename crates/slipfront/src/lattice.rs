@@ -21,6 +21,11 @@ pub const POISSON_RATIO: f64 = 1.0 / 3.0;
 /// Square of the lattice's highest frequency, `omega_max^2 = 6.5 k_1/m`.
 pub const OMEGA_MAX_SQUARED: f64 = 6.5 * K_STRAIGHT;
 
+/// Speed of long shear waves, `c_S = sqrt(3/8)`, in blocks per unit of t*, of a slider whose blocks are alike.
+pub fn shear_wave_speed() -> f64 {
+    (0.5 * K_STRAIGHT).sqrt()
+}
+
 /// Largest stable time step, `dt* < 2/omega_max = 0.9058`, at any damping (D7, D11).
 pub fn dt_star_limit() -> f64 {
     2.0 / OMEGA_MAX_SQUARED.sqrt()

@@ -40,6 +40,7 @@ mod friction;
 mod measure;
 mod model;
 mod moduli;
+mod position_bins;
 mod reductions;
 mod simulation;
 mod slider;
@@ -56,6 +57,7 @@ pub use friction::{Ageing, ContactSprings, Coulomb, Friction, FrictionLaw, RateA
 pub use kernel::{Execution, Kernel, simd_width};
 pub use lattice::{Edge, Edges, Lattice};
 pub use model::Model;
+pub use position_bins::PositionBins;
 pub use scales::Scales;
 pub use simulation::Simulation;
 pub use slider::{DriveSprings, Outline, Slider};

@@ -73,6 +73,7 @@ replay! {
     figure_cache
     checkpoint
     fields
+    kymograph
     summary
     series
     precursors

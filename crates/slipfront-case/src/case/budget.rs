@@ -7,8 +7,8 @@
 use std::ops::Range;
 use std::path::Path;
 
-use slipfront::observe::{CurveRow, Frame, SlipEvent, frames};
-use slipfront::{Kernel, Lattice};
+use slipfront::observe::{CurveRow, Frame, Kymograph, SlipEvent, frames};
+use slipfront::{Kernel, Lattice, PositionBins};
 
 use super::kernel::kernel;
 use super::output::{MAX_MAPS, Output, Snapshots, mapped_field};
@@ -141,7 +141,9 @@ const DRAWN_ROW: f64 = (3.0 + 2.0 + 3.0) * NUMBER;
 /// Primitives and pixels of the picture of the friction, and of the one of the stress. They do not depend on the
 /// lattice: more than 256 cells along a side are averaged (measured: 6.8 and 6.6 MB).
 pub const PICTURE: f64 = 7.0 * 1024.0 * 1024.0;
-/// Both pictures as SVG and PNG, the summary and the manifest (measured: at most 0.7 MB).
+/// The same of the picture of the front, which is taller.
+const PICTURE_OF_FRONT: f64 = 2.2 * PICTURE;
+/// All pictures as SVG and PNG, the summary and the manifest (measured: at most 0.7 MB).
 const PICTURE_FILES: f64 = 2e6;
 
 /// What the allocator holds of memory that has been given back, or cannot use between pieces that have not: resident
@@ -150,6 +152,17 @@ const HEAP: f64 = 1.05;
 
 /// The program itself.
 pub const PROGRAM: f64 = 8.0 * 1024.0 * 1024.0;
+
+/// What the first of several ranks takes for a block while it finds the front: its time twice, its place in their order, its cluster,
+/// and the speed around it.
+const FRONT: f64 = 5.0 * NUMBER;
+/// Most blocks that are looked at for that.
+const FRONT_BLOCKS: f64 = (1 << 22) as f64;
+
+/// A number of the kymograph in memory: what is counted, and its share twice when that is written.
+const COUNTED: f64 = 2.0 * NUMBER;
+/// The same while it is drawn.
+const DRAWN_SHARE: f64 = 2.0 * NUMBER;
 
 /// Cases whose making takes less are not compared with the machine.
 const SMALL: f64 = 64.0 * 1024.0 * 1024.0;
@@ -184,6 +197,8 @@ pub struct Budget {
     events: f64,
     /// Maps that are drawn.
     maps: f64,
+    /// Places times instants of the kymograph.
+    kymograph: f64,
     /// Bytes of the files that the case reads, of which there will be copies.
     pub(super) inputs: f64,
     /// Masks that are in memory at once, until they are laid over the lattice.
@@ -261,6 +276,11 @@ impl Budget {
             maps: match output.fields.contains(&mapped_field(file)) {
                 true => n_frames.min(MAX_MAPS as f64),
                 false => 0.0,
+            },
+            kymograph: {
+                let samples = last_step / Kymograph::INTERVAL + 1;
+                let places = (lattice.nx + lattice.ny).min(PositionBins::MAX);
+                (samples.min(Kymograph::MAX_ROWS as u64) * places as u64) as f64
             },
             inputs: 0.0,
             masks: count_masks(file) as f64
@@ -343,8 +363,14 @@ impl Budget {
 
     /// Bytes of a phase, with those that no key of a case changes.
     fn total(&self, phase: Phase) -> f64 {
-        let pictures = if self.maps > 0.0 { 2.0 * PICTURE } else { PICTURE };
-        let fixed = [0.0, HISTORY, pictures, PICTURE_FILES, HISTORY];
+        let counts = grown(self.kymograph) * NUMBER;
+        let fixed = [
+            0.0,
+            HISTORY + counts + self.kymograph * COUNTED,
+            PICTURE_OF_FRONT.max(2.0 * PICTURE) + self.kymograph * DRAWN_SHARE,
+            PICTURE_FILES + self.kymograph * VALUE,
+            HISTORY + counts,
+        ];
         let parts = self.parts();
         parts.iter().map(|part| part.bytes[phase as usize]).sum::<f64>() + fixed[phase as usize]
     }
@@ -357,9 +383,13 @@ impl Budget {
         most.unwrap_or(Phase::Running)
     }
 
-    /// Bytes of a rank in a phase.
+    /// Bytes of a rank in a phase, with what the first of several has of the others' blocks.
     fn of_rank(&self, phase: Phase) -> f64 {
-        PROGRAM + HEAP * self.total(phase)
+        let gathered = match (phase, self.is_shared) {
+            (Phase::Running, true) => self.all_blocks.min(FRONT_BLOCKS) * FRONT,
+            _ => 0.0,
+        };
+        PROGRAM + HEAP * (self.total(phase) + gathered)
     }
 
     /// Bytes of all ranks of this machine in a phase. While one draws, the others have at most what they ran with.
@@ -378,7 +408,7 @@ impl Budget {
 
     /// Memory of one of several runs at once, in bytes; of one that writes no files if not `writes`.
     pub fn memory_beside_others(&self, writes: bool) -> f64 {
-        HEAP * self.total(self.largest(writes))
+        self.of_rank(self.largest(writes)) - PROGRAM
     }
 
     /// Memory of a case that is made and not run, in bytes.
@@ -518,9 +548,12 @@ impl Budget {
     }
 }
 
-/// Memory in which the pictures of a finished run are drawn from its files, in bytes, with so many rows of the series.
-pub fn memory_to_draw(rows: f64) -> f64 {
-    HEAP * (CELLS * (AVERAGED + MAX_MAPS as f64 * VALUE) + grown(rows) * DRAWN_ROW + 2.0 * PICTURE)
+/// Memory in which the pictures of a finished run are drawn from its files, in bytes, with so many rows of the series and a kymograph of
+/// so many bytes.
+pub fn memory_to_draw(rows: f64, kymograph: f64) -> f64 {
+    let maps = CELLS * (AVERAGED + MAX_MAPS as f64 * VALUE);
+    let pictures = PICTURE_OF_FRONT.max(2.0 * PICTURE);
+    HEAP * (maps + grown(rows) * DRAWN_ROW + kymograph / VALUE * DRAWN_SHARE + pictures)
 }
 
 /// Elements for which a vector has room that grew to `length` by doubling.

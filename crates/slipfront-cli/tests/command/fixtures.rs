@@ -10,11 +10,14 @@ pub(crate) const MASKED: &str =
     "[slider]\nblocks = [6, 5]\n[drive]\nv_star = 0.1\n[[texture]]\nshape='mask'\nfile='spot.png'\n";
 
 /// Every file of a run without inputs (design, section 3).
-pub(crate) const RUN_FILES: [&str; 9] = [
+pub(crate) const RUN_FILES: [&str; 12] = [
     "case.toml",
     "fields.nc",
     "friction.png",
     "friction.svg",
+    "front.png",
+    "front.svg",
+    "kymograph.nc",
     "manifest.json",
     "series.csv",
     "stress.png",

@@ -1,6 +1,6 @@
 //! What a run leaves behind, and what `[output]`, `[time]` and `edges` make of it.
 
-use slipfront_run::fields::{FieldsData, read_fields};
+use slipfront_run::fields::{FieldsData, read_fields, read_kymograph};
 
 use crate::fixtures::RUN_FILES;
 use crate::support::workspace::Workspace;
@@ -180,6 +180,47 @@ fn stop_after_onset_ends_the_run_there() {
         rows(&workspace, "onset") as u64,
         onset["steps"].as_u64().unwrap() + 1
     );
+}
+
+/// The numbers of the front, and its picture, belong to a transition; sliding is recorded in every run.
+#[test]
+fn a_run_without_a_transition_has_no_front() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o whole --set slider.blocks=[20,12]");
+    workspace.succeed("run small.toml -o short --set time.duration_star=2");
+    let (whole, short) = (workspace.summary("whole"), workspace.summary("short"));
+    let keys: Vec<&String> = whole
+        .as_object()
+        .unwrap()
+        .keys()
+        .filter(|key| key.starts_with("front_") || key.starts_with("nucleation"))
+        .collect();
+    assert_eq!(keys.len(), 12);
+    for key in keys {
+        let nothing = short[key].is_null() || short[key] == serde_json::json!([]);
+        assert!(!whole[key].is_null() && nothing, "{key}");
+    }
+    assert_eq!(
+        whole["nucleation_sites"],
+        whole["nucleations"].as_array().unwrap().len()
+    );
+    assert_eq!(whole["nucleation_x_m"], whole["nucleations"][0]["x_m"]);
+    // c_S is sqrt(3/8) blocks per l sqrt(rho/E), of the baseline 1e-6 m per 1e-6/sqrt(1e7) s.
+    let [c_s, m_s] = ["front_speed_c_s", "front_speed_m_s"].map(|key| whole[key].as_f64().unwrap());
+    assert!((m_s / c_s / (0.375 * 1e7_f64).sqrt() - 1.0).abs() < 1e-9);
+    assert!(workspace.exists("whole/front.png") && !workspace.exists("short/front.svg"));
+
+    let recorded = read_kymograph(&workspace.path("short/kymograph.nc")).unwrap();
+    assert_eq!(
+        recorded.time_star,
+        [0.0, 0.4, 0.8, 1.2, 1.6, 2.0].map(|t| (t * 10.0_f64).round() * 0.1)
+    );
+    assert_eq!(recorded.sliding_share, [0.0; 36]);
+    let recorded = read_kymograph(&workspace.path("whole/kymograph.nc")).unwrap();
+    assert_eq!(recorded.columns(), 20);
+    // Blocks of 1e-6 m, up to rounding.
+    assert!((recorded.places[1] - 20e-6).abs() < 1e-18 && recorded.places[0].abs() < 1e-18);
+    assert!(recorded.sliding_share.iter().any(|share| *share == 1.0));
 }
 
 #[test]

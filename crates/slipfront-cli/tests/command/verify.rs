@@ -83,7 +83,7 @@ fn every_changed_byte_is_seen() {
 #[test]
 fn what_has_changed_is_not_drawn() {
     let workspace = workspace_with_a_run();
-    for name in ["summary.json", "series.csv", "fields.nc"] {
+    for name in ["summary.json", "series.csv", "kymograph.nc", "fields.nc"] {
         let path = format!("a/{name}");
         let bytes = workspace.read(&path);
         let mut changed = bytes.clone();

@@ -175,6 +175,7 @@ fn others() -> &'static Others {
             "mu_k.npy",
             "out/manifest.json",
             "out/summary.json",
+            "out/kymograph.nc",
             "out/fields.nc",
             "other/case.toml",
             "other/manifest.json",
@@ -337,7 +338,7 @@ fn of_a_run_folder() {
     workspace.succeed_bounded("plot out -o drawn").unwrap();
     let drawn = workspace.files_if_any("drawn");
     let of = |name: &str, most: usize| (format!("out/{name}"), most);
-    let read = ["summary.json", "series.csv", "fields.nc"];
+    let read = ["summary.json", "series.csv", "kymograph.nc", "fields.nc"];
     for (name, most) in read
         .iter()
         .chain(&["manifest.json"])

@@ -3,10 +3,12 @@
 //! The file is NetCDF-3 with 64-bit offsets (CDF-2), or where an array takes more than 2 GiB with 64-bit data (CDF-5), and has
 //! CF-1.8 attributes, so that xarray, ParaView, Octave and MATLAB open it as it is. Fields have the dimensions (time, y, x), what never changes has (y, x); row j = 0 is the
 //! smallest y. The file carries no date: equal input gives equal bytes. [`write_fields`] ends a run,
-//! [`FieldsWriter`] one that processes share, [`read_maps`] serves the pictures, [`read_fields`] and [`read_rows`] whoever wants it all.
+//! [`FieldsWriter`] one that processes share, [`read_maps`] and [`read_first_slips`] serve the pictures, [`read_fields`] and [`read_rows`] whoever wants it all. `kymograph.nc`
+//! is a file of the same format ([`kymograph_bytes`], [`read_kymograph`]).
 
 mod definition;
 mod frame;
+mod kymograph;
 mod netcdf3;
 mod netcdf3_header;
 mod netcdf3_reader;
@@ -14,7 +16,8 @@ mod read;
 mod write;
 
 pub use frame::{FieldFrame, FieldsData, FieldsError, FieldsFile, StaticFields, thin};
-pub use read::{Reduction, read_fields, read_maps, read_rows};
+pub use kymograph::{KymographData, kymograph_bytes, read_kymograph};
+pub use read::{Reduction, read_fields, read_first_slips, read_maps, read_rows};
 pub use write::{FieldsWriter, write_fields};
 
 #[cfg(test)]

@@ -84,7 +84,26 @@ pub fn read_maps<R: Reduction>(path: &Path, field: Field, most: usize) -> Result
     read().map_err(|error| in_words(error, path))
 }
 
-fn in_words(error: NetCdfError, path: &Path) -> FieldsError {
+/// Reads the times of the first slips in place of fields, [reduced](Reduction) while they are read, and the texture likewise: they are
+/// the one array of the one frame.
+pub fn read_first_slips<R: Reduction>(path: &Path) -> Result<FieldsData, FieldsError> {
+    let read = || {
+        let mut file = NetCdf3Reader::open(path)?;
+        let all = 0..usize::MAX;
+        let mut data = read_chosen::<R>(&mut file, |_| false, &[], &all)?;
+        let times = read_reduced::<R>(&mut file, FIRST_SLIP, &[Y, X], 0, &all, |value| value as f32)?;
+        data.frames = vec![FieldFrame {
+            time_star: 0.0,
+            label: String::new(),
+            step: 0,
+            values: vec![times],
+        }];
+        Ok(data)
+    };
+    read().map_err(|error| in_words(error, path))
+}
+
+pub(super) fn in_words(error: NetCdfError, path: &Path) -> FieldsError {
     let path = path.to_owned();
     match error {
         NetCdfError::Io(source) => FieldsError::Read { path, source },

@@ -11,10 +11,11 @@ use crate::summary::{PrecursorSummary, Summary};
 pub const REDUCTION: &str = "static_reduction_percent";
 
 /// Entries of a summary that are not numbers, and the seed, whose mean has no meaning.
-const NOT_QUANTITIES: [&str; 9] = [
+const NOT_QUANTITIES: [&str; 10] = [
     "kinetic_window_star",
     "instants",
     "si",
+    "nucleations",
     "motion",
     "precursors",
     "cycles",

@@ -4,6 +4,7 @@ use super::block::{Block, Field};
 use super::totals::{ContactTotals, Totals};
 use crate::checkpoint::MotionBounds;
 use crate::model::Model;
+use crate::position_bins::PositionBins;
 
 /// A kernel with the state of all blocks. `number` is that of the present step, unless a function advances to it.
 pub(crate) trait Engine: Send + Sync {
@@ -23,6 +24,9 @@ pub(crate) trait Engine: Send + Sync {
         stride: usize,
         write: &mut dyn FnMut(usize, usize, &[f32]),
     );
+
+    /// Adds to `counts` the blocks in contact of these rows that slide, or those that do not, each in its bin.
+    fn count_in_contact(&self, model: &Model, bins: &PositionBins, sliding: bool, counts: &mut [i64]);
 
     /// Displacement now and velocity half a step later of block `b`.
     fn motion(&self, b: usize) -> [[f64; 2]; 2];

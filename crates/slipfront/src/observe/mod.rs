@@ -2,13 +2,16 @@
 //!
 //! [`curve`]: mu*, N* and energies against time; [`summary`]: the kinetic friction coefficient; [`frames`]: fields at
 //! chosen steps; [`instants`]: fields at the instants A-F; [`energy`]: the energy balance; [`precursors`]: events of slip of a
-//! slider driven at an edge; [`cycles`]: peaks under a program of speeds.
+//! slider driven at an edge; [`cycles`]: peaks under a program of speeds; [`kymograph`]: sliding against place and time. [`front`] looks at
+//! what a run leaves behind: where slip has begun, and how fast it has spread.
 
 pub mod curve;
 pub mod cycles;
 pub mod energy;
 pub mod frames;
+pub mod front;
 pub mod instants;
+pub mod kymograph;
 pub(crate) mod observer;
 pub mod precursors;
 pub mod summary;
@@ -19,7 +22,9 @@ pub use curve::{Curve, CurveRow};
 pub use cycles::{Cycle, Cycles};
 pub use energy::{Energies, Ledger};
 pub use frames::{Frame, Frames};
+pub use front::{Distribution, Front};
 pub use instants::Instants;
+pub use kymograph::Kymograph;
 pub use observer::{Observer, Schedule, Scheduled};
 pub use precursors::{Precursors, SlipEvent};
 pub use summary::{Kinetic, KineticHistory, KineticStart, NoUncertainty};

@@ -84,6 +84,7 @@ mod against_reference;
 mod checkpoints;
 mod executions;
 mod fields;
+mod kymograph;
 mod ranks;
 mod reference_on_ranks;
 mod sliders;

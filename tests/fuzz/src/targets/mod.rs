@@ -6,6 +6,7 @@ mod checkpoint;
 mod fields;
 mod figure_cache;
 mod json;
+mod kymograph;
 mod plot;
 mod quantity;
 mod records;
@@ -15,7 +16,7 @@ mod study;
 use crate::Target;
 
 /// All targets, in the order in which a run reads and writes their files.
-pub const TARGETS: [Target; 17] = [
+pub const TARGETS: [Target; 18] = [
     case::CASE_FILE,
     case::CASE,
     study::STUDY_FILE,
@@ -27,6 +28,7 @@ pub const TARGETS: [Target; 17] = [
     figure_cache::FIGURE_CACHE,
     checkpoint::CHECKPOINTS,
     fields::FIELDS,
+    kymograph::KYMOGRAPH,
     json::SUMMARY,
     series::SERIES,
     series::PRECURSORS,

@@ -82,6 +82,7 @@ fn files(case: &Case, out: &Path) -> String {
     let files = [
         ("series", ".csv", "the curve, row by row"),
         ("precursors", ".csv", "the events of slip, row by row"),
+        ("kymograph", ".nc", "sliding blocks against place and time"),
         ("fields", ".nc", "the fields, for ParaView, Python, MATLAB"),
         ("summary", ".json", "the numbers above"),
         ("case", ".toml", "the case, every default filled in"),

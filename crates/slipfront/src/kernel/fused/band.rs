@@ -23,6 +23,7 @@ use crate::friction::Integrator;
 use crate::lattice::Bond;
 use crate::model::Model;
 use crate::moduli::Moduli;
+use crate::position_bins::PositionBins;
 use crate::state::State;
 
 /// A tile after its latest sweep.
@@ -322,6 +323,28 @@ impl Band {
             self.tiles[k / TILE].moving = true;
         } else {
             self.moving[k / LANES] &= !bit;
+        }
+    }
+
+    /// Adds to `counts` its blocks in contact that move, or those that do not, each in its bin.
+    pub(super) fn count_in_contact(
+        &self,
+        layout: &Layout,
+        bins: &PositionBins,
+        moving: bool,
+        counts: &mut [i64],
+    ) {
+        for (v, (contact, moves)) in self.in_contact.iter().zip(&self.moving).enumerate() {
+            let mut counted = contact & if moving { *moves } else { !moves };
+            if counted == 0 {
+                continue;
+            }
+            let (row, column) = layout.row_column((self.first + v * LANES) as isize);
+            while counted != 0 {
+                let (i, j) = layout.place_after(row as usize, column, counted.trailing_zeros() as usize);
+                counts[bins.bin(i, j)] += 1;
+                counted &= counted - 1;
+            }
         }
     }
 

@@ -140,9 +140,19 @@ impl Layout {
     }
 
     /// Row, counted from the first of these, and column of an element, ghosts included; the column counts from the first ghost.
-    fn row_column(&self, element: isize) -> (isize, usize) {
+    pub(super) fn row_column(&self, element: isize) -> (isize, usize) {
         let stride = self.stride as isize;
         (element.div_euclid(stride), element.rem_euclid(stride) as usize)
+    }
+
+    /// Column and row of the lattice of the block `lanes` elements after a place of [`row_column`](Self::row_column), which is in the
+    /// same row or the next.
+    pub(super) fn place_after(&self, row: usize, column: usize, lanes: usize) -> (usize, usize) {
+        let column = column + lanes;
+        match column.checked_sub(self.stride) {
+            None => (column - self.ghosts, self.lattice_row(row)),
+            Some(column) => (column - self.ghosts, self.lattice_row(row + 1)),
+        }
     }
 
     /// Column and row of the lattice of the block at an element, or of the one that is copied there. It may lie before the first or

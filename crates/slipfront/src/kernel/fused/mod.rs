@@ -60,6 +60,7 @@ use crate::kernel::totals::{StoredEnergy, Totals};
 use crate::lattice::K_STRAIGHT;
 use crate::model::Model;
 use crate::moduli::Moduli;
+use crate::position_bins::PositionBins;
 use crate::state::State;
 
 /// Steps between two measurements of displacements and their differences; in between they are bounded.
@@ -504,6 +505,28 @@ impl Engine for Fused {
             dispatch!(self.level, simd => fields::read_rows(simd, root, model, step, (field, stride), elements, write));
         } else {
             dispatch!(self.level, simd => fields::read_rows(simd, root, model, step, (field, stride), elements, write));
+        }
+    }
+
+    fn count_in_contact(&self, _: &Model, bins: &PositionBins, sliding: bool, counts: &mut [i64]) {
+        let layout = &self.layout;
+        if self.threads == 1 {
+            for band in &self.bands {
+                band.count_in_contact(layout, bins, sliding, counts);
+            }
+            return;
+        }
+        let of_band = |band: &Band| {
+            let mut counts = vec![0; bins.count];
+            band.count_in_contact(layout, bins, sliding, &mut counts);
+            counts
+        };
+        let of_bands: Vec<Vec<i64>> = self.bands.par_iter().map(of_band).collect();
+        for of_band in of_bands {
+            counts
+                .iter_mut()
+                .zip(of_band)
+                .for_each(|(count, more)| *count += more);
         }
     }
 

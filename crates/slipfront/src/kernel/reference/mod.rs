@@ -36,6 +36,7 @@ use crate::friction::{BlockState, FrictionLaw, Integrator, Law, Literal, Project
 use crate::lattice::Bond;
 use crate::model::Model;
 use crate::moduli::Moduli;
+use crate::position_bins::PositionBins;
 use crate::reductions;
 use crate::state::State;
 use crate::vector_field::VectorField;
@@ -492,6 +493,17 @@ impl Engine for Reference {
                     };
                 }
                 write(j, i, values);
+            }
+        }
+    }
+
+    fn count_in_contact(&self, model: &Model, bins: &PositionBins, sliding: bool, counts: &mut [i64]) {
+        let first = model.lattice.blocks_of(&model.rows).start;
+        let blocks = self.forces.slides.iter().zip(&model.surface.textured);
+        for (b, (slides, textured)) in (first..).zip(blocks) {
+            if *slides == sliding && !textured {
+                let (i, j) = model.lattice.column_row(b);
+                counts[bins.bin(i, j)] += 1;
             }
         }
     }

@@ -1,0 +1,392 @@
+//! How slip has spread: when every block has first slipped, and what slides where and when along the drive.
+
+use crate::axis::{Axis, range};
+use crate::canvas::Canvas;
+use crate::cell_means::CellMeans;
+use crate::color_image::{Image, level};
+use crate::contour::{contours, smoothed};
+use crate::frame::{
+    BAR_MIN_HEIGHT, BAR_WIDTH, LOWER_ROOM, bar_room, colour_bar, left_room, left_side, lower_side,
+};
+use crate::geometry::{Align, Area};
+use crate::lattice_map::{Cells, MARK, block_count, check_block_size, check_length, circle, place, unit_of};
+use crate::picture::{Picture, PictureError};
+use crate::style::{BLACK, MARGIN, RADIUS_MARKER, SIZE_LABEL, TEXT_WIDTH, TICK_LENGTH, WHITE, WIDTH_FRAME};
+use crate::text::Text;
+use crate::ticks::{Direction, Tick, round_values};
+
+/// Between a panel and its colour bar.
+const GAP: f64 = 30.0;
+/// A map beside the other panel is no wider and no higher than this: 44 mm.
+const MAX_SIDE: f64 = 520.0;
+/// A slider longer than this, as wide as the page, has its map above the other panel.
+const MAX_RATIO_BESIDE: f64 = 3.0;
+/// A strip is drawn no thinner than this share of its length.
+const MIN_RATIO: f64 = 1.0 / 6.0;
+/// The other panel below a map is so high.
+const HEIGHT_BELOW: f64 = 420.0;
+/// Colour bars are numbered in at most so many steps.
+const BAR_STEPS: usize = 5;
+/// Contours in at most so many steps.
+const CONTOUR_STEPS: usize = 8;
+/// Contours are those of means over as many cells around each as make this share of the map.
+const SMOOTHED_SHARE: usize = 64;
+/// Where the uppermost panel starts, below a line of text.
+const TOP: f64 = MARGIN + 22.0 + SIZE_LABEL as f64;
+
+/// The times at which the blocks of a lattice have first slipped.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrontMap {
+    /// Blocks along x.
+    pub nx: usize,
+    /// Blocks along y.
+    pub ny: usize,
+    /// Edge of a block, in metres.
+    pub block_size: f64,
+    /// True for every [cell](CellMeans) of which most is textured, row by row from y = 0.
+    pub textured: Vec<bool>,
+    /// Mean t* of the first slip of every [cell](CellMeans), row by row from y = 0; NaN is left blank.
+    pub first_slips: Vec<f32>,
+    /// Where slip has nucleated, in metres, the earliest first.
+    pub nucleations: Vec<[f64; 2]>,
+}
+
+/// What slides, against place and time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpaceTime {
+    /// What the places are; their unit is added.
+    pub place: String,
+    /// The first and the last place, in metres.
+    pub places: [f64; 2],
+    /// The first and the last t*.
+    pub times: [f64; 2],
+    /// Places of a row.
+    pub columns: usize,
+    /// The share of the blocks that slide, row by row from the earliest; NaN is left blank.
+    pub shares: Vec<f32>,
+}
+
+/// Draws both, as wide as a journal's text (175 mm) or less: the map beside the other panel, or of a long slider above it. Nucleations
+/// are circled, the first filled; the texture is outlined.
+///
+/// # Errors
+///
+/// A lattice without blocks, an array of the wrong length, a block size that is not a positive length, no instant.
+pub fn front(map: &FrontMap, space_time: &SpaceTime) -> Result<Picture, PictureError> {
+    check(map, space_time)?;
+    let layout = Layout::of(map, space_time);
+    let mut canvas = Canvas::new(layout.width, layout.height);
+    draw_map(&mut canvas, map, &layout);
+    draw_space_time(&mut canvas, space_time, &layout);
+    canvas.finish()
+}
+
+fn check(map: &FrontMap, space_time: &SpaceTime) -> Result<(), PictureError> {
+    block_count(map.nx, map.ny)?;
+    check_block_size(map.block_size)?;
+    let [columns, rows] = CellMeans::cells(map.nx, map.ny);
+    check_length("the texture", map.textured.len(), columns * rows)?;
+    check_length("the map of first slips", map.first_slips.len(), columns * rows)?;
+    let rows = space_time
+        .shares
+        .len()
+        .checked_div(space_time.columns)
+        .unwrap_or(0);
+    if rows == 0 {
+        return Err(PictureError::Nothing("instant"));
+    }
+    let expected = rows * space_time.columns;
+    check_length("what slides", space_time.shares.len(), expected)
+}
+
+/// A panel with its axes and its colour bar.
+struct Panel {
+    area: Area,
+    /// Where the room left of it begins.
+    edge: f64,
+    axes: [Axis; 2],
+    bar: Area,
+    /// The values at the ends of the bar.
+    range: [f64; 2],
+}
+
+impl Panel {
+    fn draw_axes(&self, canvas: &mut Canvas, [x_title, y_title]: [&str; 2], bar_title: &str) {
+        let area = self.area;
+        canvas.frame(area);
+        let title = Text::fitted(y_title, area.height.max(BAR_MIN_HEIGHT));
+        left_side(
+            canvas,
+            area,
+            self.edge,
+            &ticks(self.axes[1], area, Direction::Y),
+            &title,
+        );
+        let title = Text::fitted(x_title, area.width + 2.0 * GAP);
+        lower_side(canvas, area, &ticks(self.axes[0], area, Direction::X), &title);
+        colour_bar(canvas, self.bar, self.range, BAR_STEPS);
+        let title = Text::plain(bar_title, SIZE_LABEL);
+        let right = self.bar.x + bar_room(self.range, BAR_STEPS, self.bar.height);
+        canvas.text(&title, (right, self.bar.y - 18.0), Align::End, BLACK);
+    }
+}
+
+/// Numbers along a side, fewer along a short one.
+fn ticks(axis: Axis, area: Area, direction: Direction) -> Vec<Tick> {
+    let (axis, side) = match direction {
+        Direction::X => (axis.placed(area.x, area.right()), area.width),
+        Direction::Y => (axis.placed(area.bottom(), area.y), area.height),
+    };
+    axis.ticks(direction, if side < 130.0 { 2 } else { 5 })
+}
+
+/// Where everything is.
+struct Layout {
+    width: f64,
+    height: f64,
+    map: Panel,
+    space_time: Panel,
+    unit: &'static str,
+}
+
+impl Layout {
+    fn of(map: &FrontMap, space_time: &SpaceTime) -> Self {
+        let lengths = [map.nx, map.ny].map(|count| count as f64 * map.block_size);
+        let (unit, factor) = unit_of(lengths[0].max(lengths[1]));
+        let sides = lengths.map(|length| Axis::linear(0.0, length * factor));
+        let around = |[from, to]: [f64; 2]| {
+            let (lo, hi) = range([from, to].into_iter());
+            Axis::linear(lo, hi)
+        };
+        let axes = [
+            around(space_time.places.map(|place| place * factor)),
+            around(space_time.times),
+        ];
+        let first_slips: [f64; 2] = range(quantiles(&map.first_slips).into_iter()).into();
+        let bars = [first_slips, [0.0, 1.0]].map(|range| bar_room(range, BAR_STEPS, MAX_SIDE));
+        let left = |axis: Axis| left_room(&axis.placed(MAX_SIDE, 0.0).ticks(Direction::Y, 5));
+        let [map_left, left] = [left(sides[1]), left(axes[1])];
+        let ratio = lengths[1] / lengths[0];
+        let panel = |area: Area, room: f64, axes: [Axis; 2], range: [f64; 2]| Panel {
+            area,
+            edge: area.x - room,
+            axes,
+            bar: Area::new(
+                area.right() + GAP,
+                area.y,
+                BAR_WIDTH,
+                area.height.max(BAR_MIN_HEIGHT),
+            ),
+            range,
+        };
+        let (map, space_time) = if ratio * MAX_RATIO_BESIDE < 1.0 {
+            let left = map_left.max(left);
+            let width = (TEXT_WIDTH - left - GAP - bars[0].max(bars[1]) - MARGIN).round();
+            let upper = Area::new(left, TOP, width, (width * ratio).max(BAR_MIN_HEIGHT).round());
+            let below = upper.bottom() + LOWER_ROOM + TOP;
+            let lower = Area::new(left, below, width, HEIGHT_BELOW);
+            (
+                panel(upper, left, sides, first_slips),
+                panel(lower, left, axes, [0.0, 1.0]),
+            )
+        } else {
+            let ratio = ratio.clamp(MIN_RATIO, 1.0 / MIN_RATIO);
+            let width = (MAX_SIDE / ratio.max(1.0)).round();
+            let first = Area::new(map_left, TOP, width, (width * ratio).round());
+            let x = (first.right() + GAP + bars[0] + GAP + left).round();
+            let width = TEXT_WIDTH - x - GAP - bars[1] - MARGIN;
+            let second = Area::new(x, TOP, width.min(1.5 * MAX_SIDE).round(), MAX_SIDE);
+            (
+                panel(first, map_left, sides, first_slips),
+                panel(second, left, axes, [0.0, 1.0]),
+            )
+        };
+        let lowest = map.bar.bottom().max(map.area.bottom() + LOWER_ROOM);
+        Self {
+            width: space_time.bar.x + bars[1] + MARGIN + TICK_LENGTH,
+            height: lowest.max(space_time.area.bottom() + LOWER_ROOM) + MARGIN,
+            map,
+            space_time,
+            unit,
+        }
+    }
+}
+
+/// The range of most times: what slips late, long after the front has passed, would take all colours.
+fn quantiles(times: &[f32]) -> [f64; 2] {
+    let mut sorted: Vec<f32> = times.iter().copied().filter(|time| !time.is_nan()).collect();
+    sorted.sort_unstable_by(f32::total_cmp);
+    let at = |share: f64| {
+        let place = (share * sorted.len().saturating_sub(1) as f64).round() as usize;
+        sorted.get(place).map_or(f64::NAN, |time| f64::from(*time))
+    };
+    [at(0.0), at(0.98)]
+}
+
+fn draw_map(canvas: &mut Canvas, map: &FrontMap, layout: &Layout) {
+    let (area, panel) = (layout.map.area, &layout.map);
+    let [columns, rows] = CellMeans::cells(map.nx, map.ny);
+    Cells::of(map.nx, map.ny, &map.textured).draw(canvas, area, &map.first_slips, panel.range);
+    let reach = 1 + columns.max(rows) / SMOOTHED_SHARE;
+    let means = smoothed(&map.first_slips, columns, reach);
+    let (_, levels) = round_values(panel.range[0], panel.range[1], CONTOUR_STEPS);
+    for level in levels {
+        for line in contours(&means, columns, level) {
+            let at = |(x, y): (f64, f64)| ((x + 0.5) / columns as f64, (y + 0.5) / rows as f64);
+            let points = line.into_iter().map(|point| place(area, at(point)));
+            canvas.polyline(points.collect(), WIDTH_FRAME, WHITE);
+        }
+    }
+    let sides = [map.nx, map.ny].map(|count| count as f64 * map.block_size);
+    // The first above all others.
+    for (index, [x, y]) in map.nucleations.iter().enumerate().rev() {
+        let (x, y) = (x / sides[0], y / sides[1]);
+        if !((0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&y)) {
+            continue;
+        }
+        let at = place(area, (x, y));
+        circle(canvas, at, MARK);
+        if index == 0 {
+            canvas.dot(at, RADIUS_MARKER, MARK);
+        }
+    }
+    let titles = ["x", "y"].map(|axis| format!("{axis} ({})", layout.unit));
+    panel.draw_axes(canvas, titles.each_ref().map(String::as_str), "first slip, t*");
+}
+
+fn draw_space_time(canvas: &mut Canvas, space_time: &SpaceTime, layout: &Layout) {
+    let panel = &layout.space_time;
+    let rows = space_time.shares.len() / space_time.columns;
+    let means = CellMeans::of(space_time.columns, rows, space_time.shares.iter().copied());
+    let [columns, _] = CellMeans::cells(space_time.columns, rows);
+    // The image's first row is the uppermost, the latest.
+    let cells = means.chunks_exact(columns).rev().flatten();
+    canvas.images.push(Image {
+        area: panel.area,
+        columns,
+        levels: cells.map(|&share| level(f64::from(share), panel.range)).collect(),
+    });
+    let place = format!("{} ({})", space_time.place, layout.unit);
+    panel.draw_axes(canvas, [&place, "t*"], "share that slides");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn map(nx: usize, ny: usize) -> FrontMap {
+        let [columns, rows] = CellMeans::cells(nx, ny);
+        let times = (0..columns * rows).map(|cell| (cell % columns + cell / columns) as f32);
+        FrontMap {
+            nx,
+            ny,
+            block_size: 1e-6,
+            textured: (0..columns * rows)
+                .map(|cell| columns > 4 && cell % columns == 2)
+                .collect(),
+            first_slips: times.collect(),
+            nucleations: vec![[0.5e-6, 0.5e-6], [nx as f64 * 0.9e-6, ny as f64 * 0.9e-6]],
+        }
+    }
+
+    fn space_time(columns: usize, rows: usize) -> SpaceTime {
+        SpaceTime {
+            place: "place along the drive".to_owned(),
+            places: [0.0, columns as f64 * 1e-6],
+            times: [12.5, 260.0],
+            columns,
+            shares: (0..columns * rows).map(|k| (k % 11) as f32 / 10.0).collect(),
+        }
+    }
+
+    #[test]
+    fn every_shape_is_drawn_within_the_width_of_a_page() {
+        for (nx, ny) in [
+            (50, 50),
+            (4, 400),
+            (400, 4),
+            (100, 1),
+            (1, 100),
+            (1, 1),
+            (30, 20),
+            (1000, 300),
+        ] {
+            let (map, space_time) = (map(nx, ny), space_time(nx.min(1024), 90));
+            let layout = Layout::of(&map, &space_time);
+            assert!(layout.width <= TEXT_WIDTH + 12.0, "{nx} x {ny}: {}", layout.width);
+            for panel in [&layout.map, &layout.space_time] {
+                assert!(
+                    panel.area.width >= 80.0 && panel.area.height >= 80.0,
+                    "{nx} x {ny}"
+                );
+                assert!(panel.area.bottom() + LOWER_ROOM <= layout.height);
+            }
+            let svg = front(&map, &space_time).unwrap().svg;
+            assert!(!svg.contains("NaN"));
+            // Both panels and their bars.
+            assert_eq!(svg.matches("<image").count(), 4);
+        }
+    }
+
+    #[test]
+    fn contours_and_nucleations_are_drawn() {
+        let marked = map(40, 40);
+        let mut plain = marked.clone();
+        plain.nucleations.clear();
+        let lines = |map: &FrontMap| {
+            front(map, &space_time(40, 60))
+                .unwrap()
+                .svg
+                .matches("<path")
+                .count()
+        };
+        assert!(lines(&marked) > lines(&plain));
+        let mut level = plain.clone();
+        level.first_slips.fill(3.0);
+        assert!(lines(&plain) > lines(&level));
+    }
+
+    #[test]
+    fn blank_maps_are_drawn() {
+        let (mut map, mut space_time) = (map(5, 5), space_time(5, 1));
+        map.first_slips.fill(f32::NAN);
+        space_time.shares.fill(f32::NAN);
+        space_time.times = [3.0; 2];
+        assert!(!front(&map, &space_time).unwrap().svg.contains("NaN"));
+    }
+
+    /// One block that slips long after all others leaves them their colours.
+    #[test]
+    fn late_slips_take_no_colours() {
+        let mut times = vec![1.0; 99];
+        times.push(1000.0);
+        assert_eq!(quantiles(&times), [1.0, 1.0]);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        let error = |change: &dyn Fn(&mut FrontMap, &mut SpaceTime)| {
+            let (mut map, mut space_time) = (map(2, 3), space_time(2, 4));
+            change(&mut map, &mut space_time);
+            front(&map, &space_time).unwrap_err().to_string()
+        };
+        assert_eq!(
+            error(&|map, _| map.nx = 0),
+            "a lattice of 0 x 3 blocks cannot be drawn"
+        );
+        assert_eq!(
+            error(&|map, _| map.textured.clear()),
+            "the texture has 0 values where 6 are wanted"
+        );
+        assert_eq!(
+            error(&|map, _| map.first_slips.push(0.0)),
+            "the map of first slips has 7 values where 6 are wanted"
+        );
+        assert_eq!(error(&|_, it| it.shares.clear()), "there is no instant to draw");
+        assert_eq!(error(&|_, it| it.columns = 0), "there is no instant to draw");
+        assert_eq!(
+            error(&|_, it| it.shares.push(0.0)),
+            "what slides has 9 values where 8 are wanted"
+        );
+    }
+}

@@ -1,0 +1,141 @@
+//! `kymograph.nc`: the share of the blocks that slide, against place along the drive and time, in the format of `fields.nc`.
+
+use std::path::Path;
+
+use slipfront::PositionBins;
+use slipfront::observe::Kymograph;
+use slipfront_case::case::Case;
+
+use super::frame::{BLOCK_SIZE, FieldsError, TIME, TIME_STAR, TIME_UNIT};
+use super::netcdf3::{Kind, Number};
+use super::netcdf3_header::{Attribute, Definition, Variable};
+use super::netcdf3_reader::{NetCdf3Reader, NetCdfError, broken};
+use super::read::in_words;
+
+const PLACE: &str = "place";
+const IN_CONTACT: &str = "blocks_in_contact";
+const SLIDING: &str = "sliding_share";
+const BIN_WIDTH: &str = "bin_width_m";
+
+/// The bytes of the file of a run.
+pub fn kymograph_bytes(kymograph: &Kymograph, case: &Case) -> Vec<u8> {
+    let (model, scales) = (&case.model, &case.scales);
+    let bins = PositionBins::of(&model.lattice, &model.drive);
+    let (steps, shares): (Vec<f64>, Vec<Vec<f32>>) = kymograph.rows().unzip();
+    let times: Vec<f64> = steps.iter().map(|step| step * case.time_plan.dt_star).collect();
+    let place = match model.drive.rotation {
+        None => "distance along the drive",
+        Some(_) => "distance from the axis of the rotation",
+    };
+    let variable = |name, dimensions: &[usize], kind, long_name: &str, units: &str| Variable {
+        name,
+        dimensions: dimensions.to_vec(),
+        kind,
+        attributes: vec![
+            Attribute::text("long_name", long_name),
+            Attribute::text("units", units),
+        ],
+    };
+    let share = "share of the blocks in contact that slide";
+    let definition = Definition {
+        records: 0,
+        dimensions: vec![(TIME, steps.len()), (PLACE, bins.count)],
+        attributes: vec![
+            Attribute::text("Conventions", "CF-1.8"),
+            Attribute::text("title", "Sliding blocks of a spring-block model of friction"),
+            Attribute::text("source", concat!("slipfront ", env!("CARGO_PKG_VERSION"))),
+            Attribute::numbers(BLOCK_SIZE, &[scales.block_size]),
+            Attribute::numbers(BIN_WIDTH, &[bins.width as f64 * scales.block_size]),
+            Attribute::numbers(TIME_UNIT, &[scales.time()]),
+        ],
+        variables: vec![
+            variable(TIME, &[0], Kind::Double, "time since the start of the drive", "s"),
+            variable(TIME_STAR, &[0], Kind::Double, "dimensionless time t*", "1"),
+            variable(PLACE, &[1], Kind::Double, place, "m"),
+            variable(IN_CONTACT, &[1], Kind::Double, "blocks in contact", "1"),
+            variable(SLIDING, &[0, 1], Kind::Float, share, "1"),
+        ],
+    };
+    let mut bytes = definition.header().bytes;
+    // All variables have whole multiples of four bytes and stand in this order.
+    append(&mut bytes, times.iter().map(|time| time * scales.time()));
+    append(&mut bytes, times.iter().copied());
+    append(
+        &mut bytes,
+        (0..bins.count).map(|bin| bins.middle(bin) * scales.block_size),
+    );
+    append(
+        &mut bytes,
+        kymograph.in_contact().iter().map(|blocks| *blocks as f64),
+    );
+    // One NaN only: its sign and payload depend on the machine.
+    let one_nan = |share: f32| if share.is_nan() { f32::NAN } else { share };
+    append(&mut bytes, shares.into_iter().flatten().map(one_nan));
+    bytes
+}
+
+fn append<T: Number>(bytes: &mut Vec<u8>, values: impl Iterator<Item = T>) {
+    values.for_each(|value| bytes.extend(value.encode().as_ref()));
+}
+
+/// What the file of a run holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KymographData {
+    /// t* of every row.
+    pub time_star: Vec<f64>,
+    /// Where the first bin begins and the last one ends, in m.
+    pub places: [f64; 2],
+    /// The share of the blocks in contact of every bin that slide, row after row; NaN of a bin without contact.
+    pub sliding_share: Vec<f32>,
+}
+
+impl KymographData {
+    /// Number of bins.
+    pub fn columns(&self) -> usize {
+        self.sliding_share
+            .len()
+            .checked_div(self.time_star.len())
+            .unwrap_or(0)
+    }
+}
+
+/// Reads the file of a run.
+pub fn read_kymograph(path: &Path) -> Result<KymographData, FieldsError> {
+    read(path).map_err(|error| in_words(error, path))
+}
+
+fn read(path: &Path) -> Result<KymographData, NetCdfError> {
+    const WHOLE: std::ops::Range<u64> = 0..u64::MAX;
+    let mut file = NetCdf3Reader::open(path)?;
+    for (name, most) in [(TIME, Kymograph::MAX_ROWS), (PLACE, PositionBins::MAX)] {
+        let length = file.dimension(name)?;
+        if !(1..=most).contains(&length) {
+            return broken(format!(
+                "`{name}` has the length {length} where 1 to {most} are wanted"
+            ));
+        }
+    }
+    let time_star = file.values(TIME_STAR, &[TIME], 0, WHOLE)?;
+    let middles = file.values(PLACE, &[PLACE], 0, WHOLE)?;
+    let width = match file.attribute(BIN_WIDTH)? {
+        [width] if width.is_finite() && *width > 0.0 => *width,
+        _ => return broken(format!("the attribute `{BIN_WIDTH}` is no length")),
+    };
+    let is_rising = |values: &[f64]| values.iter().all(|value| value.is_finite()) && values.is_sorted();
+    if !is_rising(&time_star) || !is_rising(&middles) {
+        return broken(format!("`{TIME_STAR}` or `{PLACE}` does not rise"));
+    }
+    let shares = file.values(SLIDING, &[TIME, PLACE], 0, WHOLE)?;
+    if shares
+        .iter()
+        .any(|share| !share.is_nan() && !(0.0..=1.0).contains(share))
+    {
+        return broken(format!("`{SLIDING}` is no share"));
+    }
+    let [first, last] = [middles.first(), middles.last()].map(|middle| middle.copied().unwrap_or_default());
+    Ok(KymographData {
+        time_star,
+        places: [first - 0.5 * width, last + 0.5 * width],
+        sliding_share: shares.into_iter().map(|share| share as f32).collect(),
+    })
+}

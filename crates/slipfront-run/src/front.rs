@@ -1,0 +1,183 @@
+//! The slip front of a run, whose first slips several ranks may hold.
+
+use slipfront::communicator::Communicator;
+use slipfront::observe::frames::kept;
+use slipfront::observe::{Distribution, Front};
+use slipfront::{Edges, Lattice};
+use slipfront_case::case::Case;
+
+/// Most blocks that are looked at: of a larger lattice every n-th of each axis. The first rank holds the times of them all.
+const MAX_BLOCKS: usize = 1 << 22;
+
+/// Numbers that ranks tell each other at once.
+const PART: usize = 1 << 17;
+
+/// In place of the time of a block without contact.
+const NO_CONTACT: f64 = f64::INFINITY;
+
+/// The front in units of this model: lengths in blocks, times t*.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct LatticeFront {
+    pub(crate) nucleations: Vec<Nucleation>,
+    pub(crate) speed: Option<Distribution>,
+    pub(crate) duration_star: f64,
+}
+
+/// Where and when slip has nucleated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Nucleation {
+    /// The middle of the first block.
+    pub(crate) place: [f64; 2],
+    pub(crate) time_star: f64,
+}
+
+/// The front of a run with these first slips of the blocks that this rank holds, on the first rank; none on the others, and none
+/// if nothing has slipped. All ranks must call this together.
+pub(crate) fn of_ranks(
+    case: &Case,
+    first_slips: &[f64],
+    communicator: &dyn Communicator,
+) -> Option<LatticeFront> {
+    of_thinned(case, first_slips, communicator, MAX_BLOCKS)
+}
+
+fn of_thinned(
+    case: &Case,
+    first_slips: &[f64],
+    communicator: &dyn Communicator,
+    most: usize,
+) -> Option<LatticeFront> {
+    let lattice = &case.model.lattice;
+    let counts = |stride: usize| [lattice.nx, lattice.ny].map(|count| kept(0..count, stride).len());
+    let stride = (1..).find(|&stride| counts(stride).iter().product::<usize>() <= most)?;
+    let [nx, ny] = counts(stride);
+    let mut times = gather(case, first_slips, stride, [nx, ny], communicator);
+    if communicator.rank() > 0 {
+        return None;
+    }
+    let mut n_contact = 0;
+    for time in &mut times {
+        match *time == NO_CONTACT {
+            true => *time = f64::NAN,
+            false => n_contact += 1,
+        }
+    }
+    // An axis of which too few blocks are left has no more than edges.
+    let edges = |axis: usize| match [nx, ny][axis] < Lattice::MIN_PERIODIC {
+        true => Edges::Free,
+        false => lattice.edges[axis],
+    };
+    let looked_at = Lattice::with_edges(nx, ny, [edges(0), edges(1)]);
+    let front = Front::of(&looked_at, &times, n_contact)?;
+    let wider = |speed: f64| speed * stride as f64;
+    let nucleation = |block: usize| {
+        let (i, j) = looked_at.column_row(block);
+        Nucleation {
+            place: [i, j].map(|index| (index * stride) as f64 + 0.5),
+            time_star: times[block],
+        }
+    };
+    Some(LatticeFront {
+        nucleations: front.nucleations.into_iter().map(nucleation).collect(),
+        speed: front.speed.map(|speed| Distribution {
+            low: wider(speed.low),
+            median: wider(speed.median),
+            high: wider(speed.high),
+        }),
+        duration_star: front.duration,
+    })
+}
+
+/// The times of every `stride`-th block of each axis, on the first rank; nothing on the others.
+fn gather(
+    case: &Case,
+    first_slips: &[f64],
+    stride: usize,
+    [nx, ny]: [usize; 2],
+    communicator: &dyn Communicator,
+) -> Vec<f64> {
+    let (model, own) = (&case.model, kept(case.model.rows.clone(), stride));
+    let is_first = communicator.rank() == 0;
+    let mut times = Vec::with_capacity(if is_first { nx * ny } else { 0 });
+    let rows_at_once = (PART / nx).max(1);
+    let mut words = Vec::new();
+    for first in (0..ny).step_by(rows_at_once) {
+        let rows = first..(first + rows_at_once).min(ny);
+        words.clear();
+        words.resize(rows.len() * nx, 0);
+        for row in rows.start.max(own.start)..rows.end.min(own.end) {
+            let before = (row * stride - model.rows.start) * model.lattice.nx;
+            let blocks = (before..before + model.lattice.nx).step_by(stride);
+            for (word, b) in words[(row - rows.start) * nx..].iter_mut().zip(blocks) {
+                let time = if model.surface.textured[b] {
+                    NO_CONTACT
+                } else {
+                    first_slips[b]
+                };
+                *word = time.to_bits().cast_signed();
+            }
+        }
+        communicator.sum(&mut words);
+        if is_first {
+            times.extend(words.iter().map(|word| f64::from_bits(word.cast_unsigned())));
+        }
+    }
+    times
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use slipfront::communicator::{Alone, Threads};
+    use slipfront_case::case::Ranks;
+    use slipfront_case::case_file::CaseFile;
+
+    use super::*;
+    use crate::running::{self, Running};
+
+    const CASE: &str = "slider.blocks = [37, 29]\ndrive.v_star = 0.1\ntime.stop = 'after_onset'\n\
+                        slider.edges = ['periodic', 'free']\n[[texture]]\nshape = 'cavity'\ncoverage = 12";
+
+    /// The summary has the same bits, though no rank holds all blocks.
+    #[test]
+    fn ranks_find_the_front_that_one_finds() {
+        let case = Arc::new(Case::parse(CASE, "case", &[]).unwrap());
+        let alone = running::run(&case, 1).unwrap().summary;
+        assert!(alone.transition && alone.nucleation_sites > Some(0) && alone.front_speed_c_s.is_some());
+        let summaries = Threads::run(3, |communicator| {
+            let ranks = Ranks {
+                communicator,
+                on_node: 3,
+            };
+            let file = CaseFile::parse(CASE, "case", &[]).unwrap();
+            let case = Case::to_run_on_ranks(file, "case", std::path::Path::new(""), &mut |_| true, ranks);
+            let mut running =
+                Running::start_on_ranks(&Arc::new(case.unwrap()), 1, Arc::new(communicator.clone()));
+            let reason = loop {
+                if let Some(reason) = running.advance(u64::MAX).unwrap() {
+                    break reason;
+                }
+            };
+            running.record(reason).summary
+        });
+        assert_eq!(summaries[0].nucleations, alone.nucleations);
+        assert_eq!(summaries[0].front_speed_high_m_s, alone.front_speed_high_m_s);
+        assert_eq!(summaries[0].front_duration_s, alone.front_duration_s);
+    }
+
+    /// A straight front over more blocks than are looked at.
+    #[test]
+    fn a_large_lattice_is_thinned() {
+        let case = Case::parse("slider.blocks = [61, 40]", "case", &[]).unwrap();
+        let times: Vec<f64> = (0..61 * 40).map(|b| f64::from(b % 61) / 0.7).collect();
+        let whole = of_ranks(&case, &times, &Alone).unwrap();
+        for most in [61 * 40, 61 * 40 - 1, 300] {
+            let front = of_thinned(&case, &times, &Alone, most).unwrap();
+            let (one, other) = (whole.speed.unwrap(), front.speed.unwrap());
+            assert!((one.median - 0.7).abs() < 1e-12 && (other.median - 0.7).abs() < 1e-12);
+            assert_eq!(front.nucleations, whole.nucleations);
+            assert_eq!(front.nucleations[0].place, [0.5; 2]);
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! The slip front, found after a run from the times at which the blocks in contact have first slipped: where slip nucleates, how
+//! fast its front runs, and how long it takes to pass.
+
+mod nucleation;
+mod speed;
+
+use self::nucleation::nucleations;
+use self::speed::speeds;
+use crate::lattice::Lattice;
+
+/// Fewest blocks of a cluster that counts as a nucleation site.
+const SITE_MIN_BLOCKS: usize = 9;
+/// The same as a share of all blocks in contact: one in so many.
+const SITE_MIN_SHARE: usize = 100;
+
+/// How slip has spread over a slider.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Front {
+    /// The blocks at which slip has nucleated, the earliest first; of several at once the one with the lowest index.
+    pub nucleations: Vec<usize>,
+    /// Speed of the front, in blocks per unit of time; none where no front passes, as if all blocks slip at once.
+    pub speed: Option<Distribution>,
+    /// Time from the first 5 % of the first slips to 95 % of them.
+    pub duration: f64,
+}
+
+/// Quantiles of some numbers, interpolated linearly between neighbours: of n numbers in rising order the share q lies at the place
+/// q (n - 1), counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distribution {
+    /// 5 % are smaller.
+    pub low: f64,
+    /// Half are smaller.
+    pub median: f64,
+    /// 95 % are smaller.
+    pub high: f64,
+}
+
+impl Front {
+    /// Of the `times` at which the blocks of a lattice have first slipped, NaN for those that have not and for those without contact;
+    /// `n_contact` blocks are in contact. None if no block has slipped.
+    ///
+    /// Slip nucleates in clusters of neighbours that have slipped, which grow block by block in the order of time (of blocks that slip
+    /// at once in that of their indices). Where clusters meet, the oldest takes the others in. One that reaches
+    ///
+    /// ```text
+    /// max(9, n_contact/100) blocks
+    /// ```
+    ///
+    /// or all of them before an older one takes it in is a nucleation site; its place is its first block. One that has not
+    /// is taken in by a site whatever its age: a block that slips alone and early nucleates nothing.
+    ///
+    /// The front runs at `1/|g|`, with the slope g of the plane that fits best (in the sense of least squares) to the times of 7 x 7
+    /// blocks around one that has slipped; in a chain of 7. There are windows around all blocks but those in which slip nucleates, that
+    /// have a level plane, or where too few have slipped: fewer than 25, or 5 times the number of rows (or columns) of a lattice that has
+    /// fewer than five.
+    ///
+    /// ```
+    /// use slipfront::{Lattice, observe::Front};
+    ///
+    /// // A chain in which slip runs from the first block on, two units of time for each.
+    /// let times: Vec<f64> = (0..20).map(|i| 2.0 * f64::from(i)).collect();
+    /// let front = Front::of(&Lattice::free(20, 1), &times, 20).unwrap();
+    /// assert_eq!((front.nucleations, front.speed.unwrap().median), (vec![0], 0.5));
+    /// // Of 20 times 5 % lie before the 0.95th, counted from 0, and 95 % before the 18.05th.
+    /// assert!((front.duration - 2.0 * (18.05 - 0.95)).abs() < 1e-12);
+    /// ```
+    ///
+    /// # Panics
+    /// If there is not one time per block.
+    pub fn of(lattice: &Lattice, times: &[f64], n_contact: usize) -> Option<Self> {
+        assert_eq!(times.len(), lattice.n_blocks(), "one time per block");
+        let slipped = times.iter().copied().filter(|time| !time.is_nan()).collect();
+        let first_slips = Distribution::of(slipped)?;
+        let least = n_contact
+            .div_ceil(SITE_MIN_SHARE)
+            .max(SITE_MIN_BLOCKS)
+            .min(n_contact);
+        let nucleations = nucleations(lattice, times, least);
+        Some(Self {
+            speed: Distribution::of(speeds(lattice, times, &nucleations)),
+            nucleations,
+            duration: first_slips.high - first_slips.low,
+        })
+    }
+}
+
+impl Distribution {
+    fn of(mut values: Vec<f64>) -> Option<Self> {
+        let last = values.len().checked_sub(1)?;
+        let mut at = |share: f64| {
+            let place = share * last as f64;
+            let (_, &mut lower, above) = values.select_nth_unstable_by(place as usize, f64::total_cmp);
+            let upper = above.iter().copied().reduce(f64::min).unwrap_or(lower);
+            lower + place.fract() * (upper - lower)
+        };
+        Some(Self {
+            low: at(0.05),
+            median: at(0.5),
+            high: at(0.95),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

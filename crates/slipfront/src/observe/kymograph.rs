@@ -1,0 +1,154 @@
+//! Which part of the blocks slides, against place along the drive and time.
+
+use serde::{Deserialize, Serialize};
+
+use super::observer::{Observer, Schedule, Scheduled};
+use crate::error::RunError;
+use crate::model::Model;
+use crate::position_bins::PositionBins;
+use crate::snapshot::Snapshot;
+
+/// Counts the blocks in contact that slide, in [bins of their place](PositionBins), at every [`Kymograph::INTERVAL`]-th step. There are at
+/// most [`Kymograph::MAX_ROWS`] rows of time: when they are full, they are added up in pairs, so that memory does not grow with the
+/// run. All numbers are whole and counted over all ranks.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Kymograph {
+    /// Blocks in contact of every bin.
+    in_contact: Vec<i64>,
+    /// Instants at which blocks were counted.
+    samples: u64,
+    /// How many of them a row has; the last may have fewer.
+    samples_per_row: u64,
+    /// Sliding blocks, summed over the instants of each row: row after row, bin after bin.
+    sliding: Vec<i64>,
+}
+
+impl Default for Kymograph {
+    fn default() -> Self {
+        Self {
+            in_contact: Vec::new(),
+            samples: 0,
+            samples_per_row: 1,
+            sliding: Vec::new(),
+        }
+    }
+}
+
+impl Kymograph {
+    /// Most rows.
+    pub const MAX_ROWS: usize = 1024;
+    /// Steps from one count to the next: so few that a front which takes some t* is resolved, and so many that a run takes no longer.
+    pub const INTERVAL: u64 = 4;
+
+    /// Called when it is due.
+    pub fn scheduled(&mut self) -> Scheduled<'_> {
+        Scheduled::new(Schedule::Every(Self::INTERVAL), self)
+    }
+
+    /// Blocks in contact of every bin.
+    pub fn in_contact(&self) -> &[i64] {
+        &self.in_contact
+    }
+
+    /// Every row: the middle of its instants, as a number of steps, and the share of the blocks in contact of every bin that
+    /// slide, NaN of a bin without contact.
+    pub fn rows(&self) -> impl Iterator<Item = (f64, Vec<f32>)> {
+        let rows = self.sliding.chunks(self.in_contact.len().max(1));
+        rows.zip(0..).map(|(sliding, row)| {
+            let (first, count) = self.samples_of(row);
+            let middle = (first as f64 + 0.5 * (count - 1) as f64) * Self::INTERVAL as f64;
+            let shares = sliding.iter().zip(&self.in_contact);
+            let share = |(sliding, blocks): (&i64, &i64)| *sliding as f64 / (*blocks as f64 * count as f64);
+            (middle, shares.map(|counts| share(counts) as f32).collect())
+        })
+    }
+
+    /// The first instant of a row, and how many it has.
+    fn samples_of(&self, row: u64) -> (u64, u64) {
+        let first = row * self.samples_per_row;
+        (first, self.samples_per_row.min(self.samples - first))
+    }
+
+    /// Whether this can be the recording of a run of this model up to `step`.
+    pub fn is_consistent_with(&self, model: &Model, step: u64) -> bool {
+        let samples = step / Self::INTERVAL + 1;
+        let mut samples_per_row = 1;
+        while samples.div_ceil(samples_per_row) > Self::MAX_ROWS as u64 {
+            samples_per_row *= 2;
+        }
+        let bins = PositionBins::of(&model.lattice, &model.drive).count;
+        let rows = samples.div_ceil(samples_per_row);
+        let has_lengths = (self.samples, self.samples_per_row) == (samples, samples_per_row)
+            && self.in_contact.len() == bins
+            && self.sliding.len() as u64 == rows * bins as u64;
+        let most = model.lattice.n_blocks() as i64;
+        has_lengths
+            && self.in_contact.iter().all(|blocks| (0..=most).contains(blocks))
+            && self.sliding.chunks(bins).zip(0..).all(|(sliding, row)| {
+                let (_, count) = self.samples_of(row);
+                let mut blocks = sliding.iter().zip(&self.in_contact);
+                blocks.all(|(sliding, blocks)| (0..=blocks * count as i64).contains(sliding))
+            })
+    }
+
+    /// Adds the rows up in pairs.
+    fn merge_rows(&mut self) {
+        let bins = self.in_contact.len();
+        for row in 0..Self::MAX_ROWS / 2 {
+            for bin in 0..bins {
+                let [one, other] = [2 * row, 2 * row + 1].map(|row| self.sliding[row * bins + bin]);
+                self.sliding[row * bins + bin] = one + other;
+            }
+        }
+        self.sliding.truncate(Self::MAX_ROWS / 2 * bins);
+        self.samples_per_row *= 2;
+    }
+}
+
+impl Observer for Kymograph {
+    fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
+        let bins = PositionBins::of(&now.model.lattice, &now.model.drive);
+        if self.samples == 0 {
+            self.in_contact = blocks_in_contact(now, &bins);
+        }
+        if self.samples == Self::MAX_ROWS as u64 * self.samples_per_row {
+            self.merge_rows();
+        }
+        if self.samples.is_multiple_of(self.samples_per_row) {
+            self.sliding.resize(self.sliding.len() + bins.count, 0);
+        }
+        self.samples += 1;
+        let row = self.sliding.len() - bins.count;
+        let sliding = now.totals.n_slipping as i64;
+        let stuck = self.in_contact.iter().sum::<i64>() - sliding;
+        // Those that are fewer are counted.
+        let mut counts = vec![0; bins.count];
+        if sliding.min(stuck) > 0 {
+            now.engine
+                .count_in_contact(now.model, &bins, sliding <= stuck, &mut counts);
+            now.communicator.sum(&mut counts);
+        }
+        for ((total, counted), blocks) in self.sliding[row..].iter_mut().zip(counts).zip(&self.in_contact) {
+            *total += if sliding <= stuck {
+                counted
+            } else {
+                blocks - counted
+            };
+        }
+        Ok(())
+    }
+}
+
+fn blocks_in_contact(now: &Snapshot, bins: &PositionBins) -> Vec<i64> {
+    let (lattice, first) = (
+        &now.model.lattice,
+        now.model.lattice.blocks_of(&now.model.rows).start,
+    );
+    let mut counts = vec![0; bins.count];
+    for (b, textured) in (first..).zip(&now.model.surface.textured) {
+        let (i, j) = lattice.column_row(b);
+        counts[bins.bin(i, j)] += i64::from(!textured);
+    }
+    now.communicator.sum(&mut counts);
+    counts
+}
