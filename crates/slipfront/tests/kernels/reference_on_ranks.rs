@@ -76,7 +76,7 @@ fn change(options: &[Variety], model: &mut Model, ranks: &dyn Communicator) {
                 });
             }
             Turns => {
-                let turned = Rotation::about_centroid(&model.lattice, &model.rows, &model.slider, ranks);
+                let turned = Rotation::about_centroid(&model.lattice, &model.rows, model.slider(), ranks);
                 model.drive.rotation = Some(turned);
             }
         }
