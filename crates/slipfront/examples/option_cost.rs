@@ -149,13 +149,13 @@ pub(crate) fn model(size: usize, choices: &[Choice]) -> Result<Model, Box<dyn Er
     } else {
         Friction::Coulomb(coulomb)
     };
-    let mut model = Model::new(lattice, surface, Drive::along_x(V_STAR), damping, 1e-6, friction);
-    model.slider = slider;
+    let plain = Model::new(lattice, surface, Drive::along_x(V_STAR), damping, 1e-6, friction);
+    let mut model = plain.with_slider(slider);
     if has(Choice::Rotation) {
         model.drive.rotation = Some(Rotation::about_centroid(
             &lattice,
             &model.rows,
-            &model.slider,
+            model.slider(),
             &Alone,
         ));
     }
@@ -176,7 +176,7 @@ pub(crate) fn steady_state(model: &Model) -> State {
         let at = |b: usize| {
             let factor = factor * (1.0 + scatter * ((b * 7919 % 1000) as f64 / 500.0 - 1.0));
             let [x, y] = model.drive.direction_at(&model.lattice, b);
-            let factor = if model.slider.exists(b) { factor } else { 0.0 };
+            let factor = if model.slider().exists(b) { factor } else { 0.0 };
             (factor * x, factor * y)
         };
         let (x, y): (Vec<f64>, Vec<f64>) = (0..model.surface.n_blocks()).map(at).unzip();
