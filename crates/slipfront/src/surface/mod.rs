@@ -8,13 +8,15 @@ mod coefficients;
 mod load;
 mod mesh;
 mod outline;
+mod pattern;
 mod texture;
 mod whole;
 
 pub use coefficients::{Coefficients, Distribution, STREAMS};
 pub use load::{Adhesion, Contact, Load, pressure_along};
 pub use mesh::{Meshed, mesh, mesh_watched};
-pub use texture::{Cavity, Groove, Orientation, Texture, cavity_lambda, cavity_percent};
+pub use pattern::{Array, n_copies};
+pub use texture::{Cavity, Groove, Orientation, Shape, Texture, Tile, cavity_lambda, cavity_percent};
 
 use rayon::prelude::*;
 
