@@ -44,6 +44,7 @@ pub use field_maps::{FieldMap, FieldMaps, field_maps};
 pub use friction::friction;
 pub use friction_curve::{FrictionCurve, Instant, Kinetic};
 pub use heat_map::{HeatAxis, HeatMap, heat_map};
+pub use mask_outline::outline as mask_outline;
 pub use picture::{Picture, PictureError};
 pub use quantity_labels::{QuantityLabel, has_glyphs};
 pub use response::{Response, Responses, response};

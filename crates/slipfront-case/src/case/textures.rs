@@ -27,6 +27,21 @@ pub(super) fn mesh(
     inputs: &Inputs,
     watch: &mut Watch,
 ) -> Result<(surface::Meshed, Option<f64>), CaseError> {
+    let (textures, asked) = shapes_in_blocks(file, scales, lattice, n_blocks, inputs, watch)?;
+    let mut watch = |share| watch(share).then_some(()).ok_or(CaseError::Stopped);
+    let meshed = surface::mesh_watched(lattice, &inputs.slab.rows, &textures, &mut watch)?;
+    Ok((meshed, asked))
+}
+
+/// The textures in blocks, and the area asked for.
+pub(super) fn shapes_in_blocks(
+    file: &CaseFile,
+    scales: &Scales,
+    lattice: &Lattice,
+    n_blocks: usize,
+    inputs: &Inputs,
+    watch: &mut Watch,
+) -> Result<(Vec<surface::Texture>, Option<f64>), CaseError> {
     let mut textures = Vec::new();
     let mut asked = Some(0.0);
     let mut masks = Masks::default();
@@ -67,9 +82,7 @@ pub(super) fn mesh(
         });
         asked = asked.zip(percent).map(|(sum, percent)| sum + percent);
     }
-    let mut watch = |share| watch(share).then_some(()).ok_or(CaseError::Stopped);
-    let meshed = surface::mesh_watched(lattice, &inputs.slab.rows, &textures, &mut watch)?;
-    Ok((meshed, asked))
+    Ok((textures, asked))
 }
 
 /// The arrays of a pattern in blocks, the outermost first: it is spread over the slider, and the next one over a place of it. An

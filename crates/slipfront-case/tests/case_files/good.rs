@@ -264,19 +264,21 @@ fn masks_fill_every_cell() {
         let text =
             format!("slider.blocks = [32, 24]\n[[texture]]\nshape = 'mask'\nfile = 'cell.png'\n{pattern}");
         Case::parse_in(&text, "case", folder.path(), &[])
-            .unwrap()
-            .model
-            .surface
-            .textured
-            .clone()
     };
+    let said = case("pitch = '40 um'").unwrap_err().to_string();
+    assert!(
+        said.contains(
+            "a mask of 40 x 40 blocks in every place of the pattern is larger than the slider's 32 x 24"
+        ),
+        "{said}"
+    );
     for (pattern, shift) in [
         ("array = [4, 4]", 0),
         ("pitch = ['8 um', '6 um']", 0),
         ("array = [2, 4]\nrepeat = { array = [2, 1] }", 0),
         ("array = [4, 4]\nlattice = 'staggered'", 2),
     ] {
-        for (b, textured) in case(pattern).into_iter().enumerate() {
+        for (b, textured) in case(pattern).unwrap().model.surface.textured.iter().enumerate() {
             let (i, j) = (b % 32, b / 32);
             // Even rows of cells are a quarter of a cell to the left, odd ones to the right.
             let column = if j / 6 % 2 == 0 {
@@ -285,7 +287,7 @@ fn masks_fill_every_cell() {
                 i.wrapping_sub(shift)
             };
             let inside = column < 32 && cell[j % 6 * 8 + column % 8];
-            assert_eq!(textured, inside, "{pattern}: ({i}, {j})");
+            assert_eq!(*textured, inside, "{pattern}: ({i}, {j})");
         }
     }
 }

@@ -63,6 +63,14 @@ pub fn mesh_watched<E>(
     })
 }
 
+/// Whether copies of a texture's shape have blocks in common, on all of a lattice.
+pub fn copies_overlap(lattice: &Lattice, texture: &Texture) -> bool {
+    let rows = 0..lattice.ny;
+    let mut mask = Mask::new(lattice, &rows);
+    let Ok(_) = mask.cover_copies::<Infallible>(&texture.shape, &grids(&texture.arrays), &mut |_| Ok(()));
+    mask.overlaps
+}
+
 /// Crossings that are farther apart than this have the same order around every centre: coordinates of up to 10^7 blocks are
 /// rounded by 10^-9.
 const DISTINCT: f64 = 1e-6;
@@ -83,6 +91,8 @@ struct Mask<'a> {
     full: Vec<bool>,
     /// Whether the present texture covers any block of these rows.
     covers: bool,
+    /// Whether some block was marked twice.
+    overlaps: bool,
 }
 
 impl<'a> Mask<'a> {
@@ -93,6 +103,7 @@ impl<'a> Mask<'a> {
             textured: vec![false; lattice.blocks_of(rows).len()],
             full: vec![false; rows.len()],
             covers: false,
+            overlaps: false,
         }
     }
 
@@ -139,6 +150,7 @@ impl<'a> Mask<'a> {
                     };
                     watch(done + (row - rows.start) as f64 / rows.len() as f64)?;
                     if self.covers && self.full[meshed_row] {
+                        self.overlaps = true;
                         continue;
                     }
                     sweep.intersect(row as f64 + 0.5, &mut crossings);
@@ -177,6 +189,7 @@ impl<'a> Mask<'a> {
         for pair in crossings.chunks_exact(2) {
             // By a whole block, far more than rounding.
             if width(pair) > gap + 1.0 {
+                self.overlaps = true;
                 self.cover_interval(row, sweep, [(first, pair[0].x(first)), (last, pair[1].x(last))]);
             } else {
                 self.cover_pairs(row, sweep, pair, centers);
@@ -305,8 +318,11 @@ impl<'a> Mask<'a> {
         let from = columns.start.rem_euclid(nx as isize) as usize;
         self.full[row] |= count == nx;
         let row = &mut self.textured[row * nx..][..nx];
-        row[from..nx.min(from + count)].fill(true);
-        row[..(from + count).saturating_sub(nx)].fill(true);
+        self.overlaps |= columns.len() > nx;
+        for part in [from..nx.min(from + count), 0..(from + count).saturating_sub(nx)] {
+            self.overlaps |= row[part.clone()].contains(&true);
+            row[part].fill(true);
+        }
     }
 }
 

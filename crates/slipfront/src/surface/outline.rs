@@ -33,6 +33,13 @@ pub(super) struct Vertex {
     pub(super) y: Terms,
 }
 
+impl Vertex {
+    /// Where it lies of the polygon with this centre.
+    pub(super) fn around(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [add(self.x, x), add(self.y, y)]
+    }
+}
+
 impl Outlines {
     /// A curve around the middle of `grids`, which give the shifts of its copies from there.
     pub(super) fn at(curve: Curve, middle: [f64; 2], grids: &[Grid]) -> Self {

@@ -40,22 +40,37 @@ impl Array {
         self.spacing[axis] * (line as f64 - 0.5 * (self.count[axis] as f64 - 1.0))
     }
 
+    /// How far a row is shifted, in columns.
+    fn aside(&self, row: usize) -> f64 {
+        match (self.staggered && self.count[1] > 1, row % 2) {
+            (false, _) => 0.0,
+            (true, 0) => -0.25,
+            (true, _) => 0.25,
+        }
+    }
+
+    /// A place, as the shift from the middle.
+    pub(super) fn place(&self, column: usize, row: usize) -> [f64; 2] {
+        let x = self.shift(0, column) + self.aside(row) * self.spacing[0];
+        [x, self.shift(1, row)]
+    }
+
     /// Its places as rectangular grids: one, or that of even rows and that of odd ones.
     fn grids(&self) -> Vec<Grid> {
         let [columns, rows] = self.count;
-        let grid = |aside: f64, rows: &mut dyn Iterator<Item = usize>| {
-            let x = |column| self.shift(0, column) + aside * self.spacing[0];
+        let grid = |first_row: usize, rows: &mut dyn Iterator<Item = usize>| {
+            let x = |column| self.place(column, first_row)[0];
             [
                 (0..columns).map(x).collect(),
                 rows.map(|row| self.shift(1, row)).collect(),
             ]
         };
         if !self.staggered || rows == 1 {
-            return vec![grid(0.0, &mut (0..rows))];
+            return vec![grid(0, &mut (0..rows))];
         }
         vec![
-            grid(-0.25, &mut (0..rows).step_by(2)),
-            grid(0.25, &mut (1..rows).step_by(2)),
+            grid(0, &mut (0..rows).step_by(2)),
+            grid(1, &mut (1..rows).step_by(2)),
         ]
     }
 }
