@@ -189,6 +189,11 @@ fn arc(from: [f64; 2], to: [f64; 2], [a, b]: [f64; 2], angle: f64) -> Part {
     Part::Arc(center, [a, b], angle, [t, u])
 }
 
+/// The end of an arc comes after its start.
+fn counterclockwise([from, to]: [f64; 2]) -> [f64; 2] {
+    [from, if to > from { to } else { to + TAU }]
+}
+
 /// The elements of a DXF, in blocks: each closed line, or all of a layer that is filled by the even-odd rule.
 fn dxf(text: &str, block: f64) -> Vec<Element> {
     let lines: Vec<&str> = text.lines().collect();
@@ -232,21 +237,20 @@ fn dxf(text: &str, block: f64) -> Vec<Element> {
                 0.0,
                 [0.0, TAU],
             )),
-            "ARC" => open.push(Part::Arc(
-                [length(10), length(20)],
-                [length(40); 2],
-                0.0,
-                [50, 51].map(|code| number(code).to_radians()),
-            )),
+            "ARC" => {
+                let ends = counterclockwise([50, 51].map(|code| number(code).to_radians()));
+                open.push(Part::Arc([length(10), length(20)], [length(40); 2], 0.0, ends));
+            }
             "ELLIPSE" => {
                 let major = [length(11), length(21)];
                 let a = major[0].hypot(major[1]);
                 assert!(number(40) <= 1.0);
+                let ends = counterclockwise([number(41), number(42)]);
                 open.push(Part::Arc(
                     [length(10), length(20)],
                     [a, a * number(40)],
                     major[1].atan2(major[0]),
-                    [number(41), number(42)],
+                    ends,
                 ));
             }
             other => panic!("{other}"),

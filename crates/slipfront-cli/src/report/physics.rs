@@ -210,7 +210,10 @@ pub(crate) fn smallest(case: &Case, smallest: Clearance, said: &[String]) -> Str
         }
     }
     warnings.extend_from_slice(said);
-    lines + "\n" + notes(&warnings).trim_end()
+    for note in notes(&warnings).lines() {
+        lines += &format!("\n{note}");
+    }
+    lines
 }
 
 fn time(case: &Case) -> String {

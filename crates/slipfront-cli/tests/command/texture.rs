@@ -82,7 +82,10 @@ fn a_picture_is_replaced_only_by_force() {
         "{said}"
     );
     let said = workspace.fail("texture small.toml -o mask.jpg", 2);
-    assert!(said.contains("name a file that ends in .svg or .dxf for outlines, in .png for a picture"), "{said}");
+    assert!(
+        said.contains("name a file that ends in .svg or .dxf for outlines, in .png for a picture"),
+        "{said}"
+    );
 }
 
 /// Every format is written, with the smallest lengths; those below a block are warned of.
@@ -98,8 +101,14 @@ fn outlines_and_fields_are_written() {
         ("a.png", b"\x89PNG"),
     ] {
         let said = workspace.succeed(&format!("texture dimples.toml -o {name}"));
-        assert!(said.contains("smallest feature 800 nm\nsmallest gap 1.2 um\n"), "{said}");
-        assert!(said.contains("the smallest feature of the texture, 800 nm, is smaller than a block"), "{said}");
+        assert!(
+            said.contains("smallest feature 800 nm\nsmallest gap 1.2 um\n"),
+            "{said}"
+        );
+        assert!(
+            said.contains("the smallest feature of the texture, 800 nm, is smaller than a block"),
+            "{said}"
+        );
         assert!(!said.contains("the smallest gap of"), "{said}");
         assert!(said.ends_with(&format!("{name}\n")), "{said}");
         assert!(workspace.read(name).starts_with(beginning));

@@ -69,6 +69,11 @@ pub(super) fn text(drawing: &Drawing) -> String {
     file.text
 }
 
+/// A code, and its value.
+type Pair<'a> = (u16, &'a dyn Display);
+/// The class of a record, its name, and what follows.
+type Record<'a> = (&'a str, &'a str, &'a [Pair<'a>]);
+
 fn hex(handle: u64) -> String {
     format!("{handle:X}")
 }
@@ -88,7 +93,7 @@ impl File {
     }
 
     /// Lines of a code and of its value.
-    fn pairs(&mut self, pairs: &[(u16, &dyn Display)]) {
+    fn pairs(&mut self, pairs: &[Pair]) {
         for (code, value) in pairs {
             self.text += &format!("{code}\n{value}\n");
         }
@@ -163,7 +168,8 @@ impl File {
                 true => ([a * c, a * s], b / a, 0.0),
                 false => ([-b * s, b * c], a / b, FRAC_PI_2),
             };
-            let [from, to] = parameters.map_or([0.0, TAU], |ends| ends.map(|end| end - later));
+            let [from, to] =
+                parameters.map_or([0.0, TAU], |ends| ends.map(|end| (end - later).rem_euclid(TAU)));
             self.pairs(&[
                 (10, &x),
                 (20, &y),
@@ -179,7 +185,7 @@ impl File {
         self.entity(kind, "AcDbCircle", layer);
         self.pairs(&[(10, &x), (20, &y), (30, &0), (40, &a)]);
         if let Some(ends) = parameters {
-            let [from, to] = ends.map(|end| (end + libm::atan2(s, c)).to_degrees());
+            let [from, to] = ends.map(|end| (end + libm::atan2(s, c)).to_degrees().rem_euclid(360.0));
             self.pairs(&[(100, &"AcDbArc"), (50, &from), (51, &to)]);
         }
     }
@@ -189,17 +195,17 @@ impl File {
         self.section("TABLES");
         self.table("VPORT", "8", &[]);
         let line_types = ["ByBlock", "ByLayer", "Continuous"];
-        let solid: &[(u16, &dyn Display)] = &[(70, &0), (3, &""), (72, &65), (73, &0), (40, &0)];
+        let solid: &[Pair] = &[(70, &0), (3, &""), (72, &65), (73, &0), (40, &0)];
         self.table(
             "LTYPE",
             "5",
             &line_types.map(|name| ("AcDbLinetypeTableRecord", name, solid)),
         );
-        let layer: &[(u16, &dyn Display)] = &[(70, &0), (62, &7), (6, &"Continuous")];
+        let layer: &[Pair] = &[(70, &0), (62, &7), (6, &"Continuous")];
         let names = ["0", "SLIDER"].into_iter().chain(layers.iter().copied());
-        let records: Vec<_> = names.map(|name| ("AcDbLayerTableRecord", name, layer)).collect();
+        let records: Vec<Record> = names.map(|name| ("AcDbLayerTableRecord", name, layer)).collect();
         self.table("LAYER", "2", &records);
-        let style: &[(u16, &dyn Display)] = &[
+        let style: &[Pair] = &[
             (70, &0),
             (40, &0),
             (41, &1),
@@ -270,7 +276,7 @@ impl File {
     }
 
     /// A table of records, each a class, a name and what follows.
-    fn table(&mut self, name: &str, handle: &str, records: &[(&str, &str, &[(u16, &dyn Display)])]) {
+    fn table(&mut self, name: &str, handle: &str, records: &[Record]) {
         self.pairs(&[
             (0, &"TABLE"),
             (2, &name),
