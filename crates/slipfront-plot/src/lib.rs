@@ -47,6 +47,7 @@ pub use friction::friction;
 pub use friction_curve::{FrictionAxes, FrictionCurve, Instant, Kinetic};
 pub use front::{FrontMap, SpaceTime, front};
 pub use heat_map::{HeatAxis, HeatMap, heat_map};
+pub use mask_outline::outline as mask_outline;
 pub use picture::{Picture, PictureError};
 pub use quantity_labels::{QuantityLabel, has_glyphs};
 pub use response::{Response, Responses, response};

@@ -13,7 +13,7 @@ const DIRECTIONS: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 /// as long as possible. A closed chain ends where it starts; one that meets the lattice's edge is open.
 ///
 /// `textured` holds `nx` times `ny` blocks, row 0 at y = 0.
-pub(crate) fn outline(textured: &[bool], nx: usize, ny: usize) -> Vec<Vec<(usize, usize)>> {
+pub fn outline(textured: &[bool], nx: usize, ny: usize) -> Vec<Vec<(usize, usize)>> {
     let mut edges = edges(textured, nx, ny);
     // Open chains first: they must be entered at an end. A closed one is then entered at its first corner in
     // this order, which is never in the middle of a straight line.

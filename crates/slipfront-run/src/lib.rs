@@ -30,4 +30,6 @@ pub mod running;
 pub mod series;
 pub mod study;
 pub mod summary;
+#[cfg(feature = "plot")]
+pub mod texture_file;
 pub mod verify;

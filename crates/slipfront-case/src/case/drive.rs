@@ -25,7 +25,16 @@ pub(super) fn attached(
     let Attached::File(name) = &file.drive.attached else {
         return Ok(None);
     };
-    read_mask(file, "drive.attach_file", name, DEFAULT_THRESHOLD, inputs, watch).map(Some)
+    read_mask(
+        file,
+        "drive.attach_file",
+        name,
+        DEFAULT_THRESHOLD,
+        inputs,
+        &inputs.slab,
+        watch,
+    )
+    .map(Some)
 }
 
 /// Leaves drive springs to the blocks of these rows alone that the case attaches, called by all ranks at once.

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use slipfront::scales::damping;
+use slipfront::surface::Texture;
 use slipfront::{Communicator, Lattice, Model, Scales, Surface};
 
 use super::budget::Budget;
@@ -227,6 +228,24 @@ impl Case {
             time_plan,
             output,
         })
+    }
+
+    /// The textures of the file in blocks, in their order, with their masks read again.
+    ///
+    /// # Errors
+    /// When a mask cannot be read any more.
+    pub fn textures_in_blocks(&self) -> Result<Vec<Texture>, CaseError> {
+        let lattice = &self.model.lattice;
+        let inputs = Inputs {
+            files: self.inputs.clone(),
+            slab: Slab::whole(lattice.nx, lattice.ny),
+        };
+        let n_blocks = self.model.n_blocks();
+        let made =
+            textures::shapes_in_blocks(&self.file, &self.scales, lattice, n_blocks, &inputs, &mut |_| {
+                true
+            });
+        made.map(|(textures, _)| textures)
     }
 
     /// Steps times blocks, the measure of what the run costs.

@@ -28,7 +28,15 @@ impl GivenBlocks {
             (case_file::Outline::Disc, _) => Some(Outline::disc(lattice, rows())),
             (case_file::Outline::Mask, Some(name)) => {
                 let key = "slider.outline_file";
-                Some(read_mask(file, key, name, DEFAULT_THRESHOLD, inputs, watch)?)
+                Some(read_mask(
+                    file,
+                    key,
+                    name,
+                    DEFAULT_THRESHOLD,
+                    inputs,
+                    &inputs.slab,
+                    watch,
+                )?)
             }
             _ => None,
         };

@@ -1,15 +1,16 @@
 //! Textures of a case file as shapes in blocks, laid over them.
 
+use std::collections::HashMap;
 use std::collections::hash_map::Entry;
-use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;
 
+use slipfront::surface::Tile;
 use slipfront::{Lattice, Scales, surface};
 
 use super::inputs::Inputs;
-use crate::arrays::ArrayError;
-use crate::case_file::{CaseError, CaseFile, Mask};
+use crate::arrays::{ArrayError, Slab};
+use crate::case_file::{Arrangement, CaseError, CaseFile, Count, MAX_COUNT, Mask, Pattern, Pitch, Shape};
 use crate::quantity::Length;
 use crate::{arrays, case_file};
 
@@ -26,82 +27,207 @@ pub(super) fn mesh(
     inputs: &Inputs,
     watch: &mut Watch,
 ) -> Result<(surface::Meshed, Option<f64>), CaseError> {
-    let mut shapes = Vec::new();
-    let mut asked = Some(0.0);
-    let mut masks = Masks::default();
-    for (index, texture) in file.texture.iter().enumerate() {
-        let (shape, percent) = match texture {
-            case_file::Texture::Cavity(cavity) => cavity_in_blocks(cavity, scales, lattice, n_blocks),
-            case_file::Texture::Groove(groove) => groove_in_blocks(groove, scales, lattice, n_blocks),
-            case_file::Texture::Polygon(polygon) => {
-                let points = polygon.points.iter().map(|point| in_blocks(scales, point));
-                (surface::Texture::Polygon(points.collect()), None)
-            }
-            case_file::Texture::Mask(mask) => {
-                let blocks = masks.read(file, index, mask, inputs, watch)?;
-                (surface::Texture::Blocks(blocks), None)
-            }
-        };
-        within_reach(&shape, lattice)
-            .map_err(|sentence| file.source.error(&format!("texture.{index}"), sentence))?;
-        shapes.push(shape);
-        asked = asked.zip(percent).map(|(sum, percent)| sum + percent);
-    }
+    let (textures, asked) = shapes_in_blocks(file, scales, lattice, n_blocks, inputs, watch)?;
     let mut watch = |share| watch(share).then_some(()).ok_or(CaseError::Stopped);
-    let meshed = surface::mesh_watched(lattice, &inputs.slab.rows, &shapes, &mut watch)?;
+    let meshed = surface::mesh_watched(lattice, &inputs.slab.rows, &textures, &mut watch)?;
     Ok((meshed, asked))
 }
 
-/// What tells the masks of a case apart: file, and bits of the threshold. Several textures may have one.
-type MaskKey<'a> = (&'a str, u64);
-
-fn key_of(mask: &Mask) -> MaskKey<'_> {
-    (&mask.file, mask.threshold.to_bits())
+/// The textures in blocks, and the area asked for.
+pub(super) fn shapes_in_blocks(
+    file: &CaseFile,
+    scales: &Scales,
+    lattice: &Lattice,
+    n_blocks: usize,
+    inputs: &Inputs,
+    watch: &mut Watch,
+) -> Result<(Vec<surface::Texture>, Option<f64>), CaseError> {
+    let mut textures = Vec::new();
+    let mut asked = Some(0.0);
+    let mut masks = Masks::default();
+    for (index, texture) in file.texture.iter().enumerate() {
+        let key = format!("texture.{index}");
+        let arrays = arrays(&texture.pattern, scales, lattice)
+            .map_err(|(name, sentence)| file.source.error(&format!("{key}.{name}"), sentence))?;
+        let copies = |shape: &surface::Shape| shape.n_copies(&arrays);
+        let (shape, percent) = match &texture.shape {
+            Shape::Cavity(cavity) => {
+                let count = surface::n_copies(&arrays);
+                cavity_in_blocks(cavity, scales, lattice, n_blocks, count)
+            }
+            Shape::Groove(groove) => groove_in_blocks(groove, scales, lattice, n_blocks, &copies),
+            Shape::Polygon(polygon) => {
+                let points = polygon.points.iter().map(|point| in_blocks(scales, point));
+                (surface::Shape::Polygon(points.collect()), None)
+            }
+            Shape::Mask(mask) => {
+                let size = cell(&arrays, lattice).map_err(|sentence| file.source.error(&key, sentence))?;
+                let tile = masks.read(file, index, mask, size, inputs, watch)?;
+                (surface::Shape::Tile(tile), None)
+            }
+        };
+        within_reach(&shape, &arrays, lattice).map_err(|sentence| file.source.error(&key, sentence))?;
+        let inverted = texture.pattern.invert;
+        textures.push(surface::Texture {
+            shape,
+            arrays,
+            inverted,
+        });
+        let percent = percent.map(|percent| {
+            if inverted {
+                (100.0 - percent).max(0.0)
+            } else {
+                percent
+            }
+        });
+        asked = asked.zip(percent).map(|(sum, percent)| sum + percent);
+    }
+    Ok((textures, asked))
 }
 
-/// How many masks a case has in memory at once.
+/// The arrays of a pattern in blocks, the outermost first: it is spread over the slider, and the next one over a place of it. An
+/// error is the key, within the texture, and the sentence.
+pub(super) fn arrays(
+    pattern: &Pattern,
+    scales: &Scales,
+    lattice: &Lattice,
+) -> Result<Vec<surface::Array>, (String, String)> {
+    let mut room = [lattice.nx as f64, lattice.ny as f64];
+    let mut arrays: Vec<surface::Array> = Vec::new();
+    for (before, array) in pattern.arrays().filter(|(_, array)| array.is_array()) {
+        // Rows of a hexagonal lattice over its pitch.
+        let height = match array.lattice {
+            Arrangement::Hexagonal => 0.75_f64.sqrt(),
+            Arrangement::Square | Arrangement::Staggered => 1.0,
+        };
+        let spread = |count: [u32; 2]| {
+            let [x, y] = [0, 1].map(|axis| room[axis] / f64::from(count[axis]));
+            match array.lattice {
+                Arrangement::Hexagonal => [x.min(y / height), (x * height).min(y)],
+                Arrangement::Square | Arrangement::Staggered => [x, y],
+            }
+        };
+        let spacing = match (&array.pitch, array.array) {
+            (Some(Pitch::Equal(pitch)), _) => {
+                let pitch = scales.in_blocks(pitch.si());
+                [pitch, pitch * height]
+            }
+            (Some(Pitch::Each(pitch)), _) => in_blocks(scales, pitch),
+            (None, Count::Of(count)) => spread(count),
+            (None, Count::Auto) => room,
+        };
+        let count = match array.array {
+            Count::Of(count) => count.map(|count| count as usize),
+            // What is written in decimals is not lost to rounding.
+            Count::Auto => [0, 1].map(|axis| ((room[axis] / spacing[axis] * (1.0 + 1e-9)) as usize).max(1)),
+        };
+        let before_it = |axis: usize| arrays.iter().map(|array| array.count[axis]).product::<usize>();
+        for (axis, lines) in [(0, "columns"), (1, "rows")] {
+            let total = before_it(axis).saturating_mul(count[axis]);
+            if total as u64 > MAX_COUNT {
+                let key = if array.array == Count::Auto {
+                    "pitch"
+                } else {
+                    "array"
+                };
+                let sentence = format!(
+                    "the pattern has {total} {lines}, and at most {MAX_COUNT} are laid over the blocks: raise the pitch, or lower the \
+                     number of copies"
+                );
+                return Err((format!("{before}{key}"), sentence));
+            }
+        }
+        arrays.push(surface::Array {
+            count,
+            spacing,
+            staggered: array.lattice != Arrangement::Square,
+        });
+        room = spacing;
+    }
+    Ok(arrays)
+}
+
+/// The blocks of a mask, of which there is one in every place of a pattern.
+fn cell(arrays: &[surface::Array], lattice: &Lattice) -> Result<[usize; 2], String> {
+    let slider = [lattice.nx, lattice.ny];
+    let Some(array) = arrays.last() else {
+        return Ok(slider);
+    };
+    let size = array.spacing.map(|spacing| (spacing.round() as usize).max(1));
+    if size[0] > slider[0] || size[1] > slider[1] {
+        return Err(format!(
+            "a mask of {} x {} blocks in every place of the pattern is larger than the slider's {} x {}: lower the pitch",
+            size[0], size[1], slider[0], slider[1]
+        ));
+    }
+    Ok(size)
+}
+
+/// How many masks a case has in memory at once, with those of inverted textures while they are laid over the blocks.
 pub(super) fn count_masks(file: &CaseFile) -> usize {
-    let masks = file.texture.iter().filter_map(|texture| match texture {
-        case_file::Texture::Mask(mask) => Some(key_of(mask)),
-        _ => None,
-    });
-    masks.collect::<HashSet<_>>().len()
+    let mut masks = Vec::new();
+    for texture in &file.texture {
+        if let Shape::Mask(mask) = &texture.shape {
+            let arrays: Vec<_> = texture.pattern.arrays().collect();
+            let found = (&mask.file, mask.threshold, arrays);
+            if !masks.contains(&found) {
+                masks.push(found);
+            }
+        }
+    }
+    masks.len() + usize::from(file.texture.iter().any(|texture| texture.pattern.invert))
 }
+
+/// What tells the masks of a case apart: file, bits of the threshold, and blocks. Several textures may have one.
+type MaskKey<'a> = (&'a str, u64, [usize; 2]);
 
 /// The masks that have been read.
 #[derive(Default)]
-struct Masks<'a>(HashMap<MaskKey<'a>, Arc<Vec<bool>>>);
+struct Masks<'a>(HashMap<MaskKey<'a>, Tile>);
 
 impl<'a> Masks<'a> {
-    /// The mask of a texture.
+    /// The mask of a texture, of this many blocks.
     fn read(
         &mut self,
         file: &CaseFile,
         index: usize,
         mask: &'a Mask,
+        size: [usize; 2],
         inputs: &Inputs,
         watch: &mut Watch,
-    ) -> Result<Arc<Vec<bool>>, CaseError> {
-        let entry = match self.0.entry(key_of(mask)) {
-            Entry::Occupied(known) => return Ok(Arc::clone(known.get())),
+    ) -> Result<Tile, CaseError> {
+        let entry = match self.0.entry((&mask.file, mask.threshold.to_bits(), size)) {
+            Entry::Occupied(known) => return Ok(known.get().clone()),
             Entry::Vacant(entry) => entry,
         };
         let key = format!("texture.{index}.file");
-        let read = read_mask(file, &key, &mask.file, mask.threshold, inputs, watch)?;
-        Ok(Arc::clone(entry.insert(Arc::new(read))))
+        let [nx, ny] = size;
+        // Of a mask that covers the slider, a rank needs its own rows.
+        let slab = match (nx, ny) == (inputs.slab.nx, inputs.slab.ny) {
+            true => inputs.slab.clone(),
+            false => Slab::whole(nx, ny),
+        };
+        let blocks = read_mask(file, &key, &mask.file, mask.threshold, inputs, &slab, watch)?;
+        let tile = Tile {
+            size,
+            rows: slab.rows,
+            blocks: Arc::new(blocks),
+        };
+        Ok(entry.insert(tile).clone())
     }
 }
 
-/// Reads an image or array of this name, which `key` gives it: whether each block is dark, or 1.
+/// Reads an image or array of this name, which `key` gives it: whether each block of the slab is dark, or 1.
 pub(super) fn read_mask(
     file: &CaseFile,
     key: &str,
     name: &str,
     threshold: f64,
     inputs: &Inputs,
+    slab: &Slab,
     watch: &mut Watch,
 ) -> Result<Vec<bool>, CaseError> {
-    inputs.read(file, key, name, |path, source, slab| match is_array(path) {
+    inputs.read(file, key, name, |path, source, _| match is_array(path) {
         true => arrays::mask_npy(path, source, slab),
         false => arrays::mask_png(path, source, threshold, slab, &mut |share| {
             watch(share).then_some(()).ok_or(ArrayError::Stopped)
@@ -113,14 +239,16 @@ pub(super) fn read_mask(
 /// would be lost to rounding.
 const REACH: f64 = 100.0;
 
-fn within_reach(shape: &surface::Texture, lattice: &Lattice) -> Result<(), String> {
+fn within_reach(shape: &surface::Shape, arrays: &[surface::Array], lattice: &Lattice) -> Result<(), String> {
     let farthest = |lengths: &[f64]| lengths.iter().copied().map(f64::abs).fold(0.0, f64::max);
     let reach = match shape {
-        surface::Texture::Cavity(cavity) => farthest(&cavity.center) + 2.0 * cavity.lambda,
-        surface::Texture::Groove(groove) => groove.offset.abs() + groove.width,
-        surface::Texture::Polygon(points) => farthest(points.as_flattened()),
-        surface::Texture::Blocks(_) => 0.0,
+        surface::Shape::Cavity(cavity) => farthest(&cavity.center) + 2.0 * cavity.lambda,
+        surface::Shape::Groove(groove) => groove.offset.abs() + groove.width,
+        surface::Shape::Polygon(points) => farthest(points.as_flattened()),
+        surface::Shape::Tile(_) => 0.0,
     };
+    let sides = |array: &surface::Array| [0, 1].map(|axis| array.count[axis] as f64 * array.spacing[axis]);
+    let reach = reach + 0.5 * arrays.iter().map(|array| farthest(&sides(array))).sum::<f64>();
     let slider = lattice.nx.max(lattice.ny) as f64;
     if reach <= REACH * slider {
         return Ok(());
@@ -140,9 +268,8 @@ fn cavity_in_blocks(
     scales: &Scales,
     lattice: &Lattice,
     n_blocks: usize,
-) -> (surface::Texture, Option<f64>) {
-    let array = cavity.array.map(|count| count as usize);
-    let count = array[0] * array[1];
+    count: usize,
+) -> (surface::Shape, Option<f64>) {
     let (s, w) = (cavity.s, cavity.w);
     let (lambda, percent) = match &cavity.size {
         case_file::CavitySize::Coverage(percent) => {
@@ -164,9 +291,8 @@ fn cavity_in_blocks(
         w,
         across: cavity.across,
         rotate: cavity.rotate,
-        array,
     };
-    (surface::Texture::Cavity(cavity), Some(percent))
+    (surface::Shape::Cavity(cavity), Some(percent))
 }
 
 fn groove_in_blocks(
@@ -174,7 +300,16 @@ fn groove_in_blocks(
     scales: &Scales,
     lattice: &Lattice,
     n_blocks: usize,
-) -> (surface::Texture, Option<f64>) {
+    copies: &dyn Fn(&surface::Shape) -> usize,
+) -> (surface::Shape, Option<f64>) {
+    let of_width = |width: f64| {
+        surface::Shape::Groove(surface::Groove {
+            orientation: groove.orientation,
+            width,
+            offset: scales.in_blocks(groove.offset.si()),
+        })
+    };
+    let count = copies(&of_width(0.0)) as f64;
     // A groove is as long as the lattice: the share of it that the slider fills is that of its area.
     let share = n_blocks as f64 / lattice.n_blocks() as f64;
     let breadth = match groove.orientation {
@@ -182,18 +317,13 @@ fn groove_in_blocks(
         surface::Orientation::Along => lattice.ny as f64 * share,
     };
     let (width, percent) = match &groove.size {
-        case_file::GrooveSize::Coverage(percent) => (breadth * percent / 100.0, *percent),
+        case_file::GrooveSize::Coverage(percent) => (breadth * percent / 100.0 / count, *percent),
         case_file::GrooveSize::Width(width) => {
             let width = scales.in_blocks(width.si());
-            (width, 100.0 * width / breadth)
+            (width, 100.0 * width / breadth * count)
         }
     };
-    let groove = surface::Groove {
-        orientation: groove.orientation,
-        width,
-        offset: scales.in_blocks(groove.offset.si()),
-    };
-    (surface::Texture::Groove(groove), Some(percent))
+    (of_width(width), Some(percent))
 }
 
 /// Whether the file of a mask is an array, and not an image.

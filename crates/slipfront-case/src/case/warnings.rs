@@ -2,13 +2,15 @@
 
 use std::path::Path;
 
-use slipfront::Friction;
+use slipfront::{Edges, Friction};
 
 use super::runnable::Case;
-use super::textures::is_array;
-use crate::case_file::{DEFAULT_THRESHOLD, Law, Mask, Texture};
+use super::textures::{arrays, is_array};
+use crate::case_file::{Count, DEFAULT_THRESHOLD, Law, Mask, Pattern, Shape};
 use crate::number_format::{are, count, four_digits};
 
+/// Blocks that a pattern may leave free at periodic edges without a warning.
+const LARGE_SEAM: f64 = 0.5;
 /// Difference between the texture as asked and as meshed, relative to what was asked, above which there is a warning.
 const LARGE_MISFIT: f64 = 0.25;
 /// Relative difference between `mu_static` and the mean of given coefficients above which there is a warning.
@@ -76,7 +78,7 @@ impl Case {
             ));
         }
         for (texture, number) in self.file.texture.iter().zip(1..) {
-            if let Texture::Mask(Mask { file, threshold }) = texture
+            if let Shape::Mask(Mask { file, threshold }) = &texture.shape
                 && *threshold != DEFAULT_THRESHOLD
                 && is_array(Path::new(file))
             {
@@ -84,6 +86,9 @@ impl Case {
                     "`threshold` = {threshold} of texture {number} is for images: an array says by 0 or 1 what is textured"
                 ));
             }
+        }
+        for (texture, number) in self.file.texture.iter().zip(1..) {
+            warnings.extend(self.seam(&texture.pattern, number));
         }
         let meshed = report.meshed_percent;
         if let Some(asked) = report.asked_percent
@@ -96,6 +101,36 @@ impl Case {
             ));
         }
         warnings
+    }
+
+    /// Where a pattern that fills the slider does not go on beyond a periodic edge as it does within.
+    fn seam(&self, pattern: &Pattern, number: usize) -> Option<String> {
+        let lattice = &self.model.lattice;
+        let arrays = arrays(pattern, &self.scales, lattice).ok()?;
+        let (array, (_, keys)) = arrays
+            .first()
+            .zip(pattern.arrays().find(|(_, keys)| keys.is_array()))?;
+        // Copies that are counted at a distance of their own need not fill it.
+        if keys.pitch.is_some() && keys.array != Count::Auto {
+            return None;
+        }
+        let sizes = [lattice.nx, lattice.ny];
+        (0..2).filter(|&axis| lattice.edges[axis] == Edges::Periodic).find_map(|axis| {
+            let (name, rest) = (["x", "y"][axis], sizes[axis] as f64 - array.spacing[axis] * array.count[axis] as f64);
+            if rest.abs() > LARGE_SEAM {
+                return Some(format!(
+                    "the pattern of texture {number} leaves {rest:.2} blocks free at the periodic edges that bound {name}: there it does \
+                     not go on as it does within"
+                ));
+            }
+            let is_odd = axis == 1 && array.staggered && array.count[1] % 2 == 1;
+            is_odd.then(|| {
+                format!(
+                    "the pattern of texture {number} has an odd number of rows, {}: beyond the periodic edges it goes on without a shift",
+                    array.count[1]
+                )
+            })
+        })
     }
 
     fn friction_warnings(&self) -> Vec<String> {

@@ -67,7 +67,11 @@ pub(super) fn value_error(
         let inner = source.key_at(&span).filter(|_| expected != known);
         let sentence = match inner {
             Some(inner) => keys::unknown(&truncated(key), &format!("`{inner}`"), &expected),
-            None => keys::unknown(&truncated(key), header, known),
+            // A table may be read in parts.
+            None => {
+                let all = section.map(|section| section.keys.iter().map(|key| key.name).collect());
+                keys::unknown(&truncated(key), header, &all.unwrap_or(known.to_vec()))
+            }
         };
         return source.error_at(span, sentence);
     }

@@ -19,7 +19,7 @@ use super::overrides::Override;
 use super::slider::Slider;
 use super::source::Source;
 use super::tables::Tables;
-use super::texture::Texture;
+use super::texture::{Shape, Texture};
 use super::time::Time;
 
 /// A whole case file. The default is the baseline of Fig. 3, Table 1 case 8.
@@ -91,8 +91,8 @@ impl CaseFile {
         texture: &'a mut [Texture],
     ) -> impl Iterator<Item = (String, &'a mut String)> {
         let masks = texture.iter_mut().enumerate();
-        let masks = masks.filter_map(|(index, texture)| match texture {
-            Texture::Mask(mask) => Some((format!("texture.{index}.file"), &mut mask.file)),
+        let masks = masks.filter_map(|(index, texture)| match &mut texture.shape {
+            Shape::Mask(mask) => Some((format!("texture.{index}.file"), &mut mask.file)),
             _ => None,
         });
         let fields = [
@@ -125,7 +125,7 @@ impl CaseFile {
         self.friction.check(&check("friction"))?;
         for (index, texture) in self.texture.iter().enumerate() {
             let path = format!("texture.{index}");
-            texture.check(&Check::new(&self.source, texture.shape(), &path))?;
+            texture.check(&Check::new(&self.source, texture.shape.name(), &path))?;
         }
         self.time.check(&check("time"), &self.drive.speed)?;
         self.output.check(&check("output"))

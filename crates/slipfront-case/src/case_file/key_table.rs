@@ -14,6 +14,7 @@ use slipfront::observe::Field;
 use slipfront::surface::Orientation;
 use slipfront::{Edges, StopReason};
 
+use super::pattern::Arrangement;
 use super::probe::names_of;
 use super::words::{AttachedEdge, Contact, Law, Motion, Outline};
 
@@ -158,7 +159,7 @@ const SIGMA: Kind = number(
     within(0.0, 1.0),
     "it is relative to the mean coefficient, so that 0.05 is 5 percent",
 );
-const SIZE: Kind = quantity("m", above(0.0, MAX_LENGTH));
+pub(super) const SIZE: Kind = quantity("m", above(0.0, MAX_LENGTH));
 pub(super) const COORDINATE: Kind = quantity("m", within(-MAX_LENGTH, MAX_LENGTH));
 const ARRAY: Kind = Kind::File(&["npy", "csv"]);
 /// A slope of a profile.
@@ -347,9 +348,9 @@ const CAVITY: &[Key] = &[
     key("lambda", "", SIZE, "size: the length of Eq. 17, a circle's radius")
         .or("coverage").title("cavity size", "\u{3bb}", "m"),
     key("across", "false", Kind::Switch, "the paper's swap of x and y"),
-    key("center", "\"middle\"", Kind::Special("`\"middle\"`, or a pair within 1e9 m"), "centre of the cavity, or of the `array`"),
+    key("center", "\"middle\"", Kind::Special("`\"middle\"`, or a pair within 1e9 m"), "centre of the cavity, or of its pattern"),
     key("rotate", "0", DEGREES, "rotation, degrees from x towards y").title("rotation of the texture", "", "\u{b0}"),
-    key("array", "[1, 1]", whole(1, 1000), "how many cavities along x and along y"),
+    PITCH, ARRAY_OF_COPIES, LATTICE, REPEAT, INVERT,
 ];
 
 #[rustfmt::skip]
@@ -360,11 +361,13 @@ const GROOVE: &[Key] = &[
     key("width", "", SIZE, "size: the width").or("coverage").title("groove width", "", "m"),
     key("offset", "\"0 um\"", COORDINATE, "distance of the groove's middle line from the slider's")
         .title("groove offset", "", "m"),
+    PITCH, ARRAY_OF_COPIES, LATTICE, REPEAT, INVERT,
 ];
 
 #[rustfmt::skip]
 const POLYGON: &[Key] = &[
     key("points", "", Kind::Special("at least 3 pairs within 1e9 m"), "the corners"),
+    PITCH, ARRAY_OF_COPIES, LATTICE, REPEAT, INVERT,
 ];
 
 #[rustfmt::skip]
@@ -372,7 +375,32 @@ const MASK: &[Key] = &[
     key("file", "", Kind::File(&["png", "npy"]), "an image, stretched over the slider"),
     key("threshold", "0.5", number(between(0.0, 1.0), "it is a share of white"),
         "a pixel of an image is dark below this share of white"),
+    PITCH, ARRAY_OF_COPIES, LATTICE, REPEAT, INVERT,
 ];
+
+/// Most columns, and most rows, of all arrays of a texture together.
+pub(crate) const MAX_COUNT: u64 = 1000;
+/// Columns and rows.
+pub(super) const COUNT: Kind = whole(1, MAX_COUNT);
+
+// The keys of a pattern, which all shapes have.
+#[rustfmt::skip]
+const PITCH: Key = key("pitch", "", Kind::Special("a length, or a pair; more than 0, at most 1e9 m"),
+    "distance between neighbouring copies").title("pitch", "", "m");
+#[rustfmt::skip]
+const ARRAY_OF_COPIES: Key = key("array", "\"auto\"", Kind::Special("`\"auto\"`, or a pair from 1 to 1000"),
+    "columns and rows of copies");
+#[rustfmt::skip]
+const LATTICE: Key = key("lattice", "\"square\"", Kind::Words(names_of::<Arrangement>), "how the copies are arranged");
+#[rustfmt::skip]
+const REPEAT: Key = key("repeat", "", Kind::Special("`{ array = [3, 3], pitch = \"20 um\", lattice = \"square\" }`"),
+    "a pattern of such patterns");
+const INVERT: Key = key(
+    "invert",
+    "false",
+    Kind::Switch,
+    "whether all but the inside is textured",
+);
 
 /// A time of a snapshot in a list of them.
 pub(super) const SNAPSHOT_TIME: Kind = number(within(0.0, MAX_TIME_STAR), "snapshots are times t*");

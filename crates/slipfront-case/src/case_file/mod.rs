@@ -17,6 +17,7 @@ mod load;
 mod motion;
 mod output;
 mod overrides;
+mod pattern;
 mod probe;
 mod slider;
 mod source;
@@ -34,7 +35,7 @@ pub use error::{CaseError, Invalid, Place};
 pub use file::{CaseFile, ParsedCase};
 pub use friction::{Ageing, AgeingLaw, Friction, KineticFriction, Velocity, VelocityLaw};
 pub use key_table::{Bounds, Key, Kind, SECTIONS, Section, Title, names_a_file, title_of};
-pub(crate) use key_table::{MAX_RELATIVE, MIN_RELATIVE};
+pub(crate) use key_table::{MAX_COUNT, MAX_RELATIVE, MIN_RELATIVE};
 pub use keys::{
     STUDY_TABLES, TABLES as CASE_TABLES, exclude_each_other, header_below, partners_of,
     unknown as unknown_key, unknown_table as unknown_case_table,
@@ -43,12 +44,13 @@ pub use load::read_text;
 pub use motion::{Along, Load, Profile};
 pub use output::{Output, Snapshots};
 pub use overrides::Override;
+pub use pattern::{Arrangement, Array, Count, Pattern, Pitch};
 pub use probe::names_of;
 pub use slider::{Damping, Grade, Slider};
 pub use source::Source;
 pub use tables::Tables;
 pub use texture::{
-    Cavity, CavitySize, Center, DEFAULT_THRESHOLD, Groove, GrooveSize, Mask, Polygon, Texture,
+    Cavity, CavitySize, Center, DEFAULT_THRESHOLD, Groove, GrooveSize, Mask, Polygon, Shape, Texture,
 };
 pub use time::{RunTime, Step, Time};
 pub use values::AutoOr;

@@ -146,6 +146,23 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
         "dimples",
         "many dimples are one `shape` = \"cavity\" with `array` = [4, 4]",
     ),
+    ("spacing", PITCH),
+    ("period", PITCH),
+    ("distance", PITCH),
+    (
+        "pillars",
+        "pillars are the shape of one with `invert` = true, arranged by `array` or `pitch`",
+    ),
+    (
+        "pillar",
+        "a pillar is the shape of it, such as \"cavity\", with `invert` = true",
+    ),
+    (
+        "inverse",
+        "to texture all but the inside of a shape is `invert` = true",
+    ),
+    ("pattern", PATTERN),
+    ("arrangement", PATTERN),
     ("disc", CIRCLE),
     ("disk", CIRCLE),
     ("hole", CIRCLE),
@@ -205,7 +222,6 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
         "y",
         "a cavity stands at `center`, a groove at `offset` from the middle",
     ),
-    ("pitch", "cavities at equal distances are an `array` = [4, 4]"),
     (
         "values",
         "the levels of an axis are its list, linspace or logspace",
@@ -288,6 +304,8 @@ const ADHESION: &str = "adhesion adds to static friction as `friction.adhesion`,
 const CIRCLE: &str = "a circle is `shape` = \"cavity\" with `coverage`, or with `lambda`, its radius";
 const GROOVE: &str = "a straight one is `shape` = \"groove\" with `coverage` or `width`";
 const RADIUS: &str = "the radius of a circle is `lambda`";
+const PITCH: &str = "the distance between the copies of a shape is `pitch`";
+const PATTERN: &str = "a shape is repeated by `array` = [4, 4] or `pitch` = \"12 um\", arranged by `lattice`";
 
 /// The advice on a word.
 pub(super) fn advice_on(word: &str) -> Option<&'static str> {

@@ -54,7 +54,8 @@ impl<'i> Tables<'_, 'i> {
         self.read_keys(table, header, None)
     }
 
-    fn read_keys<T: DeserializeOwned>(
+    /// A table that stands under `header`, and has the keys of `section` if it is one of a case.
+    pub(super) fn read_keys<T: DeserializeOwned>(
         &self,
         table: Spanned<DeValue<'i>>,
         header: &str,

@@ -5,22 +5,35 @@ use std::ops::Bound::{Excluded, Included};
 use serde::{Deserialize, Serialize};
 use slipfront::surface::Orientation;
 use toml::Spanned;
-use toml::de::DeValue;
+use toml::de::{DeTable, DeValue};
 
 use super::check::Check;
 use super::choice::keys_with_choice;
 use super::error::CaseError;
-use super::key_table::COORDINATE;
+use super::key_table::{COORDINATE, SECTIONS};
 use super::keys::{texture_header, unknown_shape};
+use super::pattern::Pattern;
+use super::probe::names_of;
 use super::tables::Tables;
-use super::values::{Pair, pair, word};
+use super::values::{Pair, word};
 use crate::number_format::count;
 use crate::quantity::{Length, QuantityError};
 
 /// One `[[texture]]` of the file; a block is textured when its centre lies inside any of them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Texture {
+    /// `shape` and the keys that it has.
+    #[serde(flatten)]
+    pub shape: Shape,
+    /// The keys that every shape has.
+    #[serde(flatten)]
+    pub pattern: Pattern,
+}
+
+/// The shape of a texture.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "shape", rename_all = "snake_case")]
-pub enum Texture {
+pub enum Shape {
     /// A cavity with the outline of Eq. 17.
     Cavity(Cavity),
     /// A straight groove through the whole slider (Eq. 15).
@@ -31,7 +44,7 @@ pub enum Texture {
     Mask(Mask),
 }
 
-/// A cavity, or a grid of equal ones, with the outline of Eq. 17.
+/// A cavity with the outline of Eq. 17.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "CavityKeys", into = "CavityKeys")]
 pub struct Cavity {
@@ -43,18 +56,16 @@ pub struct Cavity {
     pub size: CavitySize,
     /// Whether x and y of the outline are swapped: an ellipse of w > 0 is then elongated along y, not x.
     pub across: bool,
-    /// The centre, or the centre of the grid.
+    /// The centre, or that of the pattern.
     pub center: Center,
     /// Rotation about the centre, degrees from x towards y, -360 to 360.
     pub rotate: f64,
-    /// How many cavities along x and along y, 1 to 1000 each.
-    pub array: [u32; 2],
 }
 
 /// The size of a cavity.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CavitySize {
-    /// `coverage`: percent of the whole area (Eq. 18), all cavities of the grid together; more than 0, less than 100.
+    /// `coverage`: percent of the whole area (Eq. 18), all cavities of the pattern together; more than 0, less than 100.
     Coverage(f64),
     /// `lambda`: the length of Eq. 17, the radius of the circle that w = 0 gives, m.
     Lambda(Length),
@@ -114,8 +125,15 @@ pub struct Mask {
 pub const DEFAULT_THRESHOLD: f64 = 0.5;
 
 impl Texture {
-    /// The name of its shape in the file.
-    pub(super) fn shape(&self) -> &'static str {
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        self.shape.check(check)?;
+        self.pattern.check(check)
+    }
+}
+
+impl Shape {
+    /// Its name in the file.
+    pub(super) fn name(&self) -> &'static str {
         match self {
             Self::Cavity(_) => "cavity",
             Self::Groove(_) => "groove",
@@ -124,7 +142,7 @@ impl Texture {
         }
     }
 
-    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+    fn check(&self, check: &Check) -> Result<(), CaseError> {
         match self {
             Self::Cavity(cavity) => cavity.check(check),
             Self::Groove(groove) => {
@@ -169,8 +187,7 @@ impl Cavity {
             let mut lengths = center.iter();
             lengths.try_for_each(|length| check.value_of(&COORDINATE, "center", length))?;
         }
-        check.value("rotate", &self.rotate)?;
-        check.value("array", &self.array)
+        check.value("rotate", &self.rotate)
     }
 }
 
@@ -186,8 +203,6 @@ keys_with_choice! {
         across: bool,
         center: Center,
         rotate: f64,
-        #[serde(deserialize_with = "pair")]
-        array: [u32; 2],
     }
 }
 
@@ -269,15 +284,33 @@ impl<'i> Tables<'_, 'i> {
         };
         let shape = table.remove("shape");
         let shape_span = shape.as_ref().map_or(span.clone(), Spanned::span);
-        let table = Spanned::new(span, DeValue::Table(table));
         let name = shape.as_ref().and_then(|shape| shape.get_ref().as_str());
-        let header = texture_header(name.unwrap_or_default());
-        match name {
-            Some(name @ "cavity") => self.read_section(table, name, &header).map(Texture::Cavity),
-            Some(name @ "groove") => self.read_section(table, name, &header).map(Texture::Groove),
-            Some(name @ "polygon") => self.read_section(table, name, &header).map(Texture::Polygon),
-            Some(name @ "mask") => self.read_section(table, name, &header).map(Texture::Mask),
-            _ => Err(self.source.error_at(shape_span, unknown_shape(name))),
+        let section = SECTIONS
+            .iter()
+            .find(|section| section.is_shape && Some(section.name) == name);
+        let Some(section) = section else {
+            return Err(self.source.error_at(shape_span, unknown_shape(name)));
+        };
+        section.fill_in(&mut table);
+        // The keys of the pattern, which all shapes have, are read apart.
+        let mut pattern = DeTable::default();
+        for key in names_of::<Pattern>() {
+            if let Some((key, value)) = table.remove_entry(*key) {
+                pattern.insert(key, value);
+            }
         }
+        let header = texture_header(section.name);
+        let table = Spanned::new(span.clone(), DeValue::Table(table));
+        let shape = match section.name {
+            "cavity" => Shape::Cavity(self.read_keys(table, &header, Some(section))?),
+            "groove" => Shape::Groove(self.read_keys(table, &header, Some(section))?),
+            "polygon" => Shape::Polygon(self.read_keys(table, &header, Some(section))?),
+            _ => Shape::Mask(self.read_keys(table, &header, Some(section))?),
+        };
+        let pattern = Spanned::new(span, DeValue::Table(pattern));
+        Ok(Texture {
+            shape,
+            pattern: self.read_keys(pattern, &header, Some(section))?,
+        })
     }
 }

@@ -5,7 +5,8 @@ use slipfront::Edges;
 
 use slipfront_case::case::Case;
 use slipfront_case::case_file::{
-    CaseFile, Cavity, CavitySize, Center, Damping, DriveSpeed, KineticFriction, RunTime, Snapshots, Texture,
+    Arrangement, CaseFile, Cavity, CavitySize, Center, Count, Damping, DriveSpeed, KineticFriction, Pattern,
+    RunTime, Shape, Snapshots, Texture,
 };
 
 use super::{files, notes};
@@ -61,10 +62,19 @@ fn overrides_change_what_they_name() {
     assert_eq!(case.drive.direction, 90.0);
     let case = good("set_pair_of_a_texture");
     let lambda = "3um".parse().unwrap();
-    assert!(matches!(&case.texture[0], Texture::Cavity(cavity) if cavity.size == CavitySize::Lambda(lambda)));
-    assert!(matches!(&case.texture[1], Texture::Groove(_)));
+    assert!(
+        matches!(&case.texture[0].shape, Shape::Cavity(cavity) if cavity.size == CavitySize::Lambda(lambda))
+    );
+    assert!(matches!(&case.texture[1].shape, Shape::Groove(_)));
     assert_eq!(good("set_no_texture").texture, []);
-    assert!(matches!(&good("set_new_texture").texture[..], [Texture::Mask(_)]));
+    let textures = good("set_new_texture").texture;
+    assert!(matches!(
+        &textures[..],
+        [Texture {
+            shape: Shape::Mask(_),
+            ..
+        }]
+    ));
     assert_eq!(good("set_snapshots").output.snapshots, Snapshots::Every(3.0));
     assert_eq!(good("set_last_holds").drive.speed, DriveSpeed::VStar(0.2));
 }
@@ -108,15 +118,23 @@ fn a_case_changed_in_code_is_checked_without_a_place() {
             .starts_with("`slider.block_size` is \"inf m\"")
     );
     case.slider.block_size = 1e-6.into();
-    case.texture.push(Texture::Cavity(Cavity {
-        s: 1,
-        w: 2.0,
-        size: CavitySize::Coverage(5.0),
-        across: false,
-        center: Center::Middle,
-        rotate: 0.0,
-        array: [1, 1],
-    }));
+    case.texture.push(Texture {
+        shape: Shape::Cavity(Cavity {
+            s: 1,
+            w: 2.0,
+            size: CavitySize::Coverage(5.0),
+            across: false,
+            center: Center::Middle,
+            rotate: 0.0,
+        }),
+        pattern: Pattern {
+            pitch: None,
+            array: Count::Auto,
+            lattice: Arrangement::Square,
+            repeat: None,
+            invert: false,
+        },
+    });
     assert!(
         case.check()
             .unwrap_err()
@@ -175,4 +193,125 @@ fn times_are_held_against_the_end_of_the_run_itself() {
     }
     let refused = case("2", "time.kinetic_from_star=60").unwrap_err().to_string();
     assert!(refused.contains("the run ends at 40.0000"), "{refused}");
+}
+
+/// What a pattern covers does not depend on how it is said: by a pitch that fills the slider, by a count, by an array in an array,
+/// or with a mask of each cell.
+#[test]
+fn patterns_can_be_said_in_several_ways() {
+    let case = |pattern: &str| {
+        let text = format!(
+            "slider = {{ blocks = [48, 24], edges = 'periodic' }}\n[[texture]]\nshape = 'cavity'\nlambda = '2 um'\n{pattern}"
+        );
+        let case = Case::parse(&text, "case", &[]).unwrap();
+        let warnings = case.warnings();
+        (case.model.surface.textured.clone(), case.texture, warnings)
+    };
+    let (counted, report, warnings) = case("array = [4, 2]");
+    assert_eq!(counted.iter().filter(|&&t| t).count() % 8, 0);
+    assert_eq!(case("pitch = '12 um'").0, counted);
+    assert_eq!(case("pitch = ['12 um', '12 um']\narray = [4, 2]").0, counted);
+    assert_eq!(case("array = [2, 1]\nrepeat = { array = [2, 2] }").0, counted);
+    assert_eq!(
+        case("pitch = '12 um'\narray = [2, 1]\nrepeat = { pitch = ['24 um', '12 um'] }").0,
+        counted
+    );
+    assert!(
+        warnings.iter().all(|warning| !warning.contains("pattern")),
+        "{warnings:?}"
+    );
+    // pi 2^2 of 144 blocks.
+    assert!((report.asked_percent.unwrap() - 100.0 * std::f64::consts::PI * 4.0 / 144.0).abs() < 1e-12);
+    let (inverted, report, _) = case("array = [4, 2]\ninvert = true");
+    assert!(counted.iter().zip(&inverted).all(|(one, other)| one != other));
+    assert!(
+        (report.asked_percent.unwrap() - 100.0 * (1.0 - std::f64::consts::PI * 4.0 / 144.0)).abs() < 1e-12
+    );
+    let (staggered, ..) = case("array = [4, 2]\nlattice = 'staggered'");
+    // Half a cell to the right, and a row of cells up.
+    for b in 0..staggered.len() {
+        let (i, j) = (b % 48, b / 48);
+        assert_eq!(staggered[b], staggered[(j + 12) % 24 * 48 + (i + 6) % 48]);
+    }
+    let warnings = |pattern: &str| case(pattern).2.join("\n");
+    assert!(warnings("array = [4, 3]\nlattice = 'staggered'").contains("odd number of rows, 3"));
+    assert!(
+        warnings("pitch = '11 um'").contains("leaves 4.00 blocks free at the periodic edges that bound x")
+    );
+    assert!(
+        warnings("array = [4, 2]\nlattice = 'hexagonal'")
+            .contains("leaves 3.22 blocks free at the periodic edges that bound y")
+    );
+    assert!(!warnings("array = [2, 2]\npitch = '5 um'").contains("periodic edges"));
+}
+
+/// Coverage is that of all copies together, for every shape that has one.
+#[test]
+fn copies_share_the_coverage() {
+    for (texture, blocks) in [
+        ("shape = 'groove'\ncoverage = 20\narray = [5, 1]", 500),
+        ("shape = 'groove'\ncoverage = 20\npitch = '10 um'", 500),
+        (
+            "shape = 'groove'\ncoverage = 20\norientation = 'along'\narray = [1, 5]",
+            500,
+        ),
+        (
+            "shape = 'groove'\ncoverage = 20\npitch = '10 um'\ninvert = true",
+            2000,
+        ),
+        (
+            "shape = 'groove'\ncoverage = 20\narray = [5, 2]\nlattice = 'staggered'",
+            500,
+        ),
+        (
+            "shape = 'polygon'\npoints = [['23 um', '24 um'], ['27 um', '24 um'], ['27 um', '26 um'], ['23 um', '26 um']]\npitch = '10 um'",
+            200,
+        ),
+    ] {
+        let text = format!("slider.blocks = [50, 50]\n[[texture]]\n{texture}");
+        let case = Case::parse(&text, "case", &[]).unwrap();
+        let found = case.model.surface.textured.iter().filter(|&&t| t).count();
+        assert_eq!(found, blocks, "{texture}");
+        if let Some(asked) = case.texture.asked_percent {
+            assert!((asked - blocks as f64 / 25.0).abs() < 1e-9);
+        }
+    }
+}
+
+/// A mask in every cell is the mask of all cells.
+#[test]
+fn masks_fill_every_cell() {
+    let folder = tempfile::tempdir().unwrap();
+    let cell: Vec<bool> = (0..48).map(|b| b % 5 == 0 || b / 8 == 2).collect();
+    slipfront_case::arrays::write_mask_png(&folder.path().join("cell.png"), 8, 6, &cell).unwrap();
+    let case = |pattern: &str| {
+        let text =
+            format!("slider.blocks = [32, 24]\n[[texture]]\nshape = 'mask'\nfile = 'cell.png'\n{pattern}");
+        Case::parse_in(&text, "case", folder.path(), &[])
+    };
+    let said = case("pitch = '40 um'").unwrap_err().to_string();
+    assert!(
+        said.contains(
+            "a mask of 40 x 40 blocks in every place of the pattern is larger than the slider's 32 x 24"
+        ),
+        "{said}"
+    );
+    for (pattern, shift) in [
+        ("array = [4, 4]", 0),
+        ("pitch = ['8 um', '6 um']", 0),
+        ("array = [2, 4]\nrepeat = { array = [2, 1] }", 0),
+        ("array = [4, 4]\nlattice = 'staggered'", 2),
+    ] {
+        for (b, textured) in case(pattern).unwrap().model.surface.textured.iter().enumerate() {
+            let (i, j) = (b % 32, b / 32);
+            // Even rows of cells are a quarter of a cell to the left, odd ones to the right.
+            let column = if j / 6 % 2 == 0 {
+                i + shift
+            } else {
+                i.wrapping_sub(shift)
+            };
+            let inside = column < 32 && cell[j % 6 * 8 + column % 8];
+            assert_eq!(*textured, inside, "{pattern}: ({i}, {j})");
+        }
+    }
 }

@@ -5,10 +5,10 @@ use slipfront::observe::Field;
 use slipfront::surface::Orientation;
 use slipfront::{Edges, StopReason};
 use slipfront_case::case_file::{
-    Ageing, AgeingLaw, Along, Attached, AttachedEdge, AutoOr, CaseFile, Cavity, CavitySize, Center, Contact,
-    Damping, Drive, DriveSpeed, DriveStiffness, Friction, Grade, Groove, GrooveSize, KineticFriction, Law,
-    Load, Mask, Motion, Outline, Output, Polygon, Profile, RunTime, Slider, Snapshots, Source, SpeedSegment,
-    Step, Texture, Time, Velocity, VelocityLaw,
+    Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr, CaseFile, Cavity,
+    CavitySize, Center, Contact, Count, Damping, Drive, DriveSpeed, DriveStiffness, Friction, Grade, Groove,
+    GrooveSize, KineticFriction, Law, Load, Mask, Motion, Outline, Output, Pattern, Pitch, Polygon, Profile,
+    RunTime, Shape, Slider, Snapshots, Source, SpeedSegment, Step, Texture, Time, Velocity, VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 
@@ -281,13 +281,12 @@ fn rate_and_state() -> impl Strategy<Value = Friction> {
         )
 }
 
-fn cavity() -> impl Strategy<Value = Texture> {
+fn cavity() -> impl Strategy<Value = Shape> {
     let size = prop_oneof![
         (0.001..99.9).prop_map(CavitySize::Coverage),
         length().prop_map(CavitySize::Lambda)
     ];
     let center = prop_oneof![Just(Center::Middle), [length(), length()].prop_map(Center::At)];
-    let array = [1..=1000_u32, 1..=1000_u32];
     (
         1..=64_u32,
         -0.99..0.99,
@@ -295,17 +294,15 @@ fn cavity() -> impl Strategy<Value = Texture> {
         any::<bool>(),
         center,
         -360.0..360.0,
-        array,
     )
-        .prop_map(|(s, share, size, across, center, rotate, array)| {
-            Texture::Cavity(Cavity {
+        .prop_map(|(s, share, size, across, center, rotate)| {
+            Shape::Cavity(Cavity {
                 s,
                 w: share / f64::from(s),
                 size,
                 across,
                 center,
                 rotate,
-                array,
             })
         })
 }
@@ -321,17 +318,63 @@ fn texture() -> impl Strategy<Value = Texture> {
         length(),
     )
         .prop_map(|(orientation, size, offset)| {
-            Texture::Groove(Groove {
+            Shape::Groove(Groove {
                 orientation,
                 size,
                 offset,
             })
         });
     let polygon = prop::collection::vec([length(), length()], 3..8)
-        .prop_map(|points| Texture::Polygon(Polygon { points }));
+        .prop_map(|points| Shape::Polygon(Polygon { points }));
     let mask = (file(&["png", "npy"]), 0.01..0.99)
-        .prop_map(|(file, threshold)| Texture::Mask(Mask { file, threshold }));
-    prop_oneof![cavity(), groove, polygon, mask]
+        .prop_map(|(file, threshold)| Shape::Mask(Mask { file, threshold }));
+    let shape = prop_oneof![cavity(), groove, polygon, mask];
+    let parts = (shape, array(), prop::option::of(array()), any::<bool>());
+    parts.prop_filter_map(
+        "repeat needs a count or a pitch",
+        |(shape, own, repeat, invert)| {
+            let is_array = |array: &Array| array.pitch.is_some() || array.array != Count::Auto;
+            let is_valid =
+                (own.lattice == Arrangement::Square || is_array(&own)) && repeat.iter().all(is_array);
+            let Array {
+                pitch,
+                array,
+                lattice,
+            } = own;
+            let pattern = Pattern {
+                pitch,
+                array,
+                lattice,
+                repeat,
+                invert,
+            };
+            is_valid.then_some(Texture { shape, pattern })
+        },
+    )
+}
+
+fn array() -> impl Strategy<Value = Array> {
+    let count = prop_oneof![
+        Just(Count::Auto),
+        [1..=1000_u32, 1..=1000_u32].prop_map(Count::Of)
+    ];
+    let equal = (prop::option::of(length().prop_map(Pitch::Equal)), any::<bool>());
+    let arranged = prop_oneof![
+        equal.prop_map(|(pitch, is_square)| {
+            let lattice = if is_square {
+                Arrangement::Square
+            } else {
+                Arrangement::Hexagonal
+            };
+            (pitch, lattice)
+        }),
+        [length(), length()].prop_map(|pitch| (Some(Pitch::Each(pitch)), Arrangement::Staggered)),
+    ];
+    (count, arranged).prop_map(|(array, (pitch, lattice))| Array {
+        pitch,
+        array,
+        lattice,
+    })
 }
 
 fn time() -> impl Strategy<Value = Time> {

@@ -1,11 +1,10 @@
-//! `slipfront texture`: the textured blocks of a case as a picture.
+//! `slipfront texture`: the texture of a case as outlines, a picture or a height field.
 
 use std::path::PathBuf;
 
 use clap::Args;
-use slipfront_case::arrays;
-use slipfront_case::arrays::ArrayError;
 use slipfront_case::disk::is_same;
+use slipfront_run::texture_file;
 
 use crate::case_args::CaseArgs;
 use crate::failure::Failure;
@@ -15,17 +14,22 @@ use crate::report;
 use crate::signals::Signals;
 use crate::threads::set_threads;
 
-/// Write the texture of a case as a mask: one pixel per block, textured ones black
+/// Write the texture of a case: as outlines in true size, SVG or DXF, as a picture with one pixel per block, textured ones black, or
+/// as a height field
 #[derive(Args)]
-#[command(after_help = "Example:
-  slipfront texture cases/circle.toml -o mask.png")]
+#[command(after_help = "Examples:
+  slipfront texture cases/circle.toml -o mask.png            a mask that a case can read
+  slipfront texture cases/hexagonal_dimples.toml -o dimples.dxf    for a laser, in millimetres")]
 pub(crate) struct Texture {
     #[command(flatten)]
     case: CaseArgs,
-    /// The picture to write
-    #[arg(short, long, value_name = "MASK.png")]
+    /// The file to write: .svg, .dxf, .png, or .gsf, a Gwyddion simple field
+    #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
-    /// Replace the picture if it exists
+    /// Pixels of a block along a side, of a picture [default: 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    scale: Option<u16>,
+    /// Replace the file if it exists
     #[arg(long)]
     force: bool,
 }
@@ -41,7 +45,7 @@ impl Texture {
             .find(|input| is_same(&input.original, &self.out));
         if let Some(input) = input {
             let sentence = format!(
-                "the mask would replace {}, which the case reads: choose another name",
+                "the texture would replace {}, which the case reads: choose another name",
                 input.original.display()
             );
             return Err(Failure::input(anyhow::anyhow!(sentence)));
@@ -54,23 +58,18 @@ impl Texture {
             );
             return Err(Failure::input(anyhow::anyhow!(sentence)));
         }
-        let lattice = &case.model.lattice;
-        // What does not exist has no contact either, but is no texture.
-        let (surface, slider) = (&case.model.surface, case.model.slider());
-        let blocks = surface.textured.iter().enumerate();
-        let textured: Vec<bool> = blocks
-            .map(|(b, textured)| *textured && slider.exists(b))
-            .collect();
-        arrays::write_mask_png(&self.out, lattice.nx, lattice.ny, &textured).map_err(
-            |error| match error {
-                ArrayError::Extension { .. } => Failure::input(error),
-                error => Failure::running(error),
-            },
-        )?;
+        let failed = |error: texture_file::TextureFileError| match error.is_input() {
+            true => Failure::input(error),
+            false => Failure::running(error),
+        };
+        let smallest = texture_file::smallest(&case).map_err(Failure::input)?;
+        let scale = self.scale.map(usize::from);
+        let said = texture_file::write(&case, &self.out, scale).map_err(failed)?;
         let covered = match case.file.texture.is_empty() {
-            true => "the case has no texture: every pixel is white".to_owned(),
+            true => "the case has no texture: every block touches".to_owned(),
             false => report::texture(&case),
         };
+        let covered = covered + &report::smallest(&case, smallest, &said);
         print_message(&format!("{covered}\n{}\n", self.out.display()));
         Ok(())
     }

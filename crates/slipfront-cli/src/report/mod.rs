@@ -8,6 +8,6 @@ mod summary;
 mod times;
 
 pub(crate) use cost::cost;
-pub(crate) use physics::{physics, texture};
+pub(crate) use physics::{physics, smallest, texture};
 pub(crate) use study::{plan, study};
 pub(crate) use summary::summary;

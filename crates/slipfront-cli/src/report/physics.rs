@@ -1,9 +1,12 @@
 //! The resolved physics of a case.
 
+use slipfront::surface::Clearance;
 use slipfront::{Friction, FrictionLaw};
 use slipfront_case::case::Case;
 use slipfront_case::case_file::{Attached, AttachedEdge, DriveStiffness, Grade, Motion, Outline};
 use slipfront_case::number_format::{count, four_digits, with_si_prefix};
+
+use super::summary::notes;
 
 /// The resolved physics of a case, as a tree.
 pub(crate) fn physics(case: &Case) -> String {
@@ -189,6 +192,28 @@ pub(crate) fn texture(case: &Case) -> String {
         "{} % of the blocks{asked}",
         four_digits(case.texture.meshed_percent)
     )
+}
+
+/// The smallest lengths of the texture, on lines of their own, with what there is to say about them and `said` of a file.
+pub(crate) fn smallest(case: &Case, smallest: Clearance, said: &[String]) -> String {
+    let mut lines = String::new();
+    let mut warnings = Vec::new();
+    for (name, length) in [("feature", smallest.feature), ("gap", smallest.gap)] {
+        let Some(blocks) = length else { continue };
+        let length = with_si_prefix(blocks * case.scales.block_size, "m");
+        lines += &format!("\nsmallest {name} {length}");
+        // Not for a length of one block that was rounded.
+        if blocks < 1.0 - 1e-9 {
+            warnings.push(format!(
+                "the smallest {name} of the texture, {length}, is smaller than a block: the blocks do not show it as it is drawn"
+            ));
+        }
+    }
+    warnings.extend_from_slice(said);
+    for note in notes(&warnings).lines() {
+        lines += &format!("\n{note}");
+    }
+    lines
 }
 
 fn time(case: &Case) -> String {

@@ -1,4 +1,4 @@
-//! `slipfront texture`: a mask written and read back is the same texture.
+//! `slipfront texture`: a mask written and read back is the same texture, and outlines are written beside it.
 
 use crate::fixtures::{MASKED, SMALL};
 use crate::support::process::{send, stderr, wait_for_signal_handlers};
@@ -82,5 +82,40 @@ fn a_picture_is_replaced_only_by_force() {
         "{said}"
     );
     let said = workspace.fail("texture small.toml -o mask.jpg", 2);
-    assert!(said.contains("name a file that ends in .png"), "{said}");
+    assert!(
+        said.contains("name a file that ends in .svg or .dxf for outlines, in .png for a picture"),
+        "{said}"
+    );
+}
+
+/// Every format is written, with the smallest lengths; those below a block are warned of.
+#[test]
+fn outlines_and_fields_are_written() {
+    let workspace = Workspace::small();
+    let dimples = "[[texture]]\nshape = 'cavity'\nlambda = '0.4 um'\npitch = '2 um'\n";
+    workspace.write("dimples.toml", format!("{SMALL}{dimples}"));
+    for (name, beginning) in [
+        ("a.svg", &b"<svg"[..]),
+        ("a.dxf", b"0\nSECTION"),
+        ("a.gsf", b"Gwyddion Simple Field 1.0"),
+        ("a.png", b"\x89PNG"),
+    ] {
+        let said = workspace.succeed(&format!("texture dimples.toml -o {name}"));
+        assert!(
+            said.contains("smallest feature 800 nm\nsmallest gap 1.2 um\n"),
+            "{said}"
+        );
+        assert!(
+            said.contains("the smallest feature of the texture, 800 nm, is smaller than a block"),
+            "{said}"
+        );
+        assert!(!said.contains("the smallest gap of"), "{said}");
+        assert!(said.ends_with(&format!("{name}\n")), "{said}");
+        assert!(workspace.read(name).starts_with(beginning));
+    }
+    workspace.succeed("texture dimples.toml -o b.png --scale 3");
+    assert!(workspace.read("b.png") != workspace.read("a.png"));
+    let said = workspace.fail("texture dimples.toml -o b.svg --scale 3", 2);
+    assert!(said.contains("`--scale` is for pictures"), "{said}");
+    workspace.fail("texture dimples.toml -o c.png --scale 0", 2);
 }

@@ -20,7 +20,8 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
     let (mut misses, mut printed, mut vertices) = (Vec::new(), Vec::new(), Vec::new());
     for (k, label) in sweep.names(0).into_iter().enumerate() {
         let case = sweep.case(&[k], 0)?;
-        let Some(case_file::Texture::Cavity(cavity)) = case.file.texture.first() else {
+        let Some(case_file::Shape::Cavity(cavity)) = case.file.texture.first().map(|texture| &texture.shape)
+        else {
             continue;
         };
         let points = outline(cavity.s, cavity.w);

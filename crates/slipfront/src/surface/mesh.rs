@@ -5,7 +5,8 @@ use std::convert::Infallible;
 use std::ops::Range;
 
 use super::outline::{Crossing, Outlines, Sweep};
-use super::texture::{Groove, Texture};
+use super::pattern::{Grid, grids, n_rows};
+use super::texture::{Groove, Shape, Texture, Tile};
 use crate::lattice::{Edges, Lattice};
 
 /// A texture on a lattice.
@@ -33,35 +34,25 @@ pub fn mesh_watched<E>(
     textures: &[Texture],
     watch: &mut dyn FnMut(f64) -> Result<(), E>,
 ) -> Result<Meshed, E> {
-    let rows_of_centers = |texture: &Texture| match texture {
-        Texture::Cavity(cavity) => cavity.array[1] as f64,
-        _ => 1.0,
-    };
-    let total: f64 = textures.iter().map(rows_of_centers).sum();
+    let total: f64 = textures
+        .iter()
+        .map(|texture| n_rows(&grids(&texture.arrays)) as f64)
+        .sum();
     let mut done = 0.0;
     let (mut clipped, mut empty) = (Vec::new(), Vec::new());
-    let mut mask = Mask {
-        lattice,
-        rows,
-        textured: vec![false; lattice.blocks_of(rows).len()],
-        full: vec![false; rows.len()],
-        covers: false,
-    };
+    let mut mask = Mask::new(lattice, rows);
     for (index, texture) in textures.iter().enumerate() {
-        mask.covers = false;
+        let grids = grids(&texture.arrays);
         let mut watch_texture = |rows: f64| watch((done + rows) / total);
-        let is_clipped = match texture {
-            Texture::Cavity(cavity) => mask.cover(&cavity.outlines(lattice), &mut watch_texture)?,
-            Texture::Polygon(points) => mask.cover(&Outlines::polygon(points), &mut watch_texture)?,
-            Texture::Groove(groove) => mask.cover_strip(groove),
-            Texture::Blocks(blocks) => {
-                let pairs = mask.textured.iter_mut().zip(blocks.iter());
-                pairs.for_each(|(textured, block)| *textured |= block);
-                mask.covers = blocks.contains(&true);
-                false
-            }
+        let is_clipped = if texture.inverted {
+            let mut inside = Mask::new(lattice, rows);
+            let is_clipped = inside.cover_copies(&texture.shape, &grids, &mut watch_texture)?;
+            mask.cover_all_but(&inside);
+            is_clipped
+        } else {
+            mask.cover_copies(&texture.shape, &grids, &mut watch_texture)?
         };
-        done += rows_of_centers(texture);
+        done += n_rows(&grids) as f64;
         clipped.extend(is_clipped.then_some(index));
         empty.extend((!mask.covers).then_some(index));
     }
@@ -72,9 +63,23 @@ pub fn mesh_watched<E>(
     })
 }
 
+/// Whether copies of a texture's shape have blocks in common, on all of a lattice.
+pub fn copies_overlap(lattice: &Lattice, texture: &Texture) -> bool {
+    let rows = 0..lattice.ny;
+    let mut mask = Mask::new(lattice, &rows);
+    let Ok(_) = mask.cover_copies::<Infallible>(&texture.shape, &grids(&texture.arrays), &mut |_| Ok(()));
+    mask.overlaps
+}
+
 /// Crossings that are farther apart than this have the same order around every centre: coordinates of up to 10^7 blocks are
 /// rounded by 10^-9.
 const DISTINCT: f64 = 1e-6;
+
+/// The largest distance between neighbouring lines of a grid.
+fn largest_gap(lines: &[f64]) -> f64 {
+    let gaps = lines.windows(2).map(|pair| pair[1] - pair[0]);
+    gaps.fold(0.0, f64::max)
+}
 
 /// The blocks that are textured so far.
 struct Mask<'a> {
@@ -86,9 +91,45 @@ struct Mask<'a> {
     full: Vec<bool>,
     /// Whether the present texture covers any block of these rows.
     covers: bool,
+    /// Whether some block was marked twice.
+    overlaps: bool,
 }
 
-impl Mask<'_> {
+impl<'a> Mask<'a> {
+    fn new(lattice: &'a Lattice, rows: &'a Range<usize>) -> Self {
+        Self {
+            lattice,
+            rows,
+            textured: vec![false; lattice.blocks_of(rows).len()],
+            full: vec![false; rows.len()],
+            covers: false,
+            overlaps: false,
+        }
+    }
+
+    /// Marks the blocks inside any of the copies of a shape; gives whether one of these extends beyond a free edge.
+    fn cover_copies<E>(
+        &mut self,
+        shape: &Shape,
+        grids: &[Grid],
+        watch: &mut dyn FnMut(f64) -> Result<(), E>,
+    ) -> Result<bool, E> {
+        self.covers = false;
+        match shape {
+            Shape::Cavity(cavity) => self.cover(&cavity.outlines(grids), watch),
+            Shape::Polygon(points) => self.cover(&Outlines::polygon(points, grids), watch),
+            Shape::Groove(groove) => Ok(self.cover_strips(groove, grids)),
+            Shape::Tile(tile) => self.cover_tiles(tile, grids, watch),
+        }
+    }
+
+    /// Marks the blocks that another mask does not.
+    fn cover_all_but(&mut self, inside: &Mask) {
+        self.covers = inside.textured.contains(&false);
+        let pairs = self.textured.iter_mut().zip(&inside.textured);
+        pairs.for_each(|(textured, inside)| *textured |= !inside);
+    }
+
     /// Marks the blocks inside any of the outlines; gives whether one of these extends beyond a free edge.
     fn cover<E>(
         &mut self,
@@ -96,36 +137,47 @@ impl Mask<'_> {
         watch: &mut dyn FnMut(f64) -> Result<(), E>,
     ) -> Result<bool, E> {
         let mut crossings = Vec::new();
-        for (done, &center) in outlines.centers[1].iter().enumerate() {
-            let [low, high] = outlines.bounds(1, center);
-            let rows = blocks_between(low, high, self.lattice.ny, self.lattice.edges[1]);
-            let mut sweep = outlines.at_height(center);
-            for row in rows.clone() {
-                let Some(meshed_row) = self.meshed_row(row) else {
-                    continue;
-                };
-                watch(done as f64 + (row - rows.start) as f64 / rows.len() as f64)?;
-                if self.covers && self.full[meshed_row] {
-                    continue;
+        let mut done = 0.0;
+        for [columns, heights] in &outlines.centers {
+            let gap = largest_gap(columns);
+            for &center in heights {
+                let [low, high] = outlines.bounds(1, center);
+                let rows = blocks_between(low, high, self.lattice.ny, self.lattice.edges[1]);
+                let mut sweep = outlines.at_height(center);
+                for row in rows.clone() {
+                    let Some(meshed_row) = self.meshed_row(row) else {
+                        continue;
+                    };
+                    watch(done + (row - rows.start) as f64 / rows.len() as f64)?;
+                    if self.covers && self.full[meshed_row] {
+                        self.overlaps = true;
+                        continue;
+                    }
+                    sweep.intersect(row as f64 + 0.5, &mut crossings);
+                    self.cover_row(row, &sweep, &mut crossings, columns, gap);
                 }
-                sweep.intersect(row as f64 + 0.5, &mut crossings);
-                self.cover_row(row, &sweep, &mut crossings, &outlines.centers[0]);
+                done += 1.0;
             }
         }
         let is_clipped = |axis: usize| {
-            let bounds = outlines
-                .outermost(axis)
-                .map(|center| outlines.bounds(axis, center));
-            self.is_beyond(axis, bounds.as_flattened())
+            let mut outermost = outlines.outermost(axis);
+            outermost.any(|center| self.is_beyond(axis, &outlines.bounds(axis, center)))
         };
         Ok(is_clipped(0) || is_clipped(1))
     }
 
-    /// Marks the blocks of a row inside any of the outlines around `centers`.
+    /// Marks the blocks of a row inside any of the outlines around `centers`, which are at most `gap` apart.
     ///
-    /// Where neighbours overlap, their union is one interval from the first to the last of them: what remains to be done does
+    /// Where all neighbours overlap, their union is one interval from the first to the last of them: what remains to be done does
     /// not grow with their number.
-    fn cover_row(&mut self, row: isize, sweep: &Sweep, crossings: &mut [Crossing], centers: &[f64]) {
+    fn cover_row(
+        &mut self,
+        row: isize,
+        sweep: &Sweep,
+        crossings: &mut [Crossing],
+        centers: &[f64],
+        gap: f64,
+    ) {
         let [first, .., last] = *centers else {
             return self.cover_pairs(row, sweep, crossings, centers);
         };
@@ -134,10 +186,10 @@ impl Mask<'_> {
         if !crossings.windows(2).all(|pair| width(pair) > DISTINCT) {
             return self.cover_pairs(row, sweep, crossings, centers);
         }
-        let spacing = (last - first) / (centers.len() - 1) as f64;
         for pair in crossings.chunks_exact(2) {
             // By a whole block, far more than rounding.
-            if width(pair) > spacing + 1.0 {
+            if width(pair) > gap + 1.0 {
+                self.overlaps = true;
                 self.cover_interval(row, sweep, [(first, pair[0].x(first)), (last, pair[1].x(last))]);
             } else {
                 self.cover_pairs(row, sweep, pair, centers);
@@ -179,16 +231,68 @@ impl Mask<'_> {
         self.fill(row, start..end);
     }
 
-    /// Marks the blocks of a groove; gives whether it extends beyond a free edge.
-    fn cover_strip(&mut self, groove: &Groove) -> bool {
-        let [[left, bottom], [right, top]] = groove.bounds(self.lattice);
+    /// Marks the blocks of the copies of a groove; gives whether one extends beyond a free edge.
+    fn cover_strips(&mut self, groove: &Groove, grids: &[Grid]) -> bool {
         let Lattice { nx, ny, edges } = *self.lattice;
-        for row in blocks_between(bottom, top, ny, edges[1]) {
-            if (bottom..top).contains(&(row as f64 + 0.5)) {
-                self.fill(row, blocks_between(left, right, nx, edges[0]));
+        let mut is_clipped = false;
+        for shift in groove.shifts(grids) {
+            let [[left, bottom], [right, top]] = groove.bounds(self.lattice, shift);
+            for row in blocks_between(bottom, top, ny, edges[1]) {
+                if (bottom..top).contains(&(row as f64 + 0.5)) {
+                    self.fill(row, blocks_between(left, right, nx, edges[0]));
+                }
+            }
+            is_clipped |= self.is_beyond(0, &[left, right]) || self.is_beyond(1, &[bottom, top]);
+        }
+        is_clipped
+    }
+
+    /// Marks the blocks of the copies of a mask; gives whether one extends beyond a free edge.
+    fn cover_tiles<E>(
+        &mut self,
+        tile: &Tile,
+        grids: &[Grid],
+        watch: &mut dyn FnMut(f64) -> Result<(), E>,
+    ) -> Result<bool, E> {
+        let Lattice { nx, ny, edges } = *self.lattice;
+        let within = |at: isize, axis: usize| {
+            let size = [nx, ny][axis] as isize;
+            if edges[axis] == Edges::Free {
+                at.clamp(0, size)
+            } else {
+                at
+            }
+        };
+        let mut is_clipped = false;
+        let mut done = 0.0;
+        for [columns, heights] in grids {
+            for &y in heights {
+                watch(done)?;
+                for &x in columns {
+                    let start = tile.start(self.lattice, [x, y]);
+                    let end = [0, 1].map(|axis| start[axis] + tile.size[axis] as isize);
+                    is_clipped |= [0, 1].iter().any(|&axis| {
+                        within(start[axis], axis) != start[axis] || within(end[axis], axis) != end[axis]
+                    });
+                    for (row, blocks) in tile.rows.clone().zip(tile.blocks.chunks(tile.size[0])) {
+                        let row = start[1] + row as isize;
+                        if within(row, 1) != row || row == ny as isize && edges[1] == Edges::Free {
+                            continue;
+                        }
+                        let mut column = start[0];
+                        for run in blocks.chunk_by(|one, other| one == other) {
+                            let next = column + run.len() as isize;
+                            if run[0] {
+                                self.fill(row, within(column, 0)..within(next, 0));
+                            }
+                            column = next;
+                        }
+                    }
+                }
+                done += 1.0;
             }
         }
-        self.is_beyond(0, &[left, right]) || self.is_beyond(1, &[bottom, top])
+        Ok(is_clipped)
     }
 
     /// Whether any of these coordinates lies beyond a free edge.
@@ -214,8 +318,11 @@ impl Mask<'_> {
         let from = columns.start.rem_euclid(nx as isize) as usize;
         self.full[row] |= count == nx;
         let row = &mut self.textured[row * nx..][..nx];
-        row[from..nx.min(from + count)].fill(true);
-        row[..(from + count).saturating_sub(nx)].fill(true);
+        self.overlaps |= columns.len() > nx;
+        for part in [from..nx.min(from + count), 0..(from + count).saturating_sub(nx)] {
+            self.overlaps |= row[part.clone()].contains(&true);
+            row[part].fill(true);
+        }
     }
 }
 
@@ -233,12 +340,17 @@ fn blocks_between(from: f64, to: f64, count: usize, edges: Edges) -> Range<isize
 mod tests {
     use std::f64::consts::TAU;
 
+    use super::super::pattern::Array;
     use super::super::texture::{Cavity, Orientation, cavity_lambda};
     use super::*;
     use crate::vector_field::unit_vector;
 
-    fn count(lattice: &Lattice, texture: Texture) -> usize {
-        mesh(lattice, &[texture]).textured.iter().filter(|&&t| t).count()
+    fn count(lattice: &Lattice, shape: Shape) -> usize {
+        mesh(lattice, &[shape.into()])
+            .textured
+            .iter()
+            .filter(|&&t| t)
+            .count()
     }
 
     fn cavity(s: u32, w: f64, percent: f64) -> Cavity {
@@ -250,7 +362,6 @@ mod tests {
             w,
             across: false,
             rotate: 0.0,
-            array: [1, 1],
         }
     }
 
@@ -262,7 +373,7 @@ mod tests {
             width: 5.0,
             offset: 0.0,
         };
-        let meshed = mesh(&lattice, &[Texture::Groove(groove)]);
+        let meshed = mesh(&lattice, &[Shape::Groove(groove).into()]);
         for b in 0..2500 {
             assert_eq!(meshed.textured[b], (22..=26).contains(&(b % 50)), "block {b}");
         }
@@ -286,7 +397,7 @@ mod tests {
                 lambda,
                 ..cavity(1, 0.0, 1.0)
             };
-            let t = mesh(&lattice, &[Texture::Cavity(circle)]).textured;
+            let t = mesh(&lattice, &[Shape::Cavity(circle).into()]).textured;
             for j in 0..n {
                 for i in 0..n {
                     let here = t[lattice.block(i, j)];
@@ -312,7 +423,7 @@ mod tests {
             (1, -0.6),
         ];
         for (s, w) in shapes {
-            let blocks = count(&lattice, Texture::Cavity(cavity(s, w, 10.0)));
+            let blocks = count(&lattice, Shape::Cavity(cavity(s, w, 10.0)));
             // The meshed area of a smooth outline of perimeter ~60 differs from 250 by a few blocks.
             assert!(blocks.abs_diff(250) <= 8, "s = {s}, w = {w}: {blocks}");
         }
@@ -337,20 +448,21 @@ mod tests {
                 ]
             })
             .collect();
-        let ellipse = mesh(&lattice, &[Texture::Cavity(turned)]);
-        assert_eq!(ellipse, mesh(&lattice, &[Texture::Polygon(points)]));
+        let ellipse = mesh(&lattice, &[Shape::Cavity(turned).into()]);
+        assert_eq!(ellipse, mesh(&lattice, &[Shape::Polygon(points).into()]));
     }
 
     #[test]
     fn elongation_lies_along_x_and_across_turns_it() {
         let lattice = Lattice::free(50, 50);
-        let along = mesh(&lattice, &[Texture::Cavity(cavity(1, 0.5, 10.0))]).textured;
+        let along = mesh(&lattice, &[Shape::Cavity(cavity(1, 0.5, 10.0)).into()]).textured;
         let across = mesh(
             &lattice,
-            &[Texture::Cavity(Cavity {
+            &[Shape::Cavity(Cavity {
                 across: true,
                 ..cavity(1, 0.5, 10.0)
-            })],
+            })
+            .into()],
         )
         .textured;
         let width = |t: &[bool]| (0..50).filter(|&i| t[25 * 50 + i]).count();
@@ -364,10 +476,10 @@ mod tests {
             center: [0.0, 0.0],
             ..cavity(1, 0.0, 4.0)
         };
-        let free = mesh(&Lattice::free(50, 50), &[Texture::Cavity(corner)]);
+        let free = mesh(&Lattice::free(50, 50), &[Shape::Cavity(corner).into()]);
         let wrapped = mesh(
             &Lattice::with_edges(50, 50, [Edges::Periodic; 2]),
-            &[Texture::Cavity(corner)],
+            &[Shape::Cavity(corner).into()],
         );
         let blocks = |m: &Meshed| m.textured.iter().filter(|&&t| t).count();
         assert_eq!(free.clipped, [0]);
@@ -383,7 +495,7 @@ mod tests {
                 center: [12.5, 12.5],
                 ..cavity(s, 0.2, 100.0)
             };
-            assert_eq!(count(&lattice, Texture::Cavity(large)), 625, "s = {s}");
+            assert_eq!(count(&lattice, Shape::Cavity(large)), 625, "s = {s}");
         }
     }
 
@@ -391,18 +503,169 @@ mod tests {
     fn an_array_covers_as_much_as_one() {
         let lattice = Lattice::free(60, 60);
         let lambda = cavity_lambda(20.0, 3600, 1, 0.0, 6);
-        let array = Cavity {
+        let cavity = Cavity {
             center: [30.0, 30.0],
             lambda,
             s: 1,
             w: 0.0,
             across: false,
             rotate: 0.0,
-            array: [3, 2],
         };
-        let meshed = mesh(&lattice, &[Texture::Cavity(array)]);
+        let array = Texture {
+            arrays: vec![Array::spread(&lattice, [3, 2])],
+            ..Shape::Cavity(cavity).into()
+        };
+        let meshed = mesh(&lattice, &[array]);
         assert!(meshed.textured.iter().filter(|&&t| t).count().abs_diff(720) < 25);
         assert!(meshed.textured[lattice.block(10, 15)] && meshed.textured[lattice.block(50, 45)]);
+    }
+
+    /// A staggered pattern of whole and half blocks repeats itself after a row and half a column, and covers as many blocks as
+    /// one cavity for each of its places.
+    #[test]
+    fn a_staggered_pattern_repeats_itself_exactly() {
+        let lattice = Lattice::with_edges(48, 40, [Edges::Periodic; 2]);
+        let shape = Shape::Cavity(Cavity {
+            center: [24.0, 20.0],
+            lambda: 3.2,
+            ..cavity(1, 0.3, 1.0)
+        });
+        let pattern = |staggered| Texture {
+            arrays: vec![Array {
+                staggered,
+                ..Array::spread(&lattice, [4, 4])
+            }],
+            ..shape.clone().into()
+        };
+        let one = count(&lattice, shape.clone());
+        for (texture, step) in [(pattern(true), [6, 10]), (pattern(false), [12, 10])] {
+            let t = mesh(&lattice, &[texture]).textured;
+            assert_eq!(t.iter().filter(|&&t| t).count(), 16 * one);
+            for b in 0..t.len() {
+                let (i, j) = lattice.column_row(b);
+                assert_eq!(t[b], t[lattice.block((i + step[0]) % 48, (j + step[1]) % 40)]);
+            }
+        }
+    }
+
+    /// Clusters of four by three cavities in a pattern of three by two.
+    #[test]
+    fn a_pattern_of_patterns_has_a_pattern_at_every_place() {
+        let lattice = Lattice::with_edges(60, 40, [Edges::Periodic; 2]);
+        let inner = Array {
+            count: [4, 3],
+            spacing: [3.0, 4.0],
+            staggered: true,
+        };
+        let dot = Cavity {
+            center: [30.5, 20.5],
+            lambda: 0.9,
+            ..cavity(1, 0.0, 1.0)
+        };
+        let nested = Texture {
+            arrays: vec![Array::spread(&lattice, [3, 2]), inner],
+            ..Shape::Cavity(dot).into()
+        };
+        let t = mesh(&lattice, &[nested]).textured;
+        let clusters: Vec<Texture> = (0..6)
+            .map(|k| Texture {
+                arrays: vec![inner],
+                ..Shape::Cavity(Cavity {
+                    center: [10.5 + f64::from(k % 3) * 20.0, 10.5 + f64::from(k / 3) * 20.0],
+                    ..dot
+                })
+                .into()
+            })
+            .collect();
+        assert_eq!(t, mesh(&lattice, &clusters).textured);
+        assert!(t.iter().filter(|&&t| t).count() >= 72);
+    }
+
+    #[test]
+    fn copies_of_a_groove_are_beside_each_other() {
+        let lattice = Lattice::free(60, 40);
+        let groove = |orientation| Groove {
+            orientation,
+            width: 3.0,
+            offset: 0.0,
+        };
+        for (orientation, staggered, strips, size) in [
+            (Orientation::Across, false, 5, 40),
+            (Orientation::Across, true, 10, 40),
+            (Orientation::Along, false, 4, 60),
+            (Orientation::Along, true, 4, 60),
+        ] {
+            let shape = Shape::Groove(groove(orientation));
+            let arrays = vec![Array {
+                staggered,
+                ..Array::spread(&lattice, [5, 4])
+            }];
+            assert_eq!(shape.n_copies(&arrays), strips);
+            let texture = Texture {
+                arrays,
+                ..shape.into()
+            };
+            let blocks = mesh(&lattice, &[texture]).textured.iter().filter(|&&t| t).count();
+            assert_eq!(blocks, strips * 3 * size, "{orientation:?} {staggered}");
+        }
+    }
+
+    /// A mask of one column, in rows that are shifted by half a cell.
+    #[test]
+    fn tiles_are_laid_beside_each_other() {
+        let lattice = Lattice::with_edges(24, 12, [Edges::Periodic; 2]);
+        let size = [6, 3];
+        let blocks: Vec<bool> = (0..18).map(|b| b % 6 == 2).collect();
+        for staggered in [false, true] {
+            let tile = Tile {
+                size,
+                rows: 0..3,
+                blocks: blocks.clone().into(),
+            };
+            let texture = Texture {
+                arrays: vec![Array {
+                    staggered,
+                    ..Array::spread(&lattice, [4, 4])
+                }],
+                ..Shape::Tile(tile).into()
+            };
+            let meshed = mesh(&lattice, &[texture]);
+            assert!(meshed.clipped.is_empty());
+            for (b, textured) in meshed.textured.iter().enumerate() {
+                let (i, j) = lattice.column_row(b);
+                // A quarter of a cell is one and a half blocks: even rows of cells go to the left by one, odd ones to the right by two.
+                let shift = match (staggered, j / 3 % 2) {
+                    (false, _) => 0,
+                    (true, 0) => 23,
+                    (true, _) => 2,
+                };
+                assert_eq!(*textured, (i + 24 - shift) % 6 == 2, "block ({i}, {j})");
+            }
+        }
+    }
+
+    #[test]
+    fn pillars_leave_what_is_between_them() {
+        let lattice = Lattice::free(50, 50);
+        let circle = Cavity {
+            lambda: 12.0,
+            ..cavity(1, 0.0, 1.0)
+        };
+        let inverted = Texture {
+            inverted: true,
+            ..Shape::Cavity(circle).into()
+        };
+        let inside = count(&lattice, Shape::Cavity(circle));
+        let outside = mesh(&lattice, std::slice::from_ref(&inverted));
+        let found = outside.textured.iter().filter(|&&t| t).count();
+        assert_eq!(found, 2500 - inside);
+        assert!(!outside.textured[lattice.block(25, 25)] && outside.textured[0]);
+        // Pillars everywhere leave nothing.
+        let all = Texture {
+            inverted: true,
+            ..Shape::Polygon(vec![[0.0, 0.0], [50.0, 0.0], [50.0, 50.0], [0.0, 50.0]]).into()
+        };
+        assert_eq!(mesh(&lattice, &[inverted, all]).empty, [1]);
     }
 
     #[test]
@@ -414,7 +677,7 @@ mod tests {
                 [20.0 + 19.0 * phi.cos(), 20.0 + 19.0 * phi.sin()]
             })
             .collect();
-        let meshed = mesh(&lattice, &[Texture::Polygon(star)]);
+        let meshed = mesh(&lattice, &[Shape::Polygon(star).into()]);
         assert!(!meshed.textured[lattice.block(20, 20)]);
         assert!(meshed.textured[lattice.block(33, 20)]);
     }
@@ -422,10 +685,10 @@ mod tests {
     #[test]
     fn who_watches_sees_the_share_rise_and_can_end_it() {
         let lattice = Lattice::free(50, 50);
-        let array = Texture::Cavity(Cavity {
-            array: [2, 3],
-            ..cavity(3, 0.2, 2.0)
-        });
+        let array = Texture {
+            arrays: vec![Array::spread(&lattice, [2, 3])],
+            ..Shape::Cavity(cavity(3, 0.2, 2.0)).into()
+        };
         let textures = [array.clone(), array];
         let mut shares = Vec::new();
         let watched = mesh_watched::<Infallible>(&lattice, &(0..50), &textures, &mut |share| {

@@ -4,17 +4,23 @@
 //! contact; [`Surface::new`] makes the friction thresholds of all blocks from the three, [`Surface::of_ranks`] those of the
 //! blocks that a rank holds.
 
+mod clearance;
 mod coefficients;
+mod contour;
 mod load;
 mod mesh;
 mod outline;
+mod pattern;
 mod texture;
 mod whole;
 
+pub use clearance::{Clearance, clearance};
 pub use coefficients::{Coefficients, Distribution, STREAMS};
+pub use contour::{Contour, Ellipse, Piece, contours};
 pub use load::{Adhesion, Contact, Load, pressure_along};
-pub use mesh::{Meshed, mesh, mesh_watched};
-pub use texture::{Cavity, Groove, Orientation, Texture, cavity_lambda, cavity_percent};
+pub use mesh::{Meshed, copies_overlap, mesh, mesh_watched};
+pub use pattern::{Array, n_copies};
+pub use texture::{Cavity, Groove, Orientation, Shape, Texture, Tile, cavity_lambda, cavity_percent};
 
 use rayon::prelude::*;
 

@@ -1,17 +1,19 @@
-//! Closed outlines that can be cut by a horizontal line, once or on a grid of centres.
+//! Closed outlines that can be cut by a horizontal line, once or on grids of centres.
 //!
 //! Where a line cuts an outline depends on the height of its centre alone, but for a shift along x. So the cut is found once for
-//! all outlines of a row of the grid, and each of its ends is placed with the rounding of an outline that stands there alone.
+//! all outlines of a row of a grid, and each of its ends is placed with the rounding of an outline that stands there alone.
 
-/// Outlines of one shape, around every crossing of a grid of lines.
+use super::pattern::Grid;
+
+/// Outlines of one curve, around every crossing of some grids of lines.
 pub(super) struct Outlines {
-    pub(super) shape: Shape,
-    /// x, then y, of the lines of the grid, in rising order.
-    pub(super) centers: [Vec<f64>; 2],
+    pub(super) curve: Curve,
+    /// The grids of their centres.
+    pub(super) centers: Vec<Grid>,
 }
 
 /// An outline around (0, 0).
-pub(super) enum Shape {
+pub(super) enum Curve {
     /// Its semi-axes, and the direction of the first of them.
     Ellipse { semi_axes: [f64; 2], axis: [f64; 2] },
     /// By the even-odd rule.
@@ -31,29 +33,46 @@ pub(super) struct Vertex {
     pub(super) y: Terms,
 }
 
+impl Vertex {
+    /// Where it lies of the polygon with this centre.
+    pub(super) fn around(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [add(self.x, x), add(self.y, y)]
+    }
+}
+
 impl Outlines {
-    /// A polygon that stands alone.
-    pub(super) fn polygon(points: &[[f64; 2]]) -> Self {
+    /// A curve around the middle of `grids`, which give the shifts of its copies from there.
+    pub(super) fn at(curve: Curve, middle: [f64; 2], grids: &[Grid]) -> Self {
+        let centers = |grid: &Grid| {
+            let along = |axis: usize| grid[axis].iter().map(|shift| middle[axis] + shift).collect();
+            [along(0), along(1)]
+        };
+        Self {
+            curve,
+            centers: grids.iter().map(centers).collect(),
+        }
+    }
+
+    /// The copies of a polygon that stands in the middle of `grids`.
+    pub(super) fn polygon(points: &[[f64; 2]], grids: &[Grid]) -> Self {
         let vertex = |&[x, y]: &[f64; 2]| Vertex {
             x: [x, 0.0],
             y: [y, 0.0],
         };
-        Self {
-            shape: Shape::Polygon(points.iter().map(vertex).collect()),
-            centers: [vec![0.0], vec![0.0]],
-        }
+        let curve = Curve::Polygon(points.iter().map(vertex).collect());
+        Self::at(curve, [0.0; 2], grids)
     }
 
-    /// The first and the last line of the grid along an axis.
-    pub(super) fn outermost(&self, axis: usize) -> [f64; 2] {
-        let centers = &self.centers[axis];
-        [centers[0], centers[centers.len() - 1]]
+    /// The first and the last lines of the grids along an axis.
+    pub(super) fn outermost(&self, axis: usize) -> impl Iterator<Item = f64> + '_ {
+        let lines = self.centers.iter().map(move |grid| &grid[axis]);
+        lines.flat_map(|lines| [lines[0], lines[lines.len() - 1]])
     }
 
     /// Smallest and largest coordinate of the outline with this centre.
     pub(super) fn bounds(&self, axis: usize, center: f64) -> [f64; 2] {
-        match &self.shape {
-            Shape::Ellipse {
+        match &self.curve {
+            Curve::Ellipse {
                 semi_axes: [a, b],
                 axis: [c, s],
             } => {
@@ -61,7 +80,7 @@ impl Outlines {
                 let half = ((a * along_a).powi(2) + (b * along_b).powi(2)).sqrt();
                 [center - half, center + half]
             }
-            Shape::Polygon(vertices) => {
+            Curve::Polygon(vertices) => {
                 let terms = vertices.iter().map(|vertex| [vertex.x, vertex.y][axis]);
                 let coordinates = terms.map(|terms| add(terms, center));
                 coordinates.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
@@ -73,12 +92,12 @@ impl Outlines {
 
     /// The outlines whose centres lie at this height, to be cut by lines from the lowest to the highest.
     pub(super) fn at_height(&self, center: f64) -> Sweep<'_> {
-        let edges = match &self.shape {
-            Shape::Ellipse { .. } => Vec::new(),
-            Shape::Polygon(vertices) => edges(vertices, center),
+        let edges = match &self.curve {
+            Curve::Ellipse { .. } => Vec::new(),
+            Curve::Polygon(vertices) => edges(vertices, center),
         };
         Sweep {
-            shape: &self.shape,
+            curve: &self.curve,
             center,
             edges,
             next: 0,
@@ -122,7 +141,7 @@ fn edges(vertices: &[Vertex], center: f64) -> Vec<Edge> {
 
 /// Outlines that are cut by one horizontal line after the other.
 pub(super) struct Sweep<'a> {
-    shape: &'a Shape,
+    curve: &'a Curve,
     /// y of the centres.
     center: f64,
     /// The edges of a polygon, the lowest first.
@@ -162,8 +181,8 @@ impl Sweep<'_> {
     /// Crossings with the line at `y`, which is above the lines before; an even number of them, in any order.
     pub(super) fn intersect(&mut self, y: f64, crossings: &mut Vec<Crossing>) {
         crossings.clear();
-        match self.shape {
-            Shape::Ellipse {
+        match self.curve {
+            Curve::Ellipse {
                 semi_axes: [a, b],
                 axis: [c, s],
             } => {
@@ -182,7 +201,7 @@ impl Sweep<'_> {
                     crossings.extend([[enter, -margin], [leave, margin]].map(Crossing::at));
                 }
             }
-            Shape::Polygon(_) => {
+            Curve::Polygon(_) => {
                 let above = |edge: &&Edge| edge.low() <= y;
                 let reached = self.edges[self.next..].iter().take_while(above);
                 let before = self.cut.len();
@@ -201,15 +220,15 @@ impl Sweep<'_> {
     /// Whether a point between two crossings is inside the outline around this x. An ellipse excludes its outline and is tested
     /// by a formula that rounds symmetrically, so that its mesh is as symmetric as the ellipse; polygons are half-open.
     pub(super) fn contains(&self, center: f64, [x, y]: [f64; 2]) -> bool {
-        match self.shape {
-            Shape::Ellipse {
+        match self.curve {
+            Curve::Ellipse {
                 semi_axes: [a, b],
                 axis: [c, s],
             } => {
                 let (dx, dy) = (x - center, y - self.center);
                 ((dx * c + dy * s) / a).powi(2) + ((dy * c - dx * s) / b).powi(2) < 1.0
             }
-            Shape::Polygon(_) => true,
+            Curve::Polygon(_) => true,
         }
     }
 }

@@ -1,25 +1,81 @@
 //! Textures: cavities, grooves, polygons and masks (Eqs. 15, 17, 18). Positions and sizes are in blocks.
 
 use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::outline::{Outlines, Shape, Vertex};
+use super::outline::{Curve, Outlines, Vertex};
+use super::pattern::{Array, Grid, grids, n_copies};
 use crate::lattice::Lattice;
 use crate::vector_field::unit_vector;
 
-/// A textured zone.
+/// A textured zone: what copies of one shape cover, or what lies between them.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Texture {
-    /// The closed curve of Eq. 17, once or on a grid.
+pub struct Texture {
+    /// The shape.
+    pub shape: Shape,
+    /// Where its copies stand: every place of the first array holds the second one, and so on. Without an array it stands alone.
+    pub arrays: Vec<Array>,
+    /// Whether all blocks but those inside the copies are textured: the shapes are pillars.
+    pub inverted: bool,
+}
+
+impl From<Shape> for Texture {
+    fn from(shape: Shape) -> Self {
+        Self {
+            shape,
+            arrays: Vec::new(),
+            inverted: false,
+        }
+    }
+}
+
+/// A shape that is textured, or not, inside.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// The closed curve of Eq. 17.
     Cavity(Cavity),
     /// A straight strip from edge to edge.
     Groove(Groove),
-    /// Any polygon, by the even-odd rule.
+    /// Any polygon, by the even-odd rule; the copies are spread around where it stands.
     Polygon(Vec<[f64; 2]>),
-    /// Block by block of the rows that are meshed, row by row in rising y; several textures may be the same mask.
-    Blocks(Arc<Vec<bool>>),
+    /// Block by block; the copies are spread around the middle of the slider.
+    Tile(Tile),
+}
+
+impl Shape {
+    /// How many copies of the shape cover different places: those of a groove beside each other, and not along it.
+    pub fn n_copies(&self, arrays: &[Array]) -> usize {
+        match self {
+            Self::Groove(groove) => groove.shifts(&grids(arrays)).len(),
+            _ => n_copies(arrays),
+        }
+    }
+}
+
+/// A mask, block by block.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tile {
+    /// Blocks along x and along y.
+    pub size: [usize; 2],
+    /// The rows of it that are known: all, or of one that covers the lattice those that are meshed.
+    pub rows: Range<usize>,
+    /// Whether each block of these rows is inside, row by row in rising y; several textures may have the same mask.
+    pub blocks: Arc<Vec<bool>>,
+}
+
+impl Tile {
+    /// The block of the lattice, which may lie beyond its edges, where the copy begins that is shifted by this much from the
+    /// middle: the one nearest to its place.
+    pub(super) fn start(&self, lattice: &Lattice, shift: [f64; 2]) -> [isize; 2] {
+        let lattice = [lattice.nx, lattice.ny];
+        [0, 1].map(|axis| {
+            let at = 0.5 * (lattice[axis] as f64 - self.size[axis] as f64) + shift[axis];
+            (at + 0.5).floor() as isize
+        })
+    }
 }
 
 /// The cavity of Eq. 17 (Fig. 13):
@@ -29,7 +85,7 @@ pub enum Texture {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cavity {
-    /// Centre (x_0, y_0) of the cavity, or of the grid of cavities.
+    /// Centre (x_0, y_0) of the cavity, or of its copies.
     pub center: [f64; 2],
     /// Size `lambda`.
     pub lambda: f64,
@@ -41,8 +97,6 @@ pub struct Cavity {
     pub across: bool,
     /// Turn in degrees from x towards y, after the swap.
     pub rotate: f64,
-    /// Columns and rows of the grid on which the cavity is repeated, spread over the slider.
-    pub array: [usize; 2],
 }
 
 /// Size `lambda` of each of `count` cavities that together cover `percent` of `n_blocks` blocks (Eq. 18, D5):
@@ -87,11 +141,25 @@ pub struct Groove {
 }
 
 impl Groove {
-    /// Smallest and largest (x, y), infinite along the strip.
-    pub(super) fn bounds(&self, lattice: &Lattice) -> [[f64; 2]; 2] {
+    /// The axis across which it has its width.
+    pub(super) fn axis(&self) -> usize {
+        match self.orientation {
+            Orientation::Across => 0,
+            Orientation::Along => 1,
+        }
+    }
+
+    /// How far the copies are shifted across, each shift once for every grid.
+    pub(super) fn shifts(&self, grids: &[Grid]) -> Vec<f64> {
+        let across = grids.iter().flat_map(|grid| &grid[self.axis()]);
+        across.copied().collect()
+    }
+
+    /// Smallest and largest (x, y) of the copy that is shifted by this much across, infinite along the strip.
+    pub(super) fn bounds(&self, lattice: &Lattice, shift: f64) -> [[f64; 2]; 2] {
         let along_x = self.orientation == Orientation::Along;
         let size = if along_x { lattice.ny } else { lattice.nx } as f64;
-        let middle = 0.5 * size + self.offset;
+        let middle = 0.5 * size + self.offset + shift;
         let (from, to) = (middle - 0.5 * self.width, middle + 0.5 * self.width);
         if along_x {
             [[f64::NEG_INFINITY, from], [f64::INFINITY, to]]
@@ -106,30 +174,17 @@ impl Groove {
 const OUTLINE_VERTICES: usize = 4096;
 
 impl Cavity {
-    pub(super) fn outlines(&self, lattice: &Lattice) -> Outlines {
-        let spacing = |size: usize, count: usize| size as f64 / count as f64;
-        let [columns, rows] = self.array;
-        let spacing = [spacing(lattice.nx, columns), spacing(lattice.ny, rows)];
-        let centers = |axis: usize| {
-            let count = self.array[axis];
-            let position = move |k: usize| k as f64 - 0.5 * (count as f64 - 1.0);
-            (0..count)
-                .map(|k| self.center[axis] + spacing[axis] * position(k))
-                .collect()
-        };
-        Outlines {
-            shape: self.shape(),
-            centers: [centers(0), centers(1)],
-        }
+    pub(super) fn outlines(&self, grids: &[Grid]) -> Outlines {
+        Outlines::at(self.curve(), self.center, grids)
     }
 
-    fn shape(&self) -> Shape {
+    fn curve(&self) -> Curve {
         let axis = unit_vector(self.rotate);
         let swap = |p: [f64; 2]| if self.across { [p[1], p[0]] } else { p };
         if self.s == 1 || self.w == 0.0 {
             let w = if self.s == 1 { self.w } else { 0.0 };
             let semi_axes = swap([self.lambda * (1.0 + w), self.lambda * (1.0 - w)]);
-            return Shape::Ellipse { semi_axes, axis };
+            return Curve::Ellipse { semi_axes, axis };
         }
         let s = f64::from(self.s);
         let vertex = |k: usize| {
@@ -143,6 +198,6 @@ impl Cavity {
                 y: [axis[1] * p[0], axis[0] * p[1]],
             }
         };
-        Shape::Polygon((0..OUTLINE_VERTICES).map(vertex).collect())
+        Curve::Polygon((0..OUTLINE_VERTICES).map(vertex).collect())
     }
 }

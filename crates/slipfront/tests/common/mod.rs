@@ -8,8 +8,8 @@ use std::sync::Arc;
 use slipfront::communicator::Alone;
 use slipfront::observe::{Curve, CurveRow, Kinetic, KineticHistory, KineticStart, Observer, Peak, Scheduled};
 use slipfront::surface::{
-    Adhesion, Cavity, Coefficients, Contact, Distribution, Groove, Load, Orientation, Texture, cavity_lambda,
-    mesh, mesh_watched, pressure_along,
+    Adhesion, Cavity, Coefficients, Contact, Distribution, Groove, Load, Orientation, Shape, Texture,
+    cavity_lambda, mesh, mesh_watched, pressure_along,
 };
 use slipfront::{
     Communicator, Coulomb, Drive, DriveSprings, Edges, Execution, Friction, FrictionLaw, Lattice, Model,
@@ -295,22 +295,23 @@ pub(crate) fn thrown(n_blocks: usize, size: f64, apart: usize) -> State {
 
 /// A cavity of Eq. 17 in the middle of a lattice of `blocks`, covering `percent`.
 pub(crate) fn cavity(blocks: [usize; 2], percent: f64, s: u32, w: f64, across: bool) -> Texture {
-    Texture::Cavity(Cavity {
+    Shape::Cavity(Cavity {
         center: [0.5 * blocks[0] as f64, 0.5 * blocks[1] as f64],
         lambda: cavity_lambda(percent, blocks[0] * blocks[1], s, w, 1),
         s,
         w,
         across,
         rotate: 0.0,
-        array: [1, 1],
     })
+    .into()
 }
 
 /// A groove through the middle.
 pub(crate) fn groove(orientation: Orientation, width: f64) -> Texture {
-    Texture::Groove(Groove {
+    Shape::Groove(Groove {
         orientation,
         width,
         offset: 0.0,
     })
+    .into()
 }

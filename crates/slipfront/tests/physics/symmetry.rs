@@ -3,7 +3,7 @@
 
 use rstest::rstest;
 use slipfront::communicator::Alone;
-use slipfront::surface::{Coefficients, Contact, Load, Texture, mesh};
+use slipfront::surface::{Coefficients, Contact, Load, Shape, Texture, mesh};
 use slipfront::{Drive, Edges, FrictionLaw, Lattice, Model, Outline, Surface, scales};
 
 use crate::common::{Slider, at_rest, cavity, varied};
@@ -153,12 +153,12 @@ fn assert_turns_exactly(slider: &Slider, operation: Operation, steps: usize) {
 
 /// An off-centre elongated cavity, so that nothing is symmetric by itself.
 fn off_centre(blocks: [usize; 2]) -> Texture {
-    let Texture::Cavity(mut found) = cavity(blocks, 8.0, 1, 0.4, false) else {
+    let Shape::Cavity(mut found) = cavity(blocks, 8.0, 1, 0.4, false).shape else {
         unreachable!("a cavity is a cavity")
     };
     found.center = [0.3 * blocks[0] as f64, 0.6 * blocks[1] as f64];
     found.rotate = 20.0;
-    Texture::Cavity(found)
+    Shape::Cavity(found).into()
 }
 
 #[rstest]

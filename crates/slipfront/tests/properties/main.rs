@@ -13,7 +13,7 @@ use slipfront::communicator::Alone;
 use slipfront::observe::Field;
 use slipfront::observe::frames::Selection;
 use slipfront::observe::{Curve, Instants, KineticHistory, KineticStart, Observer, Scheduled};
-use slipfront::surface::{Adhesion, Cavity, Groove, Load, Orientation, Texture, mesh};
+use slipfront::surface::{Adhesion, Array, Cavity, Groove, Load, Orientation, Shape, Texture, mesh};
 use slipfront::{
     Drive, Edges, Execution, FrictionLaw, Kernel, Lattice, Model, Simulation, State, Stop, Surface,
     VectorField,
@@ -41,7 +41,7 @@ fn lattice_below(blocks: usize) -> impl Strategy<Value = Lattice> {
     })
 }
 
-fn texture() -> impl Strategy<Value = Texture> {
+fn shape() -> impl Strategy<Value = Shape> {
     let place = -2.0..16.0_f64;
     prop_oneof![
         (
@@ -51,17 +51,15 @@ fn texture() -> impl Strategy<Value = Texture> {
             -0.95..0.95_f64,
             any::<bool>(),
             -400.0..400.0_f64,
-            [1..3_usize, 1..3_usize]
         )
-            .prop_map(|(center, lambda, s, w, across, rotate, array)| {
-                Texture::Cavity(Cavity {
+            .prop_map(|(center, lambda, s, w, across, rotate)| {
+                Shape::Cavity(Cavity {
                     center,
                     lambda,
                     s,
                     w: w / f64::from(s),
                     across,
                     rotate,
-                    array,
                 })
             }),
         (any::<bool>(), 0.1..4.0_f64, -8.0..8.0_f64).prop_map(|(across, width, offset)| {
@@ -70,14 +68,34 @@ fn texture() -> impl Strategy<Value = Texture> {
             } else {
                 Orientation::Along
             };
-            Texture::Groove(Groove {
+            Shape::Groove(Groove {
                 orientation,
                 width,
                 offset,
             })
         }),
-        prop::collection::vec([place.clone(), place], 3..9).prop_map(Texture::Polygon),
+        prop::collection::vec([place.clone(), place], 3..9).prop_map(Shape::Polygon),
     ]
+}
+
+prop_compose! {
+    fn texture()(
+        shape in shape(),
+        arrays in prop::collection::vec(pattern(), 0..2),
+        inverted in any::<bool>(),
+    ) -> Texture {
+        Texture { shape, arrays, inverted }
+    }
+}
+
+prop_compose! {
+    fn pattern()(
+        count in [1..4_usize, 1..4_usize],
+        spacing in [0.5..12.0_f64, 0.5..12.0_f64],
+        staggered in any::<bool>(),
+    ) -> Array {
+        Array { count, spacing, staggered }
+    }
 }
 
 fn law() -> impl Strategy<Value = FrictionLaw> {
@@ -191,9 +209,9 @@ proptest! {
         let lattice = Lattice::with_edges(blocks[0], blocks[1], [Edges::Periodic; 2]);
         // Centres off the outline by more than rounding, so that the shift moves no block across it.
         let center = center.map(|c| (c * 64.0).round() / 64.0 + 0.003_1);
-        let cavity = |center| Texture::Cavity(Cavity {
-            center, lambda, s: 1, w, across: false, rotate: 17.0, array: [1, 1],
-        });
+        let cavity = |center| Shape::Cavity(Cavity {
+            center, lambda, s: 1, w, across: false, rotate: 17.0,
+        }).into();
         let here = mesh(&lattice, &[cavity(center)]).textured;
         let moved = [center[0] + shift[0] as f64, center[1] + shift[1] as f64];
         let there = mesh(&lattice, &[cavity(moved)]).textured;
@@ -218,9 +236,9 @@ proptest! {
         const COPIES: usize = 15;
         let periodic = Lattice::with_edges(blocks[0], blocks[1], [Edges::Periodic; 2]);
         let sheet = Lattice::free(COPIES * blocks[0], COPIES * blocks[1]);
-        let cavity = |center| Texture::Cavity(Cavity {
-            center, lambda, s, w: w / f64::from(s), across: false, rotate, array: [1, 1],
-        });
+        let cavity = |center| Shape::Cavity(Cavity {
+            center, lambda, s, w: w / f64::from(s), across: false, rotate,
+        }).into();
         let found = mesh(&periodic, &[cavity(center)]).textured;
         let to_middle = |axis: usize| center[axis] + ((COPIES / 2) * blocks[axis]) as f64;
         let copies = mesh(&sheet, &[cavity([to_middle(0), to_middle(1)])]).textured;

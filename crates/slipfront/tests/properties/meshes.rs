@@ -1,9 +1,9 @@
-//! Meshes of arrays of cavities against the plainest way to find them: every block of every cavity, one after the other.
+//! Meshes of patterns against the plainest way to find them: every block of every copy, one after the other.
 
 use std::f64::consts::TAU;
 
 use proptest::prelude::*;
-use slipfront::surface::{Cavity, Texture, mesh};
+use slipfront::surface::{Array, Cavity, Groove, Orientation, Shape, Texture, Tile, mesh};
 use slipfront::{Drive, Edges, Lattice};
 
 use crate::lattice_below;
@@ -14,18 +14,17 @@ fn coordinate(range: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
 }
 
 prop_compose! {
-    fn array()(
+    fn cavity()(
         center in [coordinate(-4.0..24.0), coordinate(-4.0..24.0)],
         lambda in coordinate(0.3..16.0),
         s in prop_oneof![1..6_u32, Just(64)],
         w in prop_oneof![Just(-1.0), Just(0.0), Just(0.5), Just(1.0), -1.0..1.0_f64],
         across in any::<bool>(),
         rotate in prop_oneof![Just(0.0), Just(90.0), Just(45.0), -360.0..360.0_f64],
-        array in [1..8_usize, 1..8_usize],
     ) -> Cavity {
         // |w| = 1/s gives cusps; an ellipse must be one.
         let w = if s == 1 { 0.99 * w } else { w / f64::from(s) };
-        Cavity { center, lambda, s, w, across, rotate, array }
+        Cavity { center, lambda, s, w, across, rotate }
     }
 }
 
@@ -79,27 +78,24 @@ fn inside(cavity: &Cavity, [x, y]: [f64; 2], rows: std::ops::Range<isize>) -> Is
     })
 }
 
-/// The mask of all cavities of an array, and whether a free edge clips it.
-fn by_the_letter(lattice: &Lattice, cavity: &Cavity) -> Vec<bool> {
+/// The mask of all copies of a cavity.
+fn by_the_letter(lattice: &Lattice, cavity: &Cavity, arrays: &[Array]) -> Vec<bool> {
     let blocks = [lattice.nx as isize, lattice.ny as isize];
+    let places = places(arrays);
     // As many sliders side by side as the farthest outline reaches.
     let range = |axis: usize| match lattice.edges[axis] {
         Edges::Free => 0..blocks[axis],
         Edges::Periodic => {
-            let reach = cavity.center[axis].abs() as isize + blocks[axis] + 2 * cavity.lambda as isize + 3;
+            let farthest = places.iter().map(|place| place[axis].abs()).fold(0.0, f64::max);
+            let reach = (cavity.center[axis].abs() + farthest + 2.0 * cavity.lambda) as isize + 3;
             let turns = reach / blocks[axis] + 1;
             -turns * blocks[axis]..(turns + 1) * blocks[axis]
         }
     };
     let (columns, rows) = (range(0), range(1));
-    let place = |axis: usize, k: usize| {
-        let count = cavity.array[axis] as f64;
-        let spacing = blocks[axis] as f64 / count;
-        cavity.center[axis] + spacing * (k as f64 - 0.5 * (count - 1.0))
-    };
     let mut textured = vec![false; lattice.n_blocks()];
-    for k in 0..cavity.array[0] * cavity.array[1] {
-        let center = [place(0, k % cavity.array[0]), place(1, k / cavity.array[0])];
+    for place in places {
+        let center = [cavity.center[0] + place[0], cavity.center[1] + place[1]];
         let is_inside = inside(cavity, center, rows.clone());
         for row in rows.clone() {
             for column in columns.clone() {
@@ -111,14 +107,171 @@ fn by_the_letter(lattice: &Lattice, cavity: &Cavity) -> Vec<bool> {
     textured
 }
 
+/// The shifts of all copies: place after place, of each of which the next array is the middle.
+fn places(arrays: &[Array]) -> Vec<[f64; 2]> {
+    let Some((array, others)) = arrays.split_last() else {
+        return vec![[0.0; 2]];
+    };
+    let [columns, rows] = array.count;
+    let mut places_here = Vec::new();
+    for [x, y] in places(others) {
+        for row in 0..rows {
+            for column in 0..columns {
+                let aside = match (array.staggered && rows > 1, row % 2) {
+                    (false, _) => 0.0,
+                    (true, 0) => -0.25,
+                    (true, _) => 0.25,
+                };
+                let shift =
+                    |k: usize, count: usize, spacing: f64| spacing * (k as f64 - 0.5 * (count as f64 - 1.0));
+                places_here.push([
+                    x + (shift(column, columns, array.spacing[0]) + aside * array.spacing[0]),
+                    y + shift(row, rows, array.spacing[1]),
+                ]);
+            }
+        }
+    }
+    places_here
+}
+
+prop_compose! {
+    fn array()(
+        count in [1..5_usize, 1..5_usize],
+        // In quarters of four blocks, so that the shifts of staggered rows are on the grid of the coordinates too.
+        spacing in [coordinate(0.5..9.0), coordinate(0.5..9.0)],
+        staggered in any::<bool>(),
+    ) -> Array {
+        Array { count, spacing, staggered }
+    }
+}
+
+/// A shape other than a cavity, in a slider of these blocks, and the same moved, if it stands alone.
+fn other_shape(blocks: [usize; 2]) -> impl Strategy<Value = Shape> {
+    let place = || coordinate(-4.0..24.0);
+    let orientation = prop_oneof![Just(Orientation::Across), Just(Orientation::Along)];
+    let groove = (orientation, coordinate(0.3..6.0), coordinate(-8.0..8.0));
+    let size = [1..=blocks[0], 1..=blocks[1]];
+    let tile = size.prop_flat_map(|size| {
+        let blocks = prop::collection::vec(any::<bool>(), size[0] * size[1]);
+        blocks.prop_map(move |blocks| Tile {
+            size,
+            rows: 0..size[1],
+            blocks: blocks.into(),
+        })
+    });
+    prop_oneof![
+        groove.prop_map(|(orientation, width, offset)| Shape::Groove(Groove {
+            orientation,
+            width,
+            offset
+        })),
+        prop::collection::vec([place(), place()], 3..9).prop_map(Shape::Polygon),
+        tile.prop_map(Shape::Tile),
+    ]
+}
+
+/// The mask of one copy, moved from where the shape stands.
+fn copy(lattice: &Lattice, shape: &Shape, [x, y]: [f64; 2]) -> Vec<bool> {
+    let moved = match shape.clone() {
+        Shape::Groove(groove) => {
+            let shift = if groove.orientation == Orientation::Across {
+                x
+            } else {
+                y
+            };
+            Shape::Groove(Groove {
+                offset: groove.offset + shift,
+                ..groove
+            })
+        }
+        Shape::Polygon(points) => Shape::Polygon(
+            points
+                .into_iter()
+                .map(|point| [point[0] + x, point[1] + y])
+                .collect(),
+        ),
+        Shape::Tile(tile) => return copy_of_tile(lattice, &tile, [x, y]),
+        cavity @ Shape::Cavity(_) => cavity,
+    };
+    mesh(lattice, &[moved.into()]).textured
+}
+
+fn copy_of_tile(lattice: &Lattice, tile: &Tile, [x, y]: [f64; 2]) -> Vec<bool> {
+    let mut textured = vec![false; lattice.n_blocks()];
+    let start = |blocks: usize, size: usize, shift: f64| {
+        (0.5 * (blocks as f64 - size as f64) + shift + 0.5).floor() as isize
+    };
+    for (at, _) in tile.blocks.iter().enumerate().filter(|(_, inside)| **inside) {
+        let i = start(lattice.nx, tile.size[0], x) + (at % tile.size[0]) as isize;
+        let j = start(lattice.ny, tile.size[1], y) + (at / tile.size[0]) as isize;
+        let within = |at: isize, count: usize, edges: Edges| match edges {
+            Edges::Free => usize::try_from(at).ok().filter(|at| *at < count),
+            Edges::Periodic => Some(at.rem_euclid(count as isize) as usize),
+        };
+        if let (Some(i), Some(j)) = (
+            within(i, lattice.nx, lattice.edges[0]),
+            within(j, lattice.ny, lattice.edges[1]),
+        ) {
+            textured[lattice.block(i, j)] = true;
+        }
+    }
+    textured
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn arrays_of_cavities_cover_what_each_of_them_covers(lattice in lattice_below(24), cavity in array()) {
-        let meshed = mesh(&lattice, &[Texture::Cavity(cavity)]);
-        let expected = by_the_letter(&lattice, &cavity);
+    fn patterns_of_cavities_cover_what_each_of_them_covers(
+        lattice in lattice_below(24),
+        cavity in cavity(),
+        arrays in prop::collection::vec(array(), 0..3),
+        spread in prop::option::of([1..8_usize, 1..8_usize]),
+    ) {
+        let arrays = spread.map_or(arrays, |count| vec![Array::spread(&lattice, count)]);
+        let texture = Texture { arrays, ..Shape::Cavity(cavity).into() };
+        let expected = by_the_letter(&lattice, &cavity, &texture.arrays);
+        let meshed = mesh(&lattice, &[texture]);
         prop_assert_eq!(meshed.empty.is_empty(), expected.contains(&true));
         prop_assert_eq!(meshed.textured, expected);
+    }
+
+    #[test]
+    fn patterns_of_other_shapes_cover_what_each_copy_covers(
+        (lattice, shape) in lattice_below(24).prop_flat_map(|lattice| {
+            let shape = other_shape([lattice.nx, lattice.ny]);
+            (Just(lattice), shape)
+        }),
+        arrays in prop::collection::vec(array(), 0..3),
+    ) {
+        let mut expected = vec![false; lattice.n_blocks()];
+        for place in places(&arrays) {
+            let copy = copy(&lattice, &shape, place);
+            expected.iter_mut().zip(copy).for_each(|(textured, here)| *textured |= here);
+        }
+        let texture = Texture { arrays, ..shape.into() };
+        prop_assert_eq!(mesh(&lattice, &[texture]).textured, expected);
+    }
+
+    #[test]
+    fn an_inverted_texture_is_the_complement_block_by_block(
+        lattice in lattice_below(24),
+        cavity in cavity(),
+        arrays in prop::collection::vec(array(), 0..2),
+        beside in other_shape([3, 3]),
+    ) {
+        let plain = Texture { arrays, ..Shape::Cavity(cavity).into() };
+        let inverted = Texture { inverted: true, ..plain.clone() };
+        let beside = Texture::from(beside);
+        let inside = mesh(&lattice, &[plain.clone()]).textured;
+        let outside = mesh(&lattice, &[inverted.clone()]);
+        prop_assert!(inside.iter().zip(&outside.textured).all(|(inside, outside)| inside != outside));
+        prop_assert_eq!(outside.empty.is_empty(), inside.contains(&false));
+        // Beside another texture the two still unite.
+        let other = mesh(&lattice, &[beside.clone()]).textured;
+        let both = mesh(&lattice, &[beside, inverted]).textured;
+        for b in 0..lattice.n_blocks() {
+            prop_assert_eq!(both[b], other[b] || !inside[b]);
+        }
     }
 }

@@ -1,0 +1,211 @@
+//! `pitch`, `array`, `lattice`, `repeat` and `invert` of a `[[texture]]`: how often its shape stands where.
+
+use serde::{Deserialize, Serialize};
+
+use super::check::Check;
+use super::error::CaseError;
+use super::key_table::{COUNT, MAX_COUNT, SIZE};
+use super::values::{Pair, word};
+use crate::quantity::{Length, QuantityError};
+
+/// The pattern in which the shape of a texture is repeated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Pattern {
+    /// Distance between neighbouring copies.
+    pub pitch: Option<Pitch>,
+    /// Columns and rows of copies.
+    pub array: Count,
+    /// How they are arranged.
+    #[serde(deserialize_with = "word")]
+    pub lattice: Arrangement,
+    /// A pattern at every place of which the array stands.
+    pub repeat: Option<Array>,
+    /// Whether what lies outside of the shapes is textured, in place of what lies inside.
+    pub invert: bool,
+}
+
+/// Places in columns and rows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Array {
+    /// Distance between neighbouring places.
+    pub pitch: Option<Pitch>,
+    /// Columns and rows of them.
+    #[serde(default)]
+    pub array: Count,
+    /// How they are arranged.
+    #[serde(default, deserialize_with = "word")]
+    pub lattice: Arrangement,
+}
+
+/// `array`: columns and rows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "CountKey", into = "CountKey")]
+pub enum Count {
+    /// `"auto"`: as many as have room in steps of `pitch`, or one without a pitch.
+    #[default]
+    Auto,
+    /// `[columns, rows]`, 1 to 1000 each.
+    Of([u32; 2]),
+}
+
+/// `pitch`: the distance between neighbours, m.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "PitchKey", into = "PitchKey")]
+pub enum Pitch {
+    /// One length: between columns and between rows, or of a hexagonal lattice between all neighbours.
+    Equal(Length),
+    /// `[x, y]`: between columns, and between rows.
+    Each([Length; 2]),
+}
+
+/// `lattice`: how columns and rows lie to each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Arrangement {
+    /// In a grid.
+    #[default]
+    Square,
+    /// Every second row is shifted by half a pitch, and rows are sqrt(3)/2 pitches apart: six neighbours at one distance.
+    Hexagonal,
+    /// Every second row is shifted by half a pitch.
+    Staggered,
+}
+
+impl Pattern {
+    /// The arrays, the outermost first, with what stands before the names of their keys.
+    pub(crate) fn arrays(&self) -> impl Iterator<Item = (&'static str, Array)> + '_ {
+        let own = Array {
+            pitch: self.pitch.clone(),
+            array: self.array,
+            lattice: self.lattice,
+        };
+        let repeat = self.repeat.clone().map(|array| ("repeat.", array));
+        repeat.into_iter().chain([("", own)])
+    }
+
+    pub(super) fn check(&self, check: &Check) -> Result<(), CaseError> {
+        for (before, array) in self.arrays() {
+            array.check(check, before)?;
+        }
+        if let Some(repeat) = &self.repeat
+            && !repeat.is_array()
+        {
+            let sentence = |key: &str| {
+                format!("`{key}` says nothing of how often: give it `array` = [3, 3], or `pitch` = \"20 um\"")
+            };
+            return check.refuse("repeat", sentence);
+        }
+        Ok(())
+    }
+}
+
+impl Array {
+    /// Whether it is more than one place.
+    pub(crate) fn is_array(&self) -> bool {
+        self.pitch.is_some() || self.array != Count::Auto
+    }
+
+    fn check(&self, check: &Check, before: &str) -> Result<(), CaseError> {
+        let key = |name: &str| format!("{before}{name}");
+        if let Count::Of(count) = &self.array {
+            check.value_of(&COUNT, &key("array"), count)?;
+        }
+        for length in self.pitch.iter().flat_map(Pitch::lengths) {
+            check.value_of(&SIZE, &key("pitch"), length)?;
+        }
+        match (self.lattice, &self.pitch) {
+            (Arrangement::Hexagonal, Some(Pitch::Each(_))) => check.refuse(&key("pitch"), |path| {
+                format!(
+                    "`{path}` is a pair, and a hexagonal lattice has the same distance between all neighbours: write one length, or \
+                     `lattice` = \"staggered\""
+                )
+            }),
+            (Arrangement::Hexagonal | Arrangement::Staggered, _) if !self.is_array() => {
+                check.refuse(&key("lattice"), |path| {
+                    format!(
+                        "`{path}` arranges many copies, and there is one: give `array` = [4, 4], at most {MAX_COUNT} each way, or \
+                         `pitch` = \"12 um\", which fills the slider"
+                    )
+                })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Pitch {
+    fn lengths(&self) -> &[Length] {
+        match self {
+            Self::Equal(length) => std::slice::from_ref(length),
+            Self::Each(lengths) => lengths,
+        }
+    }
+}
+
+const COUNT_EXPECTED: &str = "expected \"auto\" or a pair of whole numbers from 1 to 1000, such as [4, 3]";
+
+/// `array` as it stands in the file.
+#[derive(Serialize, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected \"auto\" or a pair of whole numbers from 1 to 1000, such as [4, 3]"
+)]
+enum CountKey {
+    Word(String),
+    Pair(Pair<u32>),
+}
+
+impl TryFrom<CountKey> for Count {
+    type Error = &'static str;
+
+    fn try_from(key: CountKey) -> Result<Self, Self::Error> {
+        match key {
+            CountKey::Word(word) if word == "auto" => Ok(Self::Auto),
+            CountKey::Word(_) => Err(COUNT_EXPECTED),
+            CountKey::Pair(Pair(count)) => Ok(Self::Of(count)),
+        }
+    }
+}
+
+impl From<Count> for CountKey {
+    fn from(count: Count) -> Self {
+        match count {
+            Count::Auto => Self::Word("auto".to_owned()),
+            Count::Of(count) => Self::Pair(Pair(count)),
+        }
+    }
+}
+
+/// `pitch` as it stands in the file: texts, so that a length that cannot be read keeps its own message.
+#[derive(Serialize, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected a length such as \"12 um\", or a pair of them, [\"12 um\", \"8 um\"]"
+)]
+enum PitchKey {
+    Equal(String),
+    Each(Pair<String>),
+}
+
+impl TryFrom<PitchKey> for Pitch {
+    type Error = String;
+
+    fn try_from(key: PitchKey) -> Result<Self, String> {
+        let length = |text: String| text.parse().map_err(|error: QuantityError| error.to_string());
+        Ok(match key {
+            PitchKey::Equal(text) => Self::Equal(length(text)?),
+            PitchKey::Each(Pair([x, y])) => Self::Each([length(x)?, length(y)?]),
+        })
+    }
+}
+
+impl From<Pitch> for PitchKey {
+    fn from(pitch: Pitch) -> Self {
+        match pitch {
+            Pitch::Equal(length) => Self::Equal(length.to_string()),
+            Pitch::Each(lengths) => Self::Each(Pair(lengths.map(|length| length.to_string()))),
+        }
+    }
+}

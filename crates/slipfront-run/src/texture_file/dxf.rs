@@ -1,0 +1,302 @@
+//! Outlines as DXF of AutoCAD 2000, the oldest that has ellipses, in millimetres. A layer for each texture, and one for the slider.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::fmt::Display;
+
+use slipfront::surface::{Contour, Ellipse, Piece};
+
+use super::drawing::Drawing;
+
+/// Handles of what every drawing has; entities and layers have those from [`FIRST_FREE`] on.
+const MODEL_SPACE: u64 = 0x1f;
+const PAPER_SPACE: u64 = 0x1b;
+const FIRST_FREE: u64 = 0x100;
+
+/// The drawing as a file.
+pub(super) fn text(drawing: &Drawing) -> String {
+    let layers: Vec<&str> = drawing.layers.iter().map(|layer| layer.name.as_str()).collect();
+    let mut entities = File::new();
+    let [x, y] = drawing.size.map(|blocks| blocks as f64 * drawing.block);
+    entities.polygon("SLIDER", [[0.0, 0.0], [x, 0.0], [x, y], [0.0, y]].into_iter());
+    for layer in &drawing.layers {
+        for contour in &layer.contours {
+            entities.contour(&layer.name, contour, drawing.block);
+        }
+    }
+    let mut tables = File {
+        next_handle: entities.next_handle,
+        ..File::new()
+    };
+    tables.tables(&layers);
+    let mut file = File::new();
+    file.section("HEADER");
+    file.pairs(&[
+        (9, &"$ACADVER"),
+        (1, &"AC1015"),
+        (9, &"$HANDSEED"),
+        (5, &hex(tables.next_handle)),
+    ]);
+    // Millimetres, of the metric system.
+    file.pairs(&[
+        (9, &"$INSUNITS"),
+        (70, &4),
+        (9, &"$MEASUREMENT"),
+        (70, &1),
+        (0, &"ENDSEC"),
+    ]);
+    file.text += &tables.text;
+    file.section("ENTITIES");
+    file.text += &entities.text;
+    file.pairs(&[(0, &"ENDSEC")]);
+    file.section("OBJECTS");
+    file.pairs(&[
+        (0, &"DICTIONARY"),
+        (5, &"C"),
+        (330, &0),
+        (100, &"AcDbDictionary"),
+        (281, &1),
+        (3, &"ACAD_GROUP"),
+        (350, &"D"),
+    ]);
+    file.pairs(&[
+        (0, &"DICTIONARY"),
+        (5, &"D"),
+        (330, &"C"),
+        (100, &"AcDbDictionary"),
+        (281, &1),
+    ]);
+    file.pairs(&[(0, &"ENDSEC"), (0, &"EOF")]);
+    file.text
+}
+
+/// A code, and its value.
+type Pair<'a> = (u16, &'a dyn Display);
+/// The class of a record, its name, and what follows.
+type Record<'a> = (&'a str, &'a str, &'a [Pair<'a>]);
+
+fn hex(handle: u64) -> String {
+    format!("{handle:X}")
+}
+
+/// The text of a part of the file.
+struct File {
+    text: String,
+    next_handle: u64,
+}
+
+impl File {
+    fn new() -> Self {
+        Self {
+            text: String::new(),
+            next_handle: FIRST_FREE,
+        }
+    }
+
+    /// Lines of a code and of its value.
+    fn pairs(&mut self, pairs: &[Pair]) {
+        for (code, value) in pairs {
+            self.text += &format!("{code}\n{value}\n");
+        }
+    }
+
+    fn section(&mut self, name: &str) {
+        self.pairs(&[(0, &"SECTION"), (2, &name)]);
+    }
+
+    fn handle(&mut self) -> String {
+        self.next_handle += 1;
+        hex(self.next_handle - 1)
+    }
+
+    /// The beginning of an entity of this kind and class.
+    fn entity(&mut self, kind: &str, class: &str, layer: &str) {
+        let handle = self.handle();
+        self.pairs(&[
+            (0, &kind),
+            (5, &handle),
+            (330, &hex(MODEL_SPACE)),
+            (100, &"AcDbEntity"),
+            (8, &layer),
+            (100, &class),
+        ]);
+    }
+
+    fn contour(&mut self, layer: &str, contour: &Contour, block: f64) {
+        match contour {
+            Contour::Polygon(corners) => {
+                self.polygon(
+                    layer,
+                    corners.iter().map(|corner| corner.map(|length| length * block)),
+                );
+            }
+            Contour::Ellipse(ellipse) => self.ellipse(layer, ellipse, None, block),
+            Contour::Pieces(pieces) => {
+                for piece in pieces {
+                    match piece {
+                        Piece::Arc(ellipse, parameters) => {
+                            self.ellipse(layer, ellipse, Some(*parameters), block)
+                        }
+                        Piece::Line(ends) => {
+                            let [[x_0, y_0], [x, y]] = ends.map(|end| end.map(|length| length * block));
+                            self.entity("LINE", "AcDbLine", layer);
+                            self.pairs(&[(10, &x_0), (20, &y_0), (30, &0), (11, &x), (21, &y), (31, &0)]);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn polygon(&mut self, layer: &str, corners: impl ExactSizeIterator<Item = [f64; 2]>) {
+        self.entity("LWPOLYLINE", "AcDbPolyline", layer);
+        // Closed.
+        self.pairs(&[(90, &corners.len()), (70, &1)]);
+        for [x, y] in corners {
+            self.pairs(&[(10, &x), (20, &y)]);
+        }
+    }
+
+    /// An ellipse, or what lies between two parameters of it.
+    fn ellipse(&mut self, layer: &str, ellipse: &Ellipse, parameters: Option<[f64; 2]>, block: f64) {
+        let [x, y] = ellipse.center.map(|length| length * block);
+        let [a, b] = ellipse.semi_axes.map(|length| length * block);
+        let [c, s] = ellipse.axis;
+        if a != b {
+            self.entity("ELLIPSE", "AcDbEllipse", layer);
+            // The first axis of a file is the longer one.
+            let (major, ratio, later) = match a > b {
+                true => ([a * c, a * s], b / a, 0.0),
+                false => ([-b * s, b * c], a / b, FRAC_PI_2),
+            };
+            let [from, to] =
+                parameters.map_or([0.0, TAU], |ends| ends.map(|end| (end - later).rem_euclid(TAU)));
+            self.pairs(&[
+                (10, &x),
+                (20, &y),
+                (30, &0),
+                (11, &major[0]),
+                (21, &major[1]),
+                (31, &0),
+            ]);
+            self.pairs(&[(40, &ratio), (41, &from), (42, &to)]);
+            return;
+        }
+        let kind = if parameters.is_some() { "ARC" } else { "CIRCLE" };
+        self.entity(kind, "AcDbCircle", layer);
+        self.pairs(&[(10, &x), (20, &y), (30, &0), (40, &a)]);
+        if let Some(ends) = parameters {
+            let [from, to] = ends.map(|end| (end + libm::atan2(s, c)).to_degrees().rem_euclid(360.0));
+            self.pairs(&[(100, &"AcDbArc"), (50, &from), (51, &to)]);
+        }
+    }
+
+    /// The tables and blocks that a drawing must have, and its layers.
+    fn tables(&mut self, layers: &[&str]) {
+        self.section("TABLES");
+        self.table("VPORT", "8", &[]);
+        let line_types = ["ByBlock", "ByLayer", "Continuous"];
+        let solid: &[Pair] = &[(70, &0), (3, &""), (72, &65), (73, &0), (40, &0)];
+        self.table(
+            "LTYPE",
+            "5",
+            &line_types.map(|name| ("AcDbLinetypeTableRecord", name, solid)),
+        );
+        let layer: &[Pair] = &[(70, &0), (62, &7), (6, &"Continuous")];
+        let names = ["0", "SLIDER"].into_iter().chain(layers.iter().copied());
+        let records: Vec<Record> = names.map(|name| ("AcDbLayerTableRecord", name, layer)).collect();
+        self.table("LAYER", "2", &records);
+        let style: &[Pair] = &[
+            (70, &0),
+            (40, &0),
+            (41, &1),
+            (50, &0),
+            (71, &0),
+            (42, &1),
+            (3, &"txt"),
+            (4, &""),
+        ];
+        self.table("STYLE", "3", &[("AcDbTextStyleTableRecord", "Standard", style)]);
+        self.table("VIEW", "6", &[]);
+        self.table("UCS", "7", &[]);
+        self.table("APPID", "9", &[("AcDbRegAppTableRecord", "ACAD", &[(70, &0)])]);
+        self.pairs(&[
+            (0, &"TABLE"),
+            (2, &"DIMSTYLE"),
+            (5, &"A"),
+            (330, &0),
+            (100, &"AcDbSymbolTable"),
+            (70, &0),
+        ]);
+        self.pairs(&[(100, &"AcDbDimStyleTable"), (71, &0), (0, &"ENDTAB")]);
+        self.pairs(&[
+            (0, &"TABLE"),
+            (2, &"BLOCK_RECORD"),
+            (5, &"1"),
+            (330, &0),
+            (100, &"AcDbSymbolTable"),
+            (70, &2),
+        ]);
+        let spaces = [("*Model_Space", MODEL_SPACE), ("*Paper_Space", PAPER_SPACE)];
+        for (name, handle) in spaces {
+            self.pairs(&[
+                (0, &"BLOCK_RECORD"),
+                (5, &hex(handle)),
+                (330, &1),
+                (100, &"AcDbSymbolTableRecord"),
+            ]);
+            self.pairs(&[(100, &"AcDbBlockTableRecord"), (2, &name)]);
+        }
+        self.pairs(&[(0, &"ENDTAB"), (0, &"ENDSEC")]);
+        self.section("BLOCKS");
+        for (name, owner) in spaces {
+            for (kind, class) in [("BLOCK", "AcDbBlockBegin"), ("ENDBLK", "AcDbBlockEnd")] {
+                let handle = self.handle();
+                self.pairs(&[
+                    (0, &kind),
+                    (5, &handle),
+                    (330, &hex(owner)),
+                    (100, &"AcDbEntity"),
+                    (8, &0),
+                    (100, &class),
+                ]);
+                if kind == "BLOCK" {
+                    self.pairs(&[
+                        (2, &name),
+                        (70, &0),
+                        (10, &0),
+                        (20, &0),
+                        (30, &0),
+                        (3, &name),
+                        (1, &""),
+                    ]);
+                }
+            }
+        }
+        self.pairs(&[(0, &"ENDSEC")]);
+    }
+
+    /// A table of records, each a class, a name and what follows.
+    fn table(&mut self, name: &str, handle: &str, records: &[Record]) {
+        self.pairs(&[
+            (0, &"TABLE"),
+            (2, &name),
+            (5, &handle),
+            (330, &0),
+            (100, &"AcDbSymbolTable"),
+            (70, &records.len()),
+        ]);
+        for (class, record, rest) in records {
+            let own = self.handle();
+            self.pairs(&[
+                (0, &name),
+                (5, &own),
+                (330, &handle),
+                (100, &"AcDbSymbolTableRecord"),
+                (100, class),
+                (2, record),
+            ]);
+            self.pairs(rest);
+        }
+        self.pairs(&[(0, &"ENDTAB")]);
+    }
+}

@@ -1,0 +1,114 @@
+//! The texture of a case as a file for other programs, in true size: outlines for a laser or a drawing program, SVG and DXF, and
+//! blocks as a picture or a height field, PNG and GSF.
+
+mod drawing;
+mod dxf;
+mod gsf;
+mod svg;
+
+pub use self::drawing::{Drawing, Fill, Layer};
+
+use std::path::Path;
+
+use slipfront::surface::{Clearance, clearance};
+use slipfront_case::arrays::{ArrayError, extension, write_mask_png};
+use slipfront_case::case::Case;
+use slipfront_case::case_file::CaseError;
+use slipfront_case::disk::write_atomic;
+
+/// Most pixels of a picture along a side, and of all of it: no program, this one included, reads more.
+const MAX_PIXELS: [usize; 2] = [1 << 20, 1 << 28];
+
+/// What is wrong with a file of a texture that was asked for.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum TextureFileError {
+    #[error(
+        "cannot tell the format of `{path}`; name a file that ends in .svg or .dxf for outlines, in .png for a picture or in .gsf for a \
+         height field"
+    )]
+    Extension { path: String },
+    #[error(
+        "`--scale` is for pictures, and `{path}` is none: outlines and height fields have their true size"
+    )]
+    Scale { path: String },
+    #[error(
+        "the picture would have {width} x {height} pixels, and at most {} along a side and {} in all are read again: lower `--scale`",
+        MAX_PIXELS[0],
+        MAX_PIXELS[1]
+    )]
+    TooManyPixels { width: usize, height: usize },
+    #[error(
+        "the outlines would have {corners} corners, and at most {most} are written: write a .png or .gsf instead"
+    )]
+    TooManyCorners { corners: usize, most: usize },
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    #[error(transparent)]
+    Write(#[from] ArrayError),
+}
+
+impl TextureFileError {
+    /// Whether another file could have been asked for, in place of what failed.
+    pub fn is_input(&self) -> bool {
+        !matches!(self, Self::Write(_))
+    }
+}
+
+/// Whether each block is textured: what does not exist has no contact either, but is no texture.
+pub fn textured_blocks(case: &Case) -> Vec<bool> {
+    let (surface, slider) = (&case.model.surface, case.model.slider());
+    let blocks = surface.textured.iter().enumerate();
+    blocks
+        .map(|(b, textured)| *textured && slider.exists(b))
+        .collect()
+}
+
+/// The smallest feature and the smallest gap of the texture, in blocks.
+pub fn smallest(case: &Case) -> Result<Clearance, CaseError> {
+    Ok(clearance(&case.model.lattice, &case.textures_in_blocks()?))
+}
+
+/// Writes the texture of a case to `path`, in the format that its ending names; `scale` is how many pixels a block has along a side
+/// of a picture, one if there is none. Gives what there is to say about the file.
+///
+/// # Errors
+/// [`TextureFileError`], if the ending is none of these, too much would be written, or the file cannot be.
+pub fn write(case: &Case, path: &Path, scale: Option<usize>) -> Result<Vec<String>, TextureFileError> {
+    let name = || path.display().to_string();
+    let ending = extension(path);
+    if ending != "png" && scale.is_some() {
+        return Err(TextureFileError::Scale { path: name() });
+    }
+    let (nx, ny) = (case.model.lattice.nx, case.model.lattice.ny);
+    let (bytes, notes) = match ending.as_str() {
+        "png" => {
+            let scale = scale.unwrap_or(1);
+            let (width, height) = (nx * scale, ny * scale);
+            if width.max(height) > MAX_PIXELS[0] || width * height > MAX_PIXELS[1] {
+                return Err(TextureFileError::TooManyPixels { width, height });
+            }
+            let textured = textured_blocks(case);
+            let pixel = |at: usize| textured[at / width / scale * nx + at % width / scale];
+            let pixels: Vec<bool> = (0..width * height).map(pixel).collect();
+            write_mask_png(path, width, height, &pixels)?;
+            return Ok(Vec::new());
+        }
+        "gsf" => (gsf::field(case), Vec::new()),
+        "svg" | "dxf" => {
+            let drawing = Drawing::of(case)?;
+            let text = if ending == "svg" {
+                svg::text(&drawing)
+            } else {
+                dxf::text(&drawing)
+            };
+            (text.into_bytes(), drawing.notes)
+        }
+        _ => return Err(TextureFileError::Extension { path: name() }),
+    };
+    write_atomic(path, &bytes).map_err(|source| ArrayError::Write {
+        path: path.to_owned(),
+        source,
+    })?;
+    Ok(notes)
+}
