@@ -24,7 +24,7 @@ const MAX_RATIO_BESIDE: f64 = 3.0;
 /// A strip is drawn no thinner than this share of its length.
 const MIN_RATIO: f64 = 1.0 / 6.0;
 /// The other panel below a map is so high.
-const HEIGHT_BELOW: f64 = 420.0;
+const HEIGHT_BELOW: f64 = 340.0;
 /// Colour bars are numbered in at most so many steps.
 const BAR_STEPS: usize = 5;
 /// Contours in at most so many steps.

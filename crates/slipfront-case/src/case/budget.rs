@@ -141,8 +141,8 @@ const DRAWN_ROW: f64 = (3.0 + 2.0 + 3.0) * NUMBER;
 /// Primitives and pixels of the picture of the friction, and of the one of the stress. They do not depend on the
 /// lattice: more than 256 cells along a side are averaged (measured: 6.8 and 6.6 MB).
 pub const PICTURE: f64 = 7.0 * 1024.0 * 1024.0;
-/// The same of the picture of the front, which is taller.
-const PICTURE_OF_FRONT: f64 = 2.2 * PICTURE;
+/// The same of the picture of the front, which is up to twice as tall.
+const PICTURE_OF_FRONT: f64 = 2.0 * PICTURE;
 /// All pictures as SVG and PNG, the summary and the manifest (measured: at most 0.7 MB).
 const PICTURE_FILES: f64 = 2e6;
 
@@ -367,7 +367,7 @@ impl Budget {
         let fixed = [
             0.0,
             HISTORY + counts + self.kymograph * COUNTED,
-            PICTURE_OF_FRONT.max(2.0 * PICTURE) + self.kymograph * DRAWN_SHARE,
+            PICTURE_OF_FRONT + self.kymograph * DRAWN_SHARE,
             PICTURE_FILES + self.kymograph * VALUE,
             HISTORY + counts,
         ];
@@ -552,8 +552,7 @@ impl Budget {
 /// so many bytes.
 pub fn memory_to_draw(rows: f64, kymograph: f64) -> f64 {
     let maps = CELLS * (AVERAGED + MAX_MAPS as f64 * VALUE);
-    let pictures = PICTURE_OF_FRONT.max(2.0 * PICTURE);
-    HEAP * (maps + grown(rows) * DRAWN_ROW + kymograph / VALUE * DRAWN_SHARE + pictures)
+    HEAP * (maps + grown(rows) * DRAWN_ROW + kymograph / VALUE * DRAWN_SHARE + PICTURE_OF_FRONT)
 }
 
 /// Elements for which a vector has room that grew to `length` by doubling.
