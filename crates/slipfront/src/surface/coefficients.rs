@@ -218,9 +218,9 @@ mod tests {
         assert_eq!(zeros, negative);
         // 46 % of such draws of 666 blocks are 306 +- 13: five standard errors.
         assert!(zeros.abs_diff(306) < 65, "{zeros}");
-        for b in 0..1000 {
+        for (b, textured) in textured.iter().enumerate() {
             let [static_draw, kinetic_draw] = [drawn.mu_static[b], drawn.mu_kinetic[b]];
-            let expected = if textured[b] {
+            let expected = if *textured {
                 [0.0; 2]
             } else {
                 [static_draw.max(0.0), kinetic_draw]

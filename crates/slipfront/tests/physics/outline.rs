@@ -54,12 +54,7 @@ fn a_rectangle_cut_out_is_a_smaller_lattice(
     );
     assert_eq!(surface.min_slip_threshold(), model.surface.min_slip_threshold());
     let lattice = Lattice::free(nx, ny);
-    let parts = (
-        model.drive.clone(),
-        model.damping,
-        model.epsilon,
-        model.friction.clone(),
-    );
+    let parts = (model.drive.clone(), model.damping, model.epsilon, model.friction);
     let (drive, damping, epsilon, friction) = parts;
     let cut = Model::new(lattice, surface, drive, damping, epsilon, friction).with_slider(body);
     assert_eq!(cut.steady_level(&Alone), model.steady_level(&Alone));
