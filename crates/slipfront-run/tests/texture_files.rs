@@ -1,5 +1,7 @@
 //! Files of textures for other programs: what their outlines fill is what the case's blocks are.
 
+#![allow(clippy::unwrap_used)]
+
 use std::f64::consts::{PI, TAU};
 use std::fs;
 use std::path::Path;
