@@ -1,5 +1,7 @@
 //! Files of textures for other programs: what their outlines fill is what the case's blocks are.
 
+#![allow(clippy::unwrap_used)]
+
 use std::f64::consts::{PI, TAU};
 use std::fs;
 use std::path::Path;
@@ -301,10 +303,10 @@ const SHAPES: &[&str] = &[
     // Over two free edges, and over the corner.
     "[[texture]]\nshape = 'cavity'\nlambda = '9 um'\ncenter = ['3 um', '4.2 um']",
     "[[texture]]\nshape = 'cavity'\nlambda = '9 um'\nw = 0.4\nrotate = 30\ncenter = ['36 um', '15 um']",
-    "[[texture]]\nshape = 'cavity'\nlambda = '30 um'\nw = -0.5\nacross = true\nrotate = -20",
+    "[[texture]]\nshape = 'cavity'\nlambda = '12 um'\nw = -0.5\nacross = true\nrotate = -20",
     "[[texture]]\nshape = 'cavity'\nlambda = '3 um'\ns = 2\nw = 0.4\npitch = '8 um'\nlattice = 'hexagonal'",
     "[[texture]]\nshape = 'cavity'\nlambda = '3 um'\nw = 0.3\nrotate = 75\narray = [4, 3]\nlattice = 'staggered'\ninvert = true",
-    "[[texture]]\nshape = 'cavity'\nlambda = '6 um'\narray = [4, 4]\ninvert = true",
+    "[[texture]]\nshape = 'cavity'\nlambda = '4.5 um'\narray = [4, 4]\ninvert = true",
     "[[texture]]\nshape = 'groove'\nwidth = '2.3 um'\narray = [4, 1]",
     "[[texture]]\nshape = 'groove'\norientation = 'along'\nwidth = '3 um'\noffset = '14 um'\n[[texture]]\nshape = 'cavity'\nlambda = '4 um'\narray = [2, 2]",
     "[[texture]]\nshape = 'polygon'\npoints = [['10 um', '-3 um'], ['30 um', '4.1 um'], ['12 um', '9 um'], ['25 um', '-2 um']]\narray = [1, 3]\npitch = '11 um'",

@@ -134,7 +134,7 @@ impl File {
                 for piece in pieces {
                     match piece {
                         Piece::Arc(ellipse, parameters) => {
-                            self.ellipse(layer, ellipse, Some(*parameters), block)
+                            self.ellipse(layer, ellipse, Some(*parameters), block);
                         }
                         Piece::Line(ends) => {
                             let [[x_0, y_0], [x, y]] = ends.map(|end| end.map(|length| length * block));
