@@ -220,7 +220,7 @@ fn a_run_without_a_transition_has_no_front() {
     assert_eq!(recorded.columns(), 20);
     // Blocks of 1e-6 m, up to rounding.
     assert!((recorded.places[1] - 20e-6).abs() < 1e-18 && recorded.places[0].abs() < 1e-18);
-    assert!(recorded.sliding_share.iter().any(|share| *share == 1.0));
+    assert!(recorded.sliding_share.contains(&1.0));
 }
 
 #[test]

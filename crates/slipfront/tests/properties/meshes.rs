@@ -263,12 +263,12 @@ proptest! {
         let plain = Texture { arrays, ..Shape::Cavity(cavity).into() };
         let inverted = Texture { inverted: true, ..plain.clone() };
         let beside = Texture::from(beside);
-        let inside = mesh(&lattice, &[plain.clone()]).textured;
-        let outside = mesh(&lattice, &[inverted.clone()]);
+        let inside = mesh(&lattice, std::slice::from_ref(&plain)).textured;
+        let outside = mesh(&lattice, std::slice::from_ref(&inverted));
         prop_assert!(inside.iter().zip(&outside.textured).all(|(inside, outside)| inside != outside));
         prop_assert_eq!(outside.empty.is_empty(), inside.contains(&false));
         // Beside another texture the two still unite.
-        let other = mesh(&lattice, &[beside.clone()]).textured;
+        let other = mesh(&lattice, std::slice::from_ref(&beside)).textured;
         let both = mesh(&lattice, &[beside, inverted]).textured;
         for b in 0..lattice.n_blocks() {
             prop_assert_eq!(both[b], other[b] || !inside[b]);
