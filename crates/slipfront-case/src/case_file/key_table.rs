@@ -14,9 +14,8 @@ use slipfront::observe::Field;
 use slipfront::surface::Orientation;
 use slipfront::{Edges, StopReason};
 
-use super::pattern::Arrangement;
 use super::probe::names_of;
-use super::words::{AttachedEdge, Contact, Law, Motion, Outline};
+use super::words::{Arrangement, AttachedEdge, Contact, Law, Motion, Outline};
 
 /// A range of numbers.
 pub type Bounds = (Bound<f64>, Bound<f64>);

@@ -44,7 +44,7 @@ pub use load::read_text;
 pub use motion::{Along, Load, Profile};
 pub use output::{Output, Snapshots};
 pub use overrides::Override;
-pub use pattern::{Arrangement, Array, Count, Pattern, Pitch};
+pub use pattern::{Array, Count, Pattern, Pitch};
 pub use probe::names_of;
 pub use slider::{Damping, Grade, Slider};
 pub use source::Source;
@@ -54,7 +54,7 @@ pub use texture::{
 };
 pub use time::{RunTime, Step, Time};
 pub use values::AutoOr;
-pub use words::{AttachedEdge, Contact, Law, Motion, Outline};
+pub use words::{Arrangement, AttachedEdge, Contact, Law, Motion, Outline};
 
 #[cfg(test)]
 mod tests;

@@ -6,6 +6,7 @@ use super::check::Check;
 use super::error::CaseError;
 use super::key_table::{COUNT, MAX_COUNT, SIZE};
 use super::values::{Pair, word};
+use super::words::Arrangement;
 use crate::quantity::{Length, QuantityError};
 
 /// The pattern in which the shape of a texture is repeated.
@@ -58,19 +59,6 @@ pub enum Pitch {
     Equal(Length),
     /// `[x, y]`: between columns, and between rows.
     Each([Length; 2]),
-}
-
-/// `lattice`: how columns and rows lie to each other.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Arrangement {
-    /// In a grid.
-    #[default]
-    Square,
-    /// Every second row is shifted by half a pitch, and rows are sqrt(3)/2 pitches apart: six neighbours at one distance.
-    Hexagonal,
-    /// Every second row is shifted by half a pitch.
-    Staggered,
 }
 
 impl Pattern {

@@ -63,3 +63,16 @@ pub enum Contact {
     /// A spring, which breaks.
     Springs,
 }
+
+/// `lattice`: how columns and rows lie to each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Arrangement {
+    /// In a grid.
+    #[default]
+    Square,
+    /// Every second row is shifted by half a pitch, and rows are sqrt(3)/2 pitches apart: six neighbours at one distance.
+    Hexagonal,
+    /// Every second row is shifted by half a pitch.
+    Staggered,
+}
