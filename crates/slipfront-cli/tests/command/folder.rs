@@ -249,7 +249,7 @@ fn a_torn_line_of_the_journal_does_no_harm() {
         let last = journal.trim_end().rfind('\n').unwrap();
         workspace.fill("a", &workspace.files("whole"));
         workspace.remove("a/manifest.json");
-        workspace.remove("a/stress.png");
+        workspace.remove("a/front.png");
         workspace.write("a/.slipfront/journal.jsonl", &journal[..last + 20]);
         workspace.succeed(line);
         workspace.assert_same_run("whole", "a");

@@ -94,8 +94,9 @@ fn curves_are_drawn_in_newtons_and_metres() {
 fn runs_of_different_materials_are_drawn_where_they_can_be_compared() {
     let workspace = Workspace::small();
     workspace.succeed("run small.toml -o a");
-    workspace
-        .succeed("run small.toml -o steel --set slider.young_modulus='210 GPa' --set friction.mu_static=0.6");
+    let steel = "slider = { blocks = [6, 5], young_modulus = '210 GPa' }\ndrive.v_star = 0.1\nfriction.mu_static = 0.6\n";
+    workspace.write("steel.toml", steel);
+    workspace.succeed("run steel.toml -o steel");
     let said = workspace.succeed("plot a steel");
     assert!(
         said.contains("note: the runs have different materials: friction is drawn as mu"),

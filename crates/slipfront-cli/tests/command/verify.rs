@@ -43,7 +43,7 @@ fn a_run_is_what_was_written() {
     let (status, said, errors) = verified(&workspace, "a b");
     assert_eq!((status, errors.as_str()), (0, ""));
     assert_eq!(said.lines().count(), 2, "{said}");
-    assert!(said.contains("a: 9 files as slipfront 0.1.0"), "{said}");
+    assert!(said.contains("a: 12 files as slipfront 0.1.0"), "{said}");
     let (status, said, _) = verified(&workspace, "a --quiet");
     assert_eq!((status, said.as_str()), (0, ""));
     assert!(before == workspace.files("."), "verifying has changed something");
@@ -212,7 +212,7 @@ fn what_is_no_run_folder_is_said_with_status_2() {
     // The others are verified all the same.
     let (status, said, errors) = verified(&workspace, "empty a nowhere");
     assert_eq!(status, 2);
-    assert!(said.starts_with("a: 9 files"), "{said}");
+    assert!(said.starts_with("a: 12 files"), "{said}");
     assert!(
         errors.contains("2 of 3 folders cannot be verified, 0 differ"),
         "{errors}"
@@ -237,7 +237,7 @@ fn a_manifest_of_another_version_is_understood() {
     });
     let (status, said, _) = verified(&workspace, "a");
     assert_eq!(status, 0, "{said}");
-    assert!(said.contains("a: 9 files as slipfront 9.9.9"), "{said}");
+    assert!(said.contains("a: 12 files as slipfront 9.9.9"), "{said}");
     let (status, said, _) = verified(&workspace, "a --rerun --quiet");
     assert_eq!(status, 0, "{said}");
     let (_, said, _) = verified(&workspace, "a --rerun");
