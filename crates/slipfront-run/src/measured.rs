@@ -205,7 +205,11 @@ fn separator(path: &Path) -> std::io::Result<u8> {
     const LINE_MAX_BYTES: u64 = 1 << 16;
     let mut file = std::io::BufReader::new(open_limited(path, u64::MAX)?.take(LINE_MAX_BYTES));
     let mut line = Vec::new();
-    while file.read_until(b'\n', &mut line)? > 0 && (line.starts_with(b"#") || line.trim_ascii().is_empty()) {
+    let is_comment = |line: &[u8]| {
+        let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line).trim_ascii();
+        line.is_empty() || line.starts_with(b"#")
+    };
+    while file.read_until(b'\n', &mut line)? > 0 && is_comment(&line) {
         line.clear();
     }
     let found = [b';', b'\t', b',']

@@ -333,7 +333,7 @@ impl Budget {
                 remedy: "raise `output.series`",
                 bytes: [
                     0.0,
-                    grown(rows) * row + grown(rows * self.row_text),
+                    grown(rows) * row + rows * self.row_text,
                     grown(rows) * (row + DRAWN_ROW),
                     rows * self.row_text,
                     rows * row,
