@@ -142,7 +142,7 @@ const DRAWN_ROW: f64 = (3.0 + 2.0 + 3.0) * NUMBER;
 /// lattice: more than 256 cells along a side are averaged (measured: 6.8 and 6.6 MB).
 pub const PICTURE: f64 = 7.0 * 1024.0 * 1024.0;
 /// The same of the picture of the front, which is up to twice as tall.
-const PICTURE_OF_FRONT: f64 = 2.0 * PICTURE;
+const PICTURE_OF_FRONT: f64 = 12.0 * 1024.0 * 1024.0;
 /// All pictures as SVG and PNG, the summary and the manifest (measured: at most 0.7 MB).
 const PICTURE_FILES: f64 = 2e6;
 

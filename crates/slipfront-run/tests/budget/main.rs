@@ -119,6 +119,9 @@ fn what_is_said_is_what_is_taken() {
         // The lattice.
         "slider.blocks=[600,600];time.duration_star=1;output.snapshots=[]",
         "slider.blocks=[256,256];drive.v_star=0.3",
+        // Tall and wide pictures of the front.
+        "slider.blocks=[60,180];drive.v_star=0.1;output.snapshots=[]",
+        "slider.blocks=[300,75];drive.v_star=0.1;output.snapshots=[]",
         // Laws of friction that remember more.
         "slider.blocks=[400,400];time.duration_star=1;output.snapshots=[];friction.contact='springs';\
          friction.contact_stiffness_star=0.1",
@@ -155,6 +158,7 @@ fn what_is_said_is_what_is_taken() {
             results::write(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();
             (case.budget.memory(), case.budget.disk())
         });
+        println!("{sets}: {memory} {taken}");
         assert_honest(sets, memory, taken);
         assert_room(sets, disk, &out);
         std::fs::remove_dir_all(out).unwrap();
