@@ -141,8 +141,10 @@ const DRAWN_ROW: f64 = (3.0 + 2.0 + 3.0) * NUMBER;
 /// Primitives and pixels of the picture of the friction, and of the one of the stress. They do not depend on the
 /// lattice: more than 256 cells along a side are averaged (measured: 6.8 and 6.6 MB).
 pub const PICTURE: f64 = 7.0 * 1024.0 * 1024.0;
-/// The same of the picture of the front, which is up to twice as tall.
+/// The same of the picture of the front: with its panels beside each other, and above each other, as those of long sliders are
+/// (measured: 8 and 15 MB, with the kymograph).
 const PICTURE_OF_FRONT: f64 = 12.0 * 1024.0 * 1024.0;
+const PICTURE_OF_LONG_FRONT: f64 = 16.0 * 1024.0 * 1024.0;
 /// All pictures as SVG and PNG, the summary and the manifest (measured: at most 0.7 MB).
 const PICTURE_FILES: f64 = 2e6;
 
@@ -199,6 +201,8 @@ pub struct Budget {
     maps: f64,
     /// Places times instants of the kymograph.
     kymograph: f64,
+    /// Bytes of the picture of the front.
+    front_picture: f64,
     /// Bytes of the files that the case reads, of which there will be copies.
     pub(super) inputs: f64,
     /// Masks that are in memory at once, until they are laid over the lattice.
@@ -276,6 +280,10 @@ impl Budget {
             maps: match output.fields.contains(&mapped_field(file)) {
                 true => n_frames.min(MAX_MAPS as f64),
                 false => 0.0,
+            },
+            front_picture: match lattice.nx > 3 * lattice.ny {
+                true => PICTURE_OF_LONG_FRONT,
+                false => PICTURE_OF_FRONT,
             },
             kymograph: {
                 let samples = last_step / Kymograph::INTERVAL + 1;
@@ -367,7 +375,7 @@ impl Budget {
         let fixed = [
             0.0,
             HISTORY + counts + self.kymograph * COUNTED,
-            PICTURE_OF_FRONT + self.kymograph * DRAWN_SHARE,
+            self.front_picture + self.kymograph * DRAWN_SHARE,
             PICTURE_FILES + self.kymograph * VALUE,
             HISTORY + counts,
         ];
@@ -552,7 +560,7 @@ impl Budget {
 /// so many bytes.
 pub fn memory_to_draw(rows: f64, kymograph: f64) -> f64 {
     let maps = CELLS * (AVERAGED + MAX_MAPS as f64 * VALUE);
-    HEAP * (maps + grown(rows) * DRAWN_ROW + kymograph / VALUE * DRAWN_SHARE + PICTURE_OF_FRONT)
+    HEAP * (maps + grown(rows) * DRAWN_ROW + kymograph / VALUE * DRAWN_SHARE + PICTURE_OF_LONG_FRONT)
 }
 
 /// Elements for which a vector has room that grew to `length` by doubling.

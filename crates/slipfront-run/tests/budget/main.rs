@@ -158,7 +158,6 @@ fn what_is_said_is_what_is_taken() {
             results::write(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();
             (case.budget.memory(), case.budget.disk())
         });
-        println!("{sets}: {memory} {taken}");
         assert_honest(sets, memory, taken);
         assert_room(sets, disk, &out);
         std::fs::remove_dir_all(out).unwrap();
