@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::canvas::Canvas;
 use crate::cell_means::CellMeans;
-use crate::frame::{BAR_MIN_HEIGHT, BAR_WIDTH, bar_room, colour_bar};
+use crate::frame::{BAR_MIN_HEIGHT, BAR_STEPS, BAR_WIDTH, bar_room, colour_bar};
 use crate::geometry::{Align, Area};
 use crate::lattice_map::{Cells, MARK, TITLE_ROOM, block_count, check_length, circle, draw_titles, place};
 use crate::picture::{Picture, PictureError};
@@ -14,8 +14,6 @@ use crate::text::Text;
 const GAP: f64 = 26.0;
 /// A map is no wider than this: 44 mm.
 const MAX_WIDTH: f64 = 520.0;
-/// The colour bar is numbered in at most so many steps.
-const BAR_STEPS: usize = 5;
 
 /// Maps on one colour scale.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

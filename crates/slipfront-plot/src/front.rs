@@ -6,10 +6,12 @@ use crate::cell_means::CellMeans;
 use crate::color_image::{Image, level};
 use crate::contour::{contours, smoothed};
 use crate::frame::{
-    BAR_MIN_HEIGHT, BAR_WIDTH, LOWER_ROOM, bar_room, colour_bar, left_room, left_side, lower_side,
+    BAR_MIN_HEIGHT, BAR_STEPS, BAR_WIDTH, LOWER_ROOM, bar_room, colour_bar, left_room, left_side, lower_side,
 };
 use crate::geometry::{Align, Area};
-use crate::lattice_map::{Cells, MARK, block_count, check_block_size, check_length, circle, place, unit_of};
+use crate::lattice_map::{
+    Cells, MARK, MIN_RATIO, block_count, check_block_size, check_length, circle, place, unit_of,
+};
 use crate::picture::{Picture, PictureError};
 use crate::style::{BLACK, MARGIN, RADIUS_MARKER, SIZE_LABEL, TEXT_WIDTH, TICK_LENGTH, WHITE, WIDTH_FRAME};
 use crate::text::Text;
@@ -21,12 +23,8 @@ const GAP: f64 = 30.0;
 const MAX_SIDE: f64 = 520.0;
 /// A slider longer than this, as wide as the page, has its map above the other panel.
 const MAX_RATIO_BESIDE: f64 = 3.0;
-/// A strip is drawn no thinner than this share of its length.
-const MIN_RATIO: f64 = 1.0 / 6.0;
 /// The other panel below a map is so high.
 const HEIGHT_BELOW: f64 = 340.0;
-/// Colour bars are numbered in at most so many steps.
-const BAR_STEPS: usize = 5;
 /// Contours in at most so many steps.
 const CONTOUR_STEPS: usize = 8;
 /// Contours are those of means over as many cells around each as make this share of the map.

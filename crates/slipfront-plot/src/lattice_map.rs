@@ -9,6 +9,8 @@ use crate::picture::PictureError;
 use crate::style::{BLACK, RADIUS_MARKER, Rgb, SIZE_LABEL, WHITE, WIDTH_MARK};
 use crate::text::Text;
 
+/// A strip is drawn no thinner than this share of its length.
+pub(crate) const MIN_RATIO: f64 = 1.0 / 6.0;
 /// The second line over a map stands so far above it, the first one so far.
 const NOTE_ABOVE: f64 = 16.0;
 const LABEL_ABOVE: f64 = 56.0;

@@ -4,11 +4,11 @@ use crate::axis::Axis;
 use crate::canvas::Canvas;
 use crate::cell_means::CellMeans;
 use crate::frame::{
-    BAR_MIN_HEIGHT, BAR_WIDTH, LOWER_ROOM, bar_room, colour_bar, left_room, left_side, lower_side,
+    BAR_MIN_HEIGHT, BAR_STEPS, BAR_WIDTH, LOWER_ROOM, bar_room, colour_bar, left_room, left_side, lower_side,
 };
 use crate::geometry::{Align, Area};
 use crate::lattice_map::{
-    Cells, TITLE_ROOM, block_count, check_block_size, check_length, draw_titles, unit_of,
+    Cells, MIN_RATIO, TITLE_ROOM, block_count, check_block_size, check_length, draw_titles, unit_of,
 };
 use crate::picture::{Picture, PictureError};
 use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH};
@@ -21,12 +21,8 @@ const GAP: f64 = 30.0;
 /// A single map is no wider than this: 44 mm.
 const MAX_WIDTH: f64 = 520.0;
 const MAX_HEIGHT: f64 = 620.0;
-/// A strip is drawn no thinner than this share of its length.
-const MIN_RATIO: f64 = 1.0 / 6.0;
 /// A side shorter than this has fewer numbers.
 const SHORT_SIDE: f64 = 130.0;
-/// The colour scale is numbered in at most so many steps.
-const BAR_STEPS: usize = 5;
 
 /// One map of the contact stress.
 #[derive(Clone, Debug, PartialEq)]

@@ -98,8 +98,7 @@ impl Scale {
 /// # Errors
 /// When a folder cannot be read, or its run has not what is asked for.
 pub fn overlay(folders: &[PathBuf], units: Units, against: Option<Against>) -> Result<Overlay, ResultsError> {
-    let runs: Result<Vec<Run>, _> = folders.iter().map(|folder| Run::read(folder)).collect();
-    let runs = runs?;
+    let runs = Run::read_all(folders)?;
     let (scale, note) = match units {
         Units::Si => (in_si(&runs, against.unwrap_or_default(), Measure::Force)?, None),
         Units::Star => dimensionless(&runs, against)?,
@@ -117,8 +116,7 @@ pub fn overlay_measured(
     against: Against,
     measured: &Measured,
 ) -> Result<Overlay, ResultsError> {
-    let runs: Result<Vec<Run>, _> = folders.iter().map(|folder| Run::read(folder)).collect();
-    let runs = runs?;
+    let runs = Run::read_all(folders)?;
     let scale = in_si(&runs, against, measured.measure)?;
     let mut curves = scale.curves(&runs);
     let [along, up] = scale.prefixes;
@@ -252,6 +250,10 @@ pub fn marked_curve(label: String, summary: &Summary) -> FrictionCurve {
 }
 
 impl Run {
+    fn read_all(folders: &[PathBuf]) -> Result<Vec<Self>, ResultsError> {
+        folders.iter().map(|folder| Self::read(folder)).collect()
+    }
+
     fn read(folder: &Path) -> Result<Self, ResultsError> {
         let summary = read_summary(folder)?;
         let unit = summary.si.as_ref().map_or(f64::NAN, |si| si.displacement_unit_m);

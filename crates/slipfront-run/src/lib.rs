@@ -15,6 +15,7 @@ pub mod error;
 pub mod fields;
 #[cfg(feature = "plot")]
 pub mod friction_picture;
+mod friction_unit;
 mod front;
 pub mod manifest;
 #[cfg(feature = "plot")]

@@ -1,8 +1,10 @@
 //! A measured record: two columns of a table, such as force against time.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use csv::{ByteRecord, ReaderBuilder, Trim};
+use csv::ByteRecord;
+use slipfront_case::arrays::{separator, table_reader};
 use slipfront_case::disk::open_limited;
 use slipfront_case::quantity::{Duration, Force, Length, QuantityError};
 use slipfront_case::text::{display_path, truncated};
@@ -77,6 +79,9 @@ pub enum MeasuredError {
     TooShort { path: PathBuf, found: usize },
 }
 
+/// In the beginning of a table, its header tells what separates its fields.
+const HEAD_BYTES: u64 = 1 << 16;
+
 /// Two columns in SI units, of which the first never falls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
@@ -124,15 +129,12 @@ impl Record {
             path: path.to_owned(),
             source,
         };
-        let separator = separator(path).map_err(|source| failed(source.into()))?;
-        let open = || open_limited(path, u64::MAX);
-        let mut table = ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .comment(Some(b'#'))
-            .trim(Trim::All)
-            .delimiter(separator)
-            .from_reader(open().map_err(|source| failed(source.into()))?);
+        let open = || open_limited(path, u64::MAX).map_err(|source| failed(source.into()));
+        let mut head = Vec::new();
+        let read = open()?.take(HEAD_BYTES).read_to_end(&mut head);
+        read.map_err(|source| failed(source.into()))?;
+        let separator = separator(&head);
+        let mut table = table_reader(open()?, separator);
         let (mut places, mut factors) = ([0; 2], [1.0; 2]);
         let mut record = Self {
             x: Vec::new(),
@@ -197,25 +199,6 @@ impl Record {
             _ => Ok(record),
         }
     }
-}
-
-/// What separates the fields of a table, by the first line that is no comment.
-fn separator(path: &Path) -> std::io::Result<u8> {
-    use std::io::{BufRead, Read};
-    const LINE_MAX_BYTES: u64 = 1 << 16;
-    let mut file = std::io::BufReader::new(open_limited(path, u64::MAX)?.take(LINE_MAX_BYTES));
-    let mut line = Vec::new();
-    let is_comment = |line: &[u8]| {
-        let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line).trim_ascii();
-        line.is_empty() || line.starts_with(b"#")
-    };
-    while file.read_until(b'\n', &mut line)? > 0 && is_comment(&line) {
-        line.clear();
-    }
-    let found = [b';', b'\t', b',']
-        .into_iter()
-        .find(|separator| line.contains(separator));
-    Ok(found.unwrap_or(b' '))
 }
 
 /// A finite number, with a decimal point, or a decimal comma where commas separate nothing.

@@ -9,7 +9,9 @@ use slipfront::observe::CurveRow;
 use slipfront::{Friction, Model, Scales};
 use thiserror::Error;
 
+use crate::friction_unit::FrictionUnit;
 use crate::names::SERIES;
+use slipfront_case::case::COLUMN_TEXT;
 use slipfront_case::disk::open_limited;
 use slipfront_case::text;
 
@@ -92,11 +94,7 @@ impl SeriesRow {
         let has_springs = matches!(model.friction, Friction::ContactSprings(_));
         let has_state = matches!(model.friction, Friction::RateAndState(_));
         let viscous_loss = row.energies.viscous_loss * energy;
-        let force = scales.force() * model.mu_star_divisor();
-        let arm = model
-            .drive
-            .rotation
-            .map(|rotation| rotation.radius * scales.block_size);
+        let unit = FrictionUnit::of(scales, model);
         Self {
             step: row.step,
             time_star: row.time_star,
@@ -105,9 +103,9 @@ impl SeriesRow {
             mu_star: row.point.mu_star,
             friction_coefficient: row.point.mu_star * scales.mu_static_mean,
             mu_lateral_star: row.point.mu_lateral_star,
-            friction_force_n: arm.is_none().then_some(row.point.mu_star * force),
-            lateral_force_n: arm.is_none().then_some(row.point.mu_lateral_star * force),
-            torque_n_m: arm.map(|arm| row.point.mu_star * force * arm),
+            friction_force_n: unit.force(row.point.mu_star),
+            lateral_force_n: unit.force(row.point.mu_lateral_star),
+            torque_n_m: unit.torque(row.point.mu_star),
             sliding_percent: row.point.sliding_percent,
             work_j: row.energies.work * energy,
             kinetic_energy_j: row.energies.stored.kinetic * energy,
@@ -123,9 +121,6 @@ impl SeriesRow {
     }
 }
 
-/// A number, and what separates it from the next.
-const NUMBER_MAX_BYTES: usize = 25;
-
 /// The rows as CSV. Numbers are the shortest that read back as the same bits.
 pub fn to_csv(rows: impl Iterator<Item = SeriesRow>) -> Result<Vec<u8>, csv::Error> {
     let mut rows = rows;
@@ -135,7 +130,7 @@ pub fn to_csv(rows: impl Iterator<Item = SeriesRow>) -> Result<Vec<u8>, csv::Err
     let header = text.split(|&byte| byte == b'\n').next().unwrap_or_default();
     let columns = 1 + header.iter().filter(|&&byte| byte == b',').count();
     // A text that grew by itself would take twice as much while it does.
-    text.reserve_exact(rows.size_hint().0 * columns * NUMBER_MAX_BYTES);
+    text.reserve_exact(rows.size_hint().0 * columns * COLUMN_TEXT);
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(text);
     rows.try_for_each(|row| writer.serialize(row))?;
     finish(writer)

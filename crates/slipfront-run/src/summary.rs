@@ -11,6 +11,7 @@ use slipfront::observe::{
 use slipfront::{Friction, Scales, Simulation, StopReason};
 
 use crate::error::ResultsError;
+use crate::friction_unit::FrictionUnit;
 use crate::front::LatticeFront;
 use crate::names::SUMMARY;
 use crate::program::VERSION;
@@ -417,11 +418,7 @@ impl SummaryObservers {
 fn si(case: &Case, static_star: f64, kinetic_star: Option<f64>, contact_stress_max: f64) -> SiSummary {
     let (scales, model) = (&case.scales, &case.model);
     let area = model.n_blocks() as f64 * scales.block_size * scales.block_size;
-    let force = scales.force() * model.mu_star_divisor();
-    let arm = model
-        .drive
-        .rotation
-        .map(|rotation| rotation.radius * scales.block_size);
+    let unit = FrictionUnit::of(scales, model);
     SiSummary {
         pressure_pa: scales.pressure,
         young_modulus_pa: scales.young_modulus,
@@ -429,9 +426,9 @@ fn si(case: &Case, static_star: f64, kinetic_star: Option<f64>, contact_stress_m
         block_size_m: scales.block_size,
         area_m2: area,
         normal_force_n: model.surface.mean_normal_force() * scales.pressure * area,
-        static_friction_force_n: arm.is_none().then_some(static_star * force),
-        kinetic_friction_force_n: kinetic_star.filter(|_| arm.is_none()).map(|star| star * force),
-        static_torque_n_m: arm.map(|arm| static_star * force * arm),
+        static_friction_force_n: unit.force(static_star),
+        kinetic_friction_force_n: kinetic_star.and_then(|star| unit.force(star)),
+        static_torque_n_m: unit.torque(static_star),
         time_unit_s: scales.time(),
         displacement_unit_m: scales.displacement(),
         stress_unit_pa: scales.stress(),

@@ -22,6 +22,7 @@ pub use error::{ArrayError, extension};
 pub use mask::{mask_png, write_mask_png};
 pub use npy::mask_npy;
 pub use slab::Slab;
+pub use table::{reader as table_reader, separator};
 
 use crate::disk::open_regular;
 use error::{contents_error, unknown_extension};

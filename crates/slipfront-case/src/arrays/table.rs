@@ -1,6 +1,6 @@
 //! Tables of numbers as text (`.csv`).
 
-use std::io::{BufRead, Seek};
+use std::io::{BufRead, Read, Seek};
 use std::path::Path;
 
 use csv::{ErrorKind, ReaderBuilder, StringRecord, Trim};
@@ -26,13 +26,7 @@ pub(super) fn values(
     let read_error = ArrayError::read(path);
     let (length, preamble) = length_and_head(path, source, PREAMBLE_MAX_BYTES)?;
     let separator = separator(&preamble);
-    let mut table = ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .comment(Some(b'#'))
-        .trim(Trim::All)
-        .delimiter(separator)
-        .from_reader(source);
+    let mut table = reader(source, separator);
 
     // A number and what separates it from the next take two bytes at the least.
     let mut values = Vec::with_capacity(slab.n_blocks().min(length as usize / 2 + 1));
@@ -95,10 +89,24 @@ pub(super) fn values(
     Ok(values)
 }
 
-/// What separates the numbers of the first line that is no comment: a semicolon, a tab, a comma or a blank.
+/// Reads a table of text line by line; `#` begins a comment.
+pub fn reader<R: Read>(source: R, separator: u8) -> csv::Reader<R> {
+    ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .trim(Trim::All)
+        .delimiter(separator)
+        .from_reader(source)
+}
+
+/// What separates the fields of the first line that is no comment, given the beginning of a table: a semicolon, a tab, a comma or a
+/// blank.
 ///
-/// The semicolon comes before the comma, so that a decimal comma is reported as such and not as a wrong shape.
-fn separator(preamble: &[u8]) -> u8 {
+/// The semicolon comes before the comma, so that a decimal comma is known as such.
+pub fn separator(preamble: &[u8]) -> u8 {
+    const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+    let preamble = preamble.strip_prefix(BYTE_ORDER_MARK).unwrap_or(preamble);
     let mut lines = preamble.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
     let numbers = lines.find(|line| !line.is_empty() && !line.starts_with(b"#"));
     let separators = [b';', b'\t', b',', b' '];

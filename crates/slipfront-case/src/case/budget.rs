@@ -123,8 +123,8 @@ const AVERAGED: f64 = FLAG + NUMBER + VALUE;
 /// What never changes in the file, where textured takes 16 bits.
 const STATICS_ON_DISK: f64 = 2.0 + 3.0 * NUMBER;
 
-/// A column of `series.csv`: at most 24 characters and what separates it from the next.
-const COLUMN_TEXT: f64 = 25.0;
+/// Bytes of a column of `series.csv`: at most 24 characters and what separates it from the next.
+pub const COLUMN_TEXT: usize = 25;
 /// Columns of every series.
 const COLUMNS: f64 = 16.0;
 /// Stretches of the history of mu* and their copies while an uncertainty is sought.
@@ -272,7 +272,7 @@ impl Budget {
             frames: n_frames,
             fields: output.fields.len() as f64,
             rows: (last_step / output.series_stride) as f64 + 2.0,
-            row_text: COLUMN_TEXT * (COLUMNS + more_columns(file)),
+            row_text: COLUMN_TEXT as f64 * (COLUMNS + more_columns(file)),
             events: match file.drive.edge() {
                 Some(_) => (last_step as f64 / EVENT_STEPS).ceil(),
                 None => 0.0,
@@ -305,7 +305,7 @@ impl Budget {
         let frame = size_of::<Frame>() as f64 + fields * size_of::<Vec<f32>>() as f64;
         let snapshots = |cells: f64| frames * fields * cells * VALUE + grown(frames) * frame;
         let row = size_of::<CurveRow>() as f64;
-        let (event, event_text) = (size_of::<SlipEvent>() as f64, COLUMN_TEXT * EVENT_COLUMNS);
+        let (event, event_text) = (size_of::<SlipEvent>() as f64, COLUMN_TEXT as f64 * EVENT_COLUMNS);
         [
             Part {
                 key: "slider.blocks",

@@ -15,7 +15,7 @@ mod textures;
 mod time_plan;
 mod warnings;
 
-pub use self::budget::{Budget, PICTURE, PROGRAM, memory_to_draw};
+pub use self::budget::{Budget, COLUMN_TEXT, PICTURE, PROGRAM, memory_to_draw};
 pub use self::groups::Groups;
 pub use self::inputs::{Input, name_of_copy};
 pub use self::output::{MAX_MAPS, Output, Snapshots, mapped_field};

@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::check::Check;
 use super::error::CaseError;
 use super::key_table::{COUNT, MAX_COUNT, SIZE};
-use super::values::{Pair, word};
+use super::values::{Pair, length, word};
 use super::words::Arrangement;
-use crate::quantity::{Length, QuantityError};
+use crate::quantity::Length;
 
 /// The pattern in which the shape of a texture is repeated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -181,10 +181,9 @@ impl TryFrom<PitchKey> for Pitch {
     type Error = String;
 
     fn try_from(key: PitchKey) -> Result<Self, String> {
-        let length = |text: String| text.parse().map_err(|error: QuantityError| error.to_string());
         Ok(match key {
-            PitchKey::Equal(text) => Self::Equal(length(text)?),
-            PitchKey::Each(Pair([x, y])) => Self::Each([length(x)?, length(y)?]),
+            PitchKey::Equal(text) => Self::Equal(length(&text)?),
+            PitchKey::Each(Pair([x, y])) => Self::Each([length(&x)?, length(&y)?]),
         })
     }
 }

@@ -15,9 +15,9 @@ use super::keys::{texture_header, unknown_shape};
 use super::pattern::Pattern;
 use super::probe::names_of;
 use super::tables::Tables;
-use super::values::{Pair, word};
+use super::values::{Pair, length, word};
 use crate::number_format::count;
-use crate::quantity::{Length, QuantityError};
+use crate::quantity::Length;
 
 /// One `[[texture]]` of the file; a block is textured when its centre lies inside any of them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -240,10 +240,7 @@ impl TryFrom<CenterKey> for Center {
             CenterKey::Word(_) => {
                 Err("expected \"middle\" or a pair of lengths such as [\"25 um\", \"25 um\"]".to_owned())
             }
-            CenterKey::At(Pair([x, y])) => {
-                let length = |text: String| text.parse().map_err(|error: QuantityError| error.to_string());
-                Ok(Self::At([length(x)?, length(y)?]))
-            }
+            CenterKey::At(Pair([x, y])) => Ok(Self::At([length(&x)?, length(&y)?])),
         }
     }
 }

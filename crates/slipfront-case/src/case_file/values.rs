@@ -6,6 +6,8 @@ use std::marker::PhantomData;
 use serde::de::{Error as _, IntoDeserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
+use crate::quantity::{Length, QuantityError};
+
 /// Exactly two values. (Serde's own `[T; 2]` leaves a third value unread.)
 #[derive(Serialize)]
 pub(super) struct Pair<T>(pub(super) [T; 2]);
@@ -35,6 +37,11 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for PairVisitor<T> {
         pair.map(Pair)
             .map_err(|values| A::Error::invalid_length(values.len(), &self))
     }
+}
+
+/// A length that was read as a text, so that one that cannot be read keeps its own message where several shapes of a value are tried.
+pub(super) fn length(text: &str) -> Result<Length, String> {
+    text.parse().map_err(|error: QuantityError| error.to_string())
 }
 
 pub(super) fn pair<'de, D, T>(deserializer: D) -> Result<[T; 2], D::Error>

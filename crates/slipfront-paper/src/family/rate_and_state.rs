@@ -1,14 +1,11 @@
 //! Friction of rate and state.
 
-use std::sync::Arc;
-
-use slipfront::communicator::Alone;
 use slipfront::exact_solutions::{friction_after_speed_step, rate_and_state_growth};
-use slipfront::{Drive, Friction, Lattice, Model, RateAndState, State, Surface, VectorField, scales};
+use slipfront::{Drive, Friction, Lattice, Model, RateAndState, Surface, scales};
 use slipfront_plot::Responses;
 
 use super::answer::{Answer, Chapter};
-use super::runs::{Experiment, growth};
+use super::runs::growth_of_disturbance;
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;
 use crate::number::Number;
@@ -36,24 +33,7 @@ fn computed(k_drive: f64, damping: f64) -> f64 {
     };
     let surface = Surface::uniform(&lattice, 1.0, 0.5);
     let model = Model::new(lattice, surface, drive, damping, 0.0, Friction::RateAndState(LAW));
-    let behind = model.steady_level(&Alone) / k_drive;
-    let along_x = |x: f64| VectorField {
-        x: vec![x; 4],
-        y: vec![0.0; 4],
-    };
-    let experiment = Experiment {
-        model: Arc::new(model),
-        dt_star: DT_STAR,
-        state: Some(State {
-            displacement: along_x(1e-6 - behind),
-            velocity: along_x(V_STAR),
-        }),
-    };
-    let apart = 36.0;
-    let values = experiment.values(&[0.0, 1.0, 2.0, 3.0].map(|k| 60.0 + k * apart), |now| {
-        now.block(0).displacement[0] + behind - V_STAR * now.time_star
-    });
-    growth(&values, apart)
+    growth_of_disturbance(model, DT_STAR, 60.0, 36.0)
 }
 
 pub(super) fn chapter() -> Result<Chapter, PaperError> {

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use slipfront::communicator::Alone;
 use slipfront::observe::{Curve, CurveRow, Observer, Scheduled};
-use slipfront::{Execution, Model, Simulation, Snapshot, State, Stop};
+use slipfront::{Execution, Model, Simulation, Snapshot, State, Stop, VectorField};
 use slipfront_case::case::Case;
 
 use crate::error::PaperError;
@@ -133,4 +134,27 @@ pub(super) fn growth(values: &[f64], apart: f64) -> f64 {
     };
     let q = (x2 * x2 - x1 * x3) / (x1 * x1 - x0 * x2);
     libm::log(q) / (2.0 * apart)
+}
+
+/// The same of a small disturbance of steady sliding of blocks that move as one, from `t* = first` on.
+pub(super) fn growth_of_disturbance(model: Model, dt_star: f64, first: f64, apart: f64) -> f64 {
+    let (v_star, n) = (model.drive.v_star, model.lattice.n_blocks());
+    let behind = model.steady_level(&Alone) / model.drive.k_drive;
+    let along_x = |x: f64| VectorField {
+        x: vec![x; n],
+        y: vec![0.0; n],
+    };
+    let experiment = Experiment {
+        model: Arc::new(model),
+        dt_star,
+        state: Some(State {
+            displacement: along_x(1e-6 - behind),
+            velocity: along_x(v_star),
+        }),
+    };
+    let times = [0.0, 1.0, 2.0, 3.0].map(|k| first + k * apart);
+    let values = experiment.values(&times, |now| {
+        now.block(0).displacement[0] + behind - v_star * now.time_star
+    });
+    growth(&values, apart)
 }

@@ -1,17 +1,12 @@
 //! Kinetic friction that falls with speed.
 
-use std::sync::Arc;
-
-use slipfront::communicator::Alone;
 use slipfront::exact_solutions::weakening_growth;
 use slipfront::lattice::K_DRIVE;
-use slipfront::{
-    Coulomb, Drive, Friction, FrictionLaw, Lattice, Model, State, Surface, VectorField, Weakening,
-};
+use slipfront::{Coulomb, Drive, Friction, FrictionLaw, Lattice, Model, Surface, Weakening};
 use slipfront_plot::Responses;
 
 use super::answer::{Answer, Chapter};
-use super::runs::{Experiment, growth};
+use super::runs::growth_of_disturbance;
 use crate::drawing::{Drawing, formula, measured};
 use crate::error::PaperError;
 use crate::number::Number;
@@ -34,24 +29,7 @@ fn computed(damping: f64) -> f64 {
     });
     let surface = Surface::uniform(&lattice, 1.0, 0.5);
     let model = Model::new(lattice, surface, Drive::along_x(V_STAR), damping, 0.0, friction);
-    let behind = model.steady_level(&Alone) / K_DRIVE;
-    let along_x = |x: f64| VectorField {
-        x: vec![x; 4],
-        y: vec![0.0; 4],
-    };
-    let experiment = Experiment {
-        model: Arc::new(model),
-        dt_star: DT_STAR,
-        state: Some(State {
-            displacement: along_x(1e-6 - behind),
-            velocity: along_x(V_STAR),
-        }),
-    };
-    let apart = 2.4;
-    let values = experiment.values(&[0.0, 1.0, 2.0, 3.0].map(|k| k * apart), |now| {
-        now.block(0).displacement[0] + behind - V_STAR * now.time_star
-    });
-    growth(&values, apart)
+    growth_of_disturbance(model, DT_STAR, 0.0, 2.4)
 }
 
 pub(super) fn chapter() -> Result<Chapter, PaperError> {

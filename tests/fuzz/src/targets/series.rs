@@ -29,15 +29,7 @@ pub(crate) const PRECURSORS: Target = Target {
     name: "precursors",
     check: events,
     generated: || vec![events_csv(3), events_csv(1), events_csv(0)],
-    files: &[],
-    dictionary: Some("table.dict"),
-    max_bytes: 4096,
-    memory: Memory {
-        bytes: 256 << 10,
-        per_byte: 256,
-    },
-    mutations: 2000,
-    repetitions: 60,
+    ..SERIES
 };
 
 /// So many events, the last of which goes on.

@@ -1,0 +1,38 @@
+//! What one unit of mu* is in a laboratory.
+
+use slipfront::{Model, Scales};
+
+/// One unit of mu* of a whole slider.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum FrictionUnit {
+    /// A force, N.
+    Force(f64),
+    /// A torque, N m, of a drive that rotates.
+    Torque(f64),
+}
+
+impl FrictionUnit {
+    pub(crate) fn of(scales: &Scales, model: &Model) -> Self {
+        let force = scales.force() * model.mu_star_divisor();
+        match &model.drive.rotation {
+            None => Self::Force(force),
+            Some(rotation) => Self::Torque(force * (rotation.radius * scales.block_size)),
+        }
+    }
+
+    /// A friction in N; none of a drive that rotates.
+    pub(crate) fn force(self, mu_star: f64) -> Option<f64> {
+        match self {
+            Self::Force(force) => Some(mu_star * force),
+            Self::Torque(_) => None,
+        }
+    }
+
+    /// A torque in N m; none of a drive that does not rotate.
+    pub(crate) fn torque(self, mu_star: f64) -> Option<f64> {
+        match self {
+            Self::Force(_) => None,
+            Self::Torque(torque) => Some(mu_star * torque),
+        }
+    }
+}
