@@ -19,16 +19,17 @@ pub(crate) fn count_from_one(text: &str) -> Result<u16, String> {
 }
 
 /// Makes the pool of threads of this process and returns their number: by default one per core, and never more. Where the
-/// system refuses some there are fewer, at least the present one.
+/// system refuses some there are fewer, at least the present one, which is one of them if there are several: so it need not wake
+/// others, nor wait for them to wake it, at every step of a run.
 pub(crate) fn set_threads(threads: Option<u16>) -> Result<usize, Failure> {
-    let started = start_pool(threads, 0)?;
-    Ok(started.max(1))
+    let working = start_pool(threads, 0, true)?;
+    Ok(working.max(1))
 }
 
 /// The same for a command that runs cases on the pool while the present thread waits for them. For every thread of the pool it
 /// starts `others` beside it.
 pub(crate) fn set_worker_threads(threads: Option<u16>, others: usize) -> Result<usize, Failure> {
-    match start_pool(threads, others)? {
+    match start_pool(threads, others, false)? {
         0 => Err(Failure::running(anyhow::anyhow!(
             "runs take threads of their own, which the system refuses: raise the limit on processes (`ulimit -u`) or on \
              addresses (`ulimit -v`)"
@@ -38,8 +39,8 @@ pub(crate) fn set_worker_threads(threads: Option<u16>, others: usize) -> Result<
 }
 
 /// Makes the pool and returns the number of its threads, each of which needs room for `others`; 0 if the present thread does
-/// all of its work.
-fn start_pool(threads: Option<u16>, others: usize) -> Result<usize, Failure> {
+/// all of its work. `joins`: whether the present thread is one of several.
+fn start_pool(threads: Option<u16>, others: usize, joins: bool) -> Result<usize, Failure> {
     let cores = available_parallelism().map_or(1, usize::from);
     let asked = threads.map_or(cores, usize::from);
     let wanted = threads_that_fit(asked.min(cores), others);
@@ -51,8 +52,9 @@ fn start_pool(threads: Option<u16>, others: usize) -> Result<usize, Failure> {
     let (hand_over, works) = channel::<ThreadBuilder>();
     let works = Arc::new(Mutex::new(works));
     let (settled, has_settled) = channel();
-    let mut started = 0;
-    while started < wanted {
+    let joins = joins && wanted > 1;
+    let (mut started, to_start) = (0, wanted - usize::from(joins));
+    while started < to_start {
         let (works, settled) = (Arc::clone(&works), settled.clone());
         let wait_and_work = move || {
             // The first piece of memory gives a thread its arena, which limits of addresses count.
@@ -70,19 +72,20 @@ fn start_pool(threads: Option<u16>, others: usize) -> Result<usize, Failure> {
         let _ = has_settled.recv();
         started += 1;
     }
-    if started < asked {
+    let joins = joins && started > 0;
+    let working = started + usize::from(joins);
+    if working < asked {
         print_stderr(&format!(
             "note: {} of {asked} threads are used, since {why}",
-            started.max(1)
+            working.max(1)
         ));
     }
-    let pool = ThreadPoolBuilder::new().num_threads(started.max(1));
-    if started == 0 {
-        pool.use_current_thread().build_global()
-    } else {
-        pool.spawn_handler(|thread| hand_over.send(thread).map_err(|_| ErrorKind::BrokenPipe.into()))
-            .build_global()
+    let mut pool = ThreadPoolBuilder::new().num_threads(working.max(1));
+    if joins || started == 0 {
+        pool = pool.use_current_thread();
     }
-    .map_err(Failure::running)?;
-    Ok(started)
+    pool.spawn_handler(|thread| hand_over.send(thread).map_err(|_| ErrorKind::BrokenPipe.into()))
+        .build_global()
+        .map_err(Failure::running)?;
+    Ok(working)
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use slipfront::communicator::{Alone, Communicator};
 use slipfront::observe::frames::{Selection, kept};
 use slipfront::observe::{CurveRow, Frame, Frames, Instants, Kymograph, Precursors, Schedule, Scheduled};
-use slipfront::{Checkpoint, Execution, RunError, Simulation, Snapshot, Stop, StopReason};
+use slipfront::{Checkpoint, Execution, Kernel, RunError, Simulation, Snapshot, Stop, StopReason};
 
 use crate::columns::Columns;
 use crate::fields::FieldFrame;
@@ -35,7 +35,12 @@ pub struct Record {
 }
 
 /// Fewest blocks for which a thread is worth its share in keeping step with the others.
-const BLOCKS_PER_THREAD: usize = 1 << 16;
+fn blocks_per_thread(kernel: Kernel) -> usize {
+    match kernel {
+        Kernel::Fused => 1 << 13,
+        Kernel::Reference => 1 << 10,
+    }
+}
 
 /// Runs a case to its end, on at most `threads` threads, unless the run diverges.
 pub fn run(case: &Arc<Case>, threads: usize) -> Result<Record, RunError> {
@@ -87,9 +92,11 @@ impl RunState {
 }
 
 fn execution(case: &Case, threads: usize) -> Execution {
+    let execution = Execution::default();
+    let per_thread = blocks_per_thread(execution.kernel.for_model(&case.model));
     Execution {
-        threads: (case.model.surface.n_blocks() / BLOCKS_PER_THREAD).clamp(1, threads),
-        ..Execution::default()
+        threads: (case.model.surface.n_blocks() / per_thread).clamp(1, threads),
+        ..execution
     }
 }
 

@@ -60,7 +60,7 @@ impl BlockColumn {
     ];
 
     /// Number of blocks in a part.
-    pub(crate) const PART: usize = 1 << 16;
+    const PART: usize = 1 << 16;
 
     /// Takes all columns of `n_blocks` blocks part by part through `work`, which is given the column, the first block, and room
     /// for the values. The first error ends it.
@@ -68,14 +68,21 @@ impl BlockColumn {
         n_blocks: usize,
         mut work: impl FnMut(Self, usize, &mut [f64]) -> Result<(), E>,
     ) -> Result<(), E> {
+        Self::ALL.into_iter().try_for_each(|column| {
+            Self::for_each_part_of_one(n_blocks, |first, values| work(column, first, values))
+        })
+    }
+
+    /// The same of one column.
+    pub(crate) fn for_each_part_of_one<E>(
+        n_blocks: usize,
+        mut work: impl FnMut(usize, &mut [f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
         let mut values = vec![0.0; n_blocks.min(Self::PART)];
-        for column in Self::ALL {
-            for first in (0..n_blocks).step_by(Self::PART) {
-                let len = Self::PART.min(n_blocks - first);
-                work(column, first, &mut values[..len])?;
-            }
-        }
-        Ok(())
+        (0..n_blocks).step_by(Self::PART).try_for_each(|first| {
+            let len = Self::PART.min(n_blocks - first);
+            work(first, &mut values[..len])
+        })
     }
 }
 

@@ -177,6 +177,12 @@ impl RunningSum {
         if size.is_nan() { f64::INFINITY } else { size }
     }
 
+    /// Adds the terms of another with the same bound.
+    pub(crate) fn join(&mut self, other: &Self) {
+        self.largest = self.largest.max(other.largest);
+        self.sum += other.sum;
+    }
+
     /// Begins again with no terms, and with the bound of those before, of which this is the largest. Returns whether they were added up
     /// with this bound.
     fn restart(&mut self, largest: f64) -> bool {

@@ -83,6 +83,22 @@ impl Model {
         Self { slider, ..self }
     }
 
+    /// The model of some rows of the lattice, of those that this process holds.
+    pub(crate) fn of_some_rows(&self, rows: Range<usize>) -> Self {
+        let first = self.rows.start;
+        let blocks = self.lattice.blocks_of(&(rows.start - first..rows.end - first));
+        Self {
+            lattice: self.lattice,
+            rows,
+            slider: self.slider.of_some_blocks(&blocks),
+            surface: self.surface.of_some_blocks(&blocks),
+            drive: self.drive.clone(),
+            damping: self.damping,
+            epsilon: self.epsilon,
+            friction: self.friction,
+        }
+    }
+
     /// What differs from block to block of the rows that this process holds.
     pub fn slider(&self) -> &Slider {
         &self.slider

@@ -167,12 +167,12 @@ impl Simulation {
             }
             write(column as usize, first, values)
         })?;
-        for (column, values) in (BlockColumn::ALL.len()..).zip(engine.memory()) {
-            for (part, values) in values.chunks(BlockColumn::PART).enumerate() {
-                write(column, part * BlockColumn::PART, values)?;
-            }
-        }
-        Ok(())
+        (0..self.model.friction.n_columns()).try_for_each(|column| {
+            BlockColumn::for_each_part_of_one(self.model.surface.n_blocks(), |first, values| {
+                engine.read_memory(column, first, values);
+                write(BlockColumn::ALL.len() + column, first, values)
+            })
+        })
     }
 
     /// Steps until `stop`, showing every instant to the observers that are due, the last one included. All ranks must call this

@@ -180,6 +180,25 @@ impl Slider {
         }
     }
 
+    /// What differs from block to block among some blocks.
+    pub(crate) fn of_some_blocks(&self, blocks: &Range<usize>) -> Self {
+        let some = |values: &Vec<f64>| values[blocks.clone()].to_vec();
+        Self {
+            stiffness: self.stiffness.as_ref().map(some),
+            density: self.density.as_ref().map(some),
+            mean_mass: self.mean_mass,
+            drive_springs: self.drive_springs.as_ref().map(|springs| DriveSprings {
+                relative: some(&springs.relative),
+                sum: springs.sum,
+            }),
+            outline: self.outline.as_ref().map(|outline| Outline {
+                exists: outline.exists[blocks.clone()].to_vec(),
+                n_blocks: outline.n_blocks,
+            }),
+            viscosity_time: self.viscosity_time,
+        }
+    }
+
     /// Number of blocks of the whole lattice that exist.
     pub fn n_blocks(&self, lattice: &Lattice) -> usize {
         self.outline

@@ -28,6 +28,12 @@ const FLAG: f64 = size_of::<bool>() as f64;
 
 /// [`slipfront::Surface`] under an equal pressure.
 const SURFACE: f64 = FLAG + 2.0 * NUMBER;
+/// Bytes of surface and slider per block.
+fn surface_bytes(file: &CaseFile) -> f64 {
+    let has_pressures = file.load.profile.is_some() || file.load.pressure_field.is_some();
+    SURFACE + if has_pressures { NUMBER } else { 0.0 } + slider_bytes(file)
+}
+
 /// Bytes of [`slipfront::Slider`] per block: moduli, densities, and the blocks that exist; the stiffness of drive springs that follows
 /// from moduli and outline.
 fn slider_bytes(file: &CaseFile) -> f64 {
@@ -40,7 +46,8 @@ fn slider_bytes(file: &CaseFile) -> f64 {
     NUMBER * (has(stiffness) + has(density) + has(driven)) + FLAG * has(outline)
 }
 
-/// Bytes of the reference kernel per block, with springs that differ, with dampers, and with directions of a rotation.
+/// Bytes of the reference kernel per block, with springs that differ, with dampers, and with directions of a rotation. Each of several
+/// threads takes for itself what it needs of the model, and the motion from which the forces between blocks follow.
 fn reference_bytes(file: &CaseFile) -> f64 {
     let slider = &file.slider;
     let graded = slider.stiffness_field.is_some() || slider.stiffness_grade.is_some();
@@ -48,16 +55,16 @@ fn reference_bytes(file: &CaseFile) -> f64 {
         true => 4.0 * NUMBER,
         false => 0.0,
     };
-    // Their sum, and that along each of the four bonds.
+    // Their sum, that along each of the four bonds, and velocities.
     let dampers = match slider.viscosity_time_star > 0.0 {
-        true => 10.0 * NUMBER,
+        true => 12.0 * NUMBER,
         false => 0.0,
     };
     let directions = match file.drive.motion {
         Motion::Translation => 0.0,
         Motion::Rotation => 2.0 * NUMBER,
     };
-    REFERENCE + springs + dampers + directions
+    REFERENCE + springs + dampers + directions + surface_bytes(file) + 2.0 * NUMBER
 }
 
 /// Bytes of the fused kernel per block, with what it keeps of blocks that differ.
@@ -259,11 +266,7 @@ impl Budget {
             all_cells: kept(0..lattice.nx) * kept(0..lattice.ny),
             is_shared: ranks.communicator.size() > 1,
             ranks_on_node: ranks.on_node as f64,
-            surface: slider_bytes(file)
-                + match file.load.profile.is_some() || file.load.pressure_field.is_some() {
-                    true => SURFACE + NUMBER,
-                    false => SURFACE,
-                },
+            surface: surface_bytes(file),
             kernel: match kernel(file) {
                 Kernel::Fused => fused_bytes(file),
                 Kernel::Reference => reference_bytes(file) + kept_by_law * NUMBER,

@@ -152,7 +152,7 @@ fn what_is_said_is_what_is_taken() {
         let (taken, (memory, disk)) = peak(|| {
             let file = CaseFile::parse("", "case", &overrides).unwrap();
             let case = Arc::new(Case::new(file, "case", folder.path(), &mut |_| true, Ranks::ALONE).unwrap());
-            let mut record = running::run(&case, 1).unwrap();
+            let mut record = running::run(&case, 2).unwrap();
             let mut out = RunFolder::prepare(&out, false, &case.inputs).unwrap();
             results::write_case(&case, &mut out).unwrap();
             results::write(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();

@@ -53,11 +53,9 @@ pub(crate) trait Engine: Send + Sync {
         ContactTotals::default()
     }
 
-    /// What the law of friction remembers of every block, one array per column of a checkpoint beyond
-    /// [`BlockColumn::ALL`](crate::checkpoint::BlockColumn::ALL).
-    fn memory(&self) -> Vec<&[f64]> {
-        Vec::new()
-    }
+    /// What the law of friction remembers of the blocks from `first` on: one of its
+    /// [`Friction::n_columns`](crate::friction::Friction::n_columns), of a kernel that computes such laws.
+    fn read_memory(&self, _column: usize, _first: usize, _values: &mut [f64]) {}
 
     /// Velocity of block `b` as a checkpoint keeps it.
     fn checkpoint_velocity(&self, b: usize) -> [f64; 2];

@@ -29,7 +29,9 @@ pub enum Kernel {
 pub struct Execution {
     /// What computes the steps.
     pub kernel: Kernel,
-    /// Threads that share the blocks of the fused kernel; useful from about 100 000 blocks.
+    /// Threads of the pool that share the blocks; useful from some ten thousand blocks of the fused kernel, some thousand of the
+    /// reference kernel. A thread that steps a simulation should be one of the pool (see `rayon::scope`): others wait at every step
+    /// until they are woken.
     pub threads: usize,
     /// Whether blocks at rest are skipped until they can slip.
     pub skips: bool,
@@ -72,10 +74,7 @@ impl Execution {
                 let kernel = Fused::new(model, dt_star, state.as_ref(), threads, skips, communicator);
                 Box::new(kernel)
             }
-            Kernel::Reference => {
-                let state = state.unwrap_or_else(|| State::at_rest(model.surface.n_blocks()));
-                Box::new(Reference::new(model, dt_star, state, communicator))
-            }
+            Kernel::Reference => Box::new(Reference::new(model, dt_star, state, self.threads, communicator)),
         }
     }
 
@@ -97,7 +96,7 @@ impl Execution {
                 Ok(Some(Box::new(kernel)))
             }
             (Kernel::Reference, None) => {
-                let kernel = Reference::resume(model, dt_star, checkpoint, communicator, read)?;
+                let kernel = Reference::resume(model, dt_star, checkpoint, self.threads, communicator, read)?;
                 Ok(Some(Box::new(kernel)))
             }
             _ => Ok(None),

@@ -3,6 +3,7 @@
 //! `reference/` follows the paper, one pass over the blocks per equation; `fused/` computes the same in one fast sweep.
 //! The [`Simulation`](crate::Simulation) steps whichever of the two its [`Execution`] says, through the functions of `engine.rs`.
 
+mod bands;
 pub(crate) mod block;
 pub(crate) mod engine;
 pub(crate) mod execution;

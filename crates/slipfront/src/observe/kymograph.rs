@@ -38,7 +38,7 @@ impl Kymograph {
     /// Most rows.
     pub const MAX_ROWS: usize = 1024;
     /// Steps from one count to the next: so few that a front which takes some t* is resolved, and so many that a run takes no longer.
-    pub const INTERVAL: u64 = 4;
+    pub const INTERVAL: u64 = 8;
 
     /// Called when it is due.
     pub fn scheduled(&mut self) -> Scheduled<'_> {

@@ -22,6 +22,8 @@ pub use mesh::{Meshed, copies_overlap, mesh, mesh_watched};
 pub use pattern::{Array, n_copies};
 pub use texture::{Cavity, Groove, Orientation, Shape, Texture, Tile, cavity_lambda, cavity_percent};
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use self::whole::Whole;
@@ -117,6 +119,23 @@ impl Surface {
         ranks.largest(&mut largest_negative);
         surface.min_slip_threshold = -largest_negative[0];
         Ok(surface)
+    }
+
+    /// That of some blocks. What is known of the whole surface stays.
+    pub(crate) fn of_some_blocks(&self, blocks: &Range<usize>) -> Self {
+        let some = |values: &[f64]| values[blocks.clone()].to_vec();
+        Self {
+            textured: self.textured[blocks.clone()].to_vec(),
+            mu_static: some(&self.mu_static),
+            mu_kinetic: some(&self.mu_kinetic),
+            contact: Contact {
+                pressure: self.contact.pressure.as_deref().map(some),
+                ..self.contact
+            },
+            whole: self.whole,
+            load_factor: self.load_factor,
+            min_slip_threshold: self.min_slip_threshold,
+        }
     }
 
     /// Equal coefficients for all blocks and no texture. Coefficients are in units of their static mean, so that `mu_static`

@@ -86,6 +86,6 @@ mod executions;
 mod fields;
 mod kymograph;
 mod ranks;
-mod reference_on_ranks;
+mod reference_divided;
 mod sliders;
 mod variations;

@@ -54,6 +54,7 @@ use crate::checkpoint::{BlockColumn, Checkpoint, MotionBounds};
 use crate::communicator::Communicator;
 use crate::fixed_point::{FixedPoint, join, split};
 use crate::friction::Integrator;
+use crate::kernel::bands::for_each_band;
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
 use crate::kernel::totals::{StoredEnergy, Totals};
@@ -622,25 +623,6 @@ fn fill_from_neighbours(bands: &mut [Band], layout: &Layout, neighbours: &Neighb
                 let k = band.halo_index(element);
                 band.displacement.set(k, u);
             }
-        }
-    }
-}
-
-/// Runs `work` on every band: on the threads of the pool, or one after the other on this thread.
-fn for_each_band(threads: usize, bands: &mut [Band], work: &(impl Fn(&mut Band) + Sync)) {
-    if threads == 1 {
-        bands.iter_mut().for_each(work);
-        return;
-    }
-    match bands {
-        [] => {}
-        [band] => work(band),
-        _ => {
-            let (one, other) = bands.split_at_mut(bands.len() / 2);
-            rayon::join(
-                || for_each_band(threads, one, work),
-                || for_each_band(threads, other, work),
-            );
         }
     }
 }

@@ -1,105 +1,136 @@
-//! The rows of a rank, and beside them those that other ranks hold.
+//! The rows of a band, and beside them those that other bands or ranks hold.
 
 use std::ops::Range;
-use std::sync::Arc;
 
-use crate::communicator::Communicator;
+use super::forces::{part, part_mut};
 use crate::lattice::{Bond, Edges, Lattice};
 use crate::model::Model;
 use crate::moduli::Moduli;
 use crate::state::State;
+use crate::vector_field::VectorField;
 
-/// The rows of a rank with the row below and the row above, if other ranks hold these: what the forces of the springs between blocks
-/// are found from. Where there is one rank, all of the lattice.
+/// The rows of a band with the row below and the row above, if other bands hold these: what the forces of the springs between blocks
+/// are found from. Where there is one band, all of the lattice.
 pub(super) struct Rows {
-    ranks: Arc<dyn Communicator>,
     /// Of these rows alone. Nothing is known beyond them, so that it ends there.
     pub(super) lattice: Lattice,
-    /// Those of its blocks that this rank holds.
-    pub(super) own: Range<usize>,
-    /// Rows of the whole lattice, and the first of them that this rank holds.
+    /// Those of its blocks that this band holds.
+    own: Range<usize>,
+    /// Rows of the whole lattice, and the first of them that this band holds.
     n_rows: usize,
     first_row: usize,
     beside: Option<Beside>,
 }
 
-/// What a rank knows of the rows beside its own.
+/// What a band knows of the rows beside its own.
 struct Beside {
     /// Whether there is a row below, and one above.
     has: [bool; 2],
-    /// Of all blocks of the rows.
+    /// Of all blocks of the rows. Only dampers need velocities.
     state: State,
+    has_dampers: bool,
 }
 
 impl Rows {
-    pub(super) fn new(model: &Model, ranks: Arc<dyn Communicator>) -> Self {
+    pub(super) fn new(model: &Model) -> Self {
         let (Lattice { nx, ny, edges }, rows) = (model.lattice, &model.rows);
         let whole = Self {
-            ranks,
             lattice: model.lattice,
             own: 0..model.lattice.n_blocks(),
             n_rows: ny,
             first_row: rows.start,
             beside: None,
         };
-        if whole.ranks.size() == 1 {
+        if rows.len() == ny {
             return whole;
         }
         let has = [rows.start > 0, rows.end < ny].map(|inside| inside || edges[1] == Edges::Periodic);
-        let [below, above] = has.map(usize::from);
+        let ([below, above], has_dampers) = (has.map(usize::from), model.slider.is_viscous());
         let lattice = Lattice::with_edges(nx, below + rows.len() + above, [edges[0], Edges::Free]);
         Self {
             lattice,
             own: lattice.blocks_of(&(below..below + rows.len())),
             beside: Some(Beside {
                 has,
-                state: State::at_rest(lattice.n_blocks()),
+                state: State {
+                    displacement: VectorField::zeros(lattice.n_blocks()),
+                    velocity: VectorField::zeros(if has_dampers { lattice.n_blocks() } else { 0 }),
+                },
+                has_dampers,
             }),
             ..whole
         }
     }
 
-    pub(super) fn ranks(&self) -> &dyn Communicator {
-        &*self.ranks
+    /// Those that this band holds.
+    pub(super) fn own_rows(&self) -> Range<usize> {
+        self.own.start / self.lattice.nx..self.own.end / self.lattice.nx
     }
 
-    /// Takes over the motion of the blocks of this rank, and that of the rows beside them from the ranks that hold these.
-    pub(super) fn exchange(&mut self, own: &State) {
-        let Some(Beside { has, state }) = &mut self.beside else {
+    /// Takes over the motion of some blocks of this band.
+    #[inline(always)]
+    pub(super) fn take_over(&mut self, own: &State, blocks: &Range<usize>) {
+        let among_all = self.among_all(blocks);
+        if let Some(Beside {
+            state, has_dampers, ..
+        }) = &mut self.beside
+        {
+            for (to, from) in fields_mut(state, *has_dampers).zip(fields(own, *has_dampers)) {
+                let [to_x, to_y] = part_mut(to, &among_all);
+                let [x, y] = part(from, blocks);
+                to_x.copy_from_slice(x);
+                to_y.copy_from_slice(y);
+            }
+        }
+    }
+
+    /// The motion of the first and the last row of this band, one component after the other, for the bands below and above; empty
+    /// where there is none.
+    pub(super) fn ends(&self, own: &State) -> [Vec<f64>; 2] {
+        let Some(Beside { has, has_dampers, .. }) = &self.beside else {
+            return Default::default();
+        };
+        let nx = self.lattice.nx;
+        [0, 1].map(|end| {
+            let first = [0, self.own.len() - nx][end];
+            let components = fields(own, *has_dampers).flat_map(|field| [&field.x, &field.y]);
+            let values = components.flat_map(|values| &values[first..first + nx]);
+            values
+                .take(if has[end] { usize::MAX } else { 0 })
+                .copied()
+                .collect()
+        })
+    }
+
+    /// Takes over the motion of the row below and of the row above, see [`ends`](Self::ends).
+    pub(super) fn set_beside(&mut self, rows: [&[f64]; 2]) {
+        let (nx, firsts) = (self.lattice.nx, [0, self.own.end]);
+        let Some(Beside {
+            state, has_dampers, ..
+        }) = &mut self.beside
+        else {
             return;
         };
-        for (to, from) in components_mut(state).into_iter().zip(components(own)) {
-            to[self.own.clone()].copy_from_slice(from);
-        }
-        let nx = self.lattice.nx;
-        let row = |first: usize| components(own).map(|values| &values[first..first + nx]).concat();
-        let mut to = [row(0), row(self.own.len() - nx)];
-        for (row, has) in to.iter_mut().zip(*has) {
-            row.truncate(if has { row.len() } else { 0 });
-        }
-        let mut from = to.each_ref().map(|row| vec![0.0; row.len()]);
-        let [below, above] = &mut from;
-        self.ranks
-            .exchange(to.each_ref().map(|row| &**row), [below, above], &mut || ());
-        for (row, first) in from.iter().zip([0, self.own.end]) {
-            for (values, part) in components_mut(state).into_iter().zip(row.chunks(nx)) {
+        for (row, first) in rows.into_iter().zip(firsts) {
+            let components = fields_mut(state, *has_dampers).flat_map(|field| [&mut field.x, &mut field.y]);
+            for (values, part) in components.zip(row.chunks(nx)) {
                 values[first..first + nx].copy_from_slice(part);
             }
         }
     }
 
-    /// The motion of all blocks of these rows, given that of the blocks of this rank.
+    /// The motion of all blocks of these rows, given that of the blocks of this band.
     pub(super) fn state<'a>(&'a self, own: &'a State) -> &'a State {
         self.beside.as_ref().map_or(own, |beside| &beside.state)
     }
 
-    /// What some blocks of this rank are among all blocks of these rows.
+    /// What some blocks of this band are among all blocks of these rows.
     #[inline(always)]
     pub(super) fn among_all(&self, blocks: &Range<usize>) -> Range<usize> {
         self.own.start + blocks.start..self.own.start + blocks.end
     }
 
-    /// Blocks behind the first of this rank along a bond, which no blocks before it are: those of the row below, or where a periodic
+    /// Blocks behind the first of this band along a bond, which no blocks before it are: those of the row below, or where a periodic
     /// axis begins those of the last row.
     pub(super) fn behind(&self) -> Range<usize> {
         let last_row = self.lattice.block(0, self.lattice.ny - 1)..self.lattice.n_blocks();
@@ -112,7 +143,7 @@ impl Rows {
     /// Stiffness of the spring from every block along `bond` over that of its bond; 0 of the blocks of the row above.
     pub(super) fn springs_along(&self, moduli: &Moduli, bond: &Bond) -> Vec<f64> {
         let Lattice { nx, ny, .. } = self.lattice;
-        let (below, end) = (self.own.start / nx, self.own.end / nx);
+        let Range { start: below, end } = self.own_rows();
         let row_of = |row: usize| -> Vec<f64> {
             if row >= end {
                 return vec![0.0; nx];
@@ -122,38 +153,16 @@ impl Rows {
         };
         (0..ny).flat_map(row_of).collect()
     }
-
-    /// Sum of numbers of all rows of the whole lattice, of which `of_row` gives those of this rank: in the same order for any number of
-    /// ranks, and so with the same bits.
-    #[inline(always)]
-    pub(super) fn sum(&self, of_row: impl FnMut(usize) -> f64) -> f64 {
-        let mut bits = vec![0; self.n_rows];
-        let rows = self.own.start / self.lattice.nx..self.own.end / self.lattice.nx;
-        for (bits, number) in bits[self.first_row..].iter_mut().zip(rows.map(of_row)) {
-            *bits = number.to_bits() as i64;
-        }
-        self.ranks.sum(&mut bits);
-        bits.into_iter().map(|bits| f64::from_bits(bits as u64)).sum()
-    }
 }
 
-fn components(state: &State) -> [&[f64]; 4] {
-    let State {
-        displacement,
-        velocity,
-    } = state;
-    [&displacement.x, &displacement.y, &velocity.x, &velocity.y]
+/// What the forces between blocks follow from.
+#[inline(always)]
+fn fields(state: &State, has_dampers: bool) -> impl Iterator<Item = &VectorField> {
+    std::iter::once(&state.displacement).chain(has_dampers.then_some(&state.velocity))
 }
 
-fn components_mut(state: &mut State) -> [&mut [f64]; 4] {
-    let State {
-        displacement,
-        velocity,
-    } = state;
-    [
-        &mut displacement.x,
-        &mut displacement.y,
-        &mut velocity.x,
-        &mut velocity.y,
-    ]
+/// The same, to be filled.
+#[inline(always)]
+fn fields_mut(state: &mut State, has_dampers: bool) -> impl Iterator<Item = &mut VectorField> {
+    std::iter::once(&mut state.displacement).chain(has_dampers.then_some(&mut state.velocity))
 }

@@ -295,16 +295,16 @@ fn add_bottom_row(own: [&[f64]; 4], before: &[f64], total: &mut [f64]) {
     }
 }
 
-/// Energy of all springs between blocks of the whole lattice at displacements `u`. `relative`: stiffness of each over that of its bond, if they are not
-/// all alike. `row`: room for the energies of a row.
+/// Energies of the springs between blocks at displacements `u`: along each bond one number for every row of this band. `relative`:
+/// stiffness of each over that of its bond, if they are not all alike. `row`: room for the energies of a row.
 #[inline(always)]
-pub(super) fn lattice_energy(
+pub(super) fn row_energies(
     rows: &Rows,
     u: &VectorField,
     relative: Option<&[Vec<f64>; 4]>,
     epsilon: f64,
     row: &mut [f64],
-) -> f64 {
+) -> [Vec<f64>; 4] {
     let lattice = &rows.lattice;
     let mut row_energy = |number: usize, j: usize| -> f64 {
         let bond = &Bond::ALL[number];
@@ -344,9 +344,7 @@ pub(super) fn lattice_energy(
         });
         along + beyond.unwrap_or(0.0)
     };
-    (0..Bond::ALL.len())
-        .map(|bond| rows.sum(|j| row_energy(bond, j)))
-        .sum()
+    [0, 1, 2, 3].map(|bond| rows.own_rows().map(|j| row_energy(bond, j)).collect())
 }
 
 /// Energies of the springs along one bond of blocks displaced by `u`, to their neighbours displaced by `v`.

@@ -1,13 +1,15 @@
-//! What the reference kernel alone computes has the same bits on several ranks as on one, and goes on from a checkpoint on any other
-//! number of ranks.
+//! What the reference kernel alone computes has the same bits on several ranks and threads as on one, and goes on from a checkpoint on
+//! any other number of them.
 
 use rstest::rstest;
+use slipfront::communicator::Alone;
 use slipfront::{
     Ageing, Communicator, ContactSprings, Coulomb, Edges, Friction, FrictionLaw, Model, RateAndState,
     Rotation,
 };
 
 use crate::common::{Slider, cavity, thrown, varied};
+use crate::executions::assert_same_bits;
 use crate::ranks::{assert_goes_on, assert_same_with};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,11 +26,14 @@ enum Variety {
 
 const BLOCKS: [usize; 2] = [19, 17];
 
-fn slider(edges: Edges, options: &[Variety]) -> Slider {
+/// So many that several threads share them.
+const MANY: [usize; 2] = [40, 110];
+
+fn slider(blocks: [usize; 2], edges: Edges, options: &[Variety]) -> Slider {
     let mut slider = Slider {
-        blocks: BLOCKS,
+        blocks,
         edges: [edges; 2],
-        textures: vec![cavity(BLOCKS, 3.0, 1, 0.3, true)],
+        textures: vec![cavity(blocks, 3.0, 1, 0.3, true)],
         v_star: 0.1,
         degrees: 20.0,
         ..Slider::default()
@@ -36,7 +41,7 @@ fn slider(edges: Edges, options: &[Variety]) -> Slider {
     for option in options {
         match *option {
             Law(law) => slider.law = law,
-            Differ => slider.body = varied(BLOCKS[0] * BLOCKS[1], true),
+            Differ => slider.body = varied(blocks[0] * blocks[1], true),
             Viscous => (slider.body.viscosity_time, slider.dt_star) = (0.2, 0.05),
             Ages | RateState | Springs | Turns => {}
         }
@@ -94,7 +99,7 @@ fn the_same_bits_over_ranks(
     options: &'static [Variety],
     #[values(Edges::Free, Edges::Periodic)] edges: Edges,
 ) {
-    let slider = slider(edges, options);
+    let slider = slider(BLOCKS, edges, options);
     let change = |model: &mut Model, ranks: &dyn Communicator| change(options, model, ranks);
     assert_same_with(&slider, &change, None, slider.steps(6.0));
     let from = thrown(BLOCKS[0] * BLOCKS[1], 1.0, 2);
@@ -106,5 +111,44 @@ fn checkpoints_go_on_on_any_number_of_ranks(
     #[values(&[Viscous, Differ, Ages], &[RateState], &[Springs, Turns])] options: &'static [Variety],
 ) {
     let change = |model: &mut Model, ranks: &dyn Communicator| change(options, model, ranks);
-    assert_goes_on(&slider(Edges::Free, options), &change);
+    assert_goes_on(&slider(BLOCKS, Edges::Free, options), &change);
+}
+
+#[rstest]
+fn the_same_bits_over_threads(
+    #[values(
+        &[Law(FrictionLaw::Reversal)], &[Ages], &[RateState], &[Springs], &[Viscous, Differ, Turns],
+        &[Viscous, Differ, RateState], &[Springs, Turns, Differ]
+    )]
+    options: &'static [Variety],
+    #[values(Edges::Free, Edges::Periodic)] edges: Edges,
+) {
+    let slider = slider(MANY, edges, options);
+    let mut model = slider.model();
+    change(options, &mut model, &Alone);
+    let from = thrown(MANY[0] * MANY[1], 1.0, 2);
+    assert_same_bits(&model, slider.dt_star, Some(&from), 30);
+}
+
+#[rstest]
+fn the_same_bits_over_threads_of_ranks(
+    #[values(&[Viscous, Differ, Turns], &[RateState])] options: &'static [Variety],
+    #[values(Edges::Free, Edges::Periodic)] edges: Edges,
+) {
+    let slider = slider(MANY, edges, options);
+    let change = |model: &mut Model, ranks: &dyn Communicator| change(options, model, ranks);
+    let from = thrown(MANY[0] * MANY[1], 1.0, 2);
+    assert_same_with(&slider, &change, Some(&from), 50);
+}
+
+/// The threshold of a spring that is drawn anew may be that of a block far away.
+#[test]
+fn springs_drawn_anew_on_threads() {
+    let mut model = slider(MANY, Edges::Free, &[Springs]).model();
+    model.friction = Friction::ContactSprings(ContactSprings {
+        stiffness: 1.5,
+        redraw: Some(3),
+    });
+    let from = thrown(MANY[0] * MANY[1], 1.0, 2);
+    assert_same_bits(&model, 0.1, Some(&from), 30);
 }

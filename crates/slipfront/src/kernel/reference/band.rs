@@ -1,0 +1,392 @@
+//! Some rows of the blocks of a rank, which one thread takes through a step.
+
+use std::ops::Range;
+
+use super::contact::Contact;
+use super::drive::DrivenBlocks;
+use super::forces::{Forces, part, part_mut};
+use super::friction::friction_forces;
+use super::rows::Rows;
+use super::springs::{damper_forces, lattice_forces, row_energies};
+use super::weighted::{Scratch, add_weighted, dot_products};
+use crate::fixed_point::RunningSum;
+use crate::friction::{FrictionLaw, Integrator, Literal, Projection, Reversal};
+use crate::kernel::block::Block;
+use crate::lattice::Bond;
+use crate::model::Model;
+use crate::moduli::Moduli;
+use crate::reductions;
+use crate::state::State;
+use crate::vector_field::VectorField;
+
+/// Blocks of a part, unless a row has more.
+const PART: usize = 512;
+
+/// Blocks of each part but the last. A part has whole rows, so that no neighbour in the row of a block lies in a later part.
+fn part_len(model: &Model) -> usize {
+    let nx = model.lattice.nx;
+    (PART / nx).max(1) * nx
+}
+
+/// All blocks of these rows, part by part.
+fn parts(model: &Model) -> impl Iterator<Item = Range<usize>> + use<> {
+    let (n, len) = (model.surface.n_blocks(), part_len(model));
+    (0..n).step_by(len).map(move |first| first..n.min(first + len))
+}
+
+/// Sums over blocks that every step finds.
+pub(super) type Sums = [RunningSum; 12];
+
+/// Dampers beside the springs between blocks.
+#[derive(Debug)]
+struct Dampers {
+    force: VectorField,
+    /// Of the damper along each bond.
+    bonds: [VectorField; 4],
+}
+
+/// The state of the blocks of some rows, the forces of the latest step, and the sums over them.
+pub(super) struct Band {
+    pub(super) rows: Rows,
+    dt_star: f64,
+    /// Displacements at t_n, velocities half a step later.
+    pub(super) state: State,
+    pub(super) forces: Forces,
+    /// `mu_s F_n`; of springs in contact the thresholds that they have since they last broke.
+    static_limit: Vec<f64>,
+    /// `mu_k F_n`.
+    kinetic_force: Vec<f64>,
+    driven: DrivenBlocks,
+    pub(super) contact: Contact,
+    /// Relative stiffness of the spring of every block of the rows along each bond, if they are not all alike.
+    relative_springs: Option<[Vec<f64>; 4]>,
+    dampers: Option<Dampers>,
+    pub(super) sums: Sums,
+    /// Those of energies: kinetic half a step before and after, and of the drive springs.
+    pub(super) energy_sums: [RunningSum; 3],
+    /// Energies of the springs between blocks along each bond, one number per row.
+    pub(super) row_energies: [Vec<f64>; 4],
+    /// Blocks that slide, and those of them in contact.
+    pub(super) counts: [i64; 2],
+    scratch: Scratch,
+    pub(super) first_slip: Vec<f64>,
+    pub(super) stress_square_max: f64,
+}
+
+impl Band {
+    /// The rows of a model. `moduli`: those of the whole rank.
+    pub(super) fn new(model: &Model, moduli: &Moduli, dt_star: f64, state: State) -> Self {
+        let n = model.surface.n_blocks();
+        let rows = Rows::new(model);
+        let zeros = || VectorField::zeros(n);
+        let bonds = || [(); 4].map(|()| VectorField::zeros(rows.lattice.n_blocks()));
+        let slider = &model.slider;
+        let relative = || Bond::ALL.map(|bond| rows.springs_along(moduli, &bond));
+        Self {
+            dt_star,
+            state,
+            forces: Forces {
+                drive: zeros(),
+                lattice: zeros(),
+                friction: zeros(),
+                velocity: zeros(),
+                slides: vec![false; n],
+                springs: bonds(),
+            },
+            static_limit: (0..n).map(|b| model.surface.static_limit(b)).collect(),
+            kinetic_force: (0..n).map(|b| model.surface.kinetic_force(b)).collect(),
+            driven: DrivenBlocks::of(model),
+            contact: Contact::new(model),
+            relative_springs: (!slider.has_equal_springs()).then(relative),
+            dampers: slider.is_viscous().then(|| Dampers {
+                force: zeros(),
+                bonds: bonds(),
+            }),
+            sums: Sums::default(),
+            energy_sums: Default::default(),
+            row_energies: Default::default(),
+            counts: [0; 2],
+            scratch: Scratch::new(part_len(model).min(n)),
+            first_slip: vec![f64::NAN; n],
+            stress_square_max: 0.0,
+            rows,
+        }
+    }
+
+    /// Finds what follows from the memory of the law of friction, after a checkpoint has given it.
+    pub(super) fn resume(&mut self, model: &Model) {
+        if let Contact::Springs(springs) = &self.contact {
+            springs.find_thresholds(model, &mut self.static_limit);
+        }
+    }
+
+    /// Moves the blocks, unless it is the first step.
+    #[inline(always)]
+    pub(super) fn begin_step(&mut self, model: &Model, moves: bool) {
+        for blocks in parts(model) {
+            if moves {
+                self.move_blocks(model, &blocks);
+            }
+            self.rows.take_over(&self.state, &blocks);
+        }
+    }
+
+    /// Finds the forces on the blocks and their next velocities, unless these are known, and adds up the `sums` over them.
+    #[inline(always)]
+    pub(super) fn evaluate(&mut self, model: &Model, time_star: f64, is_known: bool, sums: Sums) {
+        self.sums = sums;
+        if !is_known {
+            self.counts = [0; 2];
+        }
+        for blocks in parts(model) {
+            if !is_known {
+                self.find_forces(model, &blocks, time_star);
+                self.count(model, &blocks, time_star);
+            }
+            self.add_up(model, &blocks);
+        }
+    }
+
+    /// Adds up the energies of the blocks and the drive springs, and finds those of the springs between blocks row by row, after the
+    /// next velocities are known.
+    #[inline(always)]
+    pub(super) fn add_energies(&mut self, model: &Model, time_star: f64, sums: [RunningSum; 3]) {
+        self.energy_sums = sums;
+        let [before, after, drive_springs] = &mut self.energy_sums;
+        let displacement = &self.state.displacement;
+        for blocks in parts(model) {
+            let (n, scratch) = (blocks.len(), &mut self.scratch);
+            let masses = masses(model, &blocks);
+            for (velocity, sum) in [
+                (&self.state.velocity, &mut *before),
+                (&self.forces.velocity, &mut *after),
+            ] {
+                let velocity = part(velocity, &blocks);
+                dot_products(velocity, velocity, &mut scratch.terms[..n]);
+                add_weighted(sum, &scratch.terms[..n], masses, &mut scratch.products);
+            }
+            self.driven
+                .add_squares(model, &blocks, displacement, time_star, drive_springs, scratch);
+        }
+        let relative = self.relative_springs.as_ref();
+        let u = &self.rows.state(&self.state).displacement;
+        self.row_energies = row_energies(&self.rows, u, relative, model.epsilon, &mut self.scratch.terms);
+    }
+
+    /// Lets the velocities of this step be those of the step before, for the next.
+    pub(super) fn end_step(&mut self) {
+        std::mem::swap(&mut self.state.velocity, &mut self.forces.velocity);
+    }
+
+    /// Block `b` of these rows with the forces on it.
+    pub(super) fn block(&self, b: usize) -> Block {
+        Block {
+            displacement: self.state.displacement.at(b),
+            velocity: self.state.velocity.at(b),
+            force_drive: self.forces.drive.at(b),
+            force_lattice: self.forces.lattice.at(b),
+            force_friction: self.forces.friction.at(b),
+        }
+    }
+
+    /// Lets the law of friction remember what some blocks did in the step before, and moves them.
+    #[inline(always)]
+    fn move_blocks(&mut self, model: &Model, blocks: &Range<usize>) {
+        let State {
+            displacement,
+            velocity,
+        } = &mut self.state;
+        match &mut self.contact {
+            Contact::Coulomb(_) => {}
+            Contact::RateAndState(contact) => contact.evolve(blocks, velocity, self.dt_star),
+            Contact::Springs(springs) => {
+                let (breaks, threshold) = (&self.forces.slides, &mut self.static_limit);
+                springs.form_again(model, blocks, displacement, breaks, threshold);
+            }
+        }
+        move_blocks(displacement, velocity, blocks, self.dt_star);
+    }
+
+    /// Finds the forces on some blocks, and their next velocities.
+    #[inline(always)]
+    fn find_forces(&mut self, model: &Model, blocks: &Range<usize>, time_star: f64) {
+        let displacement = &self.state.displacement;
+        let drive = &mut self.forces.drive;
+        self.driven.forces(model, blocks, displacement, time_star, drive);
+        let Forces { lattice, springs, .. } = &mut self.forces;
+        let (rows, relative) = (&self.rows, self.relative_springs.as_ref());
+        let state = rows.state(&self.state);
+        lattice_forces(model, rows, blocks, state, relative, lattice, springs);
+        if let Some(Dampers { force, bonds }) = &mut self.dampers {
+            damper_forces(model, rows, blocks, state, relative, force, bonds);
+            add_to(lattice, force, blocks);
+        }
+        let integrator = Integrator::new(model.damping, self.dt_star);
+        match masses(model, blocks) {
+            None => self.apply_friction(blocks, |_| integrator, time_star, model),
+            Some(masses) => {
+                self.apply_friction(blocks, |k| integrator.of_mass(masses[k]), time_star, model);
+            }
+        }
+    }
+
+    /// Eqs. 4-7: friction and damping, and the velocity half a step later, of some blocks. `integrator`: of the first, the second
+    /// and so on of them.
+    #[inline(always)]
+    fn apply_friction(
+        &mut self,
+        blocks: &Range<usize>,
+        integrator: impl Fn(usize) -> Integrator,
+        time_star: f64,
+        model: &Model,
+    ) {
+        let (state, forces) = (&self.state, &mut self.forces);
+        match &mut self.contact {
+            Contact::Coulomb(thresholds) => {
+                let (young, at_rest) = (&self.static_limit, &self.kinetic_force);
+                thresholds.update(blocks, young, at_rest, state, forces, time_star);
+                let now = thresholds.now(young, at_rest);
+                match thresholds.law {
+                    FrictionLaw::Projection => {
+                        friction_forces(&Projection, integrator, blocks, now, state, forces);
+                    }
+                    FrictionLaw::Reversal => {
+                        friction_forces(&Reversal, integrator, blocks, now, state, forces);
+                    }
+                    FrictionLaw::Literal => {
+                        friction_forces(&Literal, integrator, blocks, now, state, forces);
+                    }
+                }
+                thresholds.note_stops(blocks, state, forces, time_star);
+            }
+            Contact::RateAndState(contact) => contact.apply(blocks, state, integrator, forces),
+            Contact::Springs(springs) => {
+                springs.apply(model, blocks, state, &self.static_limit, integrator, forces);
+            }
+        }
+    }
+
+    /// Counts which of some blocks slide, and which of these are in contact; notes the first slips of these.
+    #[inline(always)]
+    fn count(&mut self, model: &Model, blocks: &Range<usize>, time_star: f64) {
+        let n = blocks.len();
+        let textured = &model.surface.textured[blocks.clone()][..n];
+        let slides = &self.forces.slides[blocks.clone()][..n];
+        let first_slip = &mut self.first_slip[blocks.clone()][..n];
+        let (mut n_sliding, mut n_slipping) = (0_u32, 0_u32);
+        for k in 0..n {
+            let slips = slides[k] & !textured[k];
+            n_sliding += u32::from(slides[k]);
+            n_slipping += u32::from(slips);
+            let is_first = slips & first_slip[k].is_nan();
+            first_slip[k] = if is_first { time_star } else { first_slip[k] };
+        }
+        self.counts[0] += i64::from(n_sliding);
+        self.counts[1] += i64::from(n_slipping);
+    }
+
+    /// Adds up what every step sums over blocks, after their next velocities are known.
+    #[inline(always)]
+    fn add_up(&mut self, model: &Model, blocks: &Range<usize>) {
+        let (n, scratch) = (blocks.len(), &mut self.scratch);
+        let ([bx, by], [ax, ay]) = (
+            part(&self.state.velocity, blocks),
+            part(&self.forces.velocity, blocks),
+        );
+        let (bx, by, ax, ay) = (&bx[..n], &by[..n], &ax[..n], &ay[..n]);
+        let mut velocity = std::mem::take(&mut scratch.velocity);
+        let (vx, vy) = (&mut velocity.x[..n], &mut velocity.y[..n]);
+        for k in 0..n {
+            vx[k] = 0.5 * (bx[k] + ax[k]);
+            vy[k] = 0.5 * (by[k] + ay[k]);
+        }
+        let now = [&*vx, &*vy];
+        let [
+            ux,
+            uy,
+            vx,
+            vy,
+            wx,
+            wy,
+            square,
+            friction,
+            viscous,
+            held,
+            broken,
+            states,
+        ] = &mut self.sums;
+        let (driven, displacement) = (&self.driven, &self.state.displacement);
+        driven.add(model, blocks, part(displacement, blocks), [ux, uy], scratch);
+        driven.add(model, blocks, now, [vx, vy], scratch);
+        driven.add(model, blocks, [ax, ay], [wx, wy], scratch);
+        let masses = masses(model, blocks);
+        dot_products(now, now, &mut scratch.terms[..n]);
+        add_weighted(square, &scratch.terms[..n], masses, &mut scratch.products);
+        match &self.contact {
+            Contact::Coulomb(_) => {}
+            Contact::RateAndState(contact) => contact.add_states(model, blocks, states, scratch),
+            Contact::Springs(springs) => {
+                let breaks = &self.forces.slides;
+                springs.add_energies(model, blocks, displacement, breaks, [held, broken], scratch);
+            }
+        }
+        let terms = &mut scratch.terms[..n];
+        // What springs to the substrate take is stored, or lost where they break.
+        if !matches!(self.contact, Contact::Springs(_)) {
+            dot_products(part(&self.forces.friction, blocks), now, terms);
+            friction.add(terms);
+        }
+        if let Some(dampers) = &self.dampers {
+            dot_products(part(&dampers.force, blocks), now, terms);
+            viscous.add(terms);
+        }
+        scratch.velocity = velocity;
+        self.find_largest_stress(model, blocks);
+    }
+
+    /// Eq. 10: the largest contact stress of a block in contact at any step.
+    #[inline(always)]
+    fn find_largest_stress(&mut self, model: &Model, blocks: &Range<usize>) {
+        let (n, squares) = (blocks.len(), &mut self.scratch.terms);
+        let ([fx, fy], [lx, ly]) = (
+            part(&self.forces.friction, blocks),
+            part(&self.forces.lattice, blocks),
+        );
+        let (fx, fy, lx, ly, squares) = (&fx[..n], &fy[..n], &lx[..n], &ly[..n], &mut squares[..n]);
+        let textured = &model.surface.textured[blocks.clone()][..n];
+        for k in 0..n {
+            let (x, y) = (fx[k] + lx[k], fy[k] + ly[k]);
+            squares[k] = if textured[k] { 0.0 } else { x * x + y * y };
+        }
+        let largest = reductions::largest(n, |k| squares[k]);
+        self.stress_square_max = self.stress_square_max.max(largest);
+    }
+}
+
+/// Masses of some blocks, if they are not all alike.
+#[inline(always)]
+fn masses<'a>(model: &'a Model, blocks: &Range<usize>) -> Option<&'a [f64]> {
+    let masses = model.slider.density.as_ref()?;
+    Some(&masses[blocks.clone()])
+}
+
+#[inline(always)]
+fn add_to(field: &mut VectorField, other: &VectorField, blocks: &Range<usize>) {
+    for (values, others) in part_mut(field, blocks).into_iter().zip(part(other, blocks)) {
+        values
+            .iter_mut()
+            .zip(others)
+            .for_each(|(value, other)| *value += other);
+    }
+}
+
+/// Eq. 8: `u(t + dt) = u(t) + dt v(t + dt/2)`.
+#[inline(always)]
+fn move_blocks(displacement: &mut VectorField, velocity: &VectorField, blocks: &Range<usize>, dt_star: f64) {
+    for (u, v) in part_mut(displacement, blocks)
+        .into_iter()
+        .zip(part(velocity, blocks))
+    {
+        u.iter_mut().zip(v).for_each(|(u, v)| *u += dt_star * v);
+    }
+}
