@@ -3,7 +3,7 @@ ParaView, vtkNetCDFCFReader, and compares them with the values that were written
 
     check.py FOLDER [COPY]
 
-The small file must be byte for byte what netCDF-C writes of the same contents. COPY, if given, becomes that file as netCDF-C
+The small file and the kymograph must be byte for byte what netCDF-C writes of the same contents. COPY, if given, becomes that file as netCDF-C
 writes it with 64-bit data: netcdf-c-64-bit-data.nc, which tests read, was made so.
 """
 
@@ -86,6 +86,19 @@ def check_vtk(path, nx, ny, written):
                 expect(f"{name}, rows from {start}", found, known(name, instant, row, column))
 
 
+def check_kymograph(path):
+    """Of the run in fields.rs: 30 columns of 4 blocks of 0.5 um, one of them without contact."""
+    with xr.open_dataset(path, engine="netcdf4") as data:
+        expect("places", data.sizes["place"], 30)
+        expect("place", np.round(data.place.values * 1e9), 500.0 * (np.arange(30) + 0.5))
+        expect("blocks in contact", data.blocks_in_contact.values, np.where(np.arange(30) == 7, 0.0, 4.0))
+        expect("units", [data[name].attrs["units"] for name in ("place", "sliding_share")], ["m", "1"])
+        share = data.sliding_share.dropna("place", how="all")
+        expect("bins with contact", share.sizes["place"], 29)
+        expect("the first and the last share", [share[0].max().item(), share[-1].min().item()], [0.0, 1.0])
+        expect("time", np.diff(data.time_star.values).min() > 0, True)
+
+
 def copy(source, target, model):
     """The same contents, written by netCDF-C."""
     with netCDF4.Dataset(source) as old, netCDF4.Dataset(target, "w", format=model) as new:
@@ -104,11 +117,13 @@ def main(folder, target=None):
     small, large = folder / "small.nc", folder / "large.nc"
     check_netcdf(small, *SMALL, "NETCDF3_64BIT_OFFSET")
     check_netcdf(large, *LARGE, "NETCDF3_64BIT_DATA")
+    check_kymograph(folder / "kymograph.nc")
     check_vtk(small, *SMALL)
     check_vtk(large, *LARGE)
     again = folder / "copy.nc"
-    copy(small, again, "NETCDF3_64BIT_OFFSET")
-    expect("the bytes of the small file", small.read_bytes(), again.read_bytes())
+    for written in (small, folder / "kymograph.nc"):
+        copy(written, again, "NETCDF3_64BIT_OFFSET")
+        expect(f"the bytes of {written.name}", written.read_bytes(), again.read_bytes())
     if target:
         copy(small, target, "NETCDF3_64BIT_DATA")
     print("netCDF-C and VTK read what was written")

@@ -1,5 +1,5 @@
 //! Fields files of known values: one of an ordinary lattice, one of a lattice so large that its arrays have more than 2
-//! and 4 GiB, and one that netCDF-C has written. `tests/fields/run.sh` lets other programs read the first two.
+//! and 4 GiB, and one that netCDF-C has written; and a kymograph. `tests/fields/run.sh` lets other programs read all but the third.
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
@@ -10,11 +10,16 @@ use std::ops::Range;
 #[cfg(unix)]
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use slipfront::observe::Field;
+use slipfront_case::case::{Case, Ranks};
+use slipfront_case::case_file::CaseFile;
 use slipfront_run::fields::{
-    FieldFrame, FieldsFile, FieldsWriter, StaticFields, read_fields, read_maps, read_rows,
+    FieldFrame, FieldsFile, FieldsWriter, StaticFields, kymograph_bytes, read_fields, read_kymograph,
+    read_maps, read_rows,
 };
+use slipfront_run::running;
 use tempfile::TempDir;
 
 /// What is written for a block: eighths, which every type of the file holds exactly, that tell blocks, arrays and
@@ -139,6 +144,28 @@ fn a_small_file_is_read_back() {
     assert_known(&path, &known, 0..known.ny);
     assert_known(&path, &known, 1..3);
     assert!(fs::read(&path).unwrap().starts_with(b"CDF\x02"));
+}
+
+/// Of a run to steady sliding of 30 x 4 blocks, in which none slides at first and all do at last. The bins are columns of blocks, of
+/// which one has no contact.
+#[test]
+fn a_kymograph_is_read_back() {
+    let (_folder, path) = place("kymograph.nc");
+    let text = "slider = { blocks = [30, 4], block_size = '0.5 um' }\ntime.duration_star = 80\ndrive.v_star = 0.1\n\
+                [[texture]]\nshape = 'groove'\nwidth = '0.5 um'\noffset = '-3.75 um'";
+    let file = CaseFile::parse(text, "case", &[]).unwrap();
+    let case = Arc::new(Case::new(file, "case", Path::new(""), &mut |_| true, Ranks::ALONE).unwrap());
+    let record = running::run(&case, 1).unwrap();
+    fs::write(&path, kymograph_bytes(&record.kymograph, &case)).unwrap();
+    let data = read_kymograph(&path).unwrap();
+    assert_eq!((data.columns(), data.places), (30, [0.0, 30.0 * 0.5e-6]));
+    let rows: Vec<&[f32]> = data.sliding_share.chunks(30).collect();
+    for (bin, (first, last)) in rows[0].iter().zip(rows[rows.len() - 1]).enumerate() {
+        match bin {
+            7 => assert!(first.is_nan() && last.is_nan()),
+            _ => assert_eq!([*first, *last], [0.0, 1.0], "{bin}"),
+        }
+    }
 }
 
 /// Reads rows of a file and holds all that was read against what was written.

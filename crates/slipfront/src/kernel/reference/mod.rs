@@ -54,6 +54,10 @@ pub(crate) struct Reference {
     /// Whether the first step has been evaluated, which does not move the blocks.
     started: bool,
     bands: Vec<BandOfRank>,
+    /// How the first and the last row of each band move, for the bands beside it.
+    ends: Vec<[Vec<f64>; 2]>,
+    /// How the rows below and above this rank move.
+    beside: [Vec<f64>; 2],
     sums: Sums,
     energy_sums: [RunningSum; 3],
     /// Power that the dampers take.
@@ -124,6 +128,8 @@ impl Reference {
             threads,
             ranks,
             started: false,
+            ends: vec![Default::default(); bands.len()],
+            beside: Default::default(),
             bands,
             sums: Sums::default(),
             energy_sums: Default::default(),
@@ -200,22 +206,21 @@ impl Reference {
 
     /// Tells every band how the rows beside it move.
     fn exchange(&mut self) {
-        let ends = |one: &BandOfRank| one.band.rows.ends(&one.band.state);
-        let ends: Vec<[Vec<f64>; 2]> = self.bands.iter().map(ends).collect();
-        let last = ends.len() - 1;
-        let to = [&ends[0][0], &ends[last][1]];
-        let mut from = to.map(|row| vec![0.0; row.len()]);
-        let [below, above] = &mut from;
-        self.ranks
-            .exchange(to.map(|row| &**row), [below, above], &mut || ());
+        for (ends, one) in self.ends.iter_mut().zip(&self.bands) {
+            one.band.rows.read_ends(&one.band.state, ends);
+        }
+        let (ends, last) = (&self.ends, self.ends.len() - 1);
+        let to = [&*ends[0][0], &*ends[last][1]];
+        for (row, to) in self.beside.iter_mut().zip(to) {
+            row.resize(to.len(), 0.0);
+        }
+        let [below, above] = &mut self.beside;
+        self.ranks.exchange(to, [below, above], &mut || ());
+        let [below, above] = &self.beside;
         for (number, one) in self.bands.iter_mut().enumerate() {
-            let below = if number == 0 {
-                &from[0]
-            } else {
-                &ends[number - 1][1]
-            };
+            let below = if number == 0 { below } else { &ends[number - 1][1] };
             let above = if number == last {
-                &from[1]
+                above
             } else {
                 &ends[number + 1][0]
             };

@@ -84,25 +84,24 @@ impl Rows {
         }
     }
 
-    /// The motion of the first and the last row of this band, one component after the other, for the bands below and above; empty
+    /// The motion of the first and the last row of this band, one component after the other, for the bands below and above; nothing
     /// where there is none.
-    pub(super) fn ends(&self, own: &State) -> [Vec<f64>; 2] {
+    pub(super) fn read_ends(&self, own: &State, ends: &mut [Vec<f64>; 2]) {
         let Some(Beside { has, has_dampers, .. }) = &self.beside else {
-            return Default::default();
+            return;
         };
         let nx = self.lattice.nx;
-        [0, 1].map(|end| {
-            let first = [0, self.own.len() - nx][end];
-            let components = fields(own, *has_dampers).flat_map(|field| [&field.x, &field.y]);
-            let values = components.flat_map(|values| &values[first..first + nx]);
-            values
-                .take(if has[end] { usize::MAX } else { 0 })
-                .copied()
-                .collect()
-        })
+        for ((end, first), has) in ends.iter_mut().zip([0, self.own.len() - nx]).zip(has) {
+            end.clear();
+            if *has {
+                for values in fields(own, *has_dampers).flat_map(|field| [&field.x, &field.y]) {
+                    end.extend_from_slice(&values[first..first + nx]);
+                }
+            }
+        }
     }
 
-    /// Takes over the motion of the row below and of the row above, see [`ends`](Self::ends).
+    /// Takes over the motion of the row below and of the row above, see [`read_ends`](Self::read_ends).
     pub(super) fn set_beside(&mut self, rows: [&[f64]; 2]) {
         let (nx, firsts) = (self.lattice.nx, [0, self.own.end]);
         let Some(Beside {
