@@ -131,11 +131,19 @@ fn description(z_axis: &str, record3: &str) -> String {
 
 const LINKED: &str = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink>";
 
+/// Reads a file for four blocks, with units for an array, which has none.
 fn read_bytes(name: &str, bytes: &[u8]) -> Result<HeightMap, ArrayError> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
     std::fs::write(&path, bytes).unwrap();
-    read(&path, OWN, [2, 2])
+    let units = match name {
+        "a.csv" => Units {
+            height: Some(1.0),
+            pixel: SIZE,
+        },
+        _ => OWN,
+    };
+    read(&path, units, [2, 2])
 }
 
 /// Integers have a step and an offset.
@@ -304,6 +312,11 @@ fn damaged_fields_and_tables_are_refused() {
         ),
         ("a.csv", "# nothing\n", "it has 0 x 0 points"),
         ("a.csv", "1,nan\n", "has NaN in row 0, column 1"),
+        (
+            "a.csv",
+            "1e300,0\n0,0\n",
+            "has heights too far apart to be averaged",
+        ),
         ("a.tif", "II*\0\x08\0\0\0", "is not a readable .tif file"),
         (
             "a.jpg",

@@ -203,7 +203,6 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("topography", HEIGHT_MAP),
     ("heightmap", HEIGHT_MAP),
     ("heights", HEIGHT_MAP),
-    ("roughness", HEIGHT_MAP),
     ("png", "an image is `shape` = \"mask\" with `file` = \"mask.png\""),
     ("radius", RADIUS),
     ("diameter", RADIUS),

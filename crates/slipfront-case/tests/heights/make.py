@@ -86,3 +86,16 @@ reference = {
 with open("reference.json", "w") as file:
     json.dump(reference, file, indent=1)
     file.write("\n")
+
+# The ground surface of cases/ground.toml: scratches along x of random depth, place and length. It is made, not measured.
+N, POINT = 80, 1.25e-6
+ground = np.zeros((N, N))
+y, x = np.mgrid[:N, :N] * POINT
+for _ in range(600):
+    x0, y0 = rng.uniform(-20e-6, 120e-6, 2)
+    length, width = rng.uniform(20e-6, 60e-6), rng.uniform(1.5e-6, 4e-6)
+    ground -= rng.exponential(0.15e-6) * np.exp(-(((x - x0) / length) ** 2) - ((y - y0) / width) ** 2)
+ground += 0.02e-6 * rng.standard_normal((N, N))
+Topography((ground - ground.mean()).T, (N * POINT, N * POINT), unit="m").to_gwy("ground.gwy")
+gwyddion("ground.gwy", "../../../../cases/ground.gsf")
+os.remove("ground.gwy")

@@ -99,11 +99,21 @@ pub fn height_map(
         done += line.heights.len() as f64;
         Ok(())
     })?;
+    let roughness = moments.roughness(unit);
+    let is_finite = |number: Option<f64>| number.is_none_or(f64::is_finite);
+    if !mean.is_finite()
+        || ![Some(roughness.sq), roughness.ssk, roughness.sku]
+            .into_iter()
+            .all(is_finite)
+    {
+        let problem = "has heights too far apart to be averaged: look at its numbers".to_owned();
+        return Err(contents_error(path, problem));
+    }
     let means = averages.means().into_iter();
     Ok(HeightMap {
         points,
         size,
-        roughness: moments.roughness(unit),
+        roughness,
         blocks: means.map(|deviation| (mean + deviation) * unit).collect(),
     })
 }

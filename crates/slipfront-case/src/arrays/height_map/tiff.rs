@@ -1,6 +1,7 @@
 //! Heights as the grey levels of a TIFF picture, of 16 bits or more, in strips or tiles. The top row is that of the largest y.
 
 use std::io::{BufRead, Seek};
+use std::ops::Range;
 use std::path::Path;
 
 use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
@@ -61,16 +62,17 @@ pub(super) fn read(
     };
     let (chunk_width, chunk_height) = decoder.chunk_dimensions();
     let across = width.div_ceil(chunk_width.max(1));
+    let mut heights = Vec::new();
     for chunk in 0..count.map_err(unreadable)? {
         let decoded = decoder.read_chunk(chunk).map_err(unreadable)?;
-        let heights = numbers(&decoded);
-        let (chunk_columns, _) = decoder.chunk_data_dimensions(chunk);
-        let first_row = (chunk / across * chunk_height) as usize;
-        for (row, heights) in (first_row..).zip(heights.chunks_exact(chunk_columns.max(1) as usize)) {
+        let (columns, rows) = decoder.chunk_data_dimensions(chunk);
+        for row in 0..rows {
+            let start = (row * columns) as usize;
+            numbers(&decoded, start..start + columns as usize, &mut heights);
             take(&Line {
-                row,
+                row: (chunk / across * chunk_height + row) as usize,
                 column: (chunk % across * chunk_width) as usize,
-                heights,
+                heights: &heights,
             })?;
         }
     }
@@ -82,22 +84,20 @@ pub(super) fn read(
     })
 }
 
-/// The numbers of a strip or tile.
-fn numbers(decoded: &DecodingResult) -> Vec<f64> {
-    fn of<T: Copy>(numbers: &[T], number: impl Fn(T) -> f64) -> Vec<f64> {
-        numbers.iter().copied().map(number).collect()
-    }
+/// Numbers of a strip or tile.
+fn numbers(decoded: &DecodingResult, range: Range<usize>, numbers: &mut Vec<f64>) {
+    numbers.clear();
     match decoded {
-        DecodingResult::U8(numbers) => of(numbers, f64::from),
-        DecodingResult::I8(numbers) => of(numbers, f64::from),
-        DecodingResult::U16(numbers) => of(numbers, f64::from),
-        DecodingResult::I16(numbers) => of(numbers, f64::from),
-        DecodingResult::U32(numbers) => of(numbers, f64::from),
-        DecodingResult::I32(numbers) => of(numbers, f64::from),
-        DecodingResult::U64(numbers) => of(numbers, |number| number as f64),
-        DecodingResult::I64(numbers) => of(numbers, |number| number as f64),
-        DecodingResult::F16(numbers) => of(numbers, |number| number.to_f64()),
-        DecodingResult::F32(numbers) => of(numbers, f64::from),
-        DecodingResult::F64(numbers) => of(numbers, |number| number),
+        DecodingResult::U8(stored) => numbers.extend(stored[range].iter().copied().map(f64::from)),
+        DecodingResult::I8(stored) => numbers.extend(stored[range].iter().copied().map(f64::from)),
+        DecodingResult::U16(stored) => numbers.extend(stored[range].iter().copied().map(f64::from)),
+        DecodingResult::I16(stored) => numbers.extend(stored[range].iter().copied().map(f64::from)),
+        DecodingResult::U32(stored) => numbers.extend(stored[range].iter().copied().map(f64::from)),
+        DecodingResult::I32(stored) => numbers.extend(stored[range].iter().copied().map(f64::from)),
+        DecodingResult::U64(stored) => numbers.extend(stored[range].iter().map(|&number| number as f64)),
+        DecodingResult::I64(stored) => numbers.extend(stored[range].iter().map(|&number| number as f64)),
+        DecodingResult::F16(stored) => numbers.extend(stored[range].iter().map(|number| number.to_f64())),
+        DecodingResult::F32(stored) => numbers.extend(stored[range].iter().copied().map(f64::from)),
+        DecodingResult::F64(stored) => numbers.extend_from_slice(&stored[range]),
     }
 }
