@@ -252,7 +252,7 @@ impl Budget {
         let n_frames = match &output.snapshots {
             Snapshots::Instants => 6.0,
             Snapshots::At(steps) => steps.len() as f64,
-            Snapshots::Every(every) => (last_step / every + 1) as f64,
+            Snapshots::Every(every) => (last_step / every + 1) as f64 + 6.0,
         };
         Self {
             blocks: lattice.nx as f64 * rows.len() as f64,
@@ -280,6 +280,7 @@ impl Budget {
                 None => 0.0,
             },
             maps: match output.fields.contains(&mapped_field(file)) {
+                true if output.movie => n_frames,
                 true => n_frames.min(MAX_MAPS as f64),
                 false => 0.0,
             },

@@ -332,6 +332,7 @@ const OUTPUT: &[Key] = &[
     key("stride", "1", Kind::Whole { least: 1, most: MAX_BLOCKS, noun: "", remark: "; 1 writes every block" },
         "every n-th block in the fields file"),
     key("series", "\"auto\"", SPACING, "spacing of the rows of the series in t*"),
+    key("movie", "false", Kind::Switch, "whether a movie is drawn of the snapshots"),
 ];
 
 /// A time between snapshots or rows.

@@ -433,14 +433,22 @@ fn output() -> impl Strategy<Value = Output> {
         (1e-3..1e6).prop_map(Snapshots::Every)
     ];
     let fields = subsequence(CaseFile::default().output.fields, 0..=5).prop_shuffle();
-    (snapshots, fields, 1..=100_000_u32, auto_or(1e-6..1e6)).prop_map(
-        |(snapshots, fields, stride, series): (_, Vec<Field>, _, _)| Output {
-            snapshots,
-            fields,
-            stride,
-            series,
-        },
+    (
+        snapshots,
+        fields,
+        1..=100_000_u32,
+        auto_or(1e-6..1e6),
+        any::<bool>(),
     )
+        .prop_map(
+            |(snapshots, fields, stride, series, movie): (_, Vec<Field>, _, _, _)| Output {
+                snapshots,
+                fields,
+                stride,
+                series,
+                movie,
+            },
+        )
 }
 
 fn case_file() -> impl Strategy<Value = CaseFile> {
