@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use gif::{DisposalMethod, Encoder, Frame, Repeat};
+use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 
 use crate::movie::MOVIE_PIXELS;
 use crate::picture::PictureError;
@@ -27,8 +27,8 @@ impl MovieGif {
         let mut colours = palette.concat();
         colours.extend([255; 3]);
         let [width, height] = MOVIE_PIXELS.map(|pixels| pixels as u16);
-        let mut encoder = Encoder::new(Vec::new(), width, height, &colours).map_err(failed)?;
-        encoder.set_repeat(Repeat::Infinite).map_err(failed)?;
+        let mut encoder = Encoder::new(Vec::new(), width, height, &colours)?;
+        encoder.set_repeat(Repeat::Infinite)?;
         Ok(Self {
             encoder,
             before: Vec::new(),
@@ -72,7 +72,7 @@ impl MovieGif {
             ..Frame::default()
         };
         self.before = pixels;
-        self.encoder.write_frame(&frame).map_err(failed)
+        Ok(self.encoder.write_frame(&frame)?)
     }
 
     /// The bytes of the file.
@@ -80,14 +80,14 @@ impl MovieGif {
     /// # Errors
     /// None that can be foreseen: it is written to memory.
     pub fn finish(self) -> Result<Vec<u8>, PictureError> {
-        self.encoder
-            .into_inner()
-            .map_err(|error| PictureError::Gif(error.to_string()))
+        Ok(self.encoder.into_inner()?)
     }
 }
 
-fn failed(error: gif::EncodingError) -> PictureError {
-    PictureError::Gif(error.to_string())
+impl From<EncodingError> for PictureError {
+    fn from(error: EncodingError) -> Self {
+        Self::Gif(error.to_string())
+    }
 }
 
 /// Left, top, right and bottom of the rectangle of pixels that differ; one pixel where none does.

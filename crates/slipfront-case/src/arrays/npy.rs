@@ -106,7 +106,7 @@ pub(super) fn values(
 pub(super) fn rows(
     path: &Path,
     source: &mut (impl BufRead + Seek),
-    take: &mut dyn FnMut(usize, &[f64]) -> Result<(), ArrayError>,
+    mut take: impl FnMut(usize, &[f64]) -> Result<(), ArrayError>,
 ) -> Result<[u64; 2], ArrayError> {
     /// Numbers that are read at once.
     const BAND: usize = 1 << 16;

@@ -64,7 +64,7 @@ pub(super) fn values(
 pub(super) fn rows(
     path: &Path,
     source: &mut (impl BufRead + Seek),
-    take: &mut dyn FnMut(usize, &[f64]) -> Result<(), ArrayError>,
+    mut take: impl FnMut(usize, &[f64]) -> Result<(), ArrayError>,
 ) -> Result<[u64; 2], ArrayError> {
     let (_, mut lines) = Lines::of(path, source)?;
     let mut values = Vec::new();

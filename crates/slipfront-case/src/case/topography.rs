@@ -8,6 +8,7 @@ use super::inputs::Inputs;
 use super::textures::Watch;
 use crate::arrays::{self, ArrayError, Roughness, Slab, Units};
 use crate::case_file::{Bearing, CaseError, CaseFile, HeightMap, Pitch};
+use crate::quantity::Length;
 
 /// A height map as it was read and laid over blocks.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +39,7 @@ pub(super) fn read(
     watch: &mut Watch,
 ) -> Result<(Tile, Topography), CaseError> {
     let units = Units {
-        height: map.height_unit.as_ref().map(|unit| unit.si()),
+        height: map.height_unit.as_ref().map(Length::si),
         pixel: map.pixel_size.as_ref().map(|size| match size {
             Pitch::Equal(size) => [size.si(); 2],
             Pitch::Each(sizes) => [sizes[0].si(), sizes[1].si()],
@@ -88,7 +89,7 @@ fn contact_height(heights: &[f64], map: &HeightMap) -> f64 {
         }
         Bearing::Depth(depth) => {
             let highest = || heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            map.reference.as_ref().map_or_else(highest, |height| height.si()) - depth.si()
+            map.reference.as_ref().map_or_else(highest, Length::si) - depth.si()
         }
     }
 }

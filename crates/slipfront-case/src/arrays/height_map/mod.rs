@@ -121,7 +121,7 @@ pub fn height_map(
 /// Reads all points of a file.
 fn read(path: &Path, source: &mut (impl BufRead + Seek), take: &mut Take) -> Result<Grid, ArrayError> {
     source.rewind().map_err(ArrayError::read(path))?;
-    let mut take_row = |row: usize, heights: &[f64]| {
+    let take_row = |row: usize, heights: &[f64]| {
         take(&Line {
             row,
             column: 0,
@@ -129,8 +129,8 @@ fn read(path: &Path, source: &mut (impl BufRead + Seek), take: &mut Take) -> Res
         })
     };
     let [nx, ny] = match extension(path).as_str() {
-        "npy" => npy::rows(path, source, &mut take_row)?,
-        "csv" => table::rows(path, source, &mut take_row)?,
+        "npy" => npy::rows(path, source, take_row)?,
+        "csv" => table::rows(path, source, take_row)?,
         "gsf" => return gsf::read(path, source, take),
         "x3p" => return x3p::read(path, source, take),
         "png" => return image::read(path, source, take),

@@ -50,10 +50,10 @@ pub(super) fn read(
         };
         read(&mut stored)?;
         // Checksums are compared where a file ends.
-        match stored.bytes().next() {
-            None => Ok(()),
-            Some(Ok(_)) => Err(refuse(&format!("`{name}` is longer than it should be"))),
-            Some(Err(error)) => Err(refuse(&format!("`{name}`: {error}"))),
+        match stored.read(&mut [0]) {
+            Ok(0) => Ok(()),
+            Ok(_) => Err(refuse(&format!("`{name}` is longer than it should be"))),
+            Err(error) => Err(refuse(&format!("`{name}`: {error}"))),
         }
     };
 
