@@ -13,7 +13,7 @@ use crate::label_placement::{Placer, around};
 use crate::lattice_map::{Cells, MARK, MIN_RATIO, block_count, check_length, draw_titles};
 use crate::movie_colours::Colours;
 use crate::picture::{PictureError, check_columns};
-use crate::raster;
+use crate::raster::Ground;
 use crate::series::segments;
 use crate::style::{
     BLACK, CURVES, GREY, MARGIN, RADIUS_MARKER, SIZE_LABEL, SIZE_TICK, WIDTH_CURVE, WIDTH_LEADER, WIDTH_MARK,
@@ -25,6 +25,7 @@ use crate::ticks::{Direction, MAX_STEPS};
 pub const MOVIE_PIXELS: [usize; 2] = [800, 400];
 /// A picture is drawn so many times as large.
 const DRAWN: usize = 2;
+const DRAWN_PIXELS: [usize; 2] = [DRAWN * MOVIE_PIXELS[0], DRAWN * MOVIE_PIXELS[1]];
 /// The largest map, as drawn.
 const MAP_SIDE: f64 = 600.0;
 /// Where the map begins.
@@ -75,6 +76,8 @@ pub struct MoviePictures<'a> {
     movie: &'a Movie,
     cells: Cells,
     colours: Colours,
+    /// What is the same in all pictures.
+    ground: Ground,
     map: Area,
     bar: Area,
     x: Axis,
@@ -85,7 +88,7 @@ impl<'a> MoviePictures<'a> {
     /// Lays a movie out.
     ///
     /// # Errors
-    /// A lattice without blocks, an array of the wrong length, no picture.
+    /// A lattice without blocks, an array of the wrong length, no picture, or no memory for one.
     pub fn of(movie: &'a Movie) -> Result<Self, PictureError> {
         block_count(movie.nx, movie.ny)?;
         let [columns, rows] = CellMeans::cells(movie.nx, movie.ny);
@@ -110,17 +113,24 @@ impl<'a> MoviePictures<'a> {
         let times: Vec<f64> = curve.x.iter().copied().chain(times).collect();
         let frictions: Vec<f64> = curve.friction.iter().copied().chain([0.0]).collect();
         let mu = Axis::around(&frictions, false, 0.06).placed(CURVE_BOTTOM, TOP);
-        let right = (DRAWN * MOVIE_PIXELS[0]) as f64 - 3.0 * MARGIN;
+        let right = DRAWN_PIXELS[0] as f64 - 3.0 * MARGIN;
         let left = CURVE_LEFT + left_room(&mu.ticks(Direction::Y, MAX_STEPS));
-        Ok(Self {
+        let [width, height] = DRAWN_PIXELS.map(|pixels| pixels as u32);
+        let mut pictures = Self {
             movie,
             cells: Cells::of(movie.nx, movie.ny, &movie.textured),
             colours: Colours::default(),
+            ground: Ground::blank(width, height).ok_or_else(no_memory)?,
             map,
             bar,
             x: Axis::around(&times, false, 0.0).placed(left, right),
             mu,
-        })
+        };
+        let mut canvas = blank();
+        pictures.draw_bar(&mut canvas);
+        pictures.draw_curve(&mut canvas);
+        pictures.ground.draw(&canvas);
+        Ok(pictures)
     }
 
     /// The colours of the pixels: red, green and blue of each.
@@ -129,32 +139,29 @@ impl<'a> MoviePictures<'a> {
     }
 
     /// A picture: the colour of every pixel, row by row from the top.
-    ///
-    /// # Errors
-    /// There is no memory for it.
-    pub fn draw(&self, index: usize) -> Result<Vec<u8>, PictureError> {
-        let [width, height] = MOVIE_PIXELS.map(|pixels| DRAWN * pixels);
-        let mut canvas = Canvas::new(width as f64, height as f64);
+    pub fn draw(&self, index: usize) -> Vec<u8> {
+        let mut canvas = blank();
         let frame = &self.movie.frames[index];
         self.draw_map(&mut canvas, frame);
-        self.draw_curve(&mut canvas, frame);
-        let pixels = raster::rgb(&canvas);
-        let pixels = pixels.ok_or_else(|| PictureError::Png("there is no memory for it".to_owned()))?;
+        self.draw_mark(&mut canvas, frame);
+        let mut drawn = self.ground.clone();
+        drawn.draw(&canvas);
+        let pixels: Vec<[u8; 3]> = drawn.pixels().collect();
         let [nx, ny] = MOVIE_PIXELS;
         let pixel = |at: usize| {
-            let (x, y) = (DRAWN * (at % nx), DRAWN * (at / nx));
+            let first = DRAWN * (at / nx) * DRAWN_PIXELS[0] + DRAWN * (at % nx);
             let mut sum = [0_u32; 3];
             for k in 0..DRAWN * DRAWN {
-                let at = 3 * ((y + k / DRAWN) * width + x + k % DRAWN);
-                for (sum, channel) in sum.iter_mut().zip(&pixels[at..at + 3]) {
-                    *sum += u32::from(*channel);
+                let drawn = pixels[first + k / DRAWN * DRAWN_PIXELS[0] + k % DRAWN];
+                for (sum, channel) in sum.iter_mut().zip(drawn) {
+                    *sum += u32::from(channel);
                 }
             }
-            let half = (DRAWN * DRAWN / 2) as u32;
+            let count = (DRAWN * DRAWN) as u32;
             self.colours
-                .nearest(sum.map(|sum| ((sum + half) / (DRAWN * DRAWN) as u32) as u8))
+                .nearest(sum.map(|sum| ((sum + count / 2) / count) as u8))
         };
-        Ok((0..nx * ny).map(pixel).collect())
+        (0..nx * ny).map(pixel).collect()
     }
 
     fn draw_map(&self, canvas: &mut Canvas, frame: &MovieFrame) {
@@ -172,6 +179,10 @@ impl<'a> MoviePictures<'a> {
         };
         let room = Area::new(MAP_LEFT, TOP, MAP_SIDE, MAP_SIDE);
         draw_titles(canvas, room, &Text::plain(&label, SIZE_LABEL), &friction);
+    }
+
+    fn draw_bar(&self, canvas: &mut Canvas) {
+        let movie = self.movie;
         colour_bar(canvas, self.bar, movie.range, BAR_STEPS);
         let title = Text::math(&movie.title, SIZE_LABEL);
         let room = bar_room(movie.range, BAR_STEPS, self.bar.height);
@@ -179,9 +190,13 @@ impl<'a> MoviePictures<'a> {
         canvas.text(&title, (start, self.bar.y - 22.0), Align::Start, BLACK);
     }
 
-    fn draw_curve(&self, canvas: &mut Canvas, frame: &MovieFrame) {
+    fn curve_area(&self) -> Area {
+        Area::between(self.x.start, self.x.end, self.mu.start, self.mu.end)
+    }
+
+    fn draw_curve(&self, canvas: &mut Canvas) {
         let (movie, curve) = (self.movie, &self.movie.curve);
-        let area = Area::between(self.x.start, self.x.end, self.mu.start, self.mu.end);
+        let area = self.curve_area();
         let title = Text::math(&movie.axes.friction, SIZE_LABEL);
         left_side(
             canvas,
@@ -212,13 +227,28 @@ impl<'a> MoviePictures<'a> {
                 canvas.text(&letter, (place.area.x, place.area.bottom()), Align::Start, BLACK);
             }
         }
+        canvas.frame(area);
+    }
+
+    /// Where the curve is at the instant that is shown.
+    fn draw_mark(&self, canvas: &mut Canvas, frame: &MovieFrame) {
+        let area = self.curve_area();
         let now = self.x.clamped(frame.time_star);
         canvas.line((now, area.y), (now, area.bottom()), WIDTH_MARK, MARK);
         if frame.mu_star.is_finite() {
             canvas.dot((now, self.mu.clamped(frame.mu_star)), RADIUS_MARKER, MARK);
         }
-        canvas.frame(area);
     }
+}
+
+/// A canvas of the size of a picture.
+fn blank() -> Canvas {
+    let [width, height] = DRAWN_PIXELS.map(|pixels| pixels as f64);
+    Canvas::new(width, height)
+}
+
+fn no_memory() -> PictureError {
+    PictureError::Gif("there is no memory for a picture".to_owned())
 }
 
 /// Where the map is, in the middle of its room: every cell has the same whole number of pixels.
@@ -273,7 +303,7 @@ mod tests {
         let mut movie = movie(100, 100);
         movie.textured.fill(false);
         let pictures = MoviePictures::of(&movie).unwrap();
-        let pixels = pictures.draw(2).unwrap();
+        let pixels = pictures.draw(2);
         assert_eq!(pixels.len(), MOVIE_PIXELS[0] * MOVIE_PIXELS[1]);
         let [left, top, width, height] = halves(pictures.map);
         assert_eq!([width, height], [300, 300]);
@@ -291,8 +321,8 @@ mod tests {
                         .zip(found)
                         .map(|(one, other)| one.abs_diff(other))
                         .max();
-                    // Of 255 levels to 254, of these to 192 colours, looked up by six bits.
-                    assert!(far <= Some(6), "({column}, {row}): {wanted:?} {found:?}");
+                    // Of 255 levels to 192 colours, steps of at most 3, looked up without three bits, up to 7.
+                    assert!(far <= Some(9), "({column}, {row}): {wanted:?} {found:?}");
                 }
             }
         }
@@ -303,7 +333,7 @@ mod tests {
     fn the_mark_stands_at_the_instant() {
         let movie = movie(20, 10);
         let pictures = MoviePictures::of(&movie).unwrap();
-        let [first, last] = [0, 2].map(|index| pictures.draw(index).unwrap());
+        let [first, last] = [0, 2].map(|index| pictures.draw(index));
         let mark = |pixels: &[u8], time_star: f64| {
             let x = pictures.x.at(time_star) as usize / DRAWN;
             let y = pictures.mu.end as usize / DRAWN + 30;
@@ -325,7 +355,7 @@ mod tests {
             let map = pictures.map;
             assert!(map.x >= 0.0 && map.right() <= MAP_LEFT + MAP_SIDE, "{nx} x {ny}");
             assert!(map.bottom() <= TOP + MAP_SIDE && map.height >= 40.0 && map.width >= 40.0);
-            pictures.draw(1).unwrap();
+            pictures.draw(1);
         }
     }
 

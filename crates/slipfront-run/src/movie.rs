@@ -128,7 +128,7 @@ pub fn draw<E: From<ResultsError>>(
         let batch = first..(first + BATCH).min(movie.frames.len());
         let drawn: Vec<_> = batch.into_par_iter().map(|index| pictures.draw(index)).collect();
         for pixels in drawn {
-            take(pictures.palette(), pixels.map_err(not_drawn)?)?;
+            take(pictures.palette(), pixels)?;
         }
     }
     Ok(())

@@ -609,7 +609,7 @@ mod tests {
             (
                 vec!["slider.blocks=[100,100]", "output.snapshots={every=0.1}"],
                 "output.snapshots",
-                ["for 2668 snapshots of 5 fields", "raise `output.stride`"],
+                ["for 2674 snapshots of 5 fields", "raise `output.stride`"],
             ),
             (
                 vec!["output.series=0.1", "time.duration_star=1e6"],

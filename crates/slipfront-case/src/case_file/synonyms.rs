@@ -214,7 +214,7 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
     ("area", "the share of the area is `coverage`, in percent"),
     (
         "depth",
-        "a texture has no depth: blocks within it do not touch; the `depth` of a \"height_map\" says which of its blocks do",
+        "a texture has no depth, and blocks within it do not touch; of a \"height_map\", `texture.N.depth` says which of its blocks do",
     ),
     (
         "position",
