@@ -276,7 +276,10 @@ fn a_movie_shows_every_snapshot() {
     workspace.succeed("movie run");
     assert_eq!(workspace.read("run/movie.gif"), bytes);
     let said = workspace.fail("movie run --field displacement_x", 2);
-    assert!(said.contains("movie.gif exists: choose another folder"), "{said}");
+    assert!(
+        said.contains("movie.gif is not as the run has drawn it: choose another folder"),
+        "{said}"
+    );
     workspace.succeed("movie run --field displacement_x -o other.gif");
     assert_ne!(workspace.read("other.gif"), bytes);
     for (line, sentence) in [
