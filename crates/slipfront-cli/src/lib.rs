@@ -76,6 +76,7 @@ enum Command {
     Paper(commands::paper::Paper),
     Texture(commands::texture::Texture),
     Plot(commands::plot::Plot),
+    Movie(commands::movie::Movie),
     Verify(commands::verify::Verify),
     Completions(commands::completions::Completions),
 }
@@ -131,6 +132,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
             Command::Paper(paper) => paper.execute(),
             Command::Texture(texture) => texture.execute(),
             Command::Plot(plot) => plot.execute(),
+            Command::Movie(movie) => movie.execute(),
             Command::Verify(verify) => verify.execute(),
             Command::Completions(completions) => completions.execute(Cli::command()),
         };

@@ -43,6 +43,8 @@ pub enum PictureError {
     },
     #[error("the PNG could not be written: {0}")]
     Png(String),
+    #[error("the GIF could not be written: {0}")]
+    Gif(String),
 }
 
 /// Refuses a curve of which a column has not one value for each of its points, which are named by what is `counted`.

@@ -13,16 +13,38 @@ use crate::style::Rgb;
 
 /// Red, green and blue of every pixel, row by row; none if there are too many for the memory.
 pub(crate) fn rgb(canvas: &Canvas) -> Option<Vec<u8>> {
-    let mut pixmap = Pixmap::new(canvas.width as u32, canvas.height as u32)?;
-    pixmap.fill(Color::WHITE);
-    for image in &canvas.images {
-        draw_image(&mut pixmap, image);
+    let mut ground = Ground::blank(canvas.width as u32, canvas.height as u32)?;
+    ground.draw(canvas);
+    Some(ground.pixels().flatten().collect())
+}
+
+/// Pixels on which canvases are drawn, one over the other.
+#[derive(Clone)]
+pub(crate) struct Ground(Pixmap);
+
+impl Ground {
+    /// White pixels; none if there are too many for the memory.
+    pub(crate) fn blank(width: u32, height: u32) -> Option<Self> {
+        let mut pixmap = Pixmap::new(width, height)?;
+        pixmap.fill(Color::WHITE);
+        Some(Self(pixmap))
     }
-    for element in &canvas.elements {
-        draw(&mut pixmap, element);
+
+    /// Draws a canvas over what is there.
+    pub(crate) fn draw(&mut self, canvas: &Canvas) {
+        for image in &canvas.images {
+            draw_image(&mut self.0, image);
+        }
+        for element in &canvas.elements {
+            draw(&mut self.0, element);
+        }
     }
-    let channels = |pixel: &PremultipliedColorU8| [pixel.red(), pixel.green(), pixel.blue()];
-    Some(pixmap.pixels().iter().flat_map(channels).collect())
+
+    /// The colours of all pixels, row by row.
+    pub(crate) fn pixels(&self) -> impl Iterator<Item = Rgb> {
+        let colour = |pixel: &PremultipliedColorU8| [pixel.red(), pixel.green(), pixel.blue()];
+        self.0.pixels().iter().map(colour)
+    }
 }
 
 /// Draws an element; one without extent leaves no trace.

@@ -39,6 +39,10 @@ pub enum ResultsError {
         "forces and torques have no axis in common: {0} is a rotation or not, other than the runs beside it"
     )]
     NotComparable(PathBuf),
+    #[error(
+        "a movie has at most {0} pictures, and the run has kept more snapshots: raise `every` of `output.snapshots`"
+    )]
+    TooManySnapshots(usize),
     #[cfg(feature = "plot")]
     #[error("cannot draw {name}: {source}")]
     Picture {

@@ -20,6 +20,8 @@ mod front;
 pub mod manifest;
 #[cfg(feature = "plot")]
 pub mod measured;
+#[cfg(feature = "plot")]
+pub mod movie;
 pub mod names;
 pub mod pictures;
 pub mod precursors;

@@ -14,6 +14,8 @@ pub const PRECURSORS: &str = "precursors.csv";
 pub const KYMOGRAPH: &str = "kymograph.nc";
 /// The fields of a run, block by block.
 pub const FIELDS: &str = "fields.nc";
+/// The movie of a run, if the case asks for it.
+pub const MOVIE: &str = "movie.gif";
 /// The hidden subfolder of everything that belongs to a run which is not complete.
 pub const UNFINISHED: &str = ".slipfront";
 /// In the hidden subfolder: the files that the run has finished, which also says that the subfolder is slipfront's.

@@ -7,7 +7,7 @@ use {
     crate::friction_picture,
     crate::precursors::{self, PrecursorRow},
     crate::series::{self, SeriesRow},
-    crate::summary::{Summary, read_summary},
+    crate::summary::{InstantSummary, Summary, read_summary},
     rayon::prelude::*,
     slipfront::exact_solutions::precursor_load,
     slipfront::observe::Field,
@@ -19,6 +19,7 @@ use {
         StressMaps,
     },
     std::{
+        collections::HashMap,
         ops::Range,
         path::{Path, PathBuf},
     },
@@ -118,6 +119,34 @@ impl Reduction for CellMeans {
     }
 }
 
+/// mu* of snapshots: of an instant from the summary, else of its row of the series, which a thinned one may lack.
+#[cfg(feature = "plot")]
+pub(crate) struct MuStar<'a> {
+    instants: &'a [InstantSummary],
+    /// By steps.
+    rows: HashMap<u64, f64>,
+}
+
+#[cfg(feature = "plot")]
+impl<'a> MuStar<'a> {
+    pub(crate) fn of(instants: &'a [InstantSummary], rows: impl Iterator<Item = (u64, f64)>) -> Self {
+        Self {
+            instants,
+            rows: rows.collect(),
+        }
+    }
+
+    /// mu* of a snapshot; not a number if it is not known.
+    pub(crate) fn at(&self, frame: &FieldFrame) -> f64 {
+        let mut instants = self.instants.iter();
+        let instant = instants.find(|instant| instant.time_star == frame.time_star);
+        let found = instant.map(|instant| instant.mu_star);
+        found
+            .or_else(|| self.rows.get(&frame.step).copied())
+            .unwrap_or(f64::NAN)
+    }
+}
+
 /// Draws the stress maps of a run; none if it kept no such field.
 #[cfg(feature = "plot")]
 fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
@@ -139,19 +168,10 @@ fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
     let point = |row: SeriesRow| (row.step, row.mu_star);
     let rows = series::read_rows(&folder.join(SERIES), SERIES, point)?;
     let Summary { instants, motion, .. } = read_summary(folder)?;
-    // A snapshot between the rows of a thinned series has no mu* of its own, unless it is an instant.
-    let mu_star = |frame: &FieldFrame| {
-        let mut of_instants = instants
-            .iter()
-            .filter(|instant| instant.time_star == frame.time_star);
-        let mut of_rows = rows.iter().filter(|(step, _)| *step == frame.step);
-        let instant = of_instants.next().map(|instant| instant.mu_star);
-        let found = instant.or_else(|| of_rows.next().map(|(_, mu_star)| *mu_star));
-        found.unwrap_or(f64::NAN)
-    };
+    let mu_star = MuStar::of(&instants, rows.into_iter());
     let (nx, ny) = (fields.columns(), fields.rows());
     let maps = fields.frames.into_iter().map(|frame| StressMap {
-        mu_star: mu_star(&frame),
+        mu_star: mu_star.at(&frame),
         label: frame.label,
         time_star: frame.time_star,
         values: {

@@ -15,13 +15,13 @@ use crate::error::ResultsError;
 use crate::fields::{self, FieldFrame, FieldsError, FieldsFile, StaticFields};
 use crate::manifest::Manifest;
 use crate::names::{CASE, FIELDS, KYMOGRAPH, PRECURSORS, SERIES, SUMMARY};
-#[cfg(feature = "plot")]
-use crate::pictures;
 use crate::precursors;
 use crate::run_folder::RunFolder;
 use crate::run_folder::unfinished::Unfinished;
 use crate::running::Record;
 use crate::series::{self, SeriesRow};
+#[cfg(feature = "plot")]
+use crate::{movie, names::MOVIE, pictures};
 
 /// Writes the results of a run to its folder, where the case stands already, and the manifest, which completes it; with
 /// the feature `plot` the pictures as well. The fields are moved out of the record, which frees their memory before the
@@ -71,6 +71,12 @@ pub fn finish(
     for (name, picture) in pictures::draw(folder.path())? {
         folder.write(&format!("{name}.svg"), picture.svg.as_bytes())?;
         folder.write(&format!("{name}.png"), &picture.png)?;
+    }
+    #[cfg(feature = "plot")]
+    if case.output.movie
+        && let Some(movie) = movie::of_run(folder.path(), None)?
+    {
+        folder.write(MOVIE, &movie::gif(&movie)?)?;
     }
     Ok(folder.complete(case, started, threads)?)
 }

@@ -70,11 +70,11 @@ pub struct Observers {
     fields: Fields,
 }
 
-/// The snapshots.
+/// The snapshots: at the instants A-F, at times that are given, or both.
 #[derive(Debug, Serialize, Deserialize)]
-enum Fields {
-    Instants(Box<Instants>),
-    Frames(Frames),
+struct Fields {
+    instants: Option<Box<Instants>>,
+    frames: Option<Frames>,
 }
 
 /// What a run needs to go on later beside the numbers of its blocks, written down as [`Running::state`].
@@ -113,12 +113,15 @@ impl Observers {
     fn new(case: &Case, last_step: u64) -> Self {
         let (time_plan, output) = (&case.time_plan, &case.output);
         let selection = selection(output);
-        let fields = match output.snapshots {
-            Snapshots::Instants => {
-                let instants = Instants::new(selection, time_plan.kinetic, time_plan.end_star());
-                Fields::Instants(Box::new(instants))
-            }
-            Snapshots::At(_) | Snapshots::Every(_) => Fields::Frames(Frames::new(selection)),
+        let instants = || Instants::new(selection.clone(), time_plan.kinetic, time_plan.end_star());
+        let (has_instants, has_times) = match output.snapshots {
+            Snapshots::Instants => (true, false),
+            Snapshots::At(_) => (false, true),
+            Snapshots::Every(_) => (true, true),
+        };
+        let fields = Fields {
+            instants: has_instants.then(|| Box::new(instants())),
+            frames: has_times.then(|| Frames::new(selection.clone())),
         };
         Self {
             summary: SummaryObservers::new(case, last_step),
@@ -130,13 +133,17 @@ impl Observers {
     /// Whether they can be those of a run of this case after `step` steps.
     fn belong_to(&self, case: &Case, step: u64) -> bool {
         let new = Self::new(case, case.time_plan.last_step);
-        let fields = match (&self.fields, &new.fields) {
-            (Fields::Instants(old), Fields::Instants(new)) => old.is_consistent_with(new, step),
-            (Fields::Frames(old), Fields::Frames(new)) => old.is_consistent_with(new, step),
-            _ => false,
+        let instants = match (&self.fields.instants, &new.fields.instants) {
+            (Some(old), Some(new)) => old.is_consistent_with(new, step),
+            (old, new) => old.is_none() && new.is_none(),
+        };
+        let frames = match (&self.fields.frames, &new.fields.frames) {
+            (Some(old), Some(new)) => old.is_consistent_with(new, step),
+            (old, new) => old.is_none() && new.is_none(),
         };
         let time_star = step as f64 * case.time_plan.dt_star;
-        fields
+        instants
+            && frames
             && self.kymograph.is_consistent_with(&case.model, step)
             && self.summary.is_consistent_with(&new.summary, step, time_star)
     }
@@ -158,17 +165,19 @@ impl Observers {
     }
 
     fn scheduled(&mut self, snapshots: &Snapshots) -> Vec<Scheduled<'_>> {
-        let schedule = match snapshots {
-            Snapshots::Instants => Schedule::Every(1),
-            Snapshots::At(steps) => Schedule::At(steps.clone()),
-            Snapshots::Every(steps) => Schedule::Every(*steps),
-        };
         let mut scheduled = self.summary.scheduled();
         scheduled.push(self.kymograph.scheduled());
-        scheduled.push(match &mut self.fields {
-            Fields::Instants(instants) => Scheduled::new(schedule, &mut **instants),
-            Fields::Frames(frames) => Scheduled::new(schedule, frames),
-        });
+        if let Some(instants) = &mut self.fields.instants {
+            scheduled.push(Scheduled::always(&mut **instants));
+        }
+        if let Some(frames) = &mut self.fields.frames {
+            let schedule = match snapshots {
+                Snapshots::Instants => None,
+                Snapshots::At(steps) => Some(Schedule::At(steps.clone())),
+                Snapshots::Every(steps) => Some(Schedule::Every(*steps)),
+            };
+            scheduled.extend(schedule.map(|schedule| Scheduled::new(schedule, frames)));
+        }
         scheduled
     }
 }
@@ -176,18 +185,19 @@ impl Observers {
 impl Fields {
     /// The frames that are held at present, in a fixed order.
     fn frames(&self) -> Vec<&Frame> {
-        match self {
-            Self::Instants(instants) => instants.frames().collect(),
-            Self::Frames(frames) => frames.frames.iter().collect(),
-        }
+        let instants = self.instants.iter().flat_map(|instants| instants.frames());
+        let frames = self.frames.iter().flat_map(|frames| &frames.frames);
+        instants.chain(frames).collect()
     }
 
     /// The same frames, to fill them again.
     fn frames_mut(&mut self) -> Vec<&mut Frame> {
-        match self {
-            Self::Instants(instants) => instants.frames_mut().collect(),
-            Self::Frames(frames) => frames.frames.iter_mut().collect(),
-        }
+        let instants = self
+            .instants
+            .iter_mut()
+            .flat_map(|instants| instants.frames_mut());
+        let frames = self.frames.iter_mut().flat_map(|frames| &mut frames.frames);
+        instants.chain(frames).collect()
     }
 }
 
@@ -392,10 +402,8 @@ impl Running {
             kymograph,
             fields,
         } = self.observers;
-        let (instants, frames) = match fields {
-            Fields::Instants(instants) => (instants.found(), Vec::new()),
-            Fields::Frames(frames) => (Vec::new(), frames.frames),
-        };
+        let instants = fields.instants.map_or(Vec::new(), |instants| instants.found());
+        let frames = fields.frames.map_or(Vec::new(), |frames| frames.frames);
         let mut numbers = summary.end(&case, &simulation, reason, &instants);
         let contact_stress_max = simulation.contact_stress_max();
         let first_slip_time_star = simulation.into_first_slip_time_star();
@@ -429,19 +437,23 @@ pub fn run_unless(case: &Arc<Case>, ends: &dyn Fn() -> bool) -> Option<Result<Re
     None
 }
 
-/// Frames without letters, and instants with theirs. Instants that coincide, as on a uniform lattice, are one frame with
-/// several letters: times of a file must rise.
-fn lettered(mut instants: Vec<(char, Frame)>, frames: Vec<Frame>) -> Vec<(String, Frame)> {
+/// Frames without letters, and instants with theirs, in the order of time. Those of one step, as instants on a uniform lattice may be,
+/// are one frame with all letters: times of a file must rise.
+fn lettered(instants: Vec<(char, Frame)>, frames: Vec<Frame>) -> Vec<(String, Frame)> {
     let frames = frames.into_iter().map(|frame| (String::new(), frame));
-    let mut frames: Vec<(String, Frame)> = frames.collect();
-    instants.sort_by_key(|(letter, frame)| (frame.step, *letter));
-    for (letter, frame) in instants {
-        match frames.last_mut() {
-            Some((letters, last)) if last.step == frame.step => letters.push(letter),
-            _ => frames.push((letter.to_string(), frame)),
+    let instants = instants
+        .into_iter()
+        .map(|(letter, frame)| (letter.to_string(), frame));
+    let mut all: Vec<(String, Frame)> = frames.chain(instants).collect();
+    all.sort_by(|(letter, frame), (other, next)| (frame.step, letter).cmp(&(next.step, other)));
+    all.dedup_by(|(letters, frame), (kept_letters, kept)| {
+        let is_same = frame.step == kept.step;
+        if is_same {
+            kept_letters.push_str(letters);
         }
-    }
-    frames
+        is_same
+    });
+    all
 }
 
 #[cfg(test)]

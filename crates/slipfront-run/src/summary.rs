@@ -16,7 +16,7 @@ use crate::front::LatticeFront;
 use crate::names::SUMMARY;
 use crate::program::VERSION;
 use crate::run_folder::error::FolderError;
-use slipfront_case::case::Case;
+use slipfront_case::case::{Case, Topography};
 use slipfront_case::case_file::Motion;
 use slipfront_case::disk::{TEXT_MAX_BYTES, json, read_limited};
 
@@ -100,6 +100,9 @@ pub struct Summary {
     pub texture_percent: f64,
     /// A* as asked for, %; none where a mask or polygon says so block by block only.
     pub texture_percent_asked: Option<f64>,
+    /// Height maps among the textures.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub topographies: Option<Vec<TopographySummary>>,
     /// dt*.
     pub dt_star: f64,
     /// Steps done.
@@ -173,6 +176,28 @@ pub struct SiSummary {
     pub stress_unit_pa: f64,
     /// Largest contact stress of a block at any time, tau_c, Pa.
     pub contact_stress_max_pa: f64,
+}
+
+/// A height map: parameters of ISO 25178-2 of all of its points, and what of it touches.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TopographySummary {
+    /// Position of its texture in the case file, from 0.
+    pub texture: usize,
+    /// Points along x and along y.
+    pub points: [usize; 2],
+    /// True size along x and along y, m.
+    pub size_m: [f64; 2],
+    /// Arithmetical mean height Sa, m.
+    pub sa_m: f64,
+    /// Root mean square height Sq, m.
+    pub sq_m: f64,
+    /// Skewness Ssk; none of a plane.
+    pub ssk: Option<f64>,
+    /// Kurtosis Sku; none of a plane.
+    pub sku: Option<f64>,
+    /// The least height of a block that touches, m.
+    pub contact_height_m: f64,
 }
 
 /// One of the instants A-F.
@@ -385,6 +410,7 @@ impl SummaryObservers {
             n_blocks: case.model.n_blocks(),
             texture_percent: case.texture.meshed_percent,
             texture_percent_asked: case.texture.asked_percent,
+            topographies: topographies(case),
             dt_star: case.time_plan.dt_star,
             steps,
             seed: case.file.friction.seed,
@@ -413,6 +439,21 @@ impl SummaryObservers {
             ..Summary::default()
         }
     }
+}
+
+fn topographies(case: &Case) -> Option<Vec<TopographySummary>> {
+    let of_file = |topography: &Topography| TopographySummary {
+        texture: topography.texture,
+        points: topography.points,
+        size_m: topography.size,
+        sa_m: topography.roughness.sa,
+        sq_m: topography.roughness.sq,
+        ssk: topography.roughness.ssk,
+        sku: topography.roughness.sku,
+        contact_height_m: topography.contact_height,
+    };
+    let topographies = &case.texture.topographies;
+    (!topographies.is_empty()).then(|| topographies.iter().map(of_file).collect())
 }
 
 fn si(case: &Case, static_star: f64, kinetic_star: Option<f64>, contact_stress_max: f64) -> SiSummary {

@@ -69,6 +69,7 @@ replay! {
     npy
     csv_table
     mask_png
+    height_map
     records
     figure_cache
     checkpoint

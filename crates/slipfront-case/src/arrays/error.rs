@@ -26,20 +26,20 @@ pub enum ArrayError {
     #[error("`{}` {problem}", path.display())]
     Contents { path: PathBuf, problem: String },
     #[error(
-        "the image `{}` has {width} x {height} pixels where at most {limit} pixels are read, and at most {side_limit} along a \
+        "`{}` has {width} x {height} pixels where at most {limit} pixels are read, and at most {side_limit} along a \
          side; scale it down",
         path.display()
     )]
     TooManyPixels {
         path: PathBuf,
-        width: u32,
-        height: u32,
+        width: u64,
+        height: u64,
         limit: u64,
-        side_limit: u32,
+        side_limit: u64,
     },
     #[error("cannot write `{}`: {source}; check that the folder exists, is writable and has room", path.display())]
     Write { path: PathBuf, source: io::Error },
-    #[error("stopped while a mask was read")]
+    #[error("stopped while a file was read")]
     Stopped,
 }
 

@@ -3,18 +3,13 @@
 use std::io::{self, BufRead, ErrorKind, Seek, SeekFrom};
 use std::path::Path;
 
-use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, Reader};
+use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder, EncodingError, Reader, Transformations};
 
 use super::error::{ArrayError, broken, contents_error, extension, unknown_extension};
+use super::pixels::limit_pixels;
 use super::slab::Slab;
 use crate::disk::write_atomic;
 
-/// More pixels than any lattice has blocks.
-const PIXELS_MAX: u64 = 1 << 28;
-/// More pixels than any lattice has blocks along a side. A row, of which the decoder holds some, takes eight bytes for each.
-const SIDE_MAX: u32 = 1 << 20;
-/// An image file of more bytes than this is refused.
-pub(super) const FILE_MAX_BYTES: u64 = PIXELS_MAX;
 /// Deflate cannot pack more than about 1030 bytes into one.
 const DEFLATE_MAX_RATIO: u64 = 1040;
 
@@ -42,25 +37,27 @@ pub fn mask_png(
     slab: &Slab,
     watch: &mut dyn FnMut(f64) -> Result<(), ArrayError>,
 ) -> Result<Vec<bool>, ArrayError> {
+    let reader = png_reader(path, source, Transformations::EXPAND)?;
+    read_rows(path, reader, threshold, slab, watch)
+}
+
+/// Opens a PNG image of any colour type and depth, as far as its header is true.
+pub(super) fn png_reader<'a, S: BufRead + Seek>(
+    path: &Path,
+    source: &'a mut S,
+    transformations: Transformations,
+) -> Result<Reader<&'a mut S>, ArrayError> {
     let read_error = ArrayError::read(path);
     let file_bytes = source.seek(SeekFrom::End(0)).map_err(&read_error)?;
     source.rewind().map_err(&read_error)?;
     let unreadable = |source| decoding_error(path, source);
     let mut decoder = Decoder::new(source);
-    decoder.set_transformations(png::Transformations::EXPAND);
+    decoder.set_transformations(transformations);
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);
     let info = decoder.read_header_info().map_err(unreadable)?;
     let pixels = u64::from(info.width) * u64::from(info.height);
-    if pixels > PIXELS_MAX || info.width.max(info.height) > SIDE_MAX {
-        return Err(ArrayError::TooManyPixels {
-            path: path.to_owned(),
-            width: info.width,
-            height: info.height,
-            limit: PIXELS_MAX,
-            side_limit: SIDE_MAX,
-        });
-    }
+    limit_pixels(path, info.width.into(), info.height.into())?;
     let packed_bytes = pixels * info.bits_per_pixel() as u64 / 8 / DEFLATE_MAX_RATIO;
     if file_bytes < packed_bytes {
         let detail = format!(
@@ -73,7 +70,7 @@ pub fn mask_png(
     if reader.info().color_type == ColorType::Indexed {
         check_palette(path, reader.info().palette.as_deref())?;
     }
-    read_rows(path, reader, threshold, slab, watch)
+    Ok(reader)
 }
 
 /// The decoder takes a palette of any length and panics on one that is not made of 1 to 256 whole colours.
@@ -182,7 +179,7 @@ fn luminance(pixel: &[u8], color: ColorType, depth: BitDepth) -> f64 {
     opacity * luminance + (1.0 - opacity)
 }
 
-fn decoding_error(path: &Path, source: DecodingError) -> ArrayError {
+pub(super) fn decoding_error(path: &Path, source: DecodingError) -> ArrayError {
     match source {
         DecodingError::IoError(source) if source.kind() != ErrorKind::UnexpectedEof => {
             ArrayError::read(path)(source)

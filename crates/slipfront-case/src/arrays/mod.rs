@@ -1,4 +1,4 @@
-//! Arrays and images that a case reads: friction coefficients block by block, and texture masks.
+//! Arrays and images that a case reads: friction coefficients block by block, texture masks, and height maps.
 //!
 //! The files may hold anything, so every parser compares the sizes in a header with the length of the file before it
 //! allocates memory, files longer than their lattice can need are refused, and any invalid contents give an
@@ -9,8 +9,10 @@
 
 mod error;
 mod head;
+mod height_map;
 mod mask;
 mod npy;
+mod pixels;
 mod slab;
 mod table;
 
@@ -19,6 +21,7 @@ use std::io::{BufRead, Seek};
 use std::path::Path;
 
 pub use error::{ArrayError, extension};
+pub use height_map::{HeightMap, Roughness, Units, height_map};
 pub use mask::{mask_png, write_mask_png};
 pub use npy::mask_npy;
 pub use slab::Slab;
@@ -32,9 +35,7 @@ use error::{contents_error, unknown_extension};
 /// # Errors
 /// [`ArrayError`] if the file is missing, not a regular file, or longer than that lattice can need.
 pub fn open_file(path: &Path, nx: usize, ny: usize) -> Result<File, ArrayError> {
-    let read_error = ArrayError::read(path);
-    let file = open_regular(path).map_err(&read_error)?;
-    let found = file.metadata().map_err(&read_error)?.len();
+    let (file, found) = open(path)?;
     let blocks = (nx as u64).saturating_mul(ny as u64);
     let of_blocks = |head: u64, number: u64| Some(blocks.saturating_mul(number).saturating_add(head));
     // A `.npy` holds a header and 64 bits per block, a `.csv` numbers, separators and comments.
@@ -43,7 +44,7 @@ pub fn open_file(path: &Path, nx: usize, ny: usize) -> Result<File, ArrayError> 
         "csv" => of_blocks(table::PREAMBLE_MAX_BYTES, table::NUMBER_MAX_BYTES),
         _ => None,
     };
-    let longest = of_array.unwrap_or(mask::FILE_MAX_BYTES);
+    let longest = of_array.unwrap_or(pixels::FILE_MAX_BYTES);
     if found > longest {
         let (what, remedy) = match of_array {
             Some(_) => (
@@ -56,6 +57,28 @@ pub fn open_file(path: &Path, nx: usize, ny: usize) -> Result<File, ArrayError> 
         return Err(contents_error(path, problem));
     }
     Ok(file)
+}
+
+/// Opens a height map, which may have any number of points for a block.
+///
+/// # Errors
+/// [`ArrayError`] if the file is missing, not a regular file, or longer than 256 MiB.
+pub fn open_height_map(path: &Path) -> Result<File, ArrayError> {
+    let (file, found) = open(path)?;
+    let longest = pixels::FILE_MAX_BYTES;
+    if found > longest {
+        let problem = format!("has {found} bytes where a height map takes at most {longest}; scale it down");
+        return Err(contents_error(path, problem));
+    }
+    Ok(file)
+}
+
+/// Opens a regular file, and tells its length in bytes.
+fn open(path: &Path) -> Result<(File, u64), ArrayError> {
+    let read_error = ArrayError::read(path);
+    let file = open_regular(path).map_err(&read_error)?;
+    let length = file.metadata().map_err(&read_error)?.len();
+    Ok((file, length))
 }
 
 /// One number per block of some rows, of a `.npy` or `.csv` file called `path`.

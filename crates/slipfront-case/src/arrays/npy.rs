@@ -7,6 +7,7 @@ use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 
 use super::error::{ArrayError, broken, contents_error, value_error};
 use super::head::length_and_head;
+use super::pixels::limit_pixels;
 use super::slab::Slab;
 use crate::text::truncated;
 
@@ -99,6 +100,36 @@ pub(super) fn values(
         return Err(value_error(path, &values[at].to_string(), place, wanted));
     }
     Ok(values)
+}
+
+/// Reads an array of any size row after row, in the order of the first axis, and returns its columns and rows.
+pub(super) fn rows(
+    path: &Path,
+    source: &mut (impl BufRead + Seek),
+    mut take: impl FnMut(usize, &[f64]) -> Result<(), ArrayError>,
+) -> Result<[u64; 2], ArrayError> {
+    /// Numbers that are read at once.
+    const BAND: usize = 1 << 16;
+    let (_, head) = length_and_head(path, source, HEADER_MAX_BYTES)?;
+    let (header, _) = read_header(&head, path)?;
+    let &[height, width] = header.shape() else {
+        let problem = format!(
+            "has {} axes where a height map has two, (ny, nx): save the heights alone, and no colours",
+            header.shape().len()
+        );
+        return Err(contents_error(path, problem));
+    };
+    limit_pixels(path, width, height)?;
+    let (nx, ny) = (width as usize, height as usize);
+    let band = (BAND / nx.max(1)).max(1);
+    for first in (0..ny).step_by(band) {
+        let rows = first..(first + band).min(ny);
+        let heights = values(path, source, &Slab { nx, ny, rows }, "", |_| false)?;
+        for (row, heights) in (first..).zip(heights.chunks_exact(nx.max(1))) {
+            take(row, heights)?;
+        }
+    }
+    Ok([width, height])
 }
 
 /// Reads the header from the first bytes of a file; returns it with the number of bytes before the data.

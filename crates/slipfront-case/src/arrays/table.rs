@@ -7,6 +7,7 @@ use csv::{ErrorKind, ReaderBuilder, StringRecord, Trim};
 
 use super::error::{ArrayError, broken, contents_error, value_error};
 use super::head::length_and_head;
+use super::pixels::limit_pixels;
 use super::slab::Slab;
 
 /// Comment lines are searched for the separator up to this total length.
@@ -23,58 +24,28 @@ pub(super) fn values(
     is_wrong: impl Fn(f64) -> bool,
 ) -> Result<Vec<f64>, ArrayError> {
     let Slab { nx, ny, ref rows } = *slab;
-    let read_error = ArrayError::read(path);
-    let (length, preamble) = length_and_head(path, source, PREAMBLE_MAX_BYTES)?;
-    let separator = separator(&preamble);
-    let mut table = reader(source, separator);
-
+    let (length, mut lines) = Lines::of(path, source)?;
     // A number and what separates it from the next take two bytes at the least.
     let mut values = Vec::with_capacity(slab.n_blocks().min(length as usize / 2 + 1));
-    let mut record = StringRecord::new();
     let mut row = 0;
     // Whoever reads the last row sees that there is no other.
     while row < rows.end || rows.end == ny {
-        let is_there = table.read_record(&mut record).map_err(|error| {
-            let detail = error.to_string();
-            match error.into_kind() {
-                ErrorKind::Io(source) => read_error(source),
-                _ => broken(path, ".csv", &detail),
-            }
-        })?;
-        if !is_there {
+        if !lines.next()? {
             break;
-        }
-        // Numbers in columns are padded with several blanks.
-        let fields = || {
-            record
-                .iter()
-                .filter(|field| separator != b' ' || !field.is_empty())
-        };
-        // The csv crate gives an empty record for a comment that ends the file without a line break.
-        if fields().nth(1).is_none() && fields().all(str::is_empty) {
-            continue;
         }
         if row == ny {
             let found = format!("more than {ny} lines of numbers");
             return Err(wrong_shape(path, &found, nx, ny));
         }
         if rows.contains(&row) {
-            let found = fields().count();
+            let found = lines.fields().count();
             if found != nx {
-                let line = record.position().map_or(0, csv::Position::line);
-                return Err(wrong_shape(
-                    path,
-                    &format!("{found} numbers in line {line}"),
-                    nx,
-                    ny,
-                ));
+                let found = format!("{found} numbers in line {}", lines.number());
+                return Err(wrong_shape(path, &found, nx, ny));
             }
-            for (column, field) in fields().enumerate() {
+            for (column, field) in lines.fields().enumerate() {
                 let at = [row, column];
-                let value = field.parse().map_err(|_| {
-                    let field = format!("`{}`", excerpt(field));
-                    value_error(path, &field, at, "a number with a decimal point")
-                })?;
+                let value = number(path, field, at)?;
                 if is_wrong(value) {
                     return Err(value_error(path, &value.to_string(), at, wanted));
                 }
@@ -87,6 +58,96 @@ pub(super) fn values(
         return Err(wrong_shape(path, &format!("{row} lines of numbers"), nx, ny));
     }
     Ok(values)
+}
+
+/// Reads a table of any size row after row, and returns its columns and rows.
+pub(super) fn rows(
+    path: &Path,
+    source: &mut (impl BufRead + Seek),
+    mut take: impl FnMut(usize, &[f64]) -> Result<(), ArrayError>,
+) -> Result<[u64; 2], ArrayError> {
+    let (_, mut lines) = Lines::of(path, source)?;
+    let mut values = Vec::new();
+    let (mut columns, mut row) = (None, 0);
+    while lines.next()? {
+        values.clear();
+        for (column, field) in lines.fields().enumerate() {
+            values.push(number(path, field, [row, column])?);
+        }
+        let wanted = *columns.get_or_insert(values.len());
+        if values.len() != wanted {
+            let problem = format!(
+                "has {} numbers in line {}, where the lines before have {wanted}; write as many in every line",
+                values.len(),
+                lines.number()
+            );
+            return Err(contents_error(path, problem));
+        }
+        limit_pixels(path, wanted as u64, row as u64 + 1)?;
+        take(row, &values)?;
+        row += 1;
+    }
+    Ok([columns.unwrap_or(0) as u64, row as u64])
+}
+
+/// The lines of a table that hold numbers, one after the other.
+struct Lines<'a, R> {
+    path: &'a Path,
+    table: csv::Reader<R>,
+    separator: u8,
+    record: StringRecord,
+}
+
+impl<'a, R: BufRead + Seek> Lines<'a, &'a mut R> {
+    /// Opens a table, and tells its length in bytes.
+    fn of(path: &'a Path, source: &'a mut R) -> Result<(u64, Self), ArrayError> {
+        let (length, preamble) = length_and_head(path, source, PREAMBLE_MAX_BYTES)?;
+        let separator = separator(&preamble);
+        let lines = Self {
+            path,
+            table: reader(source, separator),
+            separator,
+            record: StringRecord::new(),
+        };
+        Ok((length, lines))
+    }
+
+    /// Goes to the next line, if there is one.
+    fn next(&mut self) -> Result<bool, ArrayError> {
+        loop {
+            let is_there = self.table.read_record(&mut self.record).map_err(|error| {
+                let detail = error.to_string();
+                match error.into_kind() {
+                    ErrorKind::Io(source) => ArrayError::read(self.path)(source),
+                    _ => broken(self.path, ".csv", &detail),
+                }
+            })?;
+            // The csv crate gives an empty record for a comment that ends the file without a line break.
+            let is_blank = self.fields().nth(1).is_none() && self.fields().all(str::is_empty);
+            if !is_there || !is_blank {
+                return Ok(is_there);
+            }
+        }
+    }
+
+    /// The fields of the line. Numbers in columns are padded with several blanks.
+    fn fields(&self) -> impl Iterator<Item = &str> {
+        let is_field = |field: &&str| self.separator != b' ' || !field.is_empty();
+        self.record.iter().filter(is_field)
+    }
+
+    /// The number of the line in the file.
+    fn number(&self) -> u64 {
+        self.record.position().map_or(0, csv::Position::line)
+    }
+}
+
+/// The number of a field in the row and column `at`.
+fn number(path: &Path, field: &str, at: [usize; 2]) -> Result<f64, ArrayError> {
+    field.parse().map_err(|_| {
+        let field = format!("`{}`", excerpt(field));
+        value_error(path, &field, at, "a number with a decimal point")
+    })
 }
 
 /// Reads a table of text line by line; `#` begins a comment.

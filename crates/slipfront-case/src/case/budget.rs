@@ -13,7 +13,7 @@ use slipfront::{Kernel, Lattice, PositionBins};
 use super::kernel::kernel;
 use super::output::{MAX_MAPS, Output, Snapshots, mapped_field};
 use super::ranks::Ranks;
-use super::textures::count_masks;
+use super::textures::{count_height_maps, count_masks};
 use super::time_plan::TimePlan;
 use crate::case_file::{
     Attached, AttachedEdge, CaseError, CaseFile, Contact, Friction, Law, Motion, Outline,
@@ -214,6 +214,8 @@ pub struct Budget {
     pub(super) inputs: f64,
     /// Masks that are in memory at once, until they are laid over the lattice.
     masks: f64,
+    /// Numbers of every block of the lattice that a height map takes while it is laid over them.
+    heights: f64,
     /// Whether the run resumes from a checkpoint.
     is_resumed: bool,
 }
@@ -257,7 +259,7 @@ impl Budget {
         let n_frames = match &output.snapshots {
             Snapshots::Instants => 6.0,
             Snapshots::At(steps) => steps.len() as f64,
-            Snapshots::Every(every) => (last_step / every + 1) as f64,
+            Snapshots::Every(every) => (last_step / every + 1) as f64 + 6.0,
         };
         Self {
             blocks: lattice.nx as f64 * rows.len() as f64,
@@ -281,6 +283,7 @@ impl Budget {
                 None => 0.0,
             },
             maps: match output.fields.contains(&mapped_field(file)) {
+                true if output.movie => n_frames,
                 true => n_frames.min(MAX_MAPS as f64),
                 false => 0.0,
             },
@@ -294,6 +297,8 @@ impl Budget {
                 (samples.min(Kymograph::MAX_ROWS as u64) * places as u64) as f64
             },
             inputs: 0.0,
+            // The means of the blocks, and the same in order of height.
+            heights: if count_height_maps(file) > 0 { 2.0 } else { 0.0 },
             masks: count_masks(file) as f64
                 + f64::from(u8::from(matches!(file.drive.attached, Attached::File(_)))),
             is_resumed: false,
@@ -367,7 +372,13 @@ impl Budget {
                 key: "texture",
                 what: |_| "the files that it reads".to_owned(),
                 remedy: "scale them down, or name fewer",
-                bytes: [self.masks * blocks * FLAG, 0.0, 0.0, self.inputs, 0.0],
+                bytes: [
+                    self.masks * blocks * FLAG + self.heights * self.all_blocks * NUMBER,
+                    0.0,
+                    0.0,
+                    self.inputs,
+                    0.0,
+                ],
             },
         ]
     }
@@ -601,7 +612,7 @@ mod tests {
             (
                 vec!["slider.blocks=[100,100]", "output.snapshots={every=0.1}"],
                 "output.snapshots",
-                ["for 2668 snapshots of 5 fields", "raise `output.stride`"],
+                ["for 2674 snapshots of 5 fields", "raise `output.stride`"],
             ),
             (
                 vec!["output.series=0.1", "time.duration_star=1e6"],

@@ -10,7 +10,7 @@ use slipfront::Lattice;
 
 use super::ranks::Ranks;
 use crate::arrays::{self, ArrayError, Slab};
-use crate::case_file::{CaseError, CaseFile};
+use crate::case_file::{CaseError, CaseFile, FileUse};
 
 /// A file that a case reads, and of which the run folder holds a copy.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,12 +72,17 @@ impl NamedFiles {
             &mut file.friction,
             &mut file.texture,
         );
-        for (key, name) in files {
-            let original = folder.join(&*name);
+        for named in files {
+            let original = folder.join(&*named.name);
             let digest = match digests.get(&original) {
                 Some(known) => *known,
                 None if ranks.communicator.rank() == 0 => {
-                    digest(&original, lattice).map_err(|error| file.source.error(&key, error.to_string()))?
+                    let opened = match named.holds {
+                        FileUse::Blocks => arrays::open_file(&original, lattice.nx, lattice.ny),
+                        FileUse::HeightMap => arrays::open_height_map(&original),
+                    };
+                    let digest = opened.and_then(|file| digest(&original, file));
+                    digest.map_err(|error| file.source.error(&named.key, error.to_string()))?
                 }
                 None => Digest::default(),
             };
@@ -100,7 +105,7 @@ impl NamedFiles {
             &mut file.friction,
             &mut file.texture,
         );
-        let names = files.map(|(_, name)| name);
+        let names = files.map(|named| named.name);
         for ((original, digest), written) in self.originals.into_iter().zip(self.digests).zip(names) {
             let [length, hash @ ..] = digest;
             let mut bytes = [0; blake3::OUT_LEN];
@@ -126,8 +131,7 @@ impl NamedFiles {
     }
 }
 
-fn digest(path: &Path, lattice: &Lattice) -> Result<Digest, ArrayError> {
-    let file = arrays::open_file(path, lattice.nx, lattice.ny)?;
+fn digest(path: &Path, file: File) -> Result<Digest, ArrayError> {
     let mut hasher = Hasher::new();
     hasher.update_reader(file).map_err(|source| ArrayError::Read {
         path: path.to_owned(),
@@ -157,15 +161,31 @@ impl Inputs {
         name: &str,
         read: impl FnOnce(&Path, &mut BufReader<File>, &Slab) -> Result<T, ArrayError>,
     ) -> Result<T, CaseError> {
-        let original = self.files.iter().find(|input| input.name == name);
-        let original = original.map_or(Path::new(name), |input| &input.original);
         let Slab { nx, ny, .. } = self.slab;
+        let original = self.original(name);
         let opened = arrays::open_file(original, nx, ny);
         let read = opened.and_then(|opened| read(original, &mut BufReader::new(opened), &self.slab));
-        read.map_err(|error| match error {
-            ArrayError::Stopped => CaseError::Stopped,
-            error => file.source.error(key, error.to_string()),
-        })
+        read.map_err(|error| placed(file, key, error))
+    }
+
+    /// Reads the height map that has this name in the case, which `key` gives it.
+    pub(super) fn read_height_map<T>(
+        &self,
+        file: &CaseFile,
+        key: &str,
+        name: &str,
+        read: impl FnOnce(&Path, &mut BufReader<File>) -> Result<T, ArrayError>,
+    ) -> Result<T, CaseError> {
+        let original = self.original(name);
+        let opened = arrays::open_height_map(original);
+        let read = opened.and_then(|opened| read(original, &mut BufReader::new(opened)));
+        read.map_err(|error| placed(file, key, error))
+    }
+
+    /// The path of the file that has this name in the case.
+    fn original<'a>(&'a self, name: &'a str) -> &'a Path {
+        let input = self.files.iter().find(|input| input.name == name);
+        input.map_or(Path::new(name), |input| &input.original)
     }
 
     /// Reads a number of every block from the file of this name, if the case names one.
@@ -181,5 +201,13 @@ impl Inputs {
             })
         };
         name.as_ref().map(read).transpose()
+    }
+}
+
+/// An error about the file that a key names.
+fn placed(file: &CaseFile, key: &str, error: ArrayError) -> CaseError {
+    match error {
+        ArrayError::Stopped => CaseError::Stopped,
+        error => file.source.error(key, error.to_string()),
     }
 }

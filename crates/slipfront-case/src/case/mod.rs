@@ -13,6 +13,7 @@ mod runnable;
 mod slider;
 mod textures;
 mod time_plan;
+mod topography;
 mod warnings;
 
 pub use self::budget::{Budget, COLUMN_TEXT, PICTURE, PROGRAM, memory_to_draw};
@@ -23,3 +24,4 @@ pub use self::ranks::Ranks;
 pub use self::runnable::{Case, Expected, TextureReport};
 pub use self::textures::Watch;
 pub use self::time_plan::TimePlan;
+pub use self::topography::Topography;

@@ -17,6 +17,8 @@ pub struct Output {
     pub stride: usize,
     /// Steps between rows of the series.
     pub series_stride: u64,
+    /// Whether a movie is drawn of the run.
+    pub movie: bool,
 }
 
 /// The instants at which fields are recorded.
@@ -26,7 +28,7 @@ pub enum Snapshots {
     Instants,
     /// At these steps.
     At(Vec<u64>),
-    /// Every n-th step from 0.
+    /// Every n-th step from 0, and at the instants A-F.
     Every(u64),
 }
 
@@ -76,6 +78,7 @@ impl Output {
             fields: file.output.fields.clone(),
             stride: file.output.stride as usize,
             series_stride,
+            movie: file.output.movie,
         })
     }
 }

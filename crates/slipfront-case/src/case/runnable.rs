@@ -19,6 +19,7 @@ use super::ranks::Ranks;
 use super::slider::GivenBlocks;
 use super::textures::{self, Watch};
 use super::time_plan::{Dynamics, TimePlan};
+use super::topography::Topography;
 use crate::arrays::Slab;
 use crate::case_file::{CaseError, CaseFile};
 
@@ -61,10 +62,12 @@ pub struct Expected {
 /// The texture as asked and as meshed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextureReport {
-    /// A* as asked for, %; none if there is a mask or polygon, whose area is known only after meshing.
+    /// A* as asked for, %; none if there is a mask, a polygon or the depth of a height map, whose area is known only after meshing.
     pub asked_percent: Option<f64>,
     /// A* as meshed, % (Eq. 15).
     pub meshed_percent: f64,
+    /// The height maps.
+    pub topographies: Vec<Topography>,
     /// Positions in the case file, from 0, of the textures that a free edge clips.
     pub clipped: Vec<usize>,
     /// Positions of those that cover no block.
@@ -167,7 +170,7 @@ impl Case {
             let contact = contact(&file, &scales, &lattice, &inputs)?;
             Ok((meshed, coefficients, contact, attached(&file, &inputs, watch)?))
         });
-        let ((meshed, asked_percent), coefficients, contact, attached) = ranks.agree(made)?;
+        let ((meshed, in_blocks), coefficients, contact, attached) = ranks.agree(made)?;
         attach(&mut slider, &file, &lattice, &rows, attached, ranks.communicator)?;
         let surface = Surface::of_ranks(
             coefficients,
@@ -178,7 +181,8 @@ impl Case {
         )
         .map_err(|error| file.source.error("texture", error.to_string()))?;
         let texture = TextureReport {
-            asked_percent,
+            asked_percent: in_blocks.asked_percent,
+            topographies: in_blocks.topographies,
             meshed_percent: surface.texture_percent(),
             clipped: meshed.clipped,
             empty: empty_on_all(&meshed.empty, file.texture.len(), ranks.communicator),
@@ -245,7 +249,7 @@ impl Case {
             textures::shapes_in_blocks(&self.file, &self.scales, lattice, n_blocks, &inputs, &mut |_| {
                 true
             });
-        made.map(|(textures, _)| textures)
+        made.map(|in_blocks| in_blocks.textures)
     }
 
     /// Steps times blocks, the measure of what the run costs.

@@ -9,16 +9,29 @@ use slipfront::surface::Tile;
 use slipfront::{Lattice, Scales, surface};
 
 use super::inputs::Inputs;
+use super::topography::{self, Topography};
 use crate::arrays::{ArrayError, Slab};
-use crate::case_file::{Arrangement, CaseError, CaseFile, Count, MAX_COUNT, Mask, Pattern, Pitch, Shape};
+use crate::case_file::{
+    Arrangement, Bearing, CaseError, CaseFile, Count, MAX_COUNT, Mask, Pattern, Pitch, Shape,
+};
 use crate::quantity::Length;
 use crate::{arrays, case_file};
 
 /// Told the share that is done of laying the texture over the blocks; `false` ends it.
 pub type Watch<'a> = dyn FnMut(f64) -> bool + 'a;
 
-/// The textured blocks of the rows that this rank holds, and the area of all textures as asked for, % of that of the `n_blocks` that
-/// exist (see [`TextureReport`](super::runnable::TextureReport)); masks are read.
+/// The textures of a case in blocks.
+pub(super) struct InBlocks {
+    /// The textures, in the order of the file.
+    pub(super) textures: Vec<surface::Texture>,
+    /// The area of all as asked for, % of that of the blocks that exist (see
+    /// [`TextureReport`](super::runnable::TextureReport)).
+    pub(super) asked_percent: Option<f64>,
+    /// The height maps among them.
+    pub(super) topographies: Vec<Topography>,
+}
+
+/// The textured blocks of the rows that this rank holds, with the textures; masks and height maps are read. `n_blocks` exist.
 pub(super) fn mesh(
     file: &CaseFile,
     scales: &Scales,
@@ -26,14 +39,14 @@ pub(super) fn mesh(
     n_blocks: usize,
     inputs: &Inputs,
     watch: &mut Watch,
-) -> Result<(surface::Meshed, Option<f64>), CaseError> {
-    let (textures, asked) = shapes_in_blocks(file, scales, lattice, n_blocks, inputs, watch)?;
+) -> Result<(surface::Meshed, InBlocks), CaseError> {
+    let in_blocks = shapes_in_blocks(file, scales, lattice, n_blocks, inputs, watch)?;
     let mut watch = |share| watch(share).then_some(()).ok_or(CaseError::Stopped);
-    let meshed = surface::mesh_watched(lattice, &inputs.slab.rows, &textures, &mut watch)?;
-    Ok((meshed, asked))
+    let meshed = surface::mesh_watched(lattice, &inputs.slab.rows, &in_blocks.textures, &mut watch)?;
+    Ok((meshed, in_blocks))
 }
 
-/// The textures in blocks, and the area asked for.
+/// The textures in blocks.
 pub(super) fn shapes_in_blocks(
     file: &CaseFile,
     scales: &Scales,
@@ -41,9 +54,10 @@ pub(super) fn shapes_in_blocks(
     n_blocks: usize,
     inputs: &Inputs,
     watch: &mut Watch,
-) -> Result<(Vec<surface::Texture>, Option<f64>), CaseError> {
+) -> Result<InBlocks, CaseError> {
     let mut textures = Vec::new();
     let mut asked = Some(0.0);
+    let mut topographies = Vec::new();
     let mut masks = Masks::default();
     for (index, texture) in file.texture.iter().enumerate() {
         let key = format!("texture.{index}");
@@ -65,6 +79,19 @@ pub(super) fn shapes_in_blocks(
                 let tile = masks.read(file, index, mask, size, inputs, watch)?;
                 (surface::Shape::Tile(tile), None)
             }
+            Shape::HeightMap(map) => {
+                let size = cell(&arrays, lattice).map_err(|sentence| file.source.error(&key, sentence))?;
+                let (tile, topography) = topography::read(file, index, map, size, inputs, watch)?;
+                topographies.push(topography);
+                let percent = match map.bearing {
+                    Bearing::Percent(percent) => {
+                        let blocks = surface::n_copies(&arrays) * size[0] * size[1];
+                        Some((100.0 - percent) * blocks as f64 / n_blocks as f64)
+                    }
+                    Bearing::Depth(_) => None,
+                };
+                (surface::Shape::Tile(tile), percent)
+            }
         };
         within_reach(&shape, &arrays, lattice).map_err(|sentence| file.source.error(&key, sentence))?;
         let inverted = texture.pattern.invert;
@@ -82,7 +109,11 @@ pub(super) fn shapes_in_blocks(
         });
         asked = asked.zip(percent).map(|(sum, percent)| sum + percent);
     }
-    Ok((textures, asked))
+    Ok(InBlocks {
+        textures,
+        asked_percent: asked,
+        topographies,
+    })
 }
 
 /// The arrays of a pattern in blocks, the outermost first: it is spread over the slider, and the next one over a place of it. An
@@ -147,7 +178,7 @@ pub(super) fn arrays(
     Ok(arrays)
 }
 
-/// The blocks of a mask, of which there is one in every place of a pattern.
+/// The blocks of a mask or height map, of which there is one in every place of a pattern.
 fn cell(arrays: &[surface::Array], lattice: &Lattice) -> Result<[usize; 2], String> {
     let slider = [lattice.nx, lattice.ny];
     let Some(array) = arrays.last() else {
@@ -156,14 +187,15 @@ fn cell(arrays: &[surface::Array], lattice: &Lattice) -> Result<[usize; 2], Stri
     let size = array.spacing.map(|spacing| (spacing.round() as usize).max(1));
     if size[0] > slider[0] || size[1] > slider[1] {
         return Err(format!(
-            "a mask of {} x {} blocks in every place of the pattern is larger than the slider's {} x {}: lower the pitch",
+            "{} x {} blocks in every place of the pattern are more than the slider's {} x {}: lower the pitch",
             size[0], size[1], slider[0], slider[1]
         ));
     }
     Ok(size)
 }
 
-/// How many masks a case has in memory at once, with those of inverted textures while they are laid over the blocks.
+/// How many masks a case has in memory at once, with those of height maps, and of inverted textures while they are laid over the
+/// blocks.
 pub(super) fn count_masks(file: &CaseFile) -> usize {
     let mut masks = Vec::new();
     for texture in &file.texture {
@@ -175,7 +207,17 @@ pub(super) fn count_masks(file: &CaseFile) -> usize {
             }
         }
     }
-    masks.len() + usize::from(file.texture.iter().any(|texture| texture.pattern.invert))
+    masks.len()
+        + count_height_maps(file)
+        + usize::from(file.texture.iter().any(|texture| texture.pattern.invert))
+}
+
+/// How many height maps a case has. Their heights are in memory one after the other.
+pub(super) fn count_height_maps(file: &CaseFile) -> usize {
+    let shapes = file.texture.iter().map(|texture| &texture.shape);
+    shapes
+        .filter(|shape| matches!(shape, Shape::HeightMap(_)))
+        .count()
 }
 
 /// What tells the masks of a case apart: file, bits of the threshold, and blocks. Several textures may have one.

@@ -6,11 +6,14 @@ use slipfront::{Edges, Friction};
 
 use super::runnable::Case;
 use super::textures::{arrays, is_array};
+use super::topography::Topography;
 use crate::case_file::{Count, DEFAULT_THRESHOLD, Law, Mask, Pattern, Shape};
-use crate::number_format::{are, count, four_digits};
+use crate::number_format::{are, count, four_digits, with_si_prefix};
 
 /// Blocks that a pattern may leave free at periodic edges without a warning.
 const LARGE_SEAM: f64 = 0.5;
+/// Difference between the size of a height map and that of what it is laid over, relative to its own, above which there is a warning.
+const LARGE_SCALE: f64 = 0.01;
 /// Difference between the texture as asked and as meshed, relative to what was asked, above which there is a warning.
 const LARGE_MISFIT: f64 = 0.25;
 /// Relative difference between `mu_static` and the mean of given coefficients above which there is a warning.
@@ -87,6 +90,9 @@ impl Case {
                 ));
             }
         }
+        for topography in &report.topographies {
+            warnings.extend(self.other_scale(topography));
+        }
         for (texture, number) in self.file.texture.iter().zip(1..) {
             warnings.extend(self.seam(&texture.pattern, number));
         }
@@ -101,6 +107,36 @@ impl Case {
             ));
         }
         warnings
+    }
+
+    /// Where a height map is not as large as what it is laid over, or has fewer points than that has blocks.
+    fn other_scale(&self, topography: &Topography) -> Option<String> {
+        let Topography {
+            file,
+            points,
+            size,
+            blocks,
+            ..
+        } = topography;
+        let length = |axis: usize| blocks[axis] as f64 * self.scales.block_size;
+        let in_metres = |[x, y]: [f64; 2]| format!("{} x {}", with_si_prefix(x, "m"), with_si_prefix(y, "m"));
+        let scale = length(0) / size[0];
+        if (scale - 1.0).abs() > LARGE_SCALE {
+            return Some(format!(
+                "{file} is {} and laid over {} of the slider, {} times its size: with `block_size` = {:?} it would have its own",
+                in_metres(*size),
+                in_metres([length(0), length(1)]),
+                four_digits(scale),
+                with_si_prefix(size[0] / blocks[0] as f64, "m")
+            ));
+        }
+        let [few, many] = [points, blocks];
+        (few[0] < many[0] || few[1] < many[1]).then(|| {
+            format!(
+                "{file} has {} x {} points for {} x {} blocks: several blocks share a height",
+                few[0], few[1], many[0], many[1]
+            )
+        })
     }
 
     /// Where a pattern that fills the slider does not go on beyond a periodic edge as it does within.

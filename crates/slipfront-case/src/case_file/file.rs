@@ -82,18 +82,27 @@ impl CaseFile {
         Self::parse(&text, &path.display().to_string(), overrides)
     }
 
-    /// Every file that these tables of a case name, relative to the case file, and the key that names it.
+    /// Every file that these tables of a case name.
     pub fn files_mut<'a>(
         slider: &'a mut Slider,
         load: &'a mut Load,
         drive: &'a mut Drive,
         friction: &'a mut Friction,
         texture: &'a mut [Texture],
-    ) -> impl Iterator<Item = (String, &'a mut String)> {
-        let masks = texture.iter_mut().enumerate();
-        let masks = masks.filter_map(|(index, texture)| match &mut texture.shape {
-            Shape::Mask(mask) => Some((format!("texture.{index}.file"), &mut mask.file)),
-            _ => None,
+    ) -> impl Iterator<Item = NamedFile<'a>> {
+        let named = |key: &str, name, holds| NamedFile {
+            key: key.to_owned(),
+            name,
+            holds,
+        };
+        let of_textures = texture.iter_mut().enumerate();
+        let of_textures = of_textures.filter_map(move |(index, texture)| {
+            let key = format!("texture.{index}.file");
+            match &mut texture.shape {
+                Shape::Mask(mask) => Some(named(&key, &mut mask.file, FileUse::Blocks)),
+                Shape::HeightMap(map) => Some(named(&key, &mut map.file, FileUse::HeightMap)),
+                _ => None,
+            }
         });
         let fields = [
             ("slider.outline_file", &mut slider.outline_file),
@@ -105,12 +114,12 @@ impl CaseFile {
         ];
         let fields = fields.into_iter();
         let attached = match &mut drive.attached {
-            Attached::File(name) => Some(("drive.attach_file".to_owned(), name)),
+            Attached::File(name) => Some(named("drive.attach_file", name, FileUse::Blocks)),
             Attached::At(_) => None,
         };
-        masks
+        of_textures
             .chain(attached)
-            .chain(fields.filter_map(|(key, name)| Some((key.to_owned(), name.as_mut()?))))
+            .chain(fields.filter_map(move |(key, name)| Some(named(key, name.as_mut()?, FileUse::Blocks))))
     }
 
     /// Checks every bound that needs nothing but the file. [`parse`](Self::parse) has done so already.
@@ -139,6 +148,25 @@ impl CaseFile {
         self.check()?;
         Ok(toml::to_string(self)?)
     }
+}
+
+/// A file that a case names.
+pub struct NamedFile<'a> {
+    /// The key that names it.
+    pub key: String,
+    /// Its path, relative to the case file.
+    pub name: &'a mut String,
+    /// What it is read as.
+    pub holds: FileUse,
+}
+
+/// What a file is read as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileUse {
+    /// A value of each block, or an image of the slider.
+    Blocks,
+    /// Measured heights, of any number of points.
+    HeightMap,
 }
 
 impl Default for CaseFile {

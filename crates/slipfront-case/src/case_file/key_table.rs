@@ -179,7 +179,7 @@ const GRADE: Kind = Kind::Special("`{ along = \"x\", from = 1, to = 0.1 }`; 1e-6
 const SHEAR_STRENGTH: Kind = quantity("Pa", within(0.0, 1e15));
 
 /// Every section of a case file.
-pub const SECTIONS: [Section; 10] = [
+pub const SECTIONS: [Section; 11] = [
     section(false, "slider", SLIDER),
     section(false, "load", LOAD),
     section(false, "drive", DRIVE),
@@ -190,6 +190,7 @@ pub const SECTIONS: [Section; 10] = [
     section(true, "groove", GROOVE),
     section(true, "polygon", POLYGON),
     section(true, "mask", MASK),
+    section(true, "height_map", HEIGHT_MAP),
 ];
 
 #[rustfmt::skip]
@@ -331,6 +332,7 @@ const OUTPUT: &[Key] = &[
     key("stride", "1", Kind::Whole { least: 1, most: MAX_BLOCKS, noun: "", remark: "; 1 writes every block" },
         "every n-th block in the fields file"),
     key("series", "\"auto\"", SPACING, "spacing of the rows of the series in t*"),
+    key("movie", "false", Kind::Switch, "whether a movie is drawn of the snapshots"),
 ];
 
 /// A time between snapshots or rows.
@@ -374,6 +376,19 @@ const MASK: &[Key] = &[
     key("file", "", Kind::File(&["png", "npy"]), "an image, stretched over the slider"),
     key("threshold", "0.5", number(between(0.0, 1.0), "it is a share of white"),
         "a pixel of an image is dark below this share of white"),
+    PITCH, ARRAY_OF_COPIES, LATTICE, REPEAT, INVERT,
+];
+
+#[rustfmt::skip]
+const HEIGHT_MAP: &[Key] = &[
+    key("file", "", Kind::File(&["npy", "csv", "gsf", "x3p", "png", "tif", "tiff"]), "measured heights, stretched over the slider"),
+    key("bearing_percent", "", COVERAGE, "the share of the area that touches, the highest parts first")
+        .or("depth").title("bearing area", "", "%"),
+    key("depth", "", SIZE, "how far below the reference a block still touches").or("bearing_percent").title("depth of contact", "", "m"),
+    key("reference", "", COORDINATE, "height from which `depth` is counted; that of the highest block if left out"),
+    key("height_unit", "", SIZE, "the height that a value of 1 in the file means, if the file has no unit"),
+    key("pixel_size", "", Kind::Special("a length, or a pair; more than 0, at most 1e9 m"),
+        "distance of neighbouring points, if the file does not have it"),
     PITCH, ARRAY_OF_COPIES, LATTICE, REPEAT, INVERT,
 ];
 

@@ -11,6 +11,7 @@ mod drive;
 mod error;
 mod file;
 mod friction;
+mod height_map;
 mod key_table;
 mod keys;
 mod load;
@@ -32,8 +33,9 @@ pub use depth::limit_nesting;
 pub use diagnose::syntax_error;
 pub use drive::{Attached, Drive, DriveSpeed, DriveStiffness, SpeedSegment};
 pub use error::{CaseError, Invalid, Place};
-pub use file::{CaseFile, ParsedCase};
+pub use file::{CaseFile, FileUse, NamedFile, ParsedCase};
 pub use friction::{Ageing, AgeingLaw, Friction, KineticFriction, Velocity, VelocityLaw};
+pub use height_map::{Bearing, HeightMap};
 pub use key_table::{Bounds, Key, Kind, SECTIONS, Section, Title, names_a_file, title_of};
 pub(crate) use key_table::{MAX_COUNT, MAX_RELATIVE, MIN_RELATIVE};
 pub use keys::{

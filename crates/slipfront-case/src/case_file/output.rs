@@ -22,6 +22,8 @@ pub struct Output {
     pub stride: u32,
     /// Spacing of the rows of the series in t*; `auto` is every step, or as many as give at most 20 000 rows.
     pub series: AutoOr,
+    /// Whether a movie is drawn of the run.
+    pub movie: bool,
 }
 
 /// The instants at which fields are written.
@@ -32,7 +34,7 @@ pub enum Snapshots {
     Auto,
     /// A list of t*, increasing; none when empty.
     At(Vec<f64>),
-    /// `{ every = 5.0 }`: at multiples of that t*.
+    /// `{ every = 5.0 }`: at multiples of that t*, and at the instants A to F.
     Every(f64),
 }
 

@@ -124,7 +124,7 @@ impl Array {
 }
 
 impl Pitch {
-    fn lengths(&self) -> &[Length] {
+    pub(super) fn lengths(&self) -> &[Length] {
         match self {
             Self::Equal(length) => std::slice::from_ref(length),
             Self::Each(lengths) => lengths,

@@ -200,6 +200,9 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
         "image",
         "an image is `shape` = \"mask\" with `file` = \"mask.png\"",
     ),
+    ("topography", HEIGHT_MAP),
+    ("heightmap", HEIGHT_MAP),
+    ("heights", HEIGHT_MAP),
     ("png", "an image is `shape` = \"mask\" with `file` = \"mask.png\""),
     ("radius", RADIUS),
     ("diameter", RADIUS),
@@ -209,7 +212,10 @@ pub(super) const SYNONYMS: &[(&str, &str)] = &[
         `slider.blocks` times `slider.block_size`",
     ),
     ("area", "the share of the area is `coverage`, in percent"),
-    ("depth", "a texture has no depth: blocks within it do not touch"),
+    (
+        "depth",
+        "a texture has no depth, and blocks within it do not touch; of a \"height_map\", `texture.N.depth` says which of its blocks do",
+    ),
     (
         "position",
         "a cavity stands at `center`, a groove at `offset` from the middle",
@@ -304,6 +310,8 @@ const ADHESION: &str = "adhesion adds to static friction as `friction.adhesion`,
 const CIRCLE: &str = "a circle is `shape` = \"cavity\" with `coverage`, or with `lambda`, its radius";
 const GROOVE: &str = "a straight one is `shape` = \"groove\" with `coverage` or `width`";
 const RADIUS: &str = "the radius of a circle is `lambda`";
+const HEIGHT_MAP: &str =
+    "measured heights are `shape` = \"height_map\" with `file` and `bearing_percent` or `depth`";
 const PITCH: &str = "the distance between the copies of a shape is `pitch`";
 const PATTERN: &str = "a shape is repeated by `array` = [4, 4] or `pitch` = \"12 um\", arranged by `lattice`";
 

@@ -10,6 +10,7 @@ use toml::de::{DeTable, DeValue};
 use super::check::Check;
 use super::choice::keys_with_choice;
 use super::error::CaseError;
+use super::height_map::HeightMap;
 use super::key_table::{COORDINATE, SECTIONS};
 use super::keys::{texture_header, unknown_shape};
 use super::pattern::Pattern;
@@ -42,6 +43,8 @@ pub enum Shape {
     Polygon(Polygon),
     /// The dark pixels of an image, or the ones of an array.
     Mask(Mask),
+    /// Measured topography.
+    HeightMap(HeightMap),
 }
 
 /// A cavity with the outline of Eq. 17.
@@ -139,6 +142,7 @@ impl Shape {
             Self::Groove(_) => "groove",
             Self::Polygon(_) => "polygon",
             Self::Mask(_) => "mask",
+            Self::HeightMap(_) => "height_map",
         }
     }
 
@@ -166,6 +170,7 @@ impl Shape {
                 check.value("file", file)?;
                 check.value("threshold", threshold)
             }
+            Self::HeightMap(map) => map.check(check),
         }
     }
 }
@@ -302,6 +307,7 @@ impl<'i> Tables<'_, 'i> {
             "cavity" => Shape::Cavity(self.read_keys(table, &header, Some(section))?),
             "groove" => Shape::Groove(self.read_keys(table, &header, Some(section))?),
             "polygon" => Shape::Polygon(self.read_keys(table, &header, Some(section))?),
+            "height_map" => Shape::HeightMap(self.read_keys(table, &header, Some(section))?),
             _ => Shape::Mask(self.read_keys(table, &header, Some(section))?),
         };
         let pattern = Spanned::new(span, DeValue::Table(pattern));

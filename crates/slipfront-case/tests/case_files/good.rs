@@ -291,9 +291,7 @@ fn masks_fill_every_cell() {
     };
     let said = case("pitch = '40 um'").unwrap_err().to_string();
     assert!(
-        said.contains(
-            "a mask of 40 x 40 blocks in every place of the pattern is larger than the slider's 32 x 24"
-        ),
+        said.contains("40 x 40 blocks in every place of the pattern are more than the slider's 32 x 24"),
         "{said}"
     );
     for (pattern, shift) in [

@@ -5,10 +5,11 @@ use slipfront::observe::Field;
 use slipfront::surface::Orientation;
 use slipfront::{Edges, StopReason};
 use slipfront_case::case_file::{
-    Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr, CaseFile, Cavity,
+    Ageing, AgeingLaw, Along, Arrangement, Array, Attached, AttachedEdge, AutoOr, Bearing, CaseFile, Cavity,
     CavitySize, Center, Contact, Count, Damping, Drive, DriveSpeed, DriveStiffness, Friction, Grade, Groove,
-    GrooveSize, KineticFriction, Law, Load, Mask, Motion, Outline, Output, Pattern, Pitch, Polygon, Profile,
-    RunTime, Shape, Slider, Snapshots, Source, SpeedSegment, Step, Texture, Time, Velocity, VelocityLaw,
+    GrooveSize, HeightMap, KineticFriction, Law, Load, Mask, Motion, Outline, Output, Pattern, Pitch,
+    Polygon, Profile, RunTime, Shape, Slider, Snapshots, Source, SpeedSegment, Step, Texture, Time, Velocity,
+    VelocityLaw,
 };
 use slipfront_case::quantity::{Kind, Length, Quantity};
 
@@ -307,6 +308,29 @@ fn cavity() -> impl Strategy<Value = Shape> {
         })
 }
 
+fn height_map() -> impl Strategy<Value = Shape> {
+    let bearing = prop_oneof![
+        (0.001..99.9).prop_map(|percent| (Bearing::Percent(percent), None)),
+        (length(), prop::option::of(length()))
+            .prop_map(|(depth, reference)| (Bearing::Depth(depth), reference)),
+    ];
+    let pixel_size = prop_oneof![
+        length().prop_map(Pitch::Equal),
+        [length(), length()].prop_map(Pitch::Each)
+    ];
+    let units = (prop::option::of(length()), prop::option::of(pixel_size));
+    let file = file(&["npy", "csv", "gsf", "x3p", "png", "tif", "tiff"]);
+    (file, bearing, units).prop_map(|(file, (bearing, reference), (height_unit, pixel_size))| {
+        Shape::HeightMap(HeightMap {
+            file,
+            bearing,
+            reference,
+            height_unit,
+            pixel_size,
+        })
+    })
+}
+
 fn texture() -> impl Strategy<Value = Texture> {
     let size = prop_oneof![
         (0.001..99.9).prop_map(GrooveSize::Coverage),
@@ -328,7 +352,7 @@ fn texture() -> impl Strategy<Value = Texture> {
         .prop_map(|points| Shape::Polygon(Polygon { points }));
     let mask = (file(&["png", "npy"]), 0.01..0.99)
         .prop_map(|(file, threshold)| Shape::Mask(Mask { file, threshold }));
-    let shape = prop_oneof![cavity(), groove, polygon, mask];
+    let shape = prop_oneof![cavity(), groove, polygon, mask, height_map()];
     let parts = (shape, array(), prop::option::of(array()), any::<bool>());
     parts.prop_filter_map(
         "repeat needs a count or a pitch",
@@ -409,14 +433,22 @@ fn output() -> impl Strategy<Value = Output> {
         (1e-3..1e6).prop_map(Snapshots::Every)
     ];
     let fields = subsequence(CaseFile::default().output.fields, 0..=5).prop_shuffle();
-    (snapshots, fields, 1..=100_000_u32, auto_or(1e-6..1e6)).prop_map(
-        |(snapshots, fields, stride, series): (_, Vec<Field>, _, _)| Output {
-            snapshots,
-            fields,
-            stride,
-            series,
-        },
+    (
+        snapshots,
+        fields,
+        1..=100_000_u32,
+        auto_or(1e-6..1e6),
+        any::<bool>(),
     )
+        .prop_map(
+            |(snapshots, fields, stride, series, movie): (_, Vec<Field>, _, _, _)| Output {
+                snapshots,
+                fields,
+                stride,
+                series,
+                movie,
+            },
+        )
 }
 
 fn case_file() -> impl Strategy<Value = CaseFile> {

@@ -235,24 +235,24 @@ impl Plot {
 }
 
 /// Refuses pictures for which there is no memory.
-fn expect_memory(folders: &[PathBuf]) -> Result<(), Failure> {
+pub(super) fn expect_memory(folders: &[PathBuf]) -> Result<(), Failure> {
     let needed = PROGRAM + pictures::memory(folders).map_err(Failure::input)?;
     let available = available_of(needed);
     if needed <= available {
         return Ok(());
     }
     Err(Failure::input(anyhow::anyhow!(
-        "these pictures take about {} of memory where {} are available to this process: give it more, in a queue for \
+        "this takes about {} of memory where {} are available to this process: give it more, in a queue for \
          example with `--mem`",
         byte_size(needed),
         byte_size(available)
     )))
 }
 
-fn expect_results(folder: &Path) -> Result<(), Failure> {
+pub(super) fn expect_results(folder: &Path) -> Result<(), Failure> {
     if folder.is_file() {
         return Err(Failure::input(anyhow::anyhow!(
-            "{} is a file: plot takes folders of finished runs, and a measured record with --data",
+            "{} is a file: name the folder of a finished run; a measured record goes with `plot --data`",
             folder.display()
         )));
     }
@@ -260,7 +260,7 @@ fn expect_results(folder: &Path) -> Result<(), Failure> {
     let sentence = match path.try_exists() {
         Ok(true) => return Ok(()),
         Ok(false) if is_study(folder) => format!(
-            "{} is the folder of a study, which holds its pictures: plot takes folders of runs",
+            "{} is the folder of a study, which holds its pictures: name folders of runs",
             folder.display()
         ),
         Ok(false) => format!(
@@ -273,7 +273,7 @@ fn expect_results(folder: &Path) -> Result<(), Failure> {
 }
 
 /// Refuses the folder of a run that these are not the pictures of.
-fn refuse_other_run(out: &Path) -> Result<(), Failure> {
+pub(super) fn refuse_other_run(out: &Path) -> Result<(), Failure> {
     let manifest = out.join(MANIFEST);
     let sentence = match manifest.try_exists() {
         Ok(false) => return Ok(()),
@@ -288,7 +288,11 @@ fn refuse_other_run(out: &Path) -> Result<(), Failure> {
 
 /// Refuses to replace what stands where the pictures go, unless it is the same, or a picture that the run in the folder, if
 /// they are `own` ones of it, has drawn there.
-fn refuse_to_replace(out: &Path, files: &[(String, &[u8])], own: Option<&Inspection>) -> Result<(), Failure> {
+pub(super) fn refuse_to_replace(
+    out: &Path,
+    files: &[(String, &[u8])],
+    own: Option<&Inspection>,
+) -> Result<(), Failure> {
     for (name, bytes) in files {
         let path = out.join(name);
         let is_same = || read_limited(&path, bytes.len() as u64).is_ok_and(|found| found == *bytes);

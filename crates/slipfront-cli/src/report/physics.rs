@@ -2,7 +2,7 @@
 
 use slipfront::surface::Clearance;
 use slipfront::{Friction, FrictionLaw};
-use slipfront_case::case::Case;
+use slipfront_case::case::{Case, Topography};
 use slipfront_case::case_file::{Attached, AttachedEdge, DriveStiffness, Grade, Motion, Outline};
 use slipfront_case::number_format::{count, four_digits, with_si_prefix};
 
@@ -179,7 +179,7 @@ fn friction(case: &Case) -> String {
     }
 }
 
-/// The share of the blocks that is textured, and the share asked for.
+/// The share of the blocks that is textured, the share asked for, and the roughness of height maps.
 pub(crate) fn texture(case: &Case) -> String {
     if case.file.texture.is_empty() {
         return "none".to_owned();
@@ -188,9 +188,32 @@ pub(crate) fn texture(case: &Case) -> String {
         .texture
         .asked_percent
         .map_or(String::new(), |asked| format!(", {} % asked", four_digits(asked)));
+    let topographies: String = case.texture.topographies.iter().map(topography).collect();
     format!(
-        "{} % of the blocks{asked}",
+        "{} % of the blocks{asked}{topographies}",
         four_digits(case.texture.meshed_percent)
+    )
+}
+
+/// The size and roughness of a height map, and what of it touches.
+fn topography(topography: &Topography) -> String {
+    let in_metres = |length: f64| with_si_prefix(length, "m");
+    let roughness = &topography.roughness;
+    let of_shape = |name: &str, value: Option<f64>| {
+        value.map_or(String::new(), |value| {
+            format!(", {name} = {}", four_digits(value))
+        })
+    };
+    format!(
+        "; {} {} x {}: Sa = {}, Sq = {}{}{}, contact from {} up",
+        topography.file,
+        in_metres(topography.size[0]),
+        in_metres(topography.size[1]),
+        in_metres(roughness.sa),
+        in_metres(roughness.sq),
+        of_shape("Ssk", roughness.ssk),
+        of_shape("Sku", roughness.sku),
+        in_metres(topography.contact_height)
     )
 }
 

@@ -230,7 +230,7 @@ fn plot_says_what_it_takes() {
     let said = workspace.fail("plot a measured.csv", 2);
     assert!(
         said.contains(
-            "measured.csv is a file: plot takes folders of finished runs, and a measured record with --data"
+            "measured.csv is a file: name the folder of a finished run; a measured record goes with `plot --data`"
         ),
         "{said}"
     );

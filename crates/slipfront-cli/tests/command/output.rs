@@ -1,6 +1,6 @@
 //! What a run leaves behind, and what `[output]`, `[time]` and `edges` make of it.
 
-use slipfront_run::fields::{FieldsData, read_fields, read_kymograph};
+use slipfront_run::fields::{FieldFrame, FieldsData, read_fields, read_kymograph};
 
 use crate::fixtures::RUN_FILES;
 use crate::support::workspace::Workspace;
@@ -230,13 +230,111 @@ fn snapshots_at_times_at_a_spacing_or_none() {
     workspace.succeed("run small.toml -o every --set output.snapshots.every=30");
     workspace.succeed("run small.toml -o none --set output.snapshots=[]");
     assert_eq!(times(&fields(&workspace, "list")), [0.0, 123.0 * 0.1, 80.0]);
-    assert_eq!(times(&fields(&workspace, "every")), [0.0, 30.0, 60.0]);
+    // Beside the spacing, the instants A-F as they are without it.
+    workspace.succeed("run small.toml -o auto");
+    let (auto, every) = (fields(&workspace, "auto"), fields(&workspace, "every"));
+    let is_instant = |frame: &&FieldFrame| !frame.label.is_empty();
+    let found: Vec<&FieldFrame> = every.frames.iter().filter(is_instant).collect();
+    assert_eq!(found, auto.frames.iter().collect::<Vec<_>>());
+    assert!(times(&every).is_sorted_by(|one, next| one < next));
+    for time in [0.0, 30.0, 60.0] {
+        assert!(times(&every).contains(&time), "{time}");
+    }
+    assert_eq!(every.frames.len(), auto.frames.len() + 3);
+    assert_eq!(workspace.summary("every"), workspace.summary("auto"));
     assert!(fields(&workspace, "none").frames.is_empty());
     assert!(workspace.exists("list/stress.png") && workspace.exists("every/stress.svg"));
     assert!(!workspace.exists("none/stress.png") && !workspace.exists("none/stress.svg"));
     assert!(workspace.exists("none/manifest.json"));
     // The static fields are there all the same.
     assert_eq!(fields(&workspace, "none").mu_static.len(), 30);
+}
+
+/// Size and pictures of a GIF file, and how long all of them take together, in hundredths of a second.
+fn shown(bytes: &[u8]) -> ([u16; 2], usize, u32) {
+    let mut decoder = gif::DecodeOptions::new().read_info(bytes).unwrap();
+    let size = [decoder.width(), decoder.height()];
+    let (mut pictures, mut time) = (0, 0);
+    while let Some(frame) = decoder.read_next_frame().unwrap() {
+        (pictures, time) = (pictures + 1, time + u32::from(frame.delay));
+    }
+    (size, pictures, time)
+}
+
+#[test]
+fn a_movie_shows_every_snapshot() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o run --set output.snapshots.every=5");
+    workspace.succeed("movie run");
+    let snapshots = fields(&workspace, "run").frames.len();
+    let bytes = workspace.read("run/movie.gif");
+    let (size, pictures, time) = shown(&bytes);
+    assert_eq!((size, pictures), ([800, 400], snapshots));
+    // Sixteen seconds, and more for the instants.
+    assert!((1500..3500).contains(&time), "{time}");
+    // The same again is no replacement; another field is.
+    workspace.succeed("movie run");
+    assert_eq!(workspace.read("run/movie.gif"), bytes);
+    let said = workspace.fail("movie run --field displacement_x", 2);
+    assert!(
+        said.contains("movie.gif is not as the run has drawn it: choose another folder"),
+        "{said}"
+    );
+    workspace.succeed("movie run --field displacement_x -o other.gif");
+    assert_ne!(workspace.read("other.gif"), bytes);
+    for (line, sentence) in [
+        (
+            "movie run --field velocity_x",
+            "has kept no snapshots of this field: name one of `output.fields`",
+        ),
+        (
+            "movie run --field pressure",
+            "the fields are contact_stress_star, traction",
+        ),
+        ("movie run -o movie.avi", "name a file that ends in .gif or .mp4"),
+        (
+            "movie nowhere",
+            "holds no summary.json: name the folder of a run that is finished",
+        ),
+    ] {
+        let said = workspace.fail(line, 2);
+        assert!(said.contains(sentence), "{line}: {said}");
+    }
+}
+
+#[test]
+fn a_case_can_ask_for_its_movie() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o run --set output.movie=true");
+    assert!(workspace.read_text("run/manifest.json").contains("movie.gif"));
+    workspace.succeed("verify run");
+    let bytes = workspace.read("run/movie.gif");
+    workspace.succeed("movie run -o again.gif");
+    assert_eq!(workspace.read("again.gif"), bytes);
+    // It goes with the run, and a run without snapshots has none.
+    workspace.succeed("run small.toml -o run --force --set output.movie=true --set output.snapshots=[]");
+    assert!(!workspace.exists("run/movie.gif"));
+}
+
+/// Skipped where there is no ffmpeg.
+#[test]
+fn ffmpeg_makes_an_mp4_file() {
+    if std::process::Command::new("ffmpeg")
+        .arg("-version")
+        .output()
+        .is_err()
+    {
+        eprintln!("skipped: there is no ffmpeg");
+        return;
+    }
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o run");
+    workspace.succeed("movie run -o run.mp4");
+    let bytes = workspace.read("run.mp4");
+    assert_eq!(&bytes[4..8], b"ftyp");
+    // The index stands before the pictures.
+    let place = |tag: &[u8]| bytes.windows(4).position(|found| found == tag).unwrap();
+    assert!(place(b"moov") < place(b"mdat"));
 }
 
 #[test]

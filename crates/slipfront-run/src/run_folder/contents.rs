@@ -7,12 +7,12 @@ use slipfront_case::disk::{is_folder, remove_if_there};
 use super::error::FolderError;
 use super::unfinished::Unfinished;
 use crate::manifest::ManifestFile;
-use crate::names::{CASE, FIELDS, KYMOGRAPH, MANIFEST, PRECURSORS, SERIES, SUMMARY};
+use crate::names::{CASE, FIELDS, KYMOGRAPH, MANIFEST, MOVIE, PRECURSORS, SERIES, SUMMARY};
 use crate::pictures::{RUN_PICTURES, RunPicture};
 
 /// The files that a run leaves beside its case and the copies in `inputs/`, the manifest first.
 pub(super) fn result_files() -> impl Iterator<Item = String> {
-    let files = [MANIFEST, SUMMARY, SERIES, PRECURSORS, KYMOGRAPH, FIELDS].map(str::to_owned);
+    let files = [MANIFEST, SUMMARY, SERIES, PRECURSORS, KYMOGRAPH, FIELDS, MOVIE].map(str::to_owned);
     files
         .into_iter()
         .chain(RUN_PICTURES.iter().flat_map(RunPicture::files))

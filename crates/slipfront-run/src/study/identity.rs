@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use slipfront_case::case::{Case, Input};
-use slipfront_case::case_file::{CaseError, CaseFile, ParsedCase};
+use slipfront_case::case_file::{CaseError, CaseFile, NamedFile, ParsedCase};
 
 use crate::program;
 
@@ -58,7 +58,7 @@ fn texts(
             _ => serde_json::to_vec(table).map_err(|error| CaseError::invalid(None, error.to_string())),
         }
     }
-    let contents = |(_, name): (String, &mut String)| {
+    let contents = |NamedFile { name, .. }: NamedFile| {
         let input = inputs.iter().find(|input| input.name == *name);
         let hash = input.map(|input| input.hash.to_hex());
         let ending = name.rsplit('.').next().unwrap_or_default();

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use png::{BitDepth, ColorType, Encoder};
 use slipfront_case::arrays;
-use slipfront_case::arrays::{ArrayError, Slab, mask_npy, write_mask_png};
+use slipfront_case::arrays::{ArrayError, Slab, Units, mask_npy, write_mask_png};
 
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
@@ -62,6 +62,38 @@ pub(crate) const MASK_PNG: Target = Target {
         per_byte: 2 * 8 * 1040,
     },
     mutations: 500,
+    repetitions: 20,
+};
+
+/// Height maps, read as each of their formats.
+pub(crate) const HEIGHT_MAP: Target = Target {
+    name: "height_map",
+    check: height_map,
+    generated: || {
+        vec![
+            b"Gwyddion Simple Field 1.0\nXRes = 2\nYRes = 1\nZUnits = nm\n\0\0\0\x01\0\0\0\x02\0\0\0"
+                .to_vec(),
+        ]
+    },
+    files: &[
+        "crates/slipfront-case/tests/heights/map.csv",
+        "crates/slipfront-case/tests/heights/map.gsf",
+        "crates/slipfront-case/tests/heights/map.npy",
+        "crates/slipfront-case/tests/heights/map.png",
+        "crates/slipfront-case/tests/heights/map.tif",
+        "crates/slipfront-case/tests/heights/map.x3p",
+        "crates/slipfront-case/tests/heights/map_lzw.tif",
+        "crates/slipfront-case/tests/heights/map_tiles.tif",
+        "crates/slipfront-case/tests/heights/colours.tif",
+    ],
+    dictionary: None,
+    max_bytes: 8192,
+    // A strip or tile of a TIFF file has 64 MiB, packed and unpacked; a line of a picture may be all of it.
+    memory: Memory {
+        bytes: 160 << 20,
+        per_byte: 2 * 8 * 1040,
+    },
+    mutations: 1500,
     repetitions: 20,
 };
 
@@ -222,6 +254,34 @@ fn npy(input: &[u8]) {
 fn csv_table(input: &[u8]) {
     field("field.csv", input);
 }
+
+/// Whatever is read has a finite mean in every block, within what the file holds, and a roughness.
+fn height_map(input: &[u8]) {
+    let blocks = [NX, NY];
+    for ending in ["csv", "gsf", "npy", "png", "tif", "x3p"] {
+        let path = format!("map.{ending}");
+        // A file that says nothing of its units is asked about them, and then answered.
+        for units in [Units::default(), UNITS] {
+            let mut source = Cursor::new(input);
+            match arrays::height_map(Path::new(&path), &mut source, &units, blocks, &mut |_| Ok(())) {
+                Err(error) => readable(&error),
+                Ok(map) => {
+                    assert_eq!(map.blocks.len(), NX * NY);
+                    assert!(map.points[0] > 0 && map.points[1] > 0);
+                    assert!(
+                        map.roughness.sa <= map.roughness.sq * (1.0 + 1e-9) || map.roughness.sq.is_infinite()
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Units for a file without.
+const UNITS: Units = Units {
+    height: Some(1e-6),
+    pixel: Some([1e-6; 2]),
+};
 
 fn mask_png(input: &[u8]) {
     mask(input);

@@ -16,7 +16,7 @@ mod study;
 use crate::Target;
 
 /// All targets, in the order in which a run reads and writes their files.
-pub const TARGETS: [Target; 18] = [
+pub const TARGETS: [Target; 19] = [
     case::CASE_FILE,
     case::CASE,
     study::STUDY_FILE,
@@ -24,6 +24,7 @@ pub const TARGETS: [Target; 18] = [
     arrays::NPY,
     arrays::CSV_TABLE,
     arrays::MASK_PNG,
+    arrays::HEIGHT_MAP,
     records::RECORDS,
     figure_cache::FIGURE_CACHE,
     checkpoint::CHECKPOINTS,

@@ -1,0 +1,98 @@
+//! Gwyddion simple fields: lines of text, padded with zeros to a multiple of four bytes, then 32-bit numbers, the top row first.
+
+use std::io::{BufRead, Seek, SeekFrom};
+use std::path::Path;
+
+use super::grid::{Grid, Line, Take, points};
+use crate::arrays::error::{ArrayError, broken, contents_error};
+use crate::arrays::head::length_and_head;
+use crate::quantity::Length;
+use crate::text::truncated;
+
+const MAGIC: &[u8] = b"Gwyddion Simple Field 1.0\n";
+/// Comments make a header longer than a few hundred bytes.
+const HEADER_MAX_BYTES: u64 = 1 << 20;
+
+pub(super) fn read(
+    path: &Path,
+    source: &mut (impl BufRead + Seek),
+    take: &mut Take,
+) -> Result<Grid, ArrayError> {
+    let read_error = ArrayError::read(path);
+    let refuse = |detail: &str| broken(path, ".gsf", detail);
+    let (length, head) = length_and_head(path, source, HEADER_MAX_BYTES)?;
+    let Some(lines) = head.strip_prefix(MAGIC) else {
+        return Err(refuse("it does not begin with `Gwyddion Simple Field 1.0`"));
+    };
+    let Some(end) = lines.iter().position(|&byte| byte == 0) else {
+        return Err(refuse("no zero byte ends its header"));
+    };
+    let text = String::from_utf8_lossy(&lines[..end]);
+    let value = |name: &str| {
+        let lines = text.lines().filter_map(|line| line.split_once('='));
+        let mut values = lines.filter(|(key, _)| key.trim() == name);
+        values.next().map(|(_, value)| value.trim())
+    };
+    let size = |name: &str| {
+        let size = value(name).and_then(|text| text.parse::<u64>().ok());
+        size.ok_or_else(|| refuse(&format!("it has no whole number `{name}`")))
+    };
+    let points = points(path, ".gsf", size("XRes")?, size("YRes")?)?;
+    let unit = |name: &str| value(name).filter(|unit| !unit.is_empty());
+    let in_metres = |name: &str| -> Result<Option<f64>, ArrayError> {
+        let Some(unit) = unit(name) else { return Ok(None) };
+        match format!("1 {unit}").parse::<Length>() {
+            Ok(length) => Ok(Some(length.si())),
+            Err(_) => {
+                let unit = truncated(unit);
+                let problem =
+                    format!("has `{name}` = {unit}, which is no unit of length: export a map of heights");
+                Err(contents_error(path, problem))
+            }
+        }
+    };
+    let real = |name: &str| -> Result<Option<f64>, ArrayError> {
+        let Some(text) = value(name) else { return Ok(None) };
+        let real = text
+            .parse::<f64>()
+            .ok()
+            .filter(|real| real.is_finite() && *real > 0.0);
+        let detail = || format!("`{name}` = {} is no number above 0", truncated(text));
+        real.map(Some).ok_or_else(|| refuse(&detail()))
+    };
+    let lateral = in_metres("XYUnits")?;
+    let pixel = match (real("XReal")?, real("YReal")?, lateral) {
+        (Some(x), Some(y), Some(unit)) => Some([x * unit / points[0] as f64, y * unit / points[1] as f64]),
+        _ => None,
+    };
+    let grid = Grid {
+        points,
+        top_first: true,
+        pixel,
+        height_unit: in_metres("ZUnits")?,
+    };
+
+    // From one to four zeros follow the text.
+    let start = ((MAGIC.len() + end) / 4 * 4 + 4) as u64;
+    let [nx, ny] = points;
+    let wanted = start + 4 * nx as u64 * ny as u64;
+    if length != wanted {
+        let detail = format!("it has {length} bytes where its header asks for {wanted}");
+        return Err(refuse(&detail));
+    }
+    source.seek(SeekFrom::Start(start)).map_err(&read_error)?;
+    let mut bytes = vec![0; 4 * nx];
+    let mut heights = vec![0.0; nx];
+    for row in 0..ny {
+        source.read_exact(&mut bytes).map_err(&read_error)?;
+        for (height, bytes) in heights.iter_mut().zip(bytes.as_chunks().0) {
+            *height = f64::from(f32::from_le_bytes(*bytes));
+        }
+        take(&Line {
+            row,
+            column: 0,
+            heights: &heights,
+        })?;
+    }
+    Ok(grid)
+}

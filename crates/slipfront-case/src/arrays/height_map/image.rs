@@ -1,0 +1,65 @@
+//! Heights as the grey levels of a picture: PNG of 16 bits. The top row is that of the largest y.
+
+use std::io::{BufRead, Seek};
+use std::path::Path;
+
+use png::{BitDepth, ColorType, Transformations};
+
+use super::grid::{Grid, Line, Take, points};
+use crate::arrays::error::{ArrayError, contents_error};
+use crate::arrays::mask::{decoding_error, png_reader};
+
+pub(super) fn read(
+    path: &Path,
+    source: &mut (impl BufRead + Seek),
+    take: &mut Take,
+) -> Result<Grid, ArrayError> {
+    let mut reader = png_reader(path, source, Transformations::IDENTITY)?;
+    let info = reader.info();
+    refuse_colours(path, info.color_type == ColorType::Grayscale)?;
+    if info.bit_depth != BitDepth::Sixteen {
+        return Err(too_coarse(path, info.bit_depth as u8));
+    }
+    if info.interlaced {
+        let problem = "is interlaced: save it without interlacing".to_owned();
+        return Err(contents_error(path, problem));
+    }
+    let points = points(path, ".png", info.width.into(), info.height.into())?;
+    let mut heights = vec![0.0; points[0]];
+    let mut row = 0;
+    while let Some(stored) = reader.next_row().map_err(|source| decoding_error(path, source))? {
+        for (height, bytes) in heights.iter_mut().zip(stored.data().as_chunks().0) {
+            *height = f64::from(u16::from_be_bytes(*bytes));
+        }
+        take(&Line {
+            row,
+            column: 0,
+            heights: &heights,
+        })?;
+        row += 1;
+    }
+    Ok(Grid {
+        points,
+        top_first: true,
+        pixel: None,
+        height_unit: None,
+    })
+}
+
+/// Refuses a picture of other than one channel: which colour is how high, nothing tells.
+pub(super) fn refuse_colours(path: &Path, is_grey: bool) -> Result<(), ArrayError> {
+    if is_grey {
+        return Ok(());
+    }
+    let problem = "is a picture in colours, which do not tell heights: export the heights themselves, as grey levels of 16 bits or \
+                   as a .gsf, .x3p or .npy file";
+    Err(contents_error(path, problem.to_owned()))
+}
+
+/// Of a picture of fewer bits than heights need.
+pub(super) fn too_coarse(path: &Path, bits: u8) -> ArrayError {
+    let problem = format!(
+        "has grey levels of {bits} bits, too coarse for heights: export it with 16 bits, or as a .gsf, .x3p or .npy file"
+    );
+    contents_error(path, problem)
+}

@@ -1,0 +1,222 @@
+//! Measured topography: height maps of many formats, as the mean height of every block, and their roughness.
+//!
+//! A file is read twice, for its mean and for what is counted from that, so that no more than a line of it is in memory.
+
+mod averages;
+mod grid;
+mod gsf;
+mod image;
+mod roughness;
+mod tiff;
+mod x3p;
+
+use std::io::{BufRead, Seek};
+use std::path::Path;
+
+pub use roughness::Roughness;
+
+use self::averages::Averages;
+use self::grid::{Grid, Line, Take, points};
+use self::roughness::{Mean, Moments};
+use super::error::{ArrayError, contents_error, extension, unknown_extension};
+use super::{npy, table};
+use crate::number_format::{four_digits, with_si_prefix};
+
+/// What the case says of the units of a height map, m; a file that has them itself is not contradicted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Units {
+    /// The height that a value of 1 in the file means.
+    pub height: Option<f64>,
+    /// Distance of neighbouring points along x and along y.
+    pub pixel: Option<[f64; 2]>,
+}
+
+/// A height map laid over blocks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeightMap {
+    /// Points of the file along x and along y.
+    pub points: [usize; 2],
+    /// Its true size along x and along y, m.
+    pub size: [f64; 2],
+    /// Roughness of all points.
+    pub roughness: Roughness,
+    /// The mean height of every block, m, row after row in rising y.
+    pub blocks: Vec<f64>,
+}
+
+/// Reads the height map called `path`, and averages it over `blocks` along x and y.
+///
+/// A `.npy` or `.csv` file has the rows of the smallest y first, as a `.x3p` file; a `.gsf` file and pictures have them last. `watch`
+/// is told the share that is done, and its error ends the work.
+///
+/// # Errors
+/// [`ArrayError`] if the file is of another format or has more than 2^28 points or 2^20 along a side, a height is missing, a unit
+/// stands neither in the file nor in `units` or stands in both, or the map has not the shape of the blocks.
+pub fn height_map(
+    path: &Path,
+    source: &mut (impl BufRead + Seek),
+    units: &Units,
+    blocks: [usize; 2],
+    watch: &mut dyn FnMut(f64) -> Result<(), ArrayError>,
+) -> Result<HeightMap, ArrayError> {
+    let mut mean = Mean::default();
+    let grid = read(path, source, &mut |line| {
+        watch(0.0)?;
+        let gap = line.heights.iter().position(|height| !height.is_finite());
+        gap.map_or(Ok(()), |gap| Err(not_measured(path, line, gap)))?;
+        mean.add(line.heights);
+        Ok(())
+    })?;
+    let (pixel, unit) = (pixel(path, &grid, units)?, height_unit(path, &grid, units)?);
+    let points = grid.points;
+    let size = [0, 1].map(|axis| points[axis] as f64 * pixel[axis]);
+    keep_aspect(path, size, blocks)?;
+
+    let mean = mean.value();
+    let mut moments = Moments::default();
+    let mut averages = Averages::new(points, blocks);
+    let mut deviations = Vec::new();
+    let mut done = 0.0;
+    read(path, source, &mut |line| {
+        watch(done / (points[0] as f64 * points[1] as f64))?;
+        if line.row >= points[1] || line.column + line.heights.len() > points[0] {
+            return Err(contents_error(
+                path,
+                "changed while it was read: try again".to_owned(),
+            ));
+        }
+        deviations.clear();
+        deviations.extend(line.heights.iter().map(|height| height - mean));
+        moments.add(&deviations);
+        averages.add(&Line {
+            row: match grid.top_first {
+                true => points[1] - 1 - line.row,
+                false => line.row,
+            },
+            column: line.column,
+            heights: &deviations,
+        });
+        done += line.heights.len() as f64;
+        Ok(())
+    })?;
+    let roughness = moments.roughness(unit);
+    let is_finite = |number: Option<f64>| number.is_none_or(f64::is_finite);
+    if !mean.is_finite()
+        || ![Some(roughness.sq), roughness.ssk, roughness.sku]
+            .into_iter()
+            .all(is_finite)
+    {
+        let problem = "has heights too far apart to be averaged: look at its numbers".to_owned();
+        return Err(contents_error(path, problem));
+    }
+    let means = averages.means().into_iter();
+    Ok(HeightMap {
+        points,
+        size,
+        roughness,
+        blocks: means.map(|deviation| (mean + deviation) * unit).collect(),
+    })
+}
+
+/// Reads all points of a file.
+fn read(path: &Path, source: &mut (impl BufRead + Seek), take: &mut Take) -> Result<Grid, ArrayError> {
+    source.rewind().map_err(ArrayError::read(path))?;
+    let take_row = |row: usize, heights: &[f64]| {
+        take(&Line {
+            row,
+            column: 0,
+            heights,
+        })
+    };
+    let [nx, ny] = match extension(path).as_str() {
+        "npy" => npy::rows(path, source, take_row)?,
+        "csv" => table::rows(path, source, take_row)?,
+        "gsf" => return gsf::read(path, source, take),
+        "x3p" => return x3p::read(path, source, take),
+        "png" => return image::read(path, source, take),
+        "tif" | "tiff" => return tiff::read(path, source, take),
+        other => {
+            let known = ".npy, .csv, .gsf, .x3p, .png or .tif";
+            return Err(unknown_extension(path, other, known));
+        }
+    };
+    Ok(Grid {
+        points: points(path, "array", nx, ny)?,
+        top_first: false,
+        pixel: None,
+        height_unit: None,
+    })
+}
+
+fn not_measured(path: &Path, line: &Line, gap: usize) -> ArrayError {
+    let problem = format!(
+        "has {} in row {}, column {} (both counted from 0), where a height is wanted: fill points that were not measured by \
+         interpolation before",
+        line.heights[gap],
+        line.row,
+        line.column + gap
+    );
+    contents_error(path, problem)
+}
+
+/// The distance of neighbouring points, m, from the file or from the case.
+fn pixel(path: &Path, grid: &Grid, units: &Units) -> Result<[f64; 2], ArrayError> {
+    match (grid.pixel, units.pixel) {
+        (Some(pixel), None) | (None, Some(pixel)) => Ok(pixel),
+        (Some([x, y]), Some(_)) => {
+            let (x, y) = (with_si_prefix(x, "m"), with_si_prefix(y, "m"));
+            let problem = format!("says itself that a pixel is {x} x {y}: leave out `pixel_size`");
+            Err(contents_error(path, problem))
+        }
+        (None, None) => {
+            let problem =
+                "does not say how large a pixel is: add `pixel_size`, such as pixel_size = \"0.5 um\"";
+            Err(contents_error(path, problem.to_owned()))
+        }
+    }
+}
+
+/// What a height of 1 in the file is, m, from the file or from the case.
+fn height_unit(path: &Path, grid: &Grid, units: &Units) -> Result<f64, ArrayError> {
+    match (grid.height_unit, units.height) {
+        (Some(unit), None) | (None, Some(unit)) => Ok(unit),
+        (Some(unit), Some(_)) => {
+            let unit = with_si_prefix(unit, "m");
+            let problem =
+                format!("says itself that its heights are in units of {unit}: leave out `height_unit`");
+            Err(contents_error(path, problem))
+        }
+        (None, None) => {
+            let problem = "does not say which height a value of 1 is: add `height_unit`, such as height_unit = \"1 nm\"";
+            Err(contents_error(path, problem.to_owned()))
+        }
+    }
+}
+
+/// Refuses a map whose longer side is not that of the blocks to within half a block, as many as the shorter side has.
+fn keep_aspect(path: &Path, size: [f64; 2], blocks: [usize; 2]) -> Result<(), ArrayError> {
+    let aspect = size[0] / size[1];
+    let (longer, shorter, ratio) = match aspect >= 1.0 {
+        true => (0, 1, aspect),
+        false => (1, 0, 1.0 / aspect),
+    };
+    let wanted = blocks[shorter] as f64 * ratio;
+    if (wanted - blocks[longer] as f64).abs() <= 0.5 {
+        return Ok(());
+    }
+    let mut right = blocks;
+    right[longer] = wanted.round() as usize;
+    let problem = format!(
+        "is {} x {}, {} times as wide as high, and the {} x {} blocks that it is laid over are {} times as wide as high: cut the map, \
+         or take {} x {} blocks",
+        with_si_prefix(size[0], "m"),
+        with_si_prefix(size[1], "m"),
+        four_digits(aspect),
+        blocks[0],
+        blocks[1],
+        four_digits(blocks[0] as f64 / blocks[1] as f64),
+        right[0],
+        right[1]
+    );
+    Err(contents_error(path, problem))
+}

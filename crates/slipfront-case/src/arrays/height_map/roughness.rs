@@ -1,0 +1,79 @@
+//! Parameters of ISO 25178-2 of the heights as they stand in the file, neither levelled nor filtered.
+
+/// The mean height of points that come one after the other.
+#[derive(Default)]
+pub(super) struct Mean {
+    /// The first height, from which the others are counted: a map far above its zero loses no digits.
+    first: Option<f64>,
+    sum: f64,
+    count: f64,
+}
+
+impl Mean {
+    pub(super) fn add(&mut self, heights: &[f64]) {
+        let Some(&start) = heights.first() else { return };
+        let first = *self.first.get_or_insert(start);
+        self.sum += heights.iter().map(|height| height - first).sum::<f64>();
+        self.count += heights.len() as f64;
+    }
+
+    pub(super) fn value(&self) -> f64 {
+        self.first.unwrap_or(0.0) + self.sum / self.count
+    }
+}
+
+/// Height parameters of a surface (ISO 25178-2), of the deviations z from the mean height:
+///
+/// ```text
+/// Sa = mean |z|,   Sq = sqrt(mean z^2),   Ssk = mean z^3/Sq^3,   Sku = mean z^4/Sq^4
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Roughness {
+    /// Arithmetical mean height Sa, m.
+    pub sa: f64,
+    /// Root mean square height Sq, m.
+    pub sq: f64,
+    /// Skewness Ssk; none of a plane.
+    pub ssk: Option<f64>,
+    /// Kurtosis Sku; none of a plane.
+    pub sku: Option<f64>,
+}
+
+/// Sums over the deviations from the mean: of their size, and of their second, third and fourth power.
+#[derive(Default)]
+pub(super) struct Moments {
+    sums: [f64; 4],
+    count: f64,
+}
+
+impl Moments {
+    pub(super) fn add(&mut self, deviations: &[f64]) {
+        let mut sums = [0.0; 4];
+        for z in deviations {
+            let square = z * z;
+            for (sum, term) in sums
+                .iter_mut()
+                .zip([z.abs(), square, square * z, square * square])
+            {
+                *sum += term;
+            }
+        }
+        self.count += deviations.len() as f64;
+        for (sum, of_line) in self.sums.iter_mut().zip(sums) {
+            *sum += of_line;
+        }
+    }
+
+    /// The parameters, where a deviation of 1 is `unit` metres.
+    pub(super) fn roughness(&self, unit: f64) -> Roughness {
+        let [sa, square, cube, fourth] = self.sums.map(|sum| sum / self.count);
+        let sq = square.sqrt();
+        let over = |moment: f64, power: i32| (sq > 0.0).then(|| moment / sq.powi(power));
+        Roughness {
+            sa: sa * unit,
+            sq: sq * unit,
+            ssk: over(cube, 3),
+            sku: over(fourth, 4),
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! Heights as the grey levels of a TIFF picture, of 16 bits or more, in strips or tiles. The top row is that of the largest y.
+
+use std::io::{BufRead, Seek};
+use std::ops::Range;
+use std::path::Path;
+
+use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
+use tiff::tags::Tag;
+use tiff::{ColorType, TiffError};
+
+use super::grid::{Grid, Line, Take, points};
+use super::image::{refuse_colours, too_coarse};
+use crate::arrays::error::{ArrayError, broken, contents_error};
+
+/// The largest strip or tile, in bytes.
+const PIECE_MAX_BYTES: usize = 1 << 26;
+/// Grey levels that rise towards black.
+const WHITE_IS_ZERO: u32 = 0;
+
+pub(super) fn read(
+    path: &Path,
+    source: &mut (impl BufRead + Seek),
+    take: &mut Take,
+) -> Result<Grid, ArrayError> {
+    let unreadable = |error: TiffError| match error {
+        TiffError::IoError(source) if source.kind() != std::io::ErrorKind::UnexpectedEof => {
+            ArrayError::read(path)(source)
+        }
+        TiffError::LimitsExceeded => {
+            let problem = format!(
+                "has strips or tiles of more than {} MiB: save it in smaller ones",
+                PIECE_MAX_BYTES >> 20
+            );
+            contents_error(path, problem)
+        }
+        other => broken(path, ".tif", &other.to_string()),
+    };
+    let mut limits = Limits::default();
+    limits.decoding_buffer_size = PIECE_MAX_BYTES;
+    limits.intermediate_buffer_size = PIECE_MAX_BYTES;
+    let decoder = Decoder::new(source).map_err(unreadable)?;
+    let mut decoder = decoder.with_limits(limits);
+    let color = decoder.colortype().map_err(unreadable)?;
+    refuse_colours(path, matches!(color, ColorType::Gray(_)))?;
+    if color.bit_depth() < 16 {
+        return Err(too_coarse(path, color.bit_depth()));
+    }
+    let meaning = decoder.find_tag_unsigned::<u32>(Tag::PhotometricInterpretation);
+    if meaning.map_err(unreadable)? == Some(WHITE_IS_ZERO) {
+        let problem = "has grey levels in which 0 is white: save it with 0 as black, the lowest height";
+        return Err(contents_error(path, problem.to_owned()));
+    }
+    if decoder.more_images() {
+        let problem = "holds several pictures: save the height map alone";
+        return Err(contents_error(path, problem.to_owned()));
+    }
+    let (width, height) = decoder.dimensions().map_err(unreadable)?;
+    let points = points(path, ".tif", width.into(), height.into())?;
+    let count = match decoder.get_chunk_type() {
+        ChunkType::Strip => decoder.strip_count(),
+        ChunkType::Tile => decoder.tile_count(),
+    };
+    let (chunk_width, chunk_height) = decoder.chunk_dimensions();
+    let across = width.div_ceil(chunk_width.max(1));
+    let mut heights = Vec::new();
+    for chunk in 0..count.map_err(unreadable)? {
+        let decoded = decoder.read_chunk(chunk).map_err(unreadable)?;
+        let (columns, rows) = decoder.chunk_data_dimensions(chunk);
+        for row in 0..rows {
+            let start = (row * columns) as usize;
+            numbers(&decoded, start..start + columns as usize, &mut heights);
+            take(&Line {
+                row: (chunk / across * chunk_height + row) as usize,
+                column: (chunk % across * chunk_width) as usize,
+                heights: &heights,
+            })?;
+        }
+    }
+    Ok(Grid {
+        points,
+        top_first: true,
+        pixel: None,
+        height_unit: None,
+    })
+}
+
+/// Numbers of a strip or tile.
+fn numbers(decoded: &DecodingResult, range: Range<usize>, numbers: &mut Vec<f64>) {
+    numbers.clear();
+    match decoded {
+        DecodingResult::U8(stored) => numbers.extend(stored[range].iter().copied().map(f64::from)),
+        DecodingResult::I8(stored) => numbers.extend(stored[range].iter().copied().map(f64::from)),
+        DecodingResult::U16(stored) => numbers.extend(stored[range].iter().copied().map(f64::from)),
+        DecodingResult::I16(stored) => numbers.extend(stored[range].iter().copied().map(f64::from)),
+        DecodingResult::U32(stored) => numbers.extend(stored[range].iter().copied().map(f64::from)),
+        DecodingResult::I32(stored) => numbers.extend(stored[range].iter().copied().map(f64::from)),
+        DecodingResult::U64(stored) => numbers.extend(stored[range].iter().map(|&number| number as f64)),
+        DecodingResult::I64(stored) => numbers.extend(stored[range].iter().map(|&number| number as f64)),
+        DecodingResult::F16(stored) => numbers.extend(stored[range].iter().map(|number| number.to_f64())),
+        DecodingResult::F32(stored) => numbers.extend(stored[range].iter().copied().map(f64::from)),
+        DecodingResult::F64(stored) => numbers.extend_from_slice(&stored[range]),
+    }
+}

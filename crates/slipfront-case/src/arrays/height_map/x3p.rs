@@ -1,0 +1,241 @@
+//! X3P files (ISO 25178-72): a zip archive of `main.xml`, which describes the points, and of a file with their heights in metres,
+//! row by row from the smallest y.
+
+use std::io::{BufRead, Read, Seek};
+use std::path::Path;
+
+use flate2::read::DeflateDecoder;
+use rawzip::{CompressionMethod, RECOMMENDED_BUFFER_SIZE, ZipArchive};
+use roxmltree::{Document, Node};
+
+use super::grid::{Grid, Line, Take, points};
+use crate::arrays::error::{ArrayError, broken, contents_error};
+use crate::text::truncated;
+
+/// A description takes a few thousand bytes.
+const XML_MAX_BYTES: u64 = 1 << 20;
+
+pub(super) fn read(
+    path: &Path,
+    source: &mut (impl BufRead + Seek),
+    take: &mut Take,
+) -> Result<Grid, ArrayError> {
+    let refuse = |detail: &str| broken(path, ".x3p", detail);
+    let mut buffer = vec![0; RECOMMENDED_BUFFER_SIZE];
+    let archive = ZipArchive::from_seekable(source, &mut buffer);
+    let archive = archive.map_err(|error| refuse(&format!("it is no zip archive ({error})")))?;
+    let mut entry = |name: &str, read: &mut dyn FnMut(&mut dyn Read) -> Result<(), ArrayError>| {
+        let said =
+            |error: rawzip::Error| refuse(&format!("`{name}` of its archive cannot be read ({error})"));
+        let mut entries = archive.entries(&mut buffer);
+        let (place, method) = loop {
+            let Some(entry) = entries.next_entry().map_err(said)? else {
+                return Err(refuse(&format!("its archive has no `{}`", truncated(name))));
+            };
+            if entry.file_path().as_ref().eq_ignore_ascii_case(name.as_bytes()) {
+                break (entry.wayfinder(), entry.compression_method());
+            }
+        };
+        let entry = archive.get_entry(place).map_err(said)?;
+        let mut stored: Box<dyn Read> = match method {
+            CompressionMethod::STORE => Box::new(entry.verifying_reader(entry.reader())),
+            CompressionMethod::DEFLATE => {
+                Box::new(entry.verifying_reader(DeflateDecoder::new(entry.reader())))
+            }
+            _ => {
+                return Err(refuse(&format!(
+                    "`{name}` is compressed otherwise than by deflate"
+                )));
+            }
+        };
+        read(&mut stored)?;
+        // Checksums are compared where a file ends.
+        match stored.read(&mut [0]) {
+            Ok(0) => Ok(()),
+            Ok(_) => Err(refuse(&format!("`{name}` is longer than it should be"))),
+            Err(error) => Err(refuse(&format!("`{name}`: {error}"))),
+        }
+    };
+
+    let mut xml = String::new();
+    entry("main.xml", &mut |stored| {
+        let read = stored.take(XML_MAX_BYTES).read_to_string(&mut xml);
+        read.map(|_| ())
+            .map_err(|error| refuse(&format!("`main.xml`: {error}")))
+    })?;
+    let description = Description::of(path, &xml)?;
+    let [nx, ny] = description.points;
+    if let Some(name) = &description.valid {
+        entry(name, &mut |stored| all_valid(path, stored, nx * ny))?;
+    }
+    let number = description.number;
+    let mut bytes = vec![0; number.size() * nx];
+    let mut heights = vec![0.0; nx];
+    entry(&description.data, &mut |stored| {
+        for row in 0..ny {
+            let read = stored.read_exact(&mut bytes);
+            read.map_err(|error| refuse(&format!("`{}`: {error}", description.data)))?;
+            for (height, bytes) in heights.iter_mut().zip(bytes.chunks_exact(number.size())) {
+                *height = number.decode(bytes) * description.increment + description.offset;
+            }
+            take(&Line {
+                row,
+                column: 0,
+                heights: &heights,
+            })?;
+        }
+        Ok(())
+    })?;
+    Ok(Grid {
+        points: description.points,
+        top_first: false,
+        pixel: Some(description.pixel),
+        height_unit: Some(1.0),
+    })
+}
+
+/// Refuses a map in which a point was not measured: of every point one bit says so, the lowest of a byte first.
+fn all_valid(path: &Path, stored: &mut dyn Read, n_points: usize) -> Result<(), ArrayError> {
+    let mut piece = [0; 4096];
+    let mut first = 0;
+    while first < n_points {
+        let bits = (n_points - first).min(8 * piece.len());
+        let bytes = &mut piece[..bits.div_ceil(8)];
+        let read = stored.read_exact(bytes);
+        read.map_err(|error| broken(path, ".x3p", &format!("its list of valid points: {error}")))?;
+        let is_valid = |bit: usize| bytes[bit / 8] >> (bit % 8) & 1 == 1;
+        if let Some(bit) = (0..bits).find(|&bit| !is_valid(bit)) {
+            let problem = format!(
+                "says that point {} (counted from 0) was not measured: fill such points by interpolation before",
+                first + bit
+            );
+            return Err(contents_error(path, problem));
+        }
+        first += bits;
+    }
+    Ok(())
+}
+
+/// How a height is stored.
+#[derive(Clone, Copy)]
+enum Number {
+    Int16,
+    Int32,
+    Float32,
+    Float64,
+}
+
+impl Number {
+    fn size(self) -> usize {
+        match self {
+            Self::Int16 => 2,
+            Self::Int32 | Self::Float32 => 4,
+            Self::Float64 => 8,
+        }
+    }
+
+    fn decode(self, bytes: &[u8]) -> f64 {
+        let mut little = [0; 8];
+        little[..bytes.len()].copy_from_slice(bytes);
+        let bits = u64::from_le_bytes(little);
+        match self {
+            Self::Int16 => f64::from(bits as u16 as i16),
+            Self::Int32 => f64::from(bits as u32 as i32),
+            Self::Float32 => f64::from(f32::from_bits(bits as u32)),
+            Self::Float64 => f64::from_bits(bits),
+        }
+    }
+}
+
+/// What `main.xml` says.
+struct Description {
+    points: [usize; 2],
+    pixel: [f64; 2],
+    number: Number,
+    /// A height is the stored number times this, plus `offset`, m.
+    increment: f64,
+    offset: f64,
+    /// The file with the heights.
+    data: String,
+    /// The file with a bit for every point, whether it was measured.
+    valid: Option<String>,
+}
+
+impl Description {
+    fn of(path: &Path, xml: &str) -> Result<Self, ArrayError> {
+        let refuse = |detail: &str| broken(path, ".x3p", detail);
+        let document = Document::parse(xml);
+        let document = document.map_err(|error| refuse(&format!("`main.xml` is no XML ({error})")))?;
+        let root = document.root_element();
+        let text = |place: &str| text_at(root, place);
+        let wanted = |place: &str| text(place).ok_or_else(|| refuse(&format!("`main.xml` has no {place}")));
+        let must_be = |place: &str, right: &str, what: &str| match wanted(place)? {
+            found if found == right => Ok(()),
+            found => {
+                let problem = format!(
+                    "has {place} {}, where a {what} has {right}: export an areal height map",
+                    truncated(found)
+                );
+                Err(contents_error(path, problem))
+            }
+        };
+        must_be("Record1/FeatureType", "SUR", "surface")?;
+        must_be("Record1/Axes/CX/AxisType", "I", "regular grid")?;
+        must_be("Record1/Axes/CY/AxisType", "I", "regular grid")?;
+        must_be("Record1/Axes/CZ/AxisType", "A", "height")?;
+        must_be("Record3/MatrixDimension/SizeZ", "1", "single layer")?;
+        let number = |place: &str, text: &str| {
+            let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
+            let detail = || format!("{place} of `main.xml` is no number: {}", truncated(text));
+            number.ok_or_else(|| refuse(&detail()))
+        };
+        let increment = |axis: &str| {
+            let place = format!("Record1/Axes/{axis}/Increment");
+            let step = number(&place, wanted(&place)?)?;
+            let detail = || format!("{place} of `main.xml` is {step}, and not above 0");
+            (step > 0.0).then_some(step).ok_or_else(|| refuse(&detail()))
+        };
+        let size = |axis: &str| {
+            let place = format!("Record3/MatrixDimension/Size{axis}");
+            let size = wanted(&place)?.parse::<u64>();
+            size.map_err(|_| refuse(&format!("{place} of `main.xml` is no whole number")))
+        };
+        let of_height = |name: &str, default: f64| {
+            let place = format!("Record1/Axes/CZ/{name}");
+            text(&place).map_or(Ok(default), |text| number(&place, text))
+        };
+        let Some(data) = text("Record3/DataLink/PointDataLink") else {
+            let problem = "has its heights as text in `main.xml`: export it with binary data";
+            return Err(contents_error(path, problem.to_owned()));
+        };
+        Ok(Self {
+            points: points(path, ".x3p", size("X")?, size("Y")?)?,
+            pixel: [increment("CX")?, increment("CY")?],
+            number: match wanted("Record1/Axes/CZ/DataType")? {
+                "I" => Number::Int16,
+                "L" => Number::Int32,
+                "F" => Number::Float32,
+                "D" => Number::Float64,
+                other => {
+                    return Err(refuse(&format!(
+                        "its heights are of unknown type {}",
+                        truncated(other)
+                    )));
+                }
+            },
+            increment: of_height("Increment", 1.0)?,
+            offset: of_height("Offset", 0.0)?,
+            data: data.to_owned(),
+            valid: text("Record3/DataLink/ValidPointsLink").map(str::to_owned),
+        })
+    }
+}
+
+/// The text of an element below another one, such as `Record1/Axes`, if it is there and not empty.
+fn text_at<'a>(root: Node<'a, '_>, place: &str) -> Option<&'a str> {
+    let mut node = root;
+    for name in place.split('/') {
+        node = node.children().find(|child| child.tag_name().name() == name)?;
+    }
+    node.text().map(str::trim).filter(|text| !text.is_empty())
+}

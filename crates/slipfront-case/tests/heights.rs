@@ -1,0 +1,467 @@
+//! Height maps that public tools have written (`heights/make.py`), against what numpy computes of them.
+
+#![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
+
+use std::fs::File;
+use std::io::{BufReader, Write};
+use std::path::{Path, PathBuf};
+
+use rstest::rstest;
+use serde_json::Value;
+use slipfront_case::arrays::{ArrayError, HeightMap, Units, height_map, open_height_map, write_mask_png};
+use slipfront_case::case::Case;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/heights")
+}
+
+fn read(path: &Path, units: Units, blocks: [usize; 2]) -> Result<HeightMap, ArrayError> {
+    let mut source = BufReader::new(open_height_map(path)?);
+    height_map(path, &mut source, &units, blocks, &mut |_| Ok(()))
+}
+
+fn reference() -> Value {
+    serde_json::from_reader(File::open(folder().join("reference.json")).unwrap()).unwrap()
+}
+
+const PIXEL: f64 = 0.5e-6;
+const SIZE: Option<[f64; 2]> = Some([PIXEL; 2]);
+/// The file has its units.
+const OWN: Units = Units {
+    height: None,
+    pixel: None,
+};
+
+/// Heights stored as 32-bit numbers are good to 2^-24 of 6 um, of 64 bits, as grey levels and in decimals to rounding.
+#[rstest]
+#[case("map.npy", Units { height: Some(1.0), pixel: SIZE }, 1e-15)]
+#[case("map_f4_fortran.npy", Units { height: Some(1e-6), pixel: SIZE }, 4e-13)]
+#[case("map.csv", Units { height: Some(1e-6), pixel: SIZE }, 1e-15)]
+#[case("map.png", Units { height: Some(2e-9), pixel: SIZE }, 1e-15)]
+#[case("map.tif", Units { height: Some(2e-9), pixel: SIZE }, 1e-15)]
+#[case("map_lzw.tif", Units { height: Some(2e-9), pixel: SIZE }, 1e-15)]
+#[case("map_tiles.tif", Units { height: Some(1e-6), pixel: SIZE }, 4e-13)]
+#[case("map.gsf", OWN, 4e-13)]
+#[case("map.x3p", OWN, 1e-15)]
+#[case("map_f4.x3p", OWN, 4e-13)]
+fn every_format_gives_what_numpy_computes(#[case] name: &str, #[case] units: Units, #[case] error: f64) {
+    let reference = reference();
+    for (grid, means) in reference["blocks"].as_object().unwrap() {
+        let (nx, ny) = grid.split_once('x').unwrap();
+        let blocks = [nx.parse().unwrap(), ny.parse().unwrap()];
+        let map = read(&folder().join(name), units, blocks).unwrap();
+        assert_eq!(map.points, [30, 20]);
+        // The products of pixels are rounded once.
+        assert!((map.size[0] - 15e-6).abs() < 1e-20 && (map.size[1] - 10e-6).abs() < 1e-20);
+        let means = means.as_array().unwrap();
+        assert_eq!(map.blocks.len(), means.len());
+        for (found, mean) in map.blocks.iter().zip(means) {
+            let mean = mean.as_f64().unwrap();
+            assert!((found - mean).abs() < error, "{name} {grid}: {found} and {mean}");
+        }
+        // Parameters change by no more than the heights, over a roughness of some 0.5 um; the fourth moment by four times that.
+        let near = |key: &str, found: f64, unit: f64| {
+            let wanted = reference[key].as_f64().unwrap();
+            let bound = 20.0 * error / 0.5e-6 * unit;
+            assert!(
+                (found - wanted).abs() < bound,
+                "{name}: {key} {found} and {wanted}"
+            );
+        };
+        near("sa", map.roughness.sa, 1e-6);
+        near("sq", map.roughness.sq, 1e-6);
+        near("ssk", map.roughness.ssk.unwrap(), 1.0);
+        near("sku", map.roughness.sku.unwrap(), 1.0);
+    }
+}
+
+/// What is wrong, and what to do about it.
+#[rstest]
+#[case("map.npy", OWN, "does not say how large a pixel is: add `pixel_size`")]
+#[case("map.png", Units { pixel: SIZE, ..OWN }, "does not say which height a value of 1 is: add `height_unit`")]
+#[case("map.gsf", Units { pixel: SIZE, ..OWN }, "says itself that a pixel is 500 nm x 500 nm: leave out `pixel_size`")]
+#[case("map.x3p", Units { height: Some(1e-6), ..OWN }, "in units of 1 m: leave out `height_unit`")]
+#[case("grey8.png", OWN, "grey levels of 8 bits, too coarse")]
+#[case("colours.png", OWN, "is a picture in colours, which do not tell heights")]
+#[case("colours.tif", OWN, "is a picture in colours, which do not tell heights")]
+fn what_cannot_be_known_is_refused(#[case] name: &str, #[case] units: Units, #[case] sentence: &str) {
+    let said = read(&folder().join(name), units, [15, 10])
+        .unwrap_err()
+        .to_string();
+    assert!(said.contains(sentence), "{said}");
+}
+
+#[test]
+fn the_aspect_is_kept() {
+    let path = folder().join("map.x3p");
+    for blocks in [[15, 10], [16, 11], [15, 11], [14, 9]] {
+        // 11 rows ask for 16.5 columns, 9 for 13.5, and 10 for 15: half a block is rounding.
+        assert_eq!(read(&path, OWN, blocks).is_ok(), blocks != [15, 11], "{blocks:?}");
+    }
+    let said = read(&path, OWN, [25, 25]).unwrap_err().to_string();
+    let sentence = "is 15 um x 10 um, 1.5 times as wide as high, and the 25 x 25 blocks that it is laid over are 1 times as wide as \
+                    high: cut the map, or take 38 x 25 blocks";
+    assert!(said.contains(sentence), "{said}");
+}
+
+/// A zip archive of files that are stored as they are.
+fn zip(files: &[(&str, &[u8])]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut archive = rawzip::ZipArchiveWriter::new(&mut bytes);
+    for (name, contents) in files {
+        let (mut entry, config) = archive.new_file(name).start().unwrap();
+        let mut writer = config.wrap(&mut entry);
+        writer.write_all(contents).unwrap();
+        let (_, descriptor) = writer.finish().unwrap();
+        entry.finish(descriptor).unwrap();
+    }
+    archive.finish().unwrap();
+    bytes
+}
+
+/// `main.xml` of two by two points.
+fn description(z_axis: &str, record3: &str) -> String {
+    format!(
+        "<?xml version=\"1.0\"?><p:ISO5436_2 xmlns:p=\"http://www.opengps.eu/2008/ISO5436_2\"><Record1><FeatureType>SUR</FeatureType>\
+         <Axes><CX><AxisType>I</AxisType><Increment>1e-6</Increment></CX><CY><AxisType>I</AxisType><Increment>1e-6</Increment></CY>\
+         <CZ><AxisType>A</AxisType>{z_axis}</CZ></Axes></Record1><Record3><MatrixDimension><SizeX>2</SizeX><SizeY>2</SizeY>\
+         <SizeZ>1</SizeZ></MatrixDimension>{record3}</Record3></p:ISO5436_2>"
+    )
+}
+
+const LINKED: &str = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink>";
+
+/// Reads a file for four blocks, with units for an array, which has none.
+fn read_bytes(name: &str, bytes: &[u8]) -> Result<HeightMap, ArrayError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    let units = match name {
+        "a.csv" => Units {
+            height: Some(1.0),
+            pixel: SIZE,
+        },
+        _ => OWN,
+    };
+    read(&path, units, [2, 2])
+}
+
+/// Integers have a step and an offset.
+#[test]
+fn x3p_files_have_heights_of_four_types() {
+    let z = "<DataType>I</DataType><Increment>1e-9</Increment><Offset>1e-6</Offset>";
+    let heights: Vec<u8> = [-1000i16, 0, 1, 2000]
+        .iter()
+        .flat_map(|z| z.to_le_bytes())
+        .collect();
+    let xml = description(z, LINKED);
+    let bytes = zip(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &heights)]);
+    let map = read_bytes("a.x3p", &bytes).unwrap();
+    for (found, wanted) in map.blocks.iter().zip([0.0, 1e-6, 1.001e-6, 3e-6]) {
+        // The rounding of numbers of 1e-6.
+        assert!((found - wanted).abs() < 1e-21, "{found} {wanted}");
+    }
+    let z = "<DataType>L</DataType><Increment>1e-9</Increment>";
+    let heights: Vec<u8> = [-1i32, 0, 70_000, 2]
+        .iter()
+        .flat_map(|z| z.to_le_bytes())
+        .collect();
+    let xml = description(z, LINKED);
+    let bytes = zip(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &heights)]);
+    let map = read_bytes("a.x3p", &bytes).unwrap();
+    // That of a number of 1e-4.
+    assert!((map.blocks[2] - 70e-6).abs() < 1e-19);
+}
+
+#[test]
+fn damaged_x3p_files_are_refused() {
+    let floats = "<DataType>D</DataType>";
+    let heights: Vec<u8> = [0.0, 1e-6, 2e-6, f64::NAN]
+        .iter()
+        .flat_map(|z: &f64| z.to_le_bytes())
+        .collect();
+    let flat = [0; 32];
+    let valid = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink><ValidPointsLink>valid.bin</ValidPointsLink></DataLink>";
+    let whole = description(floats, LINKED);
+    let masked = description(floats, valid);
+    for (files, sentence) in [
+        (vec![("a.txt", &b""[..])], "its archive has no `main.xml`"),
+        (
+            vec![("main.xml", whole.as_bytes())],
+            "its archive has no `bindata/data.bin`",
+        ),
+        (
+            vec![
+                ("main.xml", whole.as_bytes()),
+                ("bindata/data.bin", &heights[..31]),
+            ],
+            "is not a readable .x3p file: `bindata/data.bin`",
+        ),
+        (
+            vec![("main.xml", whole.as_bytes()), ("bindata/data.bin", &[0; 40])],
+            "`bindata/data.bin` is longer than it should be",
+        ),
+        (
+            vec![("main.xml", whole.as_bytes()), ("bindata/data.bin", &heights)],
+            "has NaN in row 1, column 1 (both counted from 0), where a height is wanted: fill points",
+        ),
+        (
+            vec![
+                ("main.xml", masked.as_bytes()),
+                ("bindata/data.bin", &flat),
+                ("valid.bin", &[0b1011]),
+            ],
+            "says that point 2 (counted from 0) was not measured",
+        ),
+        (vec![("main.xml", b"<a>")], "`main.xml` is no XML"),
+        (
+            vec![("main.xml", b"<a/>")],
+            "`main.xml` has no Record1/FeatureType",
+        ),
+    ] {
+        let said = read_bytes("a.x3p", &zip(&files)).unwrap_err().to_string();
+        assert!(said.contains(sentence), "{said}\nlacks\n{sentence}");
+    }
+    for (z, record3, sentence) in [
+        (floats, "<DataList/>", "has its heights as text in `main.xml`"),
+        (
+            "<DataType>Q</DataType>",
+            LINKED,
+            "its heights are of unknown type Q",
+        ),
+        (
+            "<DataType>D</DataType><Increment>x</Increment>",
+            LINKED,
+            "Record1/Axes/CZ/Increment of `main.xml` is no number: x",
+        ),
+    ] {
+        let bytes = zip(&[
+            ("main.xml", description(z, record3).as_bytes()),
+            ("bindata/data.bin", &flat),
+        ]);
+        let said = read_bytes("a.x3p", &bytes).unwrap_err().to_string();
+        assert!(said.contains(sentence), "{said}\nlacks\n{sentence}");
+    }
+    let profile = whole.replace("SUR", "PRF");
+    let said = read_bytes("a.x3p", &zip(&[("main.xml", profile.as_bytes())])).unwrap_err();
+    assert!(
+        said.to_string()
+            .contains("has Record1/FeatureType PRF, where a surface has SUR")
+    );
+    let said = read_bytes("a.x3p", b"PK").unwrap_err().to_string();
+    assert!(said.contains("it is no zip archive"), "{said}");
+}
+
+#[test]
+fn damaged_fields_and_tables_are_refused() {
+    let field = |header: &str, numbers: usize| {
+        let mut bytes = format!("Gwyddion Simple Field 1.0\n{header}").into_bytes();
+        bytes.resize(bytes.len() / 4 * 4 + 4, 0);
+        bytes.extend(vec![0; 4 * numbers]);
+        bytes
+    };
+    let whole = "XRes = 2\nYRes = 2\nXReal = 2\nYReal = 2\nXYUnits = um\nZUnits = nm\n";
+    assert_eq!(read_bytes("a.gsf", &field(whole, 4)).unwrap().size, [2e-6, 2e-6]);
+    for (header, numbers, sentence) in [
+        (whole, 3, "it has 104 bytes where its header asks for 108"),
+        ("XRes = 2\nYRes = 0\n", 0, "it has 2 x 0 points"),
+        ("XRes = 2\nYRes = x\n", 0, "it has no whole number `YRes`"),
+        (
+            "XRes = 2000000\nYRes = 2\n",
+            0,
+            "has 2000000 x 2 pixels where at most 268435456 pixels are read",
+        ),
+        (
+            "XRes = 2\nYRes = 2\nXReal = -1\n",
+            4,
+            "`XReal` = -1 is no number above 0",
+        ),
+        (
+            "XRes = 2\nYRes = 2\nXReal = 1\nYReal = 1\nXYUnits = m\nZUnits = V\n",
+            4,
+            "has `ZUnits` = V, which is no unit of length: export a map of heights",
+        ),
+        // Without a unit a size says nothing.
+        (
+            "XRes = 2\nYRes = 2\nXReal = 1\nYReal = 1\nZUnits = m\n",
+            4,
+            "add `pixel_size`",
+        ),
+        (
+            "XRes = 2\nYRes = 2\nXReal = 1\nYReal = 1\nXYUnits = m\n",
+            4,
+            "add `height_unit`",
+        ),
+    ] {
+        let said = read_bytes("a.gsf", &field(header, numbers))
+            .unwrap_err()
+            .to_string();
+        assert!(said.contains(sentence), "{said}\nlacks\n{sentence}");
+    }
+    for (name, text, sentence) in [
+        ("a.gsf", "Gwyddion Simple Field 2.0", "it does not begin with"),
+        (
+            "a.gsf",
+            "Gwyddion Simple Field 1.0\nXRes = 1",
+            "no zero byte ends its header",
+        ),
+        (
+            "a.csv",
+            "1,2\n3\n",
+            "has 1 numbers in line 2, where the lines before have 2",
+        ),
+        ("a.csv", "# nothing\n", "it has 0 x 0 points"),
+        ("a.csv", "1,nan\n", "has NaN in row 0, column 1"),
+        (
+            "a.csv",
+            "1e300,0\n0,0\n",
+            "has heights too far apart to be averaged",
+        ),
+        ("a.tif", "II*\0\x08\0\0\0", "is not a readable .tif file"),
+        (
+            "a.jpg",
+            "",
+            "name a file that ends in .npy, .csv, .gsf, .x3p, .png or .tif",
+        ),
+    ] {
+        let said = read_bytes(name, text.as_bytes()).unwrap_err().to_string();
+        assert!(said.contains(sentence), "{said}\nlacks\n{sentence}");
+    }
+}
+
+/// A case with the map on 15 x 10 blocks.
+fn case(texture: &str) -> Result<Case, String> {
+    let text = format!(
+        "slider = {{ blocks = [15, 10], block_size = '1 um' }}\n[[texture]]\nshape = 'height_map'\nfile = 'map.x3p'\n{texture}"
+    );
+    Case::parse_in(&text, "case", &folder(), &[]).map_err(|error| error.to_string())
+}
+
+fn heights() -> Vec<f64> {
+    let reference = reference();
+    let means = reference["blocks"]["15x10"].as_array().unwrap().iter();
+    means.map(|mean| mean.as_f64().unwrap()).collect()
+}
+
+/// 40 % of 150 blocks are the 60 highest; a depth is counted from the highest block or from a height.
+#[test]
+fn the_highest_blocks_touch() {
+    let heights = heights();
+    let mut sorted = heights.clone();
+    sorted.sort_by(|a, b| b.total_cmp(a));
+    let touching = |texture: &str| -> Vec<bool> {
+        let case = case(texture).unwrap();
+        case.model
+            .surface
+            .textured
+            .iter()
+            .map(|textured| !textured)
+            .collect()
+    };
+    let above = |least: f64| -> Vec<bool> { heights.iter().map(|height| *height >= least).collect() };
+    // Between two blocks: the heights that are read are rounded.
+    let between = |rank: usize| 0.5 * (sorted[rank] + sorted[rank + 1]);
+    let highest = touching("bearing_percent = 40");
+    assert_eq!(highest.iter().filter(|&&touches| touches).count(), 60);
+    assert_eq!(highest, above(between(59)));
+    let depth = sorted[0] - between(19);
+    assert_eq!(touching(&format!("depth = '{depth} m'")), above(between(19)));
+    let reference = "reference = '5.5 um'\ndepth = '500 nm'";
+    assert_eq!(touching(reference), above(5e-6));
+    let inverted = touching("bearing_percent = 40\ninvert = true");
+    assert!(inverted.iter().zip(&highest).all(|(one, other)| one != other));
+
+    let case = case("bearing_percent = 40").unwrap();
+    assert_eq!(case.texture.asked_percent, Some(60.0));
+    let [topography] = &case.texture.topographies[..] else {
+        panic!("{:?}", case.texture);
+    };
+    assert!((topography.contact_height - sorted[59]).abs() < 1e-15);
+    assert_eq!(topography.points, [30, 20]);
+    assert!(case.warnings().iter().all(|warning| !warning.contains("map.x3p")));
+}
+
+#[test]
+fn maps_fill_every_place_of_a_pattern() {
+    let text = "slider = { blocks = [30, 10], block_size = '1 um' }\n[[texture]]\nshape = 'height_map'\nfile = 'map.gsf'\n\
+                bearing_percent = 40\narray = [2, 1]";
+    let two = Case::parse_in(text, "case", &folder(), &[]).unwrap();
+    let one = case("bearing_percent = 40").unwrap();
+    for (b, textured) in two.model.surface.textured.iter().enumerate() {
+        assert_eq!(
+            *textured,
+            one.model.surface.textured[b / 30 * 15 + b % 15],
+            "block {b}"
+        );
+    }
+    assert_eq!(two.texture.asked_percent, Some(60.0));
+}
+
+#[test]
+fn a_map_of_another_size_is_told() {
+    let warnings = |text: &str| {
+        let text =
+            format!("{text}\n[[texture]]\nshape = 'height_map'\nfile = 'map.x3p'\nbearing_percent = 40");
+        Case::parse_in(&text, "case", &folder(), &[])
+            .unwrap()
+            .warnings()
+            .join("\n")
+    };
+    let said = warnings("slider = { blocks = [15, 10], block_size = '10 um' }");
+    let sentence = "map.x3p is 15 um x 10 um and laid over 150 um x 100 um of the slider, 10 times its size: with `block_size` = \"1 um\" \
+                    it would have its own";
+    assert!(said.contains(sentence), "{said}");
+    let said = warnings("slider = { blocks = [60, 40], block_size = '0.25 um' }");
+    assert!(
+        said.contains("has 30 x 20 points for 60 x 40 blocks: several blocks share a height"),
+        "{said}"
+    );
+}
+
+/// The run folder's case names a copy of the map, and is the same case.
+#[test]
+fn a_map_is_an_input_like_any_other() {
+    let case = case("bearing_percent = 40").unwrap();
+    let [input] = &case.inputs[..] else {
+        panic!("{:?}", case.inputs)
+    };
+    assert_eq!(input.name, "inputs/map.x3p");
+    assert_eq!(
+        input.length,
+        std::fs::metadata(folder().join("map.x3p")).unwrap().len()
+    );
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("inputs")).unwrap();
+    std::fs::copy(&input.original, folder.path().join(&input.name)).unwrap();
+    let again = Case::parse_in(&case.file.to_toml().unwrap(), "case", folder.path(), &[]).unwrap();
+    assert_eq!(again.file, case.file);
+    assert_eq!(again.model.surface.textured, case.model.surface.textured);
+    assert_eq!(again.inputs[0].hash, input.hash);
+}
+
+/// A file of more pixels for a block than arrays have is no error of a height map; of a mask it is.
+#[test]
+fn a_height_map_may_be_finer_than_blocks() {
+    let folder = tempfile::tempdir().unwrap();
+    let row = vec!["1.00000000000000000"; 3000].join(",");
+    std::fs::write(folder.path().join("map.csv"), format!("{row}\n").repeat(30)).unwrap();
+    let text = "slider.blocks = [100, 1]\n[[texture]]\nshape = 'height_map'\nfile = 'map.csv'\ndepth = '1 nm'\nheight_unit = '1 um'\n\
+                pixel_size = '1 um'";
+    let case = Case::parse_in(text, "case", folder.path(), &[]).unwrap();
+    assert_eq!(case.texture.topographies[0].roughness.sq, 0.0);
+    assert_eq!(case.texture.topographies[0].roughness.ssk, None);
+    let field = "slider.blocks = [100, 1]\nfriction.mu_static_field = 'map.csv'";
+    let said = Case::parse_in(field, "case", folder.path(), &[])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        said.contains("bytes where 1 rows of 100 numbers take at most"),
+        "{said}"
+    );
+    write_mask_png(&folder.path().join("mask.png"), 2, 2, &[true; 4]).unwrap();
+    let mask = text.replace("map.csv", "mask.png");
+    let said = Case::parse_in(&mask, "case", folder.path(), &[])
+        .unwrap_err()
+        .to_string();
+    assert!(said.contains("grey levels of 1 bits"), "{said}");
+}

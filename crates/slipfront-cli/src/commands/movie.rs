@@ -1,0 +1,183 @@
+//! `slipfront movie`: the snapshots of a run beside its friction curve, as a movie.
+
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+
+use clap::Args;
+use slipfront::observe::Field;
+use slipfront_case::arrays::extension;
+use slipfront_case::disk::{is_same, write_atomic};
+use slipfront_case::field_info::{FIELDS, field_named};
+use slipfront_plot::MOVIE_PIXELS;
+use slipfront_run::error::ResultsError;
+use slipfront_run::movie;
+use slipfront_run::names::MOVIE;
+use slipfront_run::pictures;
+use slipfront_run::verify::{expect_as_written, inspect};
+
+use super::plot::{expect_memory, expect_results, refuse_other_run, refuse_to_replace};
+use crate::failure::Failure;
+use crate::print::print_message;
+use crate::threads::set_threads;
+
+/// Show the snapshots of a run one after the other, beside its friction curve with a mark at the instant, as an animated GIF of 800 x
+/// 400 pixels
+#[derive(Args)]
+#[command(after_help = "Examples:
+  slipfront run cases/circle.toml -o results/circle --set output.snapshots={every=1.5}
+  slipfront movie results/circle
+  slipfront movie results/circle --field displacement_x -o circle.mp4    where ffmpeg is installed")]
+pub(crate) struct Movie {
+    /// Run folder
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// The field that is shown [default: that of the maps in stress.png]
+    #[arg(long, value_parser = known_field)]
+    field: Option<Field>,
+    /// The file: .gif, or .mp4, which ffmpeg makes [default: movie.gif in the folder of the run]
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
+}
+
+/// Pictures of an MP4 file in a second.
+const RATE: usize = 25;
+
+fn known_field(name: &str) -> Result<Field, String> {
+    let names = || FIELDS.iter().map(|info| info.name).collect::<Vec<_>>().join(", ");
+    field_named(name).ok_or_else(|| format!("the fields are {}", names()))
+}
+
+impl Movie {
+    pub(crate) fn execute(self) -> Result<(), Failure> {
+        set_threads(None)?;
+        let folder = &self.folder;
+        expect_results(folder)?;
+        let run = inspect(folder).map_err(Failure::input)?;
+        expect_as_written(&run, |name| pictures::DRAWN_FROM.contains(&name)).map_err(Failure::input)?;
+        expect_memory(std::slice::from_ref(folder))?;
+        let out = self.out.clone().unwrap_or_else(|| folder.join(MOVIE));
+        let is_mp4 = match extension(&out).as_str() {
+            "gif" => false,
+            "mp4" => true,
+            _ => {
+                return Err(refused(format!(
+                    "cannot tell the format of `{}`: name a file that ends in .gif or .mp4",
+                    out.display()
+                )));
+            }
+        };
+        let movie = movie::of_run(folder, self.field).map_err(Failure::input)?;
+        let movie = movie.ok_or_else(|| {
+            refused(format!(
+                "{} has kept no snapshots of this field: name one of `output.fields`, or run its case again with snapshots",
+                folder.display()
+            ))
+        })?;
+        let bytes = match is_mp4 {
+            true => mp4(&movie)?,
+            false => movie::gif(&movie).map_err(Failure::input)?,
+        };
+        let parent = match out.parent() {
+            Some(parent) if parent != Path::new("") => parent.to_owned(),
+            _ => PathBuf::from("."),
+        };
+        let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let own = is_same(&run.path, &parent).then_some(&run);
+        if own.is_none() {
+            refuse_other_run(&parent)?;
+        }
+        if !self.force {
+            refuse_to_replace(&parent, &[(name, &bytes)], own)?;
+        }
+        write_atomic(&out, &bytes)
+            .map_err(|error| Failure::running(anyhow::anyhow!("cannot write {}: {error}", out.display())))?;
+        print_message(&format!("{}\n", out.display()));
+        Ok(())
+    }
+}
+
+fn refused(sentence: String) -> Failure {
+    Failure::input(anyhow::anyhow!(sentence))
+}
+
+/// The movie as an MP4 file, made by ffmpeg.
+fn mp4(movie: &slipfront_plot::Movie) -> Result<Vec<u8>, Failure> {
+    let failed = |error: std::io::Error| Failure::running(anyhow::anyhow!("cannot make the movie: {error}"));
+    // An MP4 file that begins with its index, which players want, cannot be written through a pipe.
+    let folder = tempfile::tempdir().map_err(failed)?;
+    let path = folder.path().join("movie.mp4");
+    let [width, height] = MOVIE_PIXELS;
+    let started = Command::new("ffmpeg")
+        .args(["-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"])
+        .args([
+            "-s",
+            &format!("{width}x{height}"),
+            "-r",
+            &RATE.to_string(),
+            "-i",
+            "-",
+        ])
+        .args(["-pix_fmt", "yuv420p", "-movflags", "+faststart"])
+        .arg(&path)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn();
+    let child = started.map_err(|error| match error.kind() {
+        ErrorKind::NotFound => refused(
+            "an MP4 file is made by the program ffmpeg, which is not installed: install it, or name a .gif file".to_owned(),
+        ),
+        _ => failed(error),
+    })?;
+    feed(child, movie)?;
+    std::fs::read(&path).map_err(failed)
+}
+
+/// Why pictures could not be handed over.
+enum NotFed {
+    Results(ResultsError),
+    Pipe,
+}
+
+impl From<ResultsError> for NotFed {
+    fn from(error: ResultsError) -> Self {
+        Self::Results(error)
+    }
+}
+
+/// Hands all pictures to ffmpeg, each as often as it is long, and waits for its end.
+fn feed(mut child: Child, movie: &slipfront_plot::Movie) -> Result<(), Failure> {
+    let mut pipe = child.stdin.take();
+    let mut delays = movie::delays(movie).into_iter();
+    let fed = movie::draw(movie, |palette, pixels| {
+        let bytes: Vec<u8> = pixels
+            .iter()
+            .flat_map(|&pixel| palette[usize::from(pixel)])
+            .collect();
+        let hundredths = usize::from(delays.next().unwrap_or_default());
+        for _ in 0..(hundredths * RATE).div_ceil(100).max(1) {
+            // A program that ends early says why.
+            let written = pipe.as_mut().map(|pipe| pipe.write_all(&bytes));
+            written.and_then(Result::ok).ok_or(NotFed::Pipe)?;
+        }
+        Ok(())
+    });
+    drop(pipe);
+    let ended = child.wait_with_output();
+    if let Err(NotFed::Results(error)) = fed {
+        return Err(Failure::input(error));
+    }
+    let ended = ended.map_err(|error| Failure::running(anyhow::anyhow!("cannot run ffmpeg: {error}")))?;
+    if ended.status.success() && fed.is_ok() {
+        return Ok(());
+    }
+    let said = String::from_utf8_lossy(&ended.stderr);
+    Err(Failure::running(anyhow::anyhow!(
+        "ffmpeg could not make the movie: {}",
+        slipfront_case::text::single_line(said.trim())
+    )))
+}

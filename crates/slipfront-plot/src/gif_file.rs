@@ -1,0 +1,161 @@
+//! Animated GIF files.
+
+use std::borrow::Cow;
+
+use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
+
+use crate::movie::MOVIE_PIXELS;
+use crate::picture::PictureError;
+
+/// An animated GIF file of pictures of a movie, which begins again when it has ended. Of every picture it has the rectangle in which
+/// that differs from the one before.
+pub struct MovieGif {
+    encoder: Encoder<Vec<u8>>,
+    /// The pixels of the picture before.
+    before: Vec<u8>,
+    /// The colour of no pixel: what is not changed.
+    transparent: u8,
+}
+
+impl MovieGif {
+    /// A file without pictures, whose pixels have these colours, at most 255.
+    ///
+    /// # Errors
+    /// There are more colours.
+    pub fn of(palette: &[[u8; 3]]) -> Result<Self, PictureError> {
+        let transparent = palette.len();
+        let mut colours = palette.concat();
+        colours.extend([255; 3]);
+        let [width, height] = MOVIE_PIXELS.map(|pixels| pixels as u16);
+        let mut encoder = Encoder::new(Vec::new(), width, height, &colours)?;
+        encoder.set_repeat(Repeat::Infinite)?;
+        Ok(Self {
+            encoder,
+            before: Vec::new(),
+            transparent: transparent as u8,
+        })
+    }
+
+    /// Adds a picture that is shown for so many hundredths of a second.
+    ///
+    /// # Errors
+    /// It has another number of pixels.
+    pub fn add(&mut self, pixels: Vec<u8>, delay: u16) -> Result<(), PictureError> {
+        let [width, height] = MOVIE_PIXELS;
+        let [left, top, right, bottom] = match self.before.len() == pixels.len() {
+            true => changed(&self.before, &pixels, width),
+            false => [0, 0, width, height],
+        };
+        let is_first = self.before.is_empty();
+        let mut part = Vec::with_capacity((right - left) * (bottom - top));
+        for row in top..bottom {
+            let row = row * width + left..row * width + right;
+            match is_first {
+                true => part.extend_from_slice(&pixels[row]),
+                false => part.extend(self.before[row.clone()].iter().zip(&pixels[row]).map(
+                    |(before, now)| match before == now {
+                        true => self.transparent,
+                        false => *now,
+                    },
+                )),
+            }
+        }
+        let frame = Frame {
+            delay,
+            dispose: DisposalMethod::Keep,
+            transparent: (!is_first).then_some(self.transparent),
+            left: left as u16,
+            top: top as u16,
+            width: (right - left) as u16,
+            height: (bottom - top) as u16,
+            buffer: Cow::Owned(part),
+            ..Frame::default()
+        };
+        self.before = pixels;
+        Ok(self.encoder.write_frame(&frame)?)
+    }
+
+    /// The bytes of the file.
+    ///
+    /// # Errors
+    /// None that can be foreseen: it is written to memory.
+    pub fn finish(self) -> Result<Vec<u8>, PictureError> {
+        Ok(self.encoder.into_inner()?)
+    }
+}
+
+impl From<EncodingError> for PictureError {
+    fn from(error: EncodingError) -> Self {
+        Self::Gif(error.to_string())
+    }
+}
+
+/// Left, top, right and bottom of the rectangle of pixels that differ; one pixel where none does.
+fn changed(before: &[u8], now: &[u8], width: usize) -> [usize; 4] {
+    let mut rectangle = [width, before.len() / width, 0, 0];
+    for (row, (before, now)) in before
+        .chunks_exact(width)
+        .zip(now.chunks_exact(width))
+        .enumerate()
+    {
+        let differs = |column: &usize| before[*column] != now[*column];
+        let Some(first) = (0..width).find(differs) else {
+            continue;
+        };
+        let last = (0..width).rev().find(differs).unwrap_or(first);
+        rectangle = [
+            rectangle[0].min(first),
+            rectangle[1].min(row),
+            rectangle[2].max(last + 1),
+            row + 1,
+        ];
+    }
+    match rectangle[2] > 0 {
+        true => rectangle,
+        false => [0, 0, 1, 1],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a program shows that reads the file has the colours of the pictures, whatever part of them the file holds.
+    #[test]
+    fn what_is_shown_is_what_was_drawn() {
+        let palette = [[0, 0, 0], [255, 0, 0], [0, 255, 0]];
+        let size = MOVIE_PIXELS[0] * MOVIE_PIXELS[1];
+        let mut second = vec![0; size];
+        second[5 * MOVIE_PIXELS[0] + 7] = 1;
+        let mut third = second.clone();
+        third[399 * MOVIE_PIXELS[0] + 799] = 2;
+        third[5 * MOVIE_PIXELS[0] + 7] = 0;
+        let pictures = [vec![0; size], second.clone(), second, third];
+        let mut file = MovieGif::of(&palette).unwrap();
+        for (picture, delay) in pictures.iter().zip([8, 8, 8, 40]) {
+            file.add(picture.clone(), delay).unwrap();
+        }
+        let bytes = file.finish().unwrap();
+        let mut options = gif::DecodeOptions::new();
+        options.set_color_output(gif::ColorOutput::Indexed);
+        let mut decoder = options.read_info(&bytes[..]).unwrap();
+        assert_eq!(
+            [decoder.width(), decoder.height()],
+            MOVIE_PIXELS.map(|pixels| pixels as u16)
+        );
+        let mut shown = vec![0; size];
+        let mut number = 0;
+        while let Some(frame) = decoder.read_next_frame().unwrap() {
+            let (left, top, width) = (frame.left as usize, frame.top as usize, frame.width as usize);
+            for (k, &colour) in frame.buffer.iter().enumerate() {
+                if Some(colour) != frame.transparent {
+                    shown[(top + k / width) * MOVIE_PIXELS[0] + left + k % width] = colour;
+                }
+            }
+            assert_eq!(shown, pictures[number], "picture {number}");
+            assert_eq!(frame.delay, [8, 8, 8, 40][number]);
+            number += 1;
+        }
+        assert_eq!(number, pictures.len());
+    }
+}
