@@ -29,6 +29,8 @@ const KEYS: [&str; 26] = [
     "seed",
     "energy_error",
     "transition",
+    "static_lateral_friction_star",
+    "kinetic_lateral_friction_star",
     "mu_star_max",
     "kinetic_friction_star_uncertainty",
     "warnings",
