@@ -33,8 +33,9 @@ pub(crate) fn anisotropy(plan: &Plan, results: &StudyResults) -> String {
         more => format!("  and {more} more in anisotropy.csv\n"),
     };
     format!(
-        "friction over {} directions: anisotropy is (largest - smallest)/mean, from the largest to the smallest; then the principal axis with\n\
-         the larger friction, and the largest friction across the drive with its direction; degrees from x towards y\n\n{}{more}\n",
+        "friction over {} directions, in degrees from x towards y: anisotropy is\n\
+         (largest - smallest)/mean, from the largest to the smallest; principal is the axis\n\
+         of larger friction, lateral the largest friction across the drive\n\n{}{more}\n",
         first.directions,
         table(&header, &rows)
     )
