@@ -1,10 +1,11 @@
 //! What the commands print: the physics of a case as a tree, its cost, the summary of a run, the plan and the answer of a study.
 
+mod anisotropy;
 mod cost;
-
 mod physics;
 mod study;
 mod summary;
+mod table;
 mod times;
 
 pub(crate) use cost::cost;
