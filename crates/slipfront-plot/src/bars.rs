@@ -10,7 +10,7 @@ use crate::geometry::Area;
 use crate::legend::{Legend, Sample};
 use crate::picture::{Picture, PictureError};
 use crate::series::{error_bar, interval};
-use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, OPACITY_BAR, Rgb, WIDTH_FRAME, curve_colour};
+use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, OPACITY_BAR, Rgb, WIDTH_FRAME, bar_colour};
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
 
@@ -153,7 +153,7 @@ impl<'a> Places<'a> {
                 bar,
                 name,
                 step: 0.0,
-                colour: curve_colour(0, 1),
+                colour: bar_colour(0, 1),
             };
             return Self {
                 names: group.bars.iter().map(|bar| bar.label.as_str()).collect(),
@@ -175,7 +175,7 @@ impl<'a> Places<'a> {
                     bar,
                     name,
                     step: index as f64 - 0.5 * (legend.len() - 1) as f64,
-                    colour: curve_colour(index, legend.len()),
+                    colour: bar_colour(index, legend.len()),
                 });
             }
         }

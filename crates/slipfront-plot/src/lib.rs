@@ -33,6 +33,7 @@ mod raster;
 mod response;
 mod series;
 mod shapes;
+mod short_names;
 mod sketch;
 mod stress;
 mod style;

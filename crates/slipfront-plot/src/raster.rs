@@ -2,7 +2,7 @@
 
 use tiny_skia::{
     Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PremultipliedColorU8,
-    Rect, Stroke, Transform,
+    Rect, Stroke, StrokeDash, Transform,
 };
 
 use crate::canvas::{Canvas, Element, Primitive};
@@ -48,11 +48,12 @@ fn draw(pixmap: &mut Pixmap, element: &Element) {
         } => letters(text, f64::from(*size), *at, *upwards),
     };
     let Some(path) = path else { return };
-    if let Primitive::Line { width, .. } = &element.primitive {
+    if let Primitive::Line { width, dashes, .. } = &element.primitive {
         let stroke = Stroke {
             width: *width as f32,
             line_cap: LineCap::Butt,
             line_join: LineJoin::Round,
+            dash: StrokeDash::new(dashes.iter().map(|&length| length as f32).collect(), 0.0),
             ..Stroke::default()
         };
         pixmap.stroke_path(&path, &paint, &stroke, Transform::identity(), None);
