@@ -31,6 +31,8 @@ const HEIGHT_BELOW: f64 = 340.0;
 const CONTOUR_STEPS: usize = 8;
 /// Contours are those of means over as many cells around each as make this share of the map.
 const SMOOTHED_SHARE: usize = 64;
+/// Contours are so many times farther apart than cells scatter around these means: nearer ones would show that alone.
+const SCATTERS_APART: f64 = 3.0;
 /// Maps of fewer cells along a side have no contours, which would be mere ticks.
 const MIN_CELLS_OF_CONTOURS: usize = 8;
 /// A number at a panel's upper end stands half beyond it.
@@ -238,10 +240,7 @@ fn draw_map(canvas: &mut Canvas, map: &FrontMap, layout: &Layout) {
     Cells::of(map.nx, map.ny, &map.textured).draw(canvas, area, &map.first_slips, panel.bar.range);
     let reach = 1 + columns.max(rows) / SMOOTHED_SHARE;
     let means = smoothed(&map.first_slips, columns, reach);
-    let [lo, hi] = panel.bar.range;
-    let (_, levels) = round_values(lo, hi, CONTOUR_STEPS);
-    let has_contours = columns.min(rows) >= MIN_CELLS_OF_CONTOURS;
-    for level in levels.into_iter().filter(|_| has_contours) {
+    for level in levels(panel.bar.range, &map.first_slips, &means, columns.min(rows)) {
         for line in contours(&means, columns, level) {
             let at = |(x, y): (f64, f64)| ((x + 0.5) / columns as f64, (y + 0.5) / rows as f64);
             let points = line.into_iter().map(|point| place(area, at(point)));
@@ -263,6 +262,25 @@ fn draw_map(canvas: &mut Canvas, map: &FrontMap, layout: &Layout) {
     }
     let [x, y, _] = &layout.titles;
     panel.draw_axes(canvas, [x, y]);
+}
+
+/// The levels of the contours of these means of first slips, on a map of so many cells along its shorter side.
+fn levels([lo, hi]: [f64; 2], first_slips: &[f32], means: &[f32], side: usize) -> Vec<f64> {
+    let deviations = first_slips
+        .iter()
+        .zip(means)
+        .map(|(time, mean)| f64::from(time - mean));
+    let deviations = deviations.filter(|deviation| deviation.is_finite());
+    let (sum, count) = deviations.fold((0.0, 0.0), |(sum, count), deviation| {
+        (sum + deviation * deviation, count + 1.0)
+    });
+    let scatter = f64::sqrt(sum / count);
+    // As many as there may be, where nothing scatters.
+    let steps = ((hi - lo) / (SCATTERS_APART * scatter)).min(CONTOUR_STEPS as f64) as usize;
+    match steps >= 2 && side >= MIN_CELLS_OF_CONTOURS {
+        true => round_values(lo, hi, steps).1,
+        false => Vec::new(),
+    }
 }
 
 fn draw_space_time(canvas: &mut Canvas, space_time: &SpaceTime, layout: &Layout) {
@@ -357,6 +375,23 @@ mod tests {
         let mut level = plain.clone();
         level.first_slips.fill(3.0);
         assert!(lines(&plain) > lines(&level));
+    }
+
+    /// Blocks that slip at random have no contours, nor have strips.
+    #[test]
+    fn scatter_has_no_contours() {
+        let mut random = map(40, 40);
+        for (index, time) in random.first_slips.iter_mut().enumerate() {
+            *time = (index * index * 7919 % 1009) as f32;
+        }
+        let of = |map: &FrontMap| {
+            let [columns, rows] = CellMeans::cells(map.nx, map.ny);
+            let range = range(quantiles(&map.first_slips).into_iter()).into();
+            let means = smoothed(&map.first_slips, columns, 1);
+            levels(range, &map.first_slips, &means, columns.min(rows)).len()
+        };
+        assert_eq!((of(&random), of(&map(4, 400))), (0, 0));
+        assert!(of(&map(40, 40)) > 4);
     }
 
     #[test]

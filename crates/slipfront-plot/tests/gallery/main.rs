@@ -120,6 +120,11 @@ fn overlays() {
     overlay("overlay-2", &numbered(2, &|k| format!("run {k}")));
     overlay("overlay-10", &numbered(10, &|k| format!("run {k}")));
     overlay("overlay-30", &numbered(30, &|k| format!("run {k}")));
+    let measured = FrictionCurve {
+        instants: Vec::new(),
+        ..at_speed("force.csv", 0.1)
+    };
+    check("overlay-measured", star(&[baseline(), measured]));
     let long = "results/a_rather_long_name_of_a_study_of_many_materials";
     overlay("overlay-long", &numbered(4, &|k| format!("{long}/speed_0.{k}")));
     overlay(

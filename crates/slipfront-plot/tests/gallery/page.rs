@@ -4,9 +4,10 @@ use std::collections::HashMap;
 
 /// The widths of letters, of a font 2048 units high.
 const OUTLINES: &str = include_str!("../../src/font/outlines.txt");
-/// How far letters reach above the line and below it, over the font size.
+/// How far letters reach above the line, and some of them below it, over the font size.
 const ABOVE: f64 = 0.73;
-const BELOW: f64 = 0.0;
+const BELOW: f64 = 0.24;
+const DESCENDING: [char; 9] = ['g', 'j', 'p', 'q', 'y', '\u{3bc}', '(', ')', ','];
 /// Coordinates of an SVG are rounded to hundredths of a pixel, and letters of one word touch.
 const ROUNDING: f64 = 0.1;
 
@@ -115,9 +116,14 @@ fn written(line: &str, advance: &impl Fn(char) -> f64) -> Written {
         .replace("&amp;", "&");
     let (x, y, size) = (number("x"), number("y"), number("font-size"));
     let length = size * text.chars().map(advance).sum::<f64>();
+    let below = if text.contains(DESCENDING) {
+        BELOW * size
+    } else {
+        0.0
+    };
     let sides = match attribute(line, "transform") {
-        None => [x, y - ABOVE * size, x + length, y + BELOW * size],
-        Some(_) => [x - ABOVE * size, y - length, x + BELOW * size, y],
+        None => [x, y - ABOVE * size, x + length, y + below],
+        Some(_) => [x - ABOVE * size, y - length, x + below, y],
     };
     Written { text, sides }
 }
