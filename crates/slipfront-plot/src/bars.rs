@@ -11,7 +11,7 @@ use crate::legend::{Legend, Sample};
 use crate::note::Note;
 use crate::picture::{Picture, PictureError};
 use crate::series::{error_bar, interval};
-use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, OPACITY_BAR, Rgb, WIDTH_FRAME, curve_colour};
+use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, OPACITY_BAR, Rgb, WIDTH_FRAME, bar_colour};
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
 
@@ -160,7 +160,7 @@ impl<'a> Places<'a> {
                 bar,
                 name,
                 step: 0.0,
-                colour: curve_colour(0, 1),
+                colour: bar_colour(0, 1),
             };
             return Self {
                 names: group.bars.iter().map(|bar| bar.label.as_str()).collect(),
@@ -182,7 +182,7 @@ impl<'a> Places<'a> {
                     bar,
                     name,
                     step: index as f64 - 0.5 * (legend.len() - 1) as f64,
-                    colour: curve_colour(index, legend.len()),
+                    colour: bar_colour(index, legend.len()),
                 });
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::color_image::Image;
 use crate::geometry::{Align, Area, Point};
-use crate::style::{BLACK, Rgb, TICK_LENGTH, WHITE, WIDTH_FRAME, WIDTH_MARK};
+use crate::style::{BLACK, CurveStyle, Rgb, TICK_LENGTH, WHITE, WIDTH_CURVE, WIDTH_FRAME, WIDTH_MARK};
 use crate::text::{Text, width};
 
 pub(crate) struct Canvas {
@@ -23,11 +23,13 @@ pub(crate) struct Element {
 
 /// What can be drawn; areas are filled. An SVG and a PNG are made of nothing else.
 pub(crate) enum Primitive {
-    /// A line through points, and back to the first one if it is closed.
+    /// A line through points, and back to the first one if it is closed. The lengths of dashes and of the gaps after them; none for a
+    /// line without gaps.
     Line {
         points: Vec<Point>,
         width: f64,
         closed: bool,
+        dashes: &'static [f64],
     },
     Polygon(Vec<Point>),
     Rectangle(Area),
@@ -76,6 +78,18 @@ impl Canvas {
             points,
             width,
             closed,
+            dashes: &[],
+        };
+        self.add(line, colour, 1.0);
+    }
+
+    /// Adds a curve, or a part of one.
+    pub(crate) fn curve(&mut self, points: Vec<Point>, CurveStyle { colour, dashes }: CurveStyle) {
+        let line = Primitive::Line {
+            points,
+            width: WIDTH_CURVE,
+            closed: false,
+            dashes,
         };
         self.add(line, colour, 1.0);
     }

@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::canvas::Canvas;
 use crate::cell_means::CellMeans;
-use crate::frame::{BAR_MIN_HEIGHT, BAR_STEPS, BAR_WIDTH, bar_room, colour_bar};
-use crate::geometry::{Align, Area};
+use crate::color_bar::{ABOVE, ColourBar};
+use crate::geometry::Area;
 use crate::lattice_map::{Cells, MARK, TITLE_ROOM, block_count, check_length, circle, draw_titles, place};
 use crate::picture::{Picture, PictureError};
-use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH};
+use crate::style::{MARGIN, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH};
 use crate::text::Text;
 
 const GAP: f64 = 26.0;
@@ -18,7 +18,7 @@ const MAX_WIDTH: f64 = 520.0;
 /// Maps on one colour scale.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FieldMaps {
-    /// What the values are, over the colour bar; the letter after an underscore is a subscript.
+    /// What the values are, beside the colour bar or over it; the letter after an underscore is a subscript.
     pub value_title: String,
     /// The values at the ends of the colour bar; what lies beyond is drawn as they are.
     pub range: [f64; 2],
@@ -58,38 +58,27 @@ pub fn field_maps(maps: &FieldMaps) -> Result<Picture, PictureError> {
     let Some(first) = maps.maps.first() else {
         return Err(PictureError::Nothing("map"));
     };
-    let bar_width = bar_room(maps.range, BAR_STEPS, MAX_WIDTH);
+    let bar_of = |height| ColourBar::of(&maps.value_title, maps.range, height);
+    let bar_width = bar_of(MAX_WIDTH).room();
     let columns = maps.columns.clamp(1, maps.maps.len());
     let rows = maps.maps.len().div_ceil(columns);
     let room = (TEXT_WIDTH - 2.0 * MARGIN - bar_width) / columns as f64;
     let width = (room - GAP).min(MAX_WIDTH).round();
     let height = (width * (first.ny as f64 / first.nx as f64).clamp(0.2, 5.0)).round();
-    let top = MARGIN + TITLE_ROOM;
+    let pitch = height + TITLE_ROOM + GAP;
+    let bar = bar_of((rows - 1) as f64 * pitch + height);
+    let top = MARGIN + TITLE_ROOM + bar.upper_room();
     let area = |index: usize| {
         let (column, row) = ((index % columns) as f64, (index / columns) as f64);
-        let (x, y) = (
-            MARGIN + column * (width + GAP),
-            top + row * (height + TITLE_ROOM + GAP),
-        );
-        Area::new(x, y, width, height)
+        Area::new(MARGIN + column * (width + GAP), top + row * pitch, width, height)
     };
     let lowest = area((rows - 1) * columns).bottom();
     let bar_x = area(columns - 1).right() + GAP;
-    let bar = Area::new(
-        bar_x,
-        top,
-        BAR_WIDTH,
-        (lowest - MARGIN - TITLE_ROOM).max(BAR_MIN_HEIGHT),
-    );
-    let title = Text::math(&maps.value_title, SIZE_LABEL);
-    let right = bar.x + bar_width.max(title.width());
-    let mut canvas = Canvas::new(right + MARGIN, lowest.max(bar.bottom()) + MARGIN);
+    let mut canvas = Canvas::new(bar_x + bar.room() + MARGIN, lowest + MARGIN);
     for (index, map) in maps.maps.iter().enumerate() {
         draw_map(&mut canvas, map, area(index), maps.range);
     }
-    colour_bar(&mut canvas, bar, maps.range, BAR_STEPS);
-    // Over the bar, on the line of the maps' names.
-    canvas.text(&title, (bar.x, bar.y - 18.0), Align::Start, BLACK);
+    bar.draw(&mut canvas, (bar_x, top), top - TITLE_ROOM - ABOVE);
     canvas.finish()
 }
 

@@ -12,10 +12,6 @@ use crate::ticks::{Direction, Tick};
 pub(crate) const LOWER_ROOM: f64 = TICK_LENGTH + 7.0 + SIZE_TICK as f64 + SIZE_LABEL as f64 + MARGIN;
 /// How wide a colour bar is.
 pub(crate) const BAR_WIDTH: f64 = 30.0;
-/// The colour bar of a map is numbered in at most so many steps.
-pub(crate) const BAR_STEPS: usize = 5;
-/// A colour bar is drawn no shorter than this.
-pub(crate) const BAR_MIN_HEIGHT: f64 = 180.0;
 
 fn widest(ticks: &[Tick]) -> f64 {
     ticks.iter().map(|(_, text)| text.width()).fold(0.0, f64::max)

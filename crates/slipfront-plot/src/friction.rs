@@ -5,23 +5,27 @@ use crate::canvas::Canvas;
 use crate::friction_curve::{FrictionAxes, FrictionCurve, Kinetic};
 use crate::friction_layout::Panels;
 use crate::geometry::{Align, Area, Point};
-use crate::label_placement::{Candidate, Placer, around};
+use crate::label_placement::{Placer, around};
 use crate::legend::{Legend, Sample};
 use crate::picture::{Picture, PictureError, check_columns};
 use crate::series::segments;
 use crate::style::{
-    BLACK, COLUMN_WIDTH, CURVES, GREY, MARGIN, Rgb, SIZE_LABEL, WIDTH_CURVE, WIDTH_LEADER, WIDTH_MARK,
-    curve_colour,
+    BLACK, COLUMN_WIDTH, CURVES, CurveStyle, GREY, Rgb, SIZE_LABEL, WIDTH_LEADER, WIDTH_MARK, curve_style,
 };
 use crate::text::{Text, number};
 
 const DOT: f64 = 7.0;
+/// Above the panels of one curve, for what is written there.
+const ABOVE: f64 = 42.0;
+/// Between two texts there.
+const APART: f64 = 24.0;
 /// The kinetic window's shade.
 const SHADE: Rgb = [0x9a, 0xa5, 0xb1];
 
 /// Draws friction and, below it, N* against time or path, as wide as a journal's column (85 mm).
 ///
-/// One curve is drawn with all it knows: first slip, peak, kinetic window, lettered instants. Several are
+/// One curve is drawn with all it knows: first slip, peak, kinetic window, lettered instants. What a line or a window is called stands
+/// above the panels, where no curve is. Several are
 /// drawn over each other with their peaks, the lettered instants if only one has any, and a legend above. Curves
 /// of more than 4000 points are thinned to the first, last, lowest and highest point of every pixel column, which
 /// shows the same picture.
@@ -44,7 +48,7 @@ pub fn friction(curves: &[FrictionCurve], axes: &FrictionAxes) -> Result<Picture
     let named = curves.iter().filter(|_| curves.len() > 1);
     let names: Vec<_> = named.map(|curve| (curve.label.as_str(), Sample::Line)).collect();
     let legend = Legend::of("", &names, panels.x.start, panels.x.end);
-    let panels = panels.lowered(legend.height);
+    let panels = panels.lowered(if curves.len() > 1 { legend.height } else { ABOVE });
     let mut drawing = Drawing {
         canvas: Canvas::new(COLUMN_WIDTH, panels.bottom()),
         panels,
@@ -91,50 +95,61 @@ impl Drawing<'_> {
             }
             self.placer.avoid(&[(x, mu.start), (x, mu.end)]);
         }
-        self.draw_curve(curve, CURVES[0]);
+        self.draw_curve(curve, curve_style(0));
         if let Some(window) = &window {
             // Over the curve, which would hide it.
             let ends = [window.from, window.to].map(|t| (across.clamped(t), mu.clamped(window.mean)));
             self.canvas.line(ends[0], ends[1], WIDTH_MARK, CURVES[1]);
             self.placer.avoid(&ends);
         }
-        let marks = Marks::of(&self.panels, self.axes, curve, curve.peak);
-        self.keep_free(&marks.dots);
-        // Labels that can go in fewest places come first.
-        if let Some(window) = &window {
+        self.write_above(first_slip, window.as_ref());
+        self.draw_marks(&marks(&self.panels, curve, curve.peak));
+    }
+
+    /// Names the line of the first slip and the window of kinetic friction.
+    fn write_above(&mut self, first_slip: Option<f64>, window: Option<&Kinetic>) {
+        let panel = self.panels.area(&self.panels.mu);
+        let baseline = panel.y - 14.0;
+        // Centred on what it names, between two ends.
+        let placed = |middle: f64, text: &Text, [from, to]: [f64; 2]| {
+            (middle - 0.5 * text.width()).min(to - text.width()).max(from)
+        };
+        let slip = first_slip.map(|x| (x, Text::plain("first slip", SIZE_LABEL)));
+        let mut from = panel.x;
+        let mut to = panel.right();
+        if let Some(window) = window {
             let FrictionAxes { kinetic, unit, .. } = self.axes;
             let label = format!("{kinetic} = {}{unit}", with_uncertainty(window));
             let text = Text::math(&label, SIZE_LABEL);
-            self.write(&text, along_window(&self.panels, &text, window), CURVES[1]);
+            if let Some((_, slip)) = &slip {
+                from += slip.width() + APART;
+            }
+            let [start, end] = [window.from, window.to].map(|t| self.panels.x.clamped(t));
+            let x = placed(0.5 * (start + end), &text, [from, to]);
+            self.canvas.text(&text, (x, baseline), Align::Start, CURVES[1]);
+            to = x - APART;
         }
-        self.label_points(&marks.peak, &marks.dots);
-        if let Some(x) = first_slip {
-            let text = Text::plain("first slip", SIZE_LABEL);
-            self.write(&text, beside_line(&self.panels, &text, x), GREY);
+        if let Some((middle, text)) = slip {
+            let x = placed(middle, &text, [panel.x, to]);
+            self.canvas.text(&text, (x, baseline), Align::Start, GREY);
         }
-        self.label_points(&marks.instants, &marks.dots);
-        self.draw_dots(&marks.dots);
     }
 
     /// Several curves, with their peaks.
     fn draw_many(&mut self, curves: &[FrictionCurve]) {
-        let colour = |index| curve_colour(index, curves.len());
         for (index, curve) in curves.iter().enumerate() {
-            self.draw_curve(curve, colour(index));
+            self.draw_curve(curve, curve_style(index));
         }
         // Peaks last: no curve may hide one.
         for (index, curve) in curves.iter().enumerate() {
             if let Some(peak) = curve.peak.and_then(|peak| self.panels.point(peak)) {
-                self.canvas.dot(peak, DOT, colour(index));
+                self.canvas.dot(peak, DOT, curve_style(index).colour);
             }
         }
         // Letters of two curves could not be told apart.
         let mut lettered = curves.iter().filter(|curve| !curve.instants.is_empty());
         if let (Some(curve), None) = (lettered.next(), lettered.next()) {
-            let marks = Marks::of(&self.panels, self.axes, curve, None);
-            self.keep_free(&marks.dots);
-            self.label_points(&marks.instants, &marks.dots);
-            self.draw_dots(&marks.dots);
+            self.draw_marks(&marks(&self.panels, curve, None));
         }
     }
 
@@ -158,7 +173,7 @@ impl Drawing<'_> {
     }
 
     /// Draws friction and N*; labels keep off the former.
-    fn draw_curve(&mut self, curve: &FrictionCurve, colour: Rgb) {
+    fn draw_curve(&mut self, curve: &FrictionCurve, style: CurveStyle) {
         let Panels {
             x: across,
             mu,
@@ -169,127 +184,76 @@ impl Drawing<'_> {
         let sliding = segments(&curve.x, &curve.sliding_percent, across, sliding);
         for segment in friction.into_iter().chain(sliding) {
             match segment[..] {
-                [point] => self.canvas.dot(point, 0.6 * DOT, colour),
-                _ => self.canvas.polyline(segment, WIDTH_CURVE, colour),
+                [point] => self.canvas.dot(point, 0.6 * DOT, style.colour),
+                _ => self.canvas.curve(segment, style),
             }
         }
     }
 
-    /// Keeps labels off the dots.
-    fn keep_free(&mut self, dots: &[Point]) {
-        for (x, y) in dots {
+    /// Draws the dots of these marks, each with its label, that of the peak first: it is the longest.
+    fn draw_marks(&mut self, marks: &[Mark]) {
+        let dots: Vec<Point> = marks.iter().map(|mark| mark.at).collect();
+        for (x, y) in &dots {
             self.placer
                 .take(Area::new(x - DOT, y - DOT, 2.0 * DOT, 2.0 * DOT));
         }
-    }
-
-    fn draw_dots(&mut self, dots: &[Point]) {
-        for &dot in dots {
+        for mark in marks {
+            let text = mark.label(self.axes);
+            let size = (text.width(), text.height() + text.depth());
+            let Some(placed) = self.placer.place(around(mark.at, size, &dots)) else {
+                continue;
+            };
+            if let Some([from, to]) = placed.leader {
+                self.canvas.line(from, to, WIDTH_LEADER, GREY);
+            }
+            let at = (placed.area.x, placed.area.bottom() - text.depth());
+            self.canvas.text(&text, at, Align::Start, BLACK);
+        }
+        for dot in dots {
             self.canvas.dot(dot, DOT, BLACK);
         }
     }
+}
 
-    /// Writes the label of each of these points, which are among the `dots`.
-    fn label_points(&mut self, points: &[(Point, Text)], dots: &[Point]) {
-        for (at, text) in points {
-            self.write(text, around(*at, box_of(text), dots), BLACK);
+/// A point of a curve that is marked by a dot.
+struct Mark {
+    at: Point,
+    /// The instants there.
+    letters: Vec<String>,
+    /// Friction there, if it is the peak.
+    peak: Option<f64>,
+}
+
+impl Mark {
+    fn label(&self, axes: &FrictionAxes) -> Text {
+        let mut label = self.letters.join(", ");
+        if let Some(value) = self.peak {
+            let colon = if label.is_empty() { "" } else { ": " };
+            let FrictionAxes { peak, unit, .. } = axes;
+            label += &format!("{colon}{peak} = {}{unit}", number(value, 3));
         }
+        Text::math(&label, SIZE_LABEL)
     }
+}
 
-    /// Writes a text at the best of the places, with its leader.
-    fn write(&mut self, text: &Text, candidates: Vec<Candidate>, colour: Rgb) {
-        let Some(Candidate { area, leader, .. }) = self.placer.place(candidates) else {
-            return;
+/// The peak of a curve, if one is given, and its instants, as far as they lie in the panel. Those whose dots would cover each other are
+/// one mark: their letters could not be told apart.
+fn marks(panels: &Panels, curve: &FrictionCurve, peak: Option<Point>) -> Vec<Mark> {
+    let mark = |at, letters, peak| Mark { at, letters, peak };
+    let peak = peak.and_then(|(x, value)| Some(mark(panels.point((x, value))?, Vec::new(), Some(value))));
+    let mut marks: Vec<Mark> = peak.into_iter().collect();
+    for instant in &curve.instants {
+        let Some((x, y)) = panels.point((instant.x, instant.friction)) else {
+            continue;
         };
-        if let Some([from, to]) = leader {
-            self.canvas.line(from, to, WIDTH_LEADER, GREY);
-        }
-        let at = (area.x, area.bottom() - text.depth());
-        self.canvas.text(text, at, Align::Start, colour);
-    }
-}
-
-/// The points of a curve that are marked by dots, and their labels.
-struct Marks {
-    dots: Vec<Point>,
-    /// The peak, if it is marked, with its value and the letters of the instants there: several labels of one point would
-    /// take its neighbours' places.
-    peak: Vec<(Point, Text)>,
-    /// The other instants with their letters.
-    instants: Vec<(Point, Text)>,
-}
-
-impl Marks {
-    /// The instants of a curve that lie in the panel, and its peak if one is given.
-    fn of(panels: &Panels, axes: &FrictionAxes, curve: &FrictionCurve, peak: Option<Point>) -> Self {
-        let peak = peak.and_then(|(x, value)| Some((panels.point((x, value))?, value)));
-        let (mut dots, mut instants, mut at_peak) = (Vec::new(), Vec::new(), Vec::new());
-        for instant in &curve.instants {
-            let Some(at) = panels.point((instant.x, instant.friction)) else {
-                continue;
-            };
-            dots.push(at);
-            let letter = instant.letter.to_string();
-            let is_near = peak.is_some_and(|(peak, _)| libm::hypot(at.0 - peak.0, at.1 - peak.1) < 2.0);
-            if is_near && instant.letter.is_alphanumeric() {
-                at_peak.push(letter);
-            } else {
-                instants.push((at, Text::plain(&letter, SIZE_LABEL)));
-            }
-        }
-        dots.extend(peak.map(|(at, _)| at));
-        let colon = if at_peak.is_empty() { "" } else { ": " };
-        let label = |(at, value): (Point, f64)| {
-            let (letters, FrictionAxes { peak, unit, .. }) = (at_peak.join(", "), axes);
-            let label = format!("{letters}{colon}{peak} = {}{unit}", number(value, 3));
-            (at, Text::math(&label, SIZE_LABEL))
-        };
-        Self {
-            dots,
-            peak: peak.map(label).into_iter().collect(),
-            instants,
+        let letter = instant.letter.to_string();
+        let covers = |mark: &&mut Mark| libm::hypot(x - mark.at.0, y - mark.at.1) < DOT;
+        match marks.iter_mut().find(covers) {
+            Some(mark) => mark.letters.push(letter),
+            None => marks.push(mark((x, y), vec![letter], None)),
         }
     }
-}
-
-/// The width and the full height of a text.
-fn box_of(text: &Text) -> (f64, f64) {
-    (text.width(), text.height() + text.depth())
-}
-
-/// Places for a label of the window: within it if it is wide enough, rather above the mean than below.
-fn along_window(panels: &Panels, text: &Text, window: &Kinetic) -> Vec<Candidate> {
-    let panel = panels.area(&panels.mu);
-    let (from, to) = (panels.x.clamped(window.from), panels.x.clamped(window.to));
-    let mean = panels.mu.clamped(window.mean);
-    let (width, height) = box_of(text);
-    let room = (panel.x + MARGIN, panel.right() - MARGIN - width);
-    let x = (0.5 * (from + to - width)).min(room.1).max(room.0);
-    let candidate = |step: usize| {
-        let area = Area::new(x, panel.y + MARGIN + 8.0 * step as f64, width, height);
-        let above = mean - area.bottom();
-        Candidate {
-            area,
-            penalty: if above > 0.0 { above } else { 80.0 - above },
-            leader: None,
-        }
-    };
-    (0..(panel.height / 8.0) as usize).map(candidate).collect()
-}
-
-/// Places for a label of a vertical line: beside its upper end, or further down.
-fn beside_line(panels: &Panels, text: &Text, x: f64) -> Vec<Candidate> {
-    let panel = panels.area(&panels.mu);
-    let (width, height) = box_of(text);
-    let candidates = |step: usize| {
-        let down = 10.0 * step as f64;
-        [x - MARGIN - width, x + MARGIN].map(|x| Candidate {
-            area: Area::new(x, panel.y + MARGIN + down, width, height),
-            penalty: down,
-            leader: None,
-        })
-    };
-    (0..(panel.height / 10.0) as usize).flat_map(candidates).collect()
+    marks
 }
 
 /// The mean and, if known, its uncertainty, with as many digits as that deserves.

@@ -3,34 +3,40 @@
 use crate::axis::{Axis, range};
 use crate::canvas::Canvas;
 use crate::cell_means::CellMeans;
+use crate::color_bar::{ABOVE, ColourBar};
 use crate::color_image::{Image, level};
 use crate::contour::{contours, smoothed};
-use crate::frame::{
-    BAR_MIN_HEIGHT, BAR_STEPS, BAR_WIDTH, LOWER_ROOM, bar_room, colour_bar, left_room, left_side, lower_side,
-};
-use crate::geometry::{Align, Area};
+use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side};
+use crate::geometry::Area;
 use crate::lattice_map::{
     Cells, MARK, MIN_RATIO, block_count, check_block_size, check_length, circle, place, unit_of,
 };
 use crate::picture::{Picture, PictureError};
-use crate::style::{BLACK, MARGIN, RADIUS_MARKER, SIZE_LABEL, TEXT_WIDTH, TICK_LENGTH, WHITE, WIDTH_FRAME};
+use crate::style::{MARGIN, RADIUS_MARKER, TEXT_WIDTH, WHITE, WIDTH_FRAME};
 use crate::text::Text;
 use crate::ticks::{Direction, Tick, round_values};
 
 /// Between a panel and its colour bar.
 const GAP: f64 = 30.0;
-/// A map beside the other panel is no wider and no higher than this: 44 mm.
+/// A map beside the other panel is no wider than this, 44 mm, and no higher, unless the slider is long along y.
 const MAX_SIDE: f64 = 520.0;
-/// A slider longer than this, as wide as the page, has its map above the other panel.
-const MAX_RATIO_BESIDE: f64 = 3.0;
+const MAX_SIDE_LONG: f64 = 1000.0;
+/// A slider longer than this along x has its map above the other panel, as wide as the page.
+const MAX_RATIO: f64 = 3.0;
+/// That map is no thinner than this share of its length.
+const MIN_RATIO_ABOVE: f64 = 1.0 / 12.0;
 /// The other panel below a map is so high.
 const HEIGHT_BELOW: f64 = 340.0;
 /// Contours in at most so many steps.
 const CONTOUR_STEPS: usize = 8;
 /// Contours are those of means over as many cells around each as make this share of the map.
 const SMOOTHED_SHARE: usize = 64;
-/// Where the uppermost panel starts, below a line of text.
-const TOP: f64 = MARGIN + 22.0 + SIZE_LABEL as f64;
+/// Contours are so many times farther apart than cells scatter around these means: nearer ones would show that alone.
+const SCATTERS_APART: f64 = 3.0;
+/// Maps of fewer cells along a side have no contours, which would be mere ticks.
+const MIN_CELLS_OF_CONTOURS: usize = 8;
+/// A number at a panel's upper end stands half beyond it.
+const TOP: f64 = MARGIN + 8.0;
 
 /// The times at which the blocks of a lattice have first slipped.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,29 +109,31 @@ struct Panel {
     /// Where the room left of it begins.
     edge: f64,
     axes: [Axis; 2],
-    bar: Area,
-    /// The values at the ends of the bar.
-    range: [f64; 2],
+    bar: ColourBar,
 }
 
 impl Panel {
-    fn draw_axes(&self, canvas: &mut Canvas, [x_title, y_title]: [&str; 2], bar_title: &str) {
+    fn draw_axes(&self, canvas: &mut Canvas, [x_title, y_title]: [&str; 2]) {
         let area = self.area;
         canvas.frame(area);
-        let title = Text::fitted(y_title, area.height.max(BAR_MIN_HEIGHT));
+        let y_ticks = ticks(self.axes[1], area, Direction::Y);
         left_side(
             canvas,
             area,
             self.edge,
-            &ticks(self.axes[1], area, Direction::Y),
-            &title,
+            &y_ticks,
+            &Text::fitted(y_title, area.height),
         );
+        let x_ticks = ticks(self.axes[0], area, Direction::X);
         let title = Text::fitted(x_title, area.width + 2.0 * GAP);
-        lower_side(canvas, area, &ticks(self.axes[0], area, Direction::X), &title);
-        colour_bar(canvas, self.bar, self.range, BAR_STEPS);
-        let title = Text::plain(bar_title, SIZE_LABEL);
-        let right = self.bar.x + bar_room(self.range, BAR_STEPS, self.bar.height);
-        canvas.text(&title, (right, self.bar.y - 18.0), Align::End, BLACK);
+        lower_side(canvas, area, &x_ticks, &title);
+        self.bar
+            .draw(canvas, (area.right() + GAP, area.y), area.y - ABOVE);
+    }
+
+    /// Where its colour bar ends.
+    fn right(&self) -> f64 {
+        self.area.right() + GAP + self.bar.room()
     }
 }
 
@@ -144,68 +152,73 @@ struct Layout {
     height: f64,
     map: Panel,
     space_time: Panel,
-    unit: &'static str,
+    /// Titles of the axes of the map, and of the places of the other panel.
+    titles: [String; 3],
 }
 
 impl Layout {
     fn of(map: &FrontMap, space_time: &SpaceTime) -> Self {
         let lengths = [map.nx, map.ny].map(|count| count as f64 * map.block_size);
-        let (unit, factor) = unit_of(lengths[0].max(lengths[1]));
-        let sides = lengths.map(|length| Axis::linear(0.0, length * factor));
+        let units = lengths.map(unit_of);
+        let sides = [0, 1].map(|axis| Axis::linear(0.0, lengths[axis] * units[axis].1));
+        let [from, to] = space_time.places;
+        let (place_unit, factor) = unit_of(from.abs().max(to.abs()));
         let around = |[from, to]: [f64; 2]| {
             let (lo, hi) = range([from, to].into_iter());
             Axis::linear(lo, hi)
         };
-        let axes = [
-            around(space_time.places.map(|place| place * factor)),
-            around(space_time.times),
-        ];
+        let axes = [around([from * factor, to * factor]), around(space_time.times)];
         let first_slips: [f64; 2] = range(quantiles(&map.first_slips).into_iter()).into();
-        let bars = [first_slips, [0.0, 1.0]].map(|range| bar_room(range, BAR_STEPS, MAX_SIDE));
+        let map_bar = |height| ColourBar::of("first slip t*", first_slips, height);
+        let bar = |height| ColourBar::of("share that slides", [0.0, 1.0], height);
         let left = |axis: Axis| left_room(&axis.placed(MAX_SIDE, 0.0).ticks(Direction::Y, 5));
         let [map_left, left] = [left(sides[1]), left(axes[1])];
-        let ratio = lengths[1] / lengths[0];
-        let panel = |area: Area, room: f64, axes: [Axis; 2], range: [f64; 2]| Panel {
-            area,
+        let panel = |area: Area, room: f64, axes: [Axis; 2], bar: ColourBar| Panel {
             edge: area.x - room,
+            area,
             axes,
-            bar: Area::new(
-                area.right() + GAP,
-                area.y,
-                BAR_WIDTH,
-                area.height.max(BAR_MIN_HEIGHT),
-            ),
-            range,
+            bar,
         };
-        let (map, space_time) = if ratio * MAX_RATIO_BESIDE < 1.0 {
+        let ratio = lengths[1] / lengths[0];
+        let titles = [
+            ("x", units[0].0),
+            ("y", units[1].0),
+            (&space_time.place, place_unit),
+        ];
+        let (map, space_time) = if ratio * MAX_RATIO < 1.0 {
             let left = map_left.max(left);
-            let width = (TEXT_WIDTH - left - GAP - bars[0].max(bars[1]) - MARGIN).round();
-            let upper = Area::new(left, TOP, width, (width * ratio).max(BAR_MIN_HEIGHT).round());
+            let widest = map_bar(HEIGHT_BELOW).room().max(bar(HEIGHT_BELOW).room());
+            let width = (TEXT_WIDTH - left - GAP - widest - MARGIN).round();
+            let height = (width * ratio.max(MIN_RATIO_ABOVE)).round();
+            let map_bar = map_bar(height);
+            let upper = Area::new(left, TOP + map_bar.upper_room(), width, height);
             let below = upper.bottom() + LOWER_ROOM + TOP;
             let lower = Area::new(left, below, width, HEIGHT_BELOW);
             (
-                panel(upper, left, sides, first_slips),
-                panel(lower, left, axes, [0.0, 1.0]),
+                panel(upper, left, sides, map_bar),
+                panel(lower, left, axes, bar(HEIGHT_BELOW)),
             )
         } else {
             let ratio = ratio.clamp(MIN_RATIO, 1.0 / MIN_RATIO);
-            let width = (MAX_SIDE / ratio.max(1.0)).round();
-            let first = Area::new(map_left, TOP, width, (width * ratio).round());
-            let x = (first.right() + GAP + bars[0] + GAP + left).round();
-            let width = TEXT_WIDTH - x - GAP - bars[1] - MARGIN;
+            let height = match ratio > MAX_RATIO {
+                true => MAX_SIDE_LONG,
+                false => (MAX_SIDE * ratio.min(1.0)).round(),
+            };
+            let first = Area::new(map_left, TOP, (height / ratio).round(), height);
+            let first = panel(first, map_left, sides, map_bar(height));
+            let x = (first.right() + GAP + left).round();
+            let bar = bar(MAX_SIDE);
+            let width = TEXT_WIDTH - x - GAP - bar.room() - MARGIN;
             let second = Area::new(x, TOP, width.min(1.5 * MAX_SIDE).round(), MAX_SIDE);
-            (
-                panel(first, map_left, sides, first_slips),
-                panel(second, left, axes, [0.0, 1.0]),
-            )
+            (first, panel(second, left, axes, bar))
         };
-        let lowest = map.bar.bottom().max(map.area.bottom() + LOWER_ROOM);
+        let lowest = map.area.bottom().max(space_time.area.bottom());
         Self {
-            width: space_time.bar.x + bars[1] + MARGIN + TICK_LENGTH,
-            height: lowest.max(space_time.area.bottom() + LOWER_ROOM) + MARGIN,
+            width: map.right().max(space_time.right()) + MARGIN,
+            height: lowest + LOWER_ROOM,
             map,
             space_time,
-            unit,
+            titles: titles.map(|(title, unit)| format!("{title} ({unit})")),
         }
     }
 }
@@ -224,11 +237,10 @@ fn quantiles(times: &[f32]) -> [f64; 2] {
 fn draw_map(canvas: &mut Canvas, map: &FrontMap, layout: &Layout) {
     let (area, panel) = (layout.map.area, &layout.map);
     let [columns, rows] = CellMeans::cells(map.nx, map.ny);
-    Cells::of(map.nx, map.ny, &map.textured).draw(canvas, area, &map.first_slips, panel.range);
+    Cells::of(map.nx, map.ny, &map.textured).draw(canvas, area, &map.first_slips, panel.bar.range);
     let reach = 1 + columns.max(rows) / SMOOTHED_SHARE;
     let means = smoothed(&map.first_slips, columns, reach);
-    let (_, levels) = round_values(panel.range[0], panel.range[1], CONTOUR_STEPS);
-    for level in levels {
+    for level in levels(panel.bar.range, &map.first_slips, &means, columns.min(rows)) {
         for line in contours(&means, columns, level) {
             let at = |(x, y): (f64, f64)| ((x + 0.5) / columns as f64, (y + 0.5) / rows as f64);
             let points = line.into_iter().map(|point| place(area, at(point)));
@@ -248,8 +260,27 @@ fn draw_map(canvas: &mut Canvas, map: &FrontMap, layout: &Layout) {
             canvas.dot(at, RADIUS_MARKER, MARK);
         }
     }
-    let titles = ["x", "y"].map(|axis| format!("{axis} ({})", layout.unit));
-    panel.draw_axes(canvas, titles.each_ref().map(String::as_str), "first slip, t*");
+    let [x, y, _] = &layout.titles;
+    panel.draw_axes(canvas, [x, y]);
+}
+
+/// The levels of the contours of these means of first slips, on a map of so many cells along its shorter side.
+fn levels([lo, hi]: [f64; 2], first_slips: &[f32], means: &[f32], side: usize) -> Vec<f64> {
+    let deviations = first_slips
+        .iter()
+        .zip(means)
+        .map(|(time, mean)| f64::from(time - mean));
+    let deviations = deviations.filter(|deviation| deviation.is_finite());
+    let (sum, count) = deviations.fold((0.0, 0.0), |(sum, count), deviation| {
+        (sum + deviation * deviation, count + 1.0)
+    });
+    let scatter = f64::sqrt(sum / count);
+    // As many as there may be, where nothing scatters.
+    let steps = ((hi - lo) / (SCATTERS_APART * scatter)).min(CONTOUR_STEPS as f64) as usize;
+    match steps >= 2 && side >= MIN_CELLS_OF_CONTOURS {
+        true => round_values(lo, hi, steps).1,
+        false => Vec::new(),
+    }
 }
 
 fn draw_space_time(canvas: &mut Canvas, space_time: &SpaceTime, layout: &Layout) {
@@ -262,10 +293,12 @@ fn draw_space_time(canvas: &mut Canvas, space_time: &SpaceTime, layout: &Layout)
     canvas.images.push(Image {
         area: panel.area,
         columns,
-        levels: cells.map(|&share| level(f64::from(share), panel.range)).collect(),
+        levels: cells
+            .map(|&share| level(f64::from(share), panel.bar.range))
+            .collect(),
     });
-    let place = format!("{} ({})", space_time.place, layout.unit);
-    panel.draw_axes(canvas, [&place, "t*"], "share that slides");
+    let [.., place] = &layout.titles;
+    panel.draw_axes(canvas, [place, "t*"]);
 }
 
 #[cfg(test)]
@@ -342,6 +375,23 @@ mod tests {
         let mut level = plain.clone();
         level.first_slips.fill(3.0);
         assert!(lines(&plain) > lines(&level));
+    }
+
+    /// Blocks that slip at random have no contours, nor have strips.
+    #[test]
+    fn scatter_has_no_contours() {
+        let mut random = map(40, 40);
+        for (index, time) in random.first_slips.iter_mut().enumerate() {
+            *time = (index * index * 7919 % 1009) as f32;
+        }
+        let of = |map: &FrontMap| {
+            let [columns, rows] = CellMeans::cells(map.nx, map.ny);
+            let range = range(quantiles(&map.first_slips).into_iter()).into();
+            let means = smoothed(&map.first_slips, columns, 1);
+            levels(range, &map.first_slips, &means, columns.min(rows)).len()
+        };
+        assert_eq!((of(&random), of(&map(4, 400))), (0, 0));
+        assert!(of(&map(40, 40)) > 4);
     }
 
     #[test]

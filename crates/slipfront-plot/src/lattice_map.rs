@@ -6,16 +6,19 @@ use crate::color_image::{Image, level};
 use crate::geometry::{Align, Area, Point};
 use crate::mask_outline::outline;
 use crate::picture::PictureError;
-use crate::style::{BLACK, RADIUS_MARKER, Rgb, SIZE_LABEL, WHITE, WIDTH_MARK};
+use crate::style::{BLACK, RADIUS_MARKER, Rgb, SIZE_LABEL, SIZE_TICK, WHITE, WIDTH_MARK};
 use crate::text::Text;
 
 /// A strip is drawn no thinner than this share of its length.
 pub(crate) const MIN_RATIO: f64 = 1.0 / 6.0;
+/// An outline is so many times thinner than the stripes that it parts.
+const STRIPE_WIDTHS: f64 = 12.0;
 /// The second line over a map stands so far above it, the first one so far.
-const NOTE_ABOVE: f64 = 16.0;
-const LABEL_ABOVE: f64 = 56.0;
-/// The room that both lines take.
+const NOTE_ABOVE: f64 = 22.0;
+const LABEL_ABOVE: f64 = 62.0;
+/// The room that both lines take, and that the second one takes.
 pub(crate) const TITLE_ROOM: f64 = LABEL_ABOVE + SIZE_LABEL as f64;
+pub(crate) const NOTE_ROOM: f64 = NOTE_ABOVE + SIZE_TICK as f64;
 
 /// The number of blocks, if a lattice has any and they can be counted.
 pub(crate) fn block_count(nx: usize, ny: usize) -> Result<usize, PictureError> {
@@ -57,6 +60,8 @@ pub(crate) fn unit_of(length: f64) -> (&'static str, f64) {
 pub(crate) struct Cells {
     columns: usize,
     rows: usize,
+    /// The share of textured cells.
+    textured_share: f64,
     /// The corners of the lines around the textured cells.
     outlines: Vec<Vec<(usize, usize)>>,
 }
@@ -68,6 +73,8 @@ impl Cells {
         Self {
             columns,
             rows,
+            textured_share: textured.iter().filter(|&&textured| textured).count() as f64
+                / textured.len() as f64,
             outlines: outline(textured, columns, rows),
         }
     }
@@ -83,8 +90,15 @@ impl Cells {
         });
         let (columns, rows) = (self.columns as f64, self.rows as f64);
         let corner = |&(x, y): &(usize, usize)| place(area, (x as f64 / columns, y as f64 / rows));
-        for line in &self.outlines {
-            rimmed_line(canvas, line.iter().map(corner).collect(), BLACK);
+        let lines = self.outlines.iter();
+        let lines: Vec<Vec<Point>> = lines.map(|line| line.iter().map(corner).collect()).collect();
+        // As wide as a stripe of the same area and edge is, the texture or what lies between.
+        let edge: f64 = lines.iter().map(|line| length(line)).sum();
+        let share = self.textured_share.min(1.0 - self.textured_share);
+        let stripe = 2.0 * share * area.width * area.height / edge;
+        let width = WIDTH_MARK.min(stripe / STRIPE_WIDTHS);
+        for line in lines {
+            rimmed_line(canvas, line, width, BLACK);
         }
     }
 }
@@ -107,13 +121,19 @@ pub(crate) fn circle(canvas: &mut Canvas, (x, y): Point, colour: Rgb) {
     };
     let mut circle: Vec<Point> = (0..MARK_CORNERS).map(corner).collect();
     circle.push(circle[0]);
-    rimmed_line(canvas, circle, colour);
+    rimmed_line(canvas, circle, WIDTH_MARK, colour);
 }
 
 /// A line with a pale rim, seen on every colour of the ramp.
-pub(crate) fn rimmed_line(canvas: &mut Canvas, points: Vec<Point>, colour: [u8; 3]) {
-    canvas.polyline(points.clone(), WIDTH_MARK + 3.0, WHITE);
-    canvas.polyline(points, WIDTH_MARK, colour);
+fn rimmed_line(canvas: &mut Canvas, points: Vec<Point>, width: f64, colour: Rgb) {
+    canvas.polyline(points.clone(), 2.2 * width, WHITE);
+    canvas.polyline(points, width, colour);
+}
+
+/// The length of a line through points that are joined along x or y.
+fn length(points: &[Point]) -> f64 {
+    let step = |pair: &[Point]| (pair[0].0 - pair[1].0).abs() + (pair[0].1 - pair[1].1).abs();
+    points.windows(2).map(step).sum()
 }
 
 /// Writes two lines over a map.

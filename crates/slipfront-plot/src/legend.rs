@@ -3,7 +3,8 @@
 use crate::canvas::Canvas;
 use crate::geometry::{Align, Area, Point};
 use crate::series::marker;
-use crate::style::{BLACK, MARGIN, OPACITY_BAR, RADIUS_MARKER, Rgb, SIZE_TICK, WIDTH_CURVE, curve_colour};
+use crate::short_names::fitted_names;
+use crate::style::{BLACK, MARGIN, OPACITY_BAR, RADIUS_MARKER, SIZE_TICK, bar_colour, curve_style};
 use crate::text::Text;
 
 /// The names of several curves or bars, and before them what they are values of.
@@ -31,7 +32,6 @@ struct Entry {
     x: f64,
     y: f64,
     text: Text,
-    colour: Rgb,
 }
 
 const SAMPLE_WIDTH: f64 = 44.0;
@@ -56,8 +56,8 @@ impl Legend {
             _ => (left, 1),
         };
         let room = right - left - SAMPLE_WIDTH - NAME_GAP;
-        let fitted = |&(name, _): &(&str, Sample)| Text::shortened(name, SIZE_TICK, room);
-        let texts: Vec<Text> = names.iter().map(fitted).collect();
+        let whole: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
+        let texts = fitted_names(&whole, SIZE_TICK, room);
         // Equal columns, so that names stand under each other.
         let widest = texts.iter().map(Text::width).fold(0.0, f64::max) + SAMPLE_WIDTH + NAME_GAP + COLUMN_GAP;
         let columns = ((right - left + COLUMN_GAP) / widest).floor().max(1.0) as usize;
@@ -67,7 +67,6 @@ impl Legend {
             x: left + (index % columns) as f64 * widest,
             y: middle(first + index / columns),
             text,
-            colour: curve_colour(index, names.len()),
         };
         Self {
             height: ROW * (first + names.len().div_ceil(columns)) as f64 + 6.0,
@@ -80,16 +79,16 @@ impl Legend {
     pub(crate) fn draw(&self, canvas: &mut Canvas) {
         canvas.text(&self.title, self.title_at, Align::Start, BLACK);
         for (index, entry) in self.entries.iter().enumerate() {
-            let (x, y, colour) = (entry.x, entry.y, entry.colour);
+            let (x, y, style) = (entry.x, entry.y, curve_style(index));
             let (middle, end) = (x + 0.5 * SAMPLE_WIDTH, x + SAMPLE_WIDTH);
             if entry.sample == Sample::Patch {
                 let patch = Area::new(middle - 14.0, y - 12.0, 28.0, 24.0);
-                canvas.fill(patch, colour, OPACITY_BAR);
+                canvas.fill(patch, bar_colour(index, self.entries.len()), OPACITY_BAR);
             } else {
-                canvas.line((x, y), (end, y), WIDTH_CURVE, colour);
+                canvas.curve(vec![(x, y), (end, y)], style);
             }
             if entry.sample == Sample::Marker {
-                marker(canvas, index, (middle, y), RADIUS_MARKER, colour);
+                marker(canvas, index, (middle, y), RADIUS_MARKER, style.colour);
             }
             let at = (end + NAME_GAP, y + 0.5 * entry.text.height());
             canvas.text(&entry.text, at, Align::Start, BLACK);

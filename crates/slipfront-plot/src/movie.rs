@@ -6,7 +6,8 @@
 use crate::axis::Axis;
 use crate::canvas::Canvas;
 use crate::cell_means::CellMeans;
-use crate::frame::{BAR_STEPS, BAR_WIDTH, bar_room, colour_bar, left_room, left_side, lower_side};
+use crate::color_bar::BAR_STEPS;
+use crate::frame::{BAR_WIDTH, bar_room, colour_bar, left_room, left_side, lower_side};
 use crate::friction_curve::{FrictionAxes, FrictionCurve};
 use crate::geometry::{Align, Area, Point};
 use crate::label_placement::{Placer, around};

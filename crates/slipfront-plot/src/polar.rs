@@ -12,8 +12,8 @@ use crate::picture::{Picture, PictureError, check_columns};
 use crate::response::Response;
 use crate::series::{interval, marker};
 use crate::style::{
-    BLACK, BLANK, COLUMN_WIDTH, MARGIN, RADIUS_MARKER, SIZE_TICK, WIDTH_CURVE, WIDTH_FRAME, WIDTH_LEADER,
-    WIDTH_MARK, curve_colour,
+    BLACK, BLANK, COLUMN_WIDTH, MARGIN, RADIUS_MARKER, SIZE_TICK, WIDTH_FRAME, WIDTH_LEADER, WIDTH_MARK,
+    curve_style,
 };
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
@@ -92,10 +92,10 @@ pub fn polar(polar: &Polar) -> Result<Picture, PictureError> {
     );
     lower_side(&mut canvas, side, &ticks, &title);
     for (index, round) in rounds.iter().enumerate() {
-        ring.draw_band(&mut canvas, round, curve_colour(index, rounds.len()));
+        ring.draw_band(&mut canvas, round, curve_style(index).colour);
     }
     for (index, round) in rounds.iter().enumerate() {
-        ring.draw_curve(&mut canvas, round, index, curve_colour(index, rounds.len()));
+        ring.draw_curve(&mut canvas, round, index);
     }
     note.draw(&mut canvas);
     canvas.finish()
@@ -217,14 +217,15 @@ impl Ring {
         canvas.polygon(edge, colour, 0.2);
     }
 
-    fn draw_curve(&self, canvas: &mut Canvas, round: &Round, index: usize, colour: crate::style::Rgb) {
+    fn draw_curve(&self, canvas: &mut Canvas, round: &Round, index: usize) {
+        let style = curve_style(index);
         let path = round.path(self, |point| point.mean);
         if path.len() > 1 {
-            canvas.polyline(path, WIDTH_CURVE, colour);
+            canvas.curve(path, style);
         }
         for point in &round.points {
             let at = self.at(point.degrees, point.mean);
-            marker(canvas, index, at, RADIUS_MARKER, colour);
+            marker(canvas, index, at, RADIUS_MARKER, style.colour);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use tiny_skia::{
     Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PremultipliedColorU8,
-    Rect, Stroke, Transform,
+    Rect, Stroke, StrokeDash, Transform,
 };
 
 use crate::canvas::{Canvas, Element, Primitive};
@@ -15,7 +15,14 @@ use crate::style::Rgb;
 pub(crate) fn rgb(canvas: &Canvas) -> Option<Vec<u8>> {
     let mut ground = Ground::blank(canvas.width as u32, canvas.height as u32)?;
     ground.draw(canvas);
-    Some(ground.pixels().flatten().collect())
+    // In place, without opacity, which is full: the page is white below everything.
+    let mut bytes = ground.0.take();
+    let pixels = bytes.len() / 4;
+    for pixel in 0..pixels {
+        bytes.copy_within(4 * pixel..4 * pixel + 3, 3 * pixel);
+    }
+    bytes.truncate(3 * pixels);
+    Some(bytes)
 }
 
 /// Pixels on which canvases are drawn, one over the other.
@@ -70,11 +77,12 @@ fn draw(pixmap: &mut Pixmap, element: &Element) {
         } => letters(text, f64::from(*size), *at, *upwards),
     };
     let Some(path) = path else { return };
-    if let Primitive::Line { width, .. } = &element.primitive {
+    if let Primitive::Line { width, dashes, .. } = &element.primitive {
         let stroke = Stroke {
             width: *width as f32,
             line_cap: LineCap::Butt,
             line_join: LineJoin::Round,
+            dash: StrokeDash::new(dashes.iter().map(|&length| length as f32).collect(), 0.0),
             ..Stroke::default()
         };
         pixmap.stroke_path(&path, &paint, &stroke, Transform::identity(), None);

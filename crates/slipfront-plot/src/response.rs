@@ -10,7 +10,7 @@ use crate::legend::{Legend, Sample};
 use crate::note::Note;
 use crate::picture::{Picture, PictureError, check_columns};
 use crate::series::{error_bar, interval, marker, segments};
-use crate::style::{COLUMN_WIDTH, GREY, MARGIN, RADIUS_MARKER, WIDTH_CURVE, WIDTH_LEADER, curve_colour};
+use crate::style::{COLUMN_WIDTH, GREY, MARGIN, RADIUS_MARKER, WIDTH_LEADER, curve_style};
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
 
@@ -145,7 +145,7 @@ fn draw_sides(canvas: &mut Canvas, area: Area, x: &Axis, y: &Axis, responses: &R
 /// Draws all bands, then all curves, then all points: nothing hides a point.
 fn draw_curves(canvas: &mut Canvas, x: &Axis, y: &Axis, curves: &[Response]) {
     let opacity = if curves.len() > 4 { 0.13 } else { 0.2 };
-    let colour = |index: usize| curve_colour(index, curves.len());
+    let colour = |index: usize| curve_style(index).colour;
     for (index, curve) in curves.iter().enumerate() {
         let lows = segments(&curve.x, &curve.low, x, y);
         let highs = segments(&curve.x, &curve.high, x, y);
@@ -161,7 +161,7 @@ fn draw_curves(canvas: &mut Canvas, x: &Axis, y: &Axis, curves: &[Response]) {
     for (index, curve) in curves.iter().enumerate() {
         for segment in segments(&curve.x, &curve.mean, x, y) {
             if segment.len() > 1 {
-                canvas.polyline(segment, WIDTH_CURVE, colour(index));
+                canvas.curve(segment, curve_style(index));
             }
         }
     }

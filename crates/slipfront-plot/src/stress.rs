@@ -1,30 +1,34 @@
-//! Maps of the contact stress, with axes along the slider's sides.
+//! Maps of the contact stress, or of another field, with axes along the slider's sides.
 
 use crate::axis::Axis;
 use crate::canvas::Canvas;
 use crate::cell_means::CellMeans;
-use crate::frame::{
-    BAR_MIN_HEIGHT, BAR_STEPS, BAR_WIDTH, LOWER_ROOM, bar_room, colour_bar, left_room, left_side, lower_side,
-};
-use crate::geometry::{Align, Area};
+use crate::color_bar::{ABOVE, ColourBar};
+use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side};
+use crate::geometry::Area;
 use crate::lattice_map::{
-    Cells, MIN_RATIO, TITLE_ROOM, block_count, check_block_size, check_length, draw_titles, unit_of,
+    Cells, MIN_RATIO, NOTE_ROOM, TITLE_ROOM, block_count, check_block_size, check_length, draw_titles,
+    unit_of,
 };
 use crate::picture::{Picture, PictureError};
-use crate::style::{BLACK, MARGIN, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH};
+use crate::style::{MARGIN, SIZE_LABEL, SIZE_TICK, TEXT_WIDTH};
 use crate::text::{Text, number};
-use crate::ticks::Direction;
+use crate::ticks::{Direction, Tick};
 
-/// Maps in a row.
-const MAX_COLUMNS: usize = 6;
 const GAP: f64 = 30.0;
-/// A single map is no wider than this: 44 mm.
+/// Maps are no wider than this beside each other, 44 mm, and no higher.
 const MAX_WIDTH: f64 = 520.0;
 const MAX_HEIGHT: f64 = 620.0;
+/// A slider is long if it is so many times as long as wide. Along x, two maps stand side by side, or one if it is longer yet; along y,
+/// all stand in one row.
+const LONG: f64 = 3.0;
+const VERY_LONG: f64 = 10.0;
+/// Its map along x is no thinner than this share of its length.
+const MIN_RATIO_WIDE: f64 = 1.0 / 12.0;
 /// A side shorter than this has fewer numbers.
 const SHORT_SIDE: f64 = 130.0;
 
-/// One map of the contact stress.
+/// One map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StressMap {
     /// Its letter or name.
@@ -35,16 +39,6 @@ pub struct StressMap {
     pub mu_star: f64,
     /// Mean of every [cell](CellMeans), row by row from y = 0; NaN is left blank.
     pub values: Vec<f32>,
-}
-
-/// What the values of a map are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Stress {
-    /// Contact stress `tau_c*`, over the largest of the run.
-    #[default]
-    Contact,
-    /// Traction `tau_f* = |F_f|/(P mu_s l^2)`, blank over a texture.
-    Traction,
 }
 
 /// Maps of one lattice.
@@ -60,16 +54,18 @@ pub struct StressMaps {
     pub textured: Vec<bool>,
     /// The maps, in the order in which they are drawn.
     pub maps: Vec<StressMap>,
-    /// What their values are.
-    pub stress: Stress,
+    /// What their values are, beside the colour bar; the letter after an underscore is a subscript.
+    pub value_title: String,
+    /// The values at the ends of the colour bar; what lies beyond is drawn as they are.
+    pub range: [f64; 2],
     /// Whether mu* is a torque, of a drive that rotates.
     pub is_torque: bool,
 }
 
-/// Draws the maps in one row (in more, if there are more than six), at most as wide as a journal's text (175
-/// mm), all on one colour scale from 0 to 1, or to the largest traction, the textured area outlined.
+/// Draws the maps, three in a row, at most as wide as a journal's text (175 mm), all on one colour scale, the textured area
+/// outlined. Of a slider that is long along x there are two in a row, or one, and of one that is long along y all.
 ///
-/// A lattice more than six times as long as wide is drawn as if it were six times.
+/// A slider more than twelve times as long as wide, six times along y, is drawn as if it were that long.
 ///
 /// # Errors
 ///
@@ -81,23 +77,18 @@ pub fn stress(maps: &StressMaps) -> Result<Picture, PictureError> {
     let mut canvas = Canvas::new(layout.width, layout.height);
     let cells = Cells::of(maps.nx, maps.ny, &maps.textured);
     for (map, &area) in maps.maps.iter().zip(&layout.areas) {
-        cells.draw(&mut canvas, area, &map.values, layout.range);
+        cells.draw(&mut canvas, area, &map.values, maps.range);
         canvas.frame(area);
-        let mut label = title(map);
         let room = layout.pitch_x - 0.5 * GAP;
+        let [mut label, note] = titles(map, maps.is_torque, layout.is_wide);
         if label.width() > room {
             label = Text::shortened(&map.label, SIZE_LABEL, room);
         }
-        draw_titles(&mut canvas, area, &label, &friction(map, maps.is_torque));
+        draw_titles(&mut canvas, area, &label, &note);
     }
     layout.draw_axes(&mut canvas);
-    // As tall as all rows.
-    colour_bar(&mut canvas, layout.bar, layout.range, BAR_STEPS);
-    let title = match maps.stress {
-        Stress::Contact => Text::math("\u{3c4}_c*", SIZE_LABEL),
-        Stress::Traction => Text::math("\u{3c4}_f*", SIZE_LABEL),
-    };
-    canvas.text(&title, (layout.bar.centre().0, TOP - 22.0), Align::Middle, BLACK);
+    let top = layout.areas[0].y;
+    layout.bar.draw(&mut canvas, (layout.bar_x, top), top - ABOVE);
     canvas.finish()
 }
 
@@ -121,120 +112,144 @@ struct Layout {
     height: f64,
     /// Maps in a row.
     columns: usize,
+    is_wide: bool,
+    /// The room left of a map for its axis.
     left: f64,
     pitch_x: f64,
     areas: Vec<Area>,
-    bar: Area,
-    /// The ends of the colour scale.
-    range: [f64; 2],
-    /// The slider's sides along x and y, in `unit`.
-    sides: [Axis; 2],
-    unit: &'static str,
+    bar: ColourBar,
+    bar_x: f64,
+    sides: [Side; 2],
 }
 
-/// Where the uppermost maps start.
-const TOP: f64 = MARGIN + TITLE_ROOM;
+/// A side of the slider, in its unit.
+struct Side {
+    axis: Axis,
+    title: Text,
+}
+
+impl Side {
+    fn of(name: &str, length: f64) -> Self {
+        let (unit, factor) = unit_of(length);
+        Self {
+            axis: Axis::linear(0.0, length * factor),
+            title: Text::plain(&format!("{name} ({unit})"), SIZE_LABEL),
+        }
+    }
+
+    fn ticks(&self, from: f64, to: f64, direction: Direction) -> Vec<Tick> {
+        let most = if (to - from).abs() < SHORT_SIDE { 2 } else { 4 };
+        self.axis.placed(from, to).ticks(direction, most)
+    }
+}
 
 impl Layout {
     fn of(maps: &StressMaps) -> Self {
-        let (length_x, length_y) = (maps.nx as f64 * maps.block_size, maps.ny as f64 * maps.block_size);
-        let (unit, factor) = unit_of(length_x.max(length_y));
-        let sides = [length_x, length_y].map(|length| Axis::linear(0.0, length * factor));
-        let columns = maps.maps.len().min(MAX_COLUMNS);
-        let rows = maps.maps.len().div_ceil(MAX_COLUMNS);
-        let ratio = (length_y / length_x).clamp(MIN_RATIO, 1.0 / MIN_RATIO);
+        let [length_x, length_y] = [maps.nx, maps.ny].map(|count| count as f64 * maps.block_size);
+        let sides = [Side::of("x", length_x), Side::of("y", length_y)];
+        let ratio = length_y / length_x;
+        let is_wide = ratio * LONG < 1.0;
+        let most = match ratio {
+            _ if ratio * VERY_LONG < 1.0 => 1,
+            _ if is_wide => 2,
+            _ if ratio > LONG => maps.maps.len(),
+            _ => 3,
+        };
+        // As many in one row as in the others.
+        let rows = maps.maps.len().div_ceil(most);
+        let columns = maps.maps.len().div_ceil(rows);
+        let (thinnest, max_width) = match is_wide {
+            true => (MIN_RATIO_WIDE, f64::INFINITY),
+            false => (MIN_RATIO, MAX_WIDTH),
+        };
+        let ratio = ratio.clamp(thinnest, 1.0 / MIN_RATIO);
 
-        let range = [0.0, largest(maps)];
-        let left = left_room(&sides[1].placed(MAX_HEIGHT, 0.0).ticks(Direction::Y, 4));
-        let right = GAP + bar_room(range, BAR_STEPS, MAX_HEIGHT) + MARGIN;
-        let room = (TEXT_WIDTH - left - right + GAP) / columns as f64;
-        let map_width = (room - GAP).min(MAX_WIDTH).min(MAX_HEIGHT / ratio).round();
+        let bar_of = |height| ColourBar::of(&maps.value_title, maps.range, height);
+        let left = left_room(&sides[1].ticks(MAX_HEIGHT, 0.0, Direction::Y));
+        let right = bar_of(MAX_HEIGHT).room() + MARGIN;
+        // The last number below a map stands apart from the first one below the next.
+        let numbers = sides[0].ticks(0.0, MAX_WIDTH, Direction::X);
+        let gap = numbers.iter().map(|(_, text)| text.width()).fold(GAP, f64::max) + GAP;
+        let room = (TEXT_WIDTH - left - right - GAP + gap) / columns as f64;
+        let map_width = (room - gap).min(max_width).min(MAX_HEIGHT / ratio).round();
         let map_height = (map_width * ratio).round();
         // A narrow map may have a wider title.
-        let titles = maps.maps.iter().map(|map| title(map).width());
-        let widest = titles.fold(map_width, f64::max);
-        let pitch_x = (widest + GAP).min(room).max(map_width + GAP).round();
-        let pitch_y = map_height + LOWER_ROOM + TITLE_ROOM;
-        let lowest = (rows - 1) as f64 * pitch_y + map_height;
-        let slack = pitch_x - GAP - map_width;
+        let lines = maps
+            .maps
+            .iter()
+            .flat_map(|map| titles(map, maps.is_torque, is_wide));
+        let widest = lines.map(|line| line.width()).fold(map_width, f64::max);
+        let pitch_x = (widest + GAP).min(room).max(map_width + gap).round();
+        let overhang = 0.5 * (widest.min(pitch_x - GAP) - map_width);
+        let first_x = left.max(MARGIN + overhang).round();
+
+        let title_room = if is_wide { NOTE_ROOM } else { TITLE_ROOM };
+        let pitch_y = map_height + title_room + GAP;
+        let below = (rows - 1) as f64 * pitch_y + map_height;
+        let bar = bar_of(below);
+        let top = MARGIN + title_room.max(bar.upper_room());
         let area = |index: usize| {
-            let x = (left + (index % columns) as f64 * pitch_x + 0.5 * slack).round();
-            Area::new(x, TOP + (index / columns) as f64 * pitch_y, map_width, map_height)
+            let (column, row) = ((index % columns) as f64, (index / columns) as f64);
+            Area::new(
+                first_x + column * pitch_x,
+                top + row * pitch_y,
+                map_width,
+                map_height,
+            )
         };
-        let bar_x = left + columns as f64 * pitch_x;
+        let bar_x = area(columns - 1).right() + overhang + GAP;
         Self {
-            width: bar_x - GAP + right,
-            height: TOP + (lowest + LOWER_ROOM).max(BAR_MIN_HEIGHT + 2.0 * MARGIN),
+            width: bar_x + bar.room() + MARGIN,
+            height: top + below + LOWER_ROOM,
             columns,
+            is_wide,
             left,
             pitch_x,
             areas: (0..maps.maps.len()).map(area).collect(),
-            bar: Area::new(bar_x, TOP, BAR_WIDTH, lowest.max(BAR_MIN_HEIGHT)),
-            range,
+            bar,
+            bar_x,
             sides,
-            unit,
         }
     }
 
     /// Numbers below the lowest map of every column and left of every row.
     fn draw_axes(&self, canvas: &mut Canvas) {
-        let most = |side: f64| if side < SHORT_SIDE { 2 } else { 4 };
+        let [x, y] = &self.sides;
         for (index, &area) in self.areas.iter().enumerate() {
             if index % self.columns == 0 {
-                let axis = self.sides[1].placed(area.bottom(), area.y);
-                let ticks = axis.ticks(Direction::Y, most(area.height));
-                let title = Text::plain(&format!("y ({})", self.unit), SIZE_LABEL);
-                left_side(canvas, area, area.x - self.left, &ticks, &title);
+                let ticks = y.ticks(area.bottom(), area.y, Direction::Y);
+                left_side(canvas, area, area.x - self.left, &ticks, &y.title);
             }
             if index + self.columns >= self.areas.len() {
-                let axis = self.sides[0].placed(area.x, area.right());
-                let mut ticks = axis.ticks(Direction::X, most(area.width));
-                // No number may touch the first one of the next map.
-                let end = area.x + 0.5 * (area.width + self.pitch_x) - 4.0;
-                for (at, text) in &mut ticks {
-                    if *at + 0.5 * text.width() > end {
-                        *text = Text::default();
-                    }
-                }
-                let title = Text::plain(&format!("x ({})", self.unit), SIZE_LABEL);
-                lower_side(canvas, area, &ticks, &title);
+                let ticks = x.ticks(area.x, area.right(), Direction::X);
+                lower_side(canvas, area, &ticks, &x.title);
             }
         }
     }
 }
 
-/// The first line over a map.
-fn title(map: &StressMap) -> Text {
+/// The lines over a map, time and friction if that is known: two, or both in the second.
+fn titles(map: &StressMap, is_torque: bool, in_one: bool) -> [Text; 2] {
     let time = format!("t* = {}", number(map.time_star, 1));
-    let title = match map.label.as_str() {
+    let time = match map.label.as_str() {
         "" => time,
         // A map may be named after its time.
         label if label.starts_with("t*") => label.to_string(),
         label => format!("{label}: {time}"),
     };
-    Text::plain(&title, SIZE_LABEL)
-}
-
-/// The second line over a map; empty if the friction is not known.
-fn friction(map: &StressMap, is_torque: bool) -> Text {
     let what = if is_torque { "torque " } else { "" };
-    match map.mu_star.is_finite() {
-        true => Text::plain(&format!("{what}\u{3bc}* = {}", number(map.mu_star, 3)), SIZE_TICK),
-        false => Text::default(),
-    }
-}
-
-/// The upper end of the colour scale: 1 of the contact stress, and of the traction the largest there is.
-fn largest(maps: &StressMaps) -> f64 {
-    let values = maps.maps.iter().flat_map(|map| &map.values);
-    let largest = match maps.stress {
-        Stress::Contact => 0.0,
-        Stress::Traction => values
-            .copied()
-            .filter(|value| value.is_finite())
-            .fold(0.0, f32::max),
+    let friction = match map.mu_star.is_finite() {
+        true => format!("{what}\u{3bc}* = {}", number(map.mu_star, 3)),
+        false => String::new(),
     };
-    if largest > 0.0 { f64::from(largest) } else { 1.0 }
+    match in_one {
+        true if friction.is_empty() => [Text::default(), Text::plain(&time, SIZE_TICK)],
+        true => [
+            Text::default(),
+            Text::plain(&format!("{time}, {friction}"), SIZE_TICK),
+        ],
+        false => [Text::plain(&time, SIZE_LABEL), Text::plain(&friction, SIZE_TICK)],
+    }
 }
 
 #[cfg(test)]
@@ -257,24 +272,39 @@ mod tests {
             block_size: 1e-6,
             textured,
             maps: (0..count).map(map).collect(),
-            ..StressMaps::default()
+            value_title: "contact stress \u{3c4}_c*".to_owned(),
+            range: [0.0, 1.0],
+            is_torque: false,
         }
     }
 
-    /// Of a drive that rotates, and of one that pulls at some blocks only.
     #[test]
-    fn other_drives_have_other_titles_and_another_scale() {
+    fn maps_of_other_values_have_their_own_scale_and_titles() {
         let mut maps = maps(4, 4, 2);
-        (maps.is_torque, maps.stress) = (true, Stress::Traction);
-        maps.maps[1].values[3] = 1.25;
+        maps.is_torque = true;
+        (maps.value_title, maps.range) = ("\u{3c4}_f*".to_owned(), [0.0, 1.25]);
         maps.maps[0].values[2] = f32::NAN;
-        assert_eq!(Layout::of(&maps).range, [0.0, 1.25]);
         let svg = stress(&maps).unwrap().svg;
         assert!(svg.contains(">torque \u{3bc}* = 0.500</text>") && !svg.contains("NaN"));
-        // A slider that nothing has pulled yet.
-        maps.maps.iter_mut().for_each(|map| map.values.fill(0.0));
-        assert_eq!(Layout::of(&maps).range, [0.0, 1.0]);
-        stress(&maps).unwrap();
+        assert!(svg.contains(">1.0</text>") && svg.contains(">f</text>"));
+    }
+
+    #[test]
+    fn maps_stand_three_in_a_row_and_those_of_long_sliders_above_each_other_or_in_one_row() {
+        for (nx, ny, count, columns) in [
+            (50, 50, 6, 3),
+            (50, 50, 4, 2),
+            (50, 50, 5, 3),
+            (50, 50, 1, 1),
+            (200, 50, 6, 2),
+            (400, 4, 6, 1),
+            (4, 400, 6, 6),
+        ] {
+            let layout = Layout::of(&maps(nx, ny, count));
+            assert_eq!(layout.columns, columns, "{nx} x {ny}, {count}");
+            let bottom = layout.areas[count - 1].bottom();
+            assert_eq!(layout.height, bottom + LOWER_ROOM);
+        }
     }
 
     #[test]

@@ -51,8 +51,27 @@ pub(crate) const CURVES: [Rgb; 7] = [
     [0x00, 0x00, 0x00],
 ];
 
-/// The colour of curve `index` out of `count`. More curves than the palette holds run through [`ramp`].
-pub(crate) fn curve_colour(index: usize, count: usize) -> Rgb {
+/// How a curve is told from others.
+#[derive(Clone, Copy)]
+pub(crate) struct CurveStyle {
+    pub(crate) colour: Rgb,
+    /// The lengths of its dashes and of the gaps after them; none for a whole line.
+    pub(crate) dashes: &'static [f64],
+}
+
+/// What tells curves of one colour apart.
+const DASHES: [&[f64]; 4] = [&[], &[20.0, 8.0], &[6.0, 6.0], &[20.0, 6.0, 6.0, 6.0]];
+
+/// The style of curve `index`: those that the palette has no colours for are dashed.
+pub(crate) fn curve_style(index: usize) -> CurveStyle {
+    CurveStyle {
+        colour: CURVES[index % CURVES.len()],
+        dashes: DASHES[index / CURVES.len() % DASHES.len()],
+    }
+}
+
+/// The colour of bar `index` out of `count`. More bars than the palette has colours run through [`ramp`].
+pub(crate) fn bar_colour(index: usize, count: usize) -> Rgb {
     if count <= CURVES.len() {
         return CURVES[index % CURVES.len()];
     }

@@ -49,9 +49,17 @@ fn tag(element: &Element) -> String {
             points,
             width,
             closed,
+            dashes,
         } => {
             let data = path_data(points) + if *closed { "Z" } else { "" };
-            format!("<path d=\"{data}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"/>\n")
+            let lengths: Vec<String> = dashes.iter().map(f64::to_string).collect();
+            let dashed = match lengths.join(" ") {
+                none if none.is_empty() => none,
+                lengths => format!(" stroke-dasharray=\"{lengths}\""),
+            };
+            format!(
+                "<path d=\"{data}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"{dashed}/>\n"
+            )
         }
         Primitive::Polygon(points) => format!("<path d=\"{}Z\" {fill}/>\n", path_data(points)),
         Primitive::Rectangle(area) => format!("<rect {} {fill}/>\n", sides(area)),

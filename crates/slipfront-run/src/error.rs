@@ -44,6 +44,11 @@ pub enum ResultsError {
     )]
     TooManySnapshots(usize),
     #[cfg(feature = "plot")]
+    #[error(
+        "{path} has no maps of {field}: name it in `output.fields`, leave `output.snapshots` at its default or list instants, and run the case again"
+    )]
+    NoMaps { path: PathBuf, field: &'static str },
+    #[cfg(feature = "plot")]
     #[error("cannot draw {name}: {source}")]
     Picture {
         name: &'static str,

@@ -374,6 +374,11 @@ fn dimensionless(runs: &[Run], asked: Option<Against>) -> Result<(Scale, Option<
     Ok((scale, note.map(str::to_owned)))
 }
 
+/// A prefix of a unit as it is printed.
+pub(crate) fn in_print(prefix: &'static str) -> &'static str {
+    if prefix == "u" { "\u{b5}" } else { prefix }
+}
+
 /// Axes of newtons, or of coefficients, and of seconds or metres, with the prefixes that suit the largest numbers.
 fn in_si(runs: &[Run], against: Against, measure: Measure) -> Result<Scale, ResultsError> {
     let turns = runs.iter().all(Run::is_rotation);
@@ -410,7 +415,7 @@ fn in_si(runs: &[Run], against: Against, measure: Measure) -> Result<Scale, Resu
             *factor /= unit;
         }
     }
-    let [along, up] = prefixes.map(|(_, prefix)| if prefix == "u" { "\u{b5}" } else { prefix });
+    let [along, up] = prefixes.map(|(_, prefix)| in_print(prefix));
     let (quantity, letter, unit) = match turns {
         _ if measure == Measure::Coefficient => ("friction coefficient \u{3bc}", '\u{3bc}', String::new()),
         true => ("torque", 'M', format!("{up}N m")),

@@ -4,7 +4,7 @@
 use {
     crate::error::ResultsError,
     crate::fields::{self, FieldFrame, Reduction},
-    crate::friction_picture,
+    crate::friction_picture::{self, in_print},
     crate::precursors::{self, PrecursorRow},
     crate::series::{self, SeriesRow},
     crate::summary::{InstantSummary, Summary, read_summary},
@@ -14,9 +14,10 @@ use {
     slipfront::{Edge, Edges},
     slipfront_case::case::{MAX_MAPS, mapped_field, memory_to_draw},
     slipfront_case::case_file::{CaseFile, KineticFriction, Motion},
+    slipfront_case::field_info::field_info,
+    slipfront_case::number_format::si_prefix,
     slipfront_plot::{
-        self as plot, CellMeans, FrontMap, Picture, Response, Responses, SpaceTime, Stress, StressMap,
-        StressMaps,
+        self as plot, CellMeans, FrontMap, Picture, Response, Responses, SpaceTime, StressMap, StressMaps,
     },
     std::{
         collections::HashMap,
@@ -147,24 +148,73 @@ impl<'a> MuStar<'a> {
     }
 }
 
-/// Draws the stress maps of a run; none if it kept no such field.
+/// Draws the maps of the stress of a run; none if it kept no such field.
 #[cfg(feature = "plot")]
 fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
-    // Files that have lost their case can be drawn as well.
+    let case = case_of(folder)?;
+    draw_maps(folder, case.as_ref().map_or(Field::ContactStress, mapped_field))
+}
+
+/// Draws the maps of a field of a run folder from its files, which must be there and undamaged.
+///
+/// # Errors
+/// When it cannot be read, or holds no such maps.
+#[cfg(feature = "plot")]
+pub fn draw_field(folder: &Path, field: Field) -> Result<Picture, ResultsError> {
+    draw_maps(folder, field)?.ok_or_else(|| ResultsError::NoMaps {
+        path: folder.join(FIELDS),
+        field: field_info(field).name,
+    })
+}
+
+/// The case of a run folder; files that have lost theirs can be drawn as well.
+#[cfg(feature = "plot")]
+fn case_of(folder: &Path) -> Result<Option<CaseFile>, ResultsError> {
     let path = folder.join(CASE);
-    let case = path.exists().then(|| CaseFile::load(&path, &[])).transpose()?;
-    // The field, what it is, and its unit in the file.
-    let (field, stress, unit) = match case.filter(|case| mapped_field(case) == Field::Traction) {
-        Some(case) => {
+    let case = path.exists().then(|| CaseFile::load(&path, &[])).transpose();
+    Ok(case?)
+}
+
+/// What a colour bar says of a field, the unit in which its values are drawn, and the values at the ends of the bar.
+#[cfg(feature = "plot")]
+fn map_scale(
+    field: Field,
+    case: Option<&CaseFile>,
+    values: impl Iterator<Item = f32>,
+) -> (String, f32, [f64; 2]) {
+    let (mut lo, mut hi) = values
+        .filter(|value| value.is_finite())
+        .map(f64::from)
+        .fold((0.0, 0.0), |(lo, hi): (f64, f64), value| {
+            (lo.min(value), hi.max(value))
+        });
+    let info = field_info(field);
+    let (title, unit) = match (field, case) {
+        (Field::ContactStress, _) => return ("contact stress \u{3c4}_c*".to_owned(), 1.0, [0.0, 1.0]),
+        (Field::Sliding, _) => return ("share that slides".to_owned(), 1.0, [0.0, 1.0]),
+        (Field::Traction, Some(case)) => {
             let unit = case.load.pressure.si() * case.friction.mu_static;
-            (Field::Traction, Stress::Traction, unit as f32)
+            ("traction \u{3c4}_f*".to_owned(), unit)
         }
-        None => (Field::ContactStress, Stress::Contact, 1.0),
+        _ => {
+            let (size, prefix) = si_prefix(hi.max(-lo));
+            let unit = info.unit.replace(" s-1", "/s");
+            (format!("{} ({}{unit})", info.long_name, in_print(prefix)), size)
+        }
     };
+    (lo, hi) = (lo / unit, hi / unit);
+    (title, unit as f32, if lo < hi { [lo, hi] } else { [0.0, 1.0] })
+}
+
+/// Draws the maps of a field of a run; none if it has not kept it.
+#[cfg(feature = "plot")]
+fn draw_maps(folder: &Path, field: Field) -> Result<Option<Picture>, ResultsError> {
     let fields = fields::read_maps::<CellMeans>(&folder.join(FIELDS), field, MAX_MAPS)?;
     if fields.names.is_empty() || fields.frames.is_empty() {
         return Ok(None);
     }
+    let values = fields.frames.iter().flat_map(|frame| &frame.values).flatten();
+    let (value_title, unit, range) = map_scale(field, case_of(folder)?.as_ref(), values.copied());
     let point = |row: SeriesRow| (row.step, row.mu_star);
     let rows = series::read_rows(&folder.join(SERIES), SERIES, point)?;
     let Summary { instants, motion, .. } = read_summary(folder)?;
@@ -172,7 +222,7 @@ fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
     let (nx, ny) = (fields.columns(), fields.rows());
     let maps = fields.frames.into_iter().map(|frame| StressMap {
         mu_star: mu_star.at(&frame),
-        label: frame.label,
+        label: separated(&frame.label),
         time_star: frame.time_star,
         values: {
             let values = frame.values.into_iter().next().unwrap_or_default();
@@ -185,14 +235,21 @@ fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
         block_size: fields.block_size * fields.stride as f64,
         textured: fields.textured,
         maps: maps.collect(),
-        stress,
+        value_title,
+        range,
         is_torque: motion == Some(Motion::Rotation),
     };
     let drawn = plot::stress(&maps).map(Some);
     drawn.map_err(|source| ResultsError::Picture {
-        name: "stress",
+        name: field_info(field).name,
         source,
     })
+}
+
+/// The letters of the instants of a map, which its file joins.
+#[cfg(feature = "plot")]
+fn separated(letters: &str) -> String {
+    letters.chars().map(String::from).collect::<Vec<_>>().join(", ")
 }
 
 /// Rows of the kymograph that are shown at least, where the run has so many.

@@ -2,9 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use slipfront_case::case::PROGRAM;
 use slipfront_case::disk::{is_same, read_limited, write_atomic};
+use slipfront_case::field_info::{FIELDS, field_info, field_named};
 use slipfront_case::machine::available_of;
 use slipfront_case::number_format::{byte_size, four_digits, with_si_prefix};
 use slipfront_plot::Picture;
@@ -25,7 +27,8 @@ use crate::threads::set_threads;
   slipfront plot results/baseline
   slipfront plot results/circle results/groove_across -o results/overlay
   slipfront plot results/circle --units si --against displacement -o results/newtons
-  slipfront plot results/circle --data force.csv --x time_s --y force_n")]
+  slipfront plot results/circle --data force.csv --x time_s --y force_n
+  slipfront plot results/circle --field traction -o results/traction")]
 pub(crate) struct Plot {
     /// Run folders
     #[arg(required = true, value_name = "DIR")]
@@ -36,6 +39,9 @@ pub(crate) struct Plot {
     /// Draw friction alone, against this [default: time, or where runs of different materials can be compared]
     #[arg(long)]
     against: Option<AgainstName>,
+    /// Draw maps of this field of one run alone
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(FIELDS.map(|info| info.name)), conflicts_with_all = ["units", "against", "data"])]
+    field: Option<String>,
     /// A measured record to draw with the curves, in SI units: a table of text (.csv)
     #[arg(long, value_name = "FILE", requires_all = ["x", "y"])]
     data: Option<PathBuf>,
@@ -72,7 +78,7 @@ pub(crate) struct Plot {
     /// What is added to its times or displacements, in s or m [default: what fits the first run best]
     #[arg(long, value_name = "NUMBER", requires = "data", allow_negative_numbers = true)]
     shift: Option<f64>,
-    /// Folder for the pictures [default: the run's own; results/overlay for several and for friction alone]
+    /// Folder for the pictures [default: the run's own; results/overlay for several, for friction and for a field alone]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Replace pictures that stand there
@@ -109,11 +115,25 @@ impl Plot {
             runs.push(run);
         }
         expect_memory(&self.folders)?;
-        let (out, drawn) = match self.folders.as_slice() {
-            [folder] if self.units.is_none() && self.against.is_none() && self.data.is_none() => {
+        let (out, drawn) = match (
+            self.field.as_deref().and_then(field_named),
+            self.folders.as_slice(),
+        ) {
+            (Some(field), [folder]) => {
+                let picture = pictures::draw_field(folder, field).map_err(Failure::input)?;
+                (
+                    PathBuf::from("results/overlay"),
+                    vec![(field_info(field).name, picture)],
+                )
+            }
+            (Some(_), _) => {
+                let sentence = "--field draws the maps of one run: name one folder";
+                return Err(Failure::input(anyhow::anyhow!(sentence)));
+            }
+            (None, [folder]) if self.units.is_none() && self.against.is_none() && self.data.is_none() => {
                 (folder.clone(), pictures::draw(folder).map_err(Failure::input)?)
             }
-            folders => {
+            (None, folders) => {
                 let Overlay { picture, note, fit } = self.overlay(folders)?;
                 if let Some(note) = note {
                     print_message(&format!("note: {note}\n"));

@@ -34,6 +34,56 @@ fn plot_lays_two_runs_over_each_other() {
     assert!(svg.contains(">slow<") && svg.contains(">fast<"));
 }
 
+/// Names that are cut to fit the legend still tell the runs apart.
+#[test]
+fn long_names_of_runs_are_told_apart() {
+    let workspace = Workspace::small();
+    let long = "a_name_of_a_folder_that_no_legend_has_room_for_at_all";
+    let folders = ["slow", "fast"].map(|speed| format!("{long}/{speed}/{long}"));
+    for (folder, v_star) in folders.iter().zip([0.1, 0.2]) {
+        workspace.succeed(&format!("run small.toml -o {folder} --set drive.v_star={v_star}"));
+    }
+    workspace.succeed(&format!("plot {}", folders.join(" ")));
+    let svg = svg(&workspace, "results/overlay");
+    assert!(
+        svg.contains("slow") && svg.contains("fast") && !svg.contains(long),
+        "{svg}"
+    );
+}
+
+#[test]
+fn plot_draws_maps_of_a_field_that_was_kept() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o a --set drive.direction=30");
+    let title = |field: &str| {
+        workspace.succeed(&format!("plot a --field {field} -o maps"));
+        let svg = String::from_utf8(workspace.read(&format!("maps/{field}.svg"))).unwrap();
+        assert!(workspace.exists(&format!("maps/{field}.png")) && svg.matches("<image").count() > 4);
+        svg
+    };
+    assert!(title("traction").contains(">traction \u{3c4}</text>"));
+    assert!(title("displacement_y").contains(">displacement along y from rest (pm)</text>"));
+    assert!(title("sliding").contains(">share that slides</text>"));
+    let said = workspace.fail("plot a --field velocity_x", 2);
+    assert!(
+        said.contains("has no maps of velocity_x: name it in `output.fields`"),
+        "{said}"
+    );
+    assert!(
+        workspace
+            .fail("plot a --field speed", 2)
+            .contains("[possible values: contact_stress_star")
+    );
+    let said = workspace.fail("plot a a --field traction", 2);
+    assert!(said.contains("--field draws the maps of one run"), "{said}");
+    // Of one block, two instants are one; the fields file joins their letters.
+    let equal = "--set friction.sigma_static_star=0 --set friction.sigma_kinetic_star=0";
+    workspace.succeed(&format!(
+        "run small.toml -o single --set slider.blocks=[1,1] {equal}"
+    ));
+    assert!(workspace.read_text("single/stress.svg").contains(">C, D: t* = "));
+}
+
 #[test]
 fn plot_refuses_what_is_no_run() {
     let workspace = Workspace::small();

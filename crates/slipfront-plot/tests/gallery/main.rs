@@ -1,0 +1,361 @@
+//! Pictures of every kind and of unusual shapes: no two texts overlap, none leaves the page, and of a single run no curve runs through
+//! one.
+//!
+//! With a folder in `SLIPFRONT_GALLERY` they are written there, to be looked at.
+
+// Helpers of tests are not tests by themselves to clippy.
+#![allow(clippy::unwrap_used)]
+// A picture may get further parts, which most cases leave out.
+#![allow(clippy::needless_update)]
+
+mod page;
+mod runs;
+
+use std::path::Path;
+
+use slipfront_plot::{
+    Bar, BarChart, BarGroup, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, HeatAxis, HeatMap, Kinetic,
+    Picture, PictureError, Response, Responses, Shape, Sketch, Stroke, StrokeStyle, bars, field_maps,
+    friction, front, heat_map, response, shapes, sketch, stress,
+};
+
+use page::Page;
+use runs::*;
+
+const UM: f64 = 1e-6;
+const INSTANTS: [&str; 6] = ["A", "B", "C", "D", "E", "F"];
+
+/// Checks a picture, and writes it if it is to be looked at.
+fn check(name: &str, picture: Result<Picture, PictureError>) -> Page {
+    let picture = picture.unwrap_or_else(|error| panic!("{name}: {error}"));
+    if let Some(folder) = std::env::var_os("SLIPFRONT_GALLERY") {
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::write(Path::new(&folder).join(format!("{name}.png")), &picture.png).unwrap();
+        std::fs::write(Path::new(&folder).join(format!("{name}.svg")), &picture.svg).unwrap();
+    }
+    let page = Page::of(&picture.svg);
+    assert!(!page.texts.is_empty(), "{name} has no text");
+    let faults = page.faults();
+    assert!(faults.is_empty(), "{name}:\n{}", faults.join("\n"));
+    page
+}
+
+fn star(curves: &[FrictionCurve]) -> Result<Picture, PictureError> {
+    friction(curves, &FrictionAxes::default())
+}
+
+#[test]
+fn a_run() {
+    let with_uncertainty = |mut curve: FrictionCurve| {
+        curve.kinetic = curve.kinetic.map(|window| Kinetic {
+            uncertainty: Some(0.0042),
+            ..window
+        });
+        curve
+    };
+    let early = {
+        // Everything at once: the first instants on one another, the window from the start.
+        let mut curve = baseline();
+        curve.first_slip = Some(0.5);
+        for (instant, x) in curve.instants.iter_mut().zip([0.0, 0.5, 79.0, 79.2, 0.2, 130.0]) {
+            (instant.x, instant.friction) = (x, if x > 70.0 { 0.876 } else { 0.0 });
+        }
+        curve.kinetic = curve.kinetic.map(|window| Kinetic { from: 2.0, ..window });
+        curve
+    };
+    let late = {
+        let mut curve = with_uncertainty(baseline());
+        curve.first_slip = Some(255.0);
+        curve.kinetic = curve.kinetic.map(|window| Kinetic {
+            from: 250.0,
+            ..window
+        });
+        curve
+    };
+    for (name, curve) in [
+        ("run", baseline()),
+        ("run-uncertain", with_uncertainty(baseline())),
+        ("run-single-block", single_block(94.1)),
+        ("run-single-block-many", single_block(20.0)),
+        ("run-fast", fast()),
+        ("run-early", early),
+        ("run-late", late),
+    ] {
+        let page = check(name, star(&[curve]));
+        let crossed = page.crossed();
+        assert!(crossed.is_empty(), "{name}: {crossed:?}");
+    }
+    let newtons = FrictionAxes {
+        x: "drive displacement (pm)".to_owned(),
+        friction: "friction force (\u{b5}N)".to_owned(),
+        peak: "F_s".to_owned(),
+        kinetic: "F_k".to_owned(),
+        unit: " \u{b5}N".to_owned(),
+    };
+    check("run-newtons", friction(&[with_uncertainty(fast())], &newtons));
+}
+
+/// The legend of an overlay, name after name.
+fn legend(page: &Page, count: usize) -> Vec<String> {
+    let texts = page.texts.iter().map(|written| written.text.clone());
+    let names: Vec<String> = texts
+        .filter(|text| text.contains("run") || text.contains('\u{2026}'))
+        .collect();
+    assert_eq!(names.len(), count, "{names:?}");
+    names
+}
+
+#[test]
+fn overlays() {
+    let overlay = |name: &str, labels: &[String]| {
+        let speeds = labels.iter().enumerate();
+        let curves: Vec<_> = speeds
+            .map(|(k, label)| at_speed(label, 0.05 * k as f64))
+            .collect();
+        let page = check(name, star(&curves));
+        let mut names = legend(&page, labels.len());
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), labels.len(), "{name}: {names:?}");
+    };
+    let numbered = |count: usize, label: &dyn Fn(usize) -> String| (1..=count).map(label).collect::<Vec<_>>();
+    overlay("overlay-2", &numbered(2, &|k| format!("run {k}")));
+    overlay("overlay-10", &numbered(10, &|k| format!("run {k}")));
+    overlay("overlay-30", &numbered(30, &|k| format!("run {k}")));
+    let measured = FrictionCurve {
+        instants: Vec::new(),
+        ..at_speed("force.csv", 0.1)
+    };
+    check("overlay-measured", star(&[baseline(), measured]));
+    let long = "results/a_rather_long_name_of_a_study_of_many_materials";
+    overlay("overlay-long", &numbered(4, &|k| format!("{long}/speed_0.{k}")));
+    overlay(
+        "overlay-equal",
+        &numbered(4, &|k| format!("series_{k}/{long}/{long}")),
+    );
+    overlay(
+        "overlay-alike",
+        &numbered(3, &|k| format!("{long}/{k}/{long}/run")),
+    );
+}
+
+#[test]
+fn stress_on_every_shape() {
+    let maps = |nx, ny, texture| stress_maps(nx, ny, UM, texture, &INSTANTS);
+    for (name, maps) in [
+        ("stress", maps(50, 50, CIRCLE)),
+        (
+            "stress-1x1",
+            stress_maps(1, 1, UM, SMOOTH, &["A", "B, C, D", "E", "F"]),
+        ),
+        ("stress-1x100", maps(1, 100, SMOOTH)),
+        ("stress-100x1", maps(100, 1, SMOOTH)),
+        ("stress-4x400", maps(4, 400, SMOOTH)),
+        ("stress-400x4", maps(400, 4, SMOOTH)),
+        ("stress-1000x4", maps(1000, 4, SMOOTH)),
+        ("stress-1000x4-one", stress_maps(1000, 4, UM, SMOOTH, &["A"])),
+        ("stress-200x50", maps(200, 50, DIMPLES)),
+        ("stress-60x100", stress_maps(60, 100, UM, DIMPLES, &INSTANTS[..5])),
+        ("stress-dimples", maps(200, 200, DIMPLES)),
+        ("stress-mask", maps(50, 50, HERRINGBONE)),
+        (
+            "stress-square-centimetre",
+            stress_maps(1000, 1000, 10.0 * UM, LARGE_DIMPLES, &["C"]),
+        ),
+        (
+            "stress-times",
+            stress_maps(30, 30, UM, SMOOTH, &["t* = 0.0", "t* = 2000.5", "t* = 12345.6"]),
+        ),
+    ] {
+        check(name, stress(&maps));
+    }
+    let torque = slipfront_plot::StressMaps {
+        is_torque: true,
+        value_title: "velocity along x (\u{b5}m/s)".to_owned(),
+        range: [-1.3e-7, 2.6e-7],
+        ..maps(40, 40, SMOOTH)
+    };
+    check("stress-torque", stress(&torque));
+}
+
+#[test]
+fn fronts_on_every_shape() {
+    for (name, (map, space_time)) in [
+        ("front", front_of(50, 50, UM, CIRCLE, 3)),
+        ("front-1x1", front_of(1, 1, UM, SMOOTH, 1)),
+        ("front-1x100", front_of(1, 100, UM, SMOOTH, 6)),
+        ("front-100x1", front_of(100, 1, UM, SMOOTH, 6)),
+        ("front-4x400", front_of(4, 400, UM, SMOOTH, 30)),
+        ("front-400x4", front_of(400, 4, UM, SMOOTH, 17)),
+        ("front-1000x4", front_of(1000, 4, UM, SMOOTH, 30)),
+        ("front-dimples", front_of(200, 200, UM, DIMPLES, 20)),
+        ("front-mask", front_of(50, 50, UM, HERRINGBONE, 4)),
+        (
+            "front-square-centimetre",
+            front_of(1000, 1000, 10.0 * UM, LARGE_DIMPLES, 9),
+        ),
+        ("front-200x50", front_of(200, 50, UM, SMOOTH, 2)),
+    ] {
+        check(name, front(&map, &space_time));
+    }
+}
+
+fn curve(label: &str, level: f64, line: bool) -> Response {
+    let x = vec![0.01, 0.03, 0.1, 0.3];
+    let mean: Vec<f64> = x.iter().map(|x: &f64| level - 0.1 * x.ln()).collect();
+    Response {
+        label: label.to_owned(),
+        low: mean.iter().map(|mean| mean - 0.05).collect(),
+        high: mean.iter().map(|mean| mean + 0.05).collect(),
+        mean,
+        x,
+        line,
+    }
+}
+
+#[test]
+fn responses() {
+    let drawn = |titles: [&str; 3], labels: &[&str]| {
+        let labels = labels.iter().enumerate();
+        response(&Responses {
+            x_title: titles[0].to_owned(),
+            log_x: true,
+            y_title: titles[1].to_owned(),
+            legend_title: titles[2].to_owned(),
+            curves: labels
+                .map(|(k, label)| curve(label, 1.0 + 0.1 * k as f64, k == 1))
+                .collect(),
+            ..Responses::default()
+        })
+    };
+    let titles = ["drive speed V*", "static friction \u{3bc}\u{209b}*", "P"];
+    check("response", drawn(titles, &[""]));
+    check(
+        "response-pressures",
+        drawn(titles, &["50 kPa", "100 kPa", "1 MPa"]),
+    );
+    let nine = ["10", "[20, 10]", "30", "40", "50", "[60, 10]", "70", "80", "90"];
+    check(
+        "response-nine",
+        drawn(
+            ["V*", "reduction of \u{3bc}\u{209b}* (%)", "blocks along a side"],
+            &nine,
+        ),
+    );
+    let precursors = [
+        "tangential over normal force F\u{209c}/F\u{2099} after the event",
+        "length over that of the slider L\u{209a}/L",
+        "",
+    ];
+    check("precursors", drawn(precursors, &["events", "exact"]));
+}
+
+#[test]
+fn bar_charts() {
+    let chart = |groups: &[&str], names: &[&str]| {
+        let bar = |(k, label): (usize, &&str)| Bar {
+            label: (*label).to_owned(),
+            mean: 0.8 + 0.01 * k as f64,
+            low: 0.7,
+            high: 0.9,
+        };
+        let group = |label: &&str| BarGroup {
+            label: (*label).to_owned(),
+            bars: names.iter().enumerate().map(bar).collect(),
+        };
+        bars(&BarChart {
+            y_title: "static friction \u{3bc}\u{209b}*".to_owned(),
+            x_title: "blocks along a side".to_owned(),
+            legend_title: "load pressure P".to_owned(),
+            groups: groups.iter().map(group).collect(),
+            ..BarChart::default()
+        })
+    };
+    check("bars", chart(&[""], &["10", "[20, 10]", "[10, 20]"]));
+    check(
+        "bars-groups",
+        chart(&["10", "[20, 10]"], &["50 kPa", "100 kPa", "1 MPa"]),
+    );
+    let names: Vec<String> = (0..30)
+        .map(|k| format!("a surface with a long name {k}"))
+        .collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    check("bars-many", chart(&[""], &names));
+    check("bars-long-legend", chart(&["circle", "groove"], &names[..9]));
+}
+
+#[test]
+fn heat_maps() {
+    let axis = |title: &str, values: Vec<f64>| HeatAxis {
+        title: title.to_owned(),
+        values,
+        log: true,
+    };
+    let map = |columns: usize, rows: usize, scale: f64| {
+        let values = |count: usize| (0..count).map(|k| 0.01 * 1.5f64.powi(k as i32)).collect();
+        heat_map(&HeatMap {
+            x: axis("drive speed V*", values(columns)),
+            y: axis("texture coverage A* of texture 2 (%)", values(rows)),
+            value_title: "static friction \u{3bc}\u{209b}*".to_owned(),
+            values: (0..columns * rows).map(|k| scale * (k % 7) as f64).collect(),
+            ..HeatMap::default()
+        })
+    };
+    check("heat-map", map(3, 3, 0.1));
+    check("heat-map-8", map(8, 8, 0.01));
+    check("heat-map-40", map(40, 25, 1e-7));
+}
+
+#[test]
+fn pictures_of_the_paper() {
+    let map = |label: &str, nx: usize, ny: usize| FieldMap {
+        label: label.to_owned(),
+        note: "\u{3bc}* = 0.5, with a note".to_owned(),
+        nx,
+        ny,
+        values: (0..nx * ny).map(|k| (k % 13) as f32 / 13.0).collect(),
+        textured: (0..nx * ny).map(|k| CIRCLE(k % nx, k / nx)).collect(),
+        marks: vec![[0, 0]],
+    };
+    let maps = |columns: usize, maps: Vec<FieldMap>| {
+        field_maps(&FieldMaps {
+            value_title: "static coefficient \u{3bc}_s".to_owned(),
+            range: [0.0, 1.0],
+            columns,
+            maps,
+        })
+    };
+    check(
+        "fields",
+        maps(
+            3,
+            vec![
+                map("25 x 25", 25, 25),
+                map("50 x 50", 50, 50),
+                map("a long name of a map", 25, 25),
+            ],
+        ),
+    );
+    check("fields-wide", maps(1, vec![map("400 x 4", 400, 4)]));
+    check(
+        "fields-tall",
+        maps(6, (0..6).map(|k| map(&format!("map {k}"), 4, 400)).collect()),
+    );
+    let triangle = |label: &str| Shape {
+        label: label.to_owned(),
+        points: vec![[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]],
+    };
+    check(
+        "shapes",
+        shapes(&["s = 2, w = 0.1", "a shape with a long name", "c", "d"].map(triangle)),
+    );
+    let line = Stroke {
+        style: StrokeStyle::Arrow,
+        points: vec![[0.0, 0.0], [2.0, 1.0]],
+    };
+    let drawn = Sketch {
+        strokes: vec![line],
+        labels: vec![("k_1".to_owned(), [0.5, 0.5]), ("x".to_owned(), [2.0, 0.0])],
+    };
+    check("sketch", sketch(&drawn));
+}
