@@ -368,6 +368,47 @@ impl<K: Kind> Visitor<'_> for QuantityVisitor<K> {
     }
 }
 
+/// A number with its unit as a text has it, of whatever dimension: to compare quantities whose kind is not known.
+///
+/// ```
+/// use slipfront_case::quantity::WrittenQuantity;
+/// let [one, other] = ["50 kPa", "1 MPa"].map(|text| WrittenQuantity::read(text).expect("a pressure"));
+/// assert_eq!(one.unit(), "kPa");
+/// assert_eq!(other.in_unit_of(&one), Some(1000.0));
+/// assert!(WrittenQuantity::read("free").is_none());
+/// ```
+pub struct WrittenQuantity<'a> {
+    number: Number<'a>,
+    unit: Unit,
+}
+
+impl<'a> WrittenQuantity<'a> {
+    /// The quantity that a text is; none if it is no number with a unit that is read.
+    pub fn read(text: &'a str) -> Option<Self> {
+        let number = Number::split(text.trim()).filter(|_| text.len() <= MAX_TEXT)?;
+        let unit = number.rest.trim();
+        if unit.is_empty() {
+            return None;
+        }
+        let unit = Unit::read(text, unit, Dimension::new(0, 0, 0), "").ok()?;
+        unit.foreign.is_none().then_some(Self { number, unit })
+    }
+
+    /// Its unit as it is written; `1/s` for `/s`.
+    pub fn unit(&self) -> String {
+        let unit = self.number.rest.trim();
+        let one = if unit.starts_with('/') { "1" } else { "" };
+        format!("{one}{unit}")
+    }
+
+    /// Its number in the unit of another quantity, rounded once; none if that is of another dimension.
+    pub fn in_unit_of(&self, other: &Self) -> Option<f64> {
+        let is_alike = self.unit.dimension == other.unit.dimension;
+        let power = self.unit.power_of_ten - other.unit.power_of_ten;
+        self.number.shifted(power).filter(|_| is_alike)
+    }
+}
+
 /// A decimal number cut out of the front of a text, not yet rounded.
 struct Number<'a> {
     /// Sign, digits and decimal point.

@@ -8,6 +8,7 @@ use crate::category_axis::{CategoryAxis, MIN_SLOT};
 use crate::frame::{left_room, left_side};
 use crate::geometry::Area;
 use crate::legend::{Legend, Sample};
+use crate::note::Note;
 use crate::picture::{Picture, PictureError};
 use crate::series::{error_bar, interval};
 use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, OPACITY_BAR, Rgb, WIDTH_FRAME, bar_colour};
@@ -32,6 +33,8 @@ pub struct BarChart {
     pub x_title: String,
     /// What is varied within a group, for the legend; may be empty.
     pub legend_title: String,
+    /// What the intervals are, below the names; may be empty.
+    pub note: String,
     /// The groups, from the left.
     pub groups: Vec<BarGroup>,
 }
@@ -83,7 +86,11 @@ pub fn bars(chart: &BarChart) -> Result<Picture, PictureError> {
     let y = y.placed(area.bottom(), area.y);
     let names = CategoryAxis::of(&places.names, &chart.x_title, area);
 
-    let mut canvas = Canvas::new(area.right() + MARGIN, area.bottom() + names.height);
+    let right = area.right() + MARGIN;
+    let note = Note::of(&chart.note, area.centre().0, right);
+
+    let mut canvas = Canvas::new(right, area.bottom() + names.height + note.height);
+    note.draw(&mut canvas);
     let title = Text::fitted(&chart.y_title, HEIGHT);
     left_side(&mut canvas, area, 0.0, &y.ticks(Direction::Y, MAX_STEPS), &title);
     legend.draw(&mut canvas);

@@ -7,6 +7,7 @@ use crate::frame::{
     BAR_WIDTH, LOWER_ROOM, bar_room, colour_bar, left_room, left_side, lower_side, short_ticks,
 };
 use crate::geometry::{Align, Area};
+use crate::note::Note;
 use crate::picture::{Picture, PictureError};
 use crate::style::{BLACK, BLANK, COLUMN_WIDTH, MARGIN, Rgb, SIZE_LABEL, SIZE_TICK, WHITE};
 use crate::text::{MINUS, Text, number};
@@ -17,6 +18,8 @@ const HEIGHT: f64 = 560.0;
 const TOP: f64 = MARGIN + 8.0;
 /// Between the map and its colour bar.
 const GAP: f64 = 30.0;
+/// From the number of a cell to its half width below it.
+const LINE: f64 = 36.0;
 /// Numbers are written in the cells of a map of at most so many columns and rows.
 const MAX_NUMBERED: usize = 8;
 /// An axis of more cells is numbered at round values.
@@ -33,6 +36,10 @@ pub struct HeatMap {
     pub value_title: String,
     /// One value for every cell: all of the first y, then all of the second; NaN is left grey.
     pub values: Vec<f64>,
+    /// The half width of the confidence interval of every value in the same order, NaN where there is none; may be empty.
+    pub half_widths: Vec<f64>,
+    /// What the intervals are, below the map; may be empty.
+    pub note: String,
 }
 
 /// An axis of a map.
@@ -49,7 +56,8 @@ pub struct HeatAxis {
 /// Draws a map, as wide as a journal's column (85 mm).
 ///
 /// A cell reaches half-way to its neighbours, so uneven values give uneven cells. The colours span the values'
-/// own range. A map of up to 8 x 8 cells has its numbers in the cells, if they are wide enough.
+/// own range. A map of up to 8 x 8 cells has its numbers in the cells, if they are wide enough. The half width of an interval stands
+/// below the number; where numbers have no room for that, a second map below shows the half widths.
 ///
 /// # Errors
 ///
@@ -58,49 +66,109 @@ pub struct HeatAxis {
 pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
     let (mut x, mut y) = (Cells::of(&map.x)?, Cells::of(&map.y)?);
     let (columns, rows) = (x.values.len(), y.values.len());
-    if columns.checked_mul(rows) != Some(map.values.len()) {
-        let values = map.values.len();
-        return Err(PictureError::Cells {
-            columns,
-            rows,
-            values,
-        });
-    }
-    let value = |cell: usize| {
-        let value = map.values[y.order[cell / columns] * columns + x.order[cell % columns]];
-        if drawable(value) { value } else { f64::NAN }
+    let in_order = |values: &[f64]| {
+        if columns.checked_mul(rows) != Some(values.len()) {
+            let values = values.len();
+            return Err(PictureError::Cells {
+                columns,
+                rows,
+                values,
+            });
+        }
+        let value = |cell: usize| {
+            let value = values[y.order[cell / columns] * columns + x.order[cell % columns]];
+            if drawable(value) { value } else { f64::NAN }
+        };
+        Ok((0..values.len()).map(value).collect())
     };
-    let values: Vec<f64> = (0..map.values.len()).map(value).collect();
-    let range: [f64; 2] = range(values.iter().copied()).into();
+    let values: Vec<f64> = in_order(&map.values)?;
+    let half_widths: Vec<f64> = match map.half_widths.is_empty() {
+        true => vec![f64::NAN; values.len()],
+        false => in_order(&map.half_widths)?,
+    };
+    let range_of = |values: &[f64]| -> [f64; 2] { range(values.iter().copied()).into() };
+    let ranges = [&values, &half_widths].map(|values| range_of(values));
 
     y.axis = y.axis.placed(TOP + HEIGHT, TOP);
-    let (y_ticks, y_short) = y.ticks(Direction::Y);
-    let left = left_room(&y_ticks);
-    let bar_room = bar_room(range, MAX_STEPS, HEIGHT) + 14.0 + f64::from(SIZE_LABEL) + MARGIN;
+    let left = left_room(&y.ticks(Direction::Y).0);
+    let has_intervals = half_widths.iter().any(|half| !half.is_nan());
+    let shown = if has_intervals { &ranges[..] } else { &ranges[..1] };
+    let numbers = shown.iter().map(|&range| bar_room(range, MAX_STEPS, HEIGHT));
+    let bar_room = numbers.fold(0.0, f64::max) + 14.0 + f64::from(SIZE_LABEL) + MARGIN;
     let width = (COLUMN_WIDTH - left - GAP - bar_room).max(100.0).round();
     let area = Area::new(left, TOP, width, HEIGHT);
     x.axis = x.axis.placed(area.x, area.right());
-    let (x_ticks, x_short) = x.ticks(Direction::X);
-    let bar = Area::new(area.right() + GAP, TOP, BAR_WIDTH, HEIGHT);
 
-    let mut canvas = Canvas::new(COLUMN_WIDTH, area.bottom() + LOWER_ROOM);
-    canvas.images.push(image(area, &x, &y, &values, range));
-    draw_numbers(&mut canvas, &x, &y, &values, range);
+    let none = vec![f64::NAN; values.len()];
+    let with_halves = has_intervals.then(|| cell_texts(&x, &y, &values, &half_widths, ranges[0]));
+    let with_halves = with_halves.flatten();
+    let has_second = has_intervals && with_halves.is_none();
+    let texts = with_halves.or_else(|| cell_texts(&x, &y, &values, &none, ranges[0]));
+    let panel = area.bottom() + LOWER_ROOM;
+    let height = if has_second {
+        panel + TOP + HEIGHT + LOWER_ROOM
+    } else {
+        panel
+    };
+    let note = Note::of(&map.note, area.centre().0, COLUMN_WIDTH);
+
+    let mut canvas = Canvas::new(COLUMN_WIDTH, height + note.height);
+    let titles = [&map.x.title, &map.y.title, &map.value_title].map(String::as_str);
+    draw_panel(&mut canvas, area, [&x, &y], (&values, ranges[0]), texts, titles);
+    if has_second {
+        let half_width = format!("half width, {}", map.value_title);
+        let titles = [titles[0], titles[1], &half_width];
+        let area = Area {
+            y: panel + TOP,
+            ..area
+        };
+        y.axis = y.axis.placed(area.bottom(), area.y);
+        let texts = cell_texts(&x, &y, &half_widths, &none, ranges[1]);
+        draw_panel(
+            &mut canvas,
+            area,
+            [&x, &y],
+            (&half_widths, ranges[1]),
+            texts,
+            titles,
+        );
+    }
+    note.draw(&mut canvas);
+    canvas.finish()
+}
+
+/// Draws a map with its sides, numbers and colour bar; the titles are those of x, y and the values.
+fn draw_panel(
+    canvas: &mut Canvas,
+    area: Area,
+    [x, y]: [&Cells; 2],
+    (values, range): (&[f64], [f64; 2]),
+    texts: Option<Vec<Vec<Text>>>,
+    [x_title, y_title, value_title]: [&str; 3],
+) {
+    let bar = Area {
+        x: area.right() + GAP,
+        width: BAR_WIDTH,
+        ..area
+    };
+    canvas.images.push(image(area, x, y, values, range));
+    if let Some(texts) = texts {
+        draw_numbers(canvas, [x, y], &texts, (values, range));
+    }
     canvas.frame(area);
-    short_ticks(&mut canvas, area, Direction::Y, &y_short);
-    let title = Text::fitted(&map.y.title, area.height);
-    left_side(&mut canvas, area, 0.0, &y_ticks, &title);
-    short_ticks(&mut canvas, area, Direction::X, &x_short);
-    let title = Text::fitted(&map.x.title, area.width);
-    lower_side(&mut canvas, area, &x_ticks, &title);
-    colour_bar(&mut canvas, bar, range, MAX_STEPS);
+    let (ticks, short) = y.ticks(Direction::Y);
+    short_ticks(canvas, area, Direction::Y, &short);
+    left_side(canvas, area, 0.0, &ticks, &Text::fitted(y_title, area.height));
+    let (ticks, short) = x.ticks(Direction::X);
+    short_ticks(canvas, area, Direction::X, &short);
+    lower_side(canvas, area, &ticks, &Text::fitted(x_title, area.width));
+    colour_bar(canvas, bar, range, MAX_STEPS);
     let baseline = COLUMN_WIDTH - MARGIN - 0.24 * f64::from(SIZE_LABEL);
-    let title = Text::fitted(&map.value_title, area.height);
+    let title = Text::fitted(value_title, area.height);
     canvas.text_upwards(&title, (baseline, area.centre().1), Align::Middle, BLACK);
     if values.iter().any(|value| value.is_nan()) {
-        draw_blank(&mut canvas, bar);
+        draw_blank(canvas, bar);
     }
-    canvas.finish()
 }
 
 /// The cells along an axis, in rising order.
@@ -234,40 +302,81 @@ fn image(area: Area, x: &Cells, y: &Cells, values: &[f64], range: [f64; 2]) -> I
     }
 }
 
-/// Writes every value into its cell, if all have room.
-fn draw_numbers(canvas: &mut Canvas, x: &Cells, y: &Cells, values: &[f64], range: [f64; 2]) {
-    let [lo, hi] = range;
+/// The lines in every cell, its value and its half width if it has one; none if they have no room.
+fn cell_texts(
+    x: &Cells,
+    y: &Cells,
+    values: &[f64],
+    half_widths: &[f64],
+    [lo, hi]: [f64; 2],
+) -> Option<Vec<Vec<Text>>> {
     let size = lo.abs().max(hi.abs());
     if x.values.len().max(y.values.len()) > MAX_NUMBERED || !(1e-4..1e6).contains(&size) {
-        return;
+        return None;
     }
-    let smallest = |edges: &[f64]| {
+    let smallest = |edges: Vec<f64>| {
         let sizes = edges.windows(2).map(|pair| (pair[1] - pair[0]).abs());
         sizes.fold(f64::INFINITY, f64::min)
     };
-    let (edges_x, edges_y) = (x.edges(), y.edges());
-    let (room_x, room_y) = (smallest(&edges_x) - 12.0, smallest(&edges_y) - 12.0);
+    let (room_x, room_y) = (smallest(x.edges()) - 12.0, smallest(y.edges()) - 12.0);
     let height = Text::plain("0", SIZE_TICK).height();
     // Two digits or so of the range, or one less.
     let decimals = libm::log10(50.0 / (hi - lo)).ceil().clamp(0.0, 9.0) as usize;
-    let text = |value: f64, decimals| match value.is_nan() {
-        true => Text::default(),
-        false => Text::plain(&number(value, decimals), SIZE_TICK),
+    let lines = |value: f64, half: f64, decimals| {
+        let mut lines = Vec::new();
+        if !value.is_nan() {
+            lines.push(Text::plain(&number(value, decimals), SIZE_TICK));
+        }
+        if !half.is_nan() {
+            lines.push(Text::plain(&plus_minus(half, decimals), SIZE_TICK));
+        }
+        lines
     };
-    let texts = |decimals| values.iter().map(move |&value| text(value, decimals));
-    let mut choices = [decimals, decimals.saturating_sub(1)]
-        .map(|decimals| texts(decimals).collect())
-        .into_iter();
-    let has_room = |texts: &Vec<Text>| texts.iter().all(|text| text.width() <= room_x) && height <= room_y;
-    let Some(texts) = choices.find(has_room) else {
-        return;
+    let cells = values.iter().zip(half_widths);
+    let texts = |decimals| {
+        cells
+            .clone()
+            .map(move |(&value, &half)| lines(value, half, decimals))
     };
-    for (index, (text, &value)) in texts.iter().zip(values).enumerate() {
+    let mut choices =
+        [decimals, decimals.saturating_sub(1)].map(|decimals| texts(decimals).collect::<Vec<_>>());
+    let has_room = |lines: &Vec<Text>| {
+        let tall = height + LINE * lines.len().saturating_sub(1) as f64;
+        tall <= room_y && lines.iter().all(|line| line.width() <= room_x)
+    };
+    let fits = choices.iter().position(|cells| cells.iter().all(has_room))?;
+    Some(std::mem::take(&mut choices[fits]))
+}
+
+/// A half width to the decimals of its value, or to its first digit where these would show none of it.
+fn plus_minus(half: f64, decimals: usize) -> String {
+    let first = -libm::log10(half).floor();
+    let needed = if half > 0.0 {
+        first.clamp(0.0, 9.0) as usize
+    } else {
+        0
+    };
+    format!("\u{b1}{}", number(half, decimals.max(needed)))
+}
+
+/// Writes its lines into every cell.
+fn draw_numbers(
+    canvas: &mut Canvas,
+    [x, y]: [&Cells; 2],
+    texts: &[Vec<Text>],
+    (values, range): (&[f64], [f64; 2]),
+) {
+    let (edges_x, edges_y) = (x.edges(), y.edges());
+    for (index, (lines, &value)) in texts.iter().zip(values).enumerate() {
         let (row, column) = (index / x.values.len(), index % x.values.len());
         let middle = 0.5 * (edges_x[column] + edges_x[column + 1]);
-        let baseline = 0.5 * (edges_y[row] + edges_y[row + 1] + height);
+        let centre = 0.5 * (edges_y[row] + edges_y[row + 1]);
         let colour = readable_on(level_colour(level(value, range)));
-        canvas.text(text, (middle, baseline), Align::Middle, colour);
+        let above = 0.5 * LINE * lines.len().saturating_sub(1) as f64;
+        for (line, text) in lines.iter().enumerate() {
+            let baseline = centre - above + LINE * line as f64 + 0.5 * text.height();
+            canvas.text(text, (middle, baseline), Align::Middle, colour);
+        }
     }
 }
 
@@ -299,6 +408,7 @@ mod tests {
             y: axis(&values(rows), true),
             value_title: "value".to_string(),
             values: (0..columns * rows).map(|cell| 0.5 * cell as f64).collect(),
+            ..HeatMap::default()
         }
     }
 
@@ -325,6 +435,31 @@ mod tests {
     fn few_cells_have_numbers_and_many_have_none() {
         assert!(heat_map(&map(6, 6)).unwrap().svg.contains(">17.5</text>"));
         assert!(!heat_map(&map(6, 9)).unwrap().svg.contains(">17.5</text>"));
+    }
+
+    /// Below the numbers where there is room, else on a map of their own; not at all where there are none.
+    #[test]
+    fn half_widths_are_shown_wherever_there_are_some() {
+        let svg = |columns: usize, half: f64| {
+            let mut map = map(columns, 3);
+            map.half_widths = vec![half; 3 * columns];
+            heat_map(&map).unwrap().svg
+        };
+        let title = ">half width, value</text>";
+        let few = svg(3, 0.25);
+        assert!(
+            few.matches(">\u{b1}0.25</text>").count() == 9 && !few.contains(title),
+            "{few}"
+        );
+        // A half width that the decimals of the values would show as nothing has its first digit.
+        assert!(svg(3, 0.0004).contains(">\u{b1}0.0004</text>"));
+        assert_eq!(svg(9, 0.25).matches(title).count(), 1);
+        let none = svg(3, f64::NAN);
+        assert!(!none.contains('\u{b1}') && !none.contains(title) && !none.contains("NaN"));
+        let mut short = map(2, 2);
+        short.half_widths = vec![1.0; 3];
+        let said = heat_map(&short).unwrap_err().to_string();
+        assert_eq!(said, "a map of 2 x 2 cells has 3 values");
     }
 
     #[test]

@@ -27,6 +27,7 @@ mod label_placement;
 mod lattice_map;
 mod legend;
 mod mask_outline;
+mod note;
 mod picture;
 mod png_file;
 mod quantity_labels;

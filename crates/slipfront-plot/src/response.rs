@@ -7,6 +7,7 @@ use crate::canvas::Canvas;
 use crate::frame::{LOWER_ROOM, left_room, left_side, lower_side, right_end, short_ticks};
 use crate::geometry::Area;
 use crate::legend::{Legend, Sample};
+use crate::note::Note;
 use crate::picture::{Picture, PictureError, check_columns};
 use crate::series::{error_bar, interval, marker, segments};
 use crate::style::{COLUMN_WIDTH, GREY, MARGIN, RADIUS_MARKER, WIDTH_LEADER, curve_style};
@@ -30,6 +31,8 @@ pub struct Responses {
     pub y_title: String,
     /// What the curves' labels are values of, for the legend; see [`legend`](crate::QuantityLabel::legend).
     pub legend_title: String,
+    /// What the intervals are, below the panel; may be empty.
+    pub note: String,
     /// The curves.
     pub curves: Vec<Response>,
 }
@@ -88,8 +91,11 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
     let area = Area::new(left, MARGIN + legend.height, right - left, HEIGHT);
     let (x, y) = (x.placed(left, right), y.placed(area.bottom(), area.y));
 
-    let mut canvas = Canvas::new(COLUMN_WIDTH, area.bottom() + LOWER_ROOM);
+    let note = Note::of(&responses.note, area.centre().0, COLUMN_WIDTH);
+
+    let mut canvas = Canvas::new(COLUMN_WIDTH, area.bottom() + LOWER_ROOM + note.height);
     draw_sides(&mut canvas, area, &x, &y, responses);
+    note.draw(&mut canvas);
     legend.draw(&mut canvas);
     draw_curves(&mut canvas, &x, &y, &curves);
     canvas.frame(area);
@@ -189,8 +195,8 @@ mod tests {
             y_title: "y".to_string(),
             legend_title: "size".to_string(),
             log_x,
-            log_y: false,
             curves: curves.to_vec(),
+            ..Responses::default()
         }
     }
 
@@ -221,6 +227,26 @@ mod tests {
         for text in ["size", "first", "second"] {
             assert!(both.contains(&format!(">{text}</text>")), "{text}");
         }
+    }
+
+    /// Its room is added below; what is above stays where it is.
+    #[test]
+    fn a_note_stands_below_everything() {
+        let plain = responses(&[curve("", &[(1.0, 0.3), (2.0, 0.5)])], false);
+        let noted = Responses {
+            note: "95 % interval of the mean, n = 5".to_string(),
+            ..plain.clone()
+        };
+        let [plain, noted] = [plain, noted].map(|responses| response(&responses).unwrap().svg);
+        assert!(noted.contains(">95 % interval of the mean, n = 5</text>"));
+        let texts = |svg: &str| svg.lines().filter(|line| line.contains("<text")).count();
+        assert_eq!(texts(&noted), texts(&plain) + 1);
+        let line = |svg: &str| {
+            svg.lines()
+                .find(|line| line.contains(">x</text>"))
+                .map(str::to_string)
+        };
+        assert_eq!(line(&noted), line(&plain));
     }
 
     #[test]

@@ -117,6 +117,7 @@ fn chart() -> BarChart {
         x_title: "shape".to_string(),
         legend_title: "drive".to_string(),
         groups: vec![group("circle"), group("groove across")],
+        ..BarChart::default()
     }
 }
 
@@ -131,6 +132,7 @@ fn heat() -> HeatMap {
         y: axis("A* (%)", &[5.0, 10.0, 20.0]),
         value_title: "\u{3bc}*".to_string(),
         values: numbers(9),
+        ..HeatMap::default()
     }
 }
 

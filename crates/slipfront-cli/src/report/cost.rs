@@ -9,7 +9,37 @@ use super::times::{duration, instant};
 
 /// The expected onset, the stability of the step, the cost and the warnings; `seconds` is the time that the run takes.
 pub(crate) fn cost(case: &Case, seconds: f64) -> String {
-    onset(case) + &scales(case) + &resources(case, seconds) + &notes(&case.warnings())
+    let (loading, note) = loading(case);
+    let warnings: Vec<String> = case.warnings().into_iter().chain(note).collect();
+    onset(case) + &loading + &scales(case) + &resources(case, seconds) + &notes(&warnings)
+}
+
+/// The time in which a slip front crosses the slider, about a block per t*, over that in which the drive loads it, about 1/V*: the
+/// line, and a note where the drive is the faster.
+fn loading(case: &Case) -> (String, Option<String>) {
+    let (lattice, drive) = (&case.model.lattice, &case.model.drive);
+    let [nx, ny] = [lattice.nx, lattice.ny].map(|blocks| blocks as f64);
+    let (name, blocks) = match drive.direction {
+        _ if drive.rotation.is_some() => ("N", nx.max(ny)),
+        [_, 0.0] => ("N_x", nx),
+        [0.0, _] => ("N_y", ny),
+        [along_x, along_y] => ("N", nx * along_x.abs() + ny * along_y.abs()),
+    };
+    let ratio = case.model.loading_speed() * blocks;
+    let line = format!(
+        "loading           V* {name} = {}: the time in which a front crosses the {} blocks over that of loading\n",
+        four_digits(ratio),
+        four_digits(blocks)
+    );
+    let note = (ratio > 1.0).then(|| {
+        format!(
+            "V* {name} = {} is above 1: while a slip front crosses the slider, the drive goes on loading the part that still sticks, so that \
+             mu_s* and the effect of a texture depend on speed and size; loading is slow at V* of {} and below",
+            four_digits(ratio),
+            four_digits(case.groups.v_star / ratio)
+        )
+    });
+    (line, note)
 }
 
 fn onset(case: &Case) -> String {

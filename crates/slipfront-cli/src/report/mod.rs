@@ -5,6 +5,7 @@ mod cost;
 mod physics;
 mod study;
 mod summary;
+mod table;
 mod times;
 
 pub(crate) use cost::cost;

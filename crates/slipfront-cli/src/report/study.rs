@@ -3,9 +3,12 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use slipfront_case::number_format::{are, byte_size, count, with_half_width};
-use slipfront_run::study::{Plan, RunKey, StudyResults, idle_axes};
+use slipfront_case::number_format::{are, byte_size, count, four_digits, with_half_width};
+use slipfront_run::study::{
+    Plan, RunKey, StudyResults, idle_axes, quantities_without_pictures, why_no_curves,
+};
 
+use super::table::table;
 use super::times::duration;
 use crate::wrap::note;
 
@@ -52,7 +55,11 @@ pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) 
         byte_size(plan.memory(threads)),
         count(threads, "run"),
         byte_size(plan.disk(plan.runs(min))),
-        idle_axes(plan).iter().map(|axis| note(axis)).collect::<String>(),
+        idle_axes(plan)
+            .iter()
+            .chain(&why_no_curves(&plan.axes))
+            .map(|sentence| note(sentence))
+            .collect::<String>(),
         case_warnings(plan)
     )
 }
@@ -93,61 +100,78 @@ fn case_warnings(plan: &Plan) -> String {
     text
 }
 
-/// The answer of a study: its main quantity at every point, notes, and the folder of tables and pictures.
+/// The answer of a study: its main quantity at every point, notes, and the folder of tables and pictures, with the reason why there
+/// are none of something.
 pub(crate) fn study(plan: &Plan, results: &StudyResults, folder: &Path) -> String {
+    let missing = why_no_curves(&plan.axes).into_iter();
+    let missing = missing.chain(quantities_without_pictures(plan, results));
     format!(
-        "{}\n{}{}runs.csv, points.csv and pictures in {}\n",
-        plan.main_quantity(),
+        "{}{}runs.csv, points.csv and pictures in {}\n{}",
         points(plan, results),
         notes(plan, results),
-        folder.display()
+        folder.display(),
+        missing
+            .map(|sentence| format!("{sentence}\n"))
+            .collect::<String>()
     )
 }
 
-/// The main quantity at every point, a line each.
+/// The main quantity at every point, a row each.
 fn points(plan: &Plan, results: &StudyResults) -> String {
     let shown = plan.points.len().min(MAX_POINTS);
-    let names: Vec<String> = plan.points[..shown]
-        .iter()
-        .map(|point| plan.describe(point))
-        .collect();
-    let width = names.iter().map(|name| name.chars().count()).max();
-    let width = width.unwrap_or_default();
-    let mut text = String::new();
-    for (point, name) in names.iter().enumerate() {
-        text += &format!("  {name:<width$}   {}\n", point_value(plan, results, point));
-    }
+    let axes = plan.axes.iter().flat_map(|axis| &axis.columns);
+    let header: Vec<&str> = axes.map(String::as_str).chain(["mean", "n"]).collect();
+    let row = |point: usize| {
+        let levels = plan.columns(&plan.points[point]).into_iter();
+        let levels = levels.map(|(_, level)| level.to_owned());
+        levels.chain(point_value(plan, results, point)).collect()
+    };
+    let rows: Vec<Vec<String>> = (0..shown).map(row).collect();
+    let interval = match plan.settings.max_replicates() {
+        1 => "one run at each point".to_owned(),
+        _ => format!(
+            "mean of n replicates \u{b1} half width of its {} % interval",
+            four_digits(100.0 * plan.settings.confidence())
+        ),
+    };
+    let mut text = format!(
+        "{}: {interval}\n\n{}",
+        plan.main_quantity(),
+        table(&header, &rows)
+    );
     if plan.points.len() > shown {
         let more = count(plan.points.len() - shown, "more point");
         text += &format!("  and {more} in points.csv\n");
     }
-    text
+    text + "\n"
 }
 
-/// The main quantity at a point with its interval, and what a reader must know of it.
-fn point_value(plan: &Plan, results: &StudyResults, point: usize) -> String {
+/// The main quantity at a point with its interval, of how many values it is, and what a reader must know of it.
+fn point_value(plan: &Plan, results: &StudyResults, point: usize) -> Vec<String> {
     let is_here = |run: &RunKey| run.point == point;
     let has_failed = || results.failures().any(|(run, _)| is_here(&run));
     let without = results.without_transition().filter(is_here).count();
-    let mut text = match results.sample(plan, point, plan.main_quantity()) {
+    let sample = results.sample(plan, point, plan.main_quantity());
+    let value = match sample {
         Some(sample) => {
             // The largest mu* of a run without a transition may still be exceeded.
             let is_bound = without > 0 && plan.main_quantity() == "static_friction_star";
             let bound = if is_bound { "at least " } else { "" };
             let mean = with_half_width(sample.mean, sample.half_width);
-            format!("{bound}{mean}   n = {}", sample.n)
+            format!("{bound}{mean}")
         }
         None if has_failed() => "failed".to_owned(),
         None => "none".to_owned(),
     };
+    let mut cells = vec![value, sample.map_or(0, |sample| sample.n).to_string()];
     if results.points[point].narrow == Some(false) {
-        text += "   (interval still too wide)";
+        cells.push("(interval still too wide)".to_owned());
     }
     if without > 0 {
         let runs = results.runs.keys().filter(|run| is_here(run)).count();
-        text += &format!("   (no transition in {without} of {})", count(runs, "run"));
+        cells.push(format!("(no transition in {without} of {})", count(runs, "run")));
     }
-    text
+    cells
 }
 
 /// What a reader must know of the study as a whole.

@@ -62,6 +62,7 @@ fn check_prints_groups_onset_and_cost_and_runs_nothing() {
         "V* = 0.1",
         "mu_s = 1 (spread 0.05), R* = 0.5 (spread 0.05), seed 1",
         "onset expected    about t* = 25",
+        "loading           V* N_x = 0.6: ",
         "stability         dt* = 0.1 of at most 0.9058",
         "cost ",
         "note: 30 blocks are few",
@@ -69,6 +70,39 @@ fn check_prints_groups_onset_and_cost_and_runs_nothing() {
         assert!(said.contains(words), "{words:?} is missing:\n{said}");
     }
     assert_eq!(workspace.files(".").len(), 1, "check has written something");
+}
+
+/// The blocks are those along the drive, and an edge drive loads as slowly as its springs are few.
+#[test]
+fn check_compares_crossing_and_loading() {
+    let workspace = Workspace::small();
+    let note = "above 1: while a slip front crosses the slider, the drive goes on loading";
+    for (set, line, slow) in [
+        (
+            "drive.v_star=0.16",
+            "V* N_x = 0.96: the time in which a front crosses the 6 blocks",
+            None,
+        ),
+        (
+            "drive.v_star=0.2",
+            "V* N_x = 1.2: ",
+            Some("V* of 0.1667 and below"),
+        ),
+        ("drive.direction=90", "V* N_y = 0.5: ", None),
+        ("drive.direction=45", "V* N = 0.7778: ", None),
+        ("drive.motion=rotation", "V* N = ", None),
+        ("drive.attach=left", "V* N_x = 0.1: ", None),
+        (
+            "slider.blocks=[20,20]",
+            "V* N_x = 2: ",
+            Some("V* of 0.05 and below"),
+        ),
+    ] {
+        let said = unwrapped(&workspace.succeed(&format!("check small.toml --set {set}")));
+        assert!(said.contains(line), "{set}: {said}");
+        assert_eq!(said.contains(note), slow.is_some(), "{set}: {said}");
+        assert!(slow.is_none_or(|slow| said.contains(slow)), "{set}: {said}");
+    }
 }
 
 #[test]

@@ -8,6 +8,8 @@ use toml::Value;
 
 use super::input_copies::plain_name;
 use slipfront_case::case_file::{Override, exclude_each_other, names_a_file, partners_of};
+use slipfront_case::number_format::exact;
+use slipfront_case::quantity::WrittenQuantity;
 use slipfront_case::text::truncated;
 
 /// An axis and its levels.
@@ -19,6 +21,9 @@ pub struct Axis {
     pub levels: Vec<Level>,
     /// How its levels are spaced.
     pub spacing: Spacing,
+    /// The unit in which its numbers are, where they are written with one: that of the first level. Empty where its levels are named
+    /// with their units, none where the unit is that of its key.
+    pub unit: Option<String>,
 }
 
 /// One level of an axis.
@@ -26,7 +31,7 @@ pub struct Axis {
 pub struct Level {
     /// Its cells in the columns of the axis.
     pub labels: Vec<String>,
-    /// Its number, if it is one.
+    /// Its number on an axis of numbers, of a quantity in the unit of the axis.
     pub number: Option<f64>,
     /// Keys of the case and their values.
     pub overrides: Vec<Override>,
@@ -36,7 +41,7 @@ impl Level {
     /// Its name in pictures: a pair of equal numbers, such as the blocks of a square slider, is named by one number.
     pub fn shown(&self) -> String {
         match (self.labels.as_slice(), self.number) {
-            ([_], Some(number)) => number.to_string(),
+            ([_], Some(number)) => exact(number),
             (labels, _) => labels.join(" "),
         }
     }
@@ -47,9 +52,9 @@ impl Level {
 pub enum Spacing {
     /// Names or other things without order.
     Named,
-    /// Numbers.
+    /// Numbers or quantities.
     Linear,
-    /// Numbers in equal ratios.
+    /// Numbers or quantities in equal ratios.
     Logarithmic,
 }
 
@@ -60,8 +65,8 @@ pub(super) struct AxisKeys {
     key: Option<String>,
     list: Option<Vec<Value>>,
     /// `[from, to, count]`, as `logspace`.
-    linspace: Option<Vec<f64>>,
-    logspace: Option<Vec<f64>>,
+    linspace: Option<Vec<Value>>,
+    logspace: Option<Vec<Value>>,
     zip: Option<toml::Table>,
     name: Option<String>,
     variants: Option<toml::Table>,
@@ -113,6 +118,7 @@ impl Axis {
                 columns: vec![name],
                 levels: variants.into_iter().map(variant).collect::<Result<_, _>>()?,
                 spacing: Spacing::Named,
+                unit: None,
             }),
             _ => Err(
                 "an axis has `key` with `list`, `linspace` or `logspace`; or `zip`; or `name` with \
@@ -124,6 +130,13 @@ impl Axis {
 
     /// The axis of keys that change together, each with the list of its values. All lists are equally long.
     fn of_lists(lists: &[(String, Vec<Value>)], spacing: Spacing) -> Self {
+        let texts = lists.first().filter(|(key, _)| !names_a_file(key));
+        let mut quantities = texts.iter().flat_map(|(_, values)| values).filter_map(quantity);
+        let first = quantities.next();
+        let number = |value| match &first {
+            Some(first) => quantity(value)?.in_unit_of(first),
+            None => number(value),
+        };
         let level = |k: usize| Level {
             labels: lists.iter().map(|(key, values)| label(key, &values[k])).collect(),
             number: lists.first().and_then(|(_, values)| number(&values[k])),
@@ -137,6 +150,7 @@ impl Axis {
             columns: lists.iter().map(|(key, _)| key.clone()).collect(),
             levels: (0..count).map(level).collect(),
             spacing,
+            unit: first.as_ref().map(WrittenQuantity::unit),
         }
     }
 
@@ -187,6 +201,9 @@ impl Axis {
         let mut differs = |level: &Level| level.number.is_some_and(|number| seen.insert(number.to_bits()));
         if !self.levels.iter().all(&mut differs) {
             self.spacing = Spacing::Named;
+            // Names of one kind: with their units, and pairs in full.
+            self.levels.iter_mut().for_each(|level| level.number = None);
+            self.unit = self.unit.take().map(|_| String::new());
         } else if self.spacing == Spacing::Linear && self.is_nearer_to_ratios() {
             self.spacing = Spacing::Logarithmic;
         }
@@ -221,24 +238,26 @@ impl Axis {
 fn values_of(
     key: &str,
     list: Option<Vec<Value>>,
-    linspace: Option<Vec<f64>>,
-    logspace: Option<Vec<f64>>,
+    linspace: Option<Vec<Value>>,
+    logspace: Option<Vec<Value>>,
 ) -> Result<(Vec<Value>, Spacing), String> {
     match (list, linspace, logspace) {
         (Some(list), None, None) => Ok((list, Spacing::Linear)),
         (None, Some(range), None) => {
-            let (from, to, count) = ends_and_count("linspace", &range)?;
+            let range = Range::read("linspace", &range)?;
+            let (from, to) = (range.from, range.to);
             // Symmetric, so that a spacing from -1 to 1 meets 0.
             let value = |share: f64| from * (1.0 - share) + to * share;
-            Ok((spaced(from, to, count, value)?, Spacing::Linear))
+            Ok((range.spaced(value)?, Spacing::Linear))
         }
         (None, None, Some(range)) => {
-            let (from, to, count) = ends_and_count("logspace", &range)?;
+            let range = Range::read("logspace", &range)?;
+            let (from, to) = (range.from, range.to);
             if !(from > 0.0 && to > 0.0) {
                 return Err(format!("`logspace` from {from} to {to} must lie above 0"));
             }
             let value = |share: f64| from * libm::pow(to / from, share);
-            Ok((spaced(from, to, count, value)?, Spacing::Logarithmic))
+            Ok((range.spaced(value)?, Spacing::Logarithmic))
         }
         _ => Err(format!(
             "the axis of `{key}` needs one of `list`, `linspace` and `logspace`"
@@ -276,6 +295,18 @@ fn variant((variant, keys): (String, Value)) -> Result<Level, String> {
         _ => Err(format!(
             "the variant `{variant}` must be a set of keys, such as {{ drive.v_star = 0.05 }}"
         )),
+    }
+}
+
+/// The quantity of a level, if its value has a unit; one of a pair of equal ones.
+fn quantity(value: &Value) -> Option<WrittenQuantity<'_>> {
+    match value {
+        Value::String(text) => WrittenQuantity::read(text),
+        Value::Array(pair) => match pair.as_slice() {
+            [one, other] if one == other => quantity(one),
+            _ => None,
+        },
+        _ => None,
     }
 }
 
@@ -355,36 +386,77 @@ pub(super) fn replaced_key<'k>(key: &str, earlier: &BTreeSet<&'k str>) -> Option
     same.or_else(inside).copied()
 }
 
-/// The three numbers of a spacing.
-fn ends_and_count(name: &str, range: &[f64]) -> Result<(f64, f64, usize), String> {
-    match range {
-        [from, to, count] if *count >= 0.0 && count.fract() == 0.0 => Ok((*from, *to, *count as usize)),
-        _ => {
-            let given: Vec<String> = range.iter().map(f64::to_string).collect();
-            Err(format!(
-                "`{name}` is [{}]: it must be [from, to, count], two ends and how many values, such as [0.01, 0.2, 6]",
-                truncated(&given.join(", "))
-            ))
-        }
-    }
+/// The ends of a spacing, in the unit of the first if they have one, and how many values it has.
+struct Range {
+    from: f64,
+    to: f64,
+    unit: Option<String>,
+    count: usize,
 }
 
-/// `count` values from `from` to `to`, both exactly; `between` gives the value at a share of the way.
-fn spaced(from: f64, to: f64, count: usize, between: impl Fn(f64) -> f64) -> Result<Vec<Value>, String> {
-    if !(2..=MAX_LEVELS).contains(&count) {
-        return Err(format!(
-            "a spacing of {count} values cannot be: give 2 to {MAX_LEVELS}"
-        ));
+impl Range {
+    fn read(name: &str, range: &[Value]) -> Result<Self, String> {
+        let wrong = |what: &str| {
+            let given: Vec<String> = range.iter().map(Value::to_string).collect();
+            format!("`{name}` is [{}]: {what}", truncated(&given.join(", ")))
+        };
+        let count = |value| number(value).filter(|count| *count >= 0.0 && count.fract() == 0.0);
+        let parts = match range {
+            [from, to, last] if !range.iter().any(Value::is_array) => {
+                count(last).map(|count| (from, to, count as usize))
+            }
+            _ => None,
+        };
+        let Some((from, to, count)) = parts else {
+            return Err(wrong(
+                "it must be [from, to, count], two ends and how many values, such as [0.01, 0.2, 6]",
+            ));
+        };
+        let (ends, unit) = match (quantity(from), quantity(to)) {
+            (Some(one), Some(other)) => {
+                let ends = one.in_unit_of(&one).zip(other.in_unit_of(&one));
+                (ends, Some(one.unit()))
+            }
+            _ => (number(from).zip(number(to)), None),
+        };
+        let (from, to) = ends.ok_or_else(|| {
+            wrong("its ends must be two numbers, or two quantities of one kind with their units, such as [\"50 kPa\", \"1 MPa\", 5]")
+        })?;
+        Ok(Self {
+            from,
+            to,
+            unit,
+            count,
+        })
     }
-    if !(from.is_finite() && to.is_finite()) {
-        return Err(format!("a spacing from {from} to {to} must have finite ends"));
+
+    /// The values from end to end, both exactly; `between` gives the number at a share of the way.
+    fn spaced(&self, between: impl Fn(f64) -> f64) -> Result<Vec<Value>, String> {
+        let &Self {
+            from,
+            to,
+            ref unit,
+            count,
+        } = self;
+        if !(2..=MAX_LEVELS).contains(&count) {
+            return Err(format!(
+                "a spacing of {count} values cannot be: give 2 to {MAX_LEVELS}"
+            ));
+        }
+        if !(from.is_finite() && to.is_finite()) {
+            return Err(format!("a spacing from {from} to {to} must have finite ends"));
+        }
+        let number = |k: usize| match k {
+            0 => from,
+            k if k == count - 1 => to,
+            k => twelve_digits(between(k as f64 / (count - 1) as f64)),
+        };
+        let value = |number: f64| match unit {
+            Some(unit) => Value::String(format!("{} {unit}", exact(number))),
+            None => whole_or_not(number),
+        };
+        Ok((0..count).map(number).map(value).collect())
     }
-    let value = |k: usize| match k {
-        0 => from,
-        k if k == count - 1 => to,
-        k => twelve_digits(between(k as f64 / (count - 1) as f64)),
-    };
-    Ok((0..count).map(|k| whole_or_not(value(k))).collect())
 }
 
 /// A value rounded to twelve digits: short in the tables, and independent of the machine's last digit.
@@ -458,8 +530,75 @@ mod tests {
             let axis = axis(&format!("key = 'a.b'\nlist = {list}")).unwrap();
             assert_eq!(axis.spacing, spacing, "{list}");
         }
-        let square = axis("key = 'slider.blocks'\nlist = [[25, 25]]").unwrap();
-        assert_eq!(square.levels[0].shown(), "25");
+        let shown = |list: &str| -> Vec<String> {
+            let axis = axis(&format!("key = 'slider.blocks'\nlist = {list}")).unwrap();
+            axis.levels.iter().map(Level::shown).collect()
+        };
+        assert_eq!(shown("[[25, 25]]"), ["25"]);
+        assert_eq!(shown("[[10, 10], [20, 10]]"), ["[10, 10]", "[20, 10]"]);
+    }
+
+    /// Quantities are numbers in the unit of the first of them, exactly those that were written.
+    #[test]
+    fn quantities_are_numbers_in_one_unit() {
+        let of = |keys: &str| {
+            let axis = axis(&format!("key = 'load.pressure'\n{keys}")).unwrap();
+            let numbers: Vec<_> = axis.levels.iter().filter_map(|level| level.number).collect();
+            let labels: Vec<_> = axis.levels.iter().map(|level| level.labels.join(" ")).collect();
+            (
+                numbers,
+                labels.join(", "),
+                axis.spacing,
+                axis.unit.unwrap_or_default(),
+            )
+        };
+        let (numbers, labels, spacing, unit) = of("linspace = ['50 kPa', '1 MPa', 5]");
+        assert_eq!(numbers, [50.0, 287.5, 525.0, 762.5, 1000.0]);
+        assert_eq!(labels, "50 kPa, 287.5 kPa, 525 kPa, 762.5 kPa, 1000 kPa");
+        assert_eq!((spacing, unit.as_str()), (Spacing::Linear, "kPa"));
+        let (numbers, labels, spacing, unit) = of("logspace = ['0.1 um', '1e-2 mm', 3]");
+        assert_eq!(
+            (numbers, labels.as_str()),
+            (vec![0.1, 1.0, 10.0], "0.1 um, 1 um, 10 um")
+        );
+        assert_eq!((spacing, unit.as_str()), (Spacing::Logarithmic, "um"));
+        // What is listed stays as it is written, and 0.3 MPa is 300 kPa to the last bit.
+        let (numbers, labels, spacing, _) = of("list = ['0.7 kPa', '0.3 MPa', '100 Pa']");
+        assert_eq!(
+            (numbers, labels.as_str()),
+            (vec![0.7, 300.0, 0.1], "0.7 kPa, 0.3 MPa, 100 Pa")
+        );
+        assert_eq!(spacing, Spacing::Logarithmic);
+        let (numbers, ..) = of("list = [['1 um', '1 um'], ['2 um', '2 um']]");
+        assert_eq!(numbers, [1.0, 2.0]);
+        // Of several kinds they are names, which have their units.
+        let (numbers, _, spacing, unit) = of("list = ['1 um', 'auto', '2 um']");
+        assert_eq!((numbers.len(), spacing, unit.as_str()), (0, Spacing::Named, ""));
+        let zipped =
+            axis("zip = { 'load.pressure' = ['1 kPa', '1 MPa'], 'friction.seed' = [1, 2] }").unwrap();
+        assert_eq!(
+            (zipped.spacing, zipped.unit.as_deref()),
+            (Spacing::Linear, Some("kPa"))
+        );
+        // A name of a file is one, whatever it looks like.
+        let files = axis("key = 'friction.mu_static_field'\nlist = ['1 m', '2 m']").unwrap();
+        assert_eq!(files.spacing, Spacing::Named);
+    }
+
+    #[test]
+    fn ends_of_two_kinds_are_refused() {
+        for range in [
+            "['50 kPa', 1, 5]",
+            "['50 kPa', '1 mm', 5]",
+            "['50', '60', 5]",
+            "['1 psi', '2 psi', 5]",
+        ] {
+            let said = axis(&format!("key = 'load.pressure'\nlinspace = {range}")).unwrap_err();
+            assert!(
+                said.contains("its ends must be two numbers, or two quantities of one kind"),
+                "{said}"
+            );
+        }
     }
 
     #[test]

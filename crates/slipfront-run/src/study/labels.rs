@@ -1,5 +1,6 @@
 //! Titles of axes and legends for the keys of a case file and the quantities that are drawn.
 
+use super::axis::Axis;
 use super::summary_values::REDUCTION;
 use slipfront_case::case_file::title_of;
 use slipfront_plot::QuantityLabel;
@@ -16,15 +17,44 @@ const QUANTITIES: [(&str, &str, &str, &str); 3] = [
     (REDUCTION, "reduction of \u{3bc}\u{209b}*", "", "%"),
 ];
 
-/// The title of an axis for a key of a case file or a quantity. Quantities that a case file writes with a unit are taken
-/// to be in SI units. The second and further textures are numbered. A key without a title is shown as it is.
-pub(super) fn title(key: &str) -> String {
-    label(key).map_or_else(|| key.to_owned(), |label| label.title())
+/// The title of a quantity.
+pub(super) fn title(quantity: &str) -> String {
+    label(quantity).map_or_else(|| quantity.to_owned(), |label| label.title())
 }
 
-/// The title of a legend for a key.
-pub(super) fn symbol(key: &str) -> String {
-    label(key).map_or_else(|| key.to_owned(), |label| label.legend())
+/// The title of an axis, with the unit of its numbers. The second and further textures are numbered. A key without a title is
+/// shown as it is.
+pub(super) fn axis_title(axis: &Axis) -> String {
+    in_its_unit(axis, |label| label.title())
+}
+
+/// The title of a legend for the levels of an axis.
+pub(super) fn axis_symbol(axis: &Axis) -> String {
+    in_its_unit(axis, |label| label.legend())
+}
+
+fn in_its_unit(axis: &Axis, write: impl Fn(QuantityLabel) -> String) -> String {
+    let key = axis.title();
+    let unit = axis.unit.as_deref().map(printed);
+    let label = label(key).unwrap_or(QuantityLabel {
+        words: key,
+        ..QuantityLabel::default()
+    });
+    write(QuantityLabel {
+        unit: unit.as_deref().unwrap_or(label.unit),
+        ..label
+    })
+}
+
+/// A unit as it is printed: with a micro sign and raised powers.
+fn printed(unit: &str) -> String {
+    let symbol = |symbol: &str| match symbol.strip_prefix('u') {
+        Some(rest) if rest.starts_with(char::is_alphabetic) => format!("\u{b5}{rest}"),
+        _ => symbol.to_owned(),
+    };
+    let symbols: String = unit.split_inclusive(['/', '*', ' ']).map(symbol).collect();
+    let raised = symbols.replace("^2", "\u{b2}").replace("^3", "\u{b3}");
+    raised.replace('*', "\u{b7}")
 }
 
 fn label(key: &str) -> Option<QuantityLabel<'_>> {
@@ -50,6 +80,39 @@ mod tests {
     use slipfront_plot::has_glyphs;
 
     use super::*;
+    use crate::study::axis::Spacing;
+
+    fn axis(key: &str, unit: Option<&str>) -> Axis {
+        Axis {
+            columns: vec![key.to_owned()],
+            levels: Vec::new(),
+            spacing: Spacing::Linear,
+            unit: unit.map(str::to_owned),
+        }
+    }
+
+    fn title_of_key(key: &str) -> String {
+        axis_title(&axis(key, None))
+    }
+
+    fn symbol(key: &str) -> String {
+        axis_symbol(&axis(key, None))
+    }
+
+    #[test]
+    fn an_axis_has_the_unit_of_its_numbers() {
+        for (key, unit, expected) in [
+            ("load.pressure", Some("kPa"), "pressure P (kPa)"),
+            ("load.pressure", Some(""), "pressure P"),
+            ("slider.block_size", Some("um"), "block size l (\u{b5}m)"),
+            ("slider.density", Some("g/cm^3"), "density \u{3c1} (g/cm\u{b3})"),
+            ("load.pressure", Some("N*um^-2"), "pressure P (N\u{b7}\u{b5}m^-2)"),
+            ("my_own_axis", Some("kPa"), "my_own_axis (kPa)"),
+        ] {
+            assert_eq!(axis_title(&axis(key, unit)), expected);
+        }
+        assert_eq!(axis_symbol(&axis("load.pressure", Some("MPa"))), "P (MPa)");
+    }
 
     #[test]
     fn every_key_has_one_title_that_the_font_can_write() {
@@ -65,25 +128,25 @@ mod tests {
             for (index, key) in section.keys.iter().enumerate() {
                 assert!(section.keys[..index].iter().all(|other| other.name != key.name));
                 let key = format!("{}.{}", section.table(), key.name);
-                assert!(has_glyphs(&title(&key)), "{}", title(&key));
+                assert!(has_glyphs(&title_of_key(&key)), "{}", title_of_key(&key));
             }
         }
     }
 
     #[test]
     fn textures_after_the_first_are_numbered() {
-        assert_eq!(title("drive.v_star"), "drive speed V*");
-        assert_eq!(title("texture.0.coverage"), "texture coverage A* (%)");
-        assert_eq!(title("my_own_axis"), "my_own_axis");
-        assert_eq!(title("texture.0.w"), "cavity shape w");
+        assert_eq!(title_of_key("drive.v_star"), "drive speed V*");
+        assert_eq!(title_of_key("texture.0.coverage"), "texture coverage A* (%)");
+        assert_eq!(title_of_key("my_own_axis"), "my_own_axis");
+        assert_eq!(title_of_key("texture.0.w"), "cavity shape w");
         assert_eq!(
-            title("texture.1.coverage"),
+            title_of_key("texture.1.coverage"),
             "texture coverage A* of texture 2 (%)"
         );
         assert_eq!(symbol("texture.1.w"), "cavity shape w of texture 2");
-        assert_eq!(title("texture.0.unknown"), "texture.0.unknown");
+        assert_eq!(title_of_key("texture.0.unknown"), "texture.0.unknown");
         assert_eq!(
-            title("texture.18446744073709551615.w"),
+            title_of_key("texture.18446744073709551615.w"),
             "cavity shape w of texture 18446744073709551615"
         );
     }

@@ -39,6 +39,7 @@ pub use execute::{collect, execute};
 pub use folder::{StudyFolder, is_study, refuse_foreign, study_of, write};
 pub use idle_axes::idle_axes;
 pub use journal::Records;
+pub use picture_plan::{quantities_without_pictures, why_no_curves};
 pub use plan::{Plan, Point, Role, RunKey};
 pub use plan_warnings::Warning;
 pub use record::{Outcome, Record, RunResult};

@@ -6,10 +6,11 @@ use rayon::prelude::*;
 
 use super::axis::{Axis, Spacing};
 use super::error::StudyError;
-use super::labels::{symbol, title};
-use super::picture_plan::{PictureKind, PlannedPicture, QUANTITIES, combinations, planned};
+use super::labels::{axis_symbol, axis_title, title};
+use super::picture_plan::{PictureKind, PlannedPicture, combinations, measured_quantities, planned};
 use super::plan::{PICTURES_AT_ONCE, Plan};
 use super::study_results::StudyResults;
+use slipfront_case::number_format::four_digits;
 use slipfront_plot::{
     Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Response, Responses,
 };
@@ -21,12 +22,8 @@ pub(super) fn draw(
     results: &StudyResults,
     mut hand_on: impl FnMut(String, Picture) -> Result<(), StudyError>,
 ) -> Result<(), StudyError> {
-    for quantity in QUANTITIES {
+    for quantity in measured_quantities(plan, results) {
         let measured = Measured::of(plan, results, quantity);
-        // Runs that stop at the onset have no kinetic friction, and a study without a reference has no reduction.
-        if measured.values.values().all(|[mean, ..]| mean.is_nan()) {
-            continue;
-        }
         for some in planned(&plan.axes, quantity).chunks(PICTURES_AT_ONCE) {
             let drawn: Vec<_> = some
                 .par_iter()
@@ -50,22 +47,29 @@ struct Measured<'a> {
     quantity: &'static str,
     /// Mean and the ends of its interval, by the levels of a point; NaN where there is none.
     values: HashMap<Vec<usize>, [f64; 3]>,
+    /// What the intervals are.
+    note: String,
 }
 
 impl<'a> Measured<'a> {
     fn of(plan: &'a Plan, results: &StudyResults, quantity: &'static str) -> Self {
-        let value = |position| {
-            let sample = results.sample(plan, position, quantity);
+        let samples: Vec<_> = (0..plan.points.len())
+            .map(|position| results.sample(plan, position, quantity))
+            .collect();
+        let value = |position: usize| {
+            let sample = samples[position];
             let interval = sample.and_then(|sample| sample.interval());
             let [low, high] = interval.unwrap_or([f64::NAN; 2]);
             [sample.map_or(f64::NAN, |sample| sample.mean), low, high]
         };
         let points = plan.points.iter().enumerate();
         let values = points.map(|(position, point)| (plan.levels(point), value(position)));
+        let counts = samples.iter().flatten().map(|sample| sample.n);
         Self {
             axes: &plan.axes,
             quantity,
             values: values.collect(),
+            note: note_on_intervals(plan.settings.confidence(), counts),
         }
     }
 
@@ -90,14 +94,15 @@ impl<'a> Measured<'a> {
     fn curves(&self, x: usize, fixed: &[(usize, usize)], varied: &[usize]) -> Result<Picture, PictureError> {
         let curves = combinations(self.axes, varied).into_iter();
         slipfront_plot::response(&Responses {
-            x_title: title(self.axes[x].title()),
+            x_title: axis_title(&self.axes[x]),
             log_x: self.axes[x].spacing == Spacing::Logarithmic,
             log_y: false,
             y_title: title(self.quantity),
             legend_title: match varied {
-                [axis] => symbol(self.axes[*axis].title()),
+                [axis] => axis_symbol(&self.axes[*axis]),
                 _ => String::new(),
             },
+            note: self.note.clone(),
             curves: curves.map(|varied| self.curve(x, fixed, &varied)).collect(),
         })
     }
@@ -126,17 +131,19 @@ impl<'a> Measured<'a> {
 
     fn map(&self, x: usize, y: usize) -> Result<Picture, PictureError> {
         let (columns, rows) = (by_number(&self.axes[x]), by_number(&self.axes[y]));
-        let mut means = Vec::new();
+        let (mut means, mut half_widths) = (Vec::new(), Vec::new());
         // A map is drawn for two axes alone.
         let mut levels = [0; 2];
         for &(_, row) in &rows {
             for &(_, column) in &columns {
                 (levels[x], levels[y]) = (column, row);
-                means.push(self.at(&levels)[0]);
+                let [mean, low, high] = self.at(&levels);
+                means.push(mean);
+                half_widths.push(0.5 * (high - low));
             }
         }
         let heat_axis = |axis: usize, numbers: &[(f64, usize)]| HeatAxis {
-            title: title(self.axes[axis].title()),
+            title: axis_title(&self.axes[axis]),
             values: numbers.iter().map(|(number, _)| *number).collect(),
             log: self.axes[axis].spacing == Spacing::Logarithmic,
         };
@@ -145,6 +152,8 @@ impl<'a> Measured<'a> {
             y: heat_axis(y, &rows),
             value_title: title(self.quantity),
             values: means,
+            half_widths,
+            note: self.note.clone(),
         })
     }
 
@@ -171,14 +180,31 @@ impl<'a> Measured<'a> {
             };
             levels(0).map(group).collect()
         };
-        let legend = self.axes.get(1).map(|axis| symbol(axis.title()));
+        let legend = self.axes.get(1).map(axis_symbol);
         slipfront_plot::bars(&BarChart {
             y_title: title(self.quantity),
-            x_title: title(self.axes[0].title()),
+            x_title: axis_title(&self.axes[0]),
             legend_title: legend.unwrap_or_default(),
+            note: self.note.clone(),
             groups,
         })
     }
+}
+
+/// What the intervals around means of so many values are.
+fn note_on_intervals(confidence: f64, counts: impl Iterator<Item = usize> + Clone) -> String {
+    let (least, most) = (counts.clone().min().unwrap_or(0), counts.max().unwrap_or(0));
+    if most < 2 {
+        return "no intervals: one run at each point".to_owned();
+    }
+    let count = match least == most {
+        true => most.to_string(),
+        false => format!("{least} to {most}"),
+    };
+    format!(
+        "{} % interval of the mean, n = {count}",
+        four_digits(100.0 * confidence)
+    )
 }
 
 /// Numbers of an axis in rising order, each with its level.
@@ -189,4 +215,17 @@ fn by_number(axis: &Axis) -> Vec<(f64, usize)> {
         .collect();
     numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
     numbers
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_say_what_their_intervals_are() {
+        let note = |confidence, counts: &[usize]| note_on_intervals(confidence, counts.iter().copied());
+        assert_eq!(note(0.95, &[5, 5]), "95 % interval of the mean, n = 5");
+        assert_eq!(note(0.999, &[8, 3]), "99.9 % interval of the mean, n = 3 to 8");
+        assert_eq!(note(0.95, &[1, 1]), "no intervals: one run at each point");
+    }
 }

@@ -274,6 +274,53 @@ fn pictures_are_those_that_the_axes_ask_for() {
     );
 }
 
+/// Quantities are numbers: curves and a map with the unit of their ticks, and what the intervals are. Where there are no curves, the
+/// plan and the answer say why.
+#[test]
+fn axes_of_quantities_are_drawn_in_their_unit() {
+    let study = |levels: [usize; 2]| {
+        format!(
+            "base.slider.blocks = [4, 4]\nbase.time.stop = 'after_onset'\nbase.drive.speed = '0.4 mm/s'\nstudy.replicates = 2\n\
+             [[axes]]\nkey = 'load.pressure'\nlinspace = ['50 kPa', '0.2 MPa', {}]\n\
+             [[axes]]\nkey = 'slider.young_modulus'\nlogspace = ['10 GPa', '100 GPa', {}]",
+            levels[0], levels[1]
+        )
+    };
+    let workspace = Workspace::with_study(&study([4, 3]));
+    let said = workspace.succeed("study study.toml -o out");
+    assert!(!said.contains("no pictures of curves"), "{said}");
+    let pressures: BTreeSet<String> = workspace
+        .results("out")
+        .table("runs.csv")
+        .iter()
+        .map(|row| row["load.pressure"].clone())
+        .collect();
+    assert_eq!(
+        pressures,
+        ["100 kPa", "150 kPa", "200 kPa", "50 kPa"]
+            .map(str::to_owned)
+            .into()
+    );
+    let curves = workspace.read_text("out/static_friction_star.svg");
+    let map = workspace.read_text("out/static_friction_star_map.svg");
+    for picture in [&curves, &map] {
+        for text in ["pressure P (kPa)", "100", "95 % interval of the mean, n = 2"] {
+            assert!(picture.contains(&format!(">{text}</text>")), "{text}");
+        }
+    }
+    assert!(curves.contains(">E (GPa)</text>") && map.contains(">Young's modulus E (GPa)</text>"));
+    assert!(map.contains(">\u{b1}0."), "{map}");
+
+    workspace.write("study.toml", study([10, 10]));
+    let why = "there are no pictures of curves: a picture would have 10 of them, one for each level of `slider.young_modulus`, and can \
+               have 9; the map shows the values";
+    for line in ["study study.toml --dry-run", "study study.toml -o out"] {
+        let said = unwrapped(&workspace.succeed(line));
+        assert_eq!(said.matches(why).count(), 1, "{said}");
+    }
+    assert!(!workspace.results("out").has("static_friction_star.svg"));
+}
+
 /// Its mu_s* is that of a run which never slid: a mean of it must not pass for one.
 #[test]
 fn runs_without_a_transition_are_pointed_out() {
@@ -282,7 +329,7 @@ fn runs_without_a_transition_are_pointed_out() {
     let row = |speed: &str| {
         let mut rows = said
             .lines()
-            .filter(|line| line.contains(&format!("v_star = {speed} ")));
+            .filter(|line| line.trim_start().starts_with(&format!("{speed} ")));
         rows.next().unwrap_or_else(|| panic!("{said}")).to_owned()
     };
     assert!(row("0.08").contains("(no transition in 6 of 6 runs)"), "{said}");
@@ -364,11 +411,18 @@ fn intervals_are_rounded_and_say_what_varies() {
                  base.texture = [{ shape = 'groove', coverage = 10 }]";
     let workspace = Workspace::with_study(study);
     let said = workspace.succeed("study study.toml -o out");
-    let value = said.lines().nth(1).unwrap();
-    let mean = value
-        .split_whitespace()
-        .find(|word| word.parse::<f64>().is_ok())
-        .unwrap();
+    let expected = "static_reduction_percent: mean of n replicates \u{b1} half width of its 95 % interval";
+    assert_eq!(said.lines().next(), Some(expected));
+    let mut rows = said.lines().skip(2);
+    assert_eq!(
+        rows.next().unwrap().split_whitespace().collect::<Vec<_>>(),
+        ["mean", "n"]
+    );
+    let value: Vec<&str> = rows.next().unwrap().split_whitespace().collect();
+    let [mean, "\u{b1}", _, "3"] = value[..] else {
+        panic!("{said}")
+    };
+    assert!(mean.parse::<f64>().is_ok(), "{said}");
     assert!(mean.chars().filter(char::is_ascii_digit).count() <= 3, "{said}");
     assert!(unwrapped(&said).contains("kinetic coefficients alone"), "{said}");
 }
@@ -380,7 +434,9 @@ fn runs_without_the_number_that_decides_do_not_count_for_it() {
                  study.until = { key = 'kinetic_friction_star', half_width = 1, min = 3, max = 50 }\n";
     let workspace = Workspace::with_study(until);
     let said = workspace.succeed("study study.toml -o out");
-    assert!(said.contains("none   (interval still too wide)"), "{said}");
+    assert!(said.contains("none   0   (interval still too wide)"), "{said}");
+    let missing = "there is no picture of kinetic_friction_star: no run has a value of it";
+    assert!(said.contains(missing), "{said}");
     let results = workspace.results("out");
     assert_eq!(results.recorded().len(), 3);
     let rows = results.table("points.csv");
