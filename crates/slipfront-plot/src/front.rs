@@ -20,7 +20,7 @@ use crate::ticks::{Direction, Tick, round_values};
 const GAP: f64 = 30.0;
 /// A map beside the other panel is no wider than this, 44 mm, and no higher, unless the slider is long along y.
 const MAX_SIDE: f64 = 520.0;
-const MAX_SIDE_LONG: f64 = 1100.0;
+const MAX_SIDE_LONG: f64 = 1000.0;
 /// A slider longer than this along x has its map above the other panel, as wide as the page.
 const MAX_RATIO: f64 = 3.0;
 /// That map is no thinner than this share of its length.

@@ -1,8 +1,8 @@
 //! A canvas as pixels, drawn by `tiny-skia`. Its features `simd` and `std` are off, so that every machine computes the same bits.
 
 use tiny_skia::{
-    Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PremultipliedColorU8,
-    Rect, Stroke, StrokeDash, Transform,
+    Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Rect, Stroke, StrokeDash,
+    Transform,
 };
 
 use crate::canvas::{Canvas, Element, Primitive};
@@ -21,8 +21,14 @@ pub(crate) fn rgb(canvas: &Canvas) -> Option<Vec<u8>> {
     for element in &canvas.elements {
         draw(&mut pixmap, element);
     }
-    let channels = |pixel: &PremultipliedColorU8| [pixel.red(), pixel.green(), pixel.blue()];
-    Some(pixmap.pixels().iter().flat_map(channels).collect())
+    // In place, without opacity, which is full: the page is white below everything.
+    let mut bytes = pixmap.take();
+    let pixels = bytes.len() / 4;
+    for pixel in 0..pixels {
+        bytes.copy_within(4 * pixel..4 * pixel + 3, 3 * pixel);
+    }
+    bytes.truncate(3 * pixels);
+    Some(bytes)
 }
 
 /// Draws an element; one without extent leaves no trace.

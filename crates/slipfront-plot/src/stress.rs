@@ -22,7 +22,7 @@ const MAX_HEIGHT: f64 = 620.0;
 /// A slider is long if it is so many times as long as wide. Along x, two maps stand side by side, or one if it is longer yet; along y,
 /// all stand in one row.
 const LONG: f64 = 3.0;
-const VERY_LONG: f64 = 8.0;
+const VERY_LONG: f64 = 10.0;
 /// Its map along x is no thinner than this share of its length.
 const MIN_RATIO_WIDE: f64 = 1.0 / 12.0;
 /// A side shorter than this has fewer numbers.

@@ -138,15 +138,19 @@ const EVENT_STEPS: f64 = 50.0;
 /// What both pictures read of a row of the series, and its points of the curves.
 const DRAWN_ROW: f64 = (3.0 + 2.0 + 3.0) * NUMBER;
 
-/// Primitives and pixels of the picture of the friction, and of the one of the stress. They do not depend on the
-/// lattice: more than 256 cells along a side are averaged (measured: 6.8 and 6.6 MB).
+/// Primitives and pixels of a picture as wide as a column. They do not depend on the lattice.
 pub const PICTURE: f64 = 7.0 * 1024.0 * 1024.0;
+/// The same of the pictures of the friction and of the stress, which are drawn at once: four bytes of a pixel, of which there are 0.9
+/// and at most 3.6 million.
+const PICTURES_WITH_MAPS: f64 = 20.0 * 1024.0 * 1024.0;
 /// The same of the picture of the front: with its panels beside each other, and above each other, as those of long sliders are
-/// (measured: 8 and 15 MB, with the kymograph).
-const PICTURE_OF_FRONT: f64 = 12.0 * 1024.0 * 1024.0;
-const PICTURE_OF_LONG_FRONT: f64 = 16.0 * 1024.0 * 1024.0;
-/// All pictures as SVG and PNG, the summary and the manifest (measured: at most 0.7 MB).
+/// (at most 1.8 and 2.6 million pixels).
+const PICTURE_OF_FRONT: f64 = 8.0 * 1024.0 * 1024.0;
+const PICTURE_OF_LONG_FRONT: f64 = 12.0 * 1024.0 * 1024.0;
+/// All pictures as SVG and PNG, the summary and the manifest (measured: at most 0.7 MB), without the maps of the stress; and of these for
+/// a cell (measured: 5.4 bytes where every cell has a colour of its own).
 const PICTURE_FILES: f64 = 2e6;
+const MAP_FILES: f64 = 6.0;
 
 /// What the allocator holds of memory that has been given back, or cannot use between pieces that have not: resident
 /// memory was up to 4 % above what was allocated.
@@ -330,8 +334,8 @@ impl Budget {
                 bytes: [
                     0.0,
                     snapshots(self.cells),
-                    self.maps * drawn * VALUE,
-                    frames * (fields * all_cells * VALUE + 4.0 * NUMBER),
+                    self.maps * drawn * (VALUE + MAP_FILES),
+                    frames * (fields * all_cells * VALUE + 4.0 * NUMBER) + self.maps * drawn * MAP_FILES,
                     snapshots(all_cells),
                 ],
             },
@@ -372,10 +376,11 @@ impl Budget {
     /// Bytes of a phase, with those that no key of a case changes.
     fn total(&self, phase: Phase) -> f64 {
         let counts = grown(self.kymograph) * NUMBER;
+        let with_maps = if self.maps > 0.0 { PICTURES_WITH_MAPS } else { 0.0 };
         let fixed = [
             0.0,
             HISTORY + counts + self.kymograph * COUNTED,
-            self.front_picture + self.kymograph * DRAWN_SHARE,
+            self.front_picture.max(with_maps) + self.kymograph * DRAWN_SHARE,
             PICTURE_FILES + self.kymograph * VALUE,
             HISTORY + counts,
         ];
@@ -559,8 +564,8 @@ impl Budget {
 /// Memory in which the pictures of a finished run are drawn from its files, in bytes, with so many rows of the series and a kymograph of
 /// so many bytes.
 pub fn memory_to_draw(rows: f64, kymograph: f64) -> f64 {
-    let maps = CELLS * (AVERAGED + MAX_MAPS as f64 * VALUE);
-    HEAP * (maps + grown(rows) * DRAWN_ROW + kymograph / VALUE * DRAWN_SHARE + PICTURE_OF_LONG_FRONT)
+    let maps = CELLS * (AVERAGED + MAX_MAPS as f64 * (VALUE + MAP_FILES));
+    HEAP * (maps + grown(rows) * DRAWN_ROW + kymograph / VALUE * DRAWN_SHARE + PICTURES_WITH_MAPS)
 }
 
 /// Elements for which a vector has room that grew to `length` by doubling.
