@@ -4,8 +4,8 @@
 
 use slipfront_plot::{
     Bar, BarChart, BarGroup, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, HeatAxis, HeatMap, Instant,
-    Kinetic, Picture, Response, Responses, Shape, StressMap, StressMaps, bars, field_maps, friction,
-    heat_map, response, shapes, stress,
+    Kinetic, Picture, Polar, Response, Responses, Shape, StressMap, StressMaps, bars, field_maps, friction,
+    heat_map, polar, response, shapes, stress,
 };
 
 /// The first digits of the hashes of both files.
@@ -136,6 +136,18 @@ fn heat() -> HeatMap {
     }
 }
 
+fn around() -> Polar {
+    Polar {
+        value_title: "\u{3bc}*".to_string(),
+        note: "95 % interval of the mean, n = 5".to_string(),
+        curves: vec![Response {
+            x: vec![0.0, 90.0, 180.0, 270.0],
+            ..responses().curves[0].clone()
+        }],
+        ..Polar::default()
+    }
+}
+
 fn outlines() -> [Shape; 1] {
     [Shape {
         label: "triangle".to_string(),
@@ -157,6 +169,7 @@ fn every_kind_of_picture_has_its_bytes() {
         ("bars", bars(&chart())),
         ("heat map", heat_map(&heat())),
         ("shapes", shapes(&outlines())),
+        ("polar", polar(&around())),
     ]
     .map(|(name, picture)| {
         let [svg, png] = digests(&picture.unwrap());
@@ -174,4 +187,5 @@ response: ba4e4a0d0d72a45c 5991bde13763647d
 bars: ec38e49d1f4e2ea0 d41a227e5256f7f8
 heat map: e7651fdc77e95e94 60663cb68376f6d5
 shapes: 60442453361eadd4 df42d00a6f846272
+polar: 67b1742c20c743be 8101120fe361c860
 ";

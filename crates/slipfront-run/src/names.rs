@@ -28,7 +28,8 @@ pub const PREVIOUS: &str = "checkpoint-previous.bin";
 pub const FIGURE_CACHE: &str = "found";
 /// The journal of a study: a line for every run that has ended.
 pub const RECORDS: &str = "records.jsonl";
-/// Tables of a study: a row for every run, and a row for every point.
-pub const TABLES: [&str; 2] = ["runs.csv", "points.csv"];
+/// Tables of a study: a row for every run, a row for every quantity at every point, and, where the direction of the drive is varied, a row
+/// for friction over all directions.
+pub const TABLES: [&str; 3] = ["runs.csv", "points.csv", "anisotropy.csv"];
 /// Subfolder of the run folders that a study keeps.
 pub const RUNS: &str = "runs";

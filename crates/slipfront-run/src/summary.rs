@@ -28,6 +28,9 @@ pub struct Summary {
     pub static_friction_star: f64,
     /// mu_s.
     pub static_friction: f64,
+    /// The same across the drive at that instant, positive to the left of the drive.
+    #[serde(default)]
+    pub static_lateral_friction_star: f64,
     /// t_s*.
     pub onset_time_star: f64,
     /// t_s, s.
@@ -42,6 +45,9 @@ pub struct Summary {
     pub kinetic_friction_star_uncertainty: Option<f64>,
     /// mu_k.
     pub kinetic_friction: Option<f64>,
+    /// Mean across the drive over the same window.
+    #[serde(default)]
+    pub kinetic_lateral_friction_star: Option<f64>,
     /// [t1*, t2*] of that mean.
     pub kinetic_window_star: Option<[f64; 2]>,
     /// Mean N* over the kinetic window, %.
@@ -362,6 +368,7 @@ impl SummaryObservers {
         Summary {
             static_friction_star: peak.mu_star,
             static_friction: peak.mu_star * mean,
+            static_lateral_friction_star: peak.mu_lateral_star,
             onset_time_star: peak.time_star,
             onset_time_s: peak.time_star * time,
             first_slip_time_star: first_slip,
@@ -369,6 +376,7 @@ impl SummaryObservers {
             kinetic_friction_star: kinetic.map(|k| k.mu_star),
             kinetic_friction_star_uncertainty: kinetic.and_then(|k| k.uncertainty.ok()),
             kinetic_friction: kinetic.map(|k| k.mu_star * mean),
+            kinetic_lateral_friction_star: kinetic.map(|k| k.mu_lateral_star),
             kinetic_window_star: kinetic.map(|k| k.window_star),
             sliding_percent_kinetic: kinetic.map(|k| k.sliding_percent),
             sliding_percent_max: self.history.sliding_percent_max(),

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use slipfront_run::study::{self, Plan, Quantity, Records, StudyFile};
+use slipfront_run::study::{self, Plan, Quantity, Records, StudyFile, StudyResults, anisotropies};
 
 /// The studies of the documentation and of `cases/studies` can be run, and every key of a study is explained.
 #[test]
@@ -77,6 +77,124 @@ fn many_grooves_weaken_the_effect() {
         let found = results.value(point, 0, Quantity::Reduction).unwrap();
         assert!((found - expected).abs() <= 0.05, "{found}, expected {expected}");
     }
+}
+
+/// The plan of a study and its results.
+fn results(text: &str) -> (Plan, StudyResults) {
+    let study = StudyFile::parse(text, "study.toml", "study", Path::new("")).unwrap();
+    let plan = Plan::new(&study, None).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let records = Records::open(folder.path()).unwrap();
+    let never = AtomicBool::new(false);
+    let results = study::execute(&plan, &records, folder.path(), &never, &mut |_| {}).unwrap();
+    (plan, results)
+}
+
+/// Bits of static and kinetic friction at a point, and of both across the drive, of which a mirror turns the sign.
+fn friction_at(results: &StudyResults, point: usize, handed: f64) -> [u64; 4] {
+    let value = |name: &str| {
+        let value = results.value(point, 0, Quantity::named(name).unwrap());
+        value.unwrap_or_else(|| panic!("no {name} at point {point}"))
+    };
+    // 0 has no sign here.
+    let across = |name: &str| (handed * value(name) + 0.0).to_bits();
+    [
+        value("static_friction_star").to_bits(),
+        value("kinetic_friction_star").to_bits(),
+        across("static_lateral_friction_star"),
+        across("kinetic_lateral_friction_star"),
+    ]
+}
+
+const SMOOTH: &str =
+    "base.friction = { sigma_static_star = 0, sigma_kinetic_star = 0 }\nbase.drive.v_star = 0.1\n";
+
+/// Every quarter turn and mirror of the drive on a texture that has all symmetries of the square gives the same bits.
+#[test]
+fn a_symmetric_texture_has_the_friction_of_its_symmetry() {
+    for texture in [
+        "{ shape = 'cavity', coverage = 15 }",
+        "{ shape = 'cavity', s = 3, w = 0.2, coverage = 15 }",
+        "{ shape = 'cavity', coverage = 15, array = [2, 2] }",
+    ] {
+        // 30 degrees and its images: those of quarter turns first, then those of the mirrors.
+        let (plan, results) = results(&format!(
+            "{SMOOTH}base.slider.blocks = [14, 14]\nbase.texture = [{texture}]\n[[axes]]\nkey = 'drive.direction'\n\
+             list = [30, 120, 210, 300, 60, 150, 240, 330, -30, 0, 90, 180, 270, 45, 135, 225, 315]"
+        ));
+        let of = |points: std::ops::Range<usize>, handed| points.map(move |point| (point, handed));
+        let oblique = of(0..4, 1.0).chain(of(4..9, -1.0)).collect::<Vec<_>>();
+        let straight = of(9..13, 1.0).collect::<Vec<_>>();
+        let diagonal = of(13..17, 1.0).collect::<Vec<_>>();
+        for images in [&oblique, &straight, &diagonal] {
+            let first = friction_at(&results, images[0].0, 1.0);
+            for &(point, handed) in images {
+                let found = friction_at(&results, point, handed);
+                assert_eq!(found, first, "{texture}: {}", plan.describe(&plan.points[point]));
+            }
+        }
+        // Along an axis of symmetry nothing pulls across; between them something does, or the signs above would be tried on nothing.
+        assert_eq!(friction_at(&results, 9, 1.0)[2..], [0, 0], "{texture}");
+        assert!(
+            friction_at(&results, 0, 1.0)[2..].iter().all(|bits| *bits != 0),
+            "{texture}"
+        );
+        // What repeats every quarter turn has no principal axes.
+        for found in anisotropies(&plan, &results) {
+            assert!(found.principal.is_none(), "{texture}: {found:?}");
+            // -30 and 330 degrees are one.
+            assert_eq!((found.directions, found.mean.n), (16, 1));
+            let [largest, smallest] = [found.largest_direction, found.smallest_direction];
+            assert!(
+                largest != smallest && found.anisotropy.mean > 0.0,
+                "{texture}: {found:?}"
+            );
+        }
+    }
+}
+
+/// A groove across x is one along x that is turned: so is friction, and its principal axes are along and across it.
+#[test]
+fn grooves_turn_their_friction_with_them() {
+    let (plan, results) = results(&format!(
+        "{SMOOTH}base.slider.blocks = [15, 15]\nbase.texture = [{{ shape = 'groove', coverage = 20 }}]\n\
+         [[axes]]\nkey = 'texture.0.orientation'\nlist = ['across', 'along']\n\
+         [[axes]]\nkey = 'drive.direction'\nlinspace = [0, 330, 12]"
+    ));
+    for step in 0..12 {
+        let across = friction_at(&results, step, 1.0);
+        let along = friction_at(&results, 12 + (step + 3) % 12, 1.0);
+        let mirrored = friction_at(&results, (12 - step) % 12, -1.0);
+        assert_eq!(across, along, "{} degrees", 30 * step);
+        assert_eq!(across, mirrored, "{} degrees", 30 * step);
+    }
+    let all = anisotropies(&plan, &results);
+    let directions: Vec<f64> = all
+        .iter()
+        .filter(|found| found.quantity == "static_friction_star")
+        .map(|found| found.principal.unwrap().direction)
+        .collect();
+    // Friction is larger along a groove than across it. The sums of the fit round.
+    let [across, along] = directions[..] else {
+        panic!("{all:?}")
+    };
+    assert!((across - 90.0).abs() < 1e-9, "{across}");
+    assert!(along.min(180.0 - along) < 1e-9, "{along}");
+    let found = &all[0];
+    assert_eq!(
+        found.levels,
+        [("texture.0.orientation".to_owned(), "across".to_owned())]
+    );
+    // By its definition, from the values of the one replicate there is.
+    let values: Vec<f64> = (0..12)
+        .map(|point| f64::from_bits(friction_at(&results, point, 1.0)[0]))
+        .collect();
+    let mean = values.iter().sum::<f64>() / 12.0;
+    let spread = values.iter().copied().fold(0.0, f64::max) - values.iter().copied().fold(1.0, f64::min);
+    assert!((found.anisotropy.mean - spread / mean).abs() < 1e-14, "{found:?}");
+    let (at, lateral) = found.lateral.unwrap();
+    let point = (at / 30.0).round() as usize;
+    assert_eq!(lateral.mean.to_bits(), friction_at(&results, point, 1.0)[2]);
 }
 
 #[test]

@@ -59,6 +59,8 @@ impl CurvePoint {
 pub struct Peak {
     /// mu* at the peak: mu_s* once `ended`.
     pub mu_star: f64,
+    /// What is across the drive then.
+    pub mu_lateral_star: f64,
     /// Step of the peak.
     pub step: u64,
     /// Time of the peak: t_s* once `ended`.
@@ -76,6 +78,7 @@ impl Peak {
         let lowest = f64::NEG_INFINITY;
         Self {
             mu_star: lowest,
+            mu_lateral_star: 0.0,
             step: 0,
             time_star: 0.0,
             ended: false,
@@ -89,14 +92,16 @@ impl Peak {
         self.mu_star > self.steady_level && mu_star <= 0.5 * (self.mu_star + self.steady_level)
     }
 
-    /// Takes mu* of the next step into account.
-    pub(crate) fn update(&mut self, step: u64, time_star: f64, mu_star: f64) {
+    /// Takes the next step into account.
+    pub(crate) fn update(&mut self, step: u64, time_star: f64, point: &CurvePoint) {
+        let mu_star = point.mu_star;
         self.mu_star_max = self.mu_star_max.max(mu_star);
         if self.ended {
             return;
         }
         if mu_star > self.mu_star {
             (self.mu_star, self.step, self.time_star) = (mu_star, step, time_star);
+            self.mu_lateral_star = point.mu_lateral_star;
         } else {
             self.ended = self.ends_at(mu_star);
         }
@@ -110,7 +115,12 @@ mod tests {
     fn peak_of(level: f64, curve: &[f64]) -> Peak {
         let mut peak = Peak::new(level);
         for (n, &mu) in curve.iter().enumerate() {
-            peak.update(n as u64, n as f64, mu);
+            let point = CurvePoint {
+                mu_star: mu,
+                mu_lateral_star: -mu,
+                ..CurvePoint::default()
+            };
+            peak.update(n as u64, n as f64, &point);
         }
         peak
     }
@@ -122,6 +132,7 @@ mod tests {
             (peak.mu_star, peak.step, peak.ended, peak.mu_star_max),
             (1.0, 3, true, 1.1)
         );
+        assert_eq!(peak.mu_lateral_star, -1.0);
     }
 
     #[test]

@@ -236,7 +236,7 @@ impl Simulation {
         let time_star = self.time_star();
         self.contact = self.engine.contact_totals(&self.model);
         self.point = CurvePoint::measure(&self.model, &self.totals, time_star);
-        self.peak.update(self.step, time_star, self.point.mu_star);
+        self.peak.update(self.step, time_star, &self.point);
     }
 
     /// The present instant.

@@ -1,7 +1,7 @@
 //! What the commands print: the physics of a case as a tree, its cost, the summary of a run, the plan and the answer of a study.
 
+mod anisotropy;
 mod cost;
-
 mod physics;
 mod study;
 mod summary;

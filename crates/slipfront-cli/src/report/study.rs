@@ -5,9 +5,10 @@ use std::path::Path;
 
 use slipfront_case::number_format::{are, byte_size, count, four_digits, with_half_width};
 use slipfront_run::study::{
-    Plan, RunKey, StudyResults, idle_axes, quantities_without_pictures, why_no_curves,
+    Plan, RunKey, StudyResults, idle_axes, quantities_without_pictures, why_no_pictures,
 };
 
+use super::anisotropy::anisotropy;
 use super::table::table;
 use super::times::duration;
 use crate::wrap::note;
@@ -57,7 +58,7 @@ pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) 
         byte_size(plan.disk(plan.runs(min))),
         idle_axes(plan)
             .iter()
-            .chain(&why_no_curves(&plan.axes))
+            .chain(&why_no_pictures(&plan.axes))
             .map(|sentence| note(sentence))
             .collect::<String>(),
         case_warnings(plan)
@@ -103,11 +104,12 @@ fn case_warnings(plan: &Plan) -> String {
 /// The answer of a study: its main quantity at every point, notes, and the folder of tables and pictures, with the reason why there
 /// are none of something.
 pub(crate) fn study(plan: &Plan, results: &StudyResults, folder: &Path) -> String {
-    let missing = why_no_curves(&plan.axes).into_iter();
+    let missing = why_no_pictures(&plan.axes).into_iter();
     let missing = missing.chain(quantities_without_pictures(plan, results));
     format!(
-        "{}{}runs.csv, points.csv and pictures in {}\n{}",
+        "{}{}{}runs.csv, points.csv and pictures in {}\n{}",
         points(plan, results),
+        anisotropy(plan, results),
         notes(plan, results),
         folder.display(),
         missing

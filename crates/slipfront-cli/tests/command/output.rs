@@ -6,7 +6,7 @@ use crate::fixtures::RUN_FILES;
 use crate::support::workspace::Workspace;
 
 /// What `summary.json` holds at least (design, section 3).
-const KEYS: [&str; 26] = [
+const KEYS: [&str; 28] = [
     "static_friction_star",
     "static_friction",
     "onset_time_star",
@@ -29,6 +29,8 @@ const KEYS: [&str; 26] = [
     "seed",
     "energy_error",
     "transition",
+    "static_lateral_friction_star",
+    "kinetic_lateral_friction_star",
     "mu_star_max",
     "kinetic_friction_star_uncertainty",
     "warnings",

@@ -5,6 +5,7 @@ use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use super::anisotropy::anisotropies;
 use super::error::StudyError;
 use super::input_copies::Copy;
 use super::journal::Records;
@@ -173,9 +174,14 @@ impl StudyFolder {
 
 /// Writes the tables and pictures of a study to its folder, and removes its pictures of earlier results.
 pub fn write(plan: &Plan, results: &StudyResults, folder: &StudyFolder) -> Result<(), StudyError> {
-    let [runs, points] = TABLES;
+    let [runs, points, anisotropy] = TABLES;
     folder.write(runs, |file| Ok(tables::runs(plan, results, file)?))?;
     folder.write(points, |file| Ok(tables::points(plan, results, file)?))?;
+    match anisotropies(plan, results).as_slice() {
+        // As with pictures, a table of earlier results that stays is no reason to stop.
+        [] => drop(remove_if_there(&folder.path.join(anisotropy))),
+        rows => folder.write(anisotropy, |file| Ok(tables::anisotropy(rows, file)?))?,
+    }
     #[cfg_attr(not(feature = "plot"), expect(unused_mut, reason = "nothing is drawn"))]
     let mut drawn: HashSet<String> = HashSet::new();
     #[cfg(feature = "plot")]

@@ -22,6 +22,12 @@ pub(super) fn title(quantity: &str) -> String {
     label(quantity).map_or_else(|| quantity.to_owned(), |label| label.title())
 }
 
+/// The symbol of a quantity; empty if it has none.
+pub(super) fn quantity_symbol(quantity: &str) -> &'static str {
+    let row = QUANTITIES.iter().find(|row| row.0 == quantity);
+    row.map_or("", |row| row.2)
+}
+
 /// The title of an axis, with the unit of its numbers. The second and further textures are numbered. A key without a title is
 /// shown as it is.
 pub(super) fn axis_title(axis: &Axis) -> String {

@@ -7,6 +7,7 @@
 //!
 //! Every finished run is a line of the journal. A study that was stopped is continued from there.
 
+mod anisotropy;
 mod axis;
 mod error;
 mod execute;
@@ -32,6 +33,7 @@ mod study_results;
 mod summary_values;
 mod tables;
 
+pub use anisotropy::{Anisotropy, Principal, anisotropies};
 pub use axis::{Axis, Level, Spacing};
 pub use error::StudyError;
 pub(crate) use error::of_others;
@@ -39,7 +41,7 @@ pub use execute::{collect, execute};
 pub use folder::{StudyFolder, is_study, refuse_foreign, study_of, write};
 pub use idle_axes::idle_axes;
 pub use journal::Records;
-pub use picture_plan::{quantities_without_pictures, why_no_curves};
+pub use picture_plan::{quantities_without_pictures, why_no_pictures};
 pub use plan::{Plan, Point, Role, RunKey};
 pub use plan_warnings::Warning;
 pub use record::{Outcome, Record, RunResult};

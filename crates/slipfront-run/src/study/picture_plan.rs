@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use super::anisotropy::direction_axis;
 use super::axis::{Axis, Spacing};
 use super::plan::Plan;
 use super::study_results::StudyResults;
@@ -24,7 +25,27 @@ pub(super) fn names(axes: &[Axis]) -> impl Iterator<Item = String> {
     let pictures = QUANTITIES
         .into_iter()
         .flat_map(|quantity| planned(axes, quantity));
-    pictures.map(|picture| picture.name)
+    let polar = direction_axis(axes).map(|_| POLAR.to_owned());
+    pictures.map(|picture| picture.name).chain(polar)
+}
+
+/// The picture of friction over the directions of the drive.
+pub(super) const POLAR: &str = "friction_polar";
+
+/// The axis of directions and the combinations of levels of the others, each of which is a curve of every quantity in the polar picture;
+/// none if there is no such axis. A sentence if there are too many for one picture.
+pub(super) fn polar(axes: &[Axis]) -> Option<Result<(usize, Vec<Levels>), String>> {
+    let over = direction_axis(axes)?;
+    let others = others_than(axes, over);
+    let count: usize = others.iter().map(|&axis| axes[axis].levels.len()).product();
+    Some(match 2 * count <= MOST_CURVES {
+        true => Ok((over, combinations(axes, &others))),
+        false => Err(format!(
+            "there is no polar picture: it would have {} curves, two for each combination of the levels of the other axes, and can have \
+             {MOST_CURVES}; anisotropy.csv has what it would show",
+            2 * count
+        )),
+    })
 }
 
 /// A picture to be drawn.
@@ -71,8 +92,13 @@ pub fn quantities_without_pictures(plan: &Plan, results: &StudyResults) -> Vec<S
         .collect()
 }
 
-/// Why a study of these axes has no curves and no bars; none if it has some.
-pub fn why_no_curves(axes: &[Axis]) -> Option<String> {
+/// Why a study of these axes has no curves and no bars, and why no polar picture of its directions: sentences, none for what it has.
+pub fn why_no_pictures(axes: &[Axis]) -> Vec<String> {
+    let polar = polar(axes).and_then(Result::err);
+    why_no_curves(axes).into_iter().chain(polar).collect()
+}
+
+fn why_no_curves(axes: &[Axis]) -> Option<String> {
     let drawing = Drawing::of(axes);
     let Drawing::Nothing(why) = drawing else {
         return None;

@@ -4,15 +4,18 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
+use super::anisotropy::FRICTION;
 use super::axis::{Axis, Spacing};
 use super::error::StudyError;
-use super::labels::{axis_symbol, axis_title, title};
-use super::picture_plan::{PictureKind, PlannedPicture, combinations, measured_quantities, planned};
+use super::labels::{axis_symbol, axis_title, quantity_symbol, title};
+use super::picture_plan::{
+    Levels, POLAR, PictureKind, PlannedPicture, combinations, measured_quantities, planned, polar,
+};
 use super::plan::{PICTURES_AT_ONCE, Plan};
 use super::study_results::StudyResults;
 use slipfront_case::number_format::four_digits;
 use slipfront_plot::{
-    Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Response, Responses,
+    Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Polar, Response, Responses,
 };
 
 /// Draws the pictures of a study and hands each on with the name of its files. No more are in memory at once than there is
@@ -22,6 +25,16 @@ pub(super) fn draw(
     results: &StudyResults,
     mut hand_on: impl FnMut(String, Picture) -> Result<(), StudyError>,
 ) -> Result<(), StudyError> {
+    if let Some(Ok((over, combinations))) = polar(&plan.axes) {
+        let drawn = friction_polar(plan, results, over, &combinations);
+        if let Some(picture) = drawn.transpose() {
+            let name = POLAR.to_owned();
+            hand_on(
+                POLAR.to_owned(),
+                picture.map_err(|source| StudyError::Picture { name, source })?,
+            )?;
+        }
+    }
     for quantity in measured_quantities(plan, results) {
         let measured = Measured::of(plan, results, quantity);
         for some in planned(&plan.axes, quantity).chunks(PICTURES_AT_ONCE) {
@@ -189,6 +202,45 @@ impl<'a> Measured<'a> {
             groups,
         })
     }
+}
+
+/// Static and kinetic friction around the directions of the drive, a curve for each combination of levels of the other axes; none if no
+/// run has either.
+fn friction_polar(
+    plan: &Plan,
+    results: &StudyResults,
+    over: usize,
+    combinations: &[Levels],
+) -> Result<Option<Picture>, PictureError> {
+    let measured = measured_quantities(plan, results);
+    let measured: Vec<Measured> = FRICTION
+        .iter()
+        .filter(|(quantity, _)| measured.contains(quantity))
+        .map(|(quantity, _)| Measured::of(plan, results, quantity))
+        .collect();
+    let Some(first) = measured.first() else {
+        return Ok(None);
+    };
+    let curves = combinations.iter().flat_map(|varied| {
+        let curve = |measured: &Measured| {
+            let mut response = measured.curve(over, &[], varied);
+            let parts = [response.label.as_str(), quantity_symbol(measured.quantity)];
+            let parts = parts.into_iter().filter(|part| !part.is_empty());
+            response.label = parts.collect::<Vec<_>>().join(", ");
+            response
+        };
+        measured.iter().map(curve).collect::<Vec<_>>()
+    });
+    let picture = slipfront_plot::polar(&Polar {
+        value_title: "friction \u{3bc}*".to_owned(),
+        legend_title: match plan.axes.iter().enumerate().find(|(axis, _)| *axis != over) {
+            Some((_, other)) if plan.axes.len() == 2 => axis_symbol(other),
+            _ => String::new(),
+        },
+        note: first.note.clone(),
+        curves: curves.collect(),
+    });
+    picture.map(Some)
 }
 
 /// What the intervals around means of so many values are.

@@ -1,8 +1,11 @@
-//! `runs.csv`, with a row for each run, and `points.csv`, with the statistics of each quantity at each point.
+//! `runs.csv`, with a row for each run, `points.csv`, with the statistics of each quantity at each point, and `anisotropy.csv`, with
+//! those of friction over the directions of the drive.
 
 use std::io::Write;
 
+use super::anisotropy::Anisotropy;
 use super::plan::{Plan, Role};
+use super::statistics::Sample;
 use super::study_results::StudyResults;
 use super::summary_values::{AFTER_AXES, BEFORE_AXES, Quantity, STATISTICS, is_optional, known};
 
@@ -94,6 +97,76 @@ pub(super) fn points(plan: &Plan, results: &StudyResults, to: impl Write) -> csv
     }
     Ok(table.flush()?)
 }
+
+/// `anisotropy.csv`: for the levels of all axes but that of the directions, how static and kinetic friction depend on them. There is at
+/// least one row.
+pub(super) fn anisotropy(rows: &[Anisotropy], to: impl Write) -> csv::Result<()> {
+    let mut table = csv::Writer::from_writer(to);
+    let levels = rows.first().into_iter().flat_map(|row| &row.levels);
+    let axes = levels.map(|(column, _)| column.as_str());
+    table.write_record(axes.chain(OF_ANISOTROPY))?;
+    for row in rows {
+        let mut cells: Vec<String> = row.levels.iter().map(|(_, cell)| cell.clone()).collect();
+        cells.extend([
+            row.quantity.to_owned(),
+            row.directions.to_string(),
+            row.mean.n.to_string(),
+        ]);
+        let with_ends = |sample: Option<Sample>| {
+            let ends = sample.and_then(|sample| sample.interval());
+            let [low, high] = ends.map_or([None; 2], |ends| ends.map(Some));
+            [sample.map(|sample| sample.mean), low, high]
+        };
+        let principal = row.principal;
+        let values = principal.map(|principal| principal.values);
+        let (at, lateral) = row.lateral.unzip();
+        let numbers = [
+            &with_ends(Some(row.mean))[..],
+            &[Some(row.largest_direction), Some(row.smallest_direction)],
+            &with_ends(Some(row.anisotropy)),
+            &[
+                principal.map(|principal| principal.direction),
+                principal.and_then(|principal| principal.half_width),
+            ],
+            &with_ends(values.map(|[larger, _]| larger)),
+            &with_ends(values.map(|[_, smaller]| smaller)),
+            &[principal.map(|principal| principal.misfit)],
+            &with_ends(lateral),
+            &[at],
+        ];
+        cells.extend(numbers.concat().into_iter().map(cell));
+        table.write_record(cells)?;
+    }
+    Ok(table.flush()?)
+}
+
+/// Columns of `anisotropy.csv` after those of the axes.
+const OF_ANISOTROPY: [&str; 24] = [
+    "quantity",
+    "directions",
+    "n",
+    "mean",
+    "mean_low",
+    "mean_high",
+    "largest_direction",
+    "smallest_direction",
+    "anisotropy",
+    "anisotropy_low",
+    "anisotropy_high",
+    "principal_direction",
+    "principal_direction_half_width",
+    "principal_1",
+    "principal_1_low",
+    "principal_1_high",
+    "principal_2",
+    "principal_2_low",
+    "principal_2_high",
+    "misfit",
+    "lateral",
+    "lateral_low",
+    "lateral_high",
+    "lateral_direction",
+];
 
 /// Columns of all axes.
 fn axis_columns(plan: &Plan) -> impl Iterator<Item = &str> {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::observer::Observer;
 use crate::error::RunError;
-use crate::measure::Peak;
+use crate::measure::{CurvePoint, Peak};
 use crate::snapshot::Snapshot;
 
 /// Where the kinetic window begins. It ends with the run.
@@ -37,6 +37,8 @@ pub struct Kinetic {
     pub mu_star: f64,
     /// Standard error of mu_k* by the blocking method, or why it cannot be estimated.
     pub uncertainty: Result<f64, NoUncertainty>,
+    /// Mean of mu_lateral_star.
+    pub mu_lateral_star: f64,
     /// Mean of N*.
     pub sliding_percent: f64,
 }
@@ -60,7 +62,7 @@ pub enum NoUncertainty {
     },
 }
 
-/// Keeps mu* and N* of the whole run as at most [`KineticHistory::BINS`] means over equal numbers of steps, so that memory
+/// Keeps mu*, what is across the drive and N* of the whole run as at most [`KineticHistory::BINS`] means over equal numbers of steps, so that memory
 /// does not grow with the run. It must be called at every step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KineticHistory {
@@ -73,6 +75,7 @@ pub struct KineticHistory {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Bin {
     mu_star: f64,
+    mu_lateral_star: f64,
     sliding_percent: f64,
 }
 
@@ -109,18 +112,19 @@ impl KineticHistory {
     }
 
     /// Adds the next step.
-    fn add(&mut self, mu_star: f64, sliding_percent: f64) {
+    fn add(&mut self, point: &CurvePoint) {
         if self.in_bin == 0 {
             if self.bins.len() as u64 == Self::BINS {
                 self.merge_pairs();
             }
             self.bins.push(Bin::default());
         }
-        self.sliding_percent_max = self.sliding_percent_max.max(sliding_percent);
+        self.sliding_percent_max = self.sliding_percent_max.max(point.sliding_percent);
         let weight = 1.0 / self.steps_per_bin as f64;
         if let Some(bin) = self.bins.last_mut() {
-            bin.mu_star += weight * mu_star;
-            bin.sliding_percent += weight * sliding_percent;
+            bin.mu_star += weight * point.mu_star;
+            bin.mu_lateral_star += weight * point.mu_lateral_star;
+            bin.sliding_percent += weight * point.sliding_percent;
         }
         self.in_bin = (self.in_bin + 1) % self.steps_per_bin;
     }
@@ -131,6 +135,7 @@ impl KineticHistory {
             let [one, other] = [self.bins[2 * k], self.bins[2 * k + 1]];
             self.bins[k] = Bin {
                 mu_star: 0.5 * (one.mu_star + other.mu_star),
+                mu_lateral_star: 0.5 * (one.mu_lateral_star + other.mu_lateral_star),
                 sliding_percent: 0.5 * (one.sliding_percent + other.sliding_percent),
             };
         }
@@ -162,6 +167,7 @@ impl KineticHistory {
             window_star,
             mu_star: mean(&mu_star),
             uncertainty: uncertainty(&mu_star, window_star),
+            mu_lateral_star: window.iter().map(|bin| bin.mu_lateral_star).sum::<f64>() / window.len() as f64,
             sliding_percent: window.iter().map(|bin| bin.sliding_percent).sum::<f64>() / window.len() as f64,
         })
     }
@@ -169,7 +175,7 @@ impl KineticHistory {
 
 impl Observer for KineticHistory {
     fn observe(&mut self, now: &Snapshot) -> Result<(), RunError> {
-        self.add(now.point.mu_star, now.point.sliding_percent);
+        self.add(&now.point);
         Ok(())
     }
 }
@@ -293,7 +299,12 @@ mod tests {
     /// The history of a run in which mu* is this noise.
     fn history_of(mut history: KineticHistory, noise: &[f64]) -> KineticHistory {
         for &mu_star in noise {
-            history.add(mu_star, 100.0 * mu_star);
+            history.add(&CurvePoint {
+                mu_star,
+                mu_lateral_star: 0.1 - mu_star,
+                sliding_percent: 100.0 * mu_star,
+                ..CurvePoint::default()
+            });
         }
         history
     }

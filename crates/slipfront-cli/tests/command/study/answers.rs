@@ -321,6 +321,51 @@ fn axes_of_quantities_are_drawn_in_their_unit() {
     assert!(!workspace.results("out").has("static_friction_star.svg"));
 }
 
+/// Directions are drawn around a centre and told in a table of their own, which belongs to the study as the others do.
+#[test]
+fn directions_have_a_polar_picture_and_their_table() {
+    let study = |key: &str| {
+        format!(
+            "base.slider.blocks = [8, 8]\nbase.drive.v_star = 0.1\nbase.texture = [{{ shape = 'groove', coverage = 25 }}]\n\
+             study.replicates = 3\n[[axes]]\nkey = '{key}'\nlinspace = [0, 1.5, 6]"
+        )
+    };
+    let workspace = Workspace::with_study(&study("drive.direction").replace("1.5, 6", "300, 6"));
+    let said = workspace.succeed("study study.toml -o out");
+    assert!(said.contains("friction over 6 directions"), "{said}");
+    let results = workspace.results("out");
+    let rows = results.table("anisotropy.csv");
+    let names: Vec<&str> = rows.iter().map(|row| row["quantity"].as_str()).collect();
+    assert_eq!(names, ["static_friction_star", "kinetic_friction_star"]);
+    assert_eq!(
+        (rows[0]["directions"].as_str(), rows[0]["n"].as_str()),
+        ("6", "3")
+    );
+    let picture = workspace.read_text("out/friction_polar.svg");
+    for text in [
+        "x 0\u{b0}",
+        "friction \u{3bc}*",
+        "95 % interval of the mean, n = 3",
+    ] {
+        assert!(picture.contains(&format!(">{text}</text>")), "{text}");
+    }
+    workspace.succeed("verify out");
+    // A study without directions keeps neither.
+    workspace.write("study.toml", study("slider.omega_star"));
+    workspace.succeed("study study.toml -o out");
+    assert!(!results.has("anisotropy.csv") && !results.has("friction_polar.svg"));
+    // Many textures are in the table alone, with the reason.
+    let textures = "[[axes]]\nkey = 'texture.0.coverage'\nlinspace = [13, 63, 5]\n";
+    workspace.write("many.toml", study("drive.direction") + "\n" + textures);
+    let said = unwrapped(&workspace.succeed("study many.toml -o many"));
+    assert!(
+        said.contains("there is no polar picture: it would have 10 curves"),
+        "{said}"
+    );
+    let many = workspace.results("many");
+    assert!(!many.has("friction_polar.svg") && many.table("anisotropy.csv").len() == 10);
+}
+
 /// Its mu_s* is that of a run which never slid: a mean of it must not pass for one.
 #[test]
 fn runs_without_a_transition_are_pointed_out() {

@@ -1,0 +1,333 @@
+//! A quantity against a direction: curves around a centre, with confidence bands.
+
+use serde::{Deserialize, Serialize};
+
+use crate::axis::{Axis, drawable};
+use crate::canvas::Canvas;
+use crate::frame::{LOWER_ROOM, lower_side};
+use crate::geometry::{Align, Area, Point};
+use crate::legend::{Legend, Sample};
+use crate::note::Note;
+use crate::picture::{Picture, PictureError, check_columns};
+use crate::response::Response;
+use crate::series::{interval, marker};
+use crate::style::{
+    BLACK, BLANK, COLUMN_WIDTH, MARGIN, RADIUS_MARKER, SIZE_TICK, WIDTH_CURVE, WIDTH_FRAME, WIDTH_LEADER,
+    WIDTH_MARK, curve_colour,
+};
+use crate::text::Text;
+use crate::ticks::{Direction, MAX_STEPS};
+
+/// The largest circle.
+const RADIUS: f64 = 380.0;
+/// Between that circle and the numbers of the directions.
+const GAP: f64 = 12.0;
+/// From the largest circle to the axis of the radius below it.
+const BELOW: f64 = 64.0;
+/// Between two numbered directions, degrees.
+const SPOKES: usize = 30;
+/// Two directions are one if they differ by less, degrees.
+const SAME: f64 = 1e-9;
+
+/// Curves against a direction.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Polar {
+    /// What the radius shows.
+    pub value_title: String,
+    /// What the curves' labels are values of, for the legend; may be empty.
+    pub legend_title: String,
+    /// What the intervals are, below everything; may be empty.
+    pub note: String,
+    /// The curves; x is the direction, in degrees from the x axis towards the y axis.
+    pub curves: Vec<Response>,
+}
+
+/// Draws means around a centre, which is zero, with their confidence bands, as wide as a journal's column (85 mm). A curve whose
+/// directions go all the way round is closed. Values below zero are left out.
+///
+/// # Errors
+///
+/// No curve, or a curve whose columns differ in length.
+pub fn polar(polar: &Polar) -> Result<Picture, PictureError> {
+    if polar.curves.is_empty() {
+        return Err(PictureError::Nothing("curve"));
+    }
+    for curve in &polar.curves {
+        let columns = [
+            ("its mean", curve.mean.len()),
+            ("its low", curve.low.len()),
+            ("its high", curve.high.len()),
+        ];
+        check_columns(&curve.label, ("directions", curve.x.len()), &columns)?;
+    }
+    let rounds: Vec<Round> = polar.curves.iter().map(Round::of).collect();
+    let tops = rounds.iter().flat_map(|round| &round.points);
+    let largest = tops.map(|point| point.high.max(point.mean)).fold(0.0, f64::max);
+    let largest = if largest > 0.0 { largest } else { 1.0 };
+
+    let centre_x = (0.5 * COLUMN_WIDTH).round();
+    let [left, right] = [centre_x - RADIUS, centre_x + RADIUS];
+    let several = rounds.len() > 1;
+    let named = polar.curves.iter().filter(|_| several);
+    let names: Vec<_> = named
+        .map(|curve| (curve.label.as_str(), Sample::Marker))
+        .collect();
+    let legend = Legend::of(&polar.legend_title, &names, left, right);
+    let numbers = f64::from(SIZE_TICK) + GAP + MARGIN;
+    let centre = (centre_x, legend.height + numbers + RADIUS);
+    // The axis of the radius, from the centre to the right, below the circles.
+    let side = Area::new(centre.0, centre.1 + RADIUS + BELOW, RADIUS, 0.0);
+    let radius = Axis::linear(0.0, 1.05 * largest).placed(0.0, RADIUS);
+    let note = Note::of(&polar.note, centre.0, COLUMN_WIDTH);
+
+    let mut canvas = Canvas::new(COLUMN_WIDTH, side.y + LOWER_ROOM + note.height);
+    let ring = Ring { centre, radius };
+    ring.draw_grid(&mut canvas);
+    legend.draw(&mut canvas);
+    canvas.line((side.x, side.y), (side.right(), side.y), WIDTH_FRAME, BLACK);
+    let ticks = radius.placed(side.x, side.right()).ticks(Direction::X, MAX_STEPS);
+    let title = Text::fitted(
+        &polar.value_title,
+        2.0 * (COLUMN_WIDTH - MARGIN - side.centre().0),
+    );
+    lower_side(&mut canvas, side, &ticks, &title);
+    for (index, round) in rounds.iter().enumerate() {
+        ring.draw_band(&mut canvas, round, curve_colour(index, rounds.len()));
+    }
+    for (index, round) in rounds.iter().enumerate() {
+        ring.draw_curve(&mut canvas, round, index, curve_colour(index, rounds.len()));
+    }
+    note.draw(&mut canvas);
+    canvas.finish()
+}
+
+/// The points of a curve, by rising direction.
+struct Round {
+    points: Vec<RoundPoint>,
+    /// Whether the directions go all the way round.
+    is_closed: bool,
+}
+
+#[derive(Clone, Copy)]
+struct RoundPoint {
+    degrees: f64,
+    mean: f64,
+    low: f64,
+    high: f64,
+}
+
+impl Round {
+    fn of(curve: &Response) -> Self {
+        let point = |index: usize| {
+            let (degrees, mean) = (curve.x[index], curve.mean[index]);
+            let (low, high) = interval(mean, curve.low[index], curve.high[index]).unwrap_or((mean, mean));
+            (drawable(degrees) && drawable(mean) && mean >= 0.0).then(|| RoundPoint {
+                degrees: degrees.rem_euclid(360.0),
+                mean,
+                low: low.max(0.0),
+                high,
+            })
+        };
+        let all: Vec<Option<RoundPoint>> = (0..curve.x.len()).map(point).collect();
+        let is_whole = all.iter().all(Option::is_some);
+        let mut points: Vec<RoundPoint> = all.into_iter().flatten().collect();
+        points.sort_by(|a, b| a.degrees.total_cmp(&b.degrees));
+        // 0 and 360 degrees are one direction.
+        points.dedup_by(|later, first| later.degrees - first.degrees < SAME);
+        let gaps = points.windows(2).map(|pair| pair[1].degrees - pair[0].degrees);
+        let widest = gaps.fold(0.0, f64::max);
+        let last = match (points.first(), points.last()) {
+            (Some(first), Some(last)) => first.degrees + 360.0 - last.degrees,
+            _ => f64::INFINITY,
+        };
+        Self {
+            is_closed: is_whole && points.len() > 2 && last <= widest + SAME,
+            points,
+        }
+    }
+
+    /// The points at these values, back to the first if the curve is closed.
+    fn path(&self, ring: &Ring, value: impl Fn(&RoundPoint) -> f64) -> Vec<Point> {
+        let first = self.points.first().filter(|_| self.is_closed);
+        let points = self.points.iter().chain(first);
+        points.map(|point| ring.at(point.degrees, value(point))).collect()
+    }
+}
+
+/// Where directions and values are.
+struct Ring {
+    centre: Point,
+    radius: Axis,
+}
+
+impl Ring {
+    fn at(&self, degrees: f64, value: f64) -> Point {
+        self.around(degrees, self.radius.clamped(value))
+    }
+
+    /// The point of this direction and radius in pixels.
+    fn around(&self, degrees: f64, radius: f64) -> Point {
+        let (sine, cosine) = libm::sincos(degrees.to_radians());
+        (self.centre.0 + radius * cosine, self.centre.1 - radius * sine)
+    }
+
+    /// Circles at round values, and every numbered direction; the first two are those of x and y.
+    fn draw_grid(&self, canvas: &mut Canvas) {
+        let circle = |radius: f64| {
+            (0..=180)
+                .map(|k| self.around(f64::from(k % 180) * 2.0, radius))
+                .collect()
+        };
+        for (radius, _) in self.radius.ticks(Direction::X, MAX_STEPS) {
+            if radius > 1.0 && radius < RADIUS - 1.0 {
+                canvas.polyline(circle(radius), WIDTH_LEADER, BLANK);
+            }
+        }
+        for degrees in (0..360).step_by(SPOKES) {
+            let angle = degrees as f64;
+            canvas.line(self.centre, self.around(angle, RADIUS), WIDTH_LEADER, BLANK);
+            let axis = match degrees {
+                0 => "x ",
+                90 => "y ",
+                _ => "",
+            };
+            let text = Text::plain(&format!("{axis}{degrees}\u{b0}"), SIZE_TICK);
+            let (x, y) = self.around(angle, RADIUS + GAP);
+            let (sine, cosine) = libm::sincos(angle.to_radians());
+            // The side of the text that is nearest to the circle lies there.
+            let align = match cosine {
+                c if c > 0.1 => Align::Start,
+                c if c < -0.1 => Align::End,
+                _ => Align::Middle,
+            };
+            let baseline = y + 0.5 * text.height() * (1.0 - sine);
+            canvas.text(&text, (x, baseline), align, BLACK);
+        }
+        canvas.polyline(circle(RADIUS), WIDTH_FRAME, BLACK);
+    }
+
+    fn draw_band(&self, canvas: &mut Canvas, round: &Round, colour: crate::style::Rgb) {
+        if let [point] = round.points[..] {
+            let ends = [point.low, point.high].map(|value| self.at(point.degrees, value));
+            canvas.line(ends[0], ends[1], WIDTH_MARK, colour);
+            return;
+        }
+        let mut edge = round.path(self, |point| point.high);
+        edge.extend(round.path(self, |point| point.low).into_iter().rev());
+        canvas.polygon(edge, colour, 0.2);
+    }
+
+    fn draw_curve(&self, canvas: &mut Canvas, round: &Round, index: usize, colour: crate::style::Rgb) {
+        let path = round.path(self, |point| point.mean);
+        if path.len() > 1 {
+            canvas.polyline(path, WIDTH_CURVE, colour);
+        }
+        for point in &round.points {
+            let at = self.at(point.degrees, point.mean);
+            marker(canvas, index, at, RADIUS_MARKER, colour);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curve(label: &str, directions: &[f64], mean: f64) -> Response {
+        let all = |value: f64| vec![value; directions.len()];
+        Response {
+            label: label.to_string(),
+            x: directions.to_vec(),
+            mean: all(mean),
+            low: all(mean - 0.1),
+            high: all(mean + 0.1),
+            line: false,
+        }
+    }
+
+    fn svg(curves: &[Response]) -> String {
+        let picture = polar(&Polar {
+            value_title: "friction".to_string(),
+            curves: curves.to_vec(),
+            ..Polar::default()
+        });
+        let svg = picture.unwrap().svg;
+        assert!(!svg.contains("NaN") && !svg.contains("inf\""), "{curves:?}");
+        svg
+    }
+
+    #[test]
+    fn directions_that_go_all_the_way_round_are_closed() {
+        let is_closed = |directions: &[f64]| Round::of(&curve("", directions, 0.5)).is_closed;
+        assert!(is_closed(&[0.0, 90.0, 180.0, 270.0]));
+        assert!(is_closed(&[-180.0, -60.0, 60.0, 180.0]));
+        assert!(is_closed(&[0.0, 120.0, 240.0, 360.0]));
+        assert!(!is_closed(&[0.0, 30.0, 60.0, 90.0]));
+        assert!(!is_closed(&[0.0, 180.0]));
+        let mut gap = curve("", &[0.0, 90.0, 180.0, 270.0], 0.5);
+        gap.mean[2] = f64::NAN;
+        assert!(!Round::of(&gap).is_closed);
+    }
+
+    /// 0 degrees is to the right, 90 upwards, and the radius is in proportion to the value.
+    #[test]
+    fn directions_and_values_have_their_places() {
+        let ring = Ring {
+            centre: (100.0, 100.0),
+            radius: Axis::linear(0.0, 2.0).placed(0.0, 50.0),
+        };
+        for (degrees, value, (x, y)) in [
+            (0.0, 1.0, (125.0, 100.0)),
+            (90.0, 2.0, (100.0, 50.0)),
+            (180.0, 1.0, (75.0, 100.0)),
+            (270.0, 0.0, (100.0, 100.0)),
+        ] {
+            let at = ring.at(degrees, value);
+            // The sine of pi in double precision, times the radius.
+            assert!(
+                (at.0 - x).abs() < 1e-12 && (at.1 - y).abs() < 1e-12,
+                "{degrees}: {at:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn curves_have_a_legend_and_the_axis_its_title() {
+        let all = [0.0, 90.0, 180.0, 270.0];
+        let two = svg(&[curve("static", &all, 0.8), curve("kinetic", &all, 0.5)]);
+        for text in [
+            "static",
+            "kinetic",
+            "friction",
+            "x 0\u{b0}",
+            "y 90\u{b0}",
+            "330\u{b0}",
+        ] {
+            assert!(two.contains(&format!(">{text}</text>")), "{text}");
+        }
+        assert!(!svg(&[curve("static", &all, 0.8)]).contains(">static</text>"));
+    }
+
+    #[test]
+    fn poor_curves_are_drawn_all_the_same() {
+        for curve in [
+            curve("", &[], 1.0),
+            curve("", &[45.0], 1.0),
+            curve("", &[0.0, 90.0], f64::NAN),
+            curve("", &[0.0, 90.0], -1.0),
+            curve("", &[0.0, f64::INFINITY], 0.0),
+            curve("", &[0.0, 90.0], 1e99),
+        ] {
+            svg(&[curve]);
+        }
+        let mut bad = curve("a", &[0.0], 1.0);
+        bad.low.clear();
+        let of = |curves: Vec<Response>| Polar {
+            curves,
+            ..Polar::default()
+        };
+        let said = polar(&of(vec![bad])).unwrap_err().to_string();
+        assert_eq!(said, "curve `a` has 1 directions but 0 values of its low");
+        assert!(polar(&of(Vec::new())).is_err());
+    }
+}
