@@ -13,7 +13,7 @@ use crate::response::Response;
 use crate::series::{interval, marker};
 use crate::style::{
     BLACK, BLANK, COLUMN_WIDTH, MARGIN, RADIUS_MARKER, SIZE_TICK, WIDTH_CURVE, WIDTH_FRAME, WIDTH_LEADER,
-    WIDTH_MARK, curve_colour,
+    WIDTH_MARK, curve_style,
 };
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
@@ -92,10 +92,10 @@ pub fn polar(polar: &Polar) -> Result<Picture, PictureError> {
     );
     lower_side(&mut canvas, side, &ticks, &title);
     for (index, round) in rounds.iter().enumerate() {
-        ring.draw_band(&mut canvas, round, curve_colour(index, rounds.len()));
+        ring.draw_band(&mut canvas, round, curve_style(index).colour);
     }
     for (index, round) in rounds.iter().enumerate() {
-        ring.draw_curve(&mut canvas, round, index, curve_colour(index, rounds.len()));
+        ring.draw_curve(&mut canvas, round, index, curve_style(index).colour);
     }
     note.draw(&mut canvas);
     canvas.finish()
