@@ -55,8 +55,8 @@ pub struct HeatAxis {
 
 /// Draws a map, as wide as a journal's column (85 mm).
 ///
-/// A cell reaches half-way to its neighbours, so uneven values give uneven cells. The colours span the values'
-/// own range. A map of up to 8 x 8 cells has its numbers in the cells, if they are wide enough. The half width of an interval stands
+/// A cell reaches half-way to its neighbours, so uneven values give uneven cells. The colours span the values
+/// and half an interval beyond them, the median one, so that values which differ by less look alike. A map of up to 8 x 8 cells has its numbers in the cells, if they are wide enough. The half width of an interval stands
 /// below the number; where numbers have no room for that, a second map below shows the half widths.
 ///
 /// # Errors
@@ -86,8 +86,9 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
         true => vec![f64::NAN; values.len()],
         false => in_order(&map.half_widths)?,
     };
-    let range_of = |values: &[f64]| -> [f64; 2] { range(values.iter().copied()).into() };
-    let ranges = [&values, &half_widths].map(|values| range_of(values));
+    let half = median(&half_widths);
+    let with_half = values.iter().flat_map(|value| [value - half, value + half]);
+    let ranges = [range(with_half), range(half_widths.iter().copied())].map(<[f64; 2]>::from);
 
     y.axis = y.axis.placed(TOP + HEIGHT, TOP);
     let left = left_room(&y.ticks(Direction::Y).0);
@@ -135,6 +136,13 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
     }
     note.draw(&mut canvas);
     canvas.finish()
+}
+
+/// The median of what is there; zero if there is nothing.
+fn median(values: &[f64]) -> f64 {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
+    sorted.sort_unstable_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or_default()
 }
 
 /// Draws a map with its sides, numbers and colour bar; the titles are those of x, y and the values.
@@ -460,6 +468,19 @@ mod tests {
         short.half_widths = vec![1.0; 3];
         let said = heat_map(&short).unwrap_err().to_string();
         assert_eq!(said, "a map of 2 x 2 cells has 3 values");
+    }
+
+    /// What differs by less than the intervals has not all colours.
+    #[test]
+    fn the_colours_span_the_intervals() {
+        let reaches_below = |half: f64| {
+            let mut map = map(9, 2);
+            map.half_widths = vec![half; 18];
+            heat_map(&map).unwrap().svg.contains(">\u{2212}20</text>")
+        };
+        assert!(!reaches_below(f64::NAN) && !reaches_below(0.1) && reaches_below(20.0));
+        assert_eq!(median(&[3.0, f64::NAN, 1.0, 2.0]), 2.0);
+        assert_eq!(median(&[f64::NAN]), 0.0);
     }
 
     #[test]

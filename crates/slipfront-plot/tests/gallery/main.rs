@@ -5,8 +5,6 @@
 
 // Helpers of tests are not tests by themselves to clippy.
 #![allow(clippy::unwrap_used)]
-// A picture may get further parts, which most cases leave out.
-#![allow(clippy::needless_update)]
 
 mod page;
 mod runs;
@@ -200,6 +198,9 @@ fn fronts_on_every_shape() {
     }
 }
 
+/// What stands below the pictures of studies.
+const NOTE: &str = "intervals: 95 % of the mean, n = 3 to 12";
+
 fn curve(label: &str, level: f64, line: bool) -> Response {
     let x = vec![0.01, 0.03, 0.1, 0.3];
     let mean: Vec<f64> = x.iter().map(|x: &f64| level - 0.1 * x.ln()).collect();
@@ -222,6 +223,7 @@ fn responses() {
             log_x: true,
             y_title: titles[1].to_owned(),
             legend_title: titles[2].to_owned(),
+            note: NOTE.to_owned(),
             curves: labels
                 .map(|(k, label)| curve(label, 1.0 + 0.1 * k as f64, k == 1))
                 .collect(),
@@ -268,7 +270,7 @@ fn bar_charts() {
             x_title: "blocks along a side".to_owned(),
             legend_title: "load pressure P".to_owned(),
             groups: groups.iter().map(group).collect(),
-            ..BarChart::default()
+            note: NOTE.to_owned(),
         })
     };
     check("bars", chart(&[""], &["10", "[20, 10]", "[10, 20]"]));
@@ -291,19 +293,22 @@ fn heat_maps() {
         values,
         log: true,
     };
-    let map = |columns: usize, rows: usize, scale: f64| {
+    let map = |columns: usize, rows: usize, scale: f64, half: f64| {
         let values = |count: usize| (0..count).map(|k| 0.01 * 1.5f64.powi(k as i32)).collect();
         heat_map(&HeatMap {
             x: axis("drive speed V*", values(columns)),
             y: axis("texture coverage A* of texture 2 (%)", values(rows)),
             value_title: "static friction \u{3bc}\u{209b}*".to_owned(),
             values: (0..columns * rows).map(|k| scale * (k % 7) as f64).collect(),
-            ..HeatMap::default()
+            half_widths: (0..columns * rows).map(|k| half * (1 + k % 3) as f64).collect(),
+            note: NOTE.to_owned(),
         })
     };
-    check("heat-map", map(3, 3, 0.1));
-    check("heat-map-8", map(8, 8, 0.01));
-    check("heat-map-40", map(40, 25, 1e-7));
+    check("heat-map", map(3, 3, 0.1, f64::NAN));
+    check("heat-map-intervals", map(3, 3, 0.1, 0.02));
+    check("heat-map-unresolved", map(3, 3, 0.01, 0.2));
+    check("heat-map-8", map(8, 8, 0.01, 0.002));
+    check("heat-map-40", map(40, 25, 1e-7, 1e-8));
 }
 
 #[test]
