@@ -37,7 +37,9 @@ pub fn of_run(folder: &Path, field: Option<Field>) -> Result<Option<Movie>, Resu
         Some(field) => field,
         None => mapped_field(&CaseFile::load(&folder.join(CASE), &[])?),
     };
-    let fields = fields::read_maps::<CellMeans>(&folder.join(FIELDS), field, MAX_PICTURES + 1)?;
+    let fields = fields::read_maps::<CellMeans>(&folder.join(FIELDS), field, |labels| {
+        (0..labels.len().min(MAX_PICTURES + 1)).collect()
+    })?;
     if fields.names.is_empty() || fields.frames.is_empty() {
         return Ok(None);
     }

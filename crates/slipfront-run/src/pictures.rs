@@ -209,7 +209,9 @@ fn map_scale(
 /// Draws the maps of a field of a run; none if it has not kept it.
 #[cfg(feature = "plot")]
 fn draw_maps(folder: &Path, field: Field) -> Result<Option<Picture>, ResultsError> {
-    let fields = fields::read_maps::<CellMeans>(&folder.join(FIELDS), field, MAX_MAPS)?;
+    let fields = fields::read_maps::<CellMeans>(&folder.join(FIELDS), field, |labels| {
+        fields::few_of(labels, MAX_MAPS)
+    })?;
     if fields.names.is_empty() || fields.frames.is_empty() {
         return Ok(None);
     }

@@ -19,6 +19,7 @@ use crate::threads::set_threads;
 #[derive(Args)]
 #[command(after_help = "Examples:
   slipfront texture cases/circle.toml -o mask.png            a mask that a case can read
+  slipfront texture cases/circle.toml -o large.png --scale 16      a picture to look at
   slipfront texture cases/hexagonal_dimples.toml -o dimples.dxf    for a laser, in millimetres")]
 pub(crate) struct Texture {
     #[command(flatten)]

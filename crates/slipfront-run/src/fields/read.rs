@@ -69,19 +69,31 @@ impl Reduction for Vec<f32> {
     }
 }
 
-/// Reads what a picture of one field takes, however long the file is: this field alone, at no more than `most`
-/// instants spread over the run, and of what never changes the texture alone, all [reduced](Reduction) while they are
+/// Reads what a picture of one field takes, however long the file is: this field alone, at the snapshots that `choose` numbers, given
+/// the letters of each, and of what never changes the texture alone, all [reduced](Reduction) while they are
 /// read. What is reduced counts as texture if its mean does by more than a half.
-pub fn read_maps<R: Reduction>(path: &Path, field: Field, most: usize) -> Result<FieldsData, FieldsError> {
+pub fn read_maps<R: Reduction>(
+    path: &Path,
+    field: Field,
+    choose: impl Fn(&[String]) -> Vec<usize>,
+) -> Result<FieldsData, FieldsError> {
     let read = || {
         let mut file = NetCdf3Reader::open(path)?;
-        let records = file.records;
-        let shown = records.min(most);
-        let spread = (0..shown).map(|k| k * (records - 1) / (shown - 1).max(1));
-        let spread: Vec<usize> = spread.collect();
-        read_chosen::<R>(&mut file, |name| name == field, &spread, &(0..usize::MAX))
+        let labels = (0..file.records).map(|record| read_label(&mut file, record));
+        let chosen = choose(&labels.collect::<Result<Vec<_>, _>>()?);
+        read_chosen::<R>(&mut file, |name| name == field, &chosen, &(0..usize::MAX))
     };
     read().map_err(|error| in_words(error, path))
+}
+
+/// The numbers of at most `most` snapshots with these letters: of more those that have letters, or as many spread over the run.
+pub fn few_of(labels: &[String], most: usize) -> Vec<usize> {
+    let (count, shown) = (labels.len(), labels.len().min(most));
+    let instants: Vec<usize> = (0..count).filter(|&k| !labels[k].is_empty()).collect();
+    match instants.len() {
+        found if count > most && (1..=most).contains(&found) => instants,
+        _ => (0..shown).map(|k| k * (count - 1) / (shown - 1).max(1)).collect(),
+    }
 }
 
 /// Reads the times of the first slips in place of fields, [reduced](Reduction) while they are read, and the texture likewise: they are
@@ -170,9 +182,7 @@ fn read_frame<R: Reduction>(
 ) -> Result<FieldFrame, NetCdfError> {
     let time_star = only(TIME_STAR, &file.values(TIME_STAR, &[TIME], record, WHOLE)?)?;
     let step = only(STEP, &file.values(STEP, &[TIME], record, WHOLE)?)? as u64;
-    let label = file.values(LABEL, &[TIME, LABEL_LENGTH], record, WHOLE)?;
-    let label = label.iter().map(|byte| *byte as u8);
-    let label: Vec<u8> = label.take_while(|byte| *byte != 0).collect();
+    let label = read_label(file, record)?;
     let mut values = Vec::with_capacity(names.len());
     for name in names {
         let name = field_info(*name).name;
@@ -187,10 +197,18 @@ fn read_frame<R: Reduction>(
     }
     Ok(FieldFrame {
         time_star,
-        label: String::from_utf8_lossy(&label).into_owned(),
+        label,
         step,
         values,
     })
+}
+
+/// The letters of the instants A-F that a snapshot shows.
+fn read_label(file: &mut NetCdf3Reader, record: usize) -> Result<String, NetCdfError> {
+    let label = file.values(LABEL, &[TIME, LABEL_LENGTH], record, WHOLE)?;
+    let label = label.iter().map(|byte| *byte as u8);
+    let label: Vec<u8> = label.take_while(|byte| *byte != 0).collect();
+    Ok(String::from_utf8_lossy(&label).into_owned())
 }
 
 /// What is kept of some rows of a variable of one value per block.

@@ -164,7 +164,7 @@ fn maps_are_one_field_at_a_few_instants() {
         (3, vec![0, 1, 2]),
         (9, vec![0, 1, 2]),
     ] {
-        let maps = read_maps::<Vec<f32>>(&path, Field::Traction, most).unwrap();
+        let maps = read_maps::<Vec<f32>>(&path, Field::Traction, |labels| few_of(labels, most)).unwrap();
         assert_eq!(maps.names, [Field::Traction]);
         assert_eq!(maps.textured, lattice.textured);
         let wanted = instants
@@ -173,8 +173,18 @@ fn maps_are_one_field_at_a_few_instants() {
         let found = maps.frames.iter().map(|frame| (frame.step, &frame.values[0]));
         assert!(found.eq(wanted), "{most}");
     }
-    let maps = read_maps::<Vec<f32>>(&path, Field::VelocityX, 6).unwrap();
+    let maps = read_maps::<Vec<f32>>(&path, Field::VelocityX, |labels| few_of(labels, 6)).unwrap();
     assert!(maps.names.is_empty());
+}
+
+#[test]
+fn of_many_snapshots_those_with_letters_are_shown() {
+    let labels = ["", "A", "", "B, C", "", ""].map(str::to_owned);
+    assert_eq!(few_of(&labels, 6), [0, 1, 2, 3, 4, 5]);
+    assert_eq!(few_of(&labels, 3), [1, 3]);
+    assert_eq!(few_of(&labels, 1), [0]);
+    assert_eq!(few_of(&labels[4..], 1), [0]);
+    assert_eq!(few_of(&[], 6), [0; 0]);
 }
 
 #[test]

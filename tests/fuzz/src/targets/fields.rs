@@ -3,7 +3,7 @@
 use slipfront::communicator::Alone;
 use slipfront::observe::Field;
 use slipfront_run::fields::{
-    FieldFrame, FieldsData, FieldsFile, StaticFields, read_fields, read_maps, thin, write_fields,
+    FieldFrame, FieldsData, FieldsFile, StaticFields, few_of, read_fields, read_maps, thin, write_fields,
 };
 
 use crate::checks::readable;
@@ -90,7 +90,7 @@ fn fields(input: &[u8]) {
         }
     }
     for name in [Field::ContactStress, Field::VelocityX] {
-        match read_maps::<Vec<f32>>(&path, name, 6) {
+        match read_maps::<Vec<f32>>(&path, name, |labels| few_of(labels, 6)) {
             Err(error) => readable(&error),
             Ok(maps) => {
                 assert!(maps.frames.len() <= 6 && maps.names.iter().all(|found| *found == name));
