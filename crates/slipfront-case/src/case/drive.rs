@@ -8,7 +8,8 @@ use slipfront::{Communicator, Drive, Lattice, Program, Rotation, Scales, Slider}
 
 use super::groups::{Groups, within};
 use super::inputs::Inputs;
-use super::textures::{Watch, read_mask};
+use super::inputs::Watch;
+use super::textures::read_mask;
 use crate::case_file::{
     Attached, CaseError, CaseFile, DEFAULT_THRESHOLD, DriveSpeed, DriveStiffness, Motion,
 };

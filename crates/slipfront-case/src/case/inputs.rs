@@ -12,6 +12,9 @@ use super::ranks::Ranks;
 use crate::arrays::{self, ArrayError, Slab};
 use crate::case_file::{CaseError, CaseFile, FileUse};
 
+/// Told the share that is done of laying the texture over the blocks; `false` ends it.
+pub type Watch<'a> = dyn FnMut(f64) -> bool + 'a;
+
 /// A file that a case reads, and of which the run folder holds a copy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {

@@ -3,7 +3,8 @@
 use slipfront::{Communicator, Lattice, Outline, Slider};
 
 use super::inputs::Inputs;
-use super::textures::{Watch, read_mask};
+use super::inputs::Watch;
+use super::textures::read_mask;
 use crate::case_file::{self, CaseError, CaseFile, DEFAULT_THRESHOLD, Grade};
 use crate::case_file::{MAX_RELATIVE, MIN_RELATIVE};
 

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use slipfront::surface::Tile;
 use slipfront::{Lattice, Scales, surface};
 
-use super::inputs::Inputs;
+use super::inputs::{Inputs, Watch};
 use super::topography::{self, Topography};
 use crate::arrays::{ArrayError, Slab};
 use crate::case_file::{
@@ -16,9 +16,6 @@ use crate::case_file::{
 };
 use crate::quantity::Length;
 use crate::{arrays, case_file};
-
-/// Told the share that is done of laying the texture over the blocks; `false` ends it.
-pub type Watch<'a> = dyn FnMut(f64) -> bool + 'a;
 
 /// The textures of a case in blocks.
 pub(super) struct InBlocks {

@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use slipfront::surface::Tile;
 
-use super::inputs::Inputs;
-use super::textures::Watch;
+use super::inputs::{Inputs, Watch};
 use crate::arrays::{self, ArrayError, Roughness, Slab, Units};
 use crate::case_file::{Bearing, CaseError, CaseFile, HeightMap, Pitch};
 use crate::quantity::Length;

@@ -3,15 +3,11 @@
 
 use std::collections::HashMap;
 
-use super::axis::{Axis, Spacing};
-use super::picture_plan::{Levels, combinations};
+use super::levels::{Levels, combinations, direction_axis};
 use super::plan::Plan;
 use super::statistics::Sample;
 use super::study_results::StudyResults;
 use super::summary_values::Quantity;
-
-/// The key whose levels are directions.
-const DIRECTION: &str = "drive.direction";
 
 /// Friction and what is across the drive with it.
 pub(super) const FRICTION: [(&str, &str); 2] = [
@@ -24,12 +20,6 @@ const SAME: f64 = 1e-9;
 
 /// A tensor whose principal values differ by less, relative to their mean, has no axes: it is that of rounding.
 const ISOTROPIC: f64 = 1e-9;
-
-/// The axis over directions of the drive, if a study has one.
-pub(super) fn direction_axis(axes: &[Axis]) -> Option<usize> {
-    let is_direction = |axis: &Axis| axis.title() == DIRECTION && axis.spacing != Spacing::Named;
-    axes.iter().position(is_direction)
-}
 
 /// Friction of one quantity over the directions, at the same levels of all other axes. All statistics are over replicates that have a
 /// value in every direction.

@@ -18,6 +18,7 @@ mod input_copies;
 mod journal;
 #[cfg(feature = "plot")]
 mod labels;
+mod levels;
 mod picture_plan;
 #[cfg(feature = "plot")]
 mod pictures;

@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
-use super::anisotropy::direction_axis;
 use super::axis::{Axis, Spacing};
+use super::levels::{Levels, combinations, direction_axis};
 use super::plan::Plan;
 use super::study_results::StudyResults;
 use super::summary_values::REDUCTION;
@@ -238,23 +238,6 @@ fn planned_curves(axes: &[Axis], x: usize, split: usize, quantity: &str) -> Vec<
         }
     }
     pictures
-}
-
-/// Levels of some axes: pairs of axis and level.
-pub(super) type Levels = Vec<(usize, usize)>;
-
-/// Every combination of levels of these axes, the last fastest.
-pub(super) fn combinations(axes: &[Axis], of: &[usize]) -> Vec<Levels> {
-    let mut all = vec![Levels::new()];
-    for &axis in of {
-        let levels = 0..axes[axis].levels.len();
-        let with_each = |earlier: Levels| {
-            let with = move |level| [earlier.as_slice(), &[(axis, level)]].concat();
-            levels.clone().map(with)
-        };
-        all = all.into_iter().flat_map(with_each).collect();
-    }
-    all
 }
 
 #[cfg(test)]

@@ -8,9 +8,8 @@ use super::anisotropy::FRICTION;
 use super::axis::{Axis, Spacing};
 use super::error::StudyError;
 use super::labels::{axis_symbol, axis_title, quantity_symbol, title};
-use super::picture_plan::{
-    Levels, POLAR, PictureKind, PlannedPicture, combinations, measured_quantities, planned, polar,
-};
+use super::levels::{Levels, combinations};
+use super::picture_plan::{POLAR, PictureKind, PlannedPicture, measured_quantities, planned, polar};
 use super::plan::{PICTURES_AT_ONCE, Plan};
 use super::study_results::StudyResults;
 use slipfront_case::number_format::four_digits;
