@@ -135,9 +135,11 @@ fn the_same_bits_over_threads_of_ranks(
     #[values(&[Viscous, Differ, Turns], &[RateState])] options: &'static [Variety],
     #[values(Edges::Free, Edges::Periodic)] edges: Edges,
 ) {
-    let slider = slider(MANY, edges, options);
+    // Three bands on each of the three ranks that have two threads: one has bands alone beside it.
+    let blocks = [40, 240];
+    let slider = slider(blocks, edges, options);
     let change = |model: &mut Model, ranks: &dyn Communicator| change(options, model, ranks);
-    let from = thrown(MANY[0] * MANY[1], 1.0, 2);
+    let from = thrown(blocks[0] * blocks[1], 1.0, 2);
     assert_same_with(&slider, &change, Some(&from), 50);
 }
 
