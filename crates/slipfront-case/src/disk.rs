@@ -20,12 +20,14 @@ pub fn write_atomic_with(
     path: &Path,
     fill: impl FnOnce(&mut File) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
-    let folder = path
-        .parent()
-        .filter(|parent| !parent.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
-    write_temp(folder, fill)?.persist(path)?;
+    write_temp(folder_of(path), fill)?.persist(path)?;
     Ok(())
+}
+
+/// The folder in which a file is, or is to be.
+pub fn folder_of(path: &Path) -> &Path {
+    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+    parent.unwrap_or(Path::new("."))
 }
 
 /// Writes a temporary file in a folder and syncs it. It is removed when dropped, unless it is renamed (`persist`).

@@ -149,26 +149,19 @@ fn read_bytes(name: &str, bytes: &[u8]) -> Result<HeightMap, ArrayError> {
 /// Integers have a step and an offset.
 #[test]
 fn x3p_files_have_heights_of_four_types() {
+    let read = |z: &str, heights: &[u8]| {
+        let xml = description(z, LINKED);
+        let bytes = zip(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", heights)]);
+        read_bytes("a.x3p", &bytes).unwrap()
+    };
     let z = "<DataType>I</DataType><Increment>1e-9</Increment><Offset>1e-6</Offset>";
-    let heights: Vec<u8> = [-1000i16, 0, 1, 2000]
-        .iter()
-        .flat_map(|z| z.to_le_bytes())
-        .collect();
-    let xml = description(z, LINKED);
-    let bytes = zip(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &heights)]);
-    let map = read_bytes("a.x3p", &bytes).unwrap();
+    let map = read(z, [-1000i16, 0, 1, 2000].map(i16::to_le_bytes).as_flattened());
     for (found, wanted) in map.blocks.iter().zip([0.0, 1e-6, 1.001e-6, 3e-6]) {
         // The rounding of numbers of 1e-6.
         assert!((found - wanted).abs() < 1e-21, "{found} {wanted}");
     }
     let z = "<DataType>L</DataType><Increment>1e-9</Increment>";
-    let heights: Vec<u8> = [-1i32, 0, 70_000, 2]
-        .iter()
-        .flat_map(|z| z.to_le_bytes())
-        .collect();
-    let xml = description(z, LINKED);
-    let bytes = zip(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &heights)]);
-    let map = read_bytes("a.x3p", &bytes).unwrap();
+    let map = read(z, [-1i32, 0, 70_000, 2].map(i32::to_le_bytes).as_flattened());
     // That of a number of 1e-4.
     assert!((map.blocks[2] - 70e-6).abs() < 1e-19);
 }

@@ -8,8 +8,8 @@ use crate::frame::{LOWER_ROOM, lower_side};
 use crate::geometry::{Align, Area, Point};
 use crate::legend::{Legend, Sample};
 use crate::note::Note;
-use crate::picture::{Picture, PictureError, check_columns};
-use crate::response::Response;
+use crate::picture::{Picture, PictureError};
+use crate::response::{Response, check_curves};
 use crate::series::{interval, marker};
 use crate::style::{
     BLACK, BLANK, COLUMN_WIDTH, MARGIN, RADIUS_MARKER, SIZE_TICK, WIDTH_FRAME, WIDTH_LEADER, WIDTH_MARK,
@@ -49,17 +49,7 @@ pub struct Polar {
 ///
 /// No curve, or a curve whose columns differ in length.
 pub fn polar(polar: &Polar) -> Result<Picture, PictureError> {
-    if polar.curves.is_empty() {
-        return Err(PictureError::Nothing("curve"));
-    }
-    for curve in &polar.curves {
-        let columns = [
-            ("its mean", curve.mean.len()),
-            ("its low", curve.low.len()),
-            ("its high", curve.high.len()),
-        ];
-        check_columns(&curve.label, ("directions", curve.x.len()), &columns)?;
-    }
+    check_curves(&polar.curves, "directions")?;
     let rounds: Vec<Round> = polar.curves.iter().map(Round::of).collect();
     let tops = rounds.iter().flat_map(|round| &round.points);
     let largest = tops.map(|point| point.high.max(point.mean)).fold(0.0, f64::max);

@@ -54,6 +54,21 @@ pub struct Response {
     pub line: bool,
 }
 
+/// Refuses no curve, and a curve whose columns differ in length; its x are so many of what is `counted`.
+pub(crate) fn check_curves(curves: &[Response], counted: &'static str) -> Result<(), PictureError> {
+    if curves.is_empty() {
+        return Err(PictureError::Nothing("curve"));
+    }
+    curves.iter().try_for_each(|curve| {
+        let columns = [
+            ("its mean", curve.mean.len()),
+            ("its low", curve.low.len()),
+            ("its high", curve.high.len()),
+        ];
+        check_columns(&curve.label, (counted, curve.x.len()), &columns)
+    })
+}
+
 /// Draws means with their confidence bands, as wide as a journal's column (85 mm).
 ///
 /// y starts where the values do, not at zero. A point without neighbours has an error bar in place of a band.
@@ -63,17 +78,7 @@ pub struct Response {
 ///
 /// No curve, or a curve whose columns differ in length.
 pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
-    if responses.curves.is_empty() {
-        return Err(PictureError::Nothing("curve"));
-    }
-    for curve in &responses.curves {
-        let columns = [
-            ("its mean", curve.mean.len()),
-            ("its low", curve.low.len()),
-            ("its high", curve.high.len()),
-        ];
-        check_columns(&curve.label, ("points", curve.x.len()), &columns)?;
-    }
+    check_curves(&responses.curves, "points")?;
     let curves: Vec<Response> = responses.curves.iter().map(sorted).collect();
     let xs: Vec<f64> = curves.iter().flat_map(|curve| curve.x.clone()).collect();
     let x = Axis::around(&xs, responses.log_x, 0.04);

@@ -6,14 +6,13 @@ use rayon::prelude::*;
 use slipfront::observe::Field;
 use slipfront_case::case::mapped_field;
 use slipfront_case::case_file::{CaseFile, Motion};
-use slipfront_case::number_format::si_prefix;
 use slipfront_plot::{CellMeans, FrictionAxes, Movie, MovieFrame, MovieGif, MoviePictures, PictureError};
 
 use crate::error::ResultsError;
 use crate::fields;
 use crate::friction_picture::marked_curve;
 use crate::names::{CASE, FIELDS, SERIES};
-use crate::pictures::MuStar;
+use crate::pictures::{MuStar, bar_ends, extent, prefix_of};
 use crate::series::{self, SeriesRow};
 use crate::summary::read_summary;
 
@@ -92,17 +91,13 @@ fn scale<'a>(field: Field, values: impl Iterator<Item = &'a f32>) -> (String, [f
         Field::VelocityX => ("v_x", "m/s"),
         Field::VelocityY => ("v_y", "m/s"),
     };
-    let finite = values.copied().filter(|value| value.is_finite()).map(f64::from);
-    let (least, most) = finite.fold((0.0_f64, 0.0_f64), |(least, most), value| {
-        (least.min(value), most.max(value))
-    });
-    let (factor, prefix) = si_prefix(most.max(-least));
-    let prefix = if prefix == "u" { "\u{b5}" } else { prefix };
-    let range = match most > least {
-        true => [least / factor, most / factor],
-        false => [0.0, 1.0],
-    };
-    (format!("{symbol} ({prefix}{unit})"), range, factor as f32)
+    let extent = extent(values.copied());
+    let (factor, prefix) = prefix_of(extent);
+    (
+        format!("{symbol} ({prefix}{unit})"),
+        bar_ends(extent, factor),
+        factor as f32,
+    )
 }
 
 /// How long each picture of a movie is shown, in hundredths of a second.
@@ -117,21 +112,27 @@ pub fn delays(movie: &Movie) -> Vec<u16> {
         .collect()
 }
 
-/// Draws the pictures of a movie one after the other, and gives each to `take`, which is shown the colours of the pixels as well.
+/// The pictures of a movie, to be drawn, and their colours.
 ///
 /// # Errors
-/// When a picture cannot be drawn, and those of `take`.
-pub fn draw<E: From<ResultsError>>(
+/// When they cannot be drawn.
+pub fn pictures(movie: &Movie) -> Result<MoviePictures<'_>, ResultsError> {
+    MoviePictures::of(movie).map_err(not_drawn)
+}
+
+/// Draws the pictures of a movie one after the other, and gives each to `take`.
+///
+/// # Errors
+/// Those of `take`.
+pub fn draw<E>(
     movie: &Movie,
-    mut take: impl FnMut(&[[u8; 3]], Vec<u8>) -> Result<(), E>,
+    pictures: &MoviePictures,
+    mut take: impl FnMut(Vec<u8>) -> Result<(), E>,
 ) -> Result<(), E> {
-    let pictures = MoviePictures::of(movie).map_err(not_drawn)?;
     for first in (0..movie.frames.len()).step_by(BATCH) {
         let batch = first..(first + BATCH).min(movie.frames.len());
         let drawn: Vec<_> = batch.into_par_iter().map(|index| pictures.draw(index)).collect();
-        for pixels in drawn {
-            take(pictures.palette(), pixels)?;
-        }
+        drawn.into_iter().try_for_each(&mut take)?;
     }
     Ok(())
 }
@@ -141,19 +142,13 @@ pub fn draw<E: From<ResultsError>>(
 /// # Errors
 /// When a picture cannot be drawn.
 pub fn gif(movie: &Movie) -> Result<Vec<u8>, ResultsError> {
-    let mut file: Option<MovieGif> = None;
+    let pictures = pictures(movie)?;
     let mut delays = delays(movie).into_iter();
-    draw(movie, |palette, pixels| {
-        let mut file_so_far = match file.take() {
-            Some(file) => file,
-            None => MovieGif::of(palette).map_err(not_drawn)?,
-        };
-        let added = file_so_far.add(pixels, delays.next().unwrap_or_default());
-        file = Some(file_so_far);
-        added.map_err(not_drawn)
-    })?;
-    let file = file.ok_or(PictureError::Nothing("snapshot"));
-    file.and_then(MovieGif::finish).map_err(not_drawn)
+    let mut file = MovieGif::of(pictures.palette()).map_err(not_drawn)?;
+    let drawn = draw(movie, &pictures, |pixels| {
+        file.add(pixels, delays.next().unwrap_or_default())
+    });
+    drawn.and_then(|()| file.finish()).map_err(not_drawn)
 }
 
 fn not_drawn(source: PictureError) -> ResultsError {

@@ -152,7 +152,8 @@ impl<'a> MuStar<'a> {
 #[cfg(feature = "plot")]
 fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
     let case = case_of(folder)?;
-    draw_maps(folder, case.as_ref().map_or(Field::ContactStress, mapped_field))
+    let field = case.as_ref().map_or(Field::ContactStress, mapped_field);
+    draw_maps(folder, case.as_ref(), field)
 }
 
 /// Draws the maps of a field of a run folder from its files, which must be there and undamaged.
@@ -161,7 +162,7 @@ fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
 /// When it cannot be read, or holds no such maps.
 #[cfg(feature = "plot")]
 pub fn draw_field(folder: &Path, field: Field) -> Result<Picture, ResultsError> {
-    draw_maps(folder, field)?.ok_or_else(|| ResultsError::NoMaps {
+    draw_maps(folder, case_of(folder)?.as_ref(), field)?.ok_or_else(|| ResultsError::NoMaps {
         path: folder.join(FIELDS),
         field: field_info(field).name,
     })
@@ -182,12 +183,7 @@ fn map_scale(
     case: Option<&CaseFile>,
     values: impl Iterator<Item = f32>,
 ) -> (String, f32, [f64; 2]) {
-    let (mut lo, mut hi) = values
-        .filter(|value| value.is_finite())
-        .map(f64::from)
-        .fold((0.0, 0.0), |(lo, hi): (f64, f64), value| {
-            (lo.min(value), hi.max(value))
-        });
+    let extent = extent(values);
     let info = field_info(field);
     let (title, unit) = match (field, case) {
         (Field::ContactStress, _) => return ("contact stress \u{3c4}_c*".to_owned(), 1.0, [0.0, 1.0]),
@@ -197,18 +193,40 @@ fn map_scale(
             ("traction \u{3c4}_f*".to_owned(), unit)
         }
         _ => {
-            let (size, prefix) = si_prefix(hi.max(-lo));
+            let (size, prefix) = prefix_of(extent);
             let unit = info.unit.replace(" s-1", "/s");
-            (format!("{} ({}{unit})", info.long_name, in_print(prefix)), size)
+            (format!("{} ({prefix}{unit})", info.long_name), size)
         }
     };
-    (lo, hi) = (lo / unit, hi / unit);
-    (title, unit as f32, if lo < hi { [lo, hi] } else { [0.0, 1.0] })
+    (title, unit as f32, bar_ends(extent, unit))
+}
+
+/// The smallest and the largest of some values and of 0.
+#[cfg(feature = "plot")]
+pub(crate) fn extent(values: impl Iterator<Item = f32>) -> [f64; 2] {
+    let finite = values.filter(|value| value.is_finite()).map(f64::from);
+    finite.fold([0.0, 0.0], |[lo, hi]: [f64; 2], value| {
+        [lo.min(value), hi.max(value)]
+    })
+}
+
+/// The prefix of a unit that suits values in this range, as it is printed, and its factor.
+#[cfg(feature = "plot")]
+pub(crate) fn prefix_of([lo, hi]: [f64; 2]) -> (f64, &'static str) {
+    let (factor, prefix) = si_prefix(hi.max(-lo));
+    (factor, in_print(prefix))
+}
+
+/// The values at the ends of a colour bar in a unit.
+#[cfg(feature = "plot")]
+pub(crate) fn bar_ends(extent: [f64; 2], unit: f64) -> [f64; 2] {
+    let [lo, hi] = extent.map(|end| end / unit);
+    if lo < hi { [lo, hi] } else { [0.0, 1.0] }
 }
 
 /// Draws the maps of a field of a run; none if it has not kept it.
 #[cfg(feature = "plot")]
-fn draw_maps(folder: &Path, field: Field) -> Result<Option<Picture>, ResultsError> {
+fn draw_maps(folder: &Path, case: Option<&CaseFile>, field: Field) -> Result<Option<Picture>, ResultsError> {
     let fields = fields::read_maps::<CellMeans>(&folder.join(FIELDS), field, |labels| {
         fields::few_of(labels, MAX_MAPS)
     })?;
@@ -216,7 +234,7 @@ fn draw_maps(folder: &Path, field: Field) -> Result<Option<Picture>, ResultsErro
         return Ok(None);
     }
     let values = fields.frames.iter().flat_map(|frame| &frame.values).flatten();
-    let (value_title, unit, range) = map_scale(field, case_of(folder)?.as_ref(), values.copied());
+    let (value_title, unit, range) = map_scale(field, case, values.copied());
     let point = |row: SeriesRow| (row.step, row.mu_star);
     let rows = series::read_rows(&folder.join(SERIES), SERIES, point)?;
     let Summary { instants, motion, .. } = read_summary(folder)?;

@@ -177,10 +177,12 @@ impl RunningSum {
         if size.is_nan() { f64::INFINITY } else { size }
     }
 
-    /// Adds the terms of another with the same bound.
-    pub(crate) fn join(&mut self, other: &Self) {
-        self.largest = self.largest.max(other.largest);
-        self.sum += other.sum;
+    /// Adds the terms of others with the same bounds.
+    pub(crate) fn join<const N: usize>(sums: &mut [Self; N], others: &[Self; N]) {
+        for (sum, other) in sums.iter_mut().zip(others) {
+            sum.largest = sum.largest.max(other.largest);
+            sum.sum += other.sum;
+        }
     }
 
     /// Begins again with no terms, and with the bound of those before, of which this is the largest. Returns whether they were added up

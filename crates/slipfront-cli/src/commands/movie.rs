@@ -1,16 +1,15 @@
 //! `slipfront movie`: the snapshots of a run beside its friction curve, as a movie.
 
 use std::io::{ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 
 use clap::Args;
 use slipfront::observe::Field;
 use slipfront_case::arrays::extension;
-use slipfront_case::disk::{is_same, write_atomic};
+use slipfront_case::disk::{folder_of, is_same, write_atomic};
 use slipfront_case::field_info::{FIELDS, field_named};
-use slipfront_plot::MOVIE_PIXELS;
-use slipfront_run::error::ResultsError;
+use slipfront_plot::{MOVIE_PIXELS, MoviePictures};
 use slipfront_run::movie;
 use slipfront_run::names::MOVIE;
 use slipfront_run::pictures;
@@ -81,17 +80,14 @@ impl Movie {
             true => mp4(&movie)?,
             false => movie::gif(&movie).map_err(Failure::input)?,
         };
-        let parent = match out.parent() {
-            Some(parent) if parent != Path::new("") => parent.to_owned(),
-            _ => PathBuf::from("."),
-        };
+        let parent = folder_of(&out);
         let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let own = is_same(&run.path, &parent).then_some(&run);
+        let own = is_same(&run.path, parent).then_some(&run);
         if own.is_none() {
-            refuse_other_run(&parent)?;
+            refuse_other_run(parent)?;
         }
         if !self.force {
-            refuse_to_replace(&parent, &[(name, &bytes)], own)?;
+            refuse_to_replace(parent, &[(name, &bytes)], own)?;
         }
         write_atomic(&out, &bytes)
             .map_err(|error| Failure::running(anyhow::anyhow!("cannot write {}: {error}", out.display())))?;
@@ -111,6 +107,7 @@ fn mp4(movie: &slipfront_plot::Movie) -> Result<Vec<u8>, Failure> {
     let folder = tempfile::tempdir().map_err(failed)?;
     let path = folder.path().join("movie.mp4");
     let [width, height] = MOVIE_PIXELS;
+    let pictures = movie::pictures(movie).map_err(Failure::input)?;
     let started = Command::new("ffmpeg")
         .args(["-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"])
         .args([
@@ -133,27 +130,16 @@ fn mp4(movie: &slipfront_plot::Movie) -> Result<Vec<u8>, Failure> {
         ),
         _ => failed(error),
     })?;
-    feed(child, movie)?;
+    feed(child, movie, &pictures)?;
     std::fs::read(&path).map_err(failed)
 }
 
-/// Why pictures could not be handed over.
-enum NotFed {
-    Results(ResultsError),
-    Pipe,
-}
-
-impl From<ResultsError> for NotFed {
-    fn from(error: ResultsError) -> Self {
-        Self::Results(error)
-    }
-}
-
 /// Hands all pictures to ffmpeg, each as often as it is long, and waits for its end.
-fn feed(mut child: Child, movie: &slipfront_plot::Movie) -> Result<(), Failure> {
+fn feed(mut child: Child, movie: &slipfront_plot::Movie, pictures: &MoviePictures) -> Result<(), Failure> {
+    let palette = pictures.palette();
     let mut pipe = child.stdin.take();
     let mut delays = movie::delays(movie).into_iter();
-    let fed = movie::draw(movie, |palette, pixels| {
+    let fed: Result<(), ()> = movie::draw(movie, pictures, |pixels| {
         let bytes: Vec<u8> = pixels
             .iter()
             .flat_map(|&pixel| palette[usize::from(pixel)])
@@ -162,15 +148,12 @@ fn feed(mut child: Child, movie: &slipfront_plot::Movie) -> Result<(), Failure> 
         for _ in 0..(hundredths * RATE).div_ceil(100).max(1) {
             // A program that ends early says why.
             let written = pipe.as_mut().map(|pipe| pipe.write_all(&bytes));
-            written.and_then(Result::ok).ok_or(NotFed::Pipe)?;
+            written.and_then(Result::ok).ok_or(())?;
         }
         Ok(())
     });
     drop(pipe);
     let ended = child.wait_with_output();
-    if let Err(NotFed::Results(error)) = fed {
-        return Err(Failure::input(error));
-    }
     let ended = ended.map_err(|error| Failure::running(anyhow::anyhow!("cannot run ffmpeg: {error}")))?;
     if ended.status.success() && fed.is_ok() {
         return Ok(());

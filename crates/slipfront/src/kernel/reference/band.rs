@@ -34,8 +34,54 @@ fn parts(model: &Model) -> impl Iterator<Item = Range<usize>> + use<> {
     (0..n).step_by(len).map(move |first| first..n.min(first + len))
 }
 
-/// Sums over blocks that every step finds.
+/// Sums over blocks that every step finds, as [`Found`] names them.
 pub(super) type Sums = [RunningSum; 12];
+
+/// What belongs to each of the [`Sums`]. The first three are of the drive springs.
+pub(super) struct Found<T> {
+    pub(super) displacement: [T; 2],
+    pub(super) velocity: [T; 2],
+    pub(super) velocity_after: [T; 2],
+    pub(super) velocity_square: T,
+    /// `F_f . v`.
+    pub(super) friction_power: T,
+    /// `F_v . v`.
+    pub(super) viscous_power: T,
+    /// Energy of the springs in contact that hold, and of those that break.
+    pub(super) spring_energies: [T; 2],
+    /// States of the blocks in contact.
+    pub(super) state: T,
+}
+
+impl<T> From<[T; 12]> for Found<T> {
+    fn from(
+        [
+            ux,
+            uy,
+            vx,
+            vy,
+            ax,
+            ay,
+            square,
+            friction,
+            viscous,
+            held,
+            broken,
+            state,
+        ]: [T; 12],
+    ) -> Self {
+        Self {
+            displacement: [ux, uy],
+            velocity: [vx, vy],
+            velocity_after: [ax, ay],
+            velocity_square: square,
+            friction_power: friction,
+            viscous_power: viscous,
+            spring_energies: [held, broken],
+            state,
+        }
+    }
+}
 
 /// Dampers beside the springs between blocks.
 #[derive(Debug)]
@@ -301,44 +347,42 @@ impl Band {
             vy[k] = 0.5 * (by[k] + ay[k]);
         }
         let now = [&*vx, &*vy];
-        let [
-            ux,
-            uy,
-            vx,
-            vy,
-            wx,
-            wy,
-            square,
-            friction,
-            viscous,
-            held,
-            broken,
-            states,
-        ] = &mut self.sums;
+        let sums = Found::from(self.sums.each_mut());
         let (driven, displacement) = (&self.driven, &self.state.displacement);
-        driven.add(model, blocks, part(displacement, blocks), [ux, uy], scratch);
-        driven.add(model, blocks, now, [vx, vy], scratch);
-        driven.add(model, blocks, [ax, ay], [wx, wy], scratch);
+        driven.add(
+            model,
+            blocks,
+            part(displacement, blocks),
+            sums.displacement,
+            scratch,
+        );
+        driven.add(model, blocks, now, sums.velocity, scratch);
+        driven.add(model, blocks, [ax, ay], sums.velocity_after, scratch);
         let masses = masses(model, blocks);
         dot_products(now, now, &mut scratch.terms[..n]);
-        add_weighted(square, &scratch.terms[..n], masses, &mut scratch.products);
+        add_weighted(
+            sums.velocity_square,
+            &scratch.terms[..n],
+            masses,
+            &mut scratch.products,
+        );
         match &self.contact {
             Contact::Coulomb(_) => {}
-            Contact::RateAndState(contact) => contact.add_states(model, blocks, states, scratch),
+            Contact::RateAndState(contact) => contact.add_states(model, blocks, sums.state, scratch),
             Contact::Springs(springs) => {
                 let breaks = &self.forces.slides;
-                springs.add_energies(model, blocks, displacement, breaks, [held, broken], scratch);
+                springs.add_energies(model, blocks, displacement, breaks, sums.spring_energies, scratch);
             }
         }
         let terms = &mut scratch.terms[..n];
         // What springs to the substrate take is stored, or lost where they break.
         if !matches!(self.contact, Contact::Springs(_)) {
             dot_products(part(&self.forces.friction, blocks), now, terms);
-            friction.add(terms);
+            sums.friction_power.add(terms);
         }
         if let Some(dampers) = &self.dampers {
             dot_products(part(&dampers.force, blocks), now, terms);
-            viscous.add(terms);
+            sums.viscous_power.add(terms);
         }
         scratch.velocity = velocity;
         self.find_largest_stress(model, blocks);

@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 use fearless_simd::{Level, dispatch};
 
-use self::band::{Band, Sums};
+use self::band::{Band, Found, Sums};
 use super::bands::for_each_band;
 use super::block::{Block, Field};
 use super::engine::Engine;
@@ -80,6 +80,13 @@ impl BandOfRank {
     /// The band, and the model of its rows given that of the rank.
     fn with_model<'a>(&'a mut self, of_rank: &'a Model) -> (&'a Model, &'a mut Band) {
         (self.model.as_ref().unwrap_or(of_rank), &mut self.band)
+    }
+
+    /// Which of the `count` blocks of the rank from `first` on are in this band: their places in it, and among those blocks.
+    fn common(&self, first: usize, count: usize) -> Option<[Range<usize>; 2]> {
+        let both = first.max(self.blocks.start)..(first + count).min(self.blocks.end);
+        let from = |start: usize| both.start - start..both.end - start;
+        (!both.is_empty()).then(|| [from(self.blocks.start), from(first)])
     }
 }
 
@@ -189,11 +196,9 @@ impl Reference {
 
     /// Gives the blocks from `first` on these values of an array.
     fn write(&mut self, first: usize, values: &[f64], array: impl Fn(&mut Band) -> &mut [f64]) {
-        for BandOfRank { blocks, band, .. } in &mut self.bands {
-            let both = first.max(blocks.start)..(first + values.len()).min(blocks.end);
-            if !both.is_empty() {
-                let own = both.start - blocks.start..both.end - blocks.start;
-                array(band)[own].copy_from_slice(&values[both.start - first..both.end - first]);
+        for one in &mut self.bands {
+            if let Some([own, of_values]) = one.common(first, values.len()) {
+                array(&mut one.band)[own].copy_from_slice(&values[of_values]);
             }
         }
     }
@@ -237,8 +242,7 @@ impl Reference {
                 dispatch!(Level::new(), _ => band.add_energies(model, time_star, sums));
             });
             for one in &self.bands {
-                let pairs = self.energy_sums.iter_mut().zip(&one.band.energy_sums);
-                pairs.for_each(|(sum, more)| sum.join(more));
+                RunningSum::join(&mut self.energy_sums, &one.band.energy_sums);
             }
             if let Some(found) = RunningSum::finish(&*self.ranks, &mut self.energy_sums) {
                 break found;
@@ -278,35 +282,20 @@ impl Engine for Reference {
         });
         self.exchange();
         let mut is_known = false;
-        let found = loop {
+        let found = Found::from(loop {
             let sums = self.sums;
             for_each_band(threads, &mut self.bands, &|one| {
                 let (model, band) = one.with_model(model);
                 dispatch!(level, _ => band.evaluate(model, time_star, is_known, sums));
             });
             for one in &self.bands {
-                let pairs = self.sums.iter_mut().zip(&one.band.sums);
-                pairs.for_each(|(sum, more)| sum.join(more));
+                RunningSum::join(&mut self.sums, &one.band.sums);
             }
             if let Some(found) = RunningSum::finish(&*self.ranks, &mut self.sums) {
                 break found;
             }
             is_known = true;
-        };
-        let [
-            ux,
-            uy,
-            vx,
-            vy,
-            ax,
-            ay,
-            square,
-            friction,
-            viscous,
-            held,
-            broken,
-            states,
-        ] = found;
+        });
         let mut counts = [0; 2];
         for one in &self.bands {
             let pairs = counts.iter_mut().zip(one.band.counts);
@@ -314,20 +303,21 @@ impl Engine for Reference {
         }
         self.ranks.sum(&mut counts);
         let [n_sliding, n_slipping] = counts.map(|count| count as usize);
-        self.viscous_power = 0.0 - viscous;
+        self.viscous_power = 0.0 - found.viscous_power;
+        let [held, broken] = found.spring_energies;
         self.contact_totals = ContactTotals {
             spring_energy: held,
             broken_energy: broken,
-            mean_state: states / model.surface.n_contact() as f64,
+            mean_state: found.state / model.surface.n_contact() as f64,
         };
         let stored_energy = energies.then(|| self.stored_energy(model, time_star));
         self.bands.iter_mut().for_each(|one| one.band.end_step());
         Totals {
-            displacement: [ux, uy],
-            velocity: [vx, vy],
-            velocity_after: [ax, ay],
-            velocity_square: square,
-            friction_power: friction,
+            displacement: found.displacement,
+            velocity: found.velocity,
+            velocity_after: found.velocity_after,
+            velocity_square: found.velocity_square,
+            friction_power: found.friction_power,
             n_sliding,
             n_slipping,
             stored_energy,
@@ -414,13 +404,9 @@ impl Engine for Reference {
     }
 
     fn read_memory(&self, column: usize, first: usize, values: &mut [f64]) {
-        let end = first + values.len();
-        for BandOfRank { blocks, band, .. } in &self.bands {
-            let both = first.max(blocks.start)..end.min(blocks.end);
-            if !both.is_empty() {
-                let own = both.start - blocks.start..both.end - blocks.start;
-                values[both.start - first..both.end - first]
-                    .copy_from_slice(&band.contact.columns()[column][own]);
+        for one in &self.bands {
+            if let Some([own, of_values]) = one.common(first, values.len()) {
+                values[of_values].copy_from_slice(&one.band.contact.columns()[column][own]);
             }
         }
     }
