@@ -1,7 +1,6 @@
 //! The plan of a study: its points, and what each run of a point is.
 
 use std::ops::Range;
-use std::sync::Mutex;
 
 use rayon::prelude::*;
 
@@ -63,7 +62,9 @@ struct RunSpec {
 
 /// Cases of more blocks are made one at a time while planning: one for each thread might not fit into memory.
 const LARGE: u64 = 250_000;
-static MAKING_LARGE: Mutex<()> = Mutex::new(());
+
+/// What is known of a run, and the warnings about it.
+type Spec = Result<(RunSpec, Vec<String>), CaseError>;
 
 /// Points whose cases are made before what is known of them is taken down.
 const POINTS_AT_ONCE: usize = 4096;
@@ -136,12 +137,16 @@ impl Plan {
         for (chunk, points) in self.points.chunks(POINTS_AT_ONCE).enumerate() {
             let rows = points.chunk_by(|a, b| a.index / length == b.index / length);
             let rows: Vec<&[Point]> = rows.flat_map(|row| row.chunks(POINTS_OF_A_BASE)).collect();
-            let made: Vec<Vec<_>> = rows
+            let made: Vec<Option<_>> = rows
                 .par_iter()
-                .map(|row| self.specs_of_row(&base, row, slow))
+                .map(|row| self.specs_of_row(&base, row, slow, LARGE))
                 .collect();
+            let made = made.into_iter().zip(rows).flat_map(|(made, row)| {
+                let alone = || self.specs_of_row(&base, row, slow, u64::MAX);
+                made.or_else(alone).unwrap_or_default()
+            });
             // In order, so that the first invalid point is named.
-            for (run, made) in made.into_iter().flatten().enumerate() {
+            for (run, made) in made.enumerate() {
                 let position = chunk * POINTS_AT_ONCE + run / roles;
                 let (spec, sentences) = made.map_err(|error| invalid(Some(&self.points[position]), error))?;
                 warnings.add(position, sentences);
@@ -163,13 +168,9 @@ impl Plan {
         (slow, length)
     }
 
-    /// What is known of the runs of points with the same levels of the first `slow` axes, and the warnings about them.
-    fn specs_of_row(
-        &self,
-        base: &ParsedCase,
-        row: &[Point],
-        slow: usize,
-    ) -> Vec<Result<(RunSpec, Vec<String>), CaseError>> {
+    /// What is known of the runs of points with the same levels of the first `slow` axes, and the warnings about them; none if a case has
+    /// more blocks than `most`.
+    fn specs_of_row(&self, base: &ParsedCase, row: &[Point], slow: usize, most: u64) -> Option<Vec<Spec>> {
         let bases = self.roles().map(|role| {
             let overrides = self.overrides(&row[0], role, 0..slow);
             Ok((role, Prepared::new(base.prepared(&overrides)?)?))
@@ -177,12 +178,12 @@ impl Plan {
         let bases = match bases.collect::<Result<Vec<_>, CaseError>>() {
             Ok(bases) => bases,
             // It is that of the first of them.
-            Err(error) => return vec![Err(error)],
+            Err(error) => return Some(vec![Err(error)]),
         };
         let specs = |point| {
             bases
                 .iter()
-                .map(move |(role, base)| self.spec(base, point, *role, slow))
+                .map(move |(role, base)| self.spec(base, point, *role, slow, most).transpose())
         };
         row.iter().flat_map(specs).collect()
     }
@@ -239,19 +240,21 @@ impl Plan {
         self.trimmed(file, "point", &mut |_| true)
     }
 
-    /// Makes the case of a point; gives what is known of its runs, and the warnings about it.
+    /// Makes the case of a point; gives what is known of its runs, and the warnings about it. None if it has more blocks than `most`.
     fn spec(
         &self,
         base: &Prepared,
         point: &Point,
         role: Role,
         slow: usize,
-    ) -> Result<(RunSpec, Vec<String>), CaseError> {
+        most: u64,
+    ) -> Result<Option<(RunSpec, Vec<String>)>, CaseError> {
         let overrides = self.overrides(point, role, slow..self.axes.len());
         let file = base.case.with(&overrides)?;
         self.check_seeds(&file)?;
-        let blocks: u64 = file.slider.blocks.into_iter().map(u64::from).product();
-        let _one_at_a_time = (blocks > LARGE).then(|| MAKING_LARGE.lock());
+        if file.slider.blocks.into_iter().map(u64::from).product::<u64>() > most {
+            return Ok(None);
+        }
         let case = self.trimmed(file, "point", &mut |_| true)?;
         let writes = self.settings.keep == RetainRuns::All;
         let spec = RunSpec {
@@ -267,7 +270,7 @@ impl Plan {
         if role == Role::Point && self.settings.max_replicates() > 1 {
             warnings.extend(note_on_replicates(&case).map(str::to_owned));
         }
-        Ok((spec, warnings))
+        Ok(Some((spec, warnings)))
     }
 
     /// Refuses a seed from which the replicates would count beyond the largest one.
@@ -504,6 +507,34 @@ mod tests {
         assert!(notes("sigma_static_star = 0")[0].contains("kinetic coefficients alone"));
         assert!(notes("sigma_static_star = 0, r_star = 0")[0].contains("the same run"));
         assert!(notes("sigma_static_star = 0, sigma_kinetic_star = 0")[0].contains("the same run"));
+    }
+
+    /// The threads share the blocks of a large case, too: none of them may wait for another to be done with one. What is known of the runs
+    /// and which invalid point is named does not depend on their number.
+    #[test]
+    fn large_cases_are_planned_on_any_number_of_threads() {
+        // Some large cases, unevenly spread over 16 rows, so that threads run out of rows of their own at different times.
+        let blocks = (0..16 * POINTS_OF_A_BASE).map(|point| match (point * 7919 / 13) % 97 {
+            7 => format!("[600, {}]", 2000 + point),
+            _ => format!("[{}, 2]", 2 + point),
+        });
+        let blocks = blocks.collect::<Vec<_>>().join(", ");
+        let plan = |threads, sigma: f64| {
+            let text = format!(
+                "[[axes]]\nkey = 'slider.blocks'\nlist = [{blocks}]\n\
+                 [[axes]]\nkey = 'friction.sigma_static_star'\nlist = [{sigma}]"
+            );
+            let file = StudyFile::parse(&text, "study.toml", "study", Path::new("")).unwrap();
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            pool.unwrap().install(|| Plan::new(&file, None))
+        };
+        let one = plan(1, 0.05).unwrap();
+        let six = plan(6, 0.05).unwrap();
+        assert!(one.specs == six.specs && one.specs.len() == 16 * POINTS_OF_A_BASE);
+        let large = one.specs.iter().filter(|spec| spec.n_blocks as u64 > LARGE);
+        assert!(large.count() > 5);
+        let invalid = |threads| plan(threads, -1.0).unwrap_err().to_string();
+        assert_eq!(invalid(1), invalid(6));
     }
 
     /// Runs at once count with the largest of them, and not with more than there are.
