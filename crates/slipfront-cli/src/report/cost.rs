@@ -34,7 +34,7 @@ fn loading(case: &Case) -> (String, Option<String>) {
     let note = (ratio > 1.0).then(|| {
         format!(
             "V* {name} = {} is above 1: while a slip front crosses the slider, the drive goes on loading the part that still sticks, so that \
-             mu_s* and the effect of a texture depend on speed and size; loading is slow at V* of {} and below",
+             mu_s* and the effect of a texture depend on speed and size; it is 1 at V* = {}, and loading is slow well below that",
             four_digits(ratio),
             four_digits(case.groups.v_star / ratio)
         )

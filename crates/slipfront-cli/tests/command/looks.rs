@@ -86,7 +86,7 @@ fn check_compares_crossing_and_loading() {
         (
             "drive.v_star=0.2",
             "V* N_x = 1.2: ",
-            Some("V* of 0.1667 and below"),
+            Some("it is 1 at V* = 0.1667, and loading is slow well below that"),
         ),
         ("drive.direction=90", "V* N_y = 0.5: ", None),
         ("drive.direction=45", "V* N = 0.7778: ", None),
@@ -95,7 +95,7 @@ fn check_compares_crossing_and_loading() {
         (
             "slider.blocks=[20,20]",
             "V* N_x = 2: ",
-            Some("V* of 0.05 and below"),
+            Some("it is 1 at V* = 0.05, and loading is slow well below that"),
         ),
     ] {
         let said = unwrapped(&workspace.succeed(&format!("check small.toml --set {set}")));
