@@ -1,6 +1,6 @@
 //! Titles of axes and legends for the keys of a case file and the quantities that are drawn.
 
-use super::axis::Axis;
+use super::axis::{Axis, Spacing};
 use super::summary_values::REDUCTION;
 use slipfront_case::case_file::title_of;
 use slipfront_plot::QuantityLabel;
@@ -37,6 +37,18 @@ pub(super) fn axis_title(axis: &Axis) -> String {
 /// The title of a legend for the levels of an axis.
 pub(super) fn axis_symbol(axis: &Axis) -> String {
     in_its_unit(axis, |label| label.legend())
+}
+
+/// A level of an axis beside those of others: what it is a value of, and its unit. A name says itself what it is.
+pub(super) fn level_with_symbol(axis: &Axis, level: usize) -> String {
+    let shown = axis.levels[level].shown();
+    if axis.spacing == Spacing::Named {
+        return shown;
+    }
+    in_its_unit(axis, |label| {
+        let symbol = QuantityLabel { unit: "", ..label }.legend();
+        format!("{symbol} = {shown} {}", label.unit).trim_end().to_owned()
+    })
 }
 
 fn in_its_unit(axis: &Axis, write: impl Fn(QuantityLabel) -> String) -> String {
@@ -86,7 +98,7 @@ mod tests {
     use slipfront_plot::has_glyphs;
 
     use super::*;
-    use crate::study::axis::Spacing;
+    use crate::study::axis::Level;
 
     fn axis(key: &str, unit: Option<&str>) -> Axis {
         Axis {
@@ -118,6 +130,33 @@ mod tests {
             assert_eq!(axis_title(&axis(key, unit)), expected);
         }
         assert_eq!(axis_symbol(&axis("load.pressure", Some("MPa"))), "P (MPa)");
+    }
+
+    #[test]
+    fn a_level_beside_others_has_its_symbol_and_unit() {
+        let of = |key: &str, unit, label: &str, number: Option<f64>| {
+            let level = Level {
+                labels: vec![label.to_owned()],
+                number,
+                overrides: Vec::new(),
+            };
+            let spacing = number.map_or(Spacing::Named, |_| Spacing::Linear);
+            let axis = Axis {
+                levels: vec![level],
+                spacing,
+                ..axis(key, unit)
+            };
+            level_with_symbol(&axis, 0)
+        };
+        let pressure = of("load.pressure", Some("kPa"), "0.05 MPa", Some(50.0));
+        assert_eq!(pressure, "P = 50 kPa");
+        assert_eq!(of("drive.v_star", None, "0.1", Some(0.1)), "V* = 0.1");
+        assert_eq!(of("texture.0.coverage", None, "10", Some(10.0)), "A* = 10 %");
+        assert_eq!(
+            of("slider.blocks", None, "[50, 50]", Some(50.0)),
+            "blocks along a side = 50"
+        );
+        assert_eq!(of("shape", None, "circle", None), "circle");
     }
 
     #[test]

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::anisotropy::FRICTION;
 use super::axis::{Axis, Spacing};
 use super::error::StudyError;
-use super::labels::{axis_symbol, axis_title, quantity_symbol, title};
+use super::labels::{axis_symbol, axis_title, level_with_symbol, quantity_symbol, title};
 use super::levels::{Levels, combinations};
 use super::picture_plan::{POLAR, PictureKind, PlannedPicture, measured_quantities, planned, polar};
 use super::plan::{PICTURES_AT_ONCE, Plan};
@@ -61,6 +61,8 @@ struct Measured<'a> {
     values: HashMap<Vec<usize>, [f64; 3]>,
     /// What the intervals are.
     note: String,
+    /// How many values there are at each point that has one.
+    counts: Vec<usize>,
 }
 
 impl<'a> Measured<'a> {
@@ -76,12 +78,13 @@ impl<'a> Measured<'a> {
         };
         let points = plan.points.iter().enumerate();
         let values = points.map(|(position, point)| (plan.levels(point), value(position)));
-        let counts = samples.iter().flatten().map(|sample| sample.n);
+        let counts: Vec<usize> = samples.iter().flatten().map(|sample| sample.n).collect();
         Self {
             axes: &plan.axes,
             quantity,
             values: values.collect(),
-            note: note_on_intervals(plan.settings.confidence(), counts),
+            note: note_on_intervals(plan.settings.confidence(), &counts),
+            counts,
         }
     }
 
@@ -114,14 +117,27 @@ impl<'a> Measured<'a> {
                 [axis] => axis_symbol(&self.axes[*axis]),
                 _ => String::new(),
             },
-            note: self.note.clone(),
+            note: self.note_at(fixed),
             curves: curves.map(|varied| self.curve(x, fixed, &varied)).collect(),
         })
     }
 
-    /// A curve over axis `x` at these levels of the others; those of the `varied` axes name it.
+    /// What the intervals are, after the levels that all curves of a picture have in common.
+    fn note_at(&self, fixed: &[(usize, usize)]) -> String {
+        let levels = fixed
+            .iter()
+            .map(|&(axis, level)| level_with_symbol(&self.axes[axis], level));
+        let parts: Vec<String> = levels.chain([self.note.clone()]).collect();
+        parts.join("; ")
+    }
+
+    /// A curve over axis `x` at these levels of the others; those of the `varied` axes name it, a single one of which is told by the title
+    /// of the legend.
     fn curve(&self, x: usize, fixed: &[(usize, usize)], varied: &[(usize, usize)]) -> Response {
-        let label = varied.iter().map(|&(axis, level)| self.shown(axis, level));
+        let label = varied.iter().map(|&(axis, level)| match varied.len() {
+            1 => self.shown(axis, level),
+            _ => level_with_symbol(&self.axes[axis], level),
+        });
         let mut response = Response {
             label: label.collect::<Vec<_>>().join(", "),
             ..Response::default()
@@ -217,9 +233,14 @@ fn friction_polar(
         .filter(|(quantity, _)| measured.contains(quantity))
         .map(|(quantity, _)| Measured::of(plan, results, quantity))
         .collect();
-    let Some(first) = measured.first() else {
+    if measured.is_empty() {
         return Ok(None);
-    };
+    }
+    let counts: Vec<usize> = measured
+        .iter()
+        .flat_map(|measured| &measured.counts)
+        .copied()
+        .collect();
     let curves = combinations.iter().flat_map(|varied| {
         let curve = |measured: &Measured| {
             let mut response = measured.curve(over, &[], varied);
@@ -236,15 +257,15 @@ fn friction_polar(
             Some((_, other)) if plan.axes.len() == 2 => axis_symbol(other),
             _ => String::new(),
         },
-        note: first.note.clone(),
+        note: note_on_intervals(plan.settings.confidence(), &counts),
         curves: curves.collect(),
     });
     picture.map(Some)
 }
 
 /// What the intervals around means of so many values are.
-fn note_on_intervals(confidence: f64, counts: impl Iterator<Item = usize> + Clone) -> String {
-    let (least, most) = (counts.clone().min().unwrap_or(0), counts.max().unwrap_or(0));
+fn note_on_intervals(confidence: f64, counts: &[usize]) -> String {
+    let [least, most] = [counts.iter().min(), counts.iter().max()].map(|count| count.copied().unwrap_or(0));
     if most < 2 {
         return "no intervals: one run at each point".to_owned();
     }
@@ -274,9 +295,17 @@ mod tests {
 
     #[test]
     fn pictures_say_what_their_intervals_are() {
-        let note = |confidence, counts: &[usize]| note_on_intervals(confidence, counts.iter().copied());
-        assert_eq!(note(0.95, &[5, 5]), "95 % interval of the mean, n = 5");
-        assert_eq!(note(0.999, &[8, 3]), "99.9 % interval of the mean, n = 3 to 8");
-        assert_eq!(note(0.95, &[1, 1]), "no intervals: one run at each point");
+        assert_eq!(
+            note_on_intervals(0.95, &[5, 5]),
+            "95 % interval of the mean, n = 5"
+        );
+        assert_eq!(
+            note_on_intervals(0.999, &[8, 3]),
+            "99.9 % interval of the mean, n = 3 to 8"
+        );
+        assert_eq!(
+            note_on_intervals(0.95, &[1, 1]),
+            "no intervals: one run at each point"
+        );
     }
 }
