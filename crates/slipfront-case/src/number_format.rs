@@ -46,16 +46,18 @@ pub fn with_uncertainty(value: f64, uncertainty: Option<f64>) -> String {
 }
 
 /// A value and the half width of its interval, both to the place of the value's third digit, or of the second digit of the half
-/// width where that is coarser; a half width that is smaller than that place to its first digit.
+/// width where that is coarser; a half width that is smaller than that place to its first digit. Where the larger of both is very small or
+/// large, in a bracket before its power of ten.
 pub fn with_half_width(value: f64, half: Option<f64>) -> String {
     let Some(half) = half else {
         return four_places(value);
     };
     let decade = |number: f64| number.abs().log10().floor();
-    if value != 0.0 && !(-3.0..6.0).contains(&decade(value)) {
-        let scale = 10_f64.powf(decade(value));
+    let size = value.abs().max(half);
+    if size != 0.0 && !(-3.0..6.0).contains(&decade(size)) {
+        let scale = 10_f64.powf(decade(size));
         let scaled = with_half_width(value / scale, Some(half / scale));
-        return format!("({scaled})e{}", decade(value));
+        return format!("({scaled})e{}", decade(size));
     }
     let place = |number: f64, digit: f64| {
         let place = if number == 0.0 {
@@ -158,6 +160,9 @@ mod tests {
             (0.0, 2.5, "0.0 \u{b1} 2.5"),
             (0.5, 0.0, "0.500 \u{b1} 0"),
             (2.33e-8, 4.2e-10, "(2.33 \u{b1} 0.04)e-8"),
+            (0.0, 2.5e-11, "(0.0 \u{b1} 2.5)e-11"),
+            (-3e-5, 4.2e-4, "(-0.3 \u{b1} 4.2)e-4"),
+            (2e-4, 0.53, "0.00 \u{b1} 0.53"),
         ] {
             assert_eq!(with_half_width(value, Some(half)), text);
         }

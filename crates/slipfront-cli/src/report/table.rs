@@ -30,7 +30,7 @@ struct Column {
 impl Column {
     fn of(name: &str, cells: &[&str]) -> Self {
         let aligned = aligned(cells);
-        let is_number = |cell: &str| cell.starts_with(|c: char| c.is_ascii_digit() || c == '-');
+        let is_number = |cell: &str| cell.starts_with(|c: char| c.is_ascii_digit() || "-(<".contains(c));
         let is_right = cells.iter().all(|cell| is_number(cell));
         let all = [name.to_owned()].into_iter().chain(aligned);
         let all: Vec<String> = all.collect();
@@ -57,8 +57,10 @@ fn aligned(cells: &[&str]) -> Vec<String> {
                 .map_or((*cell, None), |(value, half)| (value, Some(half)))
         })
         .collect();
-    let values = at_the_point(parts.iter().map(|(value, _)| *value).collect());
-    let halves = at_the_point(parts.iter().map(|(_, half)| half.unwrap_or_default()).collect());
+    let values: Vec<&str> = parts.iter().map(|(value, _)| *value).collect();
+    let values = at_the_point(&values, |text, width| format!("{text:>width$}"));
+    let halves: Vec<&str> = parts.iter().map(|(_, half)| half.unwrap_or_default()).collect();
+    let halves = at_the_point(&halves, |text, width| format!("{text:<width$}"));
     let joined = values.into_iter().zip(halves).zip(parts);
     joined
         .map(|((value, half), (_, given))| match given {
@@ -69,18 +71,24 @@ fn aligned(cells: &[&str]) -> Vec<String> {
         .collect()
 }
 
-/// Texts filled up on both sides, so that their first points, or their ends, stand below each other.
-fn at_the_point(texts: Vec<&str>) -> Vec<String> {
-    let halves = texts.into_iter().map(|text| {
-        let point = text.find('.').unwrap_or(text.len());
-        text.split_at(point)
+/// Texts so that their first points, or their ends, stand below each other, all filled up to one width. The halves of a bracket before a
+/// power of ten are filled up from outside alone.
+fn at_the_point(texts: &[&str], fill: fn(&str, usize) -> String) -> Vec<String> {
+    let split = |text: &str| {
+        let (before, after) = text.split_at(text.find('.').unwrap_or(text.len()));
+        (!text.contains(['(', ')'])).then(|| (before.to_owned(), after.to_owned()))
+    };
+    let length = |text: &str| text.chars().count();
+    let plain: Vec<(String, String)> = texts.iter().filter_map(|text| split(text)).collect();
+    let before = plain.iter().map(|(before, _)| length(before)).max().unwrap_or(0);
+    let after = plain.iter().map(|(_, after)| length(after)).max().unwrap_or(0);
+    let placed = texts.iter().map(|&text| match split(text) {
+        Some((left, right)) => format!("{left:>before$}{right:<after$}"),
+        None => text.to_owned(),
     });
-    let halves: Vec<(&str, &str)> = halves.collect();
-    let widest = |widths: &mut dyn Iterator<Item = usize>| widths.max().unwrap_or(0);
-    let before = widest(&mut halves.iter().map(|(before, _)| before.chars().count()));
-    let after = widest(&mut halves.iter().map(|(_, after)| after.chars().count()));
-    let filled = |(left, right): (&str, &str)| format!("{left:>before$}{right:<after$}");
-    halves.into_iter().map(filled).collect()
+    let placed: Vec<String> = placed.collect();
+    let width = placed.iter().map(|text| length(text)).max().unwrap_or(0);
+    placed.iter().map(|text| fill(text, width)).collect()
 }
 
 #[cfg(test)]
@@ -102,6 +110,31 @@ mod tests {
         10   none           none                 0
 ";
         assert_eq!(table(&["coverage", "shape", "mean", "n"], &rows), expected);
+    }
+
+    /// A power of ten belongs to the whole bracket, which no blanks tear.
+    #[test]
+    fn brackets_stay_whole() {
+        let rows = [
+            "-0.00775 \u{b1} 0.00051",
+            "(-7.4 \u{b1} 1.8)e-4",
+            "(0.0 \u{b1} 2.5)e-11",
+        ]
+        .map(|cell| vec![cell.to_owned()]);
+        let expected = "  \
+  lateral
+  -0.00775 \u{b1} 0.00051
+     (-7.4 \u{b1} 1.8)e-4
+      (0.0 \u{b1} 2.5)e-11
+";
+        let lines: Vec<String> = table(&["lateral"], &rows)
+            .lines()
+            .map(|line| line.trim_end().to_owned())
+            .collect();
+        assert_eq!(
+            lines[1..],
+            expected.lines().skip(1).map(str::to_owned).collect::<Vec<_>>()
+        );
     }
 
     #[test]
