@@ -1,17 +1,19 @@
 //! How friction depends on the direction of the drive, for a study that varies it.
 
 use slipfront_case::number_format::{four_digits, with_half_width};
-use slipfront_run::study::{Anisotropy, Plan, Sample, StudyResults, anisotropies};
+use slipfront_run::study::{Anisotropy, OverDirections, Plan, Sample, StudyResults, anisotropies};
 
 use super::table::table;
+use crate::wrap::note;
 
-/// Most rows that are printed.
+/// Most rows that are printed, and most notes on what has been left out.
 const MAX_ROWS: usize = 40;
+const MAX_NOTES: usize = 8;
 
 /// A row for static and for kinetic friction at all levels of the other axes; empty if no axis is one of directions.
 pub(crate) fn anisotropy(plan: &Plan, results: &StudyResults) -> String {
-    let found = anisotropies(plan, results);
-    let Some(first) = found.first() else {
+    let all = anisotropies(plan, results);
+    let Some(first) = all.first() else {
         return String::new();
     };
     let levels = first.levels.iter().map(|(column, _)| column.as_str());
@@ -22,55 +24,90 @@ pub(crate) fn anisotropy(plan: &Plan, results: &StudyResults) -> String {
             "anisotropy %",
             "from",
             "to",
+            "p",
             "principal",
             "lateral",
             "at",
         ])
         .collect();
-    let rows: Vec<Vec<String>> = found.iter().take(MAX_ROWS).map(row).collect();
-    let more = match found.len() - rows.len() {
+    let with_numbers = all.iter().filter_map(|row| Some((row, row.found.as_ref().ok()?)));
+    let rows: Vec<Vec<String>> = with_numbers.map(|(row, found)| cells(row, found)).collect();
+    let shown = rows.len().min(MAX_ROWS);
+    let more = match rows.len() - shown {
         0 => String::new(),
         more => format!("  and {more} more in anisotropy.csv\n"),
     };
-    format!(
-        "friction over {} directions, in degrees from x towards y: anisotropy is\n\
-         (largest - smallest)/mean, from the largest to the smallest; principal is the axis\n\
-         of larger friction, lateral the largest friction across the drive\n\n{}{more}\n",
-        first.directions,
-        table(&header, &rows)
-    )
+    let table = match shown {
+        0 => String::new(),
+        _ => format!(
+            "friction over the directions, in degrees from x towards y: anisotropy is (largest -\n\
+             smallest)/mean, from the largest to the smallest; p is how probable axes that stand out\n\
+             as much are if friction has none; principal is the axis of larger friction, lateral the\n\
+             largest friction across the drive\n\n{}{more}\n",
+            table(&header, &rows[..shown])
+        ),
+    };
+    table + &notes(&all)
 }
 
-fn row(found: &Anisotropy) -> Vec<String> {
+/// What has been left out, and why there are no numbers where there are none.
+fn notes(all: &[Anisotropy]) -> String {
+    let sentence = |row: &Anisotropy| {
+        let parts = [row.left_out.as_ref(), row.found.as_ref().err()];
+        let parts: Vec<&str> = parts.into_iter().flatten().map(String::as_str).collect();
+        let levels = row
+            .levels
+            .iter()
+            .map(|(name, level)| format!(", {name} = {level}"));
+        let levels: String = levels.collect();
+        (!parts.is_empty()).then(|| note(&format!("{}{levels}: {}", row.quantity, parts.join("; "))))
+    };
+    let notes: Vec<String> = all.iter().filter_map(sentence).collect();
+    let more = match notes.len().saturating_sub(MAX_NOTES) {
+        0 => String::new(),
+        more => note(&format!(
+            "and {more} more of the kind; anisotropy.csv has what counts"
+        )),
+    };
+    notes.into_iter().take(MAX_NOTES).chain([more]).collect()
+}
+
+fn cells(row: &Anisotropy, found: &OverDirections) -> Vec<String> {
     let value = |sample: &Sample, factor: f64| {
         with_half_width(factor * sample.mean, sample.half_width.map(|half| factor * half))
     };
-    let symbol = match found.quantity {
+    let symbol = match row.quantity {
         "static_friction_star" => "mu_s*",
         _ => "mu_k*",
     };
-    let principal = found
-        .principal
-        .map_or("none".to_owned(), |principal| match principal.half_width {
-            Some(half) => with_half_width(principal.direction, Some(half)),
-            None => four_digits(principal.direction),
-        });
-    let (lateral, at) = found
-        .lateral
-        .as_ref()
-        .map_or_else(Default::default, |(at, lateral)| {
-            (value(lateral, 1.0), four_digits(*at))
-        });
-    let levels = found.levels.iter().map(|(_, level)| level.clone());
+    let principal = match found.principal {
+        Some(principal) => with_half_width(principal.direction, principal.half_width),
+        None => "none".to_owned(),
+    };
+    let (lateral, at) = match &found.lateral {
+        Some((at, lateral)) => (value(lateral, 1.0), four_digits(*at)),
+        None => Default::default(),
+    };
+    let levels = row.levels.iter().map(|(_, level)| level.clone());
     let cells = [
         symbol.to_owned(),
         value(&found.mean, 1.0),
         value(&found.anisotropy, 100.0),
         four_digits(found.largest_direction),
         four_digits(found.smallest_direction),
+        found.p_value.map_or("none".to_owned(), probability),
         principal,
         lateral,
         at,
     ];
     levels.chain(cells).collect()
+}
+
+/// A probability to three places, or its power of ten where it is smaller.
+fn probability(p: f64) -> String {
+    match p {
+        p if p >= 0.001 => format!("{p:.3}"),
+        p if p >= 1e-9 => format!("{p:.0e}"),
+        _ => "<1e-9".to_owned(),
+    }
 }

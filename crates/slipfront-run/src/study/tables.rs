@@ -110,21 +110,26 @@ pub(super) fn anisotropy(rows: &[Anisotropy], to: impl Write) -> csv::Result<()>
         cells.extend([
             row.quantity.to_owned(),
             row.directions.to_string(),
-            row.mean.n.to_string(),
+            row.replicates.to_string(),
         ]);
         let with_ends = |sample: Option<Sample>| {
             let ends = sample.and_then(|sample| sample.interval());
             let [low, high] = ends.map_or([None; 2], |ends| ends.map(Some));
             [sample.map(|sample| sample.mean), low, high]
         };
-        let principal = row.principal;
+        let found = row.found.as_ref().ok();
+        let principal = found.and_then(|found| found.principal);
         let values = principal.map(|principal| principal.values);
-        let (at, lateral) = row.lateral.unzip();
+        let (at, lateral) = found.and_then(|found| found.lateral).unzip();
         let numbers = [
-            &with_ends(Some(row.mean))[..],
-            &[Some(row.largest_direction), Some(row.smallest_direction)],
-            &with_ends(Some(row.anisotropy)),
+            &with_ends(found.map(|found| found.mean))[..],
             &[
+                found.map(|found| found.largest_direction),
+                found.map(|found| found.smallest_direction),
+            ],
+            &with_ends(found.map(|found| found.anisotropy)),
+            &[
+                found.and_then(|found| found.p_value),
                 principal.map(|principal| principal.direction),
                 principal.and_then(|principal| principal.half_width),
             ],
@@ -141,7 +146,7 @@ pub(super) fn anisotropy(rows: &[Anisotropy], to: impl Write) -> csv::Result<()>
 }
 
 /// Columns of `anisotropy.csv` after those of the axes.
-const OF_ANISOTROPY: [&str; 24] = [
+const OF_ANISOTROPY: [&str; 25] = [
     "quantity",
     "directions",
     "n",
@@ -153,6 +158,7 @@ const OF_ANISOTROPY: [&str; 24] = [
     "anisotropy",
     "anisotropy_low",
     "anisotropy_high",
+    "p_value",
     "principal_direction",
     "principal_direction_half_width",
     "principal_1",

@@ -332,7 +332,7 @@ fn directions_have_a_polar_picture_and_their_table() {
     };
     let workspace = Workspace::with_study(&study("drive.direction").replace("1.5, 6", "300, 6"));
     let said = workspace.succeed("study study.toml -o out");
-    assert!(said.contains("friction over 6 directions"), "{said}");
+    assert!(said.contains("friction over the directions"), "{said}");
     let results = workspace.results("out");
     let rows = results.table("anisotropy.csv");
     let names: Vec<&str> = rows.iter().map(|row| row["quantity"].as_str()).collect();
@@ -350,6 +350,24 @@ fn directions_have_a_polar_picture_and_their_table() {
         assert!(picture.contains(&format!(">{text}</text>")), "{text}");
     }
     workspace.succeed("verify out");
+    // Two surfaces are too few for numbers, and a sentence says so.
+    let two = study("drive.direction")
+        .replace("1.5, 6", "300, 6")
+        .replace("= 3", "= 2");
+    workspace.write("two.toml", two);
+    let said = unwrapped(&workspace.succeed("study two.toml -o two"));
+    assert!(
+        said.contains("note: static_friction_star: anisotropy cannot be told from chance with 2 replicates")
+            && !said.contains("friction over the directions"),
+        "{said}"
+    );
+    let rows = workspace.results("two").table("anisotropy.csv");
+    assert_eq!((rows.len(), rows[0]["n"].as_str()), (2, "2"));
+    assert!(
+        ["mean", "anisotropy", "p_value", "lateral"]
+            .iter()
+            .all(|column| rows[0][*column].is_empty())
+    );
     // A study without directions keeps neither.
     workspace.write("study.toml", study("slider.omega_star"));
     workspace.succeed("study study.toml -o out");
