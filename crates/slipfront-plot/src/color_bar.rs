@@ -6,8 +6,6 @@ use crate::geometry::{Align, Area, Point};
 use crate::style::{BLACK, SIZE_LABEL};
 use crate::text::Text;
 
-/// The bar of a map is numbered in at most so many steps.
-pub(crate) const BAR_STEPS: usize = 5;
 /// Between the numbers and the name.
 const GAP: f64 = 14.0;
 /// A name above the bar stands so far above it, or above what is written over the map.
@@ -22,10 +20,13 @@ pub(crate) struct ColourBar {
 }
 
 impl ColourBar {
-    /// A bar of this height, whose name has subscripts after underscores.
-    pub(crate) fn of(name: &str, range: [f64; 2], height: f64) -> Self {
-        let name = Text::math(name, SIZE_LABEL);
+    pub(crate) fn of(name: Text, range: [f64; 2], height: f64) -> Self {
         Self { name, range, height }
+    }
+
+    /// A bar whose name is as large as other labels, with subscripts after underscores.
+    pub(crate) fn labelled(name: &str, range: [f64; 2], height: f64) -> Self {
+        Self::of(Text::math(name, SIZE_LABEL), range, height)
     }
 
     fn is_named_above(&self) -> bool {
@@ -42,7 +43,7 @@ impl ColourBar {
 
     /// How wide it is with its numbers and a name beside them.
     pub(crate) fn room(&self) -> f64 {
-        let numbered = bar_room(self.range, BAR_STEPS, self.height);
+        let numbered = bar_room(self.range, self.height);
         match self.is_named_above() || self.name.width() == 0.0 {
             true => numbered,
             false => numbered + GAP + self.name.height() + self.name.depth(),
@@ -52,7 +53,7 @@ impl ColourBar {
     /// Draws it with its upper left corner here, and its name, if that is above it, on the line `above`.
     pub(crate) fn draw(&self, canvas: &mut Canvas, (x, top): Point, above: f64) {
         let area = Area::new(x, top, BAR_WIDTH, self.height);
-        colour_bar(canvas, area, self.range, BAR_STEPS);
+        colour_bar(canvas, area, self.range);
         let right = x + self.room();
         if self.is_named_above() {
             canvas.text(&self.name, (right, above), Align::End, BLACK);

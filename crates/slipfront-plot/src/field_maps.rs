@@ -58,7 +58,7 @@ pub fn field_maps(maps: &FieldMaps) -> Result<Picture, PictureError> {
     let Some(first) = maps.maps.first() else {
         return Err(PictureError::Nothing("map"));
     };
-    let bar_of = |height| ColourBar::of(&maps.value_title, maps.range, height);
+    let bar_of = |height| ColourBar::labelled(&maps.value_title, maps.range, height);
     let bar_width = bar_of(MAX_WIDTH).room();
     let columns = maps.columns.clamp(1, maps.maps.len());
     let rows = maps.maps.len().div_ceil(columns);

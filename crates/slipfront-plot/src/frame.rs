@@ -12,6 +12,8 @@ use crate::ticks::{Direction, Tick};
 pub(crate) const LOWER_ROOM: f64 = TICK_LENGTH + 7.0 + SIZE_TICK as f64 + SIZE_LABEL as f64 + MARGIN;
 /// How wide a colour bar is.
 pub(crate) const BAR_WIDTH: f64 = 30.0;
+/// It is numbered in at most so many steps.
+const BAR_STEPS: usize = 5;
 
 fn widest(ticks: &[Tick]) -> f64 {
     ticks.iter().map(|(_, text)| text.width()).fold(0.0, f64::max)
@@ -69,18 +71,20 @@ pub(crate) fn short_ticks(canvas: &mut Canvas, area: Area, direction: Direction,
     }
 }
 
-/// The numbers beside a colour bar over this range: round ones, in at most `most` steps.
-fn bar_ticks([lo, hi]: [f64; 2], most: usize, bottom: f64, top: f64) -> Vec<Tick> {
-    Axis::linear(lo, hi).placed(bottom, top).ticks(Direction::Y, most)
+/// The numbers beside a colour bar over this range: round ones.
+fn bar_ticks([lo, hi]: [f64; 2], bottom: f64, top: f64) -> Vec<Tick> {
+    Axis::linear(lo, hi)
+        .placed(bottom, top)
+        .ticks(Direction::Y, BAR_STEPS)
 }
 
 /// How wide a colour bar of this height is with the numbers beside it.
-pub(crate) fn bar_room(range: [f64; 2], most: usize, height: f64) -> f64 {
-    BAR_WIDTH + TICK_LENGTH + 7.0 + widest(&bar_ticks(range, most, height, 0.0))
+pub(crate) fn bar_room(range: [f64; 2], height: f64) -> f64 {
+    BAR_WIDTH + TICK_LENGTH + 7.0 + widest(&bar_ticks(range, height, 0.0))
 }
 
 /// Draws a bar of all colours, dark at its foot.
-pub(crate) fn colour_bar(canvas: &mut Canvas, area: Area, range: [f64; 2], most: usize) {
+pub(crate) fn colour_bar(canvas: &mut Canvas, area: Area, range: [f64; 2]) {
     let levels = (0..=254).rev().collect();
     canvas.images.push(Image {
         area,
@@ -88,7 +92,7 @@ pub(crate) fn colour_bar(canvas: &mut Canvas, area: Area, range: [f64; 2], most:
         levels,
     });
     canvas.frame(area);
-    for (y, text) in bar_ticks(range, most, area.bottom(), area.y) {
+    for (y, text) in bar_ticks(range, area.bottom(), area.y) {
         canvas.tick_right((area.right(), y), &text);
     }
 }

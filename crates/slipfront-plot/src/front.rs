@@ -169,8 +169,8 @@ impl Layout {
         };
         let axes = [around([from * factor, to * factor]), around(space_time.times)];
         let first_slips: [f64; 2] = range(quantiles(&map.first_slips).into_iter()).into();
-        let map_bar = |height| ColourBar::of("first slip t*", first_slips, height);
-        let bar = |height| ColourBar::of("share that slides", [0.0, 1.0], height);
+        let map_bar = |height| ColourBar::labelled("first slip t*", first_slips, height);
+        let bar = |height| ColourBar::labelled("share that slides", [0.0, 1.0], height);
         let left = |axis: Axis| left_room(&axis.placed(MAX_SIDE, 0.0).ticks(Direction::Y, 5));
         let [map_left, left] = [left(sides[1]), left(axes[1])];
         let panel = |area: Area, room: f64, axes: [Axis; 2], bar: ColourBar| Panel {

@@ -2,14 +2,13 @@
 
 use crate::axis::{Axis, drawable, range, widened};
 use crate::canvas::Canvas;
+use crate::color_bar::ColourBar;
 use crate::color_image::{Image, level, level_colour};
-use crate::frame::{
-    BAR_WIDTH, LOWER_ROOM, bar_room, colour_bar, left_room, left_side, lower_side, short_ticks,
-};
+use crate::frame::{BAR_WIDTH, LOWER_ROOM, left_room, left_side, lower_side, short_ticks};
 use crate::geometry::{Align, Area};
 use crate::note::Note;
 use crate::picture::{Picture, PictureError};
-use crate::style::{BLACK, BLANK, COLUMN_WIDTH, MARGIN, Rgb, SIZE_LABEL, SIZE_TICK, WHITE};
+use crate::style::{BLACK, BLANK, COLUMN_WIDTH, MARGIN, Rgb, SIZE_TICK, WHITE};
 use crate::text::{MINUS, Text, number};
 use crate::ticks::{Direction, MAX_STEPS, Tick, apart};
 
@@ -93,9 +92,11 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
     y.axis = y.axis.placed(TOP + HEIGHT, TOP);
     let left = left_room(&y.ticks(Direction::Y).0);
     let has_intervals = half_widths.iter().any(|half| !half.is_nan());
-    let shown = if has_intervals { &ranges[..] } else { &ranges[..1] };
-    let numbers = shown.iter().map(|&range| bar_room(range, MAX_STEPS, HEIGHT));
-    let bar_room = numbers.fold(0.0, f64::max) + 14.0 + f64::from(SIZE_LABEL) + MARGIN;
+    let half_width = format!("half width, {}", map.value_title);
+    let bar = |name: &str, range| ColourBar::of(Text::fitted(name, HEIGHT), range, HEIGHT);
+    let bars = [bar(&map.value_title, ranges[0]), bar(&half_width, ranges[1])];
+    let shown = if has_intervals { &bars[..] } else { &bars[..1] };
+    let bar_room = shown.iter().map(ColourBar::room).fold(0.0, f64::max) + MARGIN;
     let width = (COLUMN_WIDTH - left - GAP - bar_room).max(100.0).round();
     let area = Area::new(left, TOP, width, HEIGHT);
     x.axis = x.axis.placed(area.x, area.right());
@@ -114,11 +115,9 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
     let note = Note::of(&map.note, area.centre().0, COLUMN_WIDTH);
 
     let mut canvas = Canvas::new(COLUMN_WIDTH, height + note.height);
-    let titles = [&map.x.title, &map.y.title, &map.value_title].map(String::as_str);
-    draw_panel(&mut canvas, area, [&x, &y], (&values, ranges[0]), texts, titles);
+    let titles = [map.x.title.as_str(), &map.y.title];
+    draw_panel(&mut canvas, area, [&x, &y], (&values, &bars[0]), texts, titles);
     if has_second {
-        let half_width = format!("half width, {}", map.value_title);
-        let titles = [titles[0], titles[1], &half_width];
         let area = Area {
             y: panel + TOP,
             ..area
@@ -129,7 +128,7 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
             &mut canvas,
             area,
             [&x, &y],
-            (&half_widths, ranges[1]),
+            (&half_widths, &bars[1]),
             texts,
             titles,
         );
@@ -145,23 +144,18 @@ fn median(values: &[f64]) -> f64 {
     sorted.get(sorted.len() / 2).copied().unwrap_or_default()
 }
 
-/// Draws a map with its sides, numbers and colour bar; the titles are those of x, y and the values.
+/// Draws a map with its sides, numbers and colour bar; the titles are those of x and y.
 fn draw_panel(
     canvas: &mut Canvas,
     area: Area,
     [x, y]: [&Cells; 2],
-    (values, range): (&[f64], [f64; 2]),
+    (values, bar): (&[f64], &ColourBar),
     texts: Option<Vec<Vec<Text>>>,
-    [x_title, y_title, value_title]: [&str; 3],
+    [x_title, y_title]: [&str; 2],
 ) {
-    let bar = Area {
-        x: area.right() + GAP,
-        width: BAR_WIDTH,
-        ..area
-    };
-    canvas.images.push(image(area, x, y, values, range));
+    canvas.images.push(image(area, x, y, values, bar.range));
     if let Some(texts) = texts {
-        draw_numbers(canvas, [x, y], &texts, (values, range));
+        draw_numbers(canvas, [x, y], &texts, (values, bar.range));
     }
     canvas.frame(area);
     let (ticks, short) = y.ticks(Direction::Y);
@@ -170,12 +164,11 @@ fn draw_panel(
     let (ticks, short) = x.ticks(Direction::X);
     short_ticks(canvas, area, Direction::X, &short);
     lower_side(canvas, area, &ticks, &Text::fitted(x_title, area.width));
-    colour_bar(canvas, bar, range, MAX_STEPS);
-    let baseline = COLUMN_WIDTH - MARGIN - 0.24 * f64::from(SIZE_LABEL);
-    let title = Text::fitted(value_title, area.height);
-    canvas.text_upwards(&title, (baseline, area.centre().1), Align::Middle, BLACK);
+    let at = (area.right() + GAP, area.y);
+    // A name that is fitted to the bar stands beside it.
+    bar.draw(canvas, at, area.y);
     if values.iter().any(|value| value.is_nan()) {
-        draw_blank(canvas, bar);
+        draw_blank(canvas, Area::new(at.0, area.y, BAR_WIDTH, area.height));
     }
 }
 

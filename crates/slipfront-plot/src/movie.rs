@@ -6,7 +6,6 @@
 use crate::axis::Axis;
 use crate::canvas::Canvas;
 use crate::cell_means::CellMeans;
-use crate::color_bar::BAR_STEPS;
 use crate::frame::{BAR_WIDTH, bar_room, colour_bar, left_room, left_side, lower_side};
 use crate::friction_curve::{FrictionAxes, FrictionCurve};
 use crate::geometry::{Align, Area, Point};
@@ -184,9 +183,9 @@ impl<'a> MoviePictures<'a> {
 
     fn draw_bar(&self, canvas: &mut Canvas) {
         let movie = self.movie;
-        colour_bar(canvas, self.bar, movie.range, BAR_STEPS);
+        colour_bar(canvas, self.bar, movie.range);
         let title = Text::math(&movie.title, SIZE_LABEL);
-        let room = bar_room(movie.range, BAR_STEPS, self.bar.height);
+        let room = bar_room(movie.range, self.bar.height);
         let start = (self.bar.x + room - title.width()).min(self.bar.x);
         canvas.text(&title, (start, self.bar.y - 22.0), Align::Start, BLACK);
     }

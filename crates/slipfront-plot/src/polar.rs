@@ -12,7 +12,7 @@ use crate::picture::{Picture, PictureError};
 use crate::response::{Response, check_curves};
 use crate::series::{interval, marker};
 use crate::style::{
-    BLACK, BLANK, COLUMN_WIDTH, MARGIN, RADIUS_MARKER, SIZE_TICK, WIDTH_FRAME, WIDTH_LEADER, WIDTH_MARK,
+    BLACK, BLANK, COLUMN_WIDTH, MARGIN, RADIUS_MARKER, Rgb, SIZE_TICK, WIDTH_FRAME, WIDTH_LEADER, WIDTH_MARK,
     curve_style,
 };
 use crate::text::Text;
@@ -43,7 +43,7 @@ pub struct Polar {
 }
 
 /// Draws means around a centre, which is zero, with their confidence bands, as wide as a journal's column (85 mm). A curve whose
-/// directions go all the way round is closed. Values below zero are left out.
+/// directions go all the way round is closed, and has a gap where a value is missing or below zero.
 ///
 /// # Errors
 ///
@@ -51,7 +51,7 @@ pub struct Polar {
 pub fn polar(polar: &Polar) -> Result<Picture, PictureError> {
     check_curves(&polar.curves, "directions")?;
     let rounds: Vec<Round> = polar.curves.iter().map(Round::of).collect();
-    let tops = rounds.iter().flat_map(|round| &round.points);
+    let tops = rounds.iter().flat_map(|round| round.parts.iter().flatten());
     let largest = tops.map(|point| point.high.max(point.mean)).fold(0.0, f64::max);
     let largest = if largest > 0.0 { largest } else { 1.0 };
 
@@ -93,8 +93,9 @@ pub fn polar(polar: &Polar) -> Result<Picture, PictureError> {
 
 /// The points of a curve, by rising direction.
 struct Round {
-    points: Vec<RoundPoint>,
-    /// Whether the directions go all the way round.
+    /// Neighbours without a gap between them.
+    parts: Vec<Vec<RoundPoint>>,
+    /// Whether there is one part that goes all the way round.
     is_closed: bool,
 }
 
@@ -109,37 +110,51 @@ struct RoundPoint {
 impl Round {
     fn of(curve: &Response) -> Self {
         let point = |index: usize| {
-            let (degrees, mean) = (curve.x[index], curve.mean[index]);
+            let (degrees, mean) = (curve.x[index].rem_euclid(360.0), curve.mean[index]);
             let (low, high) = interval(mean, curve.low[index], curve.high[index]).unwrap_or((mean, mean));
-            (drawable(degrees) && drawable(mean) && mean >= 0.0).then(|| RoundPoint {
-                degrees: degrees.rem_euclid(360.0),
+            let there = (drawable(mean) && mean >= 0.0).then(|| RoundPoint {
+                degrees,
                 mean,
                 low: low.max(0.0),
                 high,
-            })
+            });
+            (degrees, there)
         };
-        let all: Vec<Option<RoundPoint>> = (0..curve.x.len()).map(point).collect();
-        let is_whole = all.iter().all(Option::is_some);
-        let mut points: Vec<RoundPoint> = all.into_iter().flatten().collect();
-        points.sort_by(|a, b| a.degrees.total_cmp(&b.degrees));
+        let indices = (0..curve.x.len()).filter(|&index| drawable(curve.x[index]));
+        let mut all: Vec<(f64, Option<RoundPoint>)> = indices.map(point).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
         // 0 and 360 degrees are one direction.
-        points.dedup_by(|later, first| later.degrees - first.degrees < SAME);
-        let gaps = points.windows(2).map(|pair| pair[1].degrees - pair[0].degrees);
+        all.dedup_by(|later, first| {
+            let is_same = later.0 - first.0 < SAME;
+            if is_same {
+                first.1 = first.1.or(later.1);
+            }
+            is_same
+        });
+        let gaps = all.windows(2).map(|pair| pair[1].0 - pair[0].0);
         let widest = gaps.fold(0.0, f64::max);
-        let last = match (points.first(), points.last()) {
-            (Some(first), Some(last)) => first.degrees + 360.0 - last.degrees,
+        let last = match (all.first(), all.last()) {
+            (Some(first), Some(last)) => first.0 + 360.0 - last.0,
             _ => f64::INFINITY,
         };
+        let is_round = all.len() > 2 && last <= widest + SAME;
+        let missing = all.iter().position(|(_, there)| there.is_none());
+        // What goes all the way round begins behind a gap.
+        if let (true, Some(missing)) = (is_round, missing) {
+            all.rotate_left(missing);
+        }
+        let parts = all.split(|(_, there)| there.is_none());
+        let parts = parts.map(|part| part.iter().filter_map(|(_, there)| *there).collect());
         Self {
-            is_closed: is_whole && points.len() > 2 && last <= widest + SAME,
-            points,
+            is_closed: is_round && missing.is_none(),
+            parts: parts.filter(|part: &Vec<RoundPoint>| !part.is_empty()).collect(),
         }
     }
 
-    /// The points at these values, back to the first if the curve is closed.
-    fn path(&self, ring: &Ring, value: impl Fn(&RoundPoint) -> f64) -> Vec<Point> {
-        let first = self.points.first().filter(|_| self.is_closed);
-        let points = self.points.iter().chain(first);
+    /// The points of a part at these values, back to the first if the curve is closed.
+    fn path(&self, part: &[RoundPoint], ring: &Ring, value: impl Fn(&RoundPoint) -> f64) -> Vec<Point> {
+        let first = part.first().filter(|_| self.is_closed);
+        let points = part.iter().chain(first);
         points.map(|point| ring.at(point.degrees, value(point))).collect()
     }
 }
@@ -196,26 +211,30 @@ impl Ring {
         canvas.polyline(circle(RADIUS), WIDTH_FRAME, BLACK);
     }
 
-    fn draw_band(&self, canvas: &mut Canvas, round: &Round, colour: crate::style::Rgb) {
-        if let [point] = round.points[..] {
-            let ends = [point.low, point.high].map(|value| self.at(point.degrees, value));
-            canvas.line(ends[0], ends[1], WIDTH_MARK, colour);
-            return;
+    fn draw_band(&self, canvas: &mut Canvas, round: &Round, colour: Rgb) {
+        for part in &round.parts {
+            if let [point] = part[..] {
+                let ends = [point.low, point.high].map(|value| self.at(point.degrees, value));
+                canvas.line(ends[0], ends[1], WIDTH_MARK, colour);
+                continue;
+            }
+            let mut edge = round.path(part, self, |point| point.high);
+            edge.extend(round.path(part, self, |point| point.low).into_iter().rev());
+            canvas.polygon(edge, colour, 0.2);
         }
-        let mut edge = round.path(self, |point| point.high);
-        edge.extend(round.path(self, |point| point.low).into_iter().rev());
-        canvas.polygon(edge, colour, 0.2);
     }
 
     fn draw_curve(&self, canvas: &mut Canvas, round: &Round, index: usize) {
         let style = curve_style(index);
-        let path = round.path(self, |point| point.mean);
-        if path.len() > 1 {
-            canvas.curve(path, style);
-        }
-        for point in &round.points {
-            let at = self.at(point.degrees, point.mean);
-            marker(canvas, index, at, RADIUS_MARKER, style.colour);
+        for part in &round.parts {
+            let path = round.path(part, self, |point| point.mean);
+            if path.len() > 1 {
+                canvas.curve(path, style);
+            }
+            for point in part {
+                let at = self.at(point.degrees, point.mean);
+                marker(canvas, index, at, RADIUS_MARKER, style.colour);
+            }
         }
     }
 }
@@ -257,7 +276,22 @@ mod tests {
         assert!(!is_closed(&[0.0, 180.0]));
         let mut gap = curve("", &[0.0, 90.0, 180.0, 270.0], 0.5);
         gap.mean[2] = f64::NAN;
-        assert!(!Round::of(&gap).is_closed);
+        // The gap is where the value is missing: the part goes on through 0 degrees.
+        let round = Round::of(&gap);
+        assert!(!round.is_closed);
+        let degrees = |round: &Round| -> Vec<Vec<f64>> {
+            let parts = round.parts.iter();
+            parts
+                .map(|part| part.iter().map(|point| point.degrees).collect())
+                .collect()
+        };
+        assert_eq!(degrees(&round), [[270.0, 0.0, 90.0]]);
+        gap.mean[0] = -1.0;
+        assert_eq!(degrees(&Round::of(&gap)), [[90.0], [270.0]]);
+        // 0 degrees has its value at 360.
+        let mut twice = curve("", &[0.0, 120.0, 240.0, 360.0], 0.5);
+        twice.mean[0] = f64::NAN;
+        assert!(Round::of(&twice).is_closed);
     }
 
     /// 0 degrees is to the right, 90 upwards, and the radius is in proportion to the value.

@@ -164,7 +164,7 @@ impl Layout {
         };
         let ratio = ratio.clamp(thinnest, 1.0 / MIN_RATIO);
 
-        let bar_of = |height| ColourBar::of(&maps.value_title, maps.range, height);
+        let bar_of = |height| ColourBar::labelled(&maps.value_title, maps.range, height);
         let left = left_room(&sides[1].ticks(MAX_HEIGHT, 0.0, Direction::Y));
         let right = bar_of(MAX_HEIGHT).room() + MARGIN;
         // The last number below a map stands apart from the first one below the next.

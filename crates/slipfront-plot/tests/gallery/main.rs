@@ -13,8 +13,8 @@ use std::path::Path;
 
 use slipfront_plot::{
     Bar, BarChart, BarGroup, FieldMap, FieldMaps, FrictionAxes, FrictionCurve, HeatAxis, HeatMap, Kinetic,
-    Picture, PictureError, Response, Responses, Shape, Sketch, Stroke, StrokeStyle, bars, field_maps,
-    friction, front, heat_map, response, shapes, sketch, stress,
+    Picture, PictureError, Polar, Response, Responses, Shape, Sketch, Stroke, StrokeStyle, bars, field_maps,
+    friction, front, heat_map, polar, response, shapes, sketch, stress,
 };
 
 use page::Page;
@@ -250,6 +250,58 @@ fn responses() {
         "",
     ];
     check("precursors", drawn(precursors, &["events", "exact"]));
+}
+
+/// Friction around the directions: the same in all, larger along one axis, with wide intervals, without a value in one.
+#[test]
+fn polars() {
+    let around = |label: &str, mean: &dyn Fn(f64) -> f64, half: f64| {
+        let x: Vec<f64> = (0..24).map(|k| 15.0 * f64::from(k)).collect();
+        let mean: Vec<f64> = x.iter().map(|degrees| mean(*degrees)).collect();
+        Response {
+            label: label.to_owned(),
+            low: mean.iter().map(|mean| mean - half).collect(),
+            high: mean.iter().map(|mean| mean + half).collect(),
+            mean,
+            x,
+            line: false,
+        }
+    };
+    let twofold = |degrees: f64| 0.65 + 0.15 * (2.0 * (degrees - 60.0).to_radians()).cos();
+    let drawn = |legend_title: &str, curves: Vec<Response>| {
+        polar(&Polar {
+            value_title: "friction \u{3bc}*".to_owned(),
+            legend_title: legend_title.to_owned(),
+            note: NOTE.to_owned(),
+            curves,
+        })
+    };
+    let [statics, kinetics] = ["\u{3bc}\u{209b}*", "\u{3bc}\u{2096}*"];
+    let isotropic = around(statics, &|_| 0.8, 0.01);
+    check("polar-isotropic", drawn("", vec![isotropic.clone()]));
+    let pair = vec![
+        around(statics, &twofold, 0.02),
+        around(kinetics, &|_| 0.45, 0.005),
+    ];
+    check("polar-twofold", drawn("", pair));
+    let wide = vec![around(statics, &twofold, 0.9), around(kinetics, &|_| 0.45, 0.6)];
+    check("polar-wide", drawn("", wide));
+    let mut missing = around(statics, &twofold, 0.05);
+    missing.mean[3] = f64::NAN;
+    check("polar-missing", drawn("", vec![missing]));
+    let names = [
+        "P = 50 kPa, grooves",
+        "P = 50 kPa, dimple",
+        "P = 1 MPa, grooves",
+        "P = 1 MPa, dimple",
+    ];
+    let named = names.iter().flat_map(|name| {
+        [
+            around(&format!("{name}, {statics}"), &twofold, 0.02),
+            around(&format!("{name}, {kinetics}"), &|_| 0.45, 0.005),
+        ]
+    });
+    check("polar-eight", drawn("", named.collect()));
 }
 
 #[test]
