@@ -46,26 +46,47 @@ fn slider_bytes(file: &CaseFile) -> f64 {
     NUMBER * (has(stiffness) + has(density) + has(driven)) + FLAG * has(outline)
 }
 
-/// Bytes of the reference kernel per block, with springs that differ, with dampers, and with directions of a rotation. Each of several
-/// threads takes for itself what it needs of the model, and the motion from which the forces between blocks follow.
-fn reference_bytes(file: &CaseFile) -> f64 {
+/// Numbers of a block that springs which differ take: the stiffness along each of the four bonds.
+fn spring_numbers(file: &CaseFile) -> f64 {
     let slider = &file.slider;
     let graded = slider.stiffness_field.is_some() || slider.stiffness_grade.is_some();
-    let springs = match graded || slider.outline != Outline::Rectangle {
-        true => 4.0 * NUMBER,
+    match graded || slider.outline != Outline::Rectangle {
+        true => 4.0,
         false => 0.0,
-    };
-    // Their sum, that along each of the four bonds, and velocities.
-    let dampers = match slider.viscosity_time_star > 0.0 {
-        true => 12.0 * NUMBER,
+    }
+}
+
+/// Bytes of the reference kernel per block, with springs that differ, with dampers, and with directions of a rotation.
+fn reference_bytes(file: &CaseFile) -> f64 {
+    // Their sum, and that along each of the four bonds.
+    let dampers = match file.slider.viscosity_time_star > 0.0 {
+        true => 10.0 * NUMBER,
         false => 0.0,
     };
     let directions = match file.drive.motion {
         Motion::Translation => 0.0,
         Motion::Rotation => 2.0 * NUMBER,
     };
-    REFERENCE + springs + dampers + directions + surface_bytes(file) + 2.0 * NUMBER
+    REFERENCE + spring_numbers(file) * NUMBER + dampers + directions
 }
+
+/// Bytes of the reference kernel per block that bands of rows add, which several threads share out among them: each takes for itself what it
+/// needs of the model, the motion from which the forces between blocks follow, and the rows beside its own.
+fn band_bytes(file: &CaseFile) -> f64 {
+    let is_viscous = file.slider.viscosity_time_star > 0.0;
+    // Displacements, and velocities for dampers.
+    let motion = if is_viscous { 4.0 } else { 2.0 };
+    // Forces along the four bonds.
+    let forces = if is_viscous { 16.0 } else { 8.0 };
+    // The motion of the rows beside is passed on from the ends of each band, too.
+    let repeated = REPEATED_ROWS * (2.0 * motion + forces + spring_numbers(file));
+    surface_bytes(file) + NUMBER * (motion + repeated + SWEPT)
+}
+
+/// Rows that a band of the reference kernel holds beside its own, over its own, at the most: 2 over 8.
+const REPEATED_ROWS: f64 = 0.25;
+/// Four numbers of each block of a row, which a band of eight rows sweeps at once.
+const SWEPT: f64 = 0.5;
 
 /// Bytes of the fused kernel per block, with what it keeps of blocks that differ.
 fn fused_bytes(file: &CaseFile) -> f64 {
@@ -189,6 +210,8 @@ pub struct Budget {
     surface: f64,
     /// Bytes of the kernel per block.
     kernel: f64,
+    /// Bytes per block that the kernel takes beside these on several threads.
+    bands: f64,
     /// Bytes of a block in a checkpoint.
     saved: f64,
     /// Those of them that are kept of a field.
@@ -277,6 +300,10 @@ impl Budget {
                 Kernel::Fused => fused_bytes(file),
                 Kernel::Reference => reference_bytes(file) + kept_by_law * NUMBER,
             },
+            bands: match kernel(file) {
+                Kernel::Fused => 0.0,
+                Kernel::Reference => band_bytes(file),
+            },
             saved: SAVED + saved_by_law * NUMBER,
             frames: n_frames,
             fields: output.fields.len() as f64,
@@ -325,7 +352,7 @@ impl Budget {
                 remedy: "lower `slider.blocks`",
                 bytes: [
                     blocks * self.surface,
-                    blocks * (self.surface + self.kernel),
+                    blocks * (self.surface + self.kernel + self.bands),
                     // With the time of its first slip.
                     blocks * (self.surface + NUMBER) + drawn * AVERAGED,
                     all_cells * STATICS_ON_DISK,
@@ -430,12 +457,13 @@ impl Budget {
 
     /// Memory of a run with its files and pictures, in bytes; of each rank if there are several.
     pub fn memory(&self) -> f64 {
-        PROGRAM + self.memory_beside_others(true)
+        self.of_rank(self.largest(true))
     }
 
-    /// Memory of one of several runs at once, in bytes; of one that writes no files if not `writes`.
+    /// Memory of one of several runs at once, each on one thread, in bytes; of one that writes no files if not `writes`.
     pub fn memory_beside_others(&self, writes: bool) -> f64 {
-        self.of_rank(self.largest(writes)) - PROGRAM
+        let on_one_thread = Self { bands: 0.0, ..*self };
+        on_one_thread.of_rank(on_one_thread.largest(writes)) - PROGRAM
     }
 
     /// Memory of a case that is made and not run, in bytes.

@@ -162,11 +162,41 @@ fn what_is_said_is_what_is_taken() {
         assert_room(sets, disk, &out);
         std::fs::remove_dir_all(out).unwrap();
     }
+    bands(folder.path());
     checkpoints(folder.path());
-    study(folder.path());
+    for base in [
+        "",
+        "base.slider = { outline = 'disc', viscosity_time_star = 0.1 }\n",
+    ] {
+        study(base, folder.path());
+    }
     masks(folder.path());
     ranks(folder.path());
     pictures_of_a_large_lattice(folder.path());
+}
+
+/// Bands of the reference kernel, as many as there can be: each holds the rows beside its own once more.
+fn bands(folder: &Path) {
+    for sets in [
+        "slider.blocks=[496,496];slider.outline='disc'",
+        "slider.blocks=[496,496];slider.viscosity_time_star=0.1",
+        "slider.blocks=[496,496];slider.stiffness_grade={along='x',from=1,to=2};slider.viscosity_time_star=0.1",
+        "slider.blocks=[496,496];friction.contact='springs';friction.contact_stiffness_star=0.1",
+    ] {
+        let sets = format!("{sets};time.duration_star=0.5;output.snapshots=[]");
+        let overrides: Vec<String> = sets.split(';').map(str::to_owned).collect();
+        for threads in [1, 16] {
+            let before = LIVE.load(Ordering::Relaxed) as f64;
+            let (taken, said) = peak(|| {
+                let file = CaseFile::parse("", "case", &overrides).unwrap();
+                let case = Case::new(file, "case", folder, &mut |_| true, Ranks::ALONE).unwrap();
+                let case = Arc::new(case);
+                running::run(&case, threads).unwrap();
+                case.budget.memory()
+            });
+            assert_honest(&format!("{sets} on {threads} threads"), said, taken - before);
+        }
+    }
 }
 
 /// Ranks that make a case together take no more than a process that makes it alone, but for the buffers of those who read.
@@ -305,10 +335,12 @@ fn assert_room(what: &str, said: f64, out: &Path) {
 }
 
 /// Runs at once, of two sizes.
-fn study(folder: &Path) {
-    let text = "base.time.duration_star = 2\n[study]\nreplicates = 2\n[[axes]]\nkey = 'slider.blocks'\n\
-                list = [[10, 10], [500, 500]]";
-    let file = StudyFile::parse(text, "study.toml", "study", folder).unwrap();
+fn study(base: &str, folder: &Path) {
+    let text = format!(
+        "{base}base.time.duration_star = 2\n[study]\nreplicates = 2\n[[axes]]\nkey = 'slider.blocks'\n\
+         list = [[10, 10], [500, 500]]"
+    );
+    let file = StudyFile::parse(&text, "study.toml", "study", folder).unwrap();
     let plan = Plan::new(&file, None).unwrap();
     let mut alone = 0.0;
     for threads in [1, 2] {

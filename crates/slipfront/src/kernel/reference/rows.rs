@@ -150,7 +150,9 @@ impl Rows {
             let j = (self.first_row + self.n_rows + row - below) % self.n_rows;
             (0..nx).map(|i| moduli.spring([i, j], bond.offset)).collect()
         };
-        (0..ny).flat_map(row_of).collect()
+        let mut springs = Vec::with_capacity(nx * ny);
+        (0..ny).for_each(|row| springs.extend(row_of(row)));
+        springs
     }
 }
 
