@@ -8,8 +8,12 @@ use std::path::{Path, PathBuf};
 
 use rstest::rstest;
 use serde_json::Value;
-use slipfront_case::arrays::{ArrayError, HeightMap, Units, height_map, open_height_map, write_mask_png};
-use slipfront_case::case::Case;
+use slipfront::communicator::Threads;
+use slipfront_case::arrays::{
+    ArrayError, HeightMap, Room, Units, height_map, open_height_map, write_mask_png,
+};
+use slipfront_case::case::{Case, Ranks};
+use slipfront_case::case_file::CaseFile;
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/heights")
@@ -17,7 +21,11 @@ fn folder() -> PathBuf {
 
 fn read(path: &Path, units: Units, blocks: [usize; 2]) -> Result<HeightMap, ArrayError> {
     let mut source = BufReader::new(open_height_map(path)?);
-    height_map(path, &mut source, &units, blocks, &mut |_| Ok(()))
+    let room = Room {
+        blocks,
+        is_place: false,
+    };
+    height_map(path, &mut source, &units, &room, &mut |_| Ok(()))
 }
 
 fn reference() -> Value {
@@ -75,6 +83,29 @@ fn every_format_gives_what_numpy_computes(#[case] name: &str, #[case] units: Uni
     }
 }
 
+/// Blocks that cover points in other shares have the mean of equal heights all the same: no plateau is torn by rounding.
+#[test]
+fn blocks_over_a_plateau_have_its_height() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.csv");
+    let plateau = ["0.1"; 30].join(",");
+    let corner = plateau.replacen("0.1", "-1000.3", 1);
+    std::fs::write(&path, format!("{corner}\n{}", format!("{plateau}\n").repeat(19))).unwrap();
+    let units = Units {
+        height: Some(1e-6),
+        pixel: SIZE,
+    };
+    let map = read(&path, units, [21, 14]).unwrap();
+    assert!(map.blocks[0] < 0.0);
+    // A quantum is 2^-43 um.
+    let near = |height: &f64| (height - 0.1e-6).abs() < 1.2e-19;
+    assert!(
+        map.blocks[1..]
+            .iter()
+            .all(|height| *height == map.blocks[1] && near(height))
+    );
+}
+
 /// What is wrong, and what to do about it.
 #[rstest]
 #[case("map.npy", OWN, "does not say how large a pixel is: add `pixel_size`")]
@@ -99,8 +130,8 @@ fn the_aspect_is_kept() {
         assert_eq!(read(&path, OWN, blocks).is_ok(), blocks != [15, 11], "{blocks:?}");
     }
     let said = read(&path, OWN, [25, 25]).unwrap_err().to_string();
-    let sentence = "is 15 um x 10 um, 1.5 times as wide as high, and the 25 x 25 blocks that it is laid over are 1 times as wide as \
-                    high: cut the map, or take 38 x 25 blocks";
+    let sentence = "is 15 um x 10 um, 1.5 times as wide as high, and the 25 x 25 blocks of the slider are 1 times as wide as high: cut the \
+                    map, or take 38 x 25 blocks there";
     assert!(said.contains(sentence), "{said}");
 }
 
@@ -388,6 +419,76 @@ fn maps_fill_every_place_of_a_pattern() {
         );
     }
     assert_eq!(two.texture.asked_percent, Some(60.0));
+    let three = Case::parse_in(&text.replace("[2, 1]", "[3, 1]"), "case", &folder(), &[]);
+    let said = three.unwrap_err().to_string();
+    let sentence = "and the 10 x 10 blocks in every place of the pattern are 1 times as wide as high: cut the map, or take 15 x 10 blocks there";
+    assert!(said.contains(sentence), "{said}");
+}
+
+/// A disc of 20 x 20 blocks over a map that rises from its middle, with no two equal heights.
+fn on_a_disc(texture: &str, ranks: usize) -> Vec<Case> {
+    let folder = tempfile::tempdir().unwrap();
+    let height =
+        |i: i32, j: i32| f64::from((2 * i - 19).pow(2) + (2 * j - 19).pow(2)) + 1e-3 * f64::from(20 * j + i);
+    let rows = (0..20).map(|j| {
+        (0..20)
+            .map(|i| height(i, j).to_string())
+            .collect::<Vec<_>>()
+            .join(",")
+    });
+    std::fs::write(folder.path().join("map.csv"), rows.collect::<Vec<_>>().join("\n")).unwrap();
+    let text = format!(
+        "slider = {{ blocks = [20, 20], outline = 'disc', block_size = '1 um' }}\n[[texture]]\nshape = 'height_map'\nfile = 'map.csv'\n\
+         height_unit = '1 nm'\npixel_size = '1 um'\n{texture}"
+    );
+    Threads::run(ranks, |communicator| {
+        let ranks = Ranks {
+            communicator,
+            on_node: ranks,
+        };
+        let file = CaseFile::parse(&text, "case", &[]).unwrap();
+        Case::to_run_on_ranks(file, "case", folder.path(), &mut |_| true, ranks).unwrap()
+    })
+}
+
+/// Of those of the lattice, half would be all that the disc has and more.
+#[test]
+fn blocks_that_do_not_exist_have_no_share() {
+    for ranks in [1, 3] {
+        let touching = |cases: &[Case]| -> usize {
+            let of_rank = |case: &Case| {
+                let exists = &case.model.slider().outline.as_ref().unwrap().exists;
+                let blocks = case.model.surface.textured.iter().zip(exists);
+                blocks
+                    .filter(|(textured, exists)| **exists && !**textured)
+                    .count()
+            };
+            cases.iter().map(of_rank).sum()
+        };
+        let half = on_a_disc("bearing_percent = 50", ranks);
+        assert_eq!(half[0].model.n_blocks(), 316);
+        assert_eq!(touching(&half), 158, "{ranks} ranks");
+        assert_eq!(half[0].texture.asked_percent, Some(50.0));
+        assert_eq!(half[0].texture.meshed_percent, 50.0);
+        // From the highest block of the disc, of a distance 2 r of 20 at most, and none as high as a corner.
+        let depth = on_a_disc("depth = '100 nm'", ranks);
+        let contact_height = depth[0].texture.topographies[0].contact_height;
+        assert!((250e-9..300.4e-9).contains(&contact_height), "{contact_height}");
+        // A quarter of each of four copies lies in the middle; two of their outer corners are cut off.
+        let four = on_a_disc("bearing_percent = 50\narray = [2, 2]", ranks);
+        assert_eq!(four[0].texture.asked_percent, Some(50.0));
+        // Copies have heights in common, which touch together.
+        assert!((158..162).contains(&touching(&four)), "{}", touching(&four));
+    }
+}
+
+/// Less than half a block.
+#[test]
+fn one_block_touches_at_the_least() {
+    let case = case("bearing_percent = 0.1").unwrap();
+    let touching = case.model.surface.textured.iter().filter(|textured| !**textured);
+    assert_eq!(touching.count(), 1);
+    assert!(case.texture.topographies[0].contact_height.is_finite());
 }
 
 #[test]

@@ -129,6 +129,16 @@ fn of_friction(friction: &Friction) -> [f64; 2] {
     })
 }
 
+/// Numbers of every block of the lattice that a height map takes: the means of the blocks, before that their sums in two numbers, and the
+/// same in order of height; whether each block exists.
+fn heights(file: &CaseFile) -> f64 {
+    match (count_height_maps(file), file.slider.outline) {
+        (0, _) => 0.0,
+        (_, Outline::Rectangle) => 2.0,
+        (_, Outline::Disc | Outline::Mask) => 2.0 + FLAG / NUMBER,
+    }
+}
+
 /// Columns of the series that not every run has.
 fn more_columns(file: &CaseFile) -> f64 {
     let of_friction = match (file.friction.contact, file.friction.law) {
@@ -328,8 +338,7 @@ impl Budget {
                 (samples.min(Kymograph::MAX_ROWS as u64) * places as u64) as f64
             },
             inputs: 0.0,
-            // The means of the blocks, and the same in order of height.
-            heights: if count_height_maps(file) > 0 { 2.0 } else { 0.0 },
+            heights: heights(file),
             masks: count_masks(file) as f64
                 + f64::from(u8::from(matches!(file.drive.attached, Attached::File(_)))),
             is_resumed: false,

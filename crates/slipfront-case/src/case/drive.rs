@@ -9,7 +9,6 @@ use slipfront::{Communicator, Drive, Lattice, Program, Rotation, Scales, Slider}
 use super::groups::{Groups, within};
 use super::inputs::Inputs;
 use super::inputs::Watch;
-use super::textures::read_mask;
 use crate::case_file::{
     Attached, CaseError, CaseFile, DEFAULT_THRESHOLD, DriveSpeed, DriveStiffness, Motion,
 };
@@ -26,16 +25,9 @@ pub(super) fn attached(
     let Attached::File(name) = &file.drive.attached else {
         return Ok(None);
     };
-    read_mask(
-        file,
-        "drive.attach_file",
-        name,
-        DEFAULT_THRESHOLD,
-        inputs,
-        &inputs.slab,
-        watch,
-    )
-    .map(Some)
+    let (key, slab) = ("drive.attach_file", &inputs.slab);
+    let attached = inputs.read_mask(file, key, name, DEFAULT_THRESHOLD, slab, watch);
+    attached.map(Some)
 }
 
 /// Leaves drive springs to the blocks of these rows alone that the case attaches, called by all ranks at once.

@@ -162,13 +162,31 @@ impl Inputs {
         file: &CaseFile,
         key: &str,
         name: &str,
-        read: impl FnOnce(&Path, &mut BufReader<File>, &Slab) -> Result<T, ArrayError>,
+        read: impl FnOnce(&Path, &mut BufReader<File>) -> Result<T, ArrayError>,
     ) -> Result<T, CaseError> {
         let Slab { nx, ny, .. } = self.slab;
         let original = self.original(name);
         let opened = arrays::open_file(original, nx, ny);
-        let read = opened.and_then(|opened| read(original, &mut BufReader::new(opened), &self.slab));
+        let read = opened.and_then(|opened| read(original, &mut BufReader::new(opened)));
         read.map_err(|error| placed(file, key, error))
+    }
+
+    /// Reads the image or array that has this name in the case, which `key` gives it: whether each block of the slab is dark, or 1.
+    pub(super) fn read_mask(
+        &self,
+        file: &CaseFile,
+        key: &str,
+        name: &str,
+        threshold: f64,
+        slab: &Slab,
+        watch: &mut Watch,
+    ) -> Result<Vec<bool>, CaseError> {
+        self.read(file, key, name, |path, source| match is_array(path) {
+            true => arrays::mask_npy(path, source, slab),
+            false => arrays::mask_png(path, source, threshold, slab, &mut |share| {
+                watch(share).then_some(()).ok_or(ArrayError::Stopped)
+            }),
+        })
     }
 
     /// Reads the height map that has this name in the case, which `key` gives it.
@@ -199,12 +217,17 @@ impl Inputs {
         name: &Option<String>,
     ) -> Result<Option<Vec<f64>>, CaseError> {
         let read = |name: &String| {
-            self.read(file, key, name, |path, source, slab| {
-                arrays::field(path, source, slab)
+            self.read(file, key, name, |path, source| {
+                arrays::field(path, source, &self.slab)
             })
         };
         name.as_ref().map(read).transpose()
     }
+}
+
+/// Whether the file of a mask is an array, and not an image.
+pub(super) fn is_array(path: &Path) -> bool {
+    arrays::extension(path) == "npy"
 }
 
 /// An error about the file that a key names.

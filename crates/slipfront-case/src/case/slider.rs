@@ -2,11 +2,29 @@
 
 use slipfront::{Communicator, Lattice, Outline, Slider};
 
-use super::inputs::Inputs;
-use super::inputs::Watch;
-use super::textures::read_mask;
+use super::inputs::{Inputs, Watch};
+use crate::arrays::Slab;
 use crate::case_file::{self, CaseError, CaseFile, DEFAULT_THRESHOLD, Grade};
 use crate::case_file::{MAX_RELATIVE, MIN_RELATIVE};
+
+/// Which blocks of some rows exist, if the slider does not fill its lattice.
+pub(super) fn outline(
+    file: &CaseFile,
+    lattice: &Lattice,
+    inputs: &Inputs,
+    slab: &Slab,
+    watch: &mut Watch,
+) -> Result<Option<Vec<bool>>, CaseError> {
+    let exists = match (file.slider.outline, &file.slider.outline_file) {
+        (case_file::Outline::Disc, _) => Outline::disc(lattice, slab.rows.clone()),
+        (case_file::Outline::Mask, Some(name)) => {
+            let key = "slider.outline_file";
+            inputs.read_mask(file, key, name, DEFAULT_THRESHOLD, slab, watch)?
+        }
+        _ => return Ok(None),
+    };
+    Ok(Some(exists))
+}
 
 /// What is given of the blocks that this rank holds.
 pub(super) struct GivenBlocks {
@@ -25,22 +43,7 @@ impl GivenBlocks {
     ) -> Result<Self, CaseError> {
         let slider = &file.slider;
         let rows = || inputs.slab.rows.clone();
-        let exists = match (slider.outline, &slider.outline_file) {
-            (case_file::Outline::Disc, _) => Some(Outline::disc(lattice, rows())),
-            (case_file::Outline::Mask, Some(name)) => {
-                let key = "slider.outline_file";
-                Some(read_mask(
-                    file,
-                    key,
-                    name,
-                    DEFAULT_THRESHOLD,
-                    inputs,
-                    &inputs.slab,
-                    watch,
-                )?)
-            }
-            _ => None,
-        };
+        let exists = outline(file, lattice, inputs, &inputs.slab, watch)?;
         let property = |field: &str, name: &Option<String>, grade: &Option<Grade>| {
             if let Some(Grade { along, from, to }) = *grade {
                 return Ok(Some(Slider::grade(lattice, rows(), along as usize, [from, to])));

@@ -2,20 +2,18 @@
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
-use std::path::Path;
 use std::sync::Arc;
 
 use slipfront::surface::Tile;
 use slipfront::{Lattice, Scales, surface};
 
 use super::inputs::{Inputs, Watch};
-use super::topography::{self, Topography};
-use crate::arrays::{ArrayError, Slab};
-use crate::case_file::{
-    Arrangement, Bearing, CaseError, CaseFile, Count, MAX_COUNT, Mask, Pattern, Pitch, Shape,
-};
+use super::slider::outline;
+use super::topography::{Ground, Topography};
+use crate::arrays::Slab;
+use crate::case_file;
+use crate::case_file::{Arrangement, CaseError, CaseFile, Count, MAX_COUNT, Mask, Pattern, Pitch, Shape};
 use crate::quantity::Length;
-use crate::{arrays, case_file};
 
 /// The textures of a case in blocks.
 pub(super) struct InBlocks {
@@ -56,6 +54,11 @@ pub(super) fn shapes_in_blocks(
     let mut asked = Some(0.0);
     let mut topographies = Vec::new();
     let mut masks = Masks::default();
+    // How many blocks of a map exist, a rank must know of all rows.
+    let exists = match count_height_maps(file) {
+        0 => None,
+        _ => outline(file, lattice, inputs, &Slab::whole(lattice.nx, lattice.ny), watch)?,
+    };
     for (index, texture) in file.texture.iter().enumerate() {
         let key = format!("texture.{index}");
         let arrays = arrays(&texture.pattern, scales, lattice)
@@ -78,15 +81,15 @@ pub(super) fn shapes_in_blocks(
             }
             Shape::HeightMap(map) => {
                 let size = cell(&arrays, lattice).map_err(|sentence| file.source.error(&key, sentence))?;
-                let (tile, topography) = topography::read(file, index, map, size, inputs, watch)?;
-                topographies.push(topography);
-                let percent = match map.bearing {
-                    Bearing::Percent(percent) => {
-                        let blocks = surface::n_copies(&arrays) * size[0] * size[1];
-                        Some((100.0 - percent) * blocks as f64 / n_blocks as f64)
-                    }
-                    Bearing::Depth(_) => None,
+                let ground = Ground {
+                    lattice,
+                    exists: exists.as_deref(),
+                    n_blocks,
+                    size,
+                    arrays: &arrays,
                 };
+                let (tile, topography, percent) = ground.read(file, index, map, inputs, watch)?;
+                topographies.push(topography);
                 (surface::Shape::Tile(tile), percent)
             }
         };
@@ -246,7 +249,7 @@ impl<'a> Masks<'a> {
             true => inputs.slab.clone(),
             false => Slab::whole(nx, ny),
         };
-        let blocks = read_mask(file, &key, &mask.file, mask.threshold, inputs, &slab, watch)?;
+        let blocks = inputs.read_mask(file, &key, &mask.file, mask.threshold, &slab, watch)?;
         let tile = Tile {
             size,
             rows: slab.rows,
@@ -254,24 +257,6 @@ impl<'a> Masks<'a> {
         };
         Ok(entry.insert(tile).clone())
     }
-}
-
-/// Reads an image or array of this name, which `key` gives it: whether each block of the slab is dark, or 1.
-pub(super) fn read_mask(
-    file: &CaseFile,
-    key: &str,
-    name: &str,
-    threshold: f64,
-    inputs: &Inputs,
-    slab: &Slab,
-    watch: &mut Watch,
-) -> Result<Vec<bool>, CaseError> {
-    inputs.read(file, key, name, |path, source, _| match is_array(path) {
-        true => arrays::mask_npy(path, source, slab),
-        false => arrays::mask_png(path, source, threshold, slab, &mut |share| {
-            watch(share).then_some(()).ok_or(ArrayError::Stopped)
-        }),
-    })
 }
 
 /// How far a texture may reach, in slider lengths. Farther away it is a typing error, and on a periodic axis its position
@@ -363,9 +348,4 @@ fn groove_in_blocks(
         }
     };
     (of_width(width), Some(percent))
-}
-
-/// Whether the file of a mask is an array, and not an image.
-pub(super) fn is_array(path: &Path) -> bool {
-    arrays::extension(path) == "npy"
 }

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use slipfront::surface::Tile;
+use slipfront::surface::{Array, Tile, n_copies};
+use slipfront::{Edges, Lattice};
 
 use super::inputs::{Inputs, Watch};
-use crate::arrays::{self, ArrayError, Roughness, Slab, Units};
+use crate::arrays::{self, ArrayError, Room, Roughness, Slab, Units};
 use crate::case_file::{Bearing, CaseError, CaseFile, HeightMap, Pitch};
 use crate::quantity::Length;
 
@@ -28,67 +29,129 @@ pub struct Topography {
     pub contact_height: f64,
 }
 
-/// Reads the height map of a texture for `blocks` along x and y: which of them do not touch.
-pub(super) fn read(
-    file: &CaseFile,
-    index: usize,
-    map: &HeightMap,
-    blocks: [usize; 2],
-    inputs: &Inputs,
-    watch: &mut Watch,
-) -> Result<(Tile, Topography), CaseError> {
-    let units = Units {
-        height: map.height_unit.as_ref().map(Length::si),
-        pixel: map.pixel_size.as_ref().map(|size| match size {
-            Pitch::Equal(size) => [size.si(); 2],
-            Pitch::Each(sizes) => [sizes[0].si(), sizes[1].si()],
-        }),
-    };
-    let key = format!("texture.{index}.file");
-    let read = inputs.read_height_map(file, &key, &map.file, |path, source| {
-        arrays::height_map(path, source, &units, blocks, &mut |share| {
-            watch(share).then_some(()).ok_or(ArrayError::Stopped)
-        })
-    })?;
-    let contact_height = contact_height(&read.blocks, map);
-    // Of a map that covers the slider, a rank needs its own rows.
-    let slab = match blocks == [inputs.slab.nx, inputs.slab.ny] {
-        true => inputs.slab.clone(),
-        false => Slab::whole(blocks[0], blocks[1]),
-    };
-    let kept = &read.blocks[slab.rows.start * slab.nx..slab.rows.end * slab.nx];
-    let textured: Vec<bool> = kept.iter().map(|height| *height < contact_height).collect();
-    let tile = Tile {
-        size: blocks,
-        rows: slab.rows,
-        blocks: Arc::new(textured),
-    };
-    let topography = Topography {
-        texture: index,
-        file: map.file.clone(),
-        points: read.points,
-        size: read.size,
-        blocks,
-        roughness: read.roughness,
-        contact_height,
-    };
-    Ok((tile, topography))
+/// What a height map is laid over.
+pub(super) struct Ground<'a> {
+    pub(super) lattice: &'a Lattice,
+    /// Which blocks of the whole lattice exist; all if there is no outline.
+    pub(super) exists: Option<&'a [bool]>,
+    /// How many of them.
+    pub(super) n_blocks: usize,
+    /// Blocks of the map along x and along y.
+    pub(super) size: [usize; 2],
+    /// The pattern of its copies.
+    pub(super) arrays: &'a [Array],
 }
 
-/// The least height that touches, m. Of a share it is the height of a block, so that blocks of equal height all touch or none does.
-fn contact_height(heights: &[f64], map: &HeightMap) -> f64 {
-    match &map.bearing {
-        Bearing::Percent(percent) => {
-            let touching = (heights.len() as f64 * percent / 100.0).round() as usize;
-            let mut heights = heights.to_vec();
-            match touching.checked_sub(1) {
-                Some(last) => *heights.select_nth_unstable_by(last, |a, b| b.total_cmp(a)).1,
-                None => f64::INFINITY,
+impl Ground<'_> {
+    /// Reads the height map of a texture: which of its blocks do not touch, and their area as asked for, % of that of the blocks
+    /// that exist.
+    pub(super) fn read(
+        &self,
+        file: &CaseFile,
+        index: usize,
+        map: &HeightMap,
+        inputs: &Inputs,
+        watch: &mut Watch,
+    ) -> Result<(Tile, Topography, Option<f64>), CaseError> {
+        let units = Units {
+            height: map.height_unit.as_ref().map(Length::si),
+            pixel: map.pixel_size.as_ref().map(|size| match size {
+                Pitch::Equal(size) => [size.si(); 2],
+                Pitch::Each(sizes) => [sizes[0].si(), sizes[1].si()],
+            }),
+        };
+        let room = Room {
+            blocks: self.size,
+            is_place: !self.arrays.is_empty(),
+        };
+        let key = format!("texture.{index}.file");
+        let read = inputs.read_height_map(file, &key, &map.file, |path, source| {
+            arrays::height_map(path, source, &units, &room, &mut |share| {
+                watch(share).then_some(()).ok_or(ArrayError::Stopped)
+            })
+        })?;
+        let standing = self.standing(&read.blocks);
+        let asked = match map.bearing {
+            Bearing::Percent(percent) => {
+                let laid = match self.exists {
+                    Some(_) => standing.len(),
+                    None => n_copies(self.arrays) * standing.len(),
+                };
+                Some((100.0 - percent) * laid as f64 / self.n_blocks as f64)
+            }
+            Bearing::Depth(_) => None,
+        };
+        let contact_height = contact_height(standing, map).ok_or_else(|| {
+            let sentence = "no block of the slider lies in a place of its pattern: change its `pitch` or `array`, or the outline";
+            file.source.error(&key, sentence)
+        })?;
+        // Of a map that covers the slider, a rank needs its own rows.
+        let slab = match self.size == [inputs.slab.nx, inputs.slab.ny] {
+            true => inputs.slab.clone(),
+            false => Slab::whole(self.size[0], self.size[1]),
+        };
+        let kept = &read.blocks[slab.rows.start * slab.nx..slab.rows.end * slab.nx];
+        let textured: Vec<bool> = kept.iter().map(|height| *height < contact_height).collect();
+        let tile = Tile {
+            size: self.size,
+            rows: slab.rows,
+            blocks: Arc::new(textured),
+        };
+        let topography = Topography {
+            texture: index,
+            file: map.file.clone(),
+            points: read.points,
+            size: read.size,
+            blocks: self.size,
+            roughness: read.roughness,
+            contact_height,
+        };
+        Ok((tile, topography, asked))
+    }
+
+    /// The heights of the blocks that exist, within an outline of every copy.
+    fn standing(&self, heights: &[f64]) -> Vec<f64> {
+        let Some(exists) = self.exists else {
+            return heights.to_vec();
+        };
+        let Lattice { nx, ny, edges } = *self.lattice;
+        // A coordinate in the lattice, on a periodic axis counted on beyond its edges.
+        let within = |at: isize, axis: usize| -> Option<usize> {
+            let size = [nx, ny][axis] as isize;
+            match edges[axis] {
+                Edges::Periodic => Some(at.rem_euclid(size) as usize),
+                Edges::Free => (0..size).contains(&at).then_some(at as usize),
+            }
+        };
+        let mut standing = Vec::new();
+        for [left, bottom] in Tile::starts(self.lattice, self.size, self.arrays) {
+            for (row, heights) in (bottom..).zip(heights.chunks_exact(self.size[0])) {
+                let Some(row) = within(row, 1) else { continue };
+                let exists = &exists[row * nx..][..nx];
+                let columns = (left..).zip(heights);
+                let stands = |column: isize| within(column, 0).is_some_and(|column| exists[column]);
+                standing.extend(
+                    columns
+                        .filter(|(column, _)| stands(*column))
+                        .map(|(_, height)| *height),
+                );
             }
         }
-        Bearing::Depth(depth) => {
-            let highest = || heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            map.reference.as_ref().map_or_else(highest, Length::si) - depth.si()
-        }
+        standing
     }
+}
+
+/// The least height that touches, m, of some blocks, of which at least one does; none if there is no block. Of a share it is the
+/// height of a block, so that blocks of equal height all touch or none does.
+fn contact_height(mut heights: Vec<f64>, map: &HeightMap) -> Option<f64> {
+    let highest = heights.iter().copied().reduce(f64::max)?;
+    Some(match &map.bearing {
+        Bearing::Percent(percent) => {
+            let touching = (heights.len() as f64 * percent / 100.0).round().max(1.0) as usize;
+            *heights
+                .select_nth_unstable_by(touching - 1, |a, b| b.total_cmp(a))
+                .1
+        }
+        Bearing::Depth(depth) => map.reference.as_ref().map_or(highest, Length::si) - depth.si(),
+    })
 }

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use slipfront::{Edges, Friction};
 
+use super::inputs::is_array;
 use super::runnable::Case;
-use super::textures::{arrays, is_array};
+use super::textures::arrays;
 use super::topography::Topography;
 use crate::case_file::{Count, DEFAULT_THRESHOLD, Law, Mask, Pattern, Shape};
 use crate::number_format::{are, count, four_digits, with_si_prefix};

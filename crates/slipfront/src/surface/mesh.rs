@@ -269,7 +269,7 @@ impl<'a> Mask<'a> {
             for &y in heights {
                 watch(done)?;
                 for &x in columns {
-                    let start = tile.start(self.lattice, [x, y]);
+                    let start = Tile::start(self.lattice, tile.size, [x, y]);
                     let end = [0, 1].map(|axis| start[axis] + tile.size[axis] as isize);
                     is_clipped |= [0, 1].iter().any(|&axis| {
                         within(start[axis], axis) != start[axis] || within(end[axis], axis) != end[axis]

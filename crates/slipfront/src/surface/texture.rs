@@ -67,12 +67,21 @@ pub struct Tile {
 }
 
 impl Tile {
-    /// The block of the lattice, which may lie beyond its edges, where the copy begins that is shifted by this much from the
-    /// middle: the one nearest to its place.
-    pub(super) fn start(&self, lattice: &Lattice, shift: [f64; 2]) -> [isize; 2] {
+    /// Where the copies of a mask of this size begin: blocks of the lattice, which may lie beyond its edges.
+    pub fn starts(lattice: &Lattice, size: [usize; 2], arrays: &[Array]) -> Vec<[isize; 2]> {
+        let places = |[columns, heights]: &Grid| -> Vec<[f64; 2]> {
+            let rows = heights.iter();
+            rows.flat_map(|&y| columns.iter().map(move |&x| [x, y])).collect()
+        };
+        let places = grids(arrays).into_iter().flat_map(|grid| places(&grid));
+        places.map(|place| Self::start(lattice, size, place)).collect()
+    }
+
+    /// Where the copy begins that is shifted by this much from the middle: the block nearest to its place.
+    pub(super) fn start(lattice: &Lattice, size: [usize; 2], shift: [f64; 2]) -> [isize; 2] {
         let lattice = [lattice.nx, lattice.ny];
         [0, 1].map(|axis| {
-            let at = 0.5 * (lattice[axis] as f64 - self.size[axis] as f64) + shift[axis];
+            let at = 0.5 * (lattice[axis] as f64 - size[axis] as f64) + shift[axis];
             (at + 0.5).floor() as isize
         })
     }

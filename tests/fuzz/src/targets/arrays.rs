@@ -5,7 +5,7 @@ use std::path::Path;
 
 use png::{BitDepth, ColorType, Encoder};
 use slipfront_case::arrays;
-use slipfront_case::arrays::{ArrayError, Slab, Units, mask_npy, write_mask_png};
+use slipfront_case::arrays::{ArrayError, Room, Slab, Units, mask_npy, write_mask_png};
 
 use crate::checks::readable;
 use crate::{Memory, Target, scratch};
@@ -257,13 +257,16 @@ fn csv_table(input: &[u8]) {
 
 /// Whatever is read has a finite mean in every block, within what the file holds, and a roughness.
 fn height_map(input: &[u8]) {
-    let blocks = [NX, NY];
+    let room = Room {
+        blocks: [NX, NY],
+        is_place: false,
+    };
     for ending in ["csv", "gsf", "npy", "png", "tif", "x3p"] {
         let path = format!("map.{ending}");
         // A file that says nothing of its units is asked about them, and then answered.
         for units in [Units::default(), UNITS] {
             let mut source = Cursor::new(input);
-            match arrays::height_map(Path::new(&path), &mut source, &units, blocks, &mut |_| Ok(())) {
+            match arrays::height_map(Path::new(&path), &mut source, &units, &room, &mut |_| Ok(())) {
                 Err(error) => readable(&error),
                 Ok(map) => {
                     assert_eq!(map.blocks.len(), NX * NY);

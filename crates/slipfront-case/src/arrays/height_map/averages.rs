@@ -3,27 +3,31 @@
 use std::ops::Range;
 
 use super::grid::Line;
+use super::quantum::Quantum;
 
 /// Heights that are averaged over blocks, point after point.
 ///
 /// Both grids are stretched over the same rectangle, so that along an axis with `p` points and `b` blocks, point k lies between
-/// k b and (k + 1) b, and block i between i p and (i + 1) p of the same whole units: what they have in common is exact.
+/// k b and (k + 1) b, and block i between i p and (i + 1) p of the same whole units: what they have in common is exact. So are
+/// the sums, of whole quanta: blocks over equal heights have equal means, wherever they lie.
 pub(super) struct Averages {
     points: [usize; 2],
     blocks: [usize; 2],
-    /// Sums of heights times areas, row after row of blocks in rising y.
-    sums: Vec<f64>,
+    quantum: Quantum,
+    /// Sums of quanta times areas, row after row of blocks in rising y: of less than 2^53 times at most 2^28 points.
+    sums: Vec<i128>,
     /// Those of the present line, of its blocks along x.
-    of_line: Vec<f64>,
+    of_line: Vec<i128>,
 }
 
 impl Averages {
-    pub(super) fn new(points: [usize; 2], blocks: [usize; 2]) -> Self {
+    pub(super) fn new(points: [usize; 2], blocks: [usize; 2], quantum: Quantum) -> Self {
         Self {
             points,
             blocks,
-            sums: vec![0.0; blocks[0] * blocks[1]],
-            of_line: vec![0.0; blocks[0]],
+            quantum,
+            sums: vec![0; blocks[0] * blocks[1]],
+            of_line: vec![0; blocks[0]],
         }
     }
 
@@ -37,13 +41,14 @@ impl Averages {
         let common = |axis: usize, point: usize, block: usize| {
             let from = (point * blocks[axis]).max(block * points[axis]);
             let to = ((point + 1) * blocks[axis]).min((block + 1) * points[axis]);
-            (to - from) as f64
+            (to - from) as i128
         };
         let columns = touched(0, line.column..line.column + line.heights.len());
-        self.of_line[columns.clone()].fill(0.0);
-        for (point, height) in (line.column..).zip(line.heights) {
+        self.of_line[columns.clone()].fill(0);
+        for (point, &height) in (line.column..).zip(line.heights) {
+            let quanta = i128::from(self.quantum.count(height));
             for block in touched(0, point..point + 1) {
-                self.of_line[block] += height * common(0, point, block);
+                self.of_line[block] += quanta * common(0, point, block);
             }
         }
         for row in touched(1, line.row..line.row + 1) {
@@ -56,11 +61,12 @@ impl Averages {
     }
 
     /// The means, in rising y.
-    pub(super) fn means(mut self) -> Vec<f64> {
-        let area = self.points[0] as f64 * self.points[1] as f64;
-        for sum in &mut self.sums {
-            *sum /= area;
-        }
-        self.sums
+    pub(super) fn means(self) -> impl Iterator<Item = f64> {
+        let area = self.points[0] as i128 * self.points[1] as i128;
+        self.sums.into_iter().map(move |sum| {
+            // Apart, so that the mean of equal heights is their own.
+            let (whole, rest) = (sum / area, sum % area);
+            self.quantum.height(whole as f64 + rest as f64 / area as f64)
+        })
     }
 }

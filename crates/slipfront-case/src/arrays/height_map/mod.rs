@@ -6,6 +6,7 @@ mod averages;
 mod grid;
 mod gsf;
 mod image;
+mod quantum;
 mod roughness;
 mod tiff;
 mod x3p;
@@ -17,6 +18,7 @@ pub use roughness::Roughness;
 
 use self::averages::Averages;
 use self::grid::{Grid, Line, Take, points};
+use self::quantum::Quantum;
 use self::roughness::{Mean, Moments};
 use super::error::{ArrayError, contents_error, extension, unknown_extension};
 use super::{npy, table};
@@ -29,6 +31,15 @@ pub struct Units {
     pub height: Option<f64>,
     /// Distance of neighbouring points along x and along y.
     pub pixel: Option<[f64; 2]>,
+}
+
+/// What a height map is laid over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Room {
+    /// Blocks along x and along y.
+    pub blocks: [usize; 2],
+    /// Whether they are a place of a pattern, and not the slider.
+    pub is_place: bool,
 }
 
 /// A height map laid over blocks.
@@ -44,7 +55,7 @@ pub struct HeightMap {
     pub blocks: Vec<f64>,
 }
 
-/// Reads the height map called `path`, and averages it over `blocks` along x and y.
+/// Reads the height map called `path`, and averages it over the blocks of a room.
 ///
 /// A `.npy` or `.csv` file has the rows of the smallest y first, as a `.x3p` file; a `.gsf` file and pictures have them last. `watch`
 /// is told the share that is done, and its error ends the work.
@@ -56,7 +67,7 @@ pub fn height_map(
     path: &Path,
     source: &mut (impl BufRead + Seek),
     units: &Units,
-    blocks: [usize; 2],
+    room: &Room,
     watch: &mut dyn FnMut(f64) -> Result<(), ArrayError>,
 ) -> Result<HeightMap, ArrayError> {
     let mut mean = Mean::default();
@@ -70,11 +81,17 @@ pub fn height_map(
     let (pixel, unit) = (pixel(path, &grid, units)?, height_unit(path, &grid, units)?);
     let points = grid.points;
     let size = [0, 1].map(|axis| points[axis] as f64 * pixel[axis]);
-    keep_aspect(path, size, blocks)?;
+    keep_aspect(path, size, room)?;
 
-    let mean = mean.value();
+    let too_far_apart = || {
+        let problem = "has heights too far apart to be averaged: look at its numbers".to_owned();
+        contents_error(path, problem)
+    };
+    let of_all = mean.of_all();
+    let found = of_all.filter(|(mean, range)| (range.highest - range.lowest).is_finite() && mean.is_finite());
+    let (mean, range) = found.ok_or_else(too_far_apart)?;
     let mut moments = Moments::default();
-    let mut averages = Averages::new(points, blocks);
+    let mut averages = Averages::new(points, room.blocks, Quantum::of(range));
     let mut deviations = Vec::new();
     let mut done = 0.0;
     read(path, source, &mut |line| {
@@ -93,28 +110,24 @@ pub fn height_map(
                 true => points[1] - 1 - line.row,
                 false => line.row,
             },
-            column: line.column,
-            heights: &deviations,
+            ..*line
         });
         done += line.heights.len() as f64;
         Ok(())
     })?;
     let roughness = moments.roughness(unit);
     let is_finite = |number: Option<f64>| number.is_none_or(f64::is_finite);
-    if !mean.is_finite()
-        || ![Some(roughness.sq), roughness.ssk, roughness.sku]
-            .into_iter()
-            .all(is_finite)
+    if ![Some(roughness.sq), roughness.ssk, roughness.sku]
+        .into_iter()
+        .all(is_finite)
     {
-        let problem = "has heights too far apart to be averaged: look at its numbers".to_owned();
-        return Err(contents_error(path, problem));
+        return Err(too_far_apart());
     }
-    let means = averages.means().into_iter();
     Ok(HeightMap {
         points,
         size,
         roughness,
-        blocks: means.map(|deviation| (mean + deviation) * unit).collect(),
+        blocks: averages.means().map(|mean| mean * unit).collect(),
     })
 }
 
@@ -194,7 +207,8 @@ fn height_unit(path: &Path, grid: &Grid, units: &Units) -> Result<f64, ArrayErro
 }
 
 /// Refuses a map whose longer side is not that of the blocks to within half a block, as many as the shorter side has.
-fn keep_aspect(path: &Path, size: [f64; 2], blocks: [usize; 2]) -> Result<(), ArrayError> {
+fn keep_aspect(path: &Path, size: [f64; 2], room: &Room) -> Result<(), ArrayError> {
+    let blocks = room.blocks;
     let aspect = size[0] / size[1];
     let (longer, shorter, ratio) = match aspect >= 1.0 {
         true => (0, 1, aspect),
@@ -207,13 +221,18 @@ fn keep_aspect(path: &Path, size: [f64; 2], blocks: [usize; 2]) -> Result<(), Ar
     let mut right = blocks;
     right[longer] = wanted.round() as usize;
     let problem = format!(
-        "is {} x {}, {} times as wide as high, and the {} x {} blocks that it is laid over are {} times as wide as high: cut the map, \
-         or take {} x {} blocks",
+        "is {} x {}, {} times as wide as high, and the {} x {} blocks {} are {} times as wide as high: cut the map, or take {} x {} blocks \
+         there",
         with_si_prefix(size[0], "m"),
         with_si_prefix(size[1], "m"),
         four_digits(aspect),
         blocks[0],
         blocks[1],
+        if room.is_place {
+            "in every place of the pattern"
+        } else {
+            "of the slider"
+        },
         four_digits(blocks[0] as f64 / blocks[1] as f64),
         right[0],
         right[1]

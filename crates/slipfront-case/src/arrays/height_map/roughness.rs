@@ -1,10 +1,17 @@
 //! Parameters of ISO 25178-2 of the heights as they stand in the file, neither levelled nor filtered.
 
-/// The mean height of points that come one after the other.
+/// The lowest and the highest of some heights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct HeightRange {
+    pub(super) lowest: f64,
+    pub(super) highest: f64,
+}
+
+/// The mean height and the range of points that come one after the other.
 #[derive(Default)]
 pub(super) struct Mean {
-    /// The first height, from which the others are counted: a map far above its zero loses no digits.
-    first: Option<f64>,
+    /// The first height, from which the others are counted, so that a map far above its zero loses no digits; and their range.
+    first: Option<(f64, HeightRange)>,
     sum: f64,
     count: f64,
 }
@@ -12,13 +19,25 @@ pub(super) struct Mean {
 impl Mean {
     pub(super) fn add(&mut self, heights: &[f64]) {
         let Some(&start) = heights.first() else { return };
-        let first = *self.first.get_or_insert(start);
-        self.sum += heights.iter().map(|height| height - first).sum::<f64>();
+        let (first, range) = self.first.get_or_insert((
+            start,
+            HeightRange {
+                lowest: start,
+                highest: start,
+            },
+        ));
+        for &height in heights {
+            range.lowest = range.lowest.min(height);
+            range.highest = range.highest.max(height);
+        }
+        self.sum += heights.iter().map(|height| height - *first).sum::<f64>();
         self.count += heights.len() as f64;
     }
 
-    pub(super) fn value(&self) -> f64 {
-        self.first.unwrap_or(0.0) + self.sum / self.count
+    /// Mean and range, if there is a height.
+    pub(super) fn of_all(&self) -> Option<(f64, HeightRange)> {
+        self.first
+            .map(|(first, range)| (first + self.sum / self.count, range))
     }
 }
 
