@@ -135,6 +135,81 @@ fn the_aspect_is_kept() {
     assert!(said.contains(sentence), "{said}");
 }
 
+/// A TIFF file of grey levels 1, 2 and, in the row below, 3, 4, with changes to its tags, each a number of 16 bits or of 32.
+fn tiff(changes: &[(u16, u32)]) -> Vec<u8> {
+    let pixels = [1_u16, 2, 3, 4].map(u16::to_le_bytes);
+    let (header, length) = (8, 8);
+    let mut tags = std::collections::BTreeMap::from([
+        (256, 2),
+        (257, 2),
+        (258, 16),
+        (259, 1),
+        (262, 1),
+        (273, header),
+        (277, 1),
+        (278, 2),
+        (279, length),
+    ]);
+    tags.extend(changes.iter().copied());
+    let mut bytes = b"II*\0".to_vec();
+    bytes.extend((header + length).to_le_bytes());
+    bytes.extend(pixels.as_flattened());
+    bytes.extend((tags.len() as u16).to_le_bytes());
+    let four_bytes: u16 = 4;
+    for (tag, value) in tags {
+        bytes.extend(tag.to_le_bytes());
+        bytes.extend(four_bytes.to_le_bytes());
+        bytes.extend(1_u32.to_le_bytes());
+        bytes.extend(value.to_le_bytes());
+    }
+    bytes.extend([0; 4]);
+    bytes
+}
+
+/// The rows of a strip are at least those of the picture where it is the only one.
+#[test]
+fn tiff_files_have_one_strip_and_one_orientation() {
+    const ROWS_PER_STRIP: u16 = 278;
+    const ORIENTATION: u16 = 274;
+    for changes in [
+        &[][..],
+        &[(ROWS_PER_STRIP, u32::MAX)],
+        &[(ROWS_PER_STRIP, 3), (ORIENTATION, 1)],
+    ] {
+        let map = read_bytes("a.tif", &tiff(changes)).unwrap();
+        for (found, wanted) in map.blocks.iter().zip([3.0, 4.0, 1.0, 2.0]) {
+            // The rounding of numbers of 4 um.
+            assert!((found - 1e-6 * wanted).abs() < 1e-21, "{changes:?}: {found}");
+        }
+    }
+    for other in [0, 3, 8] {
+        let said = read_bytes("a.tif", &tiff(&[(ORIENTATION, other)])).unwrap_err();
+        let sentence = format!("says by `Orientation` = {other} that it is to be turned or mirrored");
+        assert!(said.to_string().contains(&sentence), "{said}");
+    }
+}
+
+/// Pictures of grey levels and opacity are no colours.
+#[test]
+fn what_stands_beside_grey_levels_is_told() {
+    const SAMPLES_PER_PIXEL: u16 = 277;
+    let mut png = Vec::new();
+    let mut encoder = png::Encoder::new(&mut png, 2, 2);
+    encoder.set_color(png::ColorType::GrayscaleAlpha);
+    encoder.set_depth(png::BitDepth::Sixteen);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&[0; 16]).unwrap();
+    writer.finish().unwrap();
+    let tiff = tiff(&[(SAMPLES_PER_PIXEL, 2)]);
+    for (name, bytes) in [("a.png", png), ("a.tif", tiff)] {
+        let said = read_bytes(name, &bytes).unwrap_err().to_string();
+        assert!(
+            said.contains("has grey levels with a second channel, such as opacity (alpha)"),
+            "{said}"
+        );
+    }
+}
+
 /// A zip archive of files that are stored as they are.
 fn zip(files: &[(&str, &[u8])]) -> Vec<u8> {
     let mut bytes = Vec::new();
@@ -168,8 +243,8 @@ fn read_bytes(name: &str, bytes: &[u8]) -> Result<HeightMap, ArrayError> {
     let path = folder.path().join(name);
     std::fs::write(&path, bytes).unwrap();
     let units = match name {
-        "a.csv" => Units {
-            height: Some(1.0),
+        "a.csv" | "a.png" | "a.tif" => Units {
+            height: Some(1e-6),
             pixel: SIZE,
         },
         _ => OWN,
@@ -257,6 +332,11 @@ fn damaged_x3p_files_are_refused() {
             "<DataType>D</DataType><Increment>x</Increment>",
             LINKED,
             "Record1/Axes/CZ/Increment of `main.xml` is no number: x",
+        ),
+        (
+            "<DataType>D</DataType><Increment>0</Increment>",
+            LINKED,
+            "Record1/Axes/CZ/Increment of `main.xml` is 0, and not above 0",
         ),
     ] {
         let bytes = zip(&[
@@ -493,23 +573,76 @@ fn one_block_touches_at_the_least() {
 
 #[test]
 fn a_map_of_another_size_is_told() {
-    let warnings = |text: &str| {
-        let text =
-            format!("{text}\n[[texture]]\nshape = 'height_map'\nfile = 'map.x3p'\nbearing_percent = 40");
-        Case::parse_in(&text, "case", &folder(), &[])
-            .unwrap()
-            .warnings()
-            .join("\n")
-    };
-    let said = warnings("slider = { blocks = [15, 10], block_size = '10 um' }");
+    let said = warnings_of(
+        "slider = { blocks = [15, 10], block_size = '10 um' }",
+        "bearing_percent = 40",
+    );
     let sentence = "map.x3p is 15 um x 10 um and laid over 150 um x 100 um of the slider, 10 times its size: with `block_size` = \"1 um\" \
                     it would have its own";
     assert!(said.contains(sentence), "{said}");
-    let said = warnings("slider = { blocks = [60, 40], block_size = '0.25 um' }");
+    let said = warnings_of(
+        "slider = { blocks = [60, 40], block_size = '0.25 um' }",
+        "bearing_percent = 40",
+    );
     assert!(
         said.contains("has 30 x 20 points for 60 x 40 blocks: several blocks share a height"),
         "{said}"
     );
+    // Where the places have a length of their own, blocks of another size would not change it.
+    let slider = "slider = { blocks = [60, 40], block_size = '1 um' }";
+    for (pitch, own) in [
+        ("pitch = ['30 um', '20 um']", "`pitch` = [\"15 um\", \"10 um\"]"),
+        ("array = [2, 2]", "`block_size` = \"500 nm\""),
+    ] {
+        let said = warnings_of(slider, &format!("bearing_percent = 40\n{pitch}"));
+        let sentence = format!("of the slider, 2 times its size: with {own} it would have its own");
+        assert!(said.contains(&sentence), "{said}");
+    }
+}
+
+fn warnings_of(text: &str, texture: &str) -> String {
+    let text = format!("{text}\n[[texture]]\nshape = 'height_map'\nfile = 'map.x3p'\n{texture}");
+    let case = Case::parse_in(&text, "case", &folder(), &[]).unwrap();
+    case.warnings().join("\n")
+}
+
+/// Neither clipped nor off the slider, of which a height map knows nothing.
+#[test]
+fn a_texture_that_is_not_as_asked_is_told_in_words_of_heights() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = |lowest: &str, bearing: &str| {
+        std::fs::write(
+            folder.path().join("map.csv"),
+            format!("{lowest}\n2,2\n2,2\n2,2\n"),
+        )
+        .unwrap();
+        let text = format!(
+            "slider.blocks = [2, 4]\n[[texture]]\nshape = 'height_map'\nfile = 'map.csv'\nheight_unit = '1 um'\npixel_size = '1 um'\n\
+             {bearing}"
+        );
+        let case = Case::parse_in(&text, "case", folder.path(), &[]).unwrap();
+        case.warnings().join("\n")
+    };
+    for (lowest, bearing, sentence) in [
+        (
+            "2,2",
+            "bearing_percent = 40",
+            "texture 1 covers no block: none is lower than the lowest that touch; lower `bearing_percent`",
+        ),
+        (
+            "1,1",
+            "depth = '2 um'",
+            "texture 1 covers no block: none is below the height of contact; lower `depth`",
+        ),
+        (
+            "1,1",
+            "bearing_percent = 40",
+            "the texture covers 25.00 % of the blocks instead of 60.00 %: blocks of equal height touch together",
+        ),
+    ] {
+        let said = said(lowest, bearing);
+        assert!(said.contains(sentence), "{said}");
+    }
 }
 
 /// The run folder's case names a copy of the map, and is the same case.

@@ -7,7 +7,7 @@ use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 
 use super::error::{ArrayError, broken, contents_error, value_error};
 use super::head::length_and_head;
-use super::pixels::limit_pixels;
+use super::pixels::{SIDE_MAX, limit_pixels};
 use super::slab::Slab;
 use crate::text::truncated;
 
@@ -45,55 +45,21 @@ pub(super) fn values(
     is_wrong: impl Fn(f64) -> bool,
 ) -> Result<Vec<f64>, ArrayError> {
     let Slab { nx, ny, ref rows } = *slab;
-    let read_error = ArrayError::read(path);
-    let (length, head) = length_and_head(path, source, HEADER_MAX_BYTES)?;
-    let (header, data_start) = read_header(&head, path)?;
-
-    let number = Number::of(&header.dtype()).ok_or_else(|| {
-        let problem = format!(
-            "holds values of type {} where real numbers, integers or booleans are wanted; convert the array with \
-             `.astype(float)` before saving it",
-            truncated(&header.dtype().descr())
-        );
-        contents_error(path, problem)
+    let mut array = Array::open(path, source, |shape| match shape == [ny as u64, nx as u64] {
+        true => Ok([ny, nx]),
+        false => Err(wrong_shape(path, shape, nx, ny)),
     })?;
-    if header.shape() != [ny as u64, nx as u64] {
-        return Err(wrong_shape(path, header.shape(), nx, ny));
-    }
-    let wanted_bytes = data_start as u64 + number.size as u64 * nx as u64 * ny as u64;
-    if length != wanted_bytes {
-        let detail = format!("it has {length} bytes where its header asks for {wanted_bytes}");
-        return Err(broken(path, ".npy", &detail));
-    }
-
-    // Numbers that stand one after the other: all of the slab, or its part of each column.
-    let (n_runs, run, from_run_to_run, step) = match header.order() {
-        Order::C => (1, slab.n_blocks(), 0, 1),
-        Order::Fortran => (nx, rows.len(), ny - rows.len(), nx),
-    };
-    let before = match header.order() {
-        Order::C => rows.start * nx,
-        Order::Fortran => rows.start,
-    };
-    let bytes = |numbers: usize| numbers as u64 * number.size as u64;
-    let start = SeekFrom::Start(data_start as u64 + bytes(before));
-    source.seek(start).map_err(&read_error)?;
     let mut values = vec![0.0; slab.n_blocks()];
-    let mut piece = [0; 8192];
-    for first in 0..n_runs {
-        let mut done = 0;
-        while done < run {
-            let count = (run - done).min(piece.len() / number.size);
-            let stored = &mut piece[..count * number.size];
-            source.read_exact(stored).map_err(&read_error)?;
-            for (k, stored) in stored.chunks_exact(number.size).enumerate() {
-                values[first + (done + k) * step] = number.decode(stored);
+    match array.order {
+        Order::C => array.read(rows.start * nx, &mut values)?,
+        Order::Fortran => {
+            let mut of_column = vec![0.0; rows.len()];
+            for column in 0..nx {
+                array.read(column * ny + rows.start, &mut of_column)?;
+                let places = values.iter_mut().skip(column).step_by(nx);
+                places.zip(&of_column).for_each(|(place, value)| *place = *value);
             }
-            done += count;
         }
-        source
-            .seek_relative(bytes(from_run_to_run).cast_signed())
-            .map_err(&read_error)?;
     }
     if let Some(at) = values.iter().position(|value| is_wrong(*value)) {
         let place = [rows.start + at / nx, at % nx];
@@ -102,34 +68,123 @@ pub(super) fn values(
     Ok(values)
 }
 
-/// Reads an array of any size row after row, in the order of the first axis, and returns its columns and rows.
+/// Reads an array of any size in the order of its file, and returns its columns and rows. `take` is given numbers of a row one after the
+/// other, with the row, counted along the first axis, and the column of the first.
 pub(super) fn rows(
     path: &Path,
     source: &mut (impl BufRead + Seek),
-    mut take: impl FnMut(usize, &[f64]) -> Result<(), ArrayError>,
+    mut take: impl FnMut([usize; 2], &[f64]) -> Result<(), ArrayError>,
 ) -> Result<[u64; 2], ArrayError> {
-    /// Numbers that are read at once.
-    const BAND: usize = 1 << 16;
-    let (_, head) = length_and_head(path, source, HEADER_MAX_BYTES)?;
-    let (header, _) = read_header(&head, path)?;
-    let &[height, width] = header.shape() else {
-        let problem = format!(
-            "has {} axes where a height map has two, (ny, nx): save the heights alone, and no colours",
-            header.shape().len()
-        );
-        return Err(contents_error(path, problem));
+    /// Numbers that are in memory at once: no fewer than a side has.
+    const BAND: usize = SIDE_MAX as usize;
+    let mut array = Array::open(path, source, |shape| {
+        let &[height, width] = shape else {
+            let problem = format!(
+                "has {} axes where a height map has two, (ny, nx): save the heights alone, and no colours",
+                shape.len()
+            );
+            return Err(contents_error(path, problem));
+        };
+        limit_pixels(path, width, height)?;
+        Ok([height as usize, width as usize])
+    })?;
+    let [ny, nx] = array.shape;
+    // Rows, or columns of an array that has them one after the other.
+    let (count, length) = match array.order {
+        Order::C => (ny, nx),
+        Order::Fortran => (nx, ny),
     };
-    limit_pixels(path, width, height)?;
-    let (nx, ny) = (width as usize, height as usize);
-    let band = (BAND / nx.max(1)).max(1);
-    for first in (0..ny).step_by(band) {
-        let rows = first..(first + band).min(ny);
-        let heights = values(path, source, &Slab { nx, ny, rows }, "", |_| false)?;
-        for (row, heights) in (first..).zip(heights.chunks_exact(nx.max(1))) {
-            take(row, heights)?;
+    let at_once = BAND / length.max(1);
+    let mut numbers = Vec::new();
+    let mut of_row = Vec::new();
+    for first in (0..count).step_by(at_once) {
+        numbers.resize(at_once.min(count - first) * length, 0.0);
+        array.read(first * length, &mut numbers)?;
+        match array.order {
+            Order::C => {
+                for (row, numbers) in (first..).zip(numbers.chunks_exact(length.max(1))) {
+                    take([row, 0], numbers)?;
+                }
+            }
+            Order::Fortran => {
+                for row in 0..ny {
+                    of_row.clear();
+                    of_row.extend(numbers.iter().skip(row).step_by(ny));
+                    take([row, first], &of_row)?;
+                }
+            }
         }
     }
-    Ok([width, height])
+    Ok([nx as u64, ny as u64])
+}
+
+/// An array whose numbers can be read.
+struct Array<'a, S> {
+    path: &'a Path,
+    source: &'a mut S,
+    number: Number,
+    order: Order,
+    /// Rows and columns.
+    shape: [usize; 2],
+    /// The number that the source has come to.
+    at: usize,
+}
+
+impl<'a, S: BufRead + Seek> Array<'a, S> {
+    /// Opens an array whose `shape` is as wanted.
+    fn open(
+        path: &'a Path,
+        source: &'a mut S,
+        shape: impl FnOnce(&[u64]) -> Result<[usize; 2], ArrayError>,
+    ) -> Result<Self, ArrayError> {
+        let (length, head) = length_and_head(path, source, HEADER_MAX_BYTES)?;
+        let (header, data_start) = read_header(&head, path)?;
+        let number = Number::of(&header.dtype()).ok_or_else(|| {
+            let problem = format!(
+                "holds values of type {} where real numbers, integers or booleans are wanted; convert the array with \
+                 `.astype(float)` before saving it",
+                truncated(&header.dtype().descr())
+            );
+            contents_error(path, problem)
+        })?;
+        let shape = shape(header.shape())?;
+        let wanted = data_start as u64 + number.size as u64 * shape[0] as u64 * shape[1] as u64;
+        if length != wanted {
+            let detail = format!("it has {length} bytes where its header asks for {wanted}");
+            return Err(broken(path, ".npy", &detail));
+        }
+        let start = SeekFrom::Start(data_start as u64);
+        source.seek(start).map_err(ArrayError::read(path))?;
+        Ok(Self {
+            path,
+            source,
+            number,
+            order: header.order(),
+            shape,
+            at: 0,
+        })
+    }
+
+    /// Reads numbers that stand one after the other, the first of them after `start` others.
+    fn read(&mut self, start: usize, numbers: &mut [f64]) -> Result<(), ArrayError> {
+        let read_error = ArrayError::read(self.path);
+        let size = self.number.size;
+        // Without a seek where they follow, so that what was read ahead is not read again.
+        if start != self.at {
+            let ahead = (start as i64 - self.at as i64) * size as i64;
+            self.source.seek_relative(ahead).map_err(&read_error)?;
+        }
+        self.at = start + numbers.len();
+        let mut piece = [0; 8192];
+        for numbers in numbers.chunks_mut(piece.len() / size) {
+            let stored = &mut piece[..numbers.len() * size];
+            self.source.read_exact(stored).map_err(&read_error)?;
+            for (number, stored) in numbers.iter_mut().zip(stored.chunks_exact(size)) {
+                *number = self.number.decode(stored);
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Reads the header from the first bytes of a file; returns it with the number of bytes before the data.

@@ -7,7 +7,7 @@ use super::error::ArrayError;
 /// More pixels than any lattice has blocks.
 const PIXELS_MAX: u64 = 1 << 28;
 /// More pixels than any lattice has blocks along a side. A row, of which a decoder holds some, takes eight bytes for each.
-const SIDE_MAX: u64 = 1 << 20;
+pub(super) const SIDE_MAX: u64 = 1 << 20;
 /// A file of more bytes than this is refused.
 pub(super) const FILE_MAX_BYTES: u64 = PIXELS_MAX;
 

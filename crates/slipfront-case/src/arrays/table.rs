@@ -1,19 +1,22 @@
 //! Tables of numbers as text (`.csv`).
 
-use std::io::{BufRead, Read, Seek};
+use std::io::{BufRead, Read, Seek, Take};
 use std::path::Path;
 
 use csv::{ErrorKind, ReaderBuilder, StringRecord, Trim};
 
 use super::error::{ArrayError, broken, contents_error, value_error};
 use super::head::length_and_head;
-use super::pixels::limit_pixels;
+use super::pixels::{SIDE_MAX, limit_pixels};
 use super::slab::Slab;
 
 /// Comment lines are searched for the separator up to this total length.
 pub(super) const PREAMBLE_MAX_BYTES: u64 = 1 << 20;
 /// A number with its separator and blanks, and its share of comments: numpy's longest takes 25.
 pub(super) const NUMBER_MAX_BYTES: u64 = 64;
+/// A line of a table of any size, which is in memory as a whole, with a place of each of its fields: eight bytes for each of as many
+/// as are read.
+const LINE_MAX_BYTES: u64 = 8 * SIDE_MAX;
 
 /// The rows of a slab of `ny` lines of `nx` numbers. The lines before are counted, those behind not read.
 pub(super) fn values(
@@ -24,7 +27,8 @@ pub(super) fn values(
     is_wrong: impl Fn(f64) -> bool,
 ) -> Result<Vec<f64>, ArrayError> {
     let Slab { nx, ny, ref rows } = *slab;
-    let (length, mut lines) = Lines::of(path, source)?;
+    let line_max = PREAMBLE_MAX_BYTES.saturating_add((nx as u64).saturating_mul(NUMBER_MAX_BYTES));
+    let (length, mut lines) = Lines::of(path, source, line_max)?;
     // A number and what separates it from the next take two bytes at the least.
     let mut values = Vec::with_capacity(slab.n_blocks().min(length as usize / 2 + 1));
     let mut row = 0;
@@ -60,13 +64,13 @@ pub(super) fn values(
     Ok(values)
 }
 
-/// Reads a table of any size row after row, and returns its columns and rows.
+/// Reads a table of any size row after row, and returns its columns and rows. `take` is given each, with its number and the column 0.
 pub(super) fn rows(
     path: &Path,
     source: &mut (impl BufRead + Seek),
-    mut take: impl FnMut(usize, &[f64]) -> Result<(), ArrayError>,
+    mut take: impl FnMut([usize; 2], &[f64]) -> Result<(), ArrayError>,
 ) -> Result<[u64; 2], ArrayError> {
-    let (_, mut lines) = Lines::of(path, source)?;
+    let (_, mut lines) = Lines::of(path, source, LINE_MAX_BYTES)?;
     let mut values = Vec::new();
     let (mut columns, mut row) = (None, 0);
     while lines.next()? {
@@ -84,7 +88,7 @@ pub(super) fn rows(
             return Err(contents_error(path, problem));
         }
         limit_pixels(path, wanted as u64, row as u64 + 1)?;
-        take(row, &values)?;
+        take([row, 0], &values)?;
         row += 1;
     }
     Ok([columns.unwrap_or(0) as u64, row as u64])
@@ -93,19 +97,22 @@ pub(super) fn rows(
 /// The lines of a table that hold numbers, one after the other.
 struct Lines<'a, R> {
     path: &'a Path,
-    table: csv::Reader<R>,
+    table: csv::Reader<Take<R>>,
+    /// Most bytes of one of them, with comments before it.
+    line_max: u64,
     separator: u8,
     record: StringRecord,
 }
 
 impl<'a, R: BufRead + Seek> Lines<'a, &'a mut R> {
-    /// Opens a table, and tells its length in bytes.
-    fn of(path: &'a Path, source: &'a mut R) -> Result<(u64, Self), ArrayError> {
+    /// Opens a table with lines of at most this many bytes, and tells its length in bytes.
+    fn of(path: &'a Path, source: &'a mut R, line_max: u64) -> Result<(u64, Self), ArrayError> {
         let (length, preamble) = length_and_head(path, source, PREAMBLE_MAX_BYTES)?;
         let separator = separator(&preamble);
         let lines = Self {
             path,
-            table: reader(source, separator),
+            table: reader(source.take(line_max), separator),
+            line_max,
             separator,
             record: StringRecord::new(),
         };
@@ -115,6 +122,7 @@ impl<'a, R: BufRead + Seek> Lines<'a, &'a mut R> {
     /// Goes to the next line, if there is one.
     fn next(&mut self) -> Result<bool, ArrayError> {
         loop {
+            self.table.get_mut().set_limit(self.line_max);
             let is_there = self.table.read_record(&mut self.record).map_err(|error| {
                 let detail = error.to_string();
                 match error.into_kind() {
@@ -122,6 +130,14 @@ impl<'a, R: BufRead + Seek> Lines<'a, &'a mut R> {
                     _ => broken(self.path, ".csv", &detail),
                 }
             })?;
+            if self.table.get_ref().limit() == 0 {
+                let problem = format!(
+                    "has more than {} bytes in line {}, and no line of its numbers takes as many: write one row in every line",
+                    self.line_max,
+                    self.number()
+                );
+                return Err(contents_error(self.path, problem));
+            }
             // The csv crate gives an empty record for a comment that ends the file without a line break.
             let is_blank = self.fields().nth(1).is_none() && self.fields().all(str::is_empty);
             if !is_there || !is_blank {

@@ -326,6 +326,30 @@ fn tables_that_are_not_text() {
     assert!(message(read_field(&path, 3, 2)).len() < 300);
 }
 
+/// A line is in memory as a whole, and the place of each of its fields.
+#[test]
+fn lines_longer_than_their_numbers_are_refused() {
+    let (_folder, path) = file("mu.csv", format!("0,1,2\n{}\n", "3,".repeat(1 << 20)).as_bytes());
+    // The file itself would be too long for six blocks.
+    let source = || BufReader::new(File::open(&path).unwrap());
+    let text = message(field(&path, &mut source(), &Slab::whole(3, 2)));
+    assert!(text.contains("has more than 1048768 bytes in line 2"), "{text}");
+    let (_folder, path) = file("mu.csv", &[b'1'; (8 << 20) + 1]);
+    let room = Room {
+        blocks: [3, 2],
+        is_place: false,
+    };
+    let source = || BufReader::new(File::open(&path).unwrap());
+    let text = message(height_map(
+        &path,
+        &mut source(),
+        &Units::default(),
+        &room,
+        &mut |_| Ok(()),
+    ));
+    assert!(text.contains("has more than 8388608 bytes in line 1"), "{text}");
+}
+
 #[test]
 fn paths_that_are_no_files() {
     let folder = tempfile::tempdir().unwrap();

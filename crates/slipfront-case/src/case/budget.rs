@@ -11,7 +11,7 @@ use slipfront::observe::{CurveRow, Frame, Kymograph, SlipEvent, frames};
 use slipfront::{Kernel, Lattice, PositionBins};
 
 use super::kernel::kernel;
-use super::output::{MAX_MAPS, Output, Snapshots, mapped_field};
+use super::output::{MAX_MAPS, Output, mapped_field};
 use super::ranks::Ranks;
 use super::textures::{count_height_maps, count_masks};
 use super::time_plan::TimePlan;
@@ -293,11 +293,7 @@ impl Budget {
         let kept = |indices: Range<usize>| frames::kept(indices, output.stride).len() as f64;
         let last_step = time_plan.last_step;
         let [kept_by_law, saved_by_law] = of_friction(&file.friction);
-        let n_frames = match &output.snapshots {
-            Snapshots::Instants => 6.0,
-            Snapshots::At(steps) => steps.len() as f64,
-            Snapshots::Every(every) => (last_step / every + 1) as f64 + 6.0,
-        };
+        let n_frames = output.max_snapshots(last_step) as f64;
         Self {
             blocks: lattice.nx as f64 * rows.len() as f64,
             cells: kept(0..lattice.nx) * kept(rows.clone()),

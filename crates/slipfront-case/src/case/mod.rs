@@ -19,7 +19,7 @@ mod warnings;
 pub use self::budget::{Budget, COLUMN_TEXT, PICTURE, PROGRAM, memory_to_draw};
 pub use self::groups::Groups;
 pub use self::inputs::{Input, Watch, name_of_copy};
-pub use self::output::{MAX_MAPS, Output, Snapshots, mapped_field};
+pub use self::output::{MAX_MAPS, MAX_PICTURES, Output, Snapshots, mapped_field};
 pub use self::ranks::Ranks;
 pub use self::runnable::{Case, Expected, TextureReport};
 pub use self::time_plan::TimePlan;

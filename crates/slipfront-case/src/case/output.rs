@@ -5,6 +5,7 @@ use slipfront::observe::Field;
 use super::time_plan::TimePlan;
 use crate::case_file;
 use crate::case_file::{Attached, AttachedEdge, AutoOr, CaseError, CaseFile};
+use crate::field_info::field_info;
 
 /// Which results are written.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +36,9 @@ pub enum Snapshots {
 /// Most maps in the picture of the stress: of more snapshots, six spread over the run are shown.
 pub const MAX_MAPS: usize = 6;
 
+/// Most pictures of a movie: a minute and more of it.
+pub const MAX_PICTURES: usize = 1000;
+
 /// The field whose maps are drawn: the contact stress, and of a slider of which only some blocks have a drive spring the traction,
 /// since the contact stress of a stuck block is the pull of its own drive spring.
 pub fn mapped_field(file: &CaseFile) -> Field {
@@ -43,6 +47,9 @@ pub fn mapped_field(file: &CaseFile) -> Field {
         Attached::At(_) | Attached::File(_) => Field::Traction,
     }
 }
+
+/// The instants A-F.
+const INSTANTS: u64 = 6;
 
 /// Most rows of the series unless the case sets a spacing.
 const SERIES_ROWS: u64 = 20_000;
@@ -73,12 +80,45 @@ impl Output {
             AutoOr::Auto => time_plan.last_step.div_ceil(SERIES_ROWS),
             AutoOr::Number(time) => spacing("output.series", time)?,
         };
-        Ok(Output {
+        let output = Output {
             snapshots,
             fields: file.output.fields.clone(),
             stride: file.output.stride as usize,
             series_stride,
             movie: file.output.movie,
-        })
+        };
+        output.check_movie(file, time_plan.last_step)?;
+        Ok(output)
+    }
+
+    /// Most snapshots of a run of so many steps.
+    pub(super) fn max_snapshots(&self, last_step: u64) -> u64 {
+        match &self.snapshots {
+            Snapshots::Instants => INSTANTS,
+            Snapshots::At(steps) => steps.len() as u64,
+            Snapshots::Every(every) => last_step / every + 1 + INSTANTS,
+        }
+    }
+
+    /// Refuses a movie that could not be drawn when the run has ended.
+    fn check_movie(&self, file: &CaseFile, last_step: u64) -> Result<(), CaseError> {
+        let (found, field) = (self.max_snapshots(last_step), mapped_field(file));
+        let sentence = match found {
+            _ if !self.movie => return Ok(()),
+            0 => "a movie shows the snapshots of a run, and this one keeps none: take `output.snapshots`, such as { every = 5.0 }, or \
+                  leave `movie` out"
+                .to_owned(),
+            _ if !self.fields.contains(&field) => format!(
+                "a movie shows {0}, which this run does not keep: add \"{0}\" to `output.fields`, or leave `movie` out and draw \
+                 another field with `slipfront movie --field`",
+                field_info(field).name
+            ),
+            _ if found > MAX_PICTURES as u64 => format!(
+                "a movie has at most {MAX_PICTURES} pictures, and this run keeps up to {found} snapshots: raise `every` of \
+                 `output.snapshots`, or list fewer"
+            ),
+            _ => return Ok(()),
+        };
+        Err(file.source.error("output.movie", sentence))
     }
 }

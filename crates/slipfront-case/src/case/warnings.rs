@@ -8,7 +8,9 @@ use super::inputs::is_array;
 use super::runnable::Case;
 use super::textures::arrays;
 use super::topography::Topography;
-use crate::case_file::{Count, DEFAULT_THRESHOLD, Law, Mask, Pattern, Shape};
+use crate::case_file::{
+    Bearing, Count, DEFAULT_THRESHOLD, HeightMap, Law, Mask, Pattern, Pitch, Shape, Texture,
+};
 use crate::number_format::{are, count, four_digits, with_si_prefix};
 
 /// Blocks that a pattern may leave free at periodic edges without a warning.
@@ -75,10 +77,11 @@ impl Case {
                 ));
             }
         }
-        for texture in &report.empty {
+        for &texture in &report.empty {
             warnings.push(format!(
-                "texture {} covers no block: it lies off the slider, or between the centres of blocks; look at its size and place",
-                texture + 1
+                "texture {} covers no block: {}",
+                texture + 1,
+                why_empty(&self.file.texture[texture])
             ));
         }
         for (texture, number) in self.file.texture.iter().zip(1..) {
@@ -102,9 +105,17 @@ impl Case {
             && meshed > 0.0
             && (meshed - asked).abs() > LARGE_MISFIT * asked
         {
+            let textures = &self.file.texture;
+            let is_map = |texture: &Texture| matches!(texture.shape, Shape::HeightMap(_));
+            let is_repeated = |texture: &Texture| texture.pattern.arrays().any(|(_, array)| array.is_array());
+            let is_alone = textures.len() == 1 && !textures.iter().any(is_repeated);
+            let why = match (textures.iter().all(is_map), is_alone) {
+                (true, true) => "blocks of equal height touch together",
+                (true, false) => "blocks of equal height touch together, or maps are clipped or overlap",
+                (false, _) => "it is clipped, overlaps, or is too fine for the blocks",
+            };
             warnings.push(format!(
-                "the texture covers {meshed:.2} % of the blocks instead of {asked:.2} %: it is clipped, overlaps, or is too fine \
-                 for the blocks"
+                "the texture covers {meshed:.2} % of the blocks instead of {asked:.2} %: {why}"
             ));
         }
         warnings
@@ -123,12 +134,23 @@ impl Case {
         let in_metres = |[x, y]: [f64; 2]| format!("{} x {}", with_si_prefix(x, "m"), with_si_prefix(y, "m"));
         let scale = length(0) / size[0];
         if (scale - 1.0).abs() > LARGE_SCALE {
+            let arrays = self.file.texture[topography.texture].pattern.arrays();
+            let innermost = arrays.filter(|(_, array)| array.is_array()).last();
+            let [x, y] = size.map(|length| format!("{:?}", with_si_prefix(length, "m")));
+            // Blocks do not change a place whose size is given.
+            let own = match innermost.and_then(|(before, array)| Some((before, array.pitch?))) {
+                Some((before, Pitch::Equal(_))) => format!("`{before}pitch` = {x}"),
+                Some((before, Pitch::Each(_))) => format!("`{before}pitch` = [{x}, {y}]"),
+                None => format!(
+                    "`block_size` = {:?}",
+                    with_si_prefix(size[0] / blocks[0] as f64, "m")
+                ),
+            };
             return Some(format!(
-                "{file} is {} and laid over {} of the slider, {} times its size: with `block_size` = {:?} it would have its own",
+                "{file} is {} and laid over {} of the slider, {} times its size: with {own} it would have its own",
                 in_metres(*size),
                 in_metres([length(0), length(1)]),
-                four_digits(scale),
-                with_si_prefix(size[0] / blocks[0] as f64, "m")
+                four_digits(scale)
             ));
         }
         let [few, many] = [points, blocks];
@@ -231,5 +253,28 @@ impl Case {
             ));
         }
         warnings
+    }
+}
+
+/// Why a texture covers no block, and what to look at.
+fn why_empty(texture: &Texture) -> &'static str {
+    match &texture.shape {
+        _ if texture.pattern.invert => {
+            "the inside of its shapes, which `invert` leaves free, covers all of them"
+        }
+        Shape::HeightMap(HeightMap {
+            bearing: Bearing::Percent(_),
+            ..
+        }) => "none is lower than the lowest that touch; lower `bearing_percent`",
+        Shape::HeightMap(HeightMap {
+            bearing: Bearing::Depth(_),
+            ..
+        }) => "none is below the height of contact; lower `depth`",
+        Shape::Mask(_) => {
+            "no pixel at the centre of a block is dark, and no number of an array is 1; look at its file"
+        }
+        Shape::Cavity(_) | Shape::Groove(_) | Shape::Polygon(_) => {
+            "it lies off the slider, or between the centres of blocks; look at its size and place"
+        }
     }
 }

@@ -16,7 +16,11 @@ pub(super) fn read(
 ) -> Result<Grid, ArrayError> {
     let mut reader = png_reader(path, source, Transformations::IDENTITY)?;
     let info = reader.info();
-    refuse_colours(path, info.color_type == ColorType::Grayscale)?;
+    match info.color_type {
+        ColorType::Grayscale => {}
+        ColorType::GrayscaleAlpha => return Err(beside_grey(path)),
+        ColorType::Rgb | ColorType::Rgba | ColorType::Indexed => return Err(in_colours(path)),
+    }
     if info.bit_depth != BitDepth::Sixteen {
         return Err(too_coarse(path, info.bit_depth as u8));
     }
@@ -46,14 +50,17 @@ pub(super) fn read(
     })
 }
 
-/// Refuses a picture of other than one channel: which colour is how high, nothing tells.
-pub(super) fn refuse_colours(path: &Path, is_grey: bool) -> Result<(), ArrayError> {
-    if is_grey {
-        return Ok(());
-    }
+/// Of a picture in colours: which of them is how high, nothing tells.
+pub(super) fn in_colours(path: &Path) -> ArrayError {
     let problem = "is a picture in colours, which do not tell heights: export the heights themselves, as grey levels of 16 bits or \
                    as a .gsf, .x3p or .npy file";
-    Err(contents_error(path, problem.to_owned()))
+    contents_error(path, problem.to_owned())
+}
+
+/// Of a picture that has something beside its grey levels.
+pub(super) fn beside_grey(path: &Path) -> ArrayError {
+    let problem = "has grey levels with a second channel, such as opacity (alpha): save the grey levels alone, without transparency";
+    contents_error(path, problem.to_owned())
 }
 
 /// Of a picture of fewer bits than heights need.

@@ -1,6 +1,6 @@
 //! Measured topography: height maps of many formats, as the mean height of every block, and their roughness.
 //!
-//! A file is read twice, for its mean and for what is counted from that, so that no more than a line of it is in memory.
+//! A file is read twice, for its mean and for what is counted from that, so that no more than a line of it is in memory, a strip or tile, or a MiB of numbers.
 
 mod averages;
 mod grid;
@@ -134,16 +134,10 @@ pub fn height_map(
 /// Reads all points of a file.
 fn read(path: &Path, source: &mut (impl BufRead + Seek), take: &mut Take) -> Result<Grid, ArrayError> {
     source.rewind().map_err(ArrayError::read(path))?;
-    let take_row = |row: usize, heights: &[f64]| {
-        take(&Line {
-            row,
-            column: 0,
-            heights,
-        })
-    };
+    let take_line = |[row, column]: [usize; 2], heights: &[f64]| take(&Line { row, column, heights });
     let [nx, ny] = match extension(path).as_str() {
-        "npy" => npy::rows(path, source, take_row)?,
-        "csv" => table::rows(path, source, take_row)?,
+        "npy" => npy::rows(path, source, take_line)?,
+        "csv" => table::rows(path, source, take_line)?,
         "gsf" => return gsf::read(path, source, take),
         "x3p" => return x3p::read(path, source, take),
         "png" => return image::read(path, source, take),

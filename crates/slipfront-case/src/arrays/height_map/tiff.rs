@@ -4,18 +4,20 @@ use std::io::{BufRead, Seek};
 use std::ops::Range;
 use std::path::Path;
 
-use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
+use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 use tiff::{ColorType, TiffError};
 
 use super::grid::{Grid, Line, Take, points};
-use super::image::{refuse_colours, too_coarse};
+use super::image::{beside_grey, in_colours, too_coarse};
 use crate::arrays::error::{ArrayError, broken, contents_error};
 
 /// The largest strip or tile, in bytes.
 const PIECE_MAX_BYTES: usize = 1 << 26;
 /// Grey levels that rise towards black.
 const WHITE_IS_ZERO: u32 = 0;
+/// Rows from the top, each from the left.
+const TOP_LEFT: u16 = 1;
 
 pub(super) fn read(
     path: &Path,
@@ -41,7 +43,12 @@ pub(super) fn read(
     let decoder = Decoder::new(source).map_err(unreadable)?;
     let mut decoder = decoder.with_limits(limits);
     let color = decoder.colortype().map_err(unreadable)?;
-    refuse_colours(path, matches!(color, ColorType::Gray(_)))?;
+    match color {
+        ColorType::Gray(_) => {}
+        // Several numbers for a pixel, none of them a colour.
+        ColorType::GrayA(_) | ColorType::Multiband { .. } => return Err(beside_grey(path)),
+        _ => return Err(in_colours(path)),
+    }
     if color.bit_depth() < 16 {
         return Err(too_coarse(path, color.bit_depth()));
     }
@@ -50,20 +57,26 @@ pub(super) fn read(
         let problem = "has grey levels in which 0 is white: save it with 0 as black, the lowest height";
         return Err(contents_error(path, problem.to_owned()));
     }
+    let orientation = decoder
+        .find_tag_unsigned::<u16>(Tag::Orientation)
+        .map_err(unreadable)?;
+    if let Some(other) = orientation.filter(|orientation| *orientation != TOP_LEFT) {
+        let problem = format!(
+            "says by `Orientation` = {other} that it is to be turned or mirrored before it is shown: save it as it is shown, with {TOP_LEFT}"
+        );
+        return Err(contents_error(path, problem));
+    }
     if decoder.more_images() {
         let problem = "holds several pictures: save the height map alone";
         return Err(contents_error(path, problem.to_owned()));
     }
     let (width, height) = decoder.dimensions().map_err(unreadable)?;
     let points = points(path, ".tif", width.into(), height.into())?;
-    let count = match decoder.get_chunk_type() {
-        ChunkType::Strip => decoder.strip_count(),
-        ChunkType::Tile => decoder.tile_count(),
-    };
+    // Of strips the last is shorter, and may say that it is as long as can be.
     let (chunk_width, chunk_height) = decoder.chunk_dimensions();
-    let across = width.div_ceil(chunk_width.max(1));
+    let across = width.div_ceil(chunk_width);
     let mut heights = Vec::new();
-    for chunk in 0..count.map_err(unreadable)? {
+    for chunk in 0..across * height.div_ceil(chunk_height) {
         let decoded = decoder.read_chunk(chunk).map_err(unreadable)?;
         let (columns, rows) = decoder.chunk_data_dimensions(chunk);
         for row in 0..rows {

@@ -189,21 +189,23 @@ impl Description {
             let detail = || format!("{place} of `main.xml` is no number: {}", truncated(text));
             number.ok_or_else(|| refuse(&detail()))
         };
-        let increment = |axis: &str| {
-            let place = format!("Record1/Axes/{axis}/Increment");
-            let step = number(&place, wanted(&place)?)?;
+        let above_0 = |place: &str, text: &str| {
+            let step = number(place, text)?;
             let detail = || format!("{place} of `main.xml` is {step}, and not above 0");
             (step > 0.0).then_some(step).ok_or_else(|| refuse(&detail()))
+        };
+        let increment = |axis: &str| {
+            let place = format!("Record1/Axes/{axis}/Increment");
+            above_0(&place, wanted(&place)?)
         };
         let size = |axis: &str| {
             let place = format!("Record3/MatrixDimension/Size{axis}");
             let size = wanted(&place)?.parse::<u64>();
             size.map_err(|_| refuse(&format!("{place} of `main.xml` is no whole number")))
         };
-        let of_height = |name: &str, default: f64| {
-            let place = format!("Record1/Axes/CZ/{name}");
-            text(&place).map_or(Ok(default), |text| number(&place, text))
-        };
+        // A file of real numbers need not have them.
+        let step = "Record1/Axes/CZ/Increment";
+        let offset = "Record1/Axes/CZ/Offset";
         let Some(data) = text("Record3/DataLink/PointDataLink") else {
             let problem = "has its heights as text in `main.xml`: export it with binary data";
             return Err(contents_error(path, problem.to_owned()));
@@ -223,8 +225,8 @@ impl Description {
                     )));
                 }
             },
-            increment: of_height("Increment", 1.0)?,
-            offset: of_height("Offset", 0.0)?,
+            increment: text(step).map_or(Ok(1.0), |text| above_0(step, text))?,
+            offset: text(offset).map_or(Ok(0.0), |text| number(offset, text))?,
             data: data.to_owned(),
             valid: text("Record3/DataLink/ValidPointsLink").map(str::to_owned),
         })
