@@ -61,7 +61,7 @@ pub struct Movie {
 /// A picture of a movie.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MovieFrame {
-    /// The letters of the instants A-F that it is; may be empty.
+    /// The letters of the instants A-F that it is, such as "A, B"; may be empty.
     pub label: String,
     /// t*.
     pub time_star: f64,
@@ -146,14 +146,13 @@ impl<'a> MoviePictures<'a> {
         self.draw_mark(&mut canvas, frame);
         let mut drawn = self.ground.clone();
         drawn.draw(&canvas);
-        let pixels: Vec<[u8; 3]> = drawn.pixels().collect();
         let [nx, ny] = MOVIE_PIXELS;
         let pixel = |at: usize| {
             let first = DRAWN * (at / nx) * DRAWN_PIXELS[0] + DRAWN * (at % nx);
             let mut sum = [0_u32; 3];
             for k in 0..DRAWN * DRAWN {
-                let drawn = pixels[first + k / DRAWN * DRAWN_PIXELS[0] + k % DRAWN];
-                for (sum, channel) in sum.iter_mut().zip(drawn) {
+                let colour = drawn.colour(first + k / DRAWN * DRAWN_PIXELS[0] + k % DRAWN);
+                for (sum, channel) in sum.iter_mut().zip(colour) {
                     *sum += u32::from(channel);
                 }
             }
@@ -271,7 +270,7 @@ mod tests {
     fn movie(nx: usize, ny: usize) -> Movie {
         let [columns, rows] = CellMeans::cells(nx, ny);
         let frame = |k: usize| MovieFrame {
-            label: if k == 1 { "AB".to_owned() } else { String::new() },
+            label: if k == 1 { "A, B".to_owned() } else { String::new() },
             time_star: 10.0 * k as f64,
             mu_star: 0.1 * k as f64,
             values: (0..columns * rows).map(|cell| (cell % 7) as f32 / 7.0).collect(),

@@ -1,8 +1,8 @@
 //! A canvas as pixels, drawn by `tiny-skia`. Its features `simd` and `std` are off, so that every machine computes the same bits.
 
 use tiny_skia::{
-    Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PremultipliedColorU8,
-    Rect, Stroke, StrokeDash, Transform,
+    Color, ColorU8, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Rect, Stroke, StrokeDash,
+    Transform,
 };
 
 use crate::canvas::{Canvas, Element, Primitive};
@@ -47,10 +47,10 @@ impl Ground {
         }
     }
 
-    /// The colours of all pixels, row by row.
-    pub(crate) fn pixels(&self) -> impl Iterator<Item = Rgb> {
-        let colour = |pixel: &PremultipliedColorU8| [pixel.red(), pixel.green(), pixel.blue()];
-        self.0.pixels().iter().map(colour)
+    /// The colour of a pixel, counted row by row.
+    pub(crate) fn colour(&self, pixel: usize) -> Rgb {
+        let pixel = self.0.pixels()[pixel];
+        [pixel.red(), pixel.green(), pixel.blue()]
     }
 }
 

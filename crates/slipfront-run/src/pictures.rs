@@ -152,8 +152,7 @@ impl<'a> MuStar<'a> {
 #[cfg(feature = "plot")]
 fn draw_stress(folder: &Path) -> Result<Option<Picture>, ResultsError> {
     let case = case_of(folder)?;
-    let field = case.as_ref().map_or(Field::ContactStress, mapped_field);
-    draw_maps(folder, case.as_ref(), field)
+    draw_maps(folder, case.as_ref(), field_of_maps(case.as_ref()))
 }
 
 /// Draws the maps of a field of a run folder from its files, which must be there and undamaged.
@@ -168,60 +167,93 @@ pub fn draw_field(folder: &Path, field: Field) -> Result<Picture, ResultsError> 
     })
 }
 
+/// The field whose maps are drawn of a run.
+#[cfg(feature = "plot")]
+pub(crate) fn field_of_maps(case: Option<&CaseFile>) -> Field {
+    case.map_or(Field::ContactStress, mapped_field)
+}
+
 /// The case of a run folder; files that have lost theirs can be drawn as well.
 #[cfg(feature = "plot")]
-fn case_of(folder: &Path) -> Result<Option<CaseFile>, ResultsError> {
+pub(crate) fn case_of(folder: &Path) -> Result<Option<CaseFile>, ResultsError> {
     let path = folder.join(CASE);
     let case = path.exists().then(|| CaseFile::load(&path, &[])).transpose();
     Ok(case?)
 }
 
-/// What a colour bar says of a field, the unit in which its values are drawn, and the values at the ends of the bar.
+/// The scale of the maps of a field.
 #[cfg(feature = "plot")]
-fn map_scale(
-    field: Field,
-    case: Option<&CaseFile>,
-    values: impl Iterator<Item = f32>,
-) -> (String, f32, [f64; 2]) {
-    let extent = extent(values);
-    let info = field_info(field);
-    let (title, unit) = match (field, case) {
-        (Field::ContactStress, _) => return ("contact stress \u{3c4}_c*".to_owned(), 1.0, [0.0, 1.0]),
-        (Field::Sliding, _) => return ("share that slides".to_owned(), 1.0, [0.0, 1.0]),
-        (Field::Traction, Some(case)) => {
-            let unit = case.load.pressure.si() * case.friction.mu_static;
-            ("traction \u{3c4}_f*".to_owned(), unit)
+pub(crate) struct MapScale {
+    /// What a colour bar says of it.
+    title: String,
+    /// The same in short.
+    pub(crate) symbol: String,
+    /// The unit in which its values are drawn.
+    pub(crate) unit: f32,
+    /// The values at the ends of the bar.
+    pub(crate) range: [f64; 2],
+}
+
+#[cfg(feature = "plot")]
+impl MapScale {
+    /// Of these values of a field, in the unit of its file.
+    pub(crate) fn of(field: Field, case: Option<&CaseFile>, values: impl Iterator<Item = f32>) -> Self {
+        let symbol = match (field, case) {
+            (Field::ContactStress, _) => "\u{3c4}_c*",
+            (Field::Traction, Some(_)) => "\u{3c4}_f*",
+            (Field::Traction, None) => "\u{3c4}_f",
+            (Field::DisplacementX, _) => "u_x",
+            (Field::DisplacementY, _) => "u_y",
+            (Field::VelocityX, _) => "v_x",
+            (Field::VelocityY, _) => "v_y",
+            (Field::Sliding, _) => "sliding",
+        };
+        let extent = extent(values);
+        let (title, symbol, unit) = match (field, case) {
+            (Field::ContactStress, _) => return Self::of_share(format!("contact stress {symbol}"), symbol),
+            (Field::Sliding, _) => return Self::of_share("share that slides".to_owned(), symbol),
+            (Field::Traction, Some(case)) => {
+                let unit = case.load.pressure.si() * case.friction.mu_static;
+                (format!("traction {symbol}"), symbol.to_owned(), unit)
+            }
+            _ => {
+                let info = field_info(field);
+                let (size, prefix) = si_prefix(extent[1].max(-extent[0]));
+                let unit = format!("{}{}", in_print(prefix), info.unit.replace(" s-1", "/s"));
+                (
+                    format!("{} ({unit})", info.long_name),
+                    format!("{symbol} ({unit})"),
+                    size,
+                )
+            }
+        };
+        let [lo, hi] = extent.map(|end| end / unit);
+        Self {
+            title,
+            symbol,
+            unit: unit as f32,
+            range: if lo < hi { [lo, hi] } else { [0.0, 1.0] },
         }
-        _ => {
-            let (size, prefix) = prefix_of(extent);
-            let unit = info.unit.replace(" s-1", "/s");
-            (format!("{} ({prefix}{unit})", info.long_name), size)
+    }
+
+    /// Of values from 0 to 1.
+    fn of_share(title: String, symbol: &str) -> Self {
+        Self {
+            title,
+            symbol: symbol.to_owned(),
+            unit: 1.0,
+            range: [0.0, 1.0],
         }
-    };
-    (title, unit as f32, bar_ends(extent, unit))
+    }
 }
 
 /// The smallest and the largest of some values and of 0.
 #[cfg(feature = "plot")]
-pub(crate) fn extent(values: impl Iterator<Item = f32>) -> [f64; 2] {
+fn extent(values: impl Iterator<Item = f32>) -> [f64; 2] {
     let finite = values.filter(|value| value.is_finite()).map(f64::from);
     finite.fold([0.0, 0.0], |[lo, hi]: [f64; 2], value| {
         [lo.min(value), hi.max(value)]
     })
-}
-
-/// The prefix of a unit that suits values in this range, as it is printed, and its factor.
-#[cfg(feature = "plot")]
-pub(crate) fn prefix_of([lo, hi]: [f64; 2]) -> (f64, &'static str) {
-    let (factor, prefix) = si_prefix(hi.max(-lo));
-    (factor, in_print(prefix))
-}
-
-/// The values at the ends of a colour bar in a unit.
-#[cfg(feature = "plot")]
-pub(crate) fn bar_ends(extent: [f64; 2], unit: f64) -> [f64; 2] {
-    let [lo, hi] = extent.map(|end| end / unit);
-    if lo < hi { [lo, hi] } else { [0.0, 1.0] }
 }
 
 /// Draws the maps of a field of a run; none if it has not kept it.
@@ -234,7 +266,7 @@ fn draw_maps(folder: &Path, case: Option<&CaseFile>, field: Field) -> Result<Opt
         return Ok(None);
     }
     let values = fields.frames.iter().flat_map(|frame| &frame.values).flatten();
-    let (value_title, unit, range) = map_scale(field, case, values.copied());
+    let scale = MapScale::of(field, case, values.copied());
     let point = |row: SeriesRow| (row.step, row.mu_star);
     let rows = series::read_rows(&folder.join(SERIES), SERIES, point)?;
     let Summary { instants, motion, .. } = read_summary(folder)?;
@@ -246,7 +278,7 @@ fn draw_maps(folder: &Path, case: Option<&CaseFile>, field: Field) -> Result<Opt
         time_star: frame.time_star,
         values: {
             let values = frame.values.into_iter().next().unwrap_or_default();
-            values.into_iter().map(|value| value / unit).collect()
+            values.into_iter().map(|value| value / scale.unit).collect()
         },
     });
     let maps = StressMaps {
@@ -255,8 +287,8 @@ fn draw_maps(folder: &Path, case: Option<&CaseFile>, field: Field) -> Result<Opt
         block_size: fields.block_size * fields.stride as f64,
         textured: fields.textured,
         maps: maps.collect(),
-        value_title,
-        range,
+        value_title: scale.title,
+        range: scale.range,
         is_torque: motion == Some(Motion::Rotation),
     };
     let drawn = plot::stress(&maps).map(Some);
@@ -268,7 +300,7 @@ fn draw_maps(folder: &Path, case: Option<&CaseFile>, field: Field) -> Result<Opt
 
 /// The letters of the instants of a map, which its file joins.
 #[cfg(feature = "plot")]
-fn separated(letters: &str) -> String {
+pub(crate) fn separated(letters: &str) -> String {
     letters.chars().map(String::from).collect::<Vec<_>>().join(", ")
 }
 
@@ -409,4 +441,29 @@ fn equal_chain(case: &CaseFile) -> Option<(f64, f64)> {
         KineticFriction::MuKinetic(mu_kinetic) => mu_kinetic,
     };
     (is_chain && is_pulled_along && is_equal).then_some((mu_kinetic, slope))
+}
+
+#[cfg(all(test, feature = "plot"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scales_have_the_unit_that_suits() {
+        let values = [-2e-9_f32, f32::NAN, 5e-9];
+        let scale = MapScale::of(Field::DisplacementX, None, values.into_iter());
+        assert_eq!((scale.symbol.as_str(), scale.unit), ("u_x (nm)", 1e-9));
+        // Numbers of 32 bits.
+        assert!((scale.range[0] + 2.0).abs() < 1e-6 && (scale.range[1] - 5.0).abs() < 1e-6);
+        for field in [Field::VelocityY, Field::Sliding] {
+            let scale = MapScale::of(field, None, [0.0; 3].into_iter());
+            assert_eq!(scale.range, [0.0, 1.0]);
+        }
+        // Of a case, in units of P mu_s.
+        let case = CaseFile::parse("load.pressure = '2 MPa'\nfriction.mu_static = 0.5", "case", &[]).unwrap();
+        let scale = MapScale::of(Field::Traction, Some(&case), [5e5].into_iter());
+        assert_eq!(
+            (scale.symbol.as_str(), scale.unit, scale.range),
+            ("\u{3c4}_f*", 1e6, [0.0, 0.5])
+        );
+    }
 }

@@ -190,6 +190,13 @@ const PICTURE_OF_LONG_FRONT: f64 = 12.0 * 1024.0 * 1024.0;
 const PICTURE_FILES: f64 = 2e6;
 const MAP_FILES: f64 = 6.0;
 
+/// Most pictures of a movie that are drawn at once.
+pub const MOVIE_BATCH: usize = 8;
+/// Their pixels: four bytes of each of the 1.3 million that are drawn of a picture, and one of the 0.3 million that are kept.
+const MOVIE_PIXELS: f64 = MOVIE_BATCH as f64 * 5.5e6;
+/// A picture of a movie in its file (measured: 25 kB where all of a map changes).
+const MOVIE_PICTURE: f64 = 25e3;
+
 /// What the allocator holds of memory that has been given back, or cannot use between pieces that have not: resident
 /// memory was up to 4 % above what was allocated.
 const HEAP: f64 = 1.05;
@@ -243,6 +250,8 @@ pub struct Budget {
     events: f64,
     /// Maps that are drawn.
     maps: f64,
+    /// Pictures of the movie.
+    movie: f64,
     /// Places times instants of the kymograph.
     kymograph: f64,
     /// Bytes of the picture of the front.
@@ -320,10 +329,10 @@ impl Budget {
                 None => 0.0,
             },
             maps: match output.fields.contains(&mapped_field(file)) {
-                true if output.movie => n_frames,
                 true => n_frames.min(MAX_MAPS as f64),
                 false => 0.0,
             },
+            movie: if output.movie { n_frames } else { 0.0 },
             front_picture: match lattice.nx > 3 * lattice.ny {
                 true => PICTURE_OF_LONG_FRONT,
                 false => PICTURE_OF_FRONT,
@@ -374,8 +383,12 @@ impl Budget {
                 bytes: [
                     0.0,
                     snapshots(self.cells),
-                    self.maps * drawn * (VALUE + MAP_FILES),
-                    frames * (fields * all_cells * VALUE + 4.0 * NUMBER) + self.maps * drawn * MAP_FILES,
+                    // One after the other.
+                    (self.maps * drawn * (VALUE + MAP_FILES))
+                        .max(self.movie * (drawn * VALUE + MOVIE_PICTURE)),
+                    frames * (fields * all_cells * VALUE + 4.0 * NUMBER)
+                        + self.maps * drawn * MAP_FILES
+                        + self.movie * MOVIE_PICTURE,
                     snapshots(all_cells),
                 ],
             },
@@ -423,10 +436,11 @@ impl Budget {
     fn total(&self, phase: Phase) -> f64 {
         let counts = grown(self.kymograph) * NUMBER;
         let with_maps = if self.maps > 0.0 { PICTURES_WITH_MAPS } else { 0.0 };
+        let of_movie = if self.movie > 0.0 { MOVIE_PIXELS } else { 0.0 };
         let fixed = [
             0.0,
             HISTORY + counts + self.kymograph * COUNTED,
-            self.front_picture.max(with_maps) + self.kymograph * DRAWN_SHARE,
+            (self.front_picture.max(with_maps) + self.kymograph * DRAWN_SHARE).max(of_movie),
             PICTURE_FILES + self.kymograph * VALUE,
             HISTORY + counts,
         ];
@@ -613,6 +627,12 @@ impl Budget {
 pub fn memory_to_draw(rows: f64, kymograph: f64) -> f64 {
     let maps = CELLS * (AVERAGED + MAX_MAPS as f64 * (VALUE + MAP_FILES));
     HEAP * (maps + grown(rows) * DRAWN_ROW + kymograph / VALUE * DRAWN_SHARE + PICTURES_WITH_MAPS)
+}
+
+/// Memory in which a movie is made from the files of a run, in bytes, with so many snapshots and rows of the series.
+pub fn memory_of_movie(snapshots: f64, rows: f64) -> f64 {
+    let maps = CELLS * (AVERAGED + snapshots * VALUE);
+    HEAP * (maps + snapshots * MOVIE_PICTURE + grown(rows) * DRAWN_ROW + MOVIE_PIXELS)
 }
 
 /// Elements for which a vector has room that grew to `length` by doubling.

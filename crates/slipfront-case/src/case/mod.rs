@@ -16,7 +16,7 @@ mod time_plan;
 mod topography;
 mod warnings;
 
-pub use self::budget::{Budget, COLUMN_TEXT, PICTURE, PROGRAM, memory_to_draw};
+pub use self::budget::{Budget, COLUMN_TEXT, MOVIE_BATCH, PICTURE, PROGRAM, memory_of_movie, memory_to_draw};
 pub use self::groups::Groups;
 pub use self::inputs::{Input, Watch, name_of_copy};
 pub use self::output::{MAX_MAPS, MAX_PICTURES, Output, Snapshots, mapped_field};

@@ -15,7 +15,7 @@ use slipfront_run::names::MOVIE;
 use slipfront_run::pictures;
 use slipfront_run::verify::{expect_as_written, inspect};
 
-use super::plot::{expect_memory, expect_results, refuse_other_run, refuse_to_replace};
+use super::plot::{expect_memory, expect_results, in_the_way, refuse_other_run};
 use crate::failure::Failure;
 use crate::print::print_message;
 use crate::threads::set_threads;
@@ -57,7 +57,6 @@ impl Movie {
         expect_results(folder)?;
         let run = inspect(folder).map_err(Failure::input)?;
         expect_as_written(&run, |name| pictures::DRAWN_FROM.contains(&name)).map_err(Failure::input)?;
-        expect_memory(std::slice::from_ref(folder))?;
         let out = self.out.clone().unwrap_or_else(|| folder.join(MOVIE));
         let is_mp4 = match extension(&out).as_str() {
             "gif" => false,
@@ -69,6 +68,18 @@ impl Movie {
                 )));
             }
         };
+        let parent = folder_of(&out);
+        let own = is_same(&run.path, parent).then_some(&run);
+        if own.is_none() {
+            refuse_other_run(parent)?;
+        }
+        let name = out.file_name().unwrap_or_default().to_string_lossy();
+        if !self.force
+            && let Some(sentence) = in_the_way(parent, &name, own)?
+        {
+            return Err(refused(sentence));
+        }
+        expect_memory(movie::memory(folder).map_err(Failure::input)?)?;
         let movie = movie::of_run(folder, self.field).map_err(Failure::input)?;
         let movie = movie.ok_or_else(|| {
             refused(format!(
@@ -80,15 +91,6 @@ impl Movie {
             true => mp4(&movie)?,
             false => movie::gif(&movie).map_err(Failure::input)?,
         };
-        let parent = folder_of(&out);
-        let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let own = is_same(&run.path, parent).then_some(&run);
-        if own.is_none() {
-            refuse_other_run(parent)?;
-        }
-        if !self.force {
-            refuse_to_replace(parent, &[(name, &bytes)], own)?;
-        }
         write_atomic(&out, &bytes)
             .map_err(|error| Failure::running(anyhow::anyhow!("cannot write {}: {error}", out.display())))?;
         print_message(&format!("{}\n", out.display()));

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
+use slipfront_case::arrays::extension;
 use slipfront_case::case::PROGRAM;
 use slipfront_case::disk::{is_same, read_limited, write_atomic};
 use slipfront_case::field_info::{FIELDS, field_info, field_named};
@@ -107,6 +108,7 @@ enum AgainstName {
 impl Plot {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         set_threads(None)?;
+        self.out.as_deref().map_or(Ok(()), expect_a_folder)?;
         let mut runs = Vec::new();
         for folder in &self.folders {
             expect_results(folder)?;
@@ -114,7 +116,7 @@ impl Plot {
             expect_as_written(&run, |name| pictures::DRAWN_FROM.contains(&name)).map_err(Failure::input)?;
             runs.push(run);
         }
-        expect_memory(&self.folders)?;
+        expect_memory(pictures::memory(&self.folders).map_err(Failure::input)?)?;
         let (out, drawn) = match (
             self.field.as_deref().and_then(field_named),
             self.folders.as_slice(),
@@ -254,9 +256,22 @@ impl Plot {
     }
 }
 
-/// Refuses pictures for which there is no memory.
-pub(super) fn expect_memory(folders: &[PathBuf]) -> Result<(), Failure> {
-    let needed = PROGRAM + pictures::memory(folders).map_err(Failure::input)?;
+/// Refuses the name of a picture where a folder for several is asked for, unless there is such a folder.
+fn expect_a_folder(out: &Path) -> Result<(), Failure> {
+    if !["svg", "png"].contains(&extension(out).as_str()) || out.is_dir() {
+        return Ok(());
+    }
+    let folder = out.with_extension("");
+    Err(Failure::input(anyhow::anyhow!(
+        "--out names a folder, in which pictures have names of their own, and {} is that of a picture: write --out {}",
+        out.display(),
+        folder.display()
+    )))
+}
+
+/// Refuses pictures for which there is no memory, of which they take so many bytes beside the program.
+pub(super) fn expect_memory(bytes: f64) -> Result<(), Failure> {
+    let needed = PROGRAM + bytes;
     let available = available_of(needed);
     if needed <= available {
         return Ok(());
@@ -314,25 +329,34 @@ pub(super) fn refuse_to_replace(
     own: Option<&Inspection>,
 ) -> Result<(), Failure> {
     for (name, bytes) in files {
-        let path = out.join(name);
-        let is_same = || read_limited(&path, bytes.len() as u64).is_ok_and(|found| found == *bytes);
-        if path.symlink_metadata().is_err() || is_same() {
-            continue;
-        }
-        let what = match own
-            .map(|run| run.has_written(name))
-            .transpose()
-            .map_err(Failure::input)?
+        let is_same = |path: &Path| read_limited(path, bytes.len() as u64).is_ok_and(|found| found == *bytes);
+        if let Some(sentence) = in_the_way(out, name, own)?
+            && !is_same(&out.join(name))
         {
-            Some(true) => continue,
-            Some(false) => "is not as the run has drawn it",
-            None => "exists",
-        };
-        let sentence = format!(
-            "{} {what}: choose another folder with --out, or replace it with --force",
-            path.display()
-        );
-        return Err(Failure::input(anyhow::anyhow!(sentence)));
+            return Err(Failure::input(anyhow::anyhow!(sentence)));
+        }
     }
     Ok(())
+}
+
+/// Why a file cannot stand where another one is, unless the run in the folder, if it is an `own` one of it, has drawn that.
+pub(super) fn in_the_way(
+    out: &Path,
+    name: &str,
+    own: Option<&Inspection>,
+) -> Result<Option<String>, Failure> {
+    let path = out.join(name);
+    if path.symlink_metadata().is_err() {
+        return Ok(None);
+    }
+    let is_drawn = own.map(|run| run.has_written(name)).transpose();
+    let what = match is_drawn.map_err(Failure::input)? {
+        Some(true) => return Ok(None),
+        Some(false) => "is not as the run has drawn it",
+        None => "exists",
+    };
+    Ok(Some(format!(
+        "{} {what}: choose another place with --out, or replace it with --force",
+        path.display()
+    )))
 }

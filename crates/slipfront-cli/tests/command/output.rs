@@ -274,19 +274,21 @@ fn a_movie_shows_every_snapshot() {
     assert_eq!((size, pictures), ([800, 400], snapshots));
     // Sixteen seconds, and more for the instants.
     assert!((1500..3500).contains(&time), "{time}");
-    // The same again is no replacement; another field is.
-    workspace.succeed("movie run");
+    // A file is in the way before anything is drawn, and a field that there is not is found then.
+    for line in ["movie run", "movie run --field velocity_x"] {
+        let said = workspace.fail(line, 2);
+        assert!(
+            said.contains("movie.gif is not as the run has drawn it: choose another place"),
+            "{said}"
+        );
+    }
+    workspace.succeed("movie run --force");
     assert_eq!(workspace.read("run/movie.gif"), bytes);
-    let said = workspace.fail("movie run --field displacement_x", 2);
-    assert!(
-        said.contains("movie.gif is not as the run has drawn it: choose another folder"),
-        "{said}"
-    );
     workspace.succeed("movie run --field displacement_x -o other.gif");
     assert_ne!(workspace.read("other.gif"), bytes);
     for (line, sentence) in [
         (
-            "movie run --field velocity_x",
+            "movie run --field velocity_x -o none.gif",
             "has kept no snapshots of this field: name one of `output.fields`",
         ),
         (
@@ -314,8 +316,17 @@ fn a_case_can_ask_for_its_movie() {
     workspace.succeed("movie run -o again.gif");
     assert_eq!(workspace.read("again.gif"), bytes);
     // It goes with the run, and a run without snapshots has none.
-    workspace.succeed("run small.toml -o run --force --set output.movie=true --set output.snapshots=[]");
+    workspace.succeed("run small.toml -o run --force --set output.snapshots=[]");
     assert!(!workspace.exists("run/movie.gif"));
+    let said = workspace.fail(
+        "run small.toml -o other --set output.movie=true --set output.snapshots=[]",
+        2,
+    );
+    assert!(
+        said.contains("a movie shows the snapshots of a run, and this one keeps none"),
+        "{said}"
+    );
+    assert!(!workspace.exists("other"));
 }
 
 /// Skipped where there is no ffmpeg.

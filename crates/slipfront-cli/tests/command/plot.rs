@@ -19,6 +19,24 @@ fn plot_draws_the_pictures_of_the_run_again() {
     assert_eq!(workspace.read("pictures/stress.svg"), before["stress.svg"]);
 }
 
+/// A folder for pictures has not the name of one.
+#[test]
+fn plot_refuses_the_name_of_a_picture() {
+    let workspace = Workspace::small();
+    workspace.succeed("run small.toml -o a");
+    for out in ["tr.png", "maps/tr.SVG"] {
+        let said = workspace.fail(&format!("plot a --field traction -o {out}"), 2);
+        let (folder, _) = out.split_once('.').unwrap();
+        let sentence = format!("{out} is that of a picture: write --out {folder}\n");
+        assert!(said.contains(&sentence), "{said}");
+        assert!(!workspace.exists(out));
+    }
+    // A folder of that name may be there.
+    std::fs::create_dir(workspace.path("old.png")).unwrap();
+    workspace.succeed("plot a --field traction -o old.png");
+    assert!(workspace.exists("old.png/traction.png"));
+}
+
 #[test]
 fn plot_lays_two_runs_over_each_other() {
     let workspace = Workspace::small();

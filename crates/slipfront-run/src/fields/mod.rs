@@ -17,7 +17,7 @@ mod write;
 
 pub use frame::{FieldFrame, FieldsData, FieldsError, FieldsFile, StaticFields, thin};
 pub use kymograph::{KymographData, kymograph_bytes, read_kymograph};
-pub use read::{Reduction, few_of, read_fields, read_first_slips, read_maps, read_rows};
+pub use read::{Reduction, count_snapshots, few_of, read_fields, read_first_slips, read_maps, read_rows};
 pub use write::{FieldsWriter, write_fields};
 
 #[cfg(test)]

@@ -86,6 +86,12 @@ pub fn read_maps<R: Reduction>(
     read().map_err(|error| in_words(error, path))
 }
 
+/// The number of snapshots in a file.
+pub fn count_snapshots(path: &Path) -> Result<usize, FieldsError> {
+    let file = NetCdf3Reader::open(path).map_err(|error| in_words(error, path))?;
+    Ok(file.records)
+}
+
 /// The numbers of at most `most` snapshots with these letters: of more those that have letters, or as many spread over the run.
 pub fn few_of(labels: &[String], most: usize) -> Vec<usize> {
     let (count, shown) = (labels.len(), labels.len().min(most));
