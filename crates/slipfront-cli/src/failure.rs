@@ -1,7 +1,5 @@
 //! Why a command fails, and the exit status that follows.
 
-use std::process::ExitCode;
-
 use slipfront_run::agree::RankFailure;
 
 use crate::print_stderr::print_stderr;
@@ -33,7 +31,7 @@ impl Failure {
     }
 
     /// Prints the error to stderr, and gives the exit status.
-    pub(crate) fn report(self) -> ExitCode {
+    pub(crate) fn report(self) -> u8 {
         report(&RankFailure::from(self))
     }
 }
@@ -51,7 +49,7 @@ impl From<Failure> for RankFailure {
 }
 
 /// Prints a failure to stderr, and gives the exit status.
-pub(crate) fn report(failure: &RankFailure) -> ExitCode {
+pub(crate) fn report(failure: &RankFailure) -> u8 {
     print_stderr(&for_stderr(&format!("error: {failure}")));
-    ExitCode::from(failure.status)
+    failure.status
 }

@@ -23,7 +23,6 @@ mod threads;
 mod wrap;
 
 use std::ffi::OsString;
-use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -39,6 +38,7 @@ use crate::failure::{Failure, report};
 use crate::print::expect_printed;
 use crate::print_stderr::{is_silent, silence};
 use crate::ranks::Ranks;
+pub use crate::report::physics;
 
 /// Friction of micro-textured surfaces: the lattice spring-block model of the transition from static to kinetic
 /// friction.
@@ -113,7 +113,7 @@ Examples:
 /// Runs the command with these arguments, the first of which is the name of the program; gives its exit status.
 ///
 /// It belongs to a process of its own: signals are caught and the number of threads is set for the whole process, once.
-pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
+pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
     let command = match Cli::try_parse_from(args) {
         Ok(cli) => cli.command,
         Err(error) => {
@@ -141,10 +141,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
 }
 
 /// The same for the command `slipfront-mpi`, of which there is a process for every rank of the communicator.
-pub fn main_on_ranks(
-    args: impl IntoIterator<Item = OsString>,
-    communicator: Arc<dyn Communicator>,
-) -> ExitCode {
+pub fn main_on_ranks(args: impl IntoIterator<Item = OsString>, communicator: Arc<dyn Communicator>) -> u8 {
     let ranks = Ranks::new("slipfront-mpi", communicator);
     if !ranks.is_first() {
         silence();
@@ -156,22 +153,22 @@ pub fn main_on_ranks(
     execute(|| run.execute(&ranks))
 }
 
-fn execute(work: impl FnOnce() -> Result<(), RankFailure>) -> ExitCode {
+fn execute(work: impl FnOnce() -> Result<(), RankFailure>) -> u8 {
     // If the signal cannot be caught, only the error message for a file that grows too large is lost.
     let _ = signals::ignore_sigxfsz();
     match work() {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(failure) => report(&failure),
     }
 }
 
 /// Prints what was asked for, as help is, or what is wrong with the arguments.
-fn print_usage(error: &clap::Error) -> ExitCode {
+fn print_usage(error: &clap::Error) -> u8 {
     let printed = if is_silent() { Ok(()) } else { error.print() };
     // Of a wrong line the status is what matters; help and version are what was asked for.
     match expect_printed(printed) {
         Err(failure) if !error.use_stderr() => failure.report(),
-        _ => ExitCode::from(error.exit_code() as u8),
+        _ => error.exit_code() as u8,
     }
 }
 

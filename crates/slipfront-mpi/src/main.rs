@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    slipfront_mpi::on_ranks(|ranks| slipfront_cli::main_on_ranks(std::env::args_os(), ranks))
+    slipfront_mpi::on_ranks(|ranks| slipfront_cli::main_on_ranks(std::env::args_os(), ranks).into())
 }

@@ -47,14 +47,22 @@ impl PrecursorRow {
     }
 }
 
+/// The events with their units.
+pub fn rows(events: &[SlipEvent], scales: &Scales) -> Vec<PrecursorRow> {
+    events
+        .iter()
+        .map(|event| PrecursorRow::new(event, scales))
+        .collect()
+}
+
 /// The events as CSV, with the header also where there is none.
 pub fn to_csv(events: &[SlipEvent], scales: &Scales) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::WriterBuilder::new()
         .has_headers(false)
         .from_writer(Vec::new());
     writer.write_record(names_of::<PrecursorRow>())?;
-    for event in events {
-        writer.serialize(PrecursorRow::new(event, scales))?;
+    for row in rows(events, scales) {
+        writer.serialize(row)?;
     }
     finish(writer)
 }

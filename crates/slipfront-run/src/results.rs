@@ -7,12 +7,13 @@ use std::path::Path;
 
 use slipfront::Outline;
 use slipfront::communicator::{Alone, Communicator};
+use slipfront::observe::Frame;
 use slipfront_case::case::Case;
 use slipfront_case::disk;
 use tempfile::TempPath;
 
 use crate::error::ResultsError;
-use crate::fields::{self, FieldFrame, FieldsError, FieldsFile, StaticFields};
+use crate::fields::{self, FieldFrame, FieldsData, FieldsError, FieldsFile, StaticFields};
 use crate::manifest::Manifest;
 use crate::names::{CASE, FIELDS, KYMOGRAPH, PRECURSORS, SERIES, SUMMARY};
 use crate::precursors;
@@ -101,6 +102,31 @@ fn within<'a, T: Copy>(values: &'a [T], outline: Option<&Outline>, outside: T) -
         .collect()
 }
 
+/// What the [fields file](write_fields) of a run on one rank holds.
+pub fn fields_of(case: &Case, record: &Record) -> FieldsData {
+    let (lattice, surface) = (&case.model.lattice, &case.model.surface);
+    let outline = case.model.slider().outline.as_ref();
+    let (names, scale) = (&case.output.fields, record.contact_stress_max);
+    let frame = |(label, frame): &(String, Frame)| {
+        FieldFrame::in_si_units(frame.clone(), label.clone(), names, &case.scales, scale)
+    };
+    let stride = case.output.stride;
+    let thinned = |values: &[f64]| fields::thin(values, lattice.nx, stride).collect();
+    FieldsData {
+        nx: lattice.nx,
+        ny: lattice.ny,
+        stride,
+        block_size: case.scales.block_size,
+        time_unit_s: case.scales.time(),
+        names: names.clone(),
+        textured: fields::thin(&within(&surface.textured, outline, false), lattice.nx, stride).collect(),
+        mu_static: thinned(&within(&surface.mu_static, outline, f64::NAN)),
+        mu_kinetic: thinned(&within(&surface.mu_kinetic, outline, f64::NAN)),
+        first_slip_time_star: thinned(&record.first_slip_time_star),
+        frames: record.frames.iter().map(frame).collect(),
+    }
+}
+
 /// Writes the fields to a temporary file of the run in folder `out`, each rank its own rows; the first one has the file. They are
 /// moved out of the record.
 pub fn write_fields(
@@ -157,11 +183,14 @@ mod tests {
         let case = Case::parse(text, "case", &[]).unwrap();
         let case = std::sync::Arc::new(case);
         let mut record = crate::running::run(&case, 1).unwrap();
+        let in_memory = fields_of(&case, &record);
         let out = folder.path().join("out");
         let mut run = RunFolder::prepare(&out, false, &case.inputs).unwrap();
         write_case(&case, &mut run).unwrap();
         write(&case, &mut record, run, jiff::Timestamp::UNIX_EPOCH, 1).unwrap();
         let fields = fields::read_fields(&out.join(FIELDS)).unwrap();
+        // NaN are equal as they are printed.
+        assert_eq!(format!("{in_memory:?}"), format!("{fields:?}"));
         let slider = case.model.slider();
         let outside: Vec<usize> = (0..36).filter(|&b| !slider.exists(b)).collect();
         assert_eq!(outside.len(), 36 - 32);

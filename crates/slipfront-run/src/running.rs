@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use slipfront::communicator::{Alone, Communicator};
 use slipfront::observe::frames::{Selection, kept};
 use slipfront::observe::{CurveRow, Frame, Frames, Instants, Kymograph, Precursors, Schedule, Scheduled};
-use slipfront::{Checkpoint, Execution, Kernel, RunError, Simulation, Snapshot, Stop, StopReason};
+use slipfront::{Checkpoint, Execution, Kernel, RunError, Simulation, Snapshot, State, Stop, StopReason};
 
 use crate::columns::Columns;
 use crate::fields::FieldFrame;
@@ -16,7 +16,7 @@ use crate::summary::{Summary, SummaryObservers};
 use slipfront_case::case::{Case, Output, Snapshots};
 
 /// Everything a run leaves behind, in memory.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Record {
     /// The numbers.
     pub summary: Summary,
@@ -60,6 +60,8 @@ pub struct Running {
     simulation: Simulation,
     observers: Observers,
     communicator: Arc<dyn Communicator>,
+    /// At most, each of which has blocks enough.
+    threads: usize,
 }
 
 /// What a run has recorded up to now.
@@ -223,13 +225,30 @@ impl Running {
     /// The same on each of several ranks, which share the lattice and then call the same functions. `threads` are those of one.
     pub fn start_on_ranks(case: &Arc<Case>, threads: usize, communicator: Arc<dyn Communicator>) -> Self {
         let plan = &case.time_plan;
-        Self::begin(case, threads, plan.stop, plan.last_step, communicator)
+        Self::begin(case, threads, plan.stop, plan.last_step, communicator, None)
+    }
+
+    /// Begins a run in this state, in which blocks may be displaced and slide.
+    ///
+    /// # Panics
+    /// If a number of the state is not finite, or it is that of another number of blocks.
+    pub fn start_from(case: &Arc<Case>, threads: usize, state: State) -> Self {
+        let plan = &case.time_plan;
+        Self::begin(
+            case,
+            threads,
+            plan.stop,
+            plan.last_step,
+            Arc::new(Alone),
+            Some(state),
+        )
     }
 
     /// Begins a run that goes on as long as it is advanced, whatever its case says. Its [state](Self::state) cannot be
     /// resumed.
     pub fn start_without_end(case: &Arc<Case>, threads: usize) -> Self {
-        Self::begin(case, threads, Stop::at_step(u64::MAX), u64::MAX, Arc::new(Alone))
+        let stop = Stop::at_step(u64::MAX);
+        Self::begin(case, threads, stop, u64::MAX, Arc::new(Alone), None)
     }
 
     fn begin(
@@ -238,20 +257,17 @@ impl Running {
         stop: Stop,
         last_step: u64,
         communicator: Arc<dyn Communicator>,
+        state: Option<State>,
     ) -> Self {
         let (model, dt_star) = (Arc::clone(&case.model), case.time_plan.dt_star);
+        let execution = execution(case, threads);
         Self {
             case: Arc::clone(case),
             stop,
-            simulation: Simulation::on_ranks(
-                model,
-                dt_star,
-                None,
-                execution(case, threads),
-                Arc::clone(&communicator),
-            ),
+            simulation: Simulation::on_ranks(model, dt_star, state, execution, Arc::clone(&communicator)),
             observers: Observers::new(case, last_step),
             communicator,
+            threads: execution.threads,
         }
     }
 
@@ -319,6 +335,7 @@ impl Running {
             simulation,
             observers,
             communicator,
+            threads: execution.threads,
         }))
     }
 
@@ -340,6 +357,26 @@ impl Running {
         let frame = selection(output).capture(&self.snapshot());
         let scale = self.simulation.contact_stress_max();
         FieldFrame::in_si_units(frame, String::new(), &output.fields, &self.case.scales, scale)
+    }
+
+    /// The recorded curve up to now.
+    pub fn rows(&self) -> &[CurveRow] {
+        &self.observers.summary.curve.rows
+    }
+
+    /// Most threads on which it is computed.
+    pub fn threads(&self) -> usize {
+        self.threads
+    }
+
+    /// The largest contact stress so far, in units of `P mu_s`.
+    pub fn contact_stress_max(&self) -> f64 {
+        self.simulation.contact_stress_max()
+    }
+
+    /// Displacements now, velocities half a step later.
+    pub fn motion(&self) -> State {
+        self.simulation.state()
     }
 
     /// The case that is run.

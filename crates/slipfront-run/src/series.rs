@@ -121,6 +121,22 @@ impl SeriesRow {
     }
 }
 
+/// The columns of a series: their names and values, without those that it does not have, and without the numbers of the steps.
+pub fn columns(rows: &[SeriesRow]) -> Vec<(&'static str, Vec<f64>)> {
+    /// A number, or one that a series need not have.
+    type Value = fn(&SeriesRow) -> Option<f64>;
+    macro_rules! named {
+        ($($name:ident)*) => { [$((stringify!($name), (|row| row.$name.into()) as Value)),*] };
+    }
+    let all = named! {
+        time_star time_s drive_displacement_m mu_star friction_coefficient mu_lateral_star friction_force_n lateral_force_n
+        torque_n_m sliding_percent work_j kinetic_energy_j lattice_energy_j drive_spring_energy_j friction_loss_j damping_loss_j
+        viscous_loss_j contact_spring_energy_j broken_spring_loss_j mean_state_star
+    };
+    let column = |(name, value): (_, Value)| Some((name, rows.iter().map(value).collect::<Option<_>>()?));
+    all.into_iter().filter_map(column).collect()
+}
+
 /// The rows as CSV. Numbers are the shortest that read back as the same bits.
 pub fn to_csv(rows: impl Iterator<Item = SeriesRow>) -> Result<Vec<u8>, csv::Error> {
     let mut rows = rows;
@@ -251,6 +267,47 @@ mod tests {
             );
         }
         assert_eq!(rows_of(text.as_slice(), |row: SeriesRow| row).unwrap(), rows);
+    }
+
+    /// In the order of the file, each with its own numbers.
+    #[test]
+    fn columns_are_those_of_the_file() {
+        let row = SeriesRow {
+            time_star: 1.5,
+            mu_star: 0.25,
+            torque_n_m: Some(3.0),
+            mean_state_star: Some(7.0),
+            ..SeriesRow::default()
+        };
+        let text = to_csv([row; 2].into_iter()).unwrap();
+        let mut lines = std::str::from_utf8(&text).unwrap().lines();
+        let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+        let numbers: Vec<f64> = lines
+            .next()
+            .unwrap()
+            .split(',')
+            .map(|cell| cell.parse().unwrap())
+            .collect();
+        let columns = columns(&[row; 2]);
+        assert_eq!(
+            columns.iter().map(|(name, _)| *name).collect::<Vec<_>>(),
+            header[1..]
+        );
+        for ((name, values), number) in columns.iter().zip(&numbers[1..]) {
+            assert_eq!(values, &[*number; 2], "{name}");
+        }
+        let all = slipfront_case::case_file::names_of::<SeriesRow>();
+        let whole = SeriesRow {
+            drive_displacement_m: Some(0.0),
+            friction_force_n: Some(0.0),
+            lateral_force_n: Some(0.0),
+            viscous_loss_j: Some(0.0),
+            contact_spring_energy_j: Some(0.0),
+            broken_spring_loss_j: Some(0.0),
+            ..row
+        };
+        let names: Vec<&str> = super::columns(&[whole]).iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, all[1..]);
     }
 
     #[test]

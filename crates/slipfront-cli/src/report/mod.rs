@@ -9,6 +9,7 @@ mod table;
 mod times;
 
 pub(crate) use cost::cost;
-pub(crate) use physics::{physics, smallest, texture};
+pub use physics::physics;
+pub(crate) use physics::{smallest, texture};
 pub(crate) use study::{plan, study};
 pub(crate) use summary::summary;

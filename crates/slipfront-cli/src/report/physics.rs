@@ -9,7 +9,7 @@ use slipfront_case::number_format::{count, four_digits, with_si_prefix};
 use super::summary::notes;
 
 /// The resolved physics of a case, as a tree.
-pub(crate) fn physics(case: &Case) -> String {
+pub fn physics(case: &Case) -> String {
     let branches = [
         ("slider", slider(case)),
         ("material", material(case)),

@@ -90,6 +90,22 @@ pub struct KymographData {
 }
 
 impl KymographData {
+    /// What the file of this run holds.
+    pub fn of(kymograph: &Kymograph, case: &Case) -> Self {
+        let bins = PositionBins::of(&case.model.lattice, &case.model.drive);
+        let (steps, shares): (Vec<f64>, Vec<Vec<f32>>) = kymograph.rows().unzip();
+        let (size, half) = (
+            case.scales.block_size,
+            0.5 * bins.width as f64 * case.scales.block_size,
+        );
+        let [first, last] = [0, bins.count - 1].map(|bin| bins.middle(bin) * size);
+        Self {
+            time_star: steps.iter().map(|step| step * case.time_plan.dt_star).collect(),
+            places: [first - half, last + half],
+            sliding_share: shares.into_iter().flatten().collect(),
+        }
+    }
+
     /// Number of bins.
     pub fn columns(&self) -> usize {
         self.sliding_share

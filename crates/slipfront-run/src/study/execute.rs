@@ -27,6 +27,10 @@ type IsStopped<'a> = dyn Fn() -> bool + Sync + 'a;
 /// Runs a case; without an outcome if the run was given up.
 type RunCase<'a> = dyn Fn(RunKey, &IsStopped) -> Result<Option<Outcome>, StudyError> + Sync + 'a;
 
+/// Looks at a run that has ended, before what it leaves is written; whether it counts as done. One that does not is no failure: it is
+/// as if it had been stopped.
+pub type LookAtRun<'a> = dyn Fn(RunKey, &Arc<Case>, &running::Record) -> bool + Sync + 'a;
+
 /// Runs everything that the plan needs and the records lack.
 ///
 /// The threads of rayon's pool do one run each at a time, of this study and of others that are executed meanwhile; this thread
@@ -39,8 +43,20 @@ pub fn execute(
     stop: &AtomicBool,
     watch: &mut dyn FnMut(&Progress),
 ) -> Result<StudyResults, StudyError> {
+    execute_and_look(plan, records, folder, stop, &|_, _, _| true, watch)
+}
+
+/// The same, where `look` looks at every run that ends, on the thread of the run.
+pub fn execute_and_look(
+    plan: &Plan,
+    records: &Records,
+    folder: &Path,
+    stop: &AtomicBool,
+    look: &LookAtRun,
+    watch: &mut dyn FnMut(&Progress),
+) -> Result<StudyResults, StudyError> {
     let runs = folder.join(RUNS);
-    let run_case = |run: RunKey, is_stopped: &IsStopped| run_one(plan, &runs, run, is_stopped);
+    let run_case = |run: RunKey, is_stopped: &IsStopped| run_one(plan, &runs, run, look, is_stopped);
     execute_with(plan, records, &run_case, stop, watch)
 }
 
@@ -101,6 +117,7 @@ fn run_one(
     plan: &Plan,
     runs: &Path,
     run: RunKey,
+    look: &LookAtRun,
     is_stopped: &IsStopped,
 ) -> Result<Option<Outcome>, StudyError> {
     let started = clock::now();
@@ -114,6 +131,11 @@ fn run_one(
     let Some(mut record) = running::run_unless(&case, is_stopped) else {
         return Ok(None);
     };
+    if let Ok(record) = &record
+        && !look(run, &case, record)
+    {
+        return Ok(None);
+    }
     let is_kept = match plan.settings.keep {
         RetainRuns::All => true,
         RetainRuns::None => false,

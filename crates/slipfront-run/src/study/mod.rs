@@ -39,7 +39,7 @@ pub use anisotropy::{Anisotropy, OverDirections, anisotropies};
 pub use axis::{Axis, Level, Spacing};
 pub use error::StudyError;
 pub(crate) use error::of_others;
-pub use execute::{collect, execute};
+pub use execute::{LookAtRun, collect, execute, execute_and_look};
 pub use folder::{StudyFolder, is_study, refuse_foreign, study_of, write};
 pub use friction_tensor::Principal;
 pub use idle_axes::idle_axes;

@@ -1,0 +1,17 @@
+"""The command: ``python -m slipfront`` does what ``slipfront`` does."""
+
+import signal
+import sys
+
+from ._slipfront import command
+
+
+def main() -> int:
+    """Run the command with the arguments of this process; give its exit status."""
+    # The command stops at signals by itself, with checkpoints; Python would only take note of them.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    return command(["slipfront", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

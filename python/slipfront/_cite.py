@@ -1,0 +1,21 @@
+"""How to cite."""
+
+from __future__ import annotations
+
+from ._slipfront import __version__
+
+
+def cite() -> str:
+    """What to cite: the program and the paper whose model it implements.
+
+    Examples
+    --------
+    >>> "10.1016/j.triboint.2023.108866" in cite()
+    True
+    """
+    return (
+        f"The slipfront developers: slipfront, version {__version__}. A two-dimensional lattice spring-block model of the "
+        "transition from static to kinetic friction of micro-textured surfaces.\n"
+        "The model: 2D Spring-block model to study the transition from static to kinetic friction of "
+        "complex-micro-textured contact surfaces. Tribology International (2023). doi:10.1016/j.triboint.2023.108866"
+    )

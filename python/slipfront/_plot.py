@@ -1,0 +1,109 @@
+"""Pictures of runs by matplotlib, in the sizes of a journal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ._run import Run
+
+_WIDTH = 85 / 25.4
+_STYLE = {
+    "font.size": 8,
+    "axes.labelsize": 8,
+    "axes.linewidth": 0.6,
+    "lines.linewidth": 1.0,
+    "xtick.labelsize": 7,
+    "ytick.labelsize": 7,
+    "legend.fontsize": 7,
+    "savefig.dpi": 300,
+}
+
+
+def plot(run: Run, kind: str, ax: Axes | None, *, instant: str | int = -1, label: str | None = None) -> Figure:
+    """Draw a run; `Run.plot` says what."""
+    import matplotlib as mpl
+
+    with mpl.rc_context(cast("Any", _STYLE)):
+        if kind == "friction":
+            return _friction(run, ax, label)
+        if kind == "front":
+            return _map(run, run.front, "first slip, t*", ax)
+        return _field(run, kind, instant, ax)
+
+
+def _figure(ax: Axes | None, height: float) -> tuple[Figure, Axes]:
+    import matplotlib.pyplot as plt
+
+    if ax is not None:
+        return cast("Figure", ax.get_figure(root=True)), ax
+    return plt.subplots(figsize=(_WIDTH, height * _WIDTH), layout="constrained")
+
+
+def _friction(run: Run, ax: Axes | None, label: str | None) -> Figure:
+    figure, ax = _figure(ax, 0.75)
+    series = run.series
+    time_star, mu_star = np.asarray(series["time_star"]), np.asarray(series["mu_star"])
+    (line,) = ax.plot(time_star, mu_star, label=label or run.case.name)
+    for found in run.summary["instants"]:
+        ax.plot(found["time_star"], found["mu_star"], ".", ms=4, color=line.get_color())
+        # Beside the curve, which rises before the peak and falls after it.
+        ax.annotate(found["instant"], (found["time_star"], found["mu_star"]), (3, 2), textcoords="offset points", fontsize=7)
+    ax.set_xlabel("$t^*$")
+    ax.set_ylabel(r"$\mu^*$")
+    ax.set_ylim(bottom=0)
+    ax.set_xlim(left=0)
+    if label is not None:
+        ax.legend(frameon=False)
+    return figure
+
+
+def _map(run: Run, values: npt.NDArray[Any], title: str, ax: Axes | None) -> Figure:
+    rows, columns = values.shape
+    figure, ax = _figure(ax, min(max(rows / columns, 0.3), 1.5))
+    x, y = (np.asarray(run.fields[axis]) for axis in ("x", "y"))
+    half = 0.5 * run.case.numbers["block_size_m"] * run._arrays["stride"]
+    unit, prefix = _unit(float(x[-1] + half))
+    extent = (0.0, (x[-1] + half) / unit, 0.0, (y[-1] + half) / unit)
+    image = ax.imshow(values, origin="lower", extent=extent, cmap="viridis", interpolation="nearest")
+    textured = np.asarray(run.fields["textured"])
+    if textured.any() and not textured.all():
+        ax.contour(x / unit, y / unit, textured, levels=[0.5], colors="white", linewidths=0.8)
+    ax.set_xlabel(f"x ({prefix}m)")
+    ax.set_ylabel(f"y ({prefix}m)")
+    figure.colorbar(image, ax=ax, label=title, shrink=0.9)
+    return figure
+
+
+def _field(run: Run, name: str, instant: str | int, ax: Axes | None) -> Figure:
+    arrays = run._arrays["fields"]
+    if name not in arrays:
+        kept = ", ".join(f'"{kept}"' for kept in arrays) or "none"
+        raise ValueError(f'the run has no field "{name}"; pictures are "friction", "front", and its fields: {kept}')
+    letters = list(run._arrays["instants"]["instant"])
+    if isinstance(instant, str):
+        found = [position for position, shown in enumerate(letters) if instant in shown]
+        if not found:
+            raise ValueError(f'the run has no instant "{instant}": it has {", ".join(letters) or "none"}')
+        instant = found[0]
+    values, unit, long_name = arrays[name]
+    shown = values[instant]
+    size, prefix = _unit(float(np.nanmax(np.abs(shown), initial=0.0))) if unit != "1" else (1.0, "")
+    in_unit = "" if unit == "1" else f" ({prefix}{unit.replace(' s-1', '/s')})"
+    figure = _map(run, shown / size, long_name + in_unit, ax)
+    return figure
+
+
+def _unit(largest: float) -> tuple[float, str]:
+    """The power of a thousand that suits a number, and its prefix."""
+    prefixes = ("f", "p", "n", "\u00b5", "m", "", "k", "M", "G")
+    if not largest > 0:
+        return 1.0, ""
+    power = int(np.clip(np.floor(np.log10(largest) / 3), -5, 3))
+    return 1000.0**power, prefixes[power + 5]

@@ -1,0 +1,71 @@
+"""How far a run or a study is, as it is shown."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+if TYPE_CHECKING:
+    from ._simulation import Simulation
+
+Progress: TypeAlias = "bool | Callable[[Simulation], object] | None"
+"""``True`` for a bar, ``False`` for nothing, ``None`` for a bar in terminals and notebooks, or a function of the simulation."""
+
+
+class Bar:
+    """A bar of tqdm, or where that is not installed, a line of text.
+
+    Parameters
+    ----------
+    shown
+        Whether there is one; None: in a terminal and in a notebook.
+    total
+        What is to be done, None if it is not known yet.
+    unit
+        What is counted.
+    title
+        What it is called.
+    """
+
+    def __init__(self, shown: bool | None, total: int | None, unit: str, title: str) -> None:
+        self._bar: Any = None
+        self._last = -1
+        self._total = total
+        self._title = title
+        self._text = False
+        if shown is None:
+            shown = sys.stderr.isatty() or "ipykernel" in sys.modules
+        if not shown:
+            return
+        try:
+            from tqdm.auto import tqdm
+        except ImportError:
+            self._text = True
+        else:
+            self._bar = tqdm(total=total, unit=unit, desc=title, unit_scale=unit == "step", leave=False)
+
+    def show(self, done: int, total: int | None = None, said: str = "") -> None:
+        """Show how much is done, of how much if that has changed, and a few words."""
+        self._total = self._total if total is None else total
+        if self._bar is not None:
+            self._bar.total = self._total
+            self._bar.set_postfix_str(said, refresh=False)
+            self._bar.update(done - self._bar.n)
+        elif self._text and self._total:
+            percent = 100 * done // self._total
+            if percent != self._last:
+                self._last = percent
+                print(f"\r{self._title} {percent} % {said}", end="", file=sys.stderr, flush=True)
+
+    def __enter__(self) -> Bar:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._bar is not None:
+            self._bar.close()
+        elif self._text and self._last >= 0:
+            print(file=sys.stderr)

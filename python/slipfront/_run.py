@@ -1,0 +1,308 @@
+"""Runs: what a case has given."""
+
+from __future__ import annotations
+
+import functools
+import json
+import os
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _dataset, _slipfront
+from ._case import Case
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+class Source(Protocol):
+    """Where the numbers of a run come from: memory, or the folder in which it was written."""
+
+    def summary(self) -> str: ...
+    def series(self) -> dict[str, Any]: ...
+    def fields(self) -> dict[str, Any]: ...
+    def kymograph(self) -> dict[str, Any] | None: ...
+    def precursors(self) -> dict[str, Any] | None: ...
+    def save(self, folder: Path, force: bool) -> None: ...
+
+
+class FolderSource:
+    """A run that was read from its folder."""
+
+    def __init__(self, folder: Path, read: dict[str, Any]) -> None:
+        self._folder, self._read = folder, read
+
+    def summary(self) -> str:
+        return str(self._read["summary"])
+
+    def series(self) -> dict[str, Any]:
+        return dict(self._read["series"])
+
+    def fields(self) -> dict[str, Any]:
+        return dict(self._read["fields"])
+
+    def kymograph(self) -> dict[str, Any] | None:
+        return self._read.get("kymograph")
+
+    def precursors(self) -> dict[str, Any] | None:
+        return self._read.get("precursors")
+
+    def save(self, folder: Path, force: bool) -> None:
+        if folder.exists() and (not force or not (folder / "manifest.json").is_file()):
+            raise FolderError(f"{folder} exists: name another folder, or replace a run there with force=True")
+        if folder.exists():
+            shutil.rmtree(folder)
+        shutil.copytree(self._folder, folder)
+
+
+class Run:
+    """What a run has given: numbers, curve, fields, the slip front.
+
+    Numbers with a star are dimensionless (Eq. 11). All that `summary.json` holds is in `summary`; the most asked for are attributes.
+
+    Examples
+    --------
+    >>> run = run_case(Case.load("cases/circle.toml"))
+    >>> round(run.static_friction_star, 3)
+    0.692
+    """
+
+    def __init__(self, case: Case, source: Source, folder: Path | None = None) -> None:
+        self._case, self._source, self._folder = case, source, folder
+
+    @property
+    def case(self) -> Case:
+        """The case that was run."""
+        return self._case
+
+    @property
+    def folder(self) -> Path | None:
+        """The folder that it was read from or saved to."""
+        return self._folder
+
+    @functools.cached_property
+    def summary(self) -> dict[str, Any]:
+        """The numbers, under the keys of `summary.json`."""
+        return dict(json.loads(self._source.summary()))
+
+    @property
+    def static_friction_star(self) -> float:
+        """mu_s*, the first peak of mu* (or its largest value where there is no transition)."""
+        return float(self.summary["static_friction_star"])
+
+    @property
+    def static_friction(self) -> float:
+        """mu_s, the same as a coefficient F_T/F_N."""
+        return float(self.summary["static_friction"])
+
+    @property
+    def kinetic_friction_star(self) -> float | None:
+        """mu_k*, the mean of mu* over the kinetic window; None if the run has none."""
+        return self._optional("kinetic_friction_star")
+
+    @property
+    def kinetic_friction_star_uncertainty(self) -> float | None:
+        """Standard error of mu_k*; None where the window supports none (see `warnings`)."""
+        return self._optional("kinetic_friction_star_uncertainty")
+
+    @property
+    def kinetic_friction(self) -> float | None:
+        """mu_k, the same as a coefficient F_T/F_N."""
+        return self._optional("kinetic_friction")
+
+    @property
+    def onset_time_star(self) -> float:
+        """t_s*, when mu* has its first peak."""
+        return float(self.summary["onset_time_star"])
+
+    @property
+    def onset_time_s(self) -> float:
+        """The same in s."""
+        return float(self.summary["onset_time_s"])
+
+    @property
+    def first_slip_time_star(self) -> float | None:
+        """t* of the first slip of a block in contact; None if none slipped."""
+        return self._optional("first_slip_time_star")
+
+    @property
+    def sliding_percent_max(self) -> float:
+        """Largest share of sliding blocks N*, %."""
+        return float(self.summary["sliding_percent_max"])
+
+    @property
+    def transition(self) -> bool:
+        """Whether mu* fell at least half-way to the steady level after its first peak."""
+        return bool(self.summary["transition"])
+
+    @property
+    def nucleation_sites(self) -> int | None:
+        """Sites at which slip has nucleated; None without a transition."""
+        found = self.summary["nucleation_sites"]
+        return None if found is None else int(found)
+
+    @property
+    def front_speed_c_s(self) -> float | None:
+        """Median speed of the slip front over the speed of long shear waves."""
+        return self._optional("front_speed_c_s")
+
+    @property
+    def front_speed_m_s(self) -> float | None:
+        """The same in m/s."""
+        return self._optional("front_speed_m_s")
+
+    @property
+    def front_duration_star(self) -> float | None:
+        """t* from 5 to 95 % of the first slips."""
+        return self._optional("front_duration_star")
+
+    @property
+    def texture_percent(self) -> float:
+        """Textured area A* as meshed, %."""
+        return float(self.summary["texture_percent"])
+
+    @property
+    def energy_error(self) -> float:
+        """Energy that is not accounted for, relative to the energy put in."""
+        return float(self.summary["energy_error"])
+
+    @property
+    def steps(self) -> int:
+        """Steps done."""
+        return int(self.summary["steps"])
+
+    @property
+    def warnings(self) -> list[str]:
+        """What a reader should know before trusting the numbers."""
+        return [str(warning) for warning in self.summary["warnings"]]
+
+    @functools.cached_property
+    def series(self) -> xr.Dataset:
+        """The recorded curve over t*: the columns of `series.csv` with units; a dictionary of arrays without xarray."""
+        return _dataset.table(self._source.series())
+
+    @functools.cached_property
+    def fields(self) -> xr.Dataset:
+        """Fields at the snapshots, (time, y, x) in SI units, and what never changes, (y, x): what `fields.nc` holds."""
+        return _dataset.fields(self._arrays)
+
+    @functools.cached_property
+    def kymograph(self) -> xr.Dataset | None:
+        """The share of the blocks that slide against time and place along the drive; None in folders of old versions."""
+        arrays = self._source.kymograph()
+        return None if arrays is None else _dataset.kymograph(arrays, self._arrays["time_unit_s"])
+
+    @functools.cached_property
+    def precursors(self) -> xr.Dataset | None:
+        """The events of slip of a slider driven at an edge; None of others."""
+        columns = self._source.precursors()
+        return None if columns is None else _dataset.table(columns)
+
+    @property
+    def texture(self) -> npt.NDArray[np.bool_]:
+        """Whether a block is texture, (N_y, N_x), the lowest row first."""
+        return self._case.textured
+
+    @property
+    def front(self) -> npt.NDArray[np.float64]:
+        """t* of the first slip of every block that the fields keep, (y, x); NaN where a block never slid."""
+        front: npt.NDArray[np.float64] = self._arrays["first_slip_time_star"]
+        return front
+
+    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
+        """Write the folder of the run, with the bytes of every file that `slipfront run` writes.
+
+        Parameters
+        ----------
+        folder
+            A new or empty one.
+        force
+            Replace the files of an earlier run there, and nothing else.
+
+        Returns
+        -------
+        pathlib.Path
+            The folder.
+        """
+        path = Path(folder)
+        self._source.save(path, force)
+        self._folder = path
+        return path
+
+    def plot(self, kind: str = "friction", ax: Axes | None = None, **options: Any) -> Figure:
+        """Draw the run with matplotlib, as wide as a column of a journal (85 mm).
+
+        Parameters
+        ----------
+        kind
+            ``"friction"``: mu* and N* over t*; ``"front"``: when each block first slid; or the name of a field, such as
+            ``"traction"``, at the snapshot ``instant`` (a letter, or its number).
+        ax
+            Axes to draw in; new ones unless given.
+        options
+            ``instant`` of a field, ``label`` of a curve.
+        """
+        from ._plot import plot
+
+        return plot(self, kind, ax, **options)
+
+    def __repr__(self) -> str:
+        return f"Run({self._case.name}: {', '.join(f'{name} = {value}' for name, value in self._told())})"
+
+    def _repr_html_(self) -> str:
+        from ._html import numbers, picture
+
+        rows = [*self._told(), *(("warning", warning) for warning in self.warnings)]
+        return f"<b>{self._case.name}</b>{picture(self.texture)}{numbers(rows)}"
+
+    def _told(self) -> list[tuple[str, str]]:
+        kinetic, error = self.kinetic_friction_star, self.kinetic_friction_star_uncertainty
+        told = [("mu_s*", f"{self.static_friction_star:.4g}")]
+        if kinetic is not None:
+            told.append(("mu_k*", f"{kinetic:.4g}" + (f" \u00b1 {error:.1g}" if error is not None else "")))
+        return [*told, ("t_s*", f"{self.onset_time_star:.4g}"), ("A*", f"{self.texture_percent:.4g} %")]
+
+    @functools.cached_property
+    def _arrays(self) -> dict[str, Any]:
+        return self._source.fields()
+
+    def _optional(self, key: str) -> float | None:
+        found = self.summary[key]
+        return None if found is None else float(found)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        read = {
+            "summary": self._source.summary(),
+            "series": self._source.series(),
+            "fields": self._arrays,
+            "kymograph": self._source.kymograph(),
+            "precursors": self._source.precursors(),
+        }
+        return (_unpickled, (self._case, read))
+
+
+class _Unsaved(FolderSource):
+    """A run that was pickled: its numbers without its files."""
+
+    def save(self, folder: Path, force: bool) -> None:
+        raise FolderError("a run that was pickled has no files: save it before, or run its case again")
+
+
+def _unpickled(case: Case, read: dict[str, Any]) -> Run:
+    return Run(case, _Unsaved(Path(), read))
+
+
+def run_case(case: Case) -> Run:
+    """Run a case to its end, without progress."""
+    from ._simulation import run
+
+    return run(case, progress=False)
+
+
+FolderError = _slipfront.FolderError

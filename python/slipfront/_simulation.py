@@ -1,0 +1,410 @@
+"""Simulations: a run taken step by step."""
+
+from __future__ import annotations
+
+import copy
+import math
+import os
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _dataset, _slipfront
+from ._case import Case
+from ._progress import Bar, Progress
+from ._run import Run
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_ALL = 2**63
+
+
+def run(case: Case | str | os.PathLike[str], progress: Progress = None, threads: int | None = None) -> Run:
+    """Run a case to its end.
+
+    Other threads of Python go on meanwhile. Ctrl-C ends it with a `KeyboardInterrupt`, an exception in `progress` with that.
+
+    Parameters
+    ----------
+    case
+        A case, or the path of one.
+    progress
+        True for a bar, False for none, None (default) for a bar in terminals and notebooks; or a function that is called with
+        the simulation every 50 ms.
+    threads
+        At most so many, one per core unless given. Results do not depend on it; a small slider takes one.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    RunError
+        When the run diverges.
+
+    Examples
+    --------
+    >>> result = run(Case.load("cases/circle.toml"), progress=False)
+    >>> result.transition
+    True
+    >>> float(result.series["mu_star"].max()) == result.static_friction_star
+    True
+    """
+    simulation = Simulation(case if isinstance(case, Case) else Case.load(case), threads=threads)
+    return simulation.run(progress=progress)
+
+
+class Simulation:
+    """A run in progress, from rest.
+
+    Lengths are in m, velocities in m/s, arrays over blocks have the shape (N_y, N_x) with the lowest row first. It may be copied and
+    pickled: the copy goes on with the same bits. It belongs to one thread at a time.
+
+    Parameters
+    ----------
+    case
+        What is run.
+    threads
+        At most so many, one per core unless given.
+
+    Examples
+    --------
+    >>> simulation = Simulation(Case.load("cases/circle.toml"))
+    >>> simulation.step(100)
+    100
+    >>> simulation.displacement.shape
+    (2, 50, 50)
+    >>> twin = copy.copy(simulation)
+    >>> _ = simulation.step(50), twin.step(50)
+    >>> bool((simulation.displacement == twin.displacement).all())
+    True
+    """
+
+    def __init__(self, case: Case, *, threads: int | None = None) -> None:
+        self._threads = _threads(threads)
+        self._begin(case, _slipfront.Simulation(case._native, self._threads, None))
+        self._legs: list[tuple[Case, int]] = []
+        # Where the drive stood when this leg began, block by block, and the time and steps before it.
+        self._origin: npt.NDArray[np.float64] | float = 0.0
+        self._before = (0, 0.0)
+
+    def _begin(self, case: Case, native: _slipfront.Simulation) -> None:
+        self._case = case
+        self._native = native
+        self._ended: str | None = None
+        self._lock = threading.Lock()
+
+    @contextmanager
+    def _alone(self) -> Iterator[_slipfront.Simulation]:
+        if not self._lock.acquire(blocking=False):
+            raise RuntimeError(
+                "another thread is using this simulation: wait for it, or give each thread a simulation of its own (copy.copy)"
+            )
+        try:
+            yield self._native
+        finally:
+            self._lock.release()
+
+    @property
+    def case(self) -> Case:
+        """The case that is run, since the last change."""
+        return self._case
+
+    @property
+    def ended(self) -> bool:
+        """Whether the case says that the run ends here: it goes on after a change, for example of ``time.duration_star``."""
+        return self._ended is not None
+
+    @property
+    def steps(self) -> int:
+        """Steps since the start, those before changes included."""
+        with self._alone() as native:
+            return self._before[0] + native.step
+
+    @property
+    def time_s(self) -> float:
+        """Time since the start, s."""
+        return self._before[1] + self.time_star * self._case.numbers["time_unit_s"]
+
+    @property
+    def time_star(self) -> float:
+        """t* since the start or the last change."""
+        return self._point[0]
+
+    @property
+    def mu_star(self) -> float:
+        """mu* at this instant."""
+        return self._point[1]
+
+    @property
+    def mu_lateral_star(self) -> float:
+        """The same across the drive."""
+        return self._point[2]
+
+    @property
+    def sliding_percent(self) -> float:
+        """Share of sliding blocks N* at this instant, %."""
+        return self._point[3]
+
+    @property
+    def _point(self) -> list[float]:
+        with self._alone() as native:
+            return native.point
+
+    @property
+    def displacement(self) -> npt.NDArray[np.float64]:
+        """Displacements of the blocks from rest along x and y, m, (2, N_y, N_x)."""
+        with self._alone() as native:
+            moved, _ = native.motion()
+        array: npt.NDArray[np.float64] = moved * self._case.numbers["displacement_unit_m"] + self._origin
+        return array
+
+    @property
+    def velocity(self) -> npt.NDArray[np.float64]:
+        """Velocities of the blocks half a step later, m/s, (2, N_y, N_x)."""
+        with self._alone() as native:
+            _, velocity = native.motion()
+        array: npt.NDArray[np.float64] = velocity * self._case.numbers["speed_unit_m_s"]
+        return array
+
+    def field(self, name: str) -> npt.NDArray[np.float32]:
+        """A field at this instant, (N_y, N_x), in the unit of `fields.nc`.
+
+        Parameters
+        ----------
+        name
+            ``contact_stress_star`` (over its largest value so far), ``traction`` (Pa), ``displacement_x``, ``displacement_y`` (m, since
+            the last change), ``velocity_x``, ``velocity_y`` (m/s) or ``sliding``.
+        """
+        with self._alone() as native:
+            return native.field(name)
+
+    @property
+    def series(self) -> xr.Dataset:
+        """The curve since the start or the last change, as `Run.series`."""
+        with self._alone() as native:
+            return _dataset.table(native.series())
+
+    def step(self, n: int = 1) -> int:
+        """Take n steps, or fewer if the run ends before.
+
+        Returns
+        -------
+        int
+            Steps taken.
+        """
+        if n < 0:
+            raise ValueError(f"steps are counted from 0, not {n}")
+        with self._alone() as native:
+            first = native.step
+            while self._ended is None and (left := n - (native.step - first)) > 0:
+                self._ended = native.advance(left)
+            return native.step - first
+
+    def run_until(
+        self,
+        condition: Callable[[Simulation], bool] | None = None,
+        *,
+        time_star: float = math.inf,
+        every: int = 100,
+        observer: Callable[[Simulation], object] | None = None,
+    ) -> bool:
+        """Step until a condition holds, a time is reached, or the run ends.
+
+        Parameters
+        ----------
+        condition
+            A function of this simulation, asked every `every` steps.
+        time_star
+            t* to stop at, rounded up to a step.
+        every
+            Steps between two looks of `condition` and `observer`.
+        observer
+            A function that is called with this simulation, at the start and every `every` steps.
+
+        Returns
+        -------
+        bool
+            Whether it stopped before the run ended.
+
+        Examples
+        --------
+        >>> simulation = Simulation(Case.load("cases/circle.toml"))
+        >>> simulation.run_until(lambda now: now.sliding_percent > 0, every=10)
+        True
+        """
+        if every < 1:
+            raise ValueError(f"every is a number of steps from 1 on, not {every}")
+        last = math.ceil(time_star / self._case.numbers["dt_star"] - 1e-9) if time_star < math.inf else _ALL
+        while True:
+            if observer is not None:
+                observer(self)
+            if condition is not None and condition(self):
+                return True
+            with self._alone() as native:
+                left = last - native.step
+            if left <= 0:
+                return True
+            if self._ended is not None:
+                return False
+            self.step(min(every, left))
+
+    def run(self, progress: Progress = None) -> Run:
+        """Run to the end and give the results; the simulation is then used up.
+
+        Parameters
+        ----------
+        progress
+            As of `slipfront.run`.
+        """
+        if self._legs:
+            raise RuntimeError(
+                "a run that was changed on its way has no results of one case: read `series` and the fields, and keep `recipe()`"
+            )
+        watch = progress if callable(progress) else None
+        shown = progress if progress is None or isinstance(progress, bool) else False
+        last = self._case.last_step
+        # A short run is over before a bar is worth its while.
+        with self._alone() as native:
+            self._ended = self._ended or native.advance(_ALL)
+        if self._ended is None:
+            with Bar(shown, last, "step", self._case.name) as bar:
+                while self._ended is None:
+                    if watch is not None:
+                        watch(self)
+                    with self._alone() as native:
+                        bar.show(native.step, said=f"mu* = {native.point[1]:.3f}")
+                        self._ended = native.advance(_ALL)
+        with self._alone() as native:
+            return Run(self._case, native.record(self._ended))
+
+    def change(self, overrides: Mapping[str, Any]) -> None:
+        """Go on under another case from here: a new leg of the same slider.
+
+        Displacements in m and velocities in m/s are kept; the drive goes on from where it stands. Scales, load per block and what is
+        stuck follow the new case, in which time begins anew.
+
+        Parameters
+        ----------
+        overrides
+            Keys of the case that are set anew: speed, direction, load, texture, coefficients, duration.
+
+        Raises
+        ------
+        CaseError
+            When that is no case, or one with other blocks, or one whose contacts remember more than they show.
+
+        Examples
+        --------
+        >>> simulation = Simulation(Case.load("cases/circle.toml"))
+        >>> _ = simulation.run_until(time_star=80)
+        >>> simulation.change({"drive.v_star": 0.1, "time.duration_star": 50})
+        >>> simulation.case.numbers["v_star"], simulation.time_star
+        (0.1, 0.0)
+        """
+        case = self._case.replace(overrides)
+        before, after = self._case, case
+        if case.shape != before.shape or case.numbers["block_size_m"] != before.numbers["block_size_m"]:
+            raise _slipfront.CaseError("a change keeps the blocks: their number and size are those of the slider that moves")
+        if not (before._native.has_no_memory and after._native.has_no_memory):
+            raise _slipfront.CaseError(
+                "contacts under this law of friction remember more than a displacement and a velocity: begin such a run from rest"
+            )
+        with self._alone() as native:
+            moved, velocity = native.motion()
+            steps, time_star = native.step + 1, (native.step + 1) * before.numbers["dt_star"]
+        old, new = before.numbers, after.numbers
+        # The step that was begun: velocities are known half a step after displacements, and the new leg begins when they meet.
+        moved = moved + old["dt_star"] * velocity
+        drive = np.moveaxis(before._native.drive_position(time_star).reshape(*before.shape, 2), 2, 0)
+        ahead = (moved - drive) * old["displacement_unit_m"]
+        rows = (2, -1)
+        state = (
+            np.ascontiguousarray((ahead / new["displacement_unit_m"]).reshape(rows)),
+            np.ascontiguousarray((velocity * (old["speed_unit_m_s"] / new["speed_unit_m_s"])).reshape(rows)),
+        )
+        begun = _slipfront.Simulation(after._native, self._threads, state)
+        self._legs.append((before, steps))
+        self._origin = self._origin + drive * old["displacement_unit_m"]
+        self._before = (self._before[0] + steps, self._before[1] + time_star * old["time_unit_s"])
+        self._begin(case, begun)
+
+    def recipe(self) -> list[tuple[str, int]]:
+        """What makes this state again: the resolved case of every leg, and how many steps it took.
+
+        The last leg is the present one. Every change takes the step that was begun to its end.
+        """
+        with self._alone() as native:
+            now = native.step
+        return [*((case.to_toml(), steps) for case, steps in self._legs), (self._case.to_toml(), now)]
+
+    def checkpoint(self) -> bytes:
+        """All that `resume` needs to go on with the same bits."""
+        with self._alone() as native:
+            return native.checkpoint()
+
+    @classmethod
+    def resume(cls, case: Case, checkpoint: bytes, *, threads: int | None = None) -> Simulation:
+        """The simulation of a case that goes on from a checkpoint.
+
+        Raises
+        ------
+        ValueError
+            When it is not a checkpoint of this case.
+        """
+        native = _slipfront.Simulation.resume(case._native, checkpoint, _threads(threads))
+        return cls._of(case, native, threads)
+
+    @classmethod
+    def _of(cls, case: Case, native: _slipfront.Simulation, threads: int | None) -> Simulation:
+        simulation = cls.__new__(cls)
+        simulation._threads = _threads(threads)
+        simulation._begin(case, native)
+        simulation._legs, simulation._origin, simulation._before = [], 0.0, (0, 0.0)
+        return simulation
+
+    def __copy__(self) -> Simulation:
+        other = self.resume(self._case, self.checkpoint(), threads=self._threads)
+        other._ended, other._legs = self._ended, list(self._legs)
+        other._origin, other._before = self._origin, self._before
+        return other
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Simulation:
+        return copy.copy(self)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        kept = (self._threads, self._ended, self._legs, self._origin, self._before)
+        return (_unpickled, (self._case, self.checkpoint(), *kept))
+
+    def __repr__(self) -> str:
+        return f"Simulation({self._case.name}: step {self.steps}, t* = {self.time_star:.4g}, mu* = {self.mu_star:.4g})"
+
+
+def _unpickled(
+    case: Case,
+    checkpoint: bytes,
+    threads: int,
+    ended: str | None,
+    legs: list[tuple[Case, int]],
+    origin: npt.NDArray[np.float64] | float,
+    before: tuple[int, float],
+) -> Simulation:
+    simulation = Simulation.resume(case, checkpoint, threads=threads)
+    simulation._ended, simulation._legs = ended, legs
+    simulation._origin, simulation._before = origin, before
+    return simulation
+
+
+def _threads(asked: int | None) -> int:
+    cores = os.cpu_count() or 1
+    if asked is None:
+        return cores
+    if asked < 1:
+        raise ValueError(f"threads are counted from 1, not {asked}")
+    return min(asked, cores)

@@ -1,0 +1,258 @@
+"""Studies: a case varied along axes and repeated on several random surfaces."""
+
+from __future__ import annotations
+
+import csv
+import os
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias, cast
+
+import numpy as np
+
+from . import _slipfront, _toml
+from ._case import Case
+from ._progress import Bar
+from ._run import Run
+from ._simulation import _threads, run
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Quantities: TypeAlias = Mapping[str, Callable[[Run], float]]
+"""Names of the user's own quantities, and the functions of a run that give them."""
+
+
+class Study:
+    """A study: axes over keys of a case, replicates over seeds.
+
+    Parameters
+    ----------
+    case
+        The case that is varied, or the path of a study file, with which nothing else is given.
+    axes
+        Keys and the lists of their values; all combinations are run, the last axis fastest. Values as in `Case.from_dict`.
+    replicates
+        Random surfaces per point.
+    settings
+        Further keys of the table ``[study]`` of a study file, such as ``reference`` or ``until``.
+
+    Examples
+    --------
+    >>> case = Case.from_dict({"slider": {"blocks": [8, 8]}, "time": {"duration_star": 150}})
+    >>> study = Study(case, {"drive.v_star": [0.02, 0.05]}, replicates=2)
+    >>> study.n_points
+    2
+    >>> results = study.run(progress=False)
+    >>> len(results.runs)
+    4
+    """
+
+    def __init__(
+        self,
+        case: Case | str | os.PathLike[str],
+        axes: Mapping[str, Sequence[Any]] | None = None,
+        *,
+        replicates: int = 1,
+        settings: Mapping[str, Any] | None = None,
+        name: str | None = None,
+    ) -> None:
+        if not isinstance(case, Case):
+            if axes is not None or settings is not None:
+                raise ValueError("a study file has its own axes and settings: give the path alone")
+            self._native = _slipfront.Study.load(Path(case))
+            return
+        files = _toml.ArrayFiles(case._folder)
+        listed = "".join(
+            f"[[axes]]\nkey = {_toml.value(key, files)}\nlist = {_toml.value(list(values), files)}\n"
+            for key, values in (axes or {}).items()
+        )
+        study = {"replicates": replicates, **(settings or {})}
+        text = _toml.document({"study": study}, files) + listed + _as_base(case)
+        self._arrays = files.folder
+        self._native = _slipfront.Study.parse(text, name or f"{case.name}-study", Path())
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Study:
+        """The study of a study file."""
+        return cls(path)
+
+    @property
+    def name(self) -> str:
+        """What the study is called."""
+        return self._native.name
+
+    @property
+    def n_points(self) -> int:
+        """Combinations of levels."""
+        return self._native.n_points
+
+    @property
+    def axes(self) -> dict[str, int]:
+        """The keys of the axes and the number of their levels."""
+        return {", ".join(keys): levels for keys, levels in self._native.axes}
+
+    def case(self, point: int, replicate: int = 0, *, reference: bool = False) -> Case:
+        """The case of one run.
+
+        Parameters
+        ----------
+        point
+            The combination of levels, from 0, the last axis fastest.
+        replicate
+            The random surface, from 0.
+        reference
+            The reference that the reduction of the point is measured against.
+        """
+        return Case(self._native.case(point, replicate, reference))
+
+    def run(
+        self,
+        folder: str | os.PathLike[str] | None = None,
+        *,
+        progress: bool | Callable[[int, int, int], object] | None = None,
+        threads: int | None = None,
+        quantities: Quantities | None = None,
+    ) -> StudyResults:
+        """Run what the folder lacks.
+
+        Parameters
+        ----------
+        folder
+            A folder of results, in which a study that was stopped goes on; tables alone, in memory, unless it is given.
+        progress
+            True for a bar, False for none, None for one in terminals and notebooks, or a function of the numbers of runs that
+            are done, of all, and of failed ones.
+        threads
+            Runs at once, one per core unless given.
+        quantities
+            Own quantities: functions of a run, whose values are columns of `StudyResults.runs`. They are called in the threads
+            of the runs.
+
+        Examples
+        --------
+        >>> case = Case.from_dict({"slider": {"blocks": [8, 8]}, "time": {"duration_star": 150}})
+        >>> drop = {"drop": lambda run: run.static_friction_star - run.series["mu_star"].values[-1]}
+        >>> table = Study(case, {"drive.v_star": [0.02, 0.05]}).run(progress=False, quantities=drop).runs
+        >>> bool(table["drop"].min() > 0)
+        True
+        """
+        own = dict(quantities or {})
+        watch = progress if callable(progress) else None
+        shown = progress if progress is None or isinstance(progress, bool) else False
+
+        def look(native: _slipfront.Case, record: _slipfront.Record, _: tuple[int, int, bool]) -> list[float]:
+            result = Run(Case(native), record)
+            return [float(quantity(result)) for quantity in own.values()]
+
+        with tempfile.TemporaryDirectory(prefix="slipfront-") as temporary, Bar(shown, None, "run", self.name) as bar:
+
+            def show(done: int, total: int, failed: int) -> None:
+                if watch is not None:
+                    watch(done, total, failed)
+                bar.show(done, total, f"{failed} failed" if failed else "")
+
+            path = Path(temporary) / self.name if folder is None else Path(folder)
+            values, failures = self._native.execute(path, _threads(threads), look if own else None, show)
+            results = StudyResults.read(path)
+        if own:
+            self._add(results, own, values)
+        results.failures = failures
+        return results
+
+    def _add(self, results: StudyResults, own: dict[str, Callable[[Run], float]], values: dict[Any, list[float]]) -> None:
+        """Add own quantities to the runs; those of runs of earlier calls are run again."""
+        rows = results._runs
+        for point, replicate, role, status in zip(rows["point"], rows["replicate"], rows["role"], rows["status"], strict=True):
+            place = (int(point), int(replicate), role == "reference")
+            if status == "done" and place not in values:
+                again = run(self.case(place[0], place[1], reference=place[2]), progress=False)
+                values[place] = [float(quantity(again)) for quantity in own.values()]
+            for name, value in zip(own, values.get(place, [np.nan] * len(own)), strict=True):
+                rows.setdefault(name, []).append(value)
+
+    def __repr__(self) -> str:
+        axes = ", ".join(f"{key} ({levels})" for key, levels in self.axes.items())
+        return f"Study({self.name}: {self.n_points} points over {axes or 'no axis'})"
+
+
+class StudyResults:
+    """The tables of a study.
+
+    Attributes
+    ----------
+    folder
+        Where they stand; None of a study in memory.
+    failures
+        The places and reasons of the runs that failed.
+    """
+
+    def __init__(self, folder: Path | None, tables: dict[str, dict[str, list[Any]]]) -> None:
+        self.folder = folder
+        self.failures: list[tuple[str, str]] = []
+        self._runs = tables["runs"]
+        self._tables = tables
+
+    @classmethod
+    def read(cls, folder: Path) -> StudyResults:
+        """The tables in a folder."""
+        names = ("runs", "points", "anisotropy")
+        return cls(folder, {name: _table(folder / f"{name}.csv") for name in names if (folder / f"{name}.csv").exists()})
+
+    @property
+    def runs(self) -> pd.DataFrame:
+        """A row for each run: its place, seed, status and every number of its summary."""
+        return _frame(self._runs)
+
+    @property
+    def points(self) -> pd.DataFrame:
+        """A row for each point and quantity: mean, standard deviation, confidence interval of the mean, smallest and largest."""
+        return _frame(self._tables["points"])
+
+    @property
+    def anisotropy(self) -> pd.DataFrame | None:
+        """How friction depends on the direction of the drive, of a study over directions."""
+        table = self._tables.get("anisotropy")
+        return None if table is None else _frame(table)
+
+    def __repr__(self) -> str:
+        return f"StudyResults({len(self._runs['point'])} runs, {len(self.failures)} failed)"
+
+
+def _as_base(case: Case) -> str:
+    """The tables of a case as those of the base of a study, with files where they stand."""
+    lines = []
+    for line in case._text().splitlines():
+        if line.startswith("[["):
+            line = "[[base." + line[2:]
+        elif line.startswith("["):
+            line = "[base." + line[1:]
+        lines.append(line)
+    return "\n".join(["[base]", *lines, ""])
+
+
+def _table(path: Path) -> dict[str, list[Any]]:
+    """The columns of a table: numbers where all cells are numbers or empty, which are NaN."""
+    with path.open(newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    columns: dict[str, list[Any]] = {}
+    for position, name in enumerate(rows[0]):
+        cells = [row[position] for row in rows[1:]]
+        try:
+            columns[name] = [float(cell) if cell else np.nan for cell in cells]
+        except ValueError:
+            columns[name] = cells
+            continue
+        if all(cell.isdigit() for cell in cells):
+            columns[name] = [int(cell) for cell in cells]
+    return columns
+
+
+def _frame(table: dict[str, list[Any]]) -> pd.DataFrame:
+    """A table of pandas, or where it is not installed, a dictionary of arrays."""
+    try:
+        import pandas
+    except ImportError:
+        return cast("pd.DataFrame", {name: np.asarray(values) for name, values in table.items()})
+    return pandas.DataFrame(table)

@@ -1,0 +1,139 @@
+"""Values of Python as the text of a case: TOML, quantities with their units, arrays as files."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ._temporary import TemporaryFolder
+
+_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+
+
+class ArrayFiles:
+    """The files of arrays that are handed over in place of the name of a file.
+
+    Parameters
+    ----------
+    others
+        A folder that stands as long as theirs.
+
+    Attributes
+    ----------
+    folder
+        Where they stand: that of others unless there is an array.
+    """
+
+    def __init__(self, others: TemporaryFolder | None = None) -> None:
+        self.folder = others
+        self._others = others
+        self._count = 0
+
+    def write(self, array: np.ndarray[Any, Any]) -> str:
+        """Write an array and give the name of its file."""
+        if self.folder is None or self._count == 0:
+            self.folder = TemporaryFolder(self._others)
+        self._count += 1
+        path = self.folder.path / f"array-{self._count}.npy"
+        np.save(path, np.ascontiguousarray(array))
+        return str(path)
+
+
+def value(given: Any, arrays: ArrayFiles) -> str:
+    """A value as TOML writes it.
+
+    >>> files = ArrayFiles()
+    >>> value({"shape": "cavity", "coverage": 10, "center": (1, 2.5)}, files)
+    '{ shape = "cavity", coverage = 10, center = [1, 2.5] }'
+    """
+    if isinstance(given, (bool, np.bool_)):
+        return "true" if given else "false"
+    if isinstance(given, (int, np.integer)):
+        return str(int(given))
+    if isinstance(given, (float, np.floating)):
+        return _number(float(given))
+    if isinstance(given, str):
+        return word(given)
+    if isinstance(given, Path):
+        return word(str(given))
+    if isinstance(given, Mapping):
+        pairs = (f"{key(name)} = {value(inner, arrays)}" for name, inner in given.items())
+        return "{ " + ", ".join(pairs) + " }"
+    if hasattr(given, "magnitude") and hasattr(given, "units"):
+        return _quantities(given)
+    if isinstance(given, np.ndarray):
+        # What has rows is a field or a mask, of which a case names the file.
+        return word(arrays.write(given)) if given.ndim == 2 else value(given.tolist(), arrays)
+    if isinstance(given, Sequence):
+        return "[" + ", ".join(value(inner, arrays) for inner in given) + "]"
+    raise TypeError(
+        f"a case is made of tables, lists, words, numbers, quantities and arrays, not of {type(given).__name__}"
+    )
+
+
+def word(text: str) -> str:
+    """A text as TOML writes it."""
+    return json.dumps(text, ensure_ascii=False)
+
+
+def key(name: str) -> str:
+    """A key as TOML writes it."""
+    return name if _BARE_KEY.fullmatch(name) else word(name)
+
+
+def document(tables: Mapping[str, Any], arrays: ArrayFiles) -> str:
+    """The text of a case: a line for each value, a heading for each table.
+
+    >>> print(document({"drive": {"v_star": 0.1}, "texture": [{"shape": "cavity"}]}, ArrayFiles()))
+    [drive]
+    v_star = 0.1
+    [[texture]]
+    shape = "cavity"
+    <BLANKLINE>
+    """
+    plain, headed = [], []
+    for name, given in tables.items():
+        if isinstance(given, Mapping):
+            headed += [f"[{key(name)}]", *_lines(given, arrays)]
+        elif isinstance(given, Sequence) and given and all(isinstance(one, Mapping) for one in given):
+            for one in given:
+                headed += [f"[[{key(name)}]]", *_lines(one, arrays)]
+        else:
+            plain += _lines({name: given}, arrays)
+    return "\n".join([*plain, *headed, ""])
+
+
+def _lines(table: Mapping[str, Any], arrays: ArrayFiles) -> list[str]:
+    # A key with dots is a key within tables, as in the command's --set.
+    def path(name: str) -> str:
+        return ".".join(key(part) for part in name.split("."))
+
+    return [f"{path(name)} = {value(given, arrays)}" for name, given in table.items()]
+
+
+def _number(number: float) -> str:
+    if math.isnan(number):
+        return "nan"
+    if math.isinf(number):
+        return "inf" if number > 0 else "-inf"
+    return repr(number)
+
+
+def _quantities(given: Any) -> str:
+    """A quantity of pint, or a list of them, in the units it has."""
+    unit = format(given.units, "~C").replace("**", "^").replace("*", " ")
+    magnitude = np.asarray(given.magnitude).tolist()
+
+    def write(number: Any) -> str:
+        if isinstance(number, list):
+            return "[" + ", ".join(write(one) for one in number) + "]"
+        # A number without a unit is written as one.
+        return word(f"{number!r} {unit}") if unit else value(number, ArrayFiles())
+
+    return write(magnitude)

@@ -1,0 +1,40 @@
+//! Numbers of blocks as arrays of numpy.
+
+use numpy::ndarray::ArrayView2;
+use numpy::{Element, IntoPyArray, PyArray2, PyArray3, PyArrayMethods};
+use pyo3::prelude::*;
+
+/// Numbers that are handed over, not copied, as an array with rows of `columns`.
+pub(crate) fn rows<T: Element>(
+    py: Python<'_>,
+    values: Vec<T>,
+    columns: usize,
+) -> PyResult<Bound<'_, PyArray2<T>>> {
+    let count = values.len().checked_div(columns).unwrap_or(0);
+    values.into_pyarray(py).reshape([count, columns])
+}
+
+/// The same of several arrays of equal size, one after the other: time, y, x.
+pub(crate) fn stacked<'py, T: Element + Copy>(
+    py: Python<'py>,
+    arrays: &[&[T]],
+    [rows, columns]: [usize; 2],
+) -> PyResult<Bound<'py, PyArray3<T>>> {
+    let shape = [arrays.len(), rows, columns];
+    arrays.concat().into_pyarray(py).reshape(shape)
+}
+
+/// Numbers of `owner`, which never change as long as it lives, as an array that cannot be written to: nothing is copied.
+#[allow(unsafe_code, reason = "numpy cannot know how long memory of others lives")]
+pub(crate) fn borrowed<'py, T: Element>(
+    owner: Bound<'py, PyAny>,
+    values: &[T],
+    columns: usize,
+) -> PyResult<Bound<'py, PyArray2<T>>> {
+    let rows = values.len().checked_div(columns).unwrap_or(0);
+    let view = ArrayView2::from_shape((rows, columns), values).map_err(crate::errors::folder_error)?;
+    // SAFETY: callers hand over numbers that `owner` holds behind an `Arc` and never changes; the array keeps `owner` alive.
+    let array = unsafe { PyArray2::borrow_from_array(&view, owner) };
+    array.readwrite().make_nonwriteable();
+    Ok(array)
+}

@@ -1,0 +1,175 @@
+//! Cases.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use numpy::PyArray2;
+use pyo3::prelude::*;
+use slipfront_case::case::Case as SlipfrontCase;
+use slipfront_case::case_file::{CaseError, CaseFile};
+
+use crate::arrays::{borrowed, rows};
+use crate::errors::case_error;
+
+/// How long the engine works between two looks at signals.
+pub(crate) const LOOK_EVERY: Duration = Duration::from_millis(50);
+
+/// A case that can be run; it never changes.
+#[pyclass(frozen, module = "slipfront._slipfront")]
+pub(crate) struct Case(pub(crate) Arc<SlipfrontCase>);
+
+/// Makes a case while other threads of Python go on; `make` is given what watches its texture. A signal ends it.
+pub(crate) fn make(
+    py: Python<'_>,
+    make: impl FnOnce(&mut dyn FnMut(f64) -> bool) -> Result<SlipfrontCase, CaseError> + Send,
+) -> PyResult<Case> {
+    let mut signal = None;
+    let mut looked = Instant::now();
+    let made = py.detach(|| {
+        make(&mut |_| {
+            if looked.elapsed() >= LOOK_EVERY {
+                looked = Instant::now();
+                signal = Python::attach(|py| py.check_signals().err());
+            }
+            signal.is_none()
+        })
+    });
+    match (made, signal) {
+        (_, Some(signal)) => Err(signal),
+        (Ok(case), None) => Ok(Case(Arc::new(case))),
+        (Err(error), None) => Err(case_error(py, &error)),
+    }
+}
+
+#[pymethods]
+impl Case {
+    /// The case of a file, with overrides of the form KEY=VALUE.
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf, overrides: Vec<String>) -> PyResult<Self> {
+        make(py, |watch| SlipfrontCase::load(&path, &overrides, watch))
+    }
+
+    /// The case of a text that is called `name`; the files it names stand relative to a folder.
+    #[staticmethod]
+    fn parse(
+        py: Python<'_>,
+        text: &str,
+        name: &str,
+        folder: PathBuf,
+        overrides: Vec<String>,
+    ) -> PyResult<Self> {
+        make(py, |watch| {
+            let file = CaseFile::parse(text, name, &overrides)?;
+            SlipfrontCase::to_run(file, name, &folder, watch)
+        })
+    }
+
+    /// The name of the case and of its results.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    /// The resolved case, with every default.
+    fn to_toml(&self, py: Python<'_>) -> PyResult<String> {
+        self.0.file.to_toml().map_err(|error| case_error(py, &error))
+    }
+
+    /// The files that it reads: the name of each in the resolved case, and where it stands.
+    #[getter]
+    fn inputs(&self) -> Vec<(String, PathBuf)> {
+        let inputs = self.0.inputs.iter();
+        inputs
+            .map(|input| (input.name.clone(), input.original.clone()))
+            .collect()
+    }
+
+    /// The resolved physics, as `slipfront check` prints it.
+    #[getter]
+    fn physics(&self) -> String {
+        slipfront_cli::physics(&self.0)
+    }
+
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.0.warnings()
+    }
+
+    /// Rows and columns of the lattice.
+    #[getter]
+    fn shape(&self) -> (usize, usize) {
+        (self.0.model.lattice.ny, self.0.model.lattice.nx)
+    }
+
+    /// The step with which a run ends at the latest.
+    #[getter]
+    fn last_step(&self) -> u64 {
+        self.0.time_plan.last_step
+    }
+
+    /// Named numbers: dimensionless groups and units.
+    #[getter]
+    fn numbers(&self) -> Vec<(&'static str, f64)> {
+        let (groups, scales, plan) = (&self.0.groups, &self.0.scales, &self.0.time_plan);
+        vec![
+            ("v_star", groups.v_star),
+            ("r_star", groups.r_star),
+            ("omega_star", groups.omega_star),
+            ("sigma_static_star", groups.sigma_static_star),
+            ("sigma_kinetic_star", groups.sigma_kinetic_star),
+            ("epsilon", groups.epsilon),
+            ("dt_star", plan.dt_star),
+            ("duration_star", plan.end_star()),
+            ("texture_percent", self.0.texture.meshed_percent),
+            ("block_size_m", scales.block_size),
+            ("time_unit_s", scales.time()),
+            ("displacement_unit_m", scales.displacement()),
+            ("speed_unit_m_s", scales.speed()),
+            ("stress_unit_pa", scales.stress()),
+        ]
+    }
+
+    /// Whether a block is texture.
+    #[getter]
+    fn textured<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<bool>>> {
+        let model = &this.get().0.model;
+        borrowed(this.clone().into_any(), &model.surface.textured, model.lattice.nx)
+    }
+
+    /// Static friction coefficient of every block.
+    #[getter]
+    fn mu_static<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let model = &this.get().0.model;
+        borrowed(
+            this.clone().into_any(),
+            &model.surface.mu_static,
+            model.lattice.nx,
+        )
+    }
+
+    /// Kinetic friction coefficient of every block.
+    #[getter]
+    fn mu_kinetic<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let model = &this.get().0.model;
+        borrowed(
+            this.clone().into_any(),
+            &model.surface.mu_kinetic,
+            model.lattice.nx,
+        )
+    }
+
+    /// Where the drive is at a time, block by block, in units of displacement: two columns per block.
+    fn drive_position<'py>(&self, py: Python<'py>, time_star: f64) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let model = &self.0.model;
+        let path = model.drive.path(time_star);
+        let of_block = |b| model.drive.direction_at(&model.lattice, b).map(|d| d * path);
+        rows(py, (0..model.lattice.n_blocks()).flat_map(of_block).collect(), 2)
+    }
+
+    /// Whether what resists the motion of a block depends on no more than its displacement and velocity.
+    #[getter]
+    fn has_no_memory(&self) -> bool {
+        self.0.model.friction.n_columns() == 0
+    }
+}

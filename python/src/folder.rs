@@ -1,0 +1,106 @@
+//! Folders of results.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use slipfront::communicator::Alone;
+use slipfront_case::case::Case as SlipfrontCase;
+use slipfront_case::case_file::CaseFile;
+use slipfront_run::checkpoint::Checkpoints;
+use slipfront_run::names::{FIELDS, FIGURE_CACHE, KYMOGRAPH, PRECURSORS, SERIES};
+use slipfront_run::run_folder::inspection::Contents;
+use slipfront_run::running::Running;
+use slipfront_run::{fields, precursors, series, summary, verify as verification};
+
+use crate::case::{Case, make};
+use crate::errors::{FolderError, folder_error};
+use crate::record;
+use crate::simulation::Simulation;
+
+/// What a folder is: `run`, `interrupted`, `study`, `paper`, or none of these.
+#[pyfunction]
+pub(crate) fn kind_of(folder: PathBuf) -> PyResult<Option<&'static str>> {
+    if verification::is_study(&folder) {
+        return Ok(Some("study"));
+    }
+    if folder.join(FIGURE_CACHE).is_dir() {
+        return Ok(Some("paper"));
+    }
+    let run = verification::inspect(&folder).map_err(folder_error)?;
+    Ok(match run.contents {
+        Contents::Complete(_) => Some("run"),
+        Contents::Interrupted => Some("interrupted"),
+        Contents::Empty | Contents::Foreign => None,
+    })
+}
+
+/// Holds a folder against its manifest, or against its records.
+#[pyfunction]
+pub(crate) fn verify(py: Python<'_>, folder: PathBuf) -> PyResult<()> {
+    let verdict = py
+        .detach(|| verification::verify(&folder))
+        .map_err(folder_error)?;
+    match verdict.differences.as_slice() {
+        [] => Ok(()),
+        differences => Err(FolderError::new_err(differences.join("\n"))),
+    }
+}
+
+/// The case of a run folder, as the run began from it, under the name of the folder.
+fn case_of(py: Python<'_>, folder: &Path, file: CaseFile) -> PyResult<Case> {
+    let canonical = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    let name = canonical
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    make(py, |watch| SlipfrontCase::to_run(file, &name, folder, watch))
+}
+
+/// A complete run as it stands in its folder: its case, and what `Record` gives of a run of this process.
+#[pyfunction]
+pub(crate) fn read_run<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<(Case, Bound<'py, PyDict>)> {
+    let run = verification::inspect(&folder).map_err(folder_error)?;
+    let file = run.case_to_resume().map_err(folder_error)?.clone();
+    let case = case_of(py, &folder, file)?;
+    let read = PyDict::new(py);
+    let numbers = summary::read_summary(&folder).map_err(folder_error)?;
+    read.set_item("summary", summary::summary_json(&numbers))?;
+    let rows = series::read_csv(&folder.join(SERIES)).map_err(folder_error)?;
+    read.set_item("series", record::series(py, &rows)?)?;
+    let data = fields::read_fields(&folder.join(FIELDS)).map_err(folder_error)?;
+    read.set_item("fields", record::fields(py, data)?)?;
+    let kymograph = folder.join(KYMOGRAPH);
+    if kymograph.exists() {
+        let data = fields::read_kymograph(&kymograph).map_err(folder_error)?;
+        read.set_item("kymograph", record::kymograph(py, data)?)?;
+    }
+    let events = folder.join(PRECURSORS);
+    if events.exists() {
+        let rows = precursors::read_csv(&events).map_err(folder_error)?;
+        read.set_item("precursors", record::precursors_of(py, &rows)?)?;
+    }
+    Ok((case, read))
+}
+
+/// The case of an interrupted run, and the run as it goes on from its latest checkpoint, or from its start if it has none.
+#[pyfunction]
+pub(crate) fn interrupted(py: Python<'_>, folder: PathBuf, threads: usize) -> PyResult<(Case, Simulation)> {
+    let run = verification::inspect(&folder).map_err(folder_error)?;
+    let file = run.case_to_resume().map_err(folder_error)?.clone();
+    let case = case_of(py, &folder, file)?;
+    let running = py.detach(|| {
+        let loaded = Checkpoints::load(&folder, &case.0, false, &Alone).map_err(folder_error)?;
+        let Some(loaded) = loaded else {
+            return Ok(Running::start(&case.0, threads));
+        };
+        let resumed = loaded
+            .resume(&case.0, threads, Arc::new(Alone))
+            .map_err(folder_error)?;
+        let foreign = || folder_error("its checkpoint is not one of a run of its case");
+        resumed.ok_or_else(foreign)
+    })?;
+    Ok((case, Simulation::of(running)))
+}

@@ -1,0 +1,41 @@
+//! The native part of the Python module `slipfront`: cases, simulations, what they leave, studies and the command.
+//!
+//! Its names are for the Python files beside it in the package, which give them their public form. While the engine works, other
+//! threads of Python go on; signals are looked at between two calls, or every 50 ms within one.
+
+mod arrays;
+mod case;
+mod errors;
+mod folder;
+mod record;
+mod simulation;
+mod study;
+
+use std::ffi::OsString;
+
+use pyo3::prelude::*;
+
+/// Runs the command with these arguments, the first of which is the name of the program, and gives its exit status. It belongs to a
+/// process of its own.
+#[pyfunction]
+fn command(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+    py.detach(|| slipfront_cli::main(arguments))
+}
+
+#[pymodule]
+fn _slipfront(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let py = module.py();
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("CaseError", py.get_type::<errors::CaseError>())?;
+    module.add("RunError", py.get_type::<errors::RunError>())?;
+    module.add("FolderError", py.get_type::<errors::FolderError>())?;
+    module.add_class::<case::Case>()?;
+    module.add_class::<simulation::Simulation>()?;
+    module.add_class::<record::Record>()?;
+    module.add_class::<study::Study>()?;
+    module.add_function(wrap_pyfunction!(folder::kind_of, module)?)?;
+    module.add_function(wrap_pyfunction!(folder::read_run, module)?)?;
+    module.add_function(wrap_pyfunction!(folder::interrupted, module)?)?;
+    module.add_function(wrap_pyfunction!(folder::verify, module)?)?;
+    module.add_function(wrap_pyfunction!(command, module)?)
+}

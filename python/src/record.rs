@@ -1,0 +1,164 @@
+//! What a run leaves.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use numpy::IntoPyArray;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use slipfront_case::case::Case as SlipfrontCase;
+use slipfront_case::field_info::field_info;
+use slipfront_run::fields::{FieldsData, KymographData};
+use slipfront_run::precursors::{self, PrecursorRow};
+use slipfront_run::results;
+use slipfront_run::run_folder::RunFolder;
+use slipfront_run::running;
+use slipfront_run::series::{self, SeriesRow};
+use slipfront_run::summary::summary_json;
+
+use crate::arrays::{rows, stacked};
+use crate::errors::folder_error;
+
+/// What a run of this process leaves.
+#[pyclass(frozen, module = "slipfront._slipfront")]
+pub(crate) struct Record {
+    pub(crate) case: Arc<SlipfrontCase>,
+    pub(crate) record: running::Record,
+    pub(crate) started: jiff::Timestamp,
+    pub(crate) threads: usize,
+}
+
+#[pymethods]
+impl Record {
+    /// `summary.json`.
+    fn summary(&self) -> String {
+        summary_json(&self.record.summary)
+    }
+
+    /// The columns of `series.csv`.
+    fn series<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (case, recorded) = (&self.case, self.record.rows.iter());
+        let rows: Vec<SeriesRow> = recorded
+            .map(|row| SeriesRow::new(row, &case.scales, &case.model))
+            .collect();
+        series(py, &rows)
+    }
+
+    /// The arrays of `fields.nc`.
+    fn fields<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        fields(py, results::fields_of(&self.case, &self.record))
+    }
+
+    /// The arrays of `kymograph.nc`.
+    fn kymograph<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        kymograph(py, KymographData::of(&self.record.kymograph, &self.case))
+    }
+
+    /// The columns of `precursors.csv`, of a run that has one.
+    fn precursors<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let events = self.record.precursors.as_ref();
+        let rows = events.map(|events| precursors::rows(events.events(), &self.case.scales));
+        rows.map(|rows| precursors_of(py, &rows)).transpose()
+    }
+
+    /// Writes the folder of the run, with the bytes that the command writes.
+    fn save(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<()> {
+        let (case, started, threads) = (&*self.case, self.started, self.threads);
+        py.detach(|| {
+            let mut run = RunFolder::prepare(&folder, force, &case.inputs).map_err(folder_error)?;
+            results::write_case(case, &mut run).map_err(folder_error)?;
+            // Writing takes the fields out of what it is given.
+            let mut record = self.record.clone();
+            results::write(case, &mut record, run, started, threads).map_err(folder_error)?;
+            Ok(())
+        })
+    }
+}
+
+/// The columns of a series.
+pub(crate) fn series<'py>(py: Python<'py>, rows: &[SeriesRow]) -> PyResult<Bound<'py, PyDict>> {
+    let columns = PyDict::new(py);
+    let steps: Vec<u64> = rows.iter().map(|row| row.step).collect();
+    columns.set_item("step", steps.into_pyarray(py))?;
+    for (name, values) in series::columns(rows) {
+        columns.set_item(name, values.into_pyarray(py))?;
+    }
+    Ok(columns)
+}
+
+/// The events of slip of a slider driven at an edge: columns, with NaN for what was not found.
+pub(crate) fn precursors_of<'py>(py: Python<'py>, rows: &[PrecursorRow]) -> PyResult<Bound<'py, PyDict>> {
+    type Value = fn(&PrecursorRow) -> Option<f64>;
+    macro_rules! named {
+        ($($name:ident)*) => { [$((stringify!($name), (|row| row.$name.into()) as Value)),*] };
+    }
+    let all = named! {
+        time_star time_s length mu_star_before friction_coefficient_before mu_star_after friction_coefficient_after until_star
+    };
+    let columns = PyDict::new(py);
+    for (name, value) in all {
+        let values: Vec<f64> = rows.iter().map(|row| value(row).unwrap_or(f64::NAN)).collect();
+        columns.set_item(name, values.into_pyarray(py))?;
+    }
+    Ok(columns)
+}
+
+/// The arrays of a file of fields.
+pub(crate) fn fields(py: Python<'_>, data: FieldsData) -> PyResult<Bound<'_, PyDict>> {
+    let arrays = PyDict::new(py);
+    let shape = [data.rows(), data.columns()];
+    let columns = data.columns();
+    let centres = |count: usize| -> Vec<f64> {
+        let at = |k: usize| ((k * data.stride) as f64 + 0.5) * data.block_size;
+        (0..count).map(at).collect()
+    };
+    arrays.set_item("x", centres(shape[1]).into_pyarray(py))?;
+    arrays.set_item("y", centres(shape[0]).into_pyarray(py))?;
+    arrays.set_item("stride", data.stride)?;
+    arrays.set_item("block_size_m", data.block_size)?;
+    arrays.set_item("time_unit_s", data.time_unit_s)?;
+    let instants = PyDict::new(py);
+    let frames = &data.frames;
+    let labels: Vec<&str> = frames.iter().map(|frame| frame.label.as_str()).collect();
+    instants.set_item("instant", labels)?;
+    let times: Vec<f64> = frames.iter().map(|frame| frame.time_star).collect();
+    instants.set_item("time_star", times.into_pyarray(py))?;
+    let steps: Vec<u64> = frames.iter().map(|frame| frame.step).collect();
+    instants.set_item("step", steps.into_pyarray(py))?;
+    arrays.set_item("instants", instants)?;
+    let of_time = PyDict::new(py);
+    for (place, &field) in data.names.iter().enumerate() {
+        let info = field_info(field);
+        let values: Vec<&[f32]> = frames
+            .iter()
+            .map(|frame| frame.values[place].as_slice())
+            .collect();
+        of_time.set_item(
+            info.name,
+            (stacked(py, &values, shape)?, info.unit, info.long_name),
+        )?;
+    }
+    arrays.set_item("fields", of_time)?;
+    arrays.set_item("textured", rows(py, data.textured, columns)?)?;
+    arrays.set_item("mu_static", rows(py, data.mu_static, columns)?)?;
+    arrays.set_item("mu_kinetic", rows(py, data.mu_kinetic, columns)?)?;
+    arrays.set_item(
+        "first_slip_time_star",
+        rows(py, data.first_slip_time_star, columns)?,
+    )?;
+    Ok(arrays)
+}
+
+/// The arrays of a kymograph.
+pub(crate) fn kymograph(py: Python<'_>, data: KymographData) -> PyResult<Bound<'_, PyDict>> {
+    let arrays = PyDict::new(py);
+    let columns = data.columns();
+    let width = (data.places[1] - data.places[0]) / columns.max(1) as f64;
+    let middles: Vec<f64> = (0..columns)
+        .map(|bin| data.places[0] + (bin as f64 + 0.5) * width)
+        .collect();
+    arrays.set_item("time_star", data.time_star.into_pyarray(py))?;
+    arrays.set_item("place", middles.into_pyarray(py))?;
+    arrays.set_item("sliding_share", rows(py, data.sliding_share, columns)?)?;
+    Ok(arrays)
+}

@@ -1,0 +1,243 @@
+//! Runs in progress.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use slipfront::communicator::Alone;
+use slipfront::observe::frames::Selection;
+use slipfront::{State, StopReason};
+use slipfront_case::field_info::field_named;
+use slipfront_run::clock;
+use slipfront_run::fields::FieldFrame;
+use slipfront_run::running::{RunState, Running};
+use slipfront_run::series::SeriesRow;
+
+use crate::arrays::rows;
+use crate::case::{Case, LOOK_EVERY};
+use crate::errors::RunError;
+use crate::record::{Record, series};
+
+/// A run in progress. Two threads cannot use one at once.
+#[pyclass(module = "slipfront._slipfront")]
+pub(crate) struct Simulation {
+    /// None once the run was taken as a record.
+    running: Option<Running>,
+    started: jiff::Timestamp,
+}
+
+/// Bytes before the state of a checkpoint: its length.
+const LENGTH_BYTES: usize = 8;
+
+impl Simulation {
+    /// A run that is given.
+    pub(crate) fn of(running: Running) -> Self {
+        Self {
+            running: Some(running),
+            started: clock::now(),
+        }
+    }
+
+    fn running(&self) -> PyResult<&Running> {
+        self.running.as_ref().ok_or_else(ended)
+    }
+}
+
+fn ended() -> PyErr {
+    PyRuntimeError::new_err("this simulation has given its results away: begin another one")
+}
+
+#[pymethods]
+impl Simulation {
+    /// Begins a run of a case at rest, or with these dimensionless displacements and velocities, x and y in two rows.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        case: &Case,
+        threads: usize,
+        state: Option<(PyReadonlyArray2<'_, f64>, PyReadonlyArray2<'_, f64>)>,
+    ) -> PyResult<Self> {
+        let n = case.0.model.lattice.n_blocks();
+        let state = match state {
+            None => None,
+            Some((displacement, velocity)) => {
+                let mut state = State::at_rest(n);
+                for (given, field) in [
+                    (displacement, &mut state.displacement),
+                    (velocity, &mut state.velocity),
+                ] {
+                    let values = given.as_slice()?;
+                    if values.len() != 2 * n || !values.iter().all(|value| value.is_finite()) {
+                        let sentence = format!("a state has two finite numbers for each of {n} blocks");
+                        return Err(PyValueError::new_err(sentence));
+                    }
+                    field.x.copy_from_slice(&values[..n]);
+                    field.y.copy_from_slice(&values[n..]);
+                }
+                Some(state)
+            }
+        };
+        let case = &case.0;
+        let running = py.detach(|| match state {
+            None => Running::start(case, threads),
+            Some(state) => Running::start_from(case, threads, state),
+        });
+        Ok(Self::of(running))
+    }
+
+    /// At most `steps` steps, for 50 ms or a little longer; whether the run has ended: `end`, `onset` or none.
+    fn advance(&mut self, py: Python<'_>, steps: u64) -> PyResult<Option<&'static str>> {
+        let running = self.running.as_mut().ok_or_else(ended)?;
+        let (piece, threads) = (running.case().steps_per_poll(), running.threads());
+        let mut left = steps;
+        let mut advance = || {
+            let began = Instant::now();
+            loop {
+                let now = left.min(piece);
+                let reason = running.advance(now)?;
+                left -= now;
+                if reason.is_some() || left == 0 || began.elapsed() >= LOOK_EVERY {
+                    return Ok(reason);
+                }
+            }
+        };
+        // Of several threads the present one is to be one: so it need not wake the others at every step.
+        let reason = py.detach(|| match threads {
+            1 => advance(),
+            _ => rayon::scope(|_| advance()),
+        });
+        let reason = reason.map_err(|error: slipfront::RunError| RunError::new_err(error.to_string()))?;
+        Ok(reason.map(|reason| match reason {
+            StopReason::End => "end",
+            StopReason::Onset => "onset",
+        }))
+    }
+
+    /// Number of the step.
+    #[getter]
+    fn step(&self) -> PyResult<u64> {
+        Ok(self.running()?.snapshot().step)
+    }
+
+    /// t*, mu*, the same across the drive, N* in %.
+    #[getter]
+    fn point(&self) -> PyResult<[f64; 4]> {
+        let now = self.running()?.snapshot();
+        let point = now.point;
+        Ok([
+            now.time_star,
+            point.mu_star,
+            point.mu_lateral_star,
+            point.sliding_percent,
+        ])
+    }
+
+    /// Dimensionless displacements now, x and y, and velocities half a step later.
+    fn motion<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyArray3<f64>>; 2]> {
+        let running = self.running()?;
+        let lattice = running.case().model.lattice;
+        let State {
+            displacement,
+            velocity,
+        } = running.motion();
+        let array = |x: Vec<f64>, y: Vec<f64>| {
+            let both = [x, y].concat().into_pyarray(py);
+            both.reshape([2, lattice.ny, lattice.nx])
+        };
+        Ok([
+            array(displacement.x, displacement.y)?,
+            array(velocity.x, velocity.y)?,
+        ])
+    }
+
+    /// A field of the present instant, in the unit of `fields.nc`.
+    fn field<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let running = self.running()?;
+        let field =
+            field_named(name).ok_or_else(|| PyValueError::new_err(format!("there is no field `{name}`")))?;
+        let selection = Selection {
+            fields: vec![field],
+            stride: 1,
+        };
+        let frame = selection.capture(&running.snapshot());
+        let scale = running.contact_stress_max();
+        let case = running.case();
+        let mut frame = FieldFrame::in_si_units(frame, String::new(), &[field], &case.scales, scale);
+        rows(py, frame.values.swap_remove(0), case.model.lattice.nx)
+    }
+
+    /// The curve up to now: its columns.
+    fn series<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let running = self.running()?;
+        let case = running.case();
+        let rows = running.rows().iter();
+        let rows: Vec<SeriesRow> = rows
+            .map(|row| SeriesRow::new(row, &case.scales, &case.model))
+            .collect();
+        series(py, &rows)
+    }
+
+    /// All that the run needs to go on with the same bits.
+    fn checkpoint<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let running = self.running()?;
+        let state = postcard::to_stdvec(&running.state());
+        let state = state.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+        let mut bytes = (state.len() as u64).to_le_bytes().to_vec();
+        bytes.extend(state);
+        let columns_from = bytes.len();
+        let written = running.write_columns(|place, part| {
+            let from = columns_from + place as usize;
+            bytes.resize(bytes.len().max(from + part.len()), 0);
+            bytes[from..from + part.len()].copy_from_slice(part);
+            Ok::<(), PyErr>(())
+        });
+        written.map(|()| PyBytes::new(py, &bytes))
+    }
+
+    /// The run of this case that goes on from a checkpoint.
+    #[staticmethod]
+    fn resume(py: Python<'_>, case: &Case, checkpoint: &[u8], threads: usize) -> PyResult<Self> {
+        let refused = || PyValueError::new_err("these bytes are no checkpoint of a run of this case");
+        let (length, rest) = checkpoint.split_at_checked(LENGTH_BYTES).ok_or_else(refused)?;
+        let length = u64::from_le_bytes(length.try_into()?) as usize;
+        let (state, columns) = rest.split_at_checked(length).ok_or_else(refused)?;
+        let state: RunState = postcard::from_bytes(state).map_err(|_| refused())?;
+        let needed = state
+            .columns(&case.0)
+            .iter()
+            .map(|part| part.bytes())
+            .sum::<Option<u64>>();
+        if needed != Some(columns.len() as u64) {
+            return Err(refused());
+        }
+        let read = |place: u64, part: &mut [u8]| {
+            let from = place as usize;
+            let found = columns.get(from..from + part.len()).ok_or(())?;
+            part.copy_from_slice(found);
+            Ok::<(), ()>(())
+        };
+        let running = py.detach(|| Running::resume(&case.0, threads, state, Arc::new(Alone), read));
+        let running = running.ok().flatten().ok_or_else(refused)?;
+        Ok(Self::of(running))
+    }
+
+    /// What the run leaves, once it has ended; the simulation is then used up.
+    fn record(&mut self, py: Python<'_>, reason: &str) -> PyResult<Record> {
+        let running = self.running.take().ok_or_else(ended)?;
+        let reason = match reason {
+            "onset" => StopReason::Onset,
+            _ => StopReason::End,
+        };
+        let (case, threads) = (Arc::clone(running.case()), running.threads());
+        let record = py.detach(|| running.record(reason));
+        Ok(Record {
+            case,
+            record,
+            started: self.started,
+            threads,
+        })
+    }
+}

@@ -1,0 +1,27 @@
+"""What the tests share: the repository, from whose root they are run, and small cases."""
+
+from pathlib import Path
+
+import pytest
+
+import slipfront as sf
+
+ROOT = Path(__file__).parents[2]
+CASES = sorted((ROOT / "cases").glob("*.toml"))
+
+
+@pytest.fixture(autouse=True)
+def _at_the_root(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+
+
+@pytest.fixture
+def small() -> sf.Case:
+    """A case that takes some milliseconds."""
+    return sf.Case.from_dict({"slider": {"blocks": [12, 10]}, "time": {"duration_star": 150}}, name="small")
+
+
+@pytest.fixture
+def long() -> sf.Case:
+    """A case that takes minutes."""
+    return sf.Case.from_dict({"slider": {"blocks": [40, 40]}, "time": {"duration_star": 1e6}}, name="long")

@@ -1,0 +1,106 @@
+"""Cases from everywhere, and what is wrong with them."""
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import slipfront as sf
+
+
+def test_a_case_is_the_same_from_a_path_a_text_and_a_dictionary() -> None:
+    path = Path("cases/circle.toml")
+    loaded = sf.Case.load(path)
+    tables = {
+        "slider": {"blocks": [50, 50]},
+        "friction": {"sigma_static_star": 0},
+        "texture": [{"shape": "cavity", "coverage": 10}],
+    }
+    assert sf.Case.parse(path.read_text()).to_toml() == loaded.to_toml()
+    assert sf.Case.from_dict(tables).to_toml() == loaded.to_toml()
+    assert loaded == sf.Case.load(str(path))
+    assert hash(loaded) == hash(sf.Case.load(str(path)))
+    assert loaded != loaded.replace({"drive.v_star": 0.5})
+
+
+def test_overrides_replace_keys_that_exclude_them() -> None:
+    case = sf.Case.load("cases/circle.toml", {"drive.speed": "1 mm/s", "texture.0.coverage": 5})
+    assert case.numbers["v_star"] != 0.01
+    assert round(case.numbers["texture_percent"]) == 5
+    assert case.replace({"texture": []}).numbers["texture_percent"] == 0
+
+
+def test_values_may_be_those_of_numpy_and_of_pint() -> None:
+    pint = pytest.importorskip("pint")
+    unit = pint.UnitRegistry()
+    written = sf.Case.from_dict({"slider": {"blocks": [4, 4]}, "drive": {"speed": "1.5 mm/s"}, "load": {"pressure": "50 kPa"}})
+    given = sf.Case.from_dict(
+        {
+            "slider": {"blocks": np.array([4, 4])},
+            "drive": {"speed": 1.5 * unit.mm / unit.s},
+            "load": {"pressure": unit.Quantity(np.float64(50.0), "kPa")},
+        }
+    )
+    assert given.numbers == written.numbers
+    with pytest.raises(sf.CaseError, match="a speed is wanted|is wanted"):
+        sf.Case.from_dict({"drive": {"speed": 3 * unit.kg}})
+
+
+def test_errors_have_the_sentences_of_the_command() -> None:
+    with pytest.raises(sf.CaseError) as raised:
+        sf.Case.parse("[drive]\nv_start = 0.1\n", name="mine")
+    assert "mine:2:1" in str(raised.value) and "v_star" in str(raised.value)
+    assert (raised.value.line, raised.value.column) == (2, 1)
+    assert isinstance(raised.value, ValueError)
+    with pytest.raises(sf.CaseError, match="did you mean cases/circle.toml") as raised:
+        sf.Case.load("cases/cirle.toml")
+    assert raised.value.line is None
+    with pytest.raises(sf.CaseError, match="--set drive.v_star=0"):
+        sf.Case.load("cases/circle.toml", {"drive.v_star": 0})
+    with pytest.raises(TypeError, match="not of object"):
+        sf.Case.from_dict({"drive": {"v_star": object()}})
+
+
+def test_a_case_never_changes() -> None:
+    case = sf.Case.load("cases/circle.toml")
+    with pytest.raises(AttributeError, match="never changes"):
+        case.name = "other"  # type: ignore[misc]
+    for array in (case.textured, case.mu_static, case.mu_kinetic):
+        assert array.shape == (50, 50)
+        with pytest.raises(ValueError, match="read-only"):
+            array[0, 0] = 0
+    # The array holds what it shows.
+    textured = case.textured
+    before = textured.copy()
+    del case
+    assert (textured == before).all()
+
+
+def test_arrays_stand_in_for_files_and_are_pickled() -> None:
+    rng = np.random.default_rng(3)
+    mask = np.zeros((12, 20), dtype=bool)
+    mask[3:7, 5:9] = True
+    coefficients = rng.uniform(0.8, 1.2, (12, 20))
+    case = sf.Case.from_dict(
+        {
+            "slider": {"blocks": [20, 12]},
+            "friction": {"mu_static_field": coefficients},
+            "texture": [{"shape": "mask", "file": mask}],
+        }
+    )
+    assert (case.textured == mask).all()
+    assert np.allclose(case.mu_static[~mask] / coefficients[~mask], case.mu_static[0, 0] / coefficients[0, 0], rtol=1e-12)
+    changed = case.replace({"drive.v_star": 0.5})
+    twin = pickle.loads(pickle.dumps(case))
+    assert twin == case
+    del case
+    assert (changed.textured == mask).all() and (changed.replace({}).textured == mask).all()
+    assert (twin.mu_static == changed.mu_static).all()
+
+
+def test_a_case_shows_its_physics() -> None:
+    case = sf.Case.load("cases/circle.toml")
+    assert "50 x 50 blocks" in repr(case)
+    shown = case._repr_html_()
+    assert "data:image/png" in shown and "50 x 50 blocks" in shown

@@ -1,0 +1,80 @@
+"""Studies."""
+
+import math
+import os
+import signal
+import threading
+from pathlib import Path
+
+import pytest
+
+import slipfront as sf
+
+pandas = pytest.importorskip("pandas")
+
+
+@pytest.fixture
+def study(small: sf.Case) -> sf.Study:
+    return sf.Study(small.replace({"slider.blocks": [8, 8]}), {"drive.v_star": [0.02, 0.05]}, replicates=3)
+
+
+def test_points_are_those_of_the_runs(study: sf.Study) -> None:
+    results = study.run(progress=False)
+    assert len(results.runs) == 6 and results.failures == []
+    assert results.anisotropy is None
+    for row in results.runs.itertuples():
+        alone = sf.run(study.case(row.point, row.replicate), progress=False)
+        assert alone.static_friction_star == row.static_friction_star
+    means = results.points.query("quantity == 'static_friction_star'")["mean"].tolist()
+    by_point = results.runs.groupby("point")["static_friction_star"].mean().tolist()
+    # Two ways to add three numbers.
+    assert all(math.isclose(a, b, rel_tol=1e-14) for a, b in zip(means, by_point, strict=True))
+
+
+def test_a_folder_is_that_of_the_command_and_goes_on(study: sf.Study, tmp_path: Path) -> None:
+    folder = tmp_path / "study"
+    seen: list[tuple[int, int, int]] = []
+    first = study.run(folder, progress=lambda *now: seen.append(now))
+    assert seen and seen[-1][2] == 0
+    again = study.run(folder, progress=False)
+    assert again.runs.equals(first.runs)
+    assert (folder / "points.csv").exists() and (folder / "study.toml").exists()
+    opened = sf.open(folder)
+    assert isinstance(opened, sf.StudyResults) and opened.points.equals(first.points)
+
+
+def test_own_quantities_are_columns_and_found_again(study: sf.Study, tmp_path: Path) -> None:
+    folder = tmp_path / "study"
+    study.run(folder, progress=False)
+    own = {"last": lambda run: run.series["mu_star"].values[-1], "steps_twice": lambda run: 2 * run.steps}
+    late = study.run(folder, progress=False, quantities=own).runs
+    fresh = study.run(progress=False, quantities=own).runs
+    assert late.equals(fresh)
+    assert (fresh["steps_twice"] == 2 * fresh["steps"]).all() and fresh["last"].notna().all()
+
+
+def test_an_exception_of_an_own_quantity_ends_the_study_and_fails_no_run(study: sf.Study, tmp_path: Path) -> None:
+    folder = tmp_path / "study"
+    with pytest.raises(ZeroDivisionError):
+        study.run(folder, progress=False, quantities={"wrong": lambda run: 1 / 0})
+    assert study.run(folder, progress=False).failures == []
+
+
+def test_an_interrupt_ends_a_study_which_goes_on(small: sf.Case, tmp_path: Path) -> None:
+    study = sf.Study(small.replace({"slider.blocks": [60, 60]}), {"drive.v_star": [0.01 + 0.001 * k for k in range(20)]}, replicates=2)
+    timer = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        study.run(tmp_path / "study", progress=False)
+    timer.join()
+    assert len(study.run(tmp_path / "study", progress=False).runs) == 40
+
+
+def test_a_study_file_is_run(tmp_path: Path) -> None:
+    text = 'base = "%s"\n[study]\nreplicates = 1\n[[axes]]\nkey = "drive.v_star"\nlist = [0.05, 0.1]\n'
+    path = tmp_path / "mine.toml"
+    path.write_text(text % Path("cases/chain.toml").absolute())
+    assert len(sf.study(str(path), progress=False).runs) == 2
+    path.write_text(text.replace("v_star", "v_start") % Path("cases/chain.toml").absolute())
+    with pytest.raises(sf.CaseError, match="v_star"):
+        sf.Study(path)
