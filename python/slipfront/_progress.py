@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 if TYPE_CHECKING:
     from ._simulation import Simulation
 
-Progress: TypeAlias = "bool | Callable[[Simulation], object] | None"
+Progress: TypeAlias = bool | Callable[["Simulation"], object] | None
 """``True`` for a bar, ``False`` for nothing, ``None`` for a bar in terminals and notebooks, or a function of the simulation."""
 
 

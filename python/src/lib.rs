@@ -3,6 +3,11 @@
 //! Its names are for the Python files beside it in the package, which give them their public form. While the engine works, other
 //! threads of Python go on; signals are looked at between two calls, or every 50 ms within one.
 
+#![expect(
+    clippy::needless_pass_by_value,
+    reason = "what Python hands over is taken as it comes, as values"
+)]
+
 mod arrays;
 mod case;
 mod errors;

@@ -12,6 +12,7 @@ use slipfront::observe::frames::Selection;
 use slipfront::{State, StopReason};
 use slipfront_case::field_info::field_named;
 use slipfront_run::clock;
+use slipfront_run::columns::Columns;
 use slipfront_run::fields::FieldFrame;
 use slipfront_run::running::{RunState, Running};
 use slipfront_run::series::SeriesRow;
@@ -208,7 +209,7 @@ impl Simulation {
         let needed = state
             .columns(&case.0)
             .iter()
-            .map(|part| part.bytes())
+            .map(Columns::bytes)
             .sum::<Option<u64>>();
         if needed != Some(columns.len() as u64) {
             return Err(refused());

@@ -22,9 +22,10 @@ def test_points_are_those_of_the_runs(study: sf.Study) -> None:
     results = study.run(progress=False)
     assert len(results.runs) == 6 and results.failures == []
     assert results.anisotropy is None
-    for row in results.runs.itertuples():
-        alone = sf.run(study.case(row.point, row.replicate), progress=False)
-        assert alone.static_friction_star == row.static_friction_star
+    runs = results.runs
+    for point, replicate, found in zip(runs["point"], runs["replicate"], runs["static_friction_star"], strict=True):
+        alone = sf.run(study.case(int(point), int(replicate)), progress=False)
+        assert alone.static_friction_star == found
     means = results.points.query("quantity == 'static_friction_star'")["mean"].tolist()
     by_point = results.runs.groupby("point")["static_friction_star"].mean().tolist()
     # Two ways to add three numbers.
