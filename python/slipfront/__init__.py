@@ -8,7 +8,7 @@
 
 from ._case import Case, CaseError
 from ._cite import cite
-from ._open import InterruptedRun, open
+from ._open import InterruptedRun, PaperResults, open
 from ._run import FolderError, Run
 from ._simulation import Simulation, run
 from ._slipfront import RunError, __version__
@@ -19,6 +19,7 @@ __all__ = [
     "CaseError",
     "FolderError",
     "InterruptedRun",
+    "PaperResults",
     "Run",
     "RunError",
     "Simulation",

@@ -1,15 +1,20 @@
-"""Folders of the command: runs, interrupted runs, studies."""
+"""Folders of the command: runs, interrupted runs, studies, the paper."""
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from . import _slipfront
 from ._case import Case
 from ._run import FolderSource, Run
 from ._simulation import Simulation, _threads
 from ._study import StudyResults
+from ._tables import frame, read_table
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 class InterruptedRun:
@@ -30,19 +35,47 @@ class InterruptedRun:
         return f"InterruptedRun({self.folder}: step {self.simulation.steps} of {self.case.last_step})"
 
 
-def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | InterruptedRun | StudyResults:
+class PaperResults:
+    """The folder of `slipfront paper`: the figures of the paper and its claims as tables.
+
+    Attributes
+    ----------
+    folder
+        Where it stands.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    @property
+    def claims(self) -> pd.DataFrame:
+        """A row for each claim of the paper: what was measured, its interval, the criterion, the verdict."""
+        return frame(read_table(self.folder / "claims.csv"))
+
+    @property
+    def figures(self) -> dict[str, pd.DataFrame]:
+        """The data of every panel, under the name of its picture."""
+        panels = sorted(self.folder.glob("*.png"))
+        return {panel.stem: frame(read_table(panel.with_suffix(".csv"))) for panel in panels if panel.with_suffix(".csv").exists()}
+
+    def __repr__(self) -> str:
+        return f"PaperResults({self.folder})"
+
+
+def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | InterruptedRun | StudyResults | PaperResults:
     """Read a folder of the command.
 
     Parameters
     ----------
     folder
-        That of a run, of a run that was stopped, or of a study, which that of the paper is as well.
+        That of a run, of a run that was stopped, of a study, or of `slipfront paper`.
     verify
-        Hold what stands there against what was written.
+        Hold what stands there against what was written. Of an interrupted run its checkpoint is always verified; that of the paper
+        has nothing to be held against.
 
     Returns
     -------
-    Run, InterruptedRun or StudyResults
+    Run, InterruptedRun, StudyResults or PaperResults
 
     Raises
     ------
@@ -55,8 +88,10 @@ def open(folder: str | os.PathLike[str], *, verify: bool = True) -> Run | Interr
         native, running = _slipfront.interrupted(path, _threads(None))
         case = Case(native)
         return InterruptedRun(path, case, Simulation._of(case, running, None))
+    if kind == "paper" and (path / "claims.csv").exists():
+        return PaperResults(path)
     if kind not in ("run", "study"):
-        raise _slipfront.FolderError(f"{path} is not the folder of a run or of a study: name the one with its case.toml or study.toml")
+        raise _slipfront.FolderError(f"{path} is not the folder of a run, of a study, or of a paper that is finished: name one with a case.toml, a study.toml or a claims.csv")
     if verify:
         _slipfront.verify(path)
     if kind == "study":

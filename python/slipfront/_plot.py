@@ -66,18 +66,23 @@ def _friction(run: Run, ax: Axes | None, label: str | None) -> Figure:
 
 def _map(run: Run, values: npt.NDArray[Any], title: str, ax: Axes | None) -> Figure:
     rows, columns = values.shape
-    figure, ax = _figure(ax, min(max(rows / columns, 0.3), 1.5))
+    figure, ax = _figure(ax, min(max(0.85 * rows / columns, 0.3), 1.5))
     x, y = (np.asarray(run.fields[axis]) for axis in ("x", "y"))
     half = 0.5 * run.case.numbers["block_size_m"] * run._arrays["stride"]
     unit, prefix = _unit(float(x[-1] + half))
     extent = (0.0, (x[-1] + half) / unit, 0.0, (y[-1] + half) / unit)
     image = ax.imshow(values, origin="lower", extent=extent, cmap="viridis", interpolation="nearest")
+    # What has no value shows the ground; over a texture that has values, its outline is drawn along the edges of the blocks.
+    ax.set_facecolor("0.8")
     textured = np.asarray(run.fields["textured"])
-    if textured.any() and not textured.all():
-        ax.contour(x / unit, y / unit, textured, levels=[0.5], colors="white", linewidths=0.8)
+    if np.isfinite(values[textured]).any():
+        per_block = max(1, min(8, 4000 // max(rows, columns)))
+        fine = np.kron(textured, np.ones((per_block, per_block)))
+        across, along = (np.linspace(0, end, 2 * n + 1)[1::2] for end, n in zip(extent[1::2], fine.shape[::-1], strict=True))
+        ax.contour(across, along, fine, levels=[0.5], colors="white", linewidths=0.8)
     ax.set_xlabel(f"x ({prefix}m)")
     ax.set_ylabel(f"y ({prefix}m)")
-    figure.colorbar(image, ax=ax, label=title, shrink=0.9)
+    figure.colorbar(image, ax=ax, label=title, fraction=0.046, pad=0.03)
     return figure
 
 

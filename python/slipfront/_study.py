@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import os
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias, cast
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -16,6 +15,7 @@ from ._case import Case
 from ._progress import Bar
 from ._run import Run
 from ._simulation import _threads, run
+from ._tables import frame, read_table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -198,23 +198,23 @@ class StudyResults:
     def read(cls, folder: Path) -> StudyResults:
         """The tables in a folder."""
         names = ("runs", "points", "anisotropy")
-        return cls(folder, {name: _table(folder / f"{name}.csv") for name in names if (folder / f"{name}.csv").exists()})
+        return cls(folder, {name: read_table(folder / f"{name}.csv") for name in names if (folder / f"{name}.csv").exists()})
 
     @property
     def runs(self) -> pd.DataFrame:
         """A row for each run: its place, seed, status and every number of its summary."""
-        return _frame(self._runs)
+        return frame(self._runs)
 
     @property
     def points(self) -> pd.DataFrame:
         """A row for each point and quantity: mean, standard deviation, confidence interval of the mean, smallest and largest."""
-        return _frame(self._tables["points"])
+        return frame(self._tables["points"])
 
     @property
     def anisotropy(self) -> pd.DataFrame | None:
         """How friction depends on the direction of the drive, of a study over directions."""
         table = self._tables.get("anisotropy")
-        return None if table is None else _frame(table)
+        return None if table is None else frame(table)
 
     def __repr__(self) -> str:
         return f"StudyResults({len(self._runs['point'])} runs, {len(self.failures)} failed)"
@@ -230,29 +230,3 @@ def _as_base(case: Case) -> str:
             line = "[base." + line[1:]
         lines.append(line)
     return "\n".join(["[base]", *lines, ""])
-
-
-def _table(path: Path) -> dict[str, list[Any]]:
-    """The columns of a table: numbers where all cells are numbers or empty, which are NaN."""
-    with path.open(newline="", encoding="utf-8") as file:
-        rows = list(csv.reader(file))
-    columns: dict[str, list[Any]] = {}
-    for position, name in enumerate(rows[0]):
-        cells = [row[position] for row in rows[1:]]
-        try:
-            columns[name] = [float(cell) if cell else np.nan for cell in cells]
-        except ValueError:
-            columns[name] = cells
-            continue
-        if all(cell.isdigit() for cell in cells):
-            columns[name] = [int(cell) for cell in cells]
-    return columns
-
-
-def _frame(table: dict[str, list[Any]]) -> pd.DataFrame:
-    """A table of pandas, or where it is not installed, a dictionary of arrays."""
-    try:
-        import pandas
-    except ImportError:
-        return cast("pd.DataFrame", {name: np.asarray(values) for name, values in table.items()})
-    return pandas.DataFrame(table)

@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use slipfront_run::clock;
+use slipfront_case::case::Case as SlipfrontCase;
 use slipfront_run::study::{self, Plan, Progress, Role, RunKey, StudyError, StudyFile, StudyFolder};
+use slipfront_run::{clock, running};
 
 use crate::case::{Case, LOOK_EVERY, make};
 use crate::errors::{folder_error, study_error};
@@ -120,84 +121,34 @@ impl Study {
         });
         let opened = opened.map_err(failed)?;
         let plan = self.plan.clone().reading_copies(&opened.study);
-        let stop = AtomicBool::new(false);
-        let (own, raised) = (Mutex::new(OwnValues::new()), Mutex::new(None::<PyErr>));
-        let raise = |error: PyErr| {
-            let mut first = raised.lock().unwrap_or_else(PoisonError::into_inner);
-            first.get_or_insert(error);
-            stop.store(true, Ordering::Relaxed);
+        let shared = Shared::default();
+        let look_at_run = |run: RunKey, case: &Arc<SlipfrontCase>, record: &running::Record| {
+            let Some(look) = &look else { return true };
+            shared.look(look, self.key(run), case, record)
         };
-        let look_at_run =
-            |run: RunKey, case: &Arc<slipfront_case::case::Case>, record: &slipfront_run::running::Record| {
-                let Some(look) = &look else { return true };
-                let key = self.key(run);
-                let record = Record {
-                    case: Arc::clone(case),
-                    record: record.clone(),
-                    started: clock::now(),
-                    threads: 1,
-                };
-                let values = Python::attach(|py| {
-                    let values = look.call1(py, (Case(Arc::clone(case)), record, key))?;
-                    values.extract::<Vec<f64>>(py)
-                });
-                match values {
-                    Ok(values) => {
-                        own.lock()
-                            .unwrap_or_else(PoisonError::into_inner)
-                            .insert(key, values);
-                        true
-                    }
-                    Err(error) => {
-                        raise(error);
-                        false
-                    }
-                }
-            };
-        let progress = Mutex::new(None::<Progress>);
-        let ended = AtomicBool::new(false);
+        let execute = || {
+            let watch = &mut |now: &Progress| *locked(&shared.progress) = Some(now.clone());
+            // One more thread of the pool waits for the others.
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads + 1).build();
+            let (records, folder, stop) = (&opened.records, opened.path(), &shared.stop);
+            pool.map(|pool| {
+                pool.install(|| study::execute_and_look(&plan, records, folder, stop, &look_at_run, watch))
+            })
+        };
         let results = py.detach(|| {
             std::thread::scope(|scope| {
-                let worker = scope.spawn(|| {
-                    // One more thread of the pool waits for the others.
-                    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads + 1).build();
-                    let done = pool.map(|pool| {
-                        pool.install(|| {
-                            let watch = &mut |now: &Progress| {
-                                *progress.lock().unwrap_or_else(PoisonError::into_inner) = Some(now.clone());
-                            };
-                            study::execute_and_look(
-                                &plan,
-                                &opened.records,
-                                opened.path(),
-                                &stop,
-                                &look_at_run,
-                                watch,
-                            )
-                        })
-                    });
-                    ended.store(true, Ordering::Relaxed);
-                    done
-                });
-                // Signals come to the thread that called, and so does what is shown.
-                while !ended.load(Ordering::Relaxed) && !worker.is_finished() {
+                let worker = scope.spawn(execute);
+                // Signals come to the thread that called, and what is shown is shown by it.
+                while !worker.is_finished() {
                     std::thread::park_timeout(LOOK_EVERY);
-                    let now = progress.lock().unwrap_or_else(PoisonError::into_inner).take();
-                    let looked = Python::attach(|py| {
-                        py.check_signals()?;
-                        if let (Some(watch), Some(now)) = (&watch, now) {
-                            watch.call1(py, (now.done, now.total, now.failed))?;
-                        }
-                        Ok(())
-                    });
-                    if let Err(error) = looked {
-                        raise(error);
-                    }
+                    shared.show(watch.as_ref());
                 }
-                worker.join()
+                let results = worker.join();
+                shared.show(watch.as_ref());
+                results
             })
         });
-        if let Some(error) = raised.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        if let Some(error) = locked(&shared.raised).take() {
             return Err(error);
         }
         let results = match results {
@@ -212,6 +163,70 @@ impl Study {
             (format!("{place}, replicate {}", run.replicate), reason.to_owned())
         };
         let failures = results.failures().map(describe).collect();
-        Ok((own.into_inner().unwrap_or_else(PoisonError::into_inner), failures))
+        Ok((std::mem::take(&mut *locked(&shared.own)), failures))
+    }
+}
+
+/// What the threads of a study share with the one that called.
+#[derive(Default)]
+struct Shared {
+    stop: AtomicBool,
+    own: Mutex<OwnValues>,
+    /// The first exception, with which the study ends.
+    raised: Mutex<Option<PyErr>>,
+    progress: Mutex<Option<Progress>>,
+}
+
+fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Shared {
+    fn raise(&self, error: PyErr) {
+        locked(&self.raised).get_or_insert(error);
+        self.stop.store(true, Ordering::Relaxed);
+    }
+
+    /// Takes the values of the user's own quantities of a run; whether there were any.
+    fn look(
+        &self,
+        look: &Py<PyAny>,
+        key: (usize, usize, bool),
+        case: &Arc<SlipfrontCase>,
+        record: &running::Record,
+    ) -> bool {
+        let record = Record {
+            case: Arc::clone(case),
+            record: record.clone(),
+            started: clock::now(),
+            threads: 1,
+        };
+        let values = Python::attach(|py| {
+            let values = look.call1(py, (Case(Arc::clone(case)), record, key))?;
+            values.extract::<Vec<f64>>(py)
+        });
+        match values {
+            Ok(values) => locked(&self.own).insert(key, values),
+            Err(error) => {
+                self.raise(error);
+                return false;
+            }
+        };
+        true
+    }
+
+    /// Looks for signals, and shows what is new.
+    fn show(&self, watch: Option<&Py<PyAny>>) {
+        let now = locked(&self.progress).take();
+        let shown = Python::attach(|py| {
+            py.check_signals()?;
+            match (watch, now) {
+                (Some(watch), Some(now)) => watch.call1(py, (now.done, now.total, now.failed)).map(drop),
+                _ => Ok(()),
+            }
+        });
+        if let Err(error) = shown {
+            self.raise(error);
+        }
     }
 }

@@ -3,7 +3,6 @@
 import math
 import os
 import signal
-import threading
 from pathlib import Path
 
 import pytest
@@ -62,12 +61,17 @@ def test_an_exception_of_an_own_quantity_ends_the_study_and_fails_no_run(study: 
 
 
 def test_an_interrupt_ends_a_study_which_goes_on(small: sf.Case, tmp_path: Path) -> None:
-    study = sf.Study(small.replace({"slider.blocks": [60, 60]}), {"drive.v_star": [0.01 + 0.001 * k for k in range(20)]}, replicates=2)
-    timer = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))
-    timer.start()
+    speeds = [0.01 + 0.001 * k for k in range(20)]
+    study = sf.Study(small.replace({"slider.blocks": [100, 100]}), {"drive.v_star": speeds}, replicates=2)
+
+    def press(done: int, total: int, _: int) -> None:
+        assert done < total
+        os.kill(os.getpid(), signal.SIGINT)
+
     with pytest.raises(KeyboardInterrupt):
-        study.run(tmp_path / "study", progress=False)
-    timer.join()
+        study.run(tmp_path / "study", progress=press)
+    records = (tmp_path / "study" / "records.jsonl").read_text().splitlines()
+    assert 0 < len(records) < 40
     assert len(study.run(tmp_path / "study", progress=False).runs) == 40
 
 
