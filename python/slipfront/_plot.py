@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -22,32 +24,32 @@ _STYLE = {
     "xtick.labelsize": 7,
     "ytick.labelsize": 7,
     "legend.fontsize": 7,
-    "savefig.dpi": 300,
 }
 
 
-def plot(run: Run, kind: str, ax: Axes | None, *, instant: str | int = -1, label: str | None = None) -> Figure:
+def plot(run: Run, kind: str, ax: Axes | None, *, instant: str | int = -1, label: str | None = None) -> Axes:
     """Draw a run; `Run.plot` says what."""
-    import matplotlib as mpl
-
-    with mpl.rc_context(cast("Any", _STYLE)):
-        if kind == "friction":
-            return _friction(run, ax, label)
-        if kind == "front":
-            return _map(run, run.front, "first slip, t*", ax)
-        return _field(run, kind, instant, ax)
-
-
-def _figure(ax: Axes | None, height: float) -> tuple[Figure, Axes]:
     import matplotlib.pyplot as plt
 
+    draw: Callable[[Axes], None]
+    if kind == "friction":
+        height, draw = 0.75, partial(_friction, run, label)
+    else:
+        values, title = (run.front, "first slip, t*") if kind == "front" else _field(run, kind, instant)
+        height = min(max(0.85 * values.shape[0] / values.shape[1], 0.3), 1.5)
+        draw = partial(_map, run, values, title)
     if ax is not None:
-        return cast("Figure", ax.get_figure(root=True)), ax
-    return plt.subplots(figsize=(_WIDTH, height * _WIDTH), layout="constrained")
+        draw(ax)
+        return ax
+    # The first figure chooses the backend, which would be forgotten with the style.
+    figure = plt.figure(figsize=(_WIDTH, height * _WIDTH), layout="compressed")
+    with plt.rc_context(cast("Any", _STYLE)):
+        ax = figure.add_subplot()
+        draw(ax)
+    return ax
 
 
-def _friction(run: Run, ax: Axes | None, label: str | None) -> Figure:
-    figure, ax = _figure(ax, 0.75)
+def _friction(run: Run, label: str | None, ax: Axes) -> None:
     series = run.series
     time_star, mu_star = np.asarray(series["time_star"]), np.asarray(series["mu_star"])
     (line,) = ax.plot(time_star, mu_star, label=label or run.case.name)
@@ -61,12 +63,9 @@ def _friction(run: Run, ax: Axes | None, label: str | None) -> Figure:
     ax.set_xlim(left=0)
     if label is not None:
         ax.legend(frameon=False)
-    return figure
 
 
-def _map(run: Run, values: npt.NDArray[Any], title: str, ax: Axes | None) -> Figure:
-    rows, columns = values.shape
-    figure, ax = _figure(ax, min(max(0.85 * rows / columns, 0.3), 1.5))
+def _map(run: Run, values: npt.NDArray[Any], title: str, ax: Axes) -> None:
     x, y = (np.asarray(run.fields[axis]) for axis in ("x", "y"))
     half = 0.5 * run.case.numbers["block_size_m"] * run._arrays["stride"]
     unit, prefix = _unit(float(x[-1] + half))
@@ -76,17 +75,16 @@ def _map(run: Run, values: npt.NDArray[Any], title: str, ax: Axes | None) -> Fig
     ax.set_facecolor("0.8")
     textured = np.asarray(run.fields["textured"])
     if np.isfinite(values[textured]).any():
-        per_block = max(1, min(8, 4000 // max(rows, columns)))
+        per_block = max(1, min(8, 4000 // max(values.shape)))
         fine = np.kron(textured, np.ones((per_block, per_block)))
         across, along = (np.linspace(0, end, 2 * n + 1)[1::2] for end, n in zip(extent[1::2], fine.shape[::-1], strict=True))
         ax.contour(across, along, fine, levels=[0.5], colors="white", linewidths=0.8)
     ax.set_xlabel(f"x ({prefix}m)")
     ax.set_ylabel(f"y ({prefix}m)")
-    figure.colorbar(image, ax=ax, label=title, fraction=0.046, pad=0.03)
-    return figure
+    cast("Figure", ax.get_figure(root=True)).colorbar(image, ax=ax, label=title, fraction=0.046, pad=0.03)
 
 
-def _field(run: Run, name: str, instant: str | int, ax: Axes | None) -> Figure:
+def _field(run: Run, name: str, instant: str | int) -> tuple[npt.NDArray[Any], str]:
     arrays = run._arrays["fields"]
     if name not in arrays:
         kept = ", ".join(f'"{kept}"' for kept in arrays) or "none"
@@ -101,8 +99,7 @@ def _field(run: Run, name: str, instant: str | int, ax: Axes | None) -> Figure:
     shown = values[instant]
     size, prefix = _unit(float(np.nanmax(np.abs(shown), initial=0.0))) if unit != "1" else (1.0, "")
     in_unit = "" if unit == "1" else f" ({prefix}{unit.replace(' s-1', '/s')})"
-    figure = _map(run, shown / size, long_name + in_unit, ax)
-    return figure
+    return shown / size, long_name + in_unit
 
 
 def _unit(largest: float) -> tuple[float, str]:

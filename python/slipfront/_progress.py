@@ -44,7 +44,8 @@ class Bar:
         except ImportError:
             self._text = True
         else:
-            self._bar = tqdm(total=total, unit=unit, desc=title, unit_scale=unit == "step", leave=False)
+            # What is over within a second leaves no trace, in a notebook that is stored for example.
+            self._bar = tqdm(total=total, unit=unit, desc=title, unit_scale=unit == "step", leave=False, delay=1)
 
     def show(self, done: int, total: int | None = None, said: str = "") -> None:
         """Show how much is done, of how much if that has changed, and a few words."""

@@ -18,7 +18,6 @@ from ._case import Case
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 
 class Source(Protocol):
@@ -132,6 +131,11 @@ class Run:
         return self._optional("first_slip_time_star")
 
     @property
+    def first_slip_time_s(self) -> float | None:
+        """The same in s."""
+        return self._optional("first_slip_time_s")
+
+    @property
     def sliding_percent_max(self) -> float:
         """Largest share of sliding blocks N*, %."""
         return float(self.summary["sliding_percent_max"])
@@ -161,6 +165,11 @@ class Run:
     def front_duration_star(self) -> float | None:
         """t* from 5 to 95 % of the first slips."""
         return self._optional("front_duration_star")
+
+    @property
+    def front_duration_s(self) -> float | None:
+        """The same in s."""
+        return self._optional("front_duration_s")
 
     @property
     def texture_percent(self) -> float:
@@ -235,18 +244,22 @@ class Run:
         self._folder = path
         return path
 
-    def plot(self, kind: str = "friction", ax: Axes | None = None, **options: Any) -> Figure:
+    def plot(self, kind: str = "friction", ax: Axes | None = None, **options: Any) -> Axes:
         """Draw the run with matplotlib, as wide as a column of a journal (85 mm).
 
         Parameters
         ----------
         kind
-            ``"friction"``: mu* and N* over t*; ``"front"``: when each block first slid; or the name of a field, such as
+            ``"friction"``: mu* over t* with the instants A to F; ``"front"``: when each block first slid; or the name of a field, such as
             ``"traction"``, at the snapshot ``instant`` (a letter, or its number).
         ax
-            Axes to draw in; new ones unless given.
+            Axes to draw in, in their own style; new ones unless given.
         options
             ``instant`` of a field, ``label`` of a curve.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
         """
         from ._plot import plot
 

@@ -90,6 +90,7 @@ class Simulation:
         self._threads = _threads(threads)
         self._begin(case, _slipfront.Simulation(case._native, self._threads, None))
         self._legs: list[tuple[Case, int]] = []
+        self._curves: list[xr.Dataset] = []
         # Where the drive stood when this leg began, block by block, and the time and steps before it.
         self._origin: npt.NDArray[np.float64] | float = 0.0
         self._before = (0, 0.0)
@@ -187,9 +188,16 @@ class Simulation:
 
     @property
     def series(self) -> xr.Dataset:
-        """The curve since the start or the last change, as `Run.series`."""
+        """The curve since the start or the last change, as `Run.series`; ``time_s`` counts from the start."""
         with self._alone() as native:
-            return _dataset.table(native.series())
+            columns = native.series()
+        columns["time_s"] = columns["time_s"] + self._before[1]
+        return _dataset.table(columns)
+
+    @property
+    def curves(self) -> list[xr.Dataset]:
+        """The `series` of every leg, the present one last."""
+        return [*self._curves, self.series]
 
     def step(self, n: int = 1) -> int:
         """Take n steps, or fewer if the run ends before.
@@ -242,6 +250,8 @@ class Simulation:
         if every < 1:
             raise ValueError(f"every is a number of steps from 1 on, not {every}")
         last = math.ceil(time_star / self._case.numbers["dt_star"] - 1e-9) if time_star < math.inf else _ALL
+        if time_star < (now := self.time_star):
+            raise ValueError(f"t* = {time_star:g} is over: it is {now:g} since the start or the last change")
         while True:
             if observer is not None:
                 observer(self)
@@ -330,6 +340,7 @@ class Simulation:
             np.ascontiguousarray((velocity * (old["speed_unit_m_s"] / new["speed_unit_m_s"])).reshape(rows)),
         )
         begun = _slipfront.Simulation(after._native, self._threads, state)
+        self._curves.append(self.series)
         self._legs.append((before, steps))
         self._origin = self._origin + drive * old["displacement_unit_m"]
         self._before = (self._before[0] + steps, self._before[1] + time_star * old["time_unit_s"])
@@ -366,12 +377,13 @@ class Simulation:
         simulation = cls.__new__(cls)
         simulation._threads = _threads(threads)
         simulation._begin(case, native)
-        simulation._legs, simulation._origin, simulation._before = [], 0.0, (0, 0.0)
+        simulation._legs, simulation._curves = [], []
+        simulation._origin, simulation._before = 0.0, (0, 0.0)
         return simulation
 
     def __copy__(self) -> Simulation:
         other = self.resume(self._case, self.checkpoint(), threads=self._threads)
-        other._ended, other._legs = self._ended, list(self._legs)
+        other._ended, other._legs, other._curves = self._ended, list(self._legs), list(self._curves)
         other._origin, other._before = self._origin, self._before
         return other
 
@@ -379,7 +391,7 @@ class Simulation:
         return copy.copy(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        kept = (self._threads, self._ended, self._legs, self._origin, self._before)
+        kept = (self._threads, self._ended, self._legs, self._curves, self._origin, self._before)
         return (_unpickled, (self._case, self.checkpoint(), *kept))
 
     def __repr__(self) -> str:
@@ -392,11 +404,12 @@ def _unpickled(
     threads: int,
     ended: str | None,
     legs: list[tuple[Case, int]],
+    curves: list[xr.Dataset],
     origin: npt.NDArray[np.float64] | float,
     before: tuple[int, float],
 ) -> Simulation:
     simulation = Simulation.resume(case, checkpoint, threads=threads)
-    simulation._ended, simulation._legs = ended, legs
+    simulation._ended, simulation._legs, simulation._curves = ended, legs, curves
     simulation._origin, simulation._before = origin, before
     return simulation
 

@@ -32,7 +32,8 @@ class Study:
     case
         The case that is varied, or the path of a study file, with which nothing else is given.
     axes
-        Keys and the lists of their values; all combinations are run, the last axis fastest. Values as in `Case.from_dict`.
+        Keys and the lists of their values; all combinations are run, the last axis fastest. Values as in `Case.from_dict`. Names
+        that are not keys have dictionaries: the names of variants, and the keys that each of them sets.
     replicates
         Random surfaces per point.
     settings
@@ -52,7 +53,7 @@ class Study:
     def __init__(
         self,
         case: Case | str | os.PathLike[str],
-        axes: Mapping[str, Sequence[Any]] | None = None,
+        axes: Mapping[str, Sequence[Any] | Mapping[str, Mapping[str, Any]]] | None = None,
         *,
         replicates: int = 1,
         settings: Mapping[str, Any] | None = None,
@@ -64,10 +65,7 @@ class Study:
             self._native = _slipfront.Study.load(Path(case))
             return
         files = _toml.ArrayFiles(case._folder)
-        listed = "".join(
-            f"[[axes]]\nkey = {_toml.value(key, files)}\nlist = {_toml.value(list(values), files)}\n"
-            for key, values in (axes or {}).items()
-        )
+        listed = "".join(_axis(name, levels, files) for name, levels in (axes or {}).items())
         study = {"replicates": replicates, **(settings or {})}
         text = _toml.document({"study": study}, files) + listed + _as_base(case)
         self._arrays = files.folder
@@ -127,8 +125,8 @@ class Study:
         threads
             Runs at once, one per core unless given.
         quantities
-            Own quantities: functions of a run, whose values are columns of `StudyResults.runs`. They are called in the threads
-            of the runs.
+            Own quantities: functions of a run, whose values are columns of `StudyResults.runs` and, with their statistics, rows
+            of `points`. They are called in the threads of the runs.
 
         Examples
         --------
@@ -171,6 +169,15 @@ class Study:
                 values[place] = [float(quantity(again)) for quantity in own.values()]
             for name, value in zip(own, values.get(place, [np.nan] * len(own)), strict=True):
                 rows.setdefault(name, []).append(value)
+        points = results._tables["points"]
+        axes = [column for columns, _ in self._native.axes for column in columns]
+        for point in dict.fromkeys(rows["point"]):
+            of_point = [k for k, (p, r) in enumerate(zip(rows["point"], rows["role"], strict=True)) if (p, r) == (point, "point")]
+            for name in own:
+                found = dict(self._native.statistics([rows[name][k] for k in of_point if not np.isnan(rows[name][k])]))
+                row = {"point": point, "quantity": name, **{axis: rows[axis][of_point[0]] for axis in axes}, **found}
+                for column, cells in points.items():
+                    cells.append(row.get(column, np.nan))
 
     def __repr__(self) -> str:
         axes = ", ".join(f"{key} ({levels})" for key, levels in self.axes.items())
@@ -218,6 +225,13 @@ class StudyResults:
 
     def __repr__(self) -> str:
         return f"StudyResults({len(self._runs['point'])} runs, {len(self.failures)} failed)"
+
+
+def _axis(name: str, levels: Sequence[Any] | Mapping[str, Mapping[str, Any]], files: _toml.ArrayFiles) -> str:
+    if isinstance(levels, Mapping):
+        variants = "".join(f"{_toml.key(level)} = {_toml.value(keys, files)}\n" for level, keys in levels.items())
+        return f"[[axes]]\nname = {_toml.word(name)}\n[axes.variants]\n{variants}"
+    return f"[[axes]]\nkey = {_toml.word(name)}\nlist = {_toml.value(list(levels), files)}\n"
 
 
 def _as_base(case: Case) -> str:

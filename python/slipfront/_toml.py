@@ -37,6 +37,9 @@ class ArrayFiles:
 
     def write(self, array: np.ndarray[Any, Any]) -> str:
         """Write an array and give the name of its file."""
+        if np.ma.is_masked(array):
+            # What is masked is not known: NaN, which the case refuses where it cannot do without.
+            array = np.ma.filled(array.astype(np.float64), np.nan)
         if self.folder is None or self._count == 0:
             self.folder = TemporaryFolder(self._others)
         self._count += 1
@@ -67,9 +70,10 @@ def value(given: Any, arrays: ArrayFiles) -> str:
         return "{ " + ", ".join(pairs) + " }"
     if hasattr(given, "magnitude") and hasattr(given, "units"):
         return _quantities(given)
-    if isinstance(given, np.ndarray):
+    if hasattr(given, "__array__"):
+        array = np.asanyarray(given)
         # What has rows is a field or a mask, of which a case names the file.
-        return word(arrays.write(given)) if given.ndim == 2 else value(given.tolist(), arrays)
+        return word(arrays.write(array)) if array.ndim == 2 else value(array.tolist(), arrays)
     if isinstance(given, Sequence):
         return "[" + ", ".join(value(inner, arrays) for inner in given) + "]"
     raise TypeError(

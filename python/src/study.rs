@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use slipfront_case::case::Case as SlipfrontCase;
-use slipfront_run::study::{self, Plan, Progress, Role, RunKey, StudyError, StudyFile, StudyFolder};
+use slipfront_run::study::{self, Plan, Progress, Role, RunKey, Sample, StudyError, StudyFile, StudyFolder};
 use slipfront_run::{clock, running};
 
 use crate::case::{Case, LOOK_EVERY, make};
@@ -99,6 +99,23 @@ impl Study {
             role,
         };
         make(py, |watch| self.plan.case(run, watch))
+    }
+
+    /// Statistics of a quantity at a point, under the names of `points.csv`.
+    fn statistics(&self, values: Vec<f64>) -> Vec<(&'static str, f64)> {
+        let sample = Sample::of(&values, self.plan.settings.confidence());
+        let found = sample.map(|sample| {
+            let [low, high] = sample.interval().unwrap_or([f64::NAN; 2]);
+            vec![
+                ("mean", sample.mean),
+                ("deviation", sample.deviation.unwrap_or(f64::NAN)),
+                ("low", low),
+                ("high", high),
+                ("min", sample.min),
+                ("max", sample.max),
+            ]
+        });
+        [vec![("n", values.len() as f64)], found.unwrap_or_default()].concat()
     }
 
     /// Runs what the folder lacks, and writes tables and pictures there. `look` is called with the case, the record and the place of

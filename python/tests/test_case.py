@@ -99,6 +99,16 @@ def test_arrays_stand_in_for_files_and_are_pickled() -> None:
     assert (twin.mu_static == changed.mu_static).all()
 
 
+def test_masked_heights_are_not_taken_for_measured_ones() -> None:
+    heights = np.ma.masked_greater(np.random.default_rng(1).normal(size=(12, 20)), 1.0)
+    texture = {"shape": "height_map", "file": heights, "height_unit": "1 nm", "pixel_size": "1 um", "bearing_percent": 50}
+    tables = {"slider": {"blocks": [20, 12]}, "texture": [texture]}
+    with pytest.raises(sf.CaseError, match="NaN|not measured|no number|finite"):
+        sf.Case.from_dict(tables)
+    texture["file"] = heights.filled(1.0)
+    assert sf.Case.from_dict(tables).numbers["texture_percent"] == 50
+
+
 def test_a_case_shows_its_physics() -> None:
     case = sf.Case.load("cases/circle.toml")
     assert "50 x 50 blocks" in repr(case)

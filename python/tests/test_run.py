@@ -130,11 +130,11 @@ def test_pictures_are_drawn(small: sf.Case) -> None:
 
     run = sf.run(small, progress=False)
     for kind in ("friction", "front", "traction", "contact_stress_star"):
-        figure = run.plot(kind)
-        assert figure.axes and figure.axes[0].get_xlabel()
-        plt.close(figure)
+        axes = run.plot(kind)
+        assert axes.get_xlabel()
+        plt.close("all")
     figure, axes = plt.subplots()
-    assert run.plot(ax=axes, label="mine") is figure and axes.get_legend() is not None
+    assert run.plot(ax=axes, label="mine") is axes and axes.get_legend() is not None
     plt.close(figure)
     with pytest.raises(ValueError, match='no field "velocity_x"'):
         run.plot("velocity_x")

@@ -90,6 +90,12 @@ def test_a_change_keeps_where_blocks_are_and_how_fast() -> None:
     assert (simulation.steps, simulation.time_star) == (steps + 1, 0.0)
     assert simulation.time_s == pytest.approx((steps + 1) * dt, rel=1e-12)
     assert [taken for _, taken in simulation.recipe()] == [steps + 1, 0]
+    simulation.step(5)
+    first, second = simulation.curves
+    time_s = [*first["time_s"].values, *second["time_s"].values]
+    assert time_s == sorted(time_s) and second["time_s"].values[-1] == pytest.approx(simulation.time_s, rel=1e-12)
+    with pytest.raises(ValueError, match="is over"):
+        simulation.run_until(time_star=0.1)
     with pytest.raises(RuntimeError, match="no results of one case"):
         simulation.run(progress=False)
 

@@ -5,6 +5,7 @@ import os
 import signal
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import slipfront as sf
@@ -50,7 +51,22 @@ def test_own_quantities_are_columns_and_found_again(study: sf.Study, tmp_path: P
     late = study.run(folder, progress=False, quantities=own).runs
     fresh = study.run(progress=False, quantities=own).runs
     assert late.equals(fresh)
+    points = study.run(progress=False, quantities=own).points
+    # Of twice the steps everything is twice that of the steps, to the bit.
+    twice, once = (points[points["quantity"] == name] for name in ("steps_twice", "steps"))
+    for column in ("mean", "deviation", "low", "high", "min", "max"):
+        assert (twice[column].to_numpy() == 2 * once[column].to_numpy()).all(), column
+    assert (twice["n"] == 3).all() and twice["drive.v_star"].tolist() == [0.02, 0.05]
     assert (fresh["steps_twice"] == 2 * fresh["steps"]).all() and fresh["last"].notna().all()
+
+
+def test_an_axis_may_have_named_variants(small: sf.Case) -> None:
+    mask = np.zeros(small.shape, dtype=bool)
+    mask[3:6, 3:6] = True
+    variants = {"plain": {}, "dimple": {"texture": [{"shape": "mask", "file": mask}]}}
+    runs = sf.Study(small, {"texture": variants}).run(progress=False).runs
+    assert runs["texture"].tolist() == ["plain", "dimple"]
+    assert runs["texture_percent"].tolist() == [0, 7.5]
 
 
 def test_an_exception_of_an_own_quantity_ends_the_study_and_fails_no_run(study: sf.Study, tmp_path: Path) -> None:
