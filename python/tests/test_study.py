@@ -99,3 +99,17 @@ def test_a_study_file_is_run(tmp_path: Path) -> None:
     path.write_text(text.replace("v_star", "v_start") % Path("cases/chain.toml").absolute())
     with pytest.raises(sf.CaseError, match="v_star"):
         sf.Study(path)
+
+
+def test_the_folder_of_the_paper_is_tables(tmp_path: Path) -> None:
+    """As `slipfront paper` leaves it: what was found, claims, and a table beside each picture."""
+    (tmp_path / "found").mkdir()
+    with pytest.raises(sf.FolderError, match="a paper that is finished"):
+        sf.open(tmp_path)
+    (tmp_path / "claims.csv").write_text("number,claim,value\n1,it slips,0.69\n")
+    (tmp_path / "fig03.png").write_bytes(b"")
+    (tmp_path / "fig03.csv").write_text("t,mu\n0,0\n1,0.5\n")
+    paper = sf.open(tmp_path)
+    assert isinstance(paper, sf.PaperResults)
+    assert paper.claims["value"].tolist() == [0.69]
+    assert list(paper.figures) == ["fig03"] and paper.figures["fig03"]["mu"].tolist() == [0, 0.5]

@@ -570,7 +570,7 @@ fn after_run(
                 .to_owned(),
         ),
         Some(Err(NoUncertainty::TooFewBlocks { needed_time_star, .. })) => warnings.push(format!(
-            "mu_k* has no uncertainty; time.duration_star = {needed_time_star:.0} would give one"
+            "mu_k* has no uncertainty: it takes a time.duration_star of {needed_time_star:.0} or more"
         )),
         Some(Err(NoUncertainty::Drift { needed_time_star, .. })) => warnings.push(format!(
             "mu_k* has no uncertainty, since mu* still drifts: run to time.duration_star = {needed_time_star:.0}, or begin \

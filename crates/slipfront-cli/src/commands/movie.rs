@@ -7,8 +7,10 @@ use std::process::{Child, Command, Stdio};
 use clap::Args;
 use slipfront::observe::Field;
 use slipfront_case::arrays::extension;
+use slipfront_case::case::mapped_field;
+use slipfront_case::case_file::CaseFile;
 use slipfront_case::disk::{folder_of, is_same, write_atomic};
-use slipfront_case::field_info::{FIELDS, field_named};
+use slipfront_case::field_info::{FIELDS, field_info, field_named};
 use slipfront_plot::{MOVIE_PIXELS, MoviePictures};
 use slipfront_run::movie;
 use slipfront_run::names::MOVIE;
@@ -81,12 +83,7 @@ impl Movie {
         }
         expect_memory(movie::memory(folder).map_err(Failure::input)?)?;
         let movie = movie::of_run(folder, self.field).map_err(Failure::input)?;
-        let movie = movie.ok_or_else(|| {
-            refused(format!(
-                "{} has kept no snapshots of this field: name one of `output.fields`, or run its case again with snapshots",
-                folder.display()
-            ))
-        })?;
+        let movie = movie.ok_or_else(|| refused(self.no_snapshots(run.case.as_ref().ok())))?;
         let bytes = match is_mp4 {
             true => mp4(&movie)?,
             false => movie::gif(&movie).map_err(Failure::input)?,
@@ -95,6 +92,25 @@ impl Movie {
             .map_err(|error| Failure::running(anyhow::anyhow!("cannot write {}: {error}", out.display())))?;
         print_message(&format!("{}\n", out.display()));
         Ok(())
+    }
+}
+
+impl Movie {
+    /// That the run has no snapshots of the field, and of which it has.
+    fn no_snapshots(&self, case: Option<&CaseFile>) -> String {
+        let field = self
+            .field
+            .or(case.map(mapped_field))
+            .unwrap_or(Field::ContactStress);
+        let kept = case.iter().flat_map(|case| &case.output.fields);
+        let names: Vec<&str> = kept.map(|field| field_info(*field).name).collect();
+        format!(
+            "{} has kept no snapshots of {}: name a field that it has with --field (its case keeps {}), or run its case again with \
+             snapshots",
+            self.folder.display(),
+            field_info(field).name,
+            names.join(", ")
+        )
     }
 }
 

@@ -289,7 +289,7 @@ fn a_movie_shows_every_snapshot() {
     for (line, sentence) in [
         (
             "movie run --field velocity_x -o none.gif",
-            "has kept no snapshots of this field: name one of `output.fields`",
+            "has kept no snapshots of velocity_x: name a field that it has with --field (its case keeps",
         ),
         (
             "movie run --field pressure",
