@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Builds the Python package from its source distribution, in a folder without this checkout beside it, installs the wheel in a fresh venv,
+# Builds the Python package from its source distribution, in a folder without this checkout beside it, installs the wheel in target/venv,
 # and runs the tests, the types and the notebooks with it.
 #
 #     python/check.sh [FOLDER]
 #
-# The folder is where it is built, a new one unless it is given. Needs cargo and python3 with venv; PyPI for the rest.
+# The folder is where it is built, a new one unless it is given. Needs cargo and what tests/venv.sh needs.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 repository=$PWD
@@ -13,15 +13,14 @@ work=$repository/target/python
 rm -rf "$work"
 mkdir -p "$work"
 
-python3 -m venv "$work/venv"
-bin=$work/venv/bin
-"$bin/pip" install --quiet --disable-pip-version-check maturin -r python/tests/requirements.txt
-"$bin/maturin" sdist --quiet --manifest-path python/Cargo.toml --out "$work"
+tests/venv.sh
+bin=$repository/target/venv/bin
+"$bin/maturin" sdist --manifest-path python/Cargo.toml --out "$work"
 tar -xzf "$work"/slipfront-*.tar.gz -C "$folder"
 # With the flags and in the folder of the other builds it takes the crates of others from there.
 cp -r .cargo "$folder"
-(cd "$folder"/slipfront-* && CARGO_TARGET_DIR="$repository/target" "$bin/maturin" build --quiet --profile dev --out "$work")
-"$bin/pip" install --quiet --disable-pip-version-check "$work"/slipfront-*.whl
+(cd "$folder"/slipfront-* && CARGO_TARGET_DIR="$repository/target" "$bin/maturin" build --profile dev --out "$work")
+"$bin/pip" install --quiet --disable-pip-version-check --force-reinstall --no-deps "$work"/slipfront-*.whl
 
 "$bin/pytest" --quiet -c python/pyproject.toml --rootdir python --numprocesses 2 --pyargs slipfront python/tests
 cd python

@@ -5,19 +5,15 @@
 #
 #     tests/fields/run.sh
 #
-# Needs cargo and python3 with venv. xarray, netCDF4 and VTK are put into target/fields/venv from PyPI, 0.9 GB. Takes a minute the
-# first time. Exit status: 2 when something is missing.
+# Needs cargo and what tests/venv.sh needs, which takes minutes the first time. Exit status: 2 when something is missing.
 
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 work=$PWD/target/fields
-python=$work/venv/bin/python
 
 mkdir -p "$work"
-if ! "$python" -c 'import netCDF4, vtkmodules, xarray' 2> /dev/null; then
-  python3 -m venv --clear "$work/venv" && "$python" -m pip install --quiet --disable-pip-version-check xarray netCDF4 vtk || exit 2
-fi
+tests/venv.sh || exit 2
 files=$(mktemp -d "$work/files.XXXXXX")
 trap 'rm -rf "$files"' EXIT
 SLIPFRONT_FIELDS=$files cargo test --quiet --locked -p slipfront-run --test fields
-"$python" tests/fields/check.py "$files"
+target/venv/bin/python tests/fields/check.py "$files"
