@@ -12,7 +12,7 @@ from ._open import InterruptedRun, PaperResults, open
 from ._run import FolderError, Run
 from ._simulation import Simulation, run
 from ._slipfront import RunError, __version__
-from ._study import Study, StudyResults
+from ._study import Study, StudyResults, study
 
 __all__ = [
     "Case",
@@ -31,20 +31,3 @@ __all__ = [
     "run",
     "study",
 ]
-
-
-def study(path: str, folder: str | None = None, progress: bool | None = None, threads: int | None = None) -> StudyResults:
-    """Run the study of a study file; `Study.run` says more.
-
-    Parameters
-    ----------
-    path
-        The study file.
-    folder
-        Where its results go, and a study that was stopped goes on; in memory unless it is given.
-    progress
-        As of `run`.
-    threads
-        Runs at once, one per core unless given.
-    """
-    return Study(path).run(folder, progress=progress, threads=threads)

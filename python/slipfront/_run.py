@@ -67,8 +67,8 @@ class Run:
 
     Examples
     --------
-    >>> run = run_case(Case.load("cases/circle.toml"))
-    >>> round(run.static_friction_star, 3)
+    >>> import slipfront as sf
+    >>> round(sf.run("cases/circle.toml", progress=False).static_friction_star, 3)
     0.692
     """
 
@@ -309,13 +309,6 @@ class _Unsaved(FolderSource):
 
 def _unpickled(case: Case, read: dict[str, Any]) -> Run:
     return Run(case, _Unsaved(Path(), read))
-
-
-def run_case(case: Case) -> Run:
-    """Run a case to its end, without progress."""
-    from ._simulation import run
-
-    return run(case, progress=False)
 
 
 FolderError = _slipfront.FolderError

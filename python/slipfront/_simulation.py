@@ -346,6 +346,16 @@ class Simulation:
         self._before = (self._before[0] + steps, self._before[1] + time_star * old["time_unit_s"])
         self._begin(case, begun)
 
+    @property
+    def textured(self) -> npt.NDArray[np.bool_]:
+        """Whether a block is texture, (N_y, N_x). Setting it is a `change`: a new leg with this texture."""
+        return self._case.textured
+
+    @textured.setter
+    def textured(self, mask: npt.ArrayLike) -> None:
+        wanted = np.asarray(mask, dtype=bool)
+        self.change({"texture": [{"shape": "mask", "file": wanted}] if wanted.any() else []})
+
     def recipe(self) -> list[tuple[str, int]]:
         """What makes this state again: the resolved case of every leg, and how many steps it took.
 

@@ -184,6 +184,29 @@ class Study:
         return f"Study({self.name}: {self.n_points} points over {axes or 'no axis'})"
 
 
+def study(
+    path: str | os.PathLike[str],
+    folder: str | os.PathLike[str] | None = None,
+    *,
+    progress: bool | Callable[[int, int, int], object] | None = None,
+    threads: int | None = None,
+) -> StudyResults:
+    """Run the study of a study file; `Study.run` says more.
+
+    Parameters
+    ----------
+    path
+        The study file.
+    folder
+        Where its results go, and a study that was stopped goes on; in memory unless it is given.
+    progress
+        As of `Study.run`.
+    threads
+        Runs at once, one per core unless given.
+    """
+    return Study(path).run(folder, progress=progress, threads=threads)
+
+
 class StudyResults:
     """The tables of a study.
 

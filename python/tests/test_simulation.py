@@ -135,8 +135,11 @@ def test_texture_may_change_on_the_way() -> None:
     loaded = simulation.mu_star
     mask = np.zeros(case.shape, dtype=bool)
     mask[20:30, 20:30] = True
-    simulation.change({"texture": [{"shape": "mask", "file": mask}], "time.duration_star": 100})
+    simulation.change({"time.duration_star": 100})
+    simulation.textured = mask
     assert simulation.mu_star == pytest.approx(loaded, rel=0.02)
-    assert simulation.case.textured.sum() == 100
+    assert simulation.textured.sum() == 100 and len(simulation.recipe()) == 3
+    with pytest.raises(sf.CaseError):
+        simulation.textured = mask[:10]
     simulation.run_until(lambda now: now.sliding_percent > 0, every=1)
     assert simulation.sliding_percent > 0

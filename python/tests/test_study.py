@@ -95,7 +95,7 @@ def test_a_study_file_is_run(tmp_path: Path) -> None:
     text = 'base = "%s"\n[study]\nreplicates = 1\n[[axes]]\nkey = "drive.v_star"\nlist = [0.05, 0.1]\n'
     path = tmp_path / "mine.toml"
     path.write_text(text % Path("cases/chain.toml").absolute())
-    assert len(sf.study(str(path), progress=False).runs) == 2
+    assert len(sf.study(path, progress=False).runs) == 2
     path.write_text(text.replace("v_star", "v_start") % Path("cases/chain.toml").absolute())
     with pytest.raises(sf.CaseError, match="v_star"):
         sf.Study(path)
