@@ -354,6 +354,8 @@ class Simulation:
     @textured.setter
     def textured(self, mask: npt.ArrayLike) -> None:
         wanted = np.asarray(mask, dtype=bool)
+        if wanted.shape != self._case.shape:
+            raise ValueError(f"a texture has the shape of the lattice, {self._case.shape}, not {wanted.shape}")
         self.change({"texture": [{"shape": "mask", "file": wanted}] if wanted.any() else []})
 
     def recipe(self) -> list[tuple[str, int]]:

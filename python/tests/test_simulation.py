@@ -139,7 +139,7 @@ def test_texture_may_change_on_the_way() -> None:
     simulation.textured = mask
     assert simulation.mu_star == pytest.approx(loaded, rel=0.02)
     assert simulation.textured.sum() == 100 and len(simulation.recipe()) == 3
-    with pytest.raises(sf.CaseError):
+    with pytest.raises(ValueError, match="shape of the lattice"):
         simulation.textured = mask[:10]
     simulation.run_until(lambda now: now.sliding_percent > 0, every=1)
     assert simulation.sliding_percent > 0
