@@ -2,13 +2,14 @@
 # Builds the Python package from its source distribution, in a folder without this checkout beside it, installs the wheel in target/venv,
 # and runs the tests, the types and the notebooks with it.
 #
-#     python/check.sh [FOLDER]
+#     python/check.sh
 #
-# The folder is where it is built, a new one unless it is given. Needs cargo and what tests/venv.sh needs.
+# Needs cargo and what tests/venv.sh needs.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 repository=$PWD
-folder=${1:-$(mktemp -d)}
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
 work=$repository/target/python
 rm -rf "$work"
 mkdir -p "$work"
