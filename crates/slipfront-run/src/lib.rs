@@ -17,7 +17,6 @@ pub mod fields;
 pub mod friction_picture;
 mod friction_unit;
 mod front;
-pub mod leg;
 pub mod manifest;
 #[cfg(feature = "plot")]
 pub mod measured;
