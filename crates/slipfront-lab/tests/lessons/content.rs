@@ -91,7 +91,10 @@ pub(crate) struct LessonWords {
 #[serde(deny_unknown_fields)]
 pub(crate) struct StepWords {
     pub(crate) title: String,
+    /// Paragraphs up to the question.
     pub(crate) text: Vec<String>,
+    /// Paragraphs that are shown when the reader asks for them.
+    pub(crate) answer: Vec<String>,
     /// Labels of its buttons.
     pub(crate) set: BTreeMap<String, String>,
 }
@@ -153,6 +156,13 @@ impl Quantity {
             Self::Key if key == Some("drive.direction") => "°",
             _ => "",
         }
+    }
+}
+
+impl StepWords {
+    /// Its paragraphs.
+    pub(crate) fn paragraphs(&self) -> impl Iterator<Item = &String> {
+        self.text.iter().chain(&self.answer)
     }
 }
 

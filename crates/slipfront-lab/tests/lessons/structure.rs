@@ -89,7 +89,7 @@ fn minutes(lesson: &Lesson, said: &LessonWords) -> f64 {
     let mut seconds = 0.0;
     for step in &lesson.steps {
         let said = &said.steps[&step.id];
-        let texts = said.text.iter().chain(said.set.values());
+        let texts = said.paragraphs().chain(said.set.values());
         n_words += count(&said.title) + texts.map(count).sum::<usize>();
         for (keys, pace) in runs(step) {
             assert!(pace > 0.0, "{}: a pace is needed", step.id);
