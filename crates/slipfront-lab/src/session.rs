@@ -858,8 +858,8 @@ impl Session {
             peak,
             twin_peak,
             change_percent,
-            kinetic: live.running().kinetic_friction_star(),
-            instants: live.running().instants().into_iter().collect(),
+            kinetic: live.running().kinetic().map(|kinetic| kinetic.mu_star),
+            instants: live.running().instants().collect(),
             steps_per_second: self.clock.rate(),
             ended: live.ended.is_some(),
             summary,
@@ -883,7 +883,7 @@ impl Session {
         let [from_x, from_y] = live.origin().map_or([0.0; 2], |origin| origin[b].map(f64::from));
         let unit = case.scales.displacement();
         let [x, y] = block.displacement.map(|u| u * unit);
-        let first_slip = live.running().first_slip_time_star(b);
+        let first_slip = now.first_slip_time_star()[b];
         self.outbox.reply(&Reply::Probe(ProbeReply {
             block: [i, j],
             exists: case.model.slider().exists(b),

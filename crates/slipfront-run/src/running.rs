@@ -452,6 +452,19 @@ impl Running {
         Ok(())
     }
 
+    /// The numbers of a run that has ended, which stays to be looked at. All ranks must call this together.
+    pub fn summary(&self, reason: StopReason) -> Summary {
+        let instants = self.observers.fields.instants.as_deref().cloned();
+        let instants = instants.map_or(Vec::new(), Instants::found);
+        let mut numbers = self
+            .observers
+            .summary
+            .end(&self.case, &self.simulation, reason, &instants);
+        let first_slips = self.snapshot().first_slip_time_star();
+        add_front(&mut numbers, &self.case, &first_slips, &*self.communicator);
+        numbers
+    }
+
     /// What the run leaves behind, once it has ended. All ranks must call this together.
     pub fn record(self, reason: StopReason) -> Record {
         let (case, simulation) = (self.case, self.simulation);
@@ -465,11 +478,7 @@ impl Running {
         let mut numbers = summary.end(&case, &simulation, reason, &instants);
         let contact_stress_max = simulation.contact_stress_max();
         let first_slip_time_star = simulation.into_first_slip_time_star();
-        if numbers.transition
-            && let Some(front) = front::of_ranks(&case, &first_slip_time_star, &*self.communicator)
-        {
-            numbers.add_front(&front, &case.scales);
-        }
+        add_front(&mut numbers, &case, &first_slip_time_star, &*self.communicator);
         Record {
             summary: numbers,
             rows: summary.curve.rows,
@@ -479,6 +488,15 @@ impl Running {
             contact_stress_max,
             first_slip_time_star,
         }
+    }
+}
+
+/// Adds what the first slips of all blocks tell of the front, if there was one.
+fn add_front(numbers: &mut Summary, case: &Case, first_slips: &[f64], communicator: &dyn Communicator) {
+    if numbers.transition
+        && let Some(front) = front::of_ranks(case, first_slips, communicator)
+    {
+        numbers.add_front(&front, &case.scales);
     }
 }
 
