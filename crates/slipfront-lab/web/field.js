@@ -12,7 +12,7 @@ import { colour, onTheme } from './theme.js';
 import { setView } from './view.js';
 
 const BAR_SPACING_MS = 100;
-const BAR_HEIGHT = 36;
+const BAR_HEIGHT = 46;
 
 export const camera = new Camera();
 
@@ -151,4 +151,5 @@ export function startField() {
   on('view', showLegend);
   showLegend();
   onTheme(recolour);
+  recolour();
 }
