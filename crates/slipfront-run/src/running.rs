@@ -374,6 +374,27 @@ impl Running {
         self.simulation.contact_stress_max()
     }
 
+    /// Looked at while the run goes on.
+    pub fn first_slip_time_star(&self, b: usize) -> f64 {
+        self.simulation.snapshot().first_slip_time_star()[b]
+    }
+    /// Looked at while the run goes on.
+    pub fn kymograph(&self) -> &Kymograph {
+        &self.observers.kymograph
+    }
+    /// Looked at while the run goes on.
+    pub fn instants(&self) -> Vec<(char, f64)> {
+        Vec::new()
+    }
+    /// Looked at while the run goes on.
+    pub fn kinetic_friction_star(&self) -> Option<f64> {
+        None
+    }
+    /// Looked at while the run goes on.
+    pub fn summary(&self, _reason: StopReason) -> Summary {
+        Summary::default()
+    }
+
     /// Displacements now, velocities half a step later.
     pub fn motion(&self) -> State {
         self.simulation.state()

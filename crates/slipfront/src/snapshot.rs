@@ -112,6 +112,13 @@ impl Snapshot<'_> {
         self.first_slips().collect()
     }
 
+    /// Looked at while the run goes on.
+    pub fn read_first_slip_time_star(&self, values: &mut [f32]) {
+        for (b, value) in values.iter_mut().enumerate() {
+            *value = self.engine.first_slip(b) as f32;
+        }
+    }
+
     /// When the first block of all ranks slid while in contact, t*. All ranks must call this together.
     pub fn earliest_first_slip(&self) -> Option<f64> {
         let earliest = self.first_slips().filter(|time| !time.is_nan()).reduce(f64::min);
