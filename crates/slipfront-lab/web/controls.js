@@ -64,7 +64,9 @@ function listen({ control, slider, field }) {
     gesture?.end();
     gesture = null;
   });
+  field.addEventListener('input', () => (field.dataset.typing = 'yes'));
   field.addEventListener('change', () => {
+    delete field.dataset.typing;
     const value = typed(field.value);
     if (value === null) show();
     else change(keysFor(control, value));
@@ -79,7 +81,8 @@ function show() {
     const value = state.case?.values[control.id];
     if (!value) continue;
     const { main, other: text } = forms(control, value);
-    if (document.activeElement !== field && main !== null) field.value = String(Number(main.toPrecision(6)));
+    // What is being typed stays.
+    if (!field.dataset.typing && main !== null) field.value = String(Number(main.toPrecision(6)));
     if (!slider.matches(':active') && main !== null) slider.value = String(placeOf(control, main));
     slider.setAttribute('aria-valuetext', `${main === null ? '' : number(main)} ${text}`);
     other.textContent = text;
@@ -94,4 +97,6 @@ export function startControls() {
     rows.forEach(listen);
   });
   on('case', show);
+  // What was refused does not hold: the values are shown again.
+  on('refused', show);
 }

@@ -94,7 +94,7 @@ const series = (name, stroke, dash = []) => ({ label: name, stroke, dash, width:
 
 /** @param {HTMLElement} place @param {any} options */
 function plotIn(place, { scale, label, lines, numbered }) {
-  return new uPlot({
+  return new /** @type {any} */ (uPlot)({
     width: place.clientWidth,
     height: place.clientHeight,
     padding: [6, 8, 0, 0],

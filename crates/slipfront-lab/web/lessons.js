@@ -45,13 +45,15 @@ async function prepare(step) {
   const answer = await fetch(step.case);
   if (!answer.ok) return notice(say('lesson_missing', { file: step.case }));
   const toml = await answer.text();
-  setView({ twin: true, after_change: 'rest', paused: state.view.paused, ...step.view });
+  setView({ twin: false, after_change: 'rest', ...step.view });
   open({ toml, files: {} });
 }
 
 /** @param {{lesson: string, step: number}|null} place */
 function show(place) {
+  const left = !find('lesson').hidden && place === null;
   find('lesson').hidden = place === null;
+  if (left) setView({ twin: true });
   if (!place) return;
   const lesson = lessons.find(({ id }) => id === place.lesson);
   const step = lesson.steps[place.step];

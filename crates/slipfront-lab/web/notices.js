@@ -5,6 +5,8 @@ import { on, put } from './store.js';
 import { say } from './text.js';
 
 const MOST = 4;
+/** A sentence that asks for nothing goes away by itself. */
+const LONGEST_MS = 20_000;
 
 /** Shows a sentence; one with the same `topic` takes its place. @param {string} text @param {{topic?: string, serious?: boolean}} [options] */
 export function notice(text, { topic = text, serious = false } = {}) {
@@ -15,6 +17,7 @@ export function notice(text, { topic = text, serious = false } = {}) {
   close.addEventListener('click', () => item.remove());
   const list = find('notices');
   list.append(item);
+  if (!serious) setTimeout(() => item.remove(), LONGEST_MS);
   while (list.children.length > MOST) list.firstElementChild.remove();
 }
 

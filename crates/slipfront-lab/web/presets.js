@@ -23,7 +23,7 @@ function groups(wanted) {
   const matches = (/** @type {string} */ text) => words.every((word) => text.toLowerCase().includes(word));
   const ofGroup = (/** @type {string} */ group) => presets
     .filter((/** @type {any} */ preset) => preset.group === group && matches(`${preset.name} ${preset.title}`))
-    .map(({ name, title }) => entry(name, title, { preset: name }));
+    .map((/** @type {any} */ { name, title }) => entry(name, title, { preset: name }));
   return [
     ['presets_cases', ofGroup('cases')],
     ['presets_paper', ofGroup('paper')],

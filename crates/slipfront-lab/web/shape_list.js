@@ -90,6 +90,5 @@ function show() {
 
 /** Begins to listen. */
 export function startShapeList() {
-  on('case', show);
-  on('selected', show);
+  for (const topic of ['case', 'selected', 'refused']) on(topic, show);
 }

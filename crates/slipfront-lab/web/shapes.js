@@ -70,7 +70,7 @@ export function move(table, by, slider) {
     return { ...table, offset: length((metres(table.offset) ?? 0) + (along ? dy : dx)) };
   }
   if (table.shape === 'polygon') {
-    return { ...table, points: table.points.map(([x, y]) => pair([(metres(x) ?? 0) + dx, (metres(y) ?? 0) + dy])) };
+    return { ...table, points: table.points.map((/** @type {string[]} */ [x, y]) => pair([(metres(x) ?? 0) + dx, (metres(y) ?? 0) + dy])) };
   }
   return table;
 }
@@ -78,7 +78,8 @@ export function move(table, by, slider) {
 /** The shape made larger by `factor` around its middle. @param {Table} table @param {number} factor @returns {Table} */
 export function enlarge(table, factor) {
   if (table.shape === 'polygon') {
-    const points = table.points.map((/** @type {any[]} */ point) => point.map((text) => metres(text) ?? 0));
+    /** @type {number[][]} */
+    const points = table.points.map((/** @type {string[]} */ point) => point.map((text) => metres(text) ?? 0));
     const heart = [0, 1].map((axis) => points.reduce((sum, point) => sum + point[axis], 0) / points.length);
     return { ...table, points: points.map((point) => pair(point.map((value, axis) => heart[axis] + factor * (value - heart[axis])))) };
   }
