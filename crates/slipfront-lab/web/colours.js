@@ -2,7 +2,7 @@
 // The colour of every byte of a picture, and the colour bar that says what they mean.
 import { COLOURMAPS } from './colourmaps.js';
 import { LARGEST, NO_BLOCK, NOT_YET, TEXTURED } from './frames.js';
-import { prefix, number } from './quantity.js';
+import { number, prefix, ticks } from './quantity.js';
 import { colour } from './theme.js';
 
 /** Red, green, blue of a colour as the browser computes it, `rgb(1, 2, 3)`. @param {string} text */
@@ -21,17 +21,6 @@ export function table(name) {
     bytes.set(rgb(colour(what)), 4 * value);
   }
   return bytes;
-}
-
-/** About four round numbers from `low` to `high`. @param {number} low @param {number} high */
-export function ticks(low, high, count = 4) {
-  if (!(high > low)) return [low];
-  const rough = (high - low) / count;
-  const power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((k) => k * power).find((size) => size >= rough * 0.999) ?? 10 * power;
-  const from = Math.ceil(low / step - 1e-9);
-  const until = Math.floor(high / step + 1e-9);
-  return Array.from({ length: until - from + 1 }, (_, k) => Number(((from + k) * step).toPrecision(12)));
 }
 
 /**

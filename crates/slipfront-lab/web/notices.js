@@ -28,8 +28,11 @@ export function withdraw(topic) {
 
 /** @param {{yes: boolean, reason: string}} connection */
 function showConnection({ yes, reason }) {
+  const alone = document.body.classList.contains('alone');
   document.body.classList.toggle('alone', !yes);
   if (yes) withdraw('connection');
+  // It is tried again and again, but told once.
+  else if (alone && !reason) return;
   else notice(reason ? say('lost_because', { reason }) : say('lost'), { topic: 'connection', serious: true });
 }
 

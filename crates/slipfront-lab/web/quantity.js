@@ -47,3 +47,14 @@ export function typed(text) {
   const value = Number(text.trim().replace(',', '.').replace('\u2212', '-'));
   return text.trim() === '' || !Number.isFinite(value) ? null : value;
 }
+
+/** About four round numbers from `low` to `high`. @param {number} low @param {number} high */
+export function ticks(low, high, count = 4) {
+  if (!(high > low)) return [low];
+  const rough = (high - low) / count;
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 5, 10].map((k) => k * power).find((size) => size >= rough * 0.999) ?? 10 * power;
+  const from = Math.ceil(low / step - 1e-9);
+  const until = Math.floor(high / step + 1e-9);
+  return Array.from({ length: until - from + 1 }, (_, k) => Number(((from + k) * step).toPrecision(12)));
+}
