@@ -77,6 +77,7 @@ enum Command {
     Texture(commands::texture::Texture),
     Plot(commands::plot::Plot),
     Movie(commands::movie::Movie),
+    Lab(commands::lab::Lab),
     Verify(commands::verify::Verify),
     Completions(commands::completions::Completions),
 }
@@ -133,6 +134,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
             Command::Texture(texture) => texture.execute(),
             Command::Plot(plot) => plot.execute(),
             Command::Movie(movie) => movie.execute(),
+            Command::Lab(lab) => lab.execute(),
             Command::Verify(verify) => verify.execute(),
             Command::Completions(completions) => completions.execute(Cli::command()),
         };

@@ -53,3 +53,8 @@ pub(super) const FILES: &[(&str, &str)] = files![
 
 /// The text of the list of claims.
 pub(super) const CLAIMS: &str = include_str!("../cases/claims.toml");
+
+/// Names and texts of the cases and studies behind the figures and tables of the paper.
+pub fn cases() -> impl Iterator<Item = (&'static str, &'static str)> {
+    FILES.iter().copied()
+}

@@ -27,6 +27,7 @@ mod sweep;
 pub use cache::FigureCache;
 pub use claims::{Claim, ClaimResult, Reading, Verdict, claims};
 pub use drawing::Drawing;
+pub use embedded_cases::cases;
 pub use error::PaperError;
 pub use figure_data::{FigureData, Panel, Table};
 pub use figures::{FIGURES, Figure, figures};

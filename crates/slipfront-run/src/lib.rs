@@ -17,6 +17,7 @@ pub mod fields;
 pub mod friction_picture;
 mod friction_unit;
 mod front;
+pub mod leg;
 pub mod manifest;
 #[cfg(feature = "plot")]
 pub mod measured;

@@ -22,7 +22,7 @@ impl State {
     }
 
     /// Whether all numbers are finite.
-    pub(crate) fn is_finite(&self) -> bool {
+    pub fn is_finite(&self) -> bool {
         let fields = [&self.displacement, &self.velocity];
         let mut values = fields
             .into_iter()

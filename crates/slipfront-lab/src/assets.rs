@@ -1,0 +1,31 @@
+//! The files of the page.
+
+use axum::http::{StatusCode, Uri, header};
+use axum::response::{IntoResponse, Response};
+use include_dir::{Dir, include_dir};
+
+static WEB: Dir = include_dir!("$CARGO_MANIFEST_DIR/web");
+
+/// What a file is, by its ending.
+fn kind_of(path: &str) -> &'static str {
+    match path.rsplit('.').next() {
+        Some("html") => "text/html; charset=utf-8",
+        Some("js") => "text/javascript; charset=utf-8",
+        Some("css") => "text/css; charset=utf-8",
+        Some("json") => "application/json",
+        Some("svg") => "image/svg+xml",
+        _ => "text/plain; charset=utf-8",
+    }
+}
+
+/// The file that an address names.
+pub(crate) async fn serve(uri: Uri) -> Response {
+    let path = match uri.path().trim_start_matches('/') {
+        "" => "index.html",
+        path => path,
+    };
+    match WEB.get_file(path) {
+        Some(file) => ([(header::CONTENT_TYPE, kind_of(path))], file.contents()).into_response(),
+        None => (StatusCode::NOT_FOUND, "the laboratory has no such file\n").into_response(),
+    }
+}

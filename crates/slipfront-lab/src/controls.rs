@@ -1,0 +1,98 @@
+//! The quantities that the page offers to be changed, as dimensionless groups and with their units.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use slipfront_case::case::Case;
+
+use crate::protocol::ControlValue;
+
+/// A quantity with a slider.
+#[derive(Debug, Serialize)]
+pub(crate) struct Control {
+    id: &'static str,
+    /// The key that holds it as a number.
+    key: &'static str,
+    /// The key that holds it with its unit, if there is one.
+    si_key: Option<&'static str>,
+    unit: &'static str,
+    /// The range of the slider, of the number where it has one; the key may hold more.
+    min: f64,
+    max: f64,
+    logarithmic: bool,
+    whole: bool,
+}
+
+const fn group(id: &'static str, key: &'static str, [min, max]: [f64; 2]) -> Control {
+    Control {
+        id,
+        key,
+        si_key: None,
+        unit: "",
+        min,
+        max,
+        logarithmic: false,
+        whole: false,
+    }
+}
+
+/// All of them.
+pub(crate) static CONTROLS: [Control; 8] = [
+    Control {
+        si_key: Some("drive.speed"),
+        unit: "m/s",
+        logarithmic: true,
+        ..group("speed", "drive.v_star", [0.003, 0.3])
+    },
+    Control {
+        si_key: Some("load.pressure"),
+        unit: "Pa",
+        logarithmic: true,
+        ..group("load", "load.pressure", [1e3, 1e8])
+    },
+    Control {
+        unit: "",
+        ..group("r_star", "friction.r_star", [0.0, 1.0])
+    },
+    Control {
+        si_key: Some("slider.damping_rate"),
+        unit: "1/s",
+        logarithmic: true,
+        ..group("omega_star", "slider.omega_star", [0.01, 2.0])
+    },
+    group("sigma", "friction.sigma_static_star", [0.0, 0.3]),
+    group("sigma_kinetic", "friction.sigma_kinetic_star", [0.0, 0.3]),
+    Control {
+        whole: true,
+        ..group("seed", "friction.seed", [0.0, 100.0])
+    },
+    Control {
+        unit: "\u{b0}",
+        ..group("direction", "drive.direction", [-180.0, 180.0])
+    },
+];
+
+/// Their values in a case.
+pub(crate) fn values(case: &Case) -> BTreeMap<&'static str, ControlValue> {
+    let (groups, scales, file) = (&case.groups, &case.scales, &case.file);
+    let value = |star, si| ControlValue { star, si };
+    BTreeMap::from([
+        (
+            "speed",
+            value(Some(groups.v_star), Some(groups.v_star * scales.speed())),
+        ),
+        ("load", value(Some(groups.epsilon), Some(scales.pressure))),
+        ("r_star", value(Some(groups.r_star), None)),
+        (
+            "omega_star",
+            value(
+                Some(groups.omega_star),
+                Some(scales.damping_rate(groups.omega_star)),
+            ),
+        ),
+        ("sigma", value(Some(groups.sigma_static_star), None)),
+        ("sigma_kinetic", value(Some(groups.sigma_kinetic_star), None)),
+        ("seed", value(Some(file.friction.seed as f64), None)),
+        ("direction", value(Some(file.drive.direction), None)),
+    ])
+}

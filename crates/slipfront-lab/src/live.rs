@@ -1,0 +1,165 @@
+//! A run that is shown: its legs, its curve, its first peak.
+
+use std::sync::Arc;
+
+use slipfront::StopReason;
+use slipfront_case::case::Case;
+use slipfront_run::running::Running;
+use slipfront_run::summary::Summary;
+
+use crate::protocol::PeakReply;
+
+/// A run from rest, and the legs that changes of its case have begun since.
+pub(crate) struct Live {
+    running: Running,
+    /// Number of this leg; that from rest is 0.
+    pub(crate) leg: usize,
+    /// Steps, t* and s of the legs before.
+    before: Gone,
+    /// Where the drive stood when this leg began, m, block by block; none from rest.
+    origin: Option<Vec<[f32; 2]>>,
+    /// Points of the curve of this leg that were told.
+    told: usize,
+    /// Why it ended, if it did.
+    pub(crate) ended: Option<StopReason>,
+}
+
+/// What has passed since rest.
+#[derive(Clone, Copy, Debug, Default)]
+struct Gone {
+    steps: u64,
+    time_star: f64,
+    time_s: f64,
+}
+
+/// Points of a curve: t* since rest, mu*, N*.
+#[derive(Default)]
+pub(crate) struct Points {
+    pub(crate) time_star: Vec<f64>,
+    pub(crate) mu_star: Vec<f64>,
+    pub(crate) sliding_percent: Vec<f64>,
+}
+
+impl Live {
+    /// Begins at rest.
+    pub(crate) fn from_rest(case: &Arc<Case>, threads: usize) -> Self {
+        Self {
+            running: Running::start(case, threads),
+            leg: 0,
+            before: Gone::default(),
+            origin: None,
+            told: 0,
+            ended: None,
+        }
+    }
+
+    /// The next leg, under another case.
+    ///
+    /// # Errors
+    /// A sentence, if a run cannot go on under that case.
+    pub(crate) fn change(&mut self, case: &Arc<Case>) -> Result<(), String> {
+        let dt_star = self.case().time_plan.dt_star;
+        let leg = self
+            .running
+            .change(case, self.running.threads())
+            .map_err(|error| error.to_string())?;
+        let drive = leg.drive_m.x.iter().zip(&leg.drive_m.y);
+        let mut origin: Vec<[f32; 2]> = drive.map(|(x, y)| [*x as f32, *y as f32]).collect();
+        for (origin, before) in origin.iter_mut().zip(self.origin.iter().flatten()) {
+            origin[0] += before[0];
+            origin[1] += before[1];
+        }
+        self.before = Gone {
+            steps: self.before.steps + leg.steps,
+            time_star: self.before.time_star + leg.steps as f64 * dt_star,
+            time_s: self.before.time_s + leg.time_s,
+        };
+        self.origin = Some(origin);
+        self.running = leg.running;
+        self.leg += 1;
+        self.told = 0;
+        self.ended = None;
+        Ok(())
+    }
+
+    pub(crate) fn case(&self) -> &Arc<Case> {
+        self.running.case()
+    }
+
+    pub(crate) fn running(&self) -> &Running {
+        &self.running
+    }
+
+    pub(crate) fn origin(&self) -> Option<&[[f32; 2]]> {
+        self.origin.as_deref()
+    }
+
+    /// Whether its contacts remember more than a displacement and a velocity.
+    pub(crate) fn has_memory(&self) -> bool {
+        self.case().model.friction.n_columns() > 0
+    }
+
+    /// At most so many steps.
+    ///
+    /// # Errors
+    /// A sentence, when the run diverges.
+    pub(crate) fn advance(&mut self, steps: u64) -> Result<(), String> {
+        if self.ended.is_none() {
+            self.ended = self.running.advance(steps).map_err(|error| error.to_string())?;
+        }
+        Ok(())
+    }
+
+    /// Steps since rest.
+    pub(crate) fn step(&self) -> u64 {
+        self.before.steps + self.running.snapshot().step
+    }
+
+    /// t* since rest.
+    pub(crate) fn time_star(&self) -> f64 {
+        self.before.time_star + self.running.snapshot().time_star
+    }
+
+    /// Time since rest, s.
+    pub(crate) fn time_s(&self) -> f64 {
+        self.before.time_s + self.running.snapshot().time_star * self.case().scales.time()
+    }
+
+    /// Time of the legs before, s.
+    pub(crate) fn time_before_s(&self) -> f64 {
+        self.before.time_s
+    }
+
+    /// The points of the curve that were not told yet.
+    pub(crate) fn new_points(&mut self) -> Points {
+        let rows = &self.running.rows()[self.told..];
+        self.told += rows.len();
+        let before = self.before.time_star;
+        Points {
+            time_star: rows.iter().map(|row| before + row.time_star).collect(),
+            mu_star: rows.iter().map(|row| row.point.mu_star).collect(),
+            sliding_percent: rows.iter().map(|row| row.point.sliding_percent).collect(),
+        }
+    }
+
+    /// All points of this leg are told again.
+    pub(crate) fn tell_again(&mut self) {
+        self.told = 0;
+    }
+
+    /// The first peak of mu* since rest; none of a later leg, which does not begin at rest.
+    pub(crate) fn peak(&self) -> Option<PeakReply> {
+        let now = self.running.snapshot();
+        (self.leg == 0 && now.step > 0).then_some(PeakReply {
+            t_star: now.peak.time_star,
+            mu_star: now.peak.mu_star,
+            certain: now.peak.ended || self.ended.is_some(),
+        })
+    }
+
+    /// The numbers of a run from rest that has ended.
+    pub(crate) fn summary(&self) -> Option<Summary> {
+        let reason = self.ended.filter(|_| self.leg == 0)?;
+        Some(self.running.summary(reason))
+    }
+}

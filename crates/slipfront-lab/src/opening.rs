@@ -1,0 +1,47 @@
+//! The case with which the laboratory is started.
+
+use std::path::{Path, PathBuf};
+
+use slipfront_case::case_file::CaseError;
+
+use crate::document::Document;
+use crate::replay;
+
+/// What the page shows first.
+#[derive(Default)]
+pub struct Start(pub(crate) Opened);
+
+#[derive(Default)]
+pub(crate) enum Opened {
+    /// A case of the laboratory itself.
+    #[default]
+    Preset,
+    /// A case of the user.
+    Case(Box<Document>),
+    /// The folder of a run.
+    Folder(PathBuf),
+}
+
+/// Why the laboratory cannot be started with a case: a sentence.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct OpeningError(String);
+
+impl Start {
+    /// The case of a file, or of the folder of a complete run.
+    ///
+    /// # Errors
+    /// When there is no such case or run, or it cannot be shown.
+    pub fn of(path: &Path) -> Result<Self, OpeningError> {
+        let refused = |error: CaseError| OpeningError(error.to_string());
+        if path.is_dir() {
+            let (document, _) = replay::read(path).map_err(OpeningError)?;
+            document.case_to_show().map_err(refused)?;
+            return Ok(Self(Opened::Folder(path.to_owned())));
+        }
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        let document = Document::load(path, &name).map_err(refused)?;
+        document.case_to_show().map_err(refused)?;
+        Ok(Self(Opened::Case(Box::new(document))))
+    }
+}

@@ -1,0 +1,240 @@
+//! A field of all blocks as a picture of one byte per block.
+
+use axum::body::Bytes;
+use serde::Deserialize;
+use slipfront::Snapshot;
+use slipfront::observe::{Field, Kymograph};
+use slipfront::{PositionBins, Scales};
+
+/// What is shown of every block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Shown {
+    ContactStress,
+    Traction,
+    Displacement,
+    Speed,
+    Sliding,
+    FirstSlip,
+}
+
+/// Byte of the largest value.
+const TOP: f32 = 250.0;
+/// Bytes of blocks without a value.
+const NOT_YET: u8 = 253;
+const NO_BLOCK: u8 = 254;
+const TEXTURED: u8 = 255;
+
+/// Kinds of binary messages.
+const PICTURE: u8 = 1;
+const KYMOGRAPH: u8 = 2;
+
+/// Draws the pictures of one run, with a scale that changes rarely.
+#[derive(Default)]
+pub(crate) struct Painter {
+    number: u32,
+    values: Vec<f32>,
+    other: Vec<f32>,
+    times: Vec<f64>,
+    /// The largest value of the scale of a field.
+    high: Option<(Shown, f32)>,
+}
+
+/// What belongs to a picture beside its values.
+pub(crate) struct Frame<'a> {
+    pub(crate) step: u64,
+    pub(crate) time_star: f64,
+    pub(crate) mu_star: f64,
+    pub(crate) sliding_percent: f64,
+    pub(crate) size: [usize; 2],
+    pub(crate) textured: &'a [bool],
+    /// Whether it was recorded before.
+    pub(crate) recorded: bool,
+}
+
+impl Painter {
+    /// The scale begins anew.
+    pub(crate) fn forget_scale(&mut self) {
+        self.high = None;
+    }
+
+    /// The present picture of a run. Displacements count from rest: `origin` is where the drive stood when the leg began, m.
+    pub(crate) fn live(
+        &mut self,
+        now: &Snapshot,
+        scales: &Scales,
+        origin: Option<&[[f32; 2]]>,
+        shown: Shown,
+    ) -> Bytes {
+        let lattice = &now.model.lattice;
+        let surface = &now.model.surface;
+        let n_blocks = surface.n_blocks();
+        self.values.resize(n_blocks, 0.0);
+        self.other.resize(n_blocks, 0.0);
+        let (values, other) = (&mut self.values, &mut self.other);
+        let stress = scales.stress() as f32;
+        match shown {
+            Shown::ContactStress => read_scaled(now, Field::ContactStress, stress, values),
+            Shown::Traction => read_scaled(now, Field::Traction, stress, values),
+            Shown::Sliding => now.read_field(Field::Sliding, values),
+            Shown::FirstSlip => {
+                self.times.resize(n_blocks, 0.0);
+                now.read_first_slips(&mut self.times);
+                for (value, time) in values.iter_mut().zip(&self.times) {
+                    *value = *time as f32;
+                }
+            }
+            Shown::Displacement => {
+                let unit = scales.displacement() as f32;
+                read_scaled(now, Field::DisplacementX, unit, values);
+                read_scaled(now, Field::DisplacementY, unit, other);
+                if let Some(origin) = origin {
+                    for ((x, y), [from_x, from_y]) in values.iter_mut().zip(&mut *other).zip(origin) {
+                        *x += from_x;
+                        *y += from_y;
+                    }
+                }
+                lengths(values, other);
+            }
+            Shown::Speed => {
+                let unit = scales.speed() as f32;
+                read_scaled(now, Field::VelocityX, unit, values);
+                read_scaled(now, Field::VelocityY, unit, other);
+                lengths(values, other);
+            }
+        }
+        let frame = Frame {
+            step: now.step,
+            time_star: now.time_star,
+            mu_star: now.point.mu_star,
+            sliding_percent: now.point.sliding_percent,
+            size: [lattice.nx, lattice.ny],
+            textured: &surface.textured,
+            recorded: false,
+        };
+        let values = std::mem::take(&mut self.values);
+        let exists = now
+            .model
+            .slider()
+            .outline
+            .as_ref()
+            .map(|outline| &*outline.exists);
+        let picture = self.picture(&frame, shown, &values, exists);
+        self.values = values;
+        picture
+    }
+
+    /// A picture of these values, in the unit of the field.
+    pub(crate) fn picture(
+        &mut self,
+        frame: &Frame,
+        shown: Shown,
+        values: &[f32],
+        exists: Option<&[bool]>,
+    ) -> Bytes {
+        let [low, high] = self.scale(shown, values);
+        self.number = self.number.wrapping_add(1);
+        let mut bytes = Vec::with_capacity(36 + values.len());
+        bytes.extend([PICTURE, shown as u8]);
+        bytes.extend(u16::from(frame.recorded).to_le_bytes());
+        bytes.extend(self.number.to_le_bytes());
+        bytes.extend((frame.step as u32).to_le_bytes());
+        for number in [frame.time_star, frame.mu_star, frame.sliding_percent] {
+            bytes.extend((number as f32).to_le_bytes());
+        }
+        bytes.extend(low.to_le_bytes());
+        bytes.extend(high.to_le_bytes());
+        for count in frame.size {
+            bytes.extend((count as u16).to_le_bytes());
+        }
+        let factor = if high > low { TOP / (high - low) } else { 0.0 };
+        let missing = if shown == Shown::FirstSlip {
+            NOT_YET
+        } else {
+            NO_BLOCK
+        };
+        let byte = |value: &f32| match value.is_nan() {
+            true => missing,
+            false => ((value - low) * factor + 0.5).clamp(0.0, TOP) as u8,
+        };
+        let first = bytes.len();
+        bytes.extend(values.iter().map(byte));
+        let pixels = &mut bytes[first..];
+        // Where nothing touches there is no contact stress; how such blocks move is shown as that of others.
+        if !matches!(shown, Shown::Displacement | Shown::Speed) {
+            for (pixel, textured) in pixels.iter_mut().zip(frame.textured) {
+                *pixel = if *textured { TEXTURED } else { *pixel };
+            }
+        }
+        for (pixel, _) in pixels
+            .iter_mut()
+            .zip(exists.into_iter().flatten())
+            .filter(|(_, exists)| !**exists)
+        {
+            *pixel = NO_BLOCK;
+        }
+        bytes.into()
+    }
+
+    /// The values of the first and the last colour.
+    fn scale(&mut self, shown: Shown, values: &[f32]) -> [f32; 2] {
+        if shown == Shown::Sliding {
+            return [0.0, 1.0];
+        }
+        let largest = values.iter().copied().fold(0.0, f32::max);
+        if shown == Shown::FirstSlip {
+            let earliest = values.iter().copied().fold(f32::INFINITY, f32::min);
+            return [earliest.min(largest), largest];
+        }
+        // It shrinks when most of it is not used, so that colours do not flicker.
+        let kept = self
+            .high
+            .filter(|(of, high)| *of == shown && (0.3 * high..=*high).contains(&largest));
+        let high = kept.map_or_else(|| round_up(1.2 * largest), |(_, high)| high);
+        self.high = Some((shown, high));
+        [0.0, high]
+    }
+}
+
+fn read_scaled(now: &Snapshot, field: Field, unit: f32, values: &mut [f32]) {
+    now.read_field(field, values);
+    for value in values {
+        *value *= unit;
+    }
+}
+
+/// Lengths of vectors, in place of their first components.
+pub(crate) fn lengths(x: &mut [f32], y: &[f32]) {
+    for (x, y) in x.iter_mut().zip(y) {
+        *x = (*x * *x + y * y).sqrt();
+    }
+}
+
+/// The next of 1, 1.5, 2, 3, 5, 7 and 10 times a power of ten.
+fn round_up(value: f32) -> f32 {
+    if value <= 0.0 || !value.is_finite() {
+        return 1e-30;
+    }
+    let power = 10f32.powf(value.log10().floor());
+    let steps = [1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0];
+    let step = steps.into_iter().find(|step| step * power >= value);
+    step.unwrap_or(10.0) * power
+}
+
+/// What slides against place and time, as a picture.
+pub(crate) fn kymograph(of: &Kymograph, bins: &PositionBins, dt_star: f64) -> Option<Bytes> {
+    let rows: Vec<(f64, Vec<f32>)> = of.rows().collect();
+    let (first, last) = (rows.first()?.0, rows.last()?.0);
+    let mut bytes = vec![KYMOGRAPH, 0, 0, 0];
+    bytes.extend((rows.len() as u32).to_le_bytes());
+    bytes.extend((bins.count as u32).to_le_bytes());
+    for number in [first * dt_star, last * dt_star, bins.start, bins.width as f64] {
+        bytes.extend((number as f32).to_le_bytes());
+    }
+    let byte = |share: &f32| match share.is_nan() {
+        true => TEXTURED,
+        false => (share * TOP + 0.5) as u8,
+    };
+    bytes.extend(rows.iter().flat_map(|(_, shares)| shares).map(byte));
+    Some(bytes.into())
+}

@@ -1,0 +1,273 @@
+//! What the page and the server say to each other: requests as JSON, replies as JSON, pictures as bytes.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use crate::controls::Control;
+use crate::shapes::ShapeOutlines;
+use crate::view::ViewChange;
+
+/// The subprotocol of this version.
+pub(crate) const PROTOCOL: &str = "slipfront.lab.v1";
+
+/// Longest message of the page, in bytes: an image of the texture.
+pub(crate) const MAX_MESSAGE: usize = 8 << 20;
+
+/// What the page asks for.
+#[derive(Debug, Deserialize)]
+#[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum Request {
+    /// Another case, from rest.
+    Open { source: Source },
+    /// Keys of the case, with values as in TOML; null removes a key.
+    Set { keys: Map<String, Value>, gesture: u64 },
+    /// Blocks within a radius of a line through points become texture, or contact. Lengths are in blocks.
+    Paint {
+        points: Vec<[f64; 2]>,
+        radius: f64,
+        textured: bool,
+        gesture: u64,
+    },
+    /// The texture is this PNG image, in Base64: what is darker than the threshold.
+    Image {
+        png: String,
+        threshold: f64,
+        gesture: u64,
+    },
+    /// The case before the last gesture.
+    Undo,
+    /// The case after it again.
+    Redo,
+    /// The same case from rest.
+    Rest,
+    /// What is shown, and how fast.
+    View(ViewChange),
+    /// Some steps of a paused run.
+    Step { count: u64 },
+    /// Static friction over several seeds; 0 stops it.
+    Repeat { seeds: u64 },
+    /// The present case from rest, into a run folder of this name.
+    Save { name: String },
+    /// Stops saving.
+    SaveStop,
+    /// The case as files.
+    Export,
+    /// A recorded snapshot in place of the live field, or the live field again.
+    FramesOf { index: Option<usize> },
+    /// A defect of the simulation.
+    #[cfg(test)]
+    Panic,
+}
+
+impl Request {
+    /// Its name in messages.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Self::Open { .. } => "open",
+            Self::Set { .. } => "set",
+            Self::Paint { .. } => "paint",
+            Self::Image { .. } => "image",
+            Self::Undo => "undo",
+            Self::Redo => "redo",
+            Self::Rest => "rest",
+            Self::View(_) => "view",
+            Self::Step { .. } => "step",
+            Self::Repeat { .. } => "repeat",
+            Self::Save { .. } => "save",
+            Self::SaveStop => "save_stop",
+            Self::Export => "export",
+            Self::FramesOf { .. } => "frames_of",
+            #[cfg(test)]
+            Self::Panic => "panic",
+        }
+    }
+}
+
+/// Where a case is taken from; that with which the laboratory was started if nothing is given.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Source {
+    pub(crate) preset: Option<String>,
+    pub(crate) folder: Option<String>,
+    pub(crate) toml: Option<String>,
+    /// Files that the TOML names, in Base64.
+    #[serde(default)]
+    pub(crate) files: BTreeMap<String, String>,
+}
+
+/// What the server tells.
+#[derive(Debug, Serialize)]
+#[serde(tag = "is", rename_all = "snake_case")]
+pub(crate) enum Reply<'a> {
+    Hello {
+        version: &'static str,
+        presets: &'a [PresetEntry],
+        folders: Vec<String>,
+        results: String,
+        max_blocks: usize,
+        controls: &'static [Control],
+    },
+    Case(Box<CaseReply<'a>>),
+    Curve(CurveReply<'a>),
+    Numbers(Box<NumbersReply>),
+    Probe(ProbeReply),
+    Repeated(RepeatedReply),
+    Saving {
+        share: f64,
+    },
+    Saved {
+        name: &'a str,
+        folder: String,
+        folders: Vec<String>,
+    },
+    Exported {
+        toml: &'a str,
+        files: BTreeMap<&'a str, String>,
+        zip: String,
+    },
+    /// Snapshots of the run folder that is shown.
+    Recorded {
+        times_star: Vec<f64>,
+    },
+    /// A request was refused; nothing changed.
+    Refused {
+        of: &'static str,
+        sentence: String,
+    },
+    /// The run has failed.
+    Failed {
+        sentence: String,
+    },
+}
+
+/// A case to choose.
+#[derive(Debug, Serialize)]
+pub(crate) struct PresetEntry {
+    pub(crate) name: String,
+    pub(crate) group: &'static str,
+    pub(crate) title: String,
+}
+
+/// The case that is shown.
+#[derive(Debug, Serialize)]
+pub(crate) struct CaseReply<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) toml: String,
+    pub(crate) files: Vec<&'a str>,
+    pub(crate) link_files_bytes: usize,
+    pub(crate) blocks: [usize; 2],
+    pub(crate) block_size_m: f64,
+    pub(crate) n_blocks: usize,
+    pub(crate) texture_percent: f64,
+    pub(crate) texture: Value,
+    pub(crate) shapes: Vec<ShapeOutlines>,
+    pub(crate) values: BTreeMap<&'static str, ControlValue>,
+    pub(crate) units: Units,
+    pub(crate) dt_star: f64,
+    pub(crate) duration_star: f64,
+    pub(crate) kinetic_from_star: f64,
+    pub(crate) steady_level: f64,
+    pub(crate) can_undo: bool,
+    pub(crate) can_redo: bool,
+    pub(crate) leg: usize,
+    pub(crate) why: &'static str,
+    pub(crate) time_before_s: f64,
+    pub(crate) twin: bool,
+    pub(crate) has_memory: bool,
+    pub(crate) warnings: Vec<String>,
+}
+
+/// A quantity as a dimensionless group and with its unit.
+#[derive(Debug, Serialize)]
+pub(crate) struct ControlValue {
+    pub(crate) star: Option<f64>,
+    pub(crate) si: Option<f64>,
+}
+
+/// Units of the dimensionless quantities.
+#[derive(Debug, Serialize)]
+pub(crate) struct Units {
+    pub(crate) time_s: f64,
+    pub(crate) displacement_m: f64,
+    pub(crate) speed_m_s: f64,
+    pub(crate) stress_pa: f64,
+}
+
+/// New points of the curves.
+#[derive(Debug, Default, Serialize)]
+pub(crate) struct CurveReply<'a> {
+    pub(crate) leg: usize,
+    pub(crate) from_rest: bool,
+    pub(crate) t: Vec<f64>,
+    pub(crate) mu: Vec<f64>,
+    pub(crate) sliding: Vec<f64>,
+    pub(crate) twin_reset: bool,
+    pub(crate) twin_t: Vec<f64>,
+    pub(crate) twin_mu: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) recorded_t: Option<&'a [f64]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) recorded_mu: Option<&'a [f64]>,
+}
+
+/// The run at this instant.
+#[derive(Debug, Serialize)]
+pub(crate) struct NumbersReply {
+    pub(crate) step: u64,
+    pub(crate) t_star: f64,
+    pub(crate) time_s: f64,
+    pub(crate) mu_star: f64,
+    pub(crate) sliding_percent: f64,
+    pub(crate) peak: Option<PeakReply>,
+    pub(crate) twin_peak: Option<PeakReply>,
+    pub(crate) change_percent: Option<f64>,
+    pub(crate) kinetic: Option<f64>,
+    pub(crate) instants: BTreeMap<char, f64>,
+    pub(crate) steps_per_second: f64,
+    pub(crate) ended: bool,
+    pub(crate) summary: Option<Value>,
+}
+
+/// The first peak of mu*, which is certain once the fall after it has been seen.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct PeakReply {
+    pub(crate) t_star: f64,
+    pub(crate) mu_star: f64,
+    pub(crate) certain: bool,
+}
+
+/// The block under the pointer.
+#[derive(Debug, Default, Serialize)]
+pub(crate) struct ProbeReply {
+    pub(crate) block: [usize; 2],
+    pub(crate) exists: bool,
+    pub(crate) textured: bool,
+    pub(crate) sliding: bool,
+    pub(crate) mu_static: f64,
+    pub(crate) mu_kinetic: f64,
+    pub(crate) contact_stress_pa: f64,
+    pub(crate) traction_pa: f64,
+    pub(crate) displacement_m: f64,
+    pub(crate) speed_m_s: f64,
+    pub(crate) first_slip_star: Option<f64>,
+}
+
+/// Static friction over several seeds.
+#[derive(Debug, Serialize)]
+pub(crate) struct RepeatedReply {
+    pub(crate) done: u64,
+    pub(crate) of: u64,
+    pub(crate) finished: bool,
+    pub(crate) change_percent: Option<Estimate>,
+    pub(crate) with: Option<Estimate>,
+    pub(crate) without: Option<Estimate>,
+}
+
+/// A mean and the half width of its interval.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Estimate {
+    pub(crate) mean: f64,
+    pub(crate) half_width: Option<f64>,
+}

@@ -1,0 +1,109 @@
+//! Run folders: their case, which is run again with the same bits, their curve, and their snapshots.
+
+use std::path::{Path, PathBuf};
+
+use slipfront::observe::Field;
+use slipfront_run::fields::{FieldsData, read_fields};
+use slipfront_run::names::{FIELDS, MANIFEST, SERIES};
+use slipfront_run::{series, summary, verify};
+
+use crate::document::{Document, is_plain_name};
+use crate::picture::{Shown, lengths};
+
+/// Largest file of fields whose snapshots are shown, in bytes.
+const MAX_FIELDS: u64 = 32 << 20;
+
+/// A run that was read from its folder.
+pub(crate) struct Recorded {
+    pub(crate) time_star: Vec<f64>,
+    pub(crate) mu_star: Vec<f64>,
+    /// Its snapshots, unless they are too large, or of fewer blocks than the lattice has.
+    pub(crate) snapshots: Option<FieldsData>,
+    contact_stress_max_pa: f32,
+}
+
+/// Names of the complete runs among the results.
+pub(crate) fn folders(results: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(results).into_iter().flatten().flatten();
+    let mut names: Vec<String> = entries
+        .filter(|entry| entry.path().join(MANIFEST).is_file())
+        .filter_map(|entry| entry.file_name().into_string().ok())
+        .filter(|name| is_plain_name(name))
+        .collect();
+    names.sort();
+    names
+}
+
+/// The folder of a run of this name.
+///
+/// # Errors
+/// A sentence, if the name is more than a name.
+pub(crate) fn folder(results: &Path, name: &str) -> Result<PathBuf, String> {
+    if is_plain_name(name) {
+        return Ok(results.join(name));
+    }
+    Err(format!("{name:?} is no run of the folder of results"))
+}
+
+/// Reads a complete run.
+///
+/// # Errors
+/// A sentence, if it is none, or was changed since it was written.
+pub(crate) fn read(folder: &Path) -> Result<(Document, Recorded), String> {
+    /// Any error as its sentence.
+    fn sentence(error: impl std::fmt::Display) -> String {
+        error.to_string()
+    }
+    let run = verify::inspect(folder).map_err(sentence)?;
+    verify::expect_as_written(&run, |_| true).map_err(sentence)?;
+    let canonical = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    let name = canonical.file_name().unwrap_or_default().to_string_lossy();
+    let document = Document::load(&folder.join(slipfront_run::names::CASE), &name).map_err(sentence)?;
+    let summary = summary::read_summary(folder).map_err(sentence)?;
+    let rows = series::read_csv(&folder.join(SERIES)).map_err(sentence)?;
+    let fields = folder.join(FIELDS);
+    let is_small = fields.metadata().is_ok_and(|found| found.len() <= MAX_FIELDS);
+    let snapshots = match is_small {
+        true => Some(read_fields(&fields).map_err(sentence)?),
+        false => None,
+    };
+    let recorded = Recorded {
+        contact_stress_max_pa: summary.si.map_or(f64::NAN, |si| si.contact_stress_max_pa) as f32,
+        time_star: rows.iter().map(|row| row.time_star).collect(),
+        mu_star: rows.iter().map(|row| row.mu_star).collect(),
+        snapshots: snapshots.filter(|snapshots| snapshots.stride == 1 && !snapshots.frames.is_empty()),
+    };
+    Ok((document, recorded))
+}
+
+impl Recorded {
+    /// The values of a recorded field in the unit in which it is shown; none if it was not recorded.
+    pub(crate) fn values(&self, index: usize, shown: Shown) -> Option<Vec<f32>> {
+        let of = self.snapshots.as_ref()?;
+        let frame = of.frames.get(index)?;
+        let recorded = |field: Field| {
+            let place = of.names.iter().position(|name| *name == field)?;
+            Some(frame.values[place].clone())
+        };
+        let length = |x: Field, y: Field| {
+            let (mut x, y) = (recorded(x)?, recorded(y)?);
+            lengths(&mut x, &y);
+            Some(x)
+        };
+        match shown {
+            // It is recorded over its largest value.
+            Shown::ContactStress => {
+                let mut stress = recorded(Field::ContactStress)?;
+                stress
+                    .iter_mut()
+                    .for_each(|star| *star *= self.contact_stress_max_pa);
+                Some(stress)
+            }
+            Shown::Traction => recorded(Field::Traction),
+            Shown::Sliding => recorded(Field::Sliding),
+            Shown::Displacement => length(Field::DisplacementX, Field::DisplacementY),
+            Shown::Speed => length(Field::VelocityX, Field::VelocityY),
+            Shown::FirstSlip => Some(of.first_slip_time_star.iter().map(|time| *time as f32).collect()),
+        }
+    }
+}

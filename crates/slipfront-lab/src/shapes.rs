@@ -1,0 +1,56 @@
+//! Outlines of the textures, to be drawn over the field.
+
+use std::f64::consts::TAU;
+
+use serde::Serialize;
+use slipfront::surface::{Contour, Ellipse, Piece, contours};
+use slipfront_case::case::Case;
+
+/// The outlines of one texture, in blocks.
+#[derive(Debug, Serialize)]
+pub(crate) struct ShapeOutlines {
+    /// Its place among the textures, from 0.
+    index: usize,
+    outlines: Vec<Vec<[f64; 2]>>,
+}
+
+/// Most outlines of all textures that are drawn; beyond, the field itself shows them.
+const MAX_OUTLINES: usize = 2000;
+
+/// Points of an ellipse.
+const POINTS: usize = 72;
+
+/// The outlines of the textures of a case that have one.
+pub(crate) fn outlines(case: &Case) -> Vec<ShapeOutlines> {
+    // A mask that cannot be read any more has no outline either.
+    let textures = case.textures_in_blocks().unwrap_or_default();
+    let mut left = MAX_OUTLINES;
+    let drawn = textures.iter().enumerate().filter_map(|(index, texture)| {
+        let contours = contours(&case.model.lattice, texture)?;
+        left = left.checked_sub(contours.len())?;
+        let outlines = contours.iter().map(points).collect();
+        Some(ShapeOutlines { index, outlines })
+    });
+    drawn.collect()
+}
+
+fn points(contour: &Contour) -> Vec<[f64; 2]> {
+    match contour {
+        Contour::Ellipse(ellipse) => arc(ellipse, [0.0, TAU]),
+        Contour::Polygon(corners) => corners.clone(),
+        Contour::Pieces(pieces) => {
+            let of_piece = |piece: &Piece| match piece {
+                Piece::Line([from, _]) => vec![*from],
+                Piece::Arc(ellipse, ends) => arc(ellipse, *ends),
+            };
+            pieces.iter().flat_map(of_piece).collect()
+        }
+    }
+}
+
+/// Points of an ellipse from one parameter up to another one.
+fn arc(ellipse: &Ellipse, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
+    let count = (((to - from) / TAU * POINTS as f64).ceil() as usize).max(1);
+    let at = |k| ellipse.at(from + (to - from) * k as f64 / count as f64);
+    (0..count).map(at).collect()
+}

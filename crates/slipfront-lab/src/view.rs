@@ -1,0 +1,101 @@
+//! What is shown of a run, and how fast it goes: nothing here changes the case.
+
+use serde::Deserialize;
+
+use crate::picture::Shown;
+
+/// What the page asks to be shown.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(crate) struct ViewChange {
+    field: Option<Shown>,
+    visible: Option<bool>,
+    paused: Option<bool>,
+    pace: Option<f64>,
+    twin: Option<bool>,
+    kymograph: Option<bool>,
+    frames_per_second: Option<f64>,
+    after_change: Option<AfterChange>,
+    /// The block that is probed; null for none.
+    #[serde(deserialize_with = "given")]
+    probe: Option<Option<[usize; 2]>>,
+}
+
+/// Tells a key that is null from one that is not there.
+fn given<'de, D: serde::Deserializer<'de>>(from: D) -> Result<Option<Option<[usize; 2]>>, D::Error> {
+    Deserialize::deserialize(from).map(Some)
+}
+
+/// How the run goes on after the case was changed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum AfterChange {
+    /// From rest.
+    #[default]
+    Rest,
+    /// From the state in which it is.
+    GoOn,
+}
+
+/// What is shown.
+#[derive(Debug)]
+pub(crate) struct View {
+    pub(crate) field: Shown,
+    /// Whether the page is seen.
+    pub(crate) visible: bool,
+    pub(crate) paused: bool,
+    /// t* in a second; 0 for as fast as possible.
+    pub(crate) pace: f64,
+    /// Whether the slider without texture runs beside it.
+    pub(crate) twin: bool,
+    pub(crate) kymograph: bool,
+    pub(crate) frames_per_second: f64,
+    pub(crate) after_change: AfterChange,
+    pub(crate) probe: Option<[usize; 2]>,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self {
+            field: Shown::ContactStress,
+            visible: true,
+            paused: false,
+            pace: 40.0,
+            twin: true,
+            kymograph: false,
+            frames_per_second: 60.0,
+            after_change: AfterChange::Rest,
+            probe: None,
+        }
+    }
+}
+
+impl View {
+    /// Changes what is given.
+    ///
+    /// # Errors
+    /// A sentence with the bound that a number is beyond; then nothing changes.
+    pub(crate) fn change(&mut self, change: &ViewChange) -> Result<(), String> {
+        let pace = change.pace.unwrap_or(self.pace);
+        if !(0.0..=1e6).contains(&pace) {
+            return Err(format!(
+                "the pace is {pace} t* per second, where it may be from 0, as fast as possible, to 1e6"
+            ));
+        }
+        let rate = change.frames_per_second.unwrap_or(self.frames_per_second);
+        if !(1.0..=60.0).contains(&rate) {
+            return Err(format!(
+                "{rate} pictures per second were asked for, where there may be 1 to 60"
+            ));
+        }
+        (self.pace, self.frames_per_second) = (pace, rate);
+        self.field = change.field.unwrap_or(self.field);
+        self.visible = change.visible.unwrap_or(self.visible);
+        self.paused = change.paused.unwrap_or(self.paused);
+        self.twin = change.twin.unwrap_or(self.twin);
+        self.kymograph = change.kymograph.unwrap_or(self.kymograph);
+        self.after_change = change.after_change.unwrap_or(self.after_change);
+        self.probe = change.probe.unwrap_or(self.probe);
+        Ok(())
+    }
+}

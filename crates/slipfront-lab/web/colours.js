@@ -1,0 +1,51 @@
+// @ts-check
+// The colour of every byte of a picture, and the colour bar that says what they mean.
+import { COLOURMAPS } from './colourmaps.js';
+import { LARGEST, NO_BLOCK, NOT_YET, TEXTURED } from './frames.js';
+import { number, prefix, ticks } from './quantity.js';
+import { colour } from './theme.js';
+
+/** Red, green, blue of a colour as the browser computes it, `rgb(1, 2, 3)`. @param {string} text */
+const rgb = (text) => (text.match(/\d+/g) ?? []).slice(0, 3).map(Number);
+
+/** The colours of the bytes 0 to 255, four bytes each. @param {string} name of the colour map */
+export function table(name) {
+  const digits = COLOURMAPS[/** @type {keyof typeof COLOURMAPS} */ (name)];
+  const bytes = new Uint8Array(4 * 256);
+  for (let value = 0; value < 256; value++) {
+    const at = 6 * Math.round((Math.min(value, LARGEST) / LARGEST) * 255);
+    bytes.set([0, 2, 4].map((k) => parseInt(digits.slice(at + k, at + k + 2), 16)), 4 * value);
+    bytes[4 * value + 3] = 255;
+  }
+  for (const [value, what] of /** @type {Array<[number, string]>} */ ([[NOT_YET, 'not-yet'], [NO_BLOCK, 'background'], [TEXTURED, 'textured']])) {
+    bytes.set(rgb(colour(what)), 4 * value);
+  }
+  return bytes;
+}
+
+/**
+ * Draws the colour bar with its numbers, unit and title into a rectangle of a canvas, 40 pixels high.
+ * @param {CanvasRenderingContext2D} context
+ * @param {{x: number, y: number, width: number, bytes: Uint8Array, low: number, high: number, unit: string, title: string}} bar
+ */
+export function drawBar(context, { x, y, width, bytes, low, high, unit, title }) {
+  const [factor, letter] = unit === '' || unit === 't*' ? [1, ''] : prefix(Math.max(Math.abs(low), Math.abs(high)));
+  const height = 12;
+  for (let k = 0; k < width; k++) {
+    const at = 4 * Math.round((k / Math.max(1, width - 1)) * LARGEST);
+    context.fillStyle = `rgb(${bytes[at]}, ${bytes[at + 1]}, ${bytes[at + 2]})`;
+    context.fillRect(x + k, y, 1, height);
+  }
+  context.fillStyle = colour('text');
+  context.strokeStyle = colour('text');
+  context.font = '12px system-ui, sans-serif';
+  context.textBaseline = 'top';
+  for (const tick of ticks(low / factor, high / factor)) {
+    const at = high > low ? x + ((tick * factor - low) / (high - low)) * width : x;
+    context.fillRect(Math.min(Math.round(at), x + width - 1), y + height, 1, 4);
+    context.textAlign = at < x + 12 ? 'left' : at > x + width - 12 ? 'right' : 'center';
+    context.fillText(number(tick, 4), at, y + height + 5);
+  }
+  context.textAlign = 'left';
+  context.fillText(unit === '' ? title : `${title} (${letter}${unit})`, x, y + height + 19);
+}

@@ -1,0 +1,155 @@
+// @ts-check
+// The live field: takes pictures as they come, draws when there is something new and the browser is about to show it.
+import { Camera } from './camera.js';
+import { drawBar, table } from './colours.js';
+import { atMost, find, make, onPress } from './element.js';
+import { FIELDS, NO_BLOCK } from './frames.js';
+import { drawOverlay } from './overlay.js';
+import { Picture } from './picture.js';
+import { on, put, state } from './store.js';
+import { say } from './text.js';
+import { colour, onTheme } from './theme.js';
+import { setView } from './view.js';
+
+const BAR_SPACING_MS = 100;
+const BAR_HEIGHT = 46;
+
+export const camera = new Camera();
+
+/** What follows the pointer and the keyboard: drawn with the next picture. @type {{ring: {point: number[], radius: number}|null, cursor: number[]|null}} */
+export const pointers = { ring: null, cursor: null };
+
+/** @type {Picture} */
+let picture;
+/** @type {any} The newest picture, and whether it was given to the graphics. */
+let newest = null;
+let taken = true;
+let waiting = 0;
+/** Whether what is above the field has changed: outlines of thousands of corners are not drawn with every picture. */
+let above = true;
+/** @type {Uint8Array} */
+let colours = new Uint8Array(1024);
+/** @type {Array<(canvas: HTMLCanvasElement) => void>} */
+const watchers = [];
+
+/** Calls `action` with the canvas whenever the field has been drawn; the function that is returned ends that. @param {(canvas: HTMLCanvasElement) => void} action */
+export function watchField(action) {
+  watchers.push(action);
+  return () => watchers.splice(watchers.indexOf(action), 1);
+}
+
+function redrawPicture() {
+  if (!waiting) waiting = requestAnimationFrame(drawNow);
+}
+
+/** Draws the field and what is above it before the browser shows the page again. */
+export function redraw() {
+  above = true;
+  redrawPicture();
+}
+
+/** Draws the field at once, as for a picture that is saved. */
+export function drawNow() {
+  cancelAnimationFrame(waiting);
+  waiting = 0;
+  const ratio = devicePixelRatio;
+  if (newest && !taken) picture.take(newest);
+  taken = true;
+  picture.draw(camera, ratio);
+  if (above) drawOverlay(find('overlay').getContext('2d'), camera, ratio, pointers);
+  above = false;
+  for (const action of watchers) action(picture.canvas);
+}
+
+/** The colour bar of the newest picture, drawn at (x, y). @param {CanvasRenderingContext2D} context @param {number} x @param {number} y @param {number} width */
+export function barInto(context, x, y, width) {
+  if (!newest) return;
+  const { low, high, unit, field } = newest;
+  drawBar(context, { x, y, width, bytes: colours, low, high, unit, title: say(`field_${field}`) });
+}
+
+function drawBarOfPage() {
+  const canvas = find('bar');
+  const [ratio, width] = [devicePixelRatio, canvas.clientWidth];
+  canvas.width = Math.round(width * ratio);
+  canvas.height = Math.round(BAR_HEIGHT * ratio);
+  const context = canvas.getContext('2d');
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  barInto(context, 1, 0, width - 2);
+}
+const refreshBar = atMost(drawBarOfPage, BAR_SPACING_MS);
+
+function recolour() {
+  colours = table(find('colourmap').value);
+  picture.colour(colours, colours.subarray(4 * NO_BLOCK, 4 * NO_BLOCK + 4));
+  find('legend-textured').style.background = colour('textured');
+  find('legend-not-yet').style.background = colour('not-yet');
+  refreshBar();
+  redraw();
+}
+
+function fitCanvas() {
+  const frame = find('frame');
+  camera.pixels = [frame.clientWidth, frame.clientHeight];
+  for (const canvas of [picture.canvas, find('overlay')]) {
+    canvas.width = Math.round(frame.clientWidth * devicePixelRatio);
+    canvas.height = Math.round(frame.clientHeight * devicePixelRatio);
+  }
+  refreshBar();
+  redraw();
+}
+
+/** @param {any} came */
+function take(came) {
+  const changed = !newest || came.field !== newest.field || came.low !== newest.low || came.high !== newest.high;
+  newest = came;
+  taken = false;
+  if (changed) refreshBar();
+  redrawPicture();
+}
+
+/** @param {any} shown */
+function showCase({ blocks }) {
+  const same = camera.blocks[0] === blocks[0] && camera.blocks[1] === blocks[1];
+  if (!same) camera.reset(blocks);
+  redraw();
+}
+
+function showLegend() {
+  find('legend-not-yet').parentElement.hidden = state.view.field !== 'first_slip';
+  if (find('field').value !== state.view.field) find('field').value = state.view.field;
+}
+
+/** Prepares the field and its choices. */
+export function startField() {
+  picture = new Picture(find('canvas'));
+  if (!picture.gl) put('problem', { key: 'no_webgl' });
+  picture.canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
+  picture.canvas.addEventListener('webglcontextrestored', () => {
+    if (picture.gl) picture.prepare(picture.gl);
+    taken = false;
+    recolour();
+  });
+  find('field').append(...FIELDS.map((field) => make('option', { value: field, textContent: say(`field_${field}`) })));
+  find('colourmap').append(...['viridis', 'cividis'].map((name) => make('option', { value: name, textContent: say(`colourmap_${name}`) })));
+  find('field').addEventListener('change', () => setView({ field: find('field').value }));
+  find('colourmap').addEventListener('change', recolour);
+  for (const [id, factor] of /** @type {Array<[string, number]>} */ ([['zoom-in', 1.5], ['zoom-out', 1 / 1.5]])) {
+    onPress(id, () => {
+      camera.enlarge(factor);
+      redraw();
+    });
+  }
+  onPress('zoom-all', () => {
+    camera.reset();
+    redraw();
+  });
+  new ResizeObserver(fitCanvas).observe(find('frame'));
+  on('picture', take);
+  on('case', showCase);
+  on('selected', redraw);
+  on('view', showLegend);
+  showLegend();
+  onTheme(recolour);
+  recolour();
+}

@@ -1,0 +1,95 @@
+// @ts-check
+// What is kept of a run: a link, the case, a run folder, pictures.
+import { send } from './connection.js';
+import { download, find, onPress } from './element.js';
+import { drawNow, watchField } from './field.js';
+import { curvesFigure, fieldFigure, kymographFigure } from './figure.js';
+import { fromBase64, makeLink } from './link.js';
+import { announce, notice } from './notices.js';
+import { exported } from './session.js';
+import { on, state } from './store.js';
+import { say } from './text.js';
+
+const name = () => state.case?.name ?? 'case';
+
+async function copyLink() {
+  const { toml, files } = await exported();
+  const link = await makeLink({ toml, files });
+  if (link === null) return notice(say('link_too_long'));
+  const address = `${location.origin}${location.pathname}#case=${link}`;
+  history.replaceState(null, '', `#case=${link}`);
+  try {
+    await navigator.clipboard.writeText(address);
+    notice(say('link_copied'));
+  } catch {
+    notice(say('link_in_address'));
+  }
+}
+
+async function downloadCase() {
+  const { toml, files, zip } = await exported();
+  if (Object.keys(files).length > 0) download(new Blob([fromBase64(zip)], { type: 'application/zip' }), `${name()}.zip`);
+  else download(new Blob([toml], { type: 'application/toml' }), `${name()}.toml`);
+}
+
+/** @param {HTMLCanvasElement} canvas @param {string} panel */
+function png(canvas, panel) {
+  canvas.toBlob((blob) => blob && download(blob, `${name()}-${panel}.png`), 'image/png');
+}
+
+function fieldPng() {
+  const [canvas, draw] = fieldFigure(2);
+  // The picture is read right after it was drawn: the browser may clear it later.
+  const unwatch = watchField(draw);
+  drawNow();
+  unwatch();
+  png(canvas, 'field');
+}
+
+/** @param {SubmitEvent} event */
+function save(event) {
+  event.preventDefault();
+  send({ do: 'save', name: find('save-name').value });
+  find('keep').close();
+}
+
+/** @param {{share: number}} saving */
+function showSaving({ share }) {
+  find('saving').hidden = false;
+  find('saving-progress').value = share;
+}
+
+/** @param {{folder: string, name: string}} saved */
+function showSaved({ folder }) {
+  find('saving').hidden = true;
+  notice(say('saved', { folder }));
+  announce(say('saved', { folder }));
+}
+
+/** Prepares the dialog. */
+export function startKeep() {
+  onPress('open-keep', () => {
+    find('save-name').value = name();
+    find('keep').showModal();
+  });
+  const closing = (/** @type {string} */ id, /** @type {() => any} */ action) => onPress(id, () => {
+    find('keep').close();
+    action();
+  });
+  closing('copy-link', copyLink);
+  closing('download-case', downloadCase);
+  closing('png-field', fieldPng);
+  closing('png-curves', () => png(curvesFigure(), 'curves'));
+  closing('png-kymograph', () => png(kymographFigure(), 'kymograph'));
+  find('save-form').addEventListener('submit', save);
+  onPress('save-stop', () => {
+    send({ do: 'save_stop' });
+    find('saving').hidden = true;
+  });
+  on('saving', showSaving);
+  on('saved', showSaved);
+  on('refused', ({ of }) => {
+    if (of === 'save') find('saving').hidden = true;
+  });
+  on('hello', ({ results }) => (find('save-where').textContent = say('save_where', { results })));
+}

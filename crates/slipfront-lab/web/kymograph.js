@@ -1,0 +1,48 @@
+// @ts-check
+// What slides where along the drive (upwards) and when (to the right).
+import { table } from './colours.js';
+import { atMost, find } from './element.js';
+import { number, quantity } from './quantity.js';
+import { on, state } from './store.js';
+import { say } from './text.js';
+import { onTheme } from './theme.js';
+
+const SPACING_MS = 500;
+
+/** @type {any} */
+let newest = null;
+
+function draw() {
+  if (!newest || newest.rows === 0 || newest.bins === 0) return;
+  const { rows, bins, bytes, firstStar, lastStar, edgeBlocks, binBlocks } = newest;
+  const canvas = find('kymograph');
+  canvas.width = rows;
+  canvas.height = bins;
+  const context = canvas.getContext('2d');
+  const image = context.createImageData(rows, bins);
+  const pixels = new Uint32Array(image.data.buffer);
+  const colours = new Uint32Array(table(find('colourmap').value).buffer);
+  for (let row = 0; row < rows; row++) {
+    for (let bin = 0; bin < bins; bin++) {
+      const value = bytes[row * bins + bin];
+      pixels[(bins - 1 - bin) * rows + row] = colours[value];
+    }
+  }
+  context.putImageData(image, 0, 0);
+  const place = (/** @type {number} */ blocks) => quantity(blocks * (state.case?.block_size_m ?? 1), 'm');
+  find('kymograph-low').textContent = place(edgeBlocks);
+  find('kymograph-high').textContent = place(edgeBlocks + bins * binBlocks);
+  find('kymograph-first').textContent = say('kymograph_t', { t: number(firstStar) });
+  find('kymograph-last').textContent = number(lastStar);
+}
+const refresh = atMost(draw, SPACING_MS);
+
+/** Begins to listen. */
+export function startKymograph() {
+  on('kymograph', (came) => {
+    newest = came;
+    refresh();
+  });
+  find('colourmap').addEventListener('change', draw);
+  onTheme(draw);
+}

@@ -1,0 +1,107 @@
+// @ts-check
+// Lessons: a text beside the running simulation, with buttons that change it. Their structure stands in lessons.json, their words
+// in lessons.en.json, every number of a text in lesson_numbers.json.
+import { change } from './edit.js';
+import { find, make, onPress } from './element.js';
+import { notice } from './notices.js';
+import { open } from './session.js';
+import { on, put, state } from './store.js';
+import { say } from './text.js';
+import { setView } from './view.js';
+
+/** @type {any[]} */
+let lessons = [];
+/** @type {Record<string, any>} */
+let words = {};
+/** @type {Record<string, {says: string}>} */
+let numbers = {};
+
+/** @param {string} file */
+const load = async (file) => (await fetch(file)).json();
+
+/** A text with its numbers. @param {string} text */
+const told = (text) => text.replace(/\{(\w+)\}/g, (whole, id) => numbers[id]?.says ?? whole);
+
+/** A paragraph, in which `*words*` are emphasised. @param {string} text */
+function paragraph(text) {
+  const parts = told(text).split(/\*([^*]+)\*/);
+  return make('p', {}, parts.map((part, k) => (k % 2 === 1 ? make('em', { textContent: part }) : part)));
+}
+
+/** @param {any} step @param {Record<string, string>} labels */
+function buttons(step, labels) {
+  return (step.set ?? []).map((/** @type {any} */ button) => {
+    const element = make('button', { type: 'button', textContent: told(labels[button.id]) });
+    element.addEventListener('click', () => {
+      if (button.view) setView(button.view);
+      if (button.keys && Object.keys(button.keys).length > 0) change(button.keys);
+    });
+    return element;
+  });
+}
+
+/** Loads the case of a step and sets the view. @param {any} step */
+async function prepare(step) {
+  const answer = await fetch(step.case);
+  if (!answer.ok) return notice(say('lesson_missing', { file: step.case }));
+  const toml = await answer.text();
+  setView({ twin: false, after_change: 'rest', ...step.view });
+  open({ toml, files: {} });
+}
+
+/** @param {{lesson: string, step: number}|null} place */
+function show(place) {
+  const left = !find('lesson').hidden && place === null;
+  find('lesson').hidden = place === null;
+  if (left) setView({ twin: true });
+  if (!place) return;
+  const lesson = lessons.find(({ id }) => id === place.lesson);
+  const step = lesson.steps[place.step];
+  const said = words[lesson.id];
+  const text = said.steps[step.id];
+  find('lesson-title').textContent = told(said.title);
+  find('lesson-step').textContent = say('lesson_step', { step: place.step + 1, of: lesson.steps.length, title: told(text.title) });
+  find('lesson-text').replaceChildren(...text.text.map(paragraph));
+  find('lesson-buttons').replaceChildren(...buttons(step, text.set ?? {}));
+  find('lesson-previous').disabled = place.step === 0;
+  find('lesson-next').textContent = say(place.step + 1 < lesson.steps.length ? 'lesson_next' : 'lesson_end');
+  find('lesson').scrollTop = 0;
+  find('lesson').scrollIntoView({ block: 'nearest' });
+  find('lesson-step').focus();
+  prepare(step);
+}
+
+/** @param {number} by */
+function turnPage(by) {
+  const { lesson, step } = state.lesson;
+  const count = lessons.find(({ id }) => id === lesson).steps.length;
+  put('lesson', step + by < count ? { lesson, step: step + by } : null);
+}
+
+function list() {
+  const entries = lessons.map(({ id }) => {
+    const { title, minutes, summary } = words[id];
+    const button = make('button', { type: 'button' }, [make('strong', { textContent: told(title) }), make('span', { textContent: say('lesson_summary', { minutes, summary: told(summary) }) })]);
+    button.addEventListener('click', () => {
+      find('lessons').close();
+      put('lesson', { lesson: id, step: 0 });
+    });
+    return make('li', {}, [button]);
+  });
+  find('lessons-list').replaceChildren(...entries);
+}
+
+/** Loads the lessons and prepares their list; the page does without them if they are not there. */
+export async function startLessons() {
+  on('lesson', show);
+  onPress('open-lessons', () => find('lessons').showModal());
+  onPress('lesson-previous', () => turnPage(-1));
+  onPress('lesson-next', () => turnPage(1));
+  onPress('lesson-close', () => put('lesson', null));
+  try {
+    [lessons, words, numbers] = await Promise.all(['lessons.json', `lessons.${say('language')}.json`, 'lesson_numbers.json'].map(load));
+    list();
+  } catch {
+    find('open-lessons').hidden = true;
+  }
+}

@@ -1,0 +1,65 @@
+// @ts-check
+// Sentences for the reader: what was refused, what failed, whether there is a connection. They can be dismissed and are read out.
+import { find, make } from './element.js';
+import { on, put } from './store.js';
+import { say } from './text.js';
+
+const MOST = 4;
+/** A sentence that asks for nothing goes away by itself. */
+const LONGEST_MS = 20_000;
+
+/** Shows a sentence; one with the same `topic` takes its place. @param {string} text @param {{topic?: string, serious?: boolean}} [options] */
+export function notice(text, { topic = text, serious = false } = {}) {
+  withdraw(topic);
+  const close = make('button', { type: 'button', textContent: say('dismiss') });
+  const item = make('p', { className: serious ? 'notice serious' : 'notice' }, [make('span', { textContent: text }), close]);
+  item.dataset.topic = topic;
+  close.addEventListener('click', () => item.remove());
+  const list = find('notices');
+  list.append(item);
+  if (!serious) setTimeout(() => item.remove(), LONGEST_MS);
+  while (list.children.length > MOST) list.firstElementChild.remove();
+}
+
+/** Takes the sentence of a topic away. @param {string} topic */
+export function withdraw(topic) {
+  for (const item of [...find('notices').children]) if (item.dataset.topic === topic) item.remove();
+}
+
+/** @param {{yes: boolean, reason: string}} connection */
+function showConnection({ yes, reason }) {
+  const alone = document.body.classList.contains('alone');
+  document.body.classList.toggle('alone', !yes);
+  if (yes) withdraw('connection');
+  // It is tried again and again, but told once.
+  else if (alone && !reason) return;
+  else notice(reason ? say('lost_because', { reason }) : say('lost'), { topic: 'connection', serious: true });
+}
+
+/** Begins to listen. */
+export function startNotices() {
+  on('connected', showConnection);
+  on('refused', ({ sentence }) => notice(sentence, { topic: 'refused' }));
+  on('failed', ({ sentence }) => notice(say('failed', { sentence }), { topic: 'failed', serious: true }));
+  on('problem', ({ key, values }) => notice(say(key, values)));
+  on('case', ({ warnings, why }) => {
+    withdraw('failed');
+    withdraw('refused');
+    withdraw('warnings');
+    if (warnings.length > 0 && why === 'open') notice(warnings.join(' '), { topic: 'warnings' });
+  });
+}
+
+/** Says something to those who listen to the page without seeing it. @param {string} text */
+export const announce = (text) => put('announcement', text);
+
+/** Reads announcements out, no more than one in some seconds, the newest. */
+export function startAnnouncements() {
+  let timer = 0;
+  on('announcement', () => {
+    clearTimeout(timer);
+    timer = window.setTimeout(() => (find('announcements').textContent = /** @type {any} */ (latest)), 300);
+  });
+  let latest = '';
+  on('announcement', (text) => (latest = text));
+}

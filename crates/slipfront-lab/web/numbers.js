@@ -1,0 +1,114 @@
+// @ts-check
+// The numbers of the run: static friction against the slider without texture, live; and those of the summary at its end.
+import { send } from './connection.js';
+import { find, make, onPress } from './element.js';
+import { announce } from './notices.js';
+import { fixed, number, quantity } from './quantity.js';
+import { on, state } from './store.js';
+import { say } from './text.js';
+
+/** @param {number|null|undefined} percent */
+const signed = (percent, digits = 1) => (percent === null || percent === undefined ? '\u2013' : `${percent > 0 ? '+' : ''}${fixed(percent, digits)} %`);
+
+/** Rows of a table of names and values. @param {string} id @param {Array<[string, string]>} rows */
+function fill(id, rows) {
+  const list = find(id);
+  if (list.children.length === 2 * rows.length) {
+    rows.forEach(([name, value], k) => {
+      // Text that is the same is not set again: a selection in it stays.
+      if (list.children[2 * k].textContent !== name) list.children[2 * k].textContent = name;
+      if (list.children[2 * k + 1].textContent !== value) list.children[2 * k + 1].textContent = value;
+    });
+  } else {
+    list.replaceChildren(...rows.flatMap(([name, value]) => [make('dt', { textContent: name }), make('dd', { textContent: value })]));
+  }
+}
+
+/** A peak, with a tilde while it may still rise. @param {any} peak @param {string} key */
+const peakValue = (peak, key, digits = 3) => (peak ? `${peak.certain ? '' : '\u2248 '}${fixed(peak[key], digits)}` : '\u2013');
+
+/** @param {any} numbers */
+function showHeadline({ peak, twin_peak: twin, change_percent: change }) {
+  const certain = Boolean(peak?.certain && (change === null || twin?.certain));
+  const against = change !== null && change !== undefined;
+  find('headline').textContent = against ? signed(change) : peakValue(peak, 'mu_star');
+  find('headline-name').textContent = say(against ? 'headline_change' : 'headline_static');
+  find('headline-note').textContent = peak ? say(certain ? 'certain' : 'preliminary') : say('no_peak_yet');
+  find('headline').classList.toggle('preliminary', !certain);
+}
+
+/** @param {any} numbers */
+function showRows(numbers) {
+  const { peak, twin_peak: twin } = numbers;
+  fill('numbers', [
+    [say('number_static'), peakValue(peak, 'mu_star')],
+    [say('number_without'), peakValue(twin, 'mu_star')],
+    [say('number_onset'), peakValue(peak, 't_star', 1)],
+    [say('number_kinetic'), fixed(numbers.kinetic)],
+    [say('number_mu'), fixed(numbers.mu_star)],
+    [say('number_sliding'), `${fixed(numbers.sliding_percent, 1)} %`],
+    [say('number_time'), `${fixed(numbers.t_star, 1)} = ${quantity(numbers.time_s, 's')}`],
+    [say('number_texture'), `${fixed(state.case?.texture_percent, 1)} %`],
+    [say('number_pace'), number(numbers.steps_per_second)],
+  ]);
+}
+
+/** @param {any} summary */
+function showSummary(summary) {
+  find('summary').hidden = !summary;
+  if (!summary) return;
+  const speed = summary.front_speed_c_s;
+  fill('summary-values', [
+    [say('summary_static'), fixed(summary.static_friction_star, 4)],
+    [say('summary_onset'), fixed(summary.onset_time_star, 1)],
+    [say('summary_kinetic'), fixed(summary.kinetic_friction_star, 4)],
+    [say('summary_front'), speed === null || speed === undefined ? '\u2013' : say('summary_front_value', { share: number(speed), speed: quantity(summary.front_speed_m_s, 'm/s') })],
+    [say('summary_duration'), fixed(summary.front_duration_star, 1)],
+    [say('summary_sites'), String(summary.nucleation_sites ?? '\u2013')],
+    [say('summary_energy'), number(summary.energy_error)],
+  ]);
+}
+
+let told = '';
+
+/** Says what has become certain. @param {any} numbers */
+function tell({ peak, change_percent: change, ended, kinetic }) {
+  let text = '';
+  if (ended) text = say('tell_ended', { kinetic: fixed(kinetic) });
+  else if (peak?.certain) text = change === null || change === undefined ? say('tell_peak', { mu: fixed(peak.mu_star) }) : say('tell_change', { mu: fixed(peak.mu_star), change: signed(change) });
+  if (text && text !== told) announce(text);
+  told = text;
+}
+
+/** @param {any} numbers */
+function show(numbers) {
+  showHeadline(numbers);
+  showRows(numbers);
+  showSummary(numbers.ended ? numbers.summary : null);
+  tell(numbers);
+}
+
+/** @param {any} repeated */
+function showRepeated({ done, of, finished, change_percent: change, with: textured, without }) {
+  find('repeat-progress').hidden = finished;
+  find('repeat-progress').max = of;
+  find('repeat-progress').value = done;
+  find('repeat').textContent = say(finished ? 'repeat' : 'repeat_stop');
+  find('repeat').dataset.busy = finished ? '' : 'yes';
+  const both = (/** @type {any} */ sample, digits = 3) => (sample.half_width === null ? fixed(sample.mean, digits) : `${fixed(sample.mean, digits)} \u00b1 ${fixed(sample.half_width, digits)}`);
+  const text = change
+    ? say('repeated_change', { change: both(change, 1), with: both(textured), without: both(without), done })
+    : textured ? say('repeated_plain', { with: both(textured), done }) : say('repeated_none', { done, of });
+  find('repeated').textContent = text;
+  if (finished) announce(text);
+}
+
+/** Prepares the numbers. */
+export function startNumbers() {
+  on('numbers', show);
+  on('repeated', showRepeated);
+  onPress('repeat', () => send({ do: 'repeat', seeds: find('repeat').dataset.busy ? 0 : find('repeat-seeds').valueAsNumber }));
+  on('case', ({ why }) => {
+    if (why !== 'rest') find('repeated').textContent = '';
+  });
+}

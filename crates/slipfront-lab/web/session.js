@@ -1,0 +1,60 @@
+// @ts-check
+// Which case is open: that of the address, of the command line, or after a lost connection the one that was shown.
+import { send } from './connection.js';
+import { readLink } from './link.js';
+import { next, on, put, state } from './store.js';
+import { sendView } from './view.js';
+
+/** Files are asked for when the case has stood still for so long: they are large, and only needed after a lost connection. */
+const QUIET_MS = 1500;
+
+let opened = false;
+let quiet = 0;
+/** @type {Record<string, string>} */
+let files = {};
+
+/** Opens another case. @param {Record<string, any>} source */
+export function open(source) {
+  put('recorded', null);
+  put('selected', null);
+  send({ do: 'open', source });
+}
+
+/** The present case with its files and as a zip. @returns {Promise<{toml: string, files: Record<string, string>, zip: string}>} */
+export function exported() {
+  const answer = next('exported');
+  send({ do: 'export' });
+  return answer;
+}
+
+async function first() {
+  const link = new URLSearchParams(location.hash.slice(1)).get('case');
+  if (!link) return open({});
+  try {
+    open(await readLink(link));
+  } catch {
+    put('problem', { key: 'broken_link' });
+    open({});
+  }
+}
+
+function begin() {
+  sendView();
+  if (!opened || !state.case) first();
+  else send({ do: 'open', source: { toml: state.case.toml, files } });
+  opened = true;
+}
+
+/** @param {any} shown */
+function holdFiles(shown) {
+  clearTimeout(quiet);
+  if (shown.files.length === 0) files = {};
+  else quiet = window.setTimeout(() => exported().then((content) => (files = content.files)), QUIET_MS);
+}
+
+/** Begins to listen. */
+export function startSession() {
+  on('hello', begin);
+  on('case', holdFiles);
+  window.addEventListener('hashchange', first);
+}

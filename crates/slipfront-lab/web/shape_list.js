@@ -1,0 +1,94 @@
+// @ts-check
+// The textures as a list; the selected one has its numbers.
+import { change } from './edit.js';
+import { find, make } from './element.js';
+import { fixed, length, metres, typed } from './quantity.js';
+import { center, kind } from './shapes.js';
+import { on, put, state } from './store.js';
+import { say } from './text.js';
+import { removeSelected } from './tools.js';
+
+/** @typedef {{key: string, value: number, set: (value: number) => Record<string, any>}} Field `key` names it in en.json; `set` gives the keys that change */
+
+const MICRO = 1e6;
+const slider = () => ({ blocks: state.case.blocks, blockSize: state.case.block_size_m, count: state.case.n_blocks });
+
+/** @param {any} table @param {string} key @returns {Field} */
+const plain = (table, key, standard = 0) => ({ key, value: table[key] ?? standard, set: (value) => ({ [key]: value }) });
+
+/** A length in micrometres. @param {any} table @param {string} key @returns {Field} */
+const micrometres = (table, key) => ({ key, value: (metres(table[key] ?? '0 m') ?? 0) * MICRO, set: (value) => ({ [key]: length(value / MICRO) }) });
+
+/** @param {any} table @returns {Field[]} */
+const sizes = (table) => ['coverage', 'lambda', 'width'].filter((key) => key in table).map((key) => (key === 'coverage' ? plain(table, key) : micrometres(table, key)));
+
+/** @param {any} table @returns {Field[]} */
+function centers(table) {
+  const at = center(table, slider());
+  return ['x', 'y'].map((key, axis) => ({
+    key,
+    value: at[axis] * MICRO,
+    set: (value) => ({ center: at.map((old, k) => length(k === axis ? value / MICRO : old)) }),
+  }));
+}
+
+/** @param {any} table @returns {Field[]} */
+function copies(table) {
+  if (!Array.isArray(table.array)) return [];
+  return ['columns', 'rows'].map((key, axis) => ({
+    key,
+    value: table.array[axis],
+    set: (value) => ({ array: table.array.map((/** @type {number} */ old, /** @type {number} */ k) => (k === axis ? value : old)) }),
+  }));
+}
+
+/** The numbers of a texture. @param {any} table @returns {Field[]} */
+function fields(table) {
+  if (table.shape === 'cavity') return [...sizes(table), ...centers(table), plain(table, 'rotate'), plain(table, 's', 1), plain(table, 'w'), ...copies(table)];
+  if (table.shape === 'groove') return [...sizes(table), micrometres(table, 'offset'), ...copies(table)];
+  if (table.shape === 'mask') return [plain(table, 'threshold', 0.5)];
+  if (table.shape === 'height_map' && 'bearing_percent' in table) return [plain(table, 'bearing_percent')];
+  return copies(table);
+}
+
+/** @param {number} index @param {Field} field */
+function row(index, { key, value, set }) {
+  const id = `shape-${key}`;
+  const input = make('input', { id, type: 'text', inputMode: 'decimal', size: 7, value: String(Number(value.toPrecision(6))), autocomplete: 'off' });
+  input.addEventListener('change', () => {
+    const given = typed(input.value);
+    if (given === null) return show();
+    const { texture } = state.case;
+    change({ texture: texture.map((/** @type {any} */ old, /** @type {number} */ k) => (k === index ? { ...old, ...set(given) } : old)) });
+  });
+  return make('div', {}, [make('label', { for: id, textContent: say(`shape_${key}`) }), input]);
+}
+
+/** @param {any} table @param {number} index */
+function item(table, index) {
+  const selected = index === state.selected;
+  const share = 'coverage' in table ? `${fixed(table.coverage, 1)} %` : '';
+  const button = make('button', { type: 'button', 'aria-expanded': String(selected), textContent: say('shape_item', { number: index + 1, kind: say(`kind_${kind(table)}`), share }) });
+  button.addEventListener('click', () => put('selected', selected ? null : index));
+  if (!selected) return make('li', {}, [button]);
+  const remove = make('button', { type: 'button', id: 'shape-remove', textContent: say('shape_remove') });
+  remove.addEventListener('click', removeSelected);
+  return make('li', {}, [button, make('div', { className: 'shape-fields' }, fields(table).map((field) => row(index, field))), remove]);
+}
+
+function show() {
+  const list = find('shapes');
+  const texture = state.case?.texture ?? [];
+  const focused = list.contains(document.activeElement) ? document.activeElement : null;
+  const [id, place] = [focused?.id, [...list.querySelectorAll('button')].indexOf(/** @type {any} */ (focused))];
+  list.replaceChildren(...texture.map(item));
+  find('no-shapes').hidden = texture.length > 0;
+  // The list is made anew, but the reader stays where he was.
+  if (id) find(id)?.focus();
+  else if (focused) list.querySelectorAll('button')[place]?.focus();
+}
+
+/** Begins to listen. */
+export function startShapeList() {
+  for (const topic of ['case', 'selected', 'refused']) on(topic, show);
+}

@@ -1,0 +1,253 @@
+// @ts-check
+// The tools of the field: probe and move, brush, eraser, new shapes. They work the same by pointer and by keyboard.
+import { send } from './connection.js';
+import { change, gradual, newGesture } from './edit.js';
+import { atMost, find, make } from './element.js';
+import { camera, pointers, redraw } from './field.js';
+import { box, create, enlarge, handles, inside, move, turn } from './shapes.js';
+import { on, put, state } from './store.js';
+import { say } from './text.js';
+import { setView } from './view.js';
+
+export const TOOLS = ['probe', 'brush', 'eraser', 'circle', 'ellipse', 'polygon', 'groove', 'array'];
+const PAINT_SPACING_MS = 33;
+const PROBE_SPACING_MS = 50;
+/** How near to a handle a pointer grips it, in pixels: a finger is wide. */
+const GRIP_PIXELS = 12;
+/** A drag of less than this many pixels is a click. */
+const CLICK_PIXELS = 4;
+
+/** The slider as shapes.js wants it. */
+const slider = () => ({ blocks: state.case.blocks, blockSize: state.case.block_size_m, count: state.case.n_blocks });
+
+const paints = () => state.tool === 'brush' || state.tool === 'eraser';
+const radius = () => find('brush-size').valueAsNumber / 2;
+
+/** What the fields below the tools say of a new shape. */
+function options() {
+  const value = (/** @type {string} */ id) => find(id).valueAsNumber;
+  const polygon = state.tool === 'polygon';
+  return {
+    s: polygon ? value('option-s') : 1,
+    w: polygon ? Math.min(Math.max(value('option-sharp'), -1), 1) / value('option-s') : value('option-w'),
+    columns: value('option-columns'),
+    rows: value('option-rows'),
+    orientation: find('option-orientation').value,
+  };
+}
+
+/** Replaces one texture. @param {any[]} texture @param {number} index @param {any} table */
+const replaced = (texture, index, table) => texture.map((old, k) => (k === index ? table : old));
+
+/** The shape below a point, the last one if there are several. @param {number[]} point */
+function shapeAt(point) {
+  const hit = (state.case?.shapes ?? []).filter((/** @type {any} */ shape) => inside(shape.outlines, point));
+  return hit.length > 0 ? hit[hit.length - 1] : null;
+}
+
+/** The selected shape with its outlines. */
+const selectedShape = () => (state.case?.shapes ?? []).find((/** @type {any} */ shape) => shape.index === state.selected);
+
+/** Whether the point grips a handle of the selected shape. @param {number[]} point */
+function gripped(point) {
+  const shape = selectedShape();
+  if (!shape || shape.outlines.length === 0) return false;
+  const pixel = camera.toPixels(point);
+  return handles(state.case.texture[shape.index], shape.outlines[0]).some((handle) => {
+    const at = camera.toPixels(handle);
+    return Math.hypot(at[0] - pixel[0], at[1] - pixel[1]) <= GRIP_PIXELS;
+  });
+}
+
+/** A drag that changes the selected shape: `alter` makes the new table of the old one and the present point. @param {(table: any, point: number[]) => any} alter */
+function drag(alter) {
+  const { selected } = state;
+  const { texture } = state.case;
+  const steps = gradual();
+  return {
+    move: (/** @type {number[]} */ point) => steps.send({ do: 'set', keys: { texture: replaced(texture, selected, alter(texture[selected], point)) } }),
+    end: steps.end,
+  };
+}
+
+/** @param {number[]} from */
+function dragToMove(from) {
+  return drag((table, point) => move(table, [point[0] - from[0], point[1] - from[1]], slider()));
+}
+
+/** @param {number[]} from */
+function dragToSize(from) {
+  const { index, outlines } = selectedShape();
+  const [left, bottom, right, top] = box(outlines[0]);
+  const groove = state.case.texture[index].shape === 'groove';
+  const along = state.case.texture[index].orientation === 'along';
+  const reach = ([x, y] = from) => {
+    const [dx, dy] = [x - (left + right) / 2, y - (bottom + top) / 2];
+    return groove ? Math.abs(along ? dy : dx) : Math.hypot(dx, dy);
+  };
+  return drag((table, point) => enlarge(table, Math.max(0.05, reach(point) / Math.max(reach(), 1e-6))));
+}
+
+/** A stroke of the brush: points are gathered and sent together. @param {number[]} from */
+function stroke(from) {
+  const gesture = newGesture();
+  const textured = state.tool === 'brush';
+  let points = [from];
+  const flush = () => {
+    if (points.length === 0) return;
+    send({ do: 'paint', points, radius: radius(), textured, gesture });
+    points = [];
+  };
+  const soon = atMost(flush, PAINT_SPACING_MS);
+  let last = from;
+  soon();
+  return {
+    move: (/** @type {number[]} */ point) => {
+      // The line goes on from the last point that was sent.
+      if (points.length === 0) points.push(last);
+      points.push(point);
+      last = point;
+      soon();
+    },
+    end: flush,
+  };
+}
+
+/** Adds a shape around a point and selects it. @param {number[]} point @param {number} size radius in blocks, 0 for the ordinary size */
+function place(point, size) {
+  const table = create(state.tool, options(), point, size, slider());
+  change({ texture: [...state.case.texture, table] });
+  put('selected', state.case.texture.length);
+  chooseTool('probe');
+}
+
+/** A new shape whose size is dragged. @param {number[]} from */
+function placing(from) {
+  let size = 0;
+  return {
+    move: (/** @type {number[]} */ point) => {
+      const blocks = Math.hypot(point[0] - from[0], point[1] - from[1]);
+      size = blocks * camera.scale < CLICK_PIXELS ? 0 : blocks;
+      pointers.ring = { point: from, radius: size };
+      redraw();
+    },
+    end: () => {
+      pointers.ring = null;
+      place(from, size);
+    },
+  };
+}
+
+const probeSoon = (() => {
+  /** @type {number[]|null} */
+  let block = null;
+  const soon = atMost(() => setView({ probe: block }), PROBE_SPACING_MS);
+  return (/** @type {number[]} */ point) => {
+    const at = point.map(Math.floor);
+    const { blocks } = state.case ?? { blocks: [0, 0] };
+    if (at.some((value, axis) => value < 0 || value >= blocks[axis])) return;
+    if (block && at[0] === block[0] && at[1] === block[1]) return;
+    block = at;
+    soon();
+  };
+})();
+
+/** @type {{move(point: number[]): void, end(): void}|null} */
+let doing = null;
+
+/** What the pointers do. @type {import('./pointer.js').Hand} */
+export const hand = {
+  begin(point) {
+    if (!state.case) return false;
+    if (paints()) doing = stroke(point);
+    else if (gripped(point)) doing = dragToSize(point);
+    else if (state.tool !== 'probe') doing = placing(point);
+    else {
+      const shape = shapeAt(point);
+      put('selected', shape ? shape.index : null);
+      probeSoon(point);
+      doing = shape ? dragToMove(point) : null;
+    }
+    return doing !== null;
+  },
+  move: (point) => doing?.move(point),
+  end: () => {
+    doing?.end();
+    doing = null;
+  },
+  cancel: () => {
+    pointers.ring = null;
+    doing = null;
+  },
+  hover(point) {
+    if (point) probeSoon(point);
+    if (!doing || paints()) pointers.ring = point && paints() ? { point, radius: radius() } : null;
+    redraw();
+  },
+};
+
+/** What Enter does at the cursor of the keyboard. @param {number[]} point */
+export function press(point) {
+  if (!state.case) return;
+  if (paints()) stroke(point).end();
+  else if (state.tool !== 'probe') place(point, 0);
+  else {
+    const shape = shapeAt(point);
+    put('selected', shape ? shape.index : null);
+  }
+  probeSoon(point);
+}
+
+/** Shows what a block under the cursor has. @param {number[]} point */
+export const probeAt = (point) => probeSoon(point);
+
+/** Changes the selected shape, if there is one. @param {(table: any) => any} alter */
+function alterSelected(alter) {
+  const { selected } = state;
+  const table = state.case?.texture[selected];
+  if (table) change({ texture: replaced(state.case.texture, selected, alter(table)) });
+}
+
+/** @param {number} dx blocks @param {number} dy blocks */
+export const moveSelected = (dx, dy) => alterSelected((table) => move(table, [dx, dy], slider()));
+/** @param {number} factor */
+export const sizeSelected = (factor) => alterSelected((table) => enlarge(table, factor));
+/** @param {number} degrees */
+export const turnSelected = (degrees) => alterSelected((table) => turn(table, degrees));
+
+/** Takes the selected shape away. */
+export function removeSelected() {
+  const { selected } = state;
+  if (selected === null || !state.case?.texture[selected]) return;
+  change({ texture: state.case.texture.filter((/** @type {any} */ _, /** @type {number} */ k) => k !== selected) });
+  put('selected', null);
+}
+
+/** @param {string} tool */
+export function chooseTool(tool) {
+  put('tool', tool);
+}
+
+function showTool() {
+  const { tool } = state;
+  for (const name of TOOLS) find(`tool-${name}`).setAttribute('aria-pressed', String(name === tool));
+  for (const element of document.querySelectorAll('[data-tools]')) {
+    /** @type {HTMLElement} */ (element).hidden = !(element.getAttribute('data-tools') ?? '').split(' ').includes(tool);
+  }
+  find('tool-hint').textContent = say(`hint_${tool}`);
+  find('frame').classList.toggle('draws', tool !== 'probe');
+  pointers.ring = null;
+  redraw();
+}
+
+/** Makes the buttons of the tools. */
+export function startTools() {
+  const buttons = TOOLS.map((tool) => {
+    const button = make('button', { id: `tool-${tool}`, type: 'button', textContent: say(`tool_${tool}`) });
+    button.addEventListener('click', () => chooseTool(tool));
+    return button;
+  });
+  find('tools').prepend(...buttons);
+  on('tool', showTool);
+  chooseTool('probe');
+}

@@ -1,0 +1,63 @@
+// @ts-check
+// Whether and how fast the run goes on, back to rest, undo and redo.
+import { send } from './connection.js';
+import { find, onPress } from './element.js';
+import { number } from './quantity.js';
+import { on, state } from './store.js';
+import { say } from './text.js';
+import { setView, startsPaused } from './view.js';
+import { notice } from './notices.js';
+
+/** Places of the pace slider are steps of a tenth of a decade from this; the last one is as fast as possible. */
+const SLOWEST = 0.5;
+const LAST = 34;
+
+/** @param {number} place */
+const paceOf = (place) => (place >= LAST ? 0 : Number((SLOWEST * 10 ** (place / 10)).toPrecision(2)));
+/** @param {number} pace */
+const placeOf = (pace) => (pace === 0 ? LAST : Math.round(10 * Math.log10(pace / SLOWEST)));
+
+function showView() {
+  const { paused, pace, after_change: after } = state.view;
+  find('pause').textContent = say(paused ? 'play' : 'pause');
+  find('step').disabled = !paused;
+  find('pace').value = String(placeOf(pace));
+  const text = pace === 0 ? say('pace_fastest') : say('pace_value', { pace: number(pace) });
+  find('pace-value').textContent = text;
+  find('pace').setAttribute('aria-valuetext', text);
+  find(after === 'rest' ? 'after-rest' : 'after-go-on').checked = true;
+  showEffect();
+}
+
+function showEffect() {
+  const memory = state.case?.has_memory ?? false;
+  find('after-go-on').disabled = memory;
+  const key = memory ? 'effect_memory' : state.view.after_change === 'rest' ? 'effect_rest' : 'effect_go_on';
+  find('effect').textContent = say(key);
+}
+
+/** @param {any} shown */
+function showCase(shown) {
+  find('undo').disabled = !shown.can_undo;
+  find('redo').disabled = !shown.can_redo;
+  find('case-name').textContent = shown.name;
+  showEffect();
+}
+
+/** Prepares the buttons. */
+export function startTransport() {
+  find('pace').max = String(LAST);
+  onPress('pause', () => setView({ paused: !state.view.paused }));
+  onPress('step', () => send({ do: 'step', count: 1 }));
+  onPress('rest', () => send({ do: 'rest' }));
+  onPress('undo', () => send({ do: 'undo' }));
+  onPress('redo', () => send({ do: 'redo' }));
+  find('pace').addEventListener('input', () => setView({ pace: paceOf(find('pace').valueAsNumber) }));
+  find('after-rest').addEventListener('change', () => setView({ after_change: 'rest' }));
+  find('after-go-on').addEventListener('change', () => setView({ after_change: 'go_on' }));
+  document.addEventListener('visibilitychange', () => setView({ visible: !document.hidden }));
+  on('view', showView);
+  on('case', showCase);
+  showView();
+  if (startsPaused) notice(say('starts_paused'));
+}

@@ -1,0 +1,30 @@
+// @ts-check
+// How the run is looked at: nothing here changes the case.
+import { send } from './connection.js';
+import { put, state } from './store.js';
+
+const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
+
+put('view', {
+  field: 'contact_stress',
+  visible: !document.hidden,
+  paused: calm,
+  pace: 10,
+  twin: true,
+  kymograph: true,
+  frames_per_second: 60,
+  after_change: 'rest',
+  probe: null,
+});
+
+/** Whether the page starts paused, since its reader asks for little motion. */
+export const startsPaused = calm;
+
+/** Changes a part of the view. @param {Record<string, any>} part */
+export function setView(part) {
+  put('view', { ...state.view, ...part });
+  send({ do: 'view', ...part });
+}
+
+/** Tells a new connection all of it. */
+export const sendView = () => send({ do: 'view', ...state.view });

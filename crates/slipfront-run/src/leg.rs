@@ -1,0 +1,310 @@
+//! A run that goes on under another case: a new leg of the same slider.
+
+use std::sync::Arc;
+
+use slipfront::{State, VectorField};
+use slipfront_case::case::Case;
+use thiserror::Error;
+
+use crate::running::Running;
+
+/// What a [change](Running::change) gives.
+pub struct Leg {
+    /// The run under the new case, at its t* = 0.
+    pub running: Running,
+    /// Steps of the leg before, with the one that had begun.
+    pub steps: u64,
+    /// How long they have taken, s.
+    pub time_s: f64,
+    /// Where the driven ends of the drive springs stand, block by block, m: what the displacements of the new leg are less than those
+    /// of the leg before.
+    pub drive_m: VectorField,
+}
+
+/// A change that is refused.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[expect(missing_docs, reason = "the sentence of each variant tells what it is")]
+pub enum ChangeError {
+    #[error(
+        "a change keeps the blocks: their number and size are those of the slider that moves, {} and not {}; begin such a run from rest",
+        blocks(*.moving),
+        blocks(*.wanted)
+    )]
+    OtherBlocks {
+        moving: ([usize; 2], f64),
+        wanted: ([usize; 2], f64),
+    },
+    #[error(
+        "a change keeps the blocks: which of them exist is as in the slider that moves; begin such a run from rest"
+    )]
+    OtherOutline,
+    #[error(
+        "contacts under this law of friction remember more than a displacement and a velocity: begin such a run from rest"
+    )]
+    Memory,
+    #[error(
+        "a displacement or a velocity is no finite number in the units of the new case: the run diverges, or a unit is too small; begin such a run from rest"
+    )]
+    NotFinite,
+}
+
+fn blocks(([nx, ny], size): ([usize; 2], f64)) -> String {
+    format!("{nx} x {ny} of {size} m")
+}
+
+impl Running {
+    /// Goes on under another case from here, on at most `threads` threads.
+    ///
+    /// Displacements in m and velocities in m/s are kept. The step that has begun is taken to its end, as velocities are known half a
+    /// step after displacements, and the new leg begins when they meet. Its drive begins where that of this leg stands, and its
+    /// displacements count from there:
+    ///
+    /// ```text
+    /// u' = (u + dt v - X) U/U'    with U = P mu_s l/E
+    /// v' = v W/W'                 with W = P mu_s/sqrt(E rho)
+    /// ```
+    ///
+    /// where X is the displacement of the driven end over each block, and a prime marks the new case. Scales, load and what is stuck
+    /// follow the new case. This run stays as it is.
+    ///
+    /// # Errors
+    /// [`ChangeError`] when the cases have other blocks, contacts of one of them remember more than a state tells, or the run diverges.
+    ///
+    /// # Panics
+    /// If several ranks share the lattice.
+    pub fn change(&self, case: &Arc<Case>, threads: usize) -> Result<Leg, ChangeError> {
+        let before = self.case();
+        let (old, new) = (&before.model, &case.model);
+        assert_eq!(
+            old.rows.len(),
+            old.lattice.ny,
+            "a change is that of a run on one rank"
+        );
+        let of = |case: &Case| {
+            let lattice = &case.model.lattice;
+            ([lattice.nx, lattice.ny], case.scales.block_size)
+        };
+        let (moving, wanted) = (of(before), of(case));
+        if moving != wanted {
+            return Err(ChangeError::OtherBlocks { moving, wanted });
+        }
+        if old.slider().outline != new.slider().outline {
+            return Err(ChangeError::OtherOutline);
+        }
+        if [old, new].iter().any(|model| model.friction.n_columns() > 0) {
+            return Err(ChangeError::Memory);
+        }
+
+        let steps = self.snapshot().step + 1;
+        let dt_star = before.time_plan.dt_star;
+        let time_star = steps as f64 * dt_star;
+        let path = old.drive.path(time_star);
+        let unit = before.scales.displacement();
+        let per_displacement = unit / case.scales.displacement();
+        let per_speed = before.scales.speed() / case.scales.speed();
+        let State {
+            mut displacement,
+            mut velocity,
+        } = self.motion();
+        let mut drive = VectorField::zeros(displacement.x.len());
+        for b in 0..displacement.x.len() {
+            let [along_x, along_y] = old.drive.direction_at(&old.lattice, b);
+            (drive.x[b], drive.y[b]) = (along_x * path, along_y * path);
+        }
+        let axes = [
+            (&mut displacement.x, &mut velocity.x, &mut drive.x),
+            (&mut displacement.y, &mut velocity.y, &mut drive.y),
+        ];
+        for (displacement, velocity, drive) in axes {
+            for ((u, v), x) in displacement.iter_mut().zip(velocity).zip(drive) {
+                *u = (*u + dt_star * *v - *x) * per_displacement;
+                *v *= per_speed;
+                *x *= unit;
+            }
+        }
+        let state = State {
+            displacement,
+            velocity,
+        };
+        if !state.is_finite() {
+            return Err(ChangeError::NotFinite);
+        }
+        Ok(Leg {
+            running: Self::start_from(case, threads, state),
+            steps,
+            time_s: time_star * before.scales.time(),
+            drive_m: drive,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SMALL: &str = "slider.blocks = [20, 20]\n[[texture]]\nshape = 'cavity'\ncoverage = 10\n";
+
+    fn case_of(overrides: &[&str]) -> Arc<Case> {
+        let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
+        Arc::new(Case::parse(SMALL, "case", &overrides).unwrap())
+    }
+
+    fn started(case: &Arc<Case>, steps: u64) -> Running {
+        let mut running = Running::start_without_end(case, 1);
+        running.advance(steps).unwrap();
+        running
+    }
+
+    /// Displacements since rest, m.
+    fn displacement_m(running: &Running, drive_m: &VectorField) -> Vec<f64> {
+        let (unit, moved) = (
+            running.case().scales.displacement(),
+            running.motion().displacement,
+        );
+        let axes = [(moved.x, &drive_m.x), (moved.y, &drive_m.y)];
+        let metres = axes.into_iter().flat_map(|(u, x)| {
+            u.into_iter()
+                .zip(x)
+                .map(|(u, x)| u * unit + x)
+                .collect::<Vec<_>>()
+        });
+        metres.collect()
+    }
+
+    fn largest(values: &[f64]) -> f64 {
+        values.iter().fold(0.0, |most, value| most.max(value.abs()))
+    }
+
+    /// A leg that begins after `steps` under `after` against a run under `case` alone: mu* where it begins, and 200 steps later
+    /// displacements over the largest.
+    fn differences(case: &Arc<Case>, after: &Arc<Case>, steps: u64) -> [f64; 2] {
+        let (mut plain, before) = (started(case, steps), started(case, steps - 1));
+        let mut leg = before.change(after, 1).unwrap();
+        assert_eq!((leg.steps, leg.running.snapshot().step), (steps, 0));
+        let mu_star = [&plain, &leg.running].map(|running| running.snapshot().point.mu_star);
+        for running in [&mut plain, &mut leg.running] {
+            running.advance(200).unwrap();
+        }
+        let whole = displacement_m(&plain, &VectorField::zeros(400));
+        let in_legs = displacement_m(&leg.running, &leg.drive_m);
+        let apart: Vec<f64> = whole
+            .iter()
+            .zip(&in_legs)
+            .map(|(one, other)| one - other)
+            .collect();
+        [
+            (mu_star[1] / mu_star[0] - 1.0).abs(),
+            largest(&apart) / largest(&whole),
+        ]
+    }
+
+    #[test]
+    fn under_the_same_case_the_trajectory_is_the_same() {
+        let case = case_of(&[]);
+        let [mu_star, displacement] = differences(&case, &case, 700);
+        // Roundings of displacements that count from the drive: some in mu*, one a step in displacements while springs pass them on.
+        assert!(
+            mu_star < 1e-14 && displacement < 1e-13,
+            "{mu_star:e} {displacement:e}"
+        );
+    }
+
+    #[test]
+    fn a_program_goes_on_from_where_the_drive_stands() {
+        let program = "drive.program = [{ v_star = 0.03, until_star = 40 }, { v_star = 0.01 }]";
+        let (case, slow) = (case_of(&[program]), case_of(&["drive.v_star = 0.01"]));
+        let steps = (60.0 / case.time_plan.dt_star).round() as u64;
+        assert_eq!(case.time_plan.dt_star, slow.time_plan.dt_star);
+        let [mu_star, displacement] = differences(&case, &slow, steps);
+        // As under the same case.
+        assert!(
+            mu_star < 1e-14 && displacement < 1e-13,
+            "{mu_star:e} {displacement:e}"
+        );
+    }
+
+    #[test]
+    fn a_rotation_goes_on_from_where_the_drive_stands() {
+        let case = case_of(&["drive.motion = 'rotation'", "load.pressure = '100 Pa'"]);
+        let [mu_star, displacement] = differences(&case, &case, 700);
+        // Counting from the drive turns springs back by eps X/r_max, and with them their forces, here by 1e-9 times 2.1/14.
+        assert!(
+            mu_star < 1e-14 && displacement < 2e-10,
+            "{mu_star:e} {displacement:e}"
+        );
+    }
+
+    #[test]
+    fn under_another_load_metres_are_kept() {
+        let (case, loaded) = (case_of(&[]), case_of(&["load.pressure = '200 kPa'"]));
+        assert_eq!(loaded.scales.pressure, 2.0 * case.scales.pressure);
+        let running = started(&case, 700);
+        let leg = running.change(&loaded, 1).unwrap();
+        let dt = case.time_plan.dt_star * case.scales.time();
+        assert_eq!(leg.time_s, 701.0 * case.time_plan.dt_star * case.scales.time());
+        let speeds = |running: &Running| {
+            let (unit, speed) = (running.case().scales.speed(), running.motion().velocity);
+            [speed.x, speed.y]
+                .concat()
+                .into_iter()
+                .map(|v| v * unit)
+                .collect::<Vec<_>>()
+        };
+        // Velocities that the new leg begins with are changed by its first step, which is computed at once, of blocks that stay stuck or
+        // that friction stops: those of the others by less than an impulse of the threshold, twice the mean load.
+        let (before, after) = (speeds(&running), speeds(&leg.running));
+        let impulse = 4.0 * case.time_plan.dt_star * loaded.scales.speed();
+        assert!(largest(&before) > 0.0);
+        assert!(
+            before
+                .iter()
+                .zip(&after)
+                .all(|(one, other)| (one - other).abs() <= impulse)
+        );
+        let begun = displacement_m(&running, &VectorField::zeros(400));
+        let moved: Vec<f64> = begun.iter().zip(&before).map(|(u, v)| u + dt * v).collect();
+        let kept = displacement_m(&leg.running, &leg.drive_m);
+        let apart: Vec<f64> = moved.iter().zip(&kept).map(|(one, other)| one - other).collect();
+        // Some roundings, of numbers as large as the path of the drive.
+        assert!(
+            largest(&apart) < 1e-14 * largest(&leg.drive_m.x),
+            "{:e}",
+            largest(&apart)
+        );
+        // Half of mu*, which is over the load, but for the move within the step.
+        let mu_star = [&running, &leg.running].map(|running| running.snapshot().point.mu_star);
+        assert!((mu_star[1] / mu_star[0] - 0.5).abs() < 0.01, "{mu_star:?}");
+    }
+
+    #[test]
+    fn what_has_no_meaning_is_refused() {
+        let case = case_of(&[]);
+        let running = started(&case, 10);
+        let refused = |overrides: &[&str]| running.change(&case_of(overrides), 1).err().unwrap().to_string();
+        let said = refused(&["slider.blocks = [21, 20]"]);
+        assert!(said.contains("20 x 20 of 0.000001 m and not 21 x 20"), "{said}");
+        assert!(refused(&["slider.block_size = '2 um'"]).contains("of 0.000002 m"));
+        assert!(refused(&["slider.outline = 'disc'"]).contains("which of them exist"));
+        let ageing = "friction.ageing = { law = 'logarithmic', beta = 0.02, time_star = 1 }";
+        let springs = [
+            "friction.contact = 'springs'",
+            "friction.contact_stiffness_star = 1",
+        ];
+        for law in [&[ageing][..], &springs] {
+            assert!(refused(law).contains("remember more"), "{law:?}");
+            let remembering = started(&case_of(law), 10);
+            assert_eq!(remembering.change(&case, 1).err(), Some(ChangeError::Memory));
+        }
+    }
+
+    /// A block that is farther away than the numbers of a load of a thousandth reach.
+    #[test]
+    fn numbers_beyond_all_bounds_are_refused() {
+        let (case, unloaded) = (case_of(&[]), case_of(&["load.pressure = '100 Pa'"]));
+        let mut state = State::at_rest(400);
+        state.displacement.x[210] = 1e306;
+        let mut running = Running::start_from(&case, 1, state);
+        assert!(running.advance(10).is_err());
+        assert_eq!(running.change(&unloaded, 1).err(), Some(ChangeError::NotFinite));
+    }
+}
