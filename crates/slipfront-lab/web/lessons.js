@@ -63,6 +63,8 @@ function show(place) {
   find('lesson-step').textContent = say('lesson_step', { step: place.step + 1, of: lesson.steps.length, title: told(text.title) });
   find('lesson-text').replaceChildren(...text.text.map(paragraph));
   find('lesson-buttons').replaceChildren(...buttons(step, text.set ?? {}));
+  find('lesson-answer').open = false;
+  find('lesson-answer-text').replaceChildren(...text.answer.map(paragraph));
   find('lesson-previous').disabled = place.step === 0;
   find('lesson-next').textContent = say(place.step + 1 < lesson.steps.length ? 'lesson_next' : 'lesson_end');
   find('lesson').scrollTop = 0;
