@@ -259,7 +259,8 @@ impl Document {
 
     fn made(&self, overrides: &[&str]) -> Result<Case, CaseError> {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
-        let file = CaseFile::parse(&self.toml(), &self.name, &overrides)?;
+        let mut file = CaseFile::parse(&self.toml(), &self.name, &overrides)?;
+        self.refuse_other_files(&mut file)?;
         let [nx, ny] = file.slider.blocks.map(|count| count as usize);
         if nx.saturating_mul(ny) > MAX_BLOCKS {
             let sentence = format!(
@@ -267,8 +268,31 @@ impl Document {
             );
             return Err(file.source.error("slider.blocks", sentence));
         }
-        // What a text names beside its own files does not exist.
         Case::to_run(file, &self.name, self.files.folder.path(), &mut |_| true)
+    }
+}
+
+impl Document {
+    /// Refuses a case that names a file which does not belong to it, wherever that may be: keys may come from anybody's link.
+    fn refuse_other_files(&self, case: &mut CaseFile) -> Result<(), CaseError> {
+        let source = &case.source;
+        let named = CaseFile::files_mut(
+            &mut case.slider,
+            &mut case.load,
+            &mut case.drive,
+            &mut case.friction,
+            &mut case.texture,
+        );
+        for file in named {
+            if !self.files.contents.contains_key(file.name.as_str()) {
+                let sentence = format!(
+                    "{} cannot be read: it is not one of the files of the case",
+                    file.name
+                );
+                return Err(source.error(&file.key, sentence));
+            }
+        }
+        Ok(())
     }
 }
 

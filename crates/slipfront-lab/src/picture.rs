@@ -35,6 +35,7 @@ pub(crate) struct Painter {
     number: u32,
     values: Vec<f32>,
     other: Vec<f32>,
+    times: Vec<f64>,
     /// The largest value of the scale of a field.
     high: Option<(Shown, f32)>,
 }
@@ -76,7 +77,13 @@ impl Painter {
             Shown::ContactStress => read_scaled(now, Field::ContactStress, stress, values),
             Shown::Traction => read_scaled(now, Field::Traction, stress, values),
             Shown::Sliding => now.read_field(Field::Sliding, values),
-            Shown::FirstSlip => now.read_first_slip_time_star(values),
+            Shown::FirstSlip => {
+                self.times.resize(n_blocks, 0.0);
+                now.read_first_slips(&mut self.times);
+                for (value, time) in values.iter_mut().zip(&self.times) {
+                    *value = *time as f32;
+                }
+            }
             Shown::Displacement => {
                 let unit = scales.displacement() as f32;
                 read_scaled(now, Field::DisplacementX, unit, values);

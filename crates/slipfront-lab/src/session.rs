@@ -125,8 +125,9 @@ struct Clock {
     numbers: Instant,
     probe: Instant,
     kymograph: Instant,
-    /// Steps that are due, as a number with its fraction.
+    /// Steps that are due, as a number with its fraction, and when this was found out.
     due: f64,
+    asked: Instant,
     counted_from: Instant,
     counted_steps: u64,
     steps_per_second: f64,
@@ -143,11 +144,19 @@ impl Clock {
             probe: long_ago,
             kymograph: long_ago,
             due: 0.0,
+            asked: now,
             counted_from: now,
             counted_steps: 0,
             steps_per_second: 0.0,
             seconds_per_step: 1e-4,
         }
+    }
+
+    /// Seconds since this was asked last, a quarter of one at most: a page that was hidden is not made up for.
+    fn since_asked(&mut self) -> f64 {
+        let since = self.asked.elapsed().as_secs_f64();
+        self.asked = Instant::now();
+        since.min(0.25)
     }
 
     /// Counts steps that took some time.
@@ -256,7 +265,7 @@ impl Session {
 
     fn time_to_wait(&self) -> Duration {
         let next = self.clock.picture + Duration::from_secs_f64(1.0 / self.view.frames_per_second);
-        match self.news.redraw {
+        match self.news.redraw || self.clock.due >= 1.0 {
             true => Duration::ZERO,
             false => next.saturating_duration_since(Instant::now()),
         }
@@ -295,7 +304,7 @@ impl Session {
                 self.view.change(&change)?;
                 self.news.redraw = true;
                 self.clock.due = 0.0;
-                if had_twin != self.view.twin {
+                if had_twin != self.view.twin && self.history.is_some() {
                     self.begin_twin(true)?;
                 }
                 Ok(())
@@ -713,26 +722,19 @@ impl Session {
             self.news.redraw = true;
             return Ok(());
         }
-        // What was not taken in time is left out: the run is slower than asked for then.
-        let since = self
-            .clock
-            .picture
-            .elapsed()
-            .as_secs_f64()
-            .max(1.0 / self.view.frames_per_second);
-        let asked = match self.view.pace {
+        self.clock.due = match self.view.pace {
             0.0 => f64::INFINITY,
-            pace => pace / dt_star * since,
+            // What cannot be taken until the next picture is left out: the run is slower than asked for then.
+            pace => (self.clock.due + pace / dt_star * self.clock.since_asked()).min(pace / dt_star),
         };
-        let mut due = self.clock.due.fract() + asked;
         loop {
             let before = live.step();
             let began = Instant::now();
-            let steps = self.clock.piece().min(due as u64);
+            let steps = self.clock.piece().min(self.clock.due as u64);
             live.advance(steps)?;
             let taken = live.step() - before;
             self.clock.count(taken, began.elapsed());
-            due -= taken as f64;
+            self.clock.due -= taken as f64;
             let twin = self.twin.as_mut().filter(|twin| twin.live.ended.is_none());
             let twin_left = match twin {
                 Some(twin) if twin.live.time_star() < live.time_star() || live.ended.is_some() => {
@@ -741,12 +743,14 @@ impl Session {
                 }
                 _ => false,
             };
-            let left = (live.ended.is_none() && due >= 1.0) || twin_left;
-            if !left || Instant::now() >= next {
+            let is_left = live.ended.is_none() && self.clock.due >= 1.0;
+            if !(is_left || twin_left) || Instant::now() >= next {
                 break;
             }
         }
-        self.clock.due = due.min(1.0);
+        if live.ended.is_some() {
+            self.clock.due = 0.0;
+        }
         Ok(())
     }
 
@@ -854,8 +858,8 @@ impl Session {
             peak,
             twin_peak,
             change_percent,
-            kinetic: live.running().kinetic_friction_star(),
-            instants: live.running().instants().into_iter().collect(),
+            kinetic: live.running().kinetic().map(|kinetic| kinetic.mu_star),
+            instants: live.running().instants().collect(),
             steps_per_second: self.clock.rate(),
             ended: live.ended.is_some(),
             summary,
@@ -879,7 +883,7 @@ impl Session {
         let [from_x, from_y] = live.origin().map_or([0.0; 2], |origin| origin[b].map(f64::from));
         let unit = case.scales.displacement();
         let [x, y] = block.displacement.map(|u| u * unit);
-        let first_slip = live.running().first_slip_time_star(b);
+        let first_slip = now.first_slip_time_star()[b];
         self.outbox.reply(&Reply::Probe(ProbeReply {
             block: [i, j],
             exists: case.model.slider().exists(b),

@@ -6,7 +6,9 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use slipfront::communicator::{Alone, Communicator};
 use slipfront::observe::frames::{Selection, kept};
-use slipfront::observe::{CurveRow, Frame, Frames, Instants, Kymograph, Precursors, Schedule, Scheduled};
+use slipfront::observe::{
+    CurveRow, Frame, Frames, Instants, Kinetic, Kymograph, Precursors, Schedule, Scheduled,
+};
 use slipfront::{Checkpoint, Execution, Kernel, RunError, Simulation, Snapshot, State, Stop, StopReason};
 
 use crate::columns::Columns;
@@ -364,6 +366,25 @@ impl Running {
         &self.observers.summary.curve.rows
     }
 
+    /// What slides against place along the drive and time, up to now.
+    pub fn kymograph(&self) -> &Kymograph {
+        &self.observers.kymograph
+    }
+
+    /// The instants A-F that are known by now and t* of each, as [`Instants::by_now`]; none of a run that keeps snapshots at times
+    /// alone.
+    pub fn instants(&self) -> impl Iterator<Item = (char, f64)> {
+        let instants = self.observers.fields.instants.iter();
+        instants.flat_map(|instants| instants.by_now())
+    }
+
+    /// Friction in the kinetic window up to now; none before it begins or if nothing has slipped. All ranks must call this together.
+    pub fn kinetic(&self) -> Option<Kinetic> {
+        let now = self.snapshot();
+        now.earliest_first_slip()?;
+        self.observers.summary.kinetic(&self.case, &now.peak)
+    }
+
     /// Most threads on which it is computed.
     pub fn threads(&self) -> usize {
         self.threads
@@ -372,27 +393,6 @@ impl Running {
     /// The largest contact stress so far, in units of `P mu_s`.
     pub fn contact_stress_max(&self) -> f64 {
         self.simulation.contact_stress_max()
-    }
-
-    /// Looked at while the run goes on.
-    pub fn first_slip_time_star(&self, b: usize) -> f64 {
-        self.simulation.snapshot().first_slip_time_star()[b]
-    }
-    /// Looked at while the run goes on.
-    pub fn kymograph(&self) -> &Kymograph {
-        &self.observers.kymograph
-    }
-    /// Looked at while the run goes on.
-    pub fn instants(&self) -> Vec<(char, f64)> {
-        Vec::new()
-    }
-    /// Looked at while the run goes on.
-    pub fn kinetic_friction_star(&self) -> Option<f64> {
-        None
-    }
-    /// Looked at while the run goes on.
-    pub fn summary(&self, _reason: StopReason) -> Summary {
-        Summary::default()
     }
 
     /// Displacements now, velocities half a step later.
@@ -452,6 +452,19 @@ impl Running {
         Ok(())
     }
 
+    /// The numbers of a run that has ended, which stays to be looked at. All ranks must call this together.
+    pub fn summary(&self, reason: StopReason) -> Summary {
+        let instants = self.observers.fields.instants.as_deref().cloned();
+        let instants = instants.map_or(Vec::new(), Instants::found);
+        let mut numbers = self
+            .observers
+            .summary
+            .end(&self.case, &self.simulation, reason, &instants);
+        let first_slips = self.snapshot().first_slip_time_star();
+        add_front(&mut numbers, &self.case, &first_slips, &*self.communicator);
+        numbers
+    }
+
     /// What the run leaves behind, once it has ended. All ranks must call this together.
     pub fn record(self, reason: StopReason) -> Record {
         let (case, simulation) = (self.case, self.simulation);
@@ -465,11 +478,7 @@ impl Running {
         let mut numbers = summary.end(&case, &simulation, reason, &instants);
         let contact_stress_max = simulation.contact_stress_max();
         let first_slip_time_star = simulation.into_first_slip_time_star();
-        if numbers.transition
-            && let Some(front) = front::of_ranks(&case, &first_slip_time_star, &*self.communicator)
-        {
-            numbers.add_front(&front, &case.scales);
-        }
+        add_front(&mut numbers, &case, &first_slip_time_star, &*self.communicator);
         Record {
             summary: numbers,
             rows: summary.curve.rows,
@@ -479,6 +488,15 @@ impl Running {
             contact_stress_max,
             first_slip_time_star,
         }
+    }
+}
+
+/// Adds what the first slips of all blocks tell of the front, if there was one.
+fn add_front(numbers: &mut Summary, case: &Case, first_slips: &[f64], communicator: &dyn Communicator) {
+    if numbers.transition
+        && let Some(front) = front::of_ranks(case, first_slips, communicator)
+    {
+        numbers.add_front(&front, &case.scales);
     }
 }
 
@@ -518,6 +536,37 @@ fn lettered(instants: Vec<(char, Frame)>, frames: Vec<Frame>) -> Vec<(String, Fr
 mod tests {
     use super::*;
     use slipfront::observe::Field;
+
+    /// What is known on the way becomes what the run leaves.
+    #[test]
+    fn a_run_can_be_looked_at_on_its_way() {
+        let text = "slider.blocks = [20, 20]\n[[texture]]\nshape = 'cavity'\ncoverage = 10\n";
+        let case = Arc::new(Case::parse(text, "case", &[]).unwrap());
+        let mut running = Running::start(&case, 1);
+        let letters = |running: &Running| running.instants().map(|(letter, _)| letter).collect::<String>();
+        // Of a texture, blocks in contact do not slip before t* = 30.
+        running.advance((30.0 / case.time_plan.dt_star) as u64).unwrap();
+        assert_eq!((letters(&running), running.kinetic()), ("A".to_owned(), None));
+        assert!(!running.snapshot().peak.ended);
+        while !running.snapshot().peak.ended {
+            assert_eq!(running.advance(1).unwrap(), None);
+        }
+        let peak = running.snapshot().peak;
+        assert!(running.instants().any(|found| found == ('C', peak.time_star)));
+        assert_eq!((letters(&running), running.kinetic()), ("ABC".to_owned(), None));
+        let reason = running.advance(u64::MAX).unwrap().unwrap();
+        let instants: Vec<_> = running.instants().collect();
+        let (kinetic, kymograph) = (running.kinetic().unwrap(), running.kymograph().clone());
+        let record = running.record(reason);
+        let summary = &record.summary;
+        let found = summary.instants.iter();
+        let found: Vec<_> = found.map(|found| (found.instant, found.time_star)).collect();
+        assert_eq!((instants.len(), instants), (6, found));
+        assert_eq!(summary.onset_time_star, peak.time_star);
+        assert_eq!(summary.kinetic_friction_star, Some(kinetic.mu_star));
+        assert_eq!(summary.kinetic_window_star, Some(kinetic.window_star));
+        assert_eq!(record.kymograph, kymograph);
+    }
 
     #[test]
     fn a_run_without_an_end_goes_on_and_shows_its_fields_in_si_units() {

@@ -353,6 +353,13 @@ impl SummaryObservers {
         Some(peaks.collect())
     }
 
+    /// Friction in the kinetic window as it follows from a peak, up to now.
+    pub(crate) fn kinetic(&self, case: &Case, peak: &Peak) -> Option<Kinetic> {
+        let plan = &case.time_plan;
+        let from = plan.kinetic.time_star(peak, case.model.loading_speed());
+        self.history.kinetic(from, plan.dt_star)
+    }
+
     /// The numbers of a run that has ended, with the instants A-F that it had.
     pub(crate) fn end(
         &self,
@@ -362,15 +369,10 @@ impl SummaryObservers {
         instants: &[(char, Frame)],
     ) -> Summary {
         let (peak, first_slip) = (simulation.peak(), simulation.snapshot().earliest_first_slip());
-        let kinetic_from = case
-            .time_plan
-            .kinetic
-            .time_star(&peak, case.model.loading_speed());
         // A run that stops at its onset has no kinetic phase, wherever the window was meant to begin, and neither has one
         // in which nothing slipped.
         let kinetic = match reason {
-            StopReason::End if first_slip.is_none() => None,
-            StopReason::End => self.history.kinetic(kinetic_from, case.time_plan.dt_star),
+            StopReason::End => first_slip.and_then(|_| self.kinetic(case, &peak)),
             StopReason::Onset => None,
         };
         let last = self.curve.rows.last();

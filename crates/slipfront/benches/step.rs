@@ -58,10 +58,13 @@ fn step(criterion: &mut Criterion, group: &str, kernel: Kernel) {
 }
 
 fn read_field(criterion: &mut Criterion) {
-    let n = 256;
     let mut group = criterion.benchmark_group("read_field");
-    group.throughput(Throughput::Elements((n * n) as u64));
-    for kernel in [Kernel::Fused, Kernel::Reference] {
+    for (n, kernel) in [
+        (256, Kernel::Fused),
+        (512, Kernel::Fused),
+        (256, Kernel::Reference),
+    ] {
+        group.throughput(Throughput::Elements((n * n) as u64));
         let simulation = sliding(n, kernel);
         let mut values = vec![0.0; n * n];
         for field in [
@@ -71,11 +74,16 @@ fn read_field(criterion: &mut Criterion) {
             Field::VelocityX,
             Field::Sliding,
         ] {
-            let name = format!("{} {field:?}", kernel.name());
+            let name = format!("{} {n}x{n} {field:?}", kernel.name());
             group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
                 bencher.iter(|| simulation.snapshot().read_field(field, &mut values));
             });
         }
+        let mut times = vec![0.0; n * n];
+        let name = format!("{} {n}x{n} first slips", kernel.name());
+        group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
+            bencher.iter(|| simulation.snapshot().read_first_slips(&mut times));
+        });
     }
     group.finish();
 }

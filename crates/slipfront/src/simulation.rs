@@ -155,15 +155,13 @@ impl Simulation {
     ) -> Result<(), E> {
         let engine = &*self.engine;
         BlockColumn::for_each_part(self.model.surface.n_blocks(), |column, first, values| {
-            let value = |b: usize| match column {
-                BlockColumn::DisplacementX => engine.motion(b)[0][0],
-                BlockColumn::DisplacementY => engine.motion(b)[0][1],
-                BlockColumn::VelocityX => engine.checkpoint_velocity(b)[0],
-                BlockColumn::VelocityY => engine.checkpoint_velocity(b)[1],
-                BlockColumn::FirstSlip => engine.first_slip(b),
-            };
-            for (b, to) in (first..).zip(&mut *values) {
-                *to = value(b);
+            let blocks = (first..).zip(&mut *values);
+            match column {
+                BlockColumn::DisplacementX => blocks.for_each(|(b, to)| *to = engine.motion(b)[0][0]),
+                BlockColumn::DisplacementY => blocks.for_each(|(b, to)| *to = engine.motion(b)[0][1]),
+                BlockColumn::VelocityX => blocks.for_each(|(b, to)| *to = engine.checkpoint_velocity(b)[0]),
+                BlockColumn::VelocityY => blocks.for_each(|(b, to)| *to = engine.checkpoint_velocity(b)[1]),
+                BlockColumn::FirstSlip => engine.read_first_slips(first, values),
             }
             write(column as usize, first, values)
         })?;

@@ -103,26 +103,34 @@ impl Snapshot<'_> {
             .expect("an observer needs the energies of this step")
     }
 
-    fn first_slips(&self) -> impl Iterator<Item = f64> {
-        (0..self.model.surface.n_blocks()).map(|b| self.engine.first_slip(b))
-    }
-
     /// When each block of this rank first slid while in contact, t*; NaN where none has.
     pub fn first_slip_time_star(&self) -> Vec<f64> {
-        self.first_slips().collect()
+        let mut times = vec![0.0; self.model.surface.n_blocks()];
+        self.read_first_slips(&mut times);
+        times
     }
 
-    /// Looked at while the run goes on.
-    pub fn read_first_slip_time_star(&self, values: &mut [f32]) {
-        for (b, value) in values.iter_mut().enumerate() {
-            *value = self.engine.first_slip(b) as f32;
-        }
+    /// Writes the same into `values`.
+    ///
+    /// # Panics
+    /// If there is not one value per block.
+    pub fn read_first_slips(&self, values: &mut [f64]) {
+        assert_eq!(values.len(), self.model.surface.n_blocks(), "one value per block");
+        self.engine.read_first_slips(0, values);
     }
 
     /// When the first block of all ranks slid while in contact, t*. All ranks must call this together.
     pub fn earliest_first_slip(&self) -> Option<f64> {
-        let earliest = self.first_slips().filter(|time| !time.is_nan()).reduce(f64::min);
-        let mut latest_negative = [earliest.map_or(f64::NEG_INFINITY, |time| -time)];
+        const PART: usize = 1 << 10;
+        let (n, mut times) = (self.model.surface.n_blocks(), [0.0; PART]);
+        let mut earliest = f64::INFINITY;
+        for first in (0..n).step_by(PART) {
+            let times = &mut times[..PART.min(n - first)];
+            self.engine.read_first_slips(first, times);
+            // The lesser of a number and NaN is the number.
+            earliest = times.iter().copied().fold(earliest, f64::min);
+        }
+        let mut latest_negative = [-earliest];
         self.communicator.largest(&mut latest_negative);
         latest_negative[0].is_finite().then_some(-latest_negative[0])
     }

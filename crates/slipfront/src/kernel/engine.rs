@@ -31,10 +31,10 @@ pub(crate) trait Engine: Send + Sync {
     /// Displacement now and velocity half a step later of block `b`.
     fn motion(&self, b: usize) -> [[f64; 2]; 2];
 
-    /// When block `b` first slid while in contact; NaN if it never has.
-    fn first_slip(&self, b: usize) -> f64;
+    /// When the blocks from `first` on first slid while in contact; NaN of those that never have.
+    fn read_first_slips(&self, first: usize, values: &mut [f64]);
 
-    /// [`first_slip`](Self::first_slip) of every block; memory for the state is given back before any is taken for them.
+    /// The same of every block; memory for the state is given back before any is taken for them.
     fn into_first_slips(self: Box<Self>) -> Vec<f64>;
 
     /// Largest square of a contact stress of a block in contact at any step so far.

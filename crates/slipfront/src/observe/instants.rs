@@ -71,22 +71,43 @@ impl Instants {
     /// The instants that the run had, in the order of their letters. Without a transition there is no D and E, nor
     /// when the run ends before the times among which they are chosen.
     pub fn found(mut self) -> Vec<(char, Frame)> {
+        let shown = self.shown();
+        // From the last on: a frame is taken by the first of those that it shows, after the others have copied it.
+        let mut found: Vec<(char, Frame)> = (A..=F)
+            .rev()
+            .filter_map(|instant| {
+                let kept = &mut self.frames[shown[instant]?];
+                let frame = if shown[instant] == Some(instant) {
+                    kept.take()
+                } else {
+                    kept.clone()
+                };
+                Some((LETTERS[instant], frame?))
+            })
+            .collect();
+        found.reverse();
+        found
+    }
+
+    /// The instants that the run would have had if it ended now, and t* of each. C is a candidate until mu* has fallen far enough, and
+    /// so is F until then.
+    pub fn by_now(&self) -> impl Iterator<Item = (char, f64)> {
+        let shown = LETTERS.into_iter().zip(self.shown());
+        shown.filter_map(|(letter, frame)| Some((letter, self.frames[frame?].as_ref()?.time_star)))
+    }
+
+    /// Which of the frames shows each instant that there is.
+    fn shown(&self) -> [Option<usize>; 6] {
+        let mut shown = std::array::from_fn(|instant| self.valid[instant].then_some(instant));
         for (instant, known) in [(D, self.known[0]), (E, self.known[1])] {
             if !(self.ended && known) {
-                self.valid[instant] = false;
-            } else if !self.valid[instant] {
+                shown[instant] = None;
+            } else if shown[instant].is_none() {
                 // An instant that coincides with the one before it has no frame of its own.
-                self.frames[instant] = self.frames[instant - 1].clone();
-                self.valid[instant] = self.valid[instant - 1];
+                shown[instant] = shown[instant - 1];
             }
         }
-        let valid = self.valid;
-        LETTERS
-            .into_iter()
-            .zip(self.frames)
-            .zip(valid)
-            .filter_map(|((letter, frame), valid)| Some((letter, frame.filter(|_| valid)?)))
-            .collect()
+        shown
     }
 
     fn keep(&mut self, instant: usize, now: &Snapshot) {

@@ -250,16 +250,8 @@ impl Band {
         first: usize,
         values: &[f64],
     ) {
-        let last = first + values.len() - 1;
-        let from = layout.element_of(first).max(self.first);
-        let to = (layout.element_of(last) + 1).min(self.first + self.len);
-        for (_, _, part) in layout.rows_among(from..to) {
-            let element = from + part.start;
-            let Some(b) = layout.block(element) else {
-                continue;
-            };
-            let values = &values[b - first..][..part.len()];
-            let own = element - self.first..element - self.first + part.len();
+        for [of_values, own] in self.common(layout, first, values.len()) {
+            let values = &values[of_values];
             let with_halo = self.halo + own.start..self.halo + own.end;
             match column {
                 BlockColumn::DisplacementX => self.displacement.x[with_halo].copy_from_slice(values),
@@ -274,6 +266,37 @@ impl Band {
                 }
             }
         }
+    }
+
+    /// When those blocks from `first` on that are its own first slid in contact, t*; NaN of those that never have.
+    pub(super) fn read_first_slips(&self, layout: &Layout, dt_star: f64, first: usize, values: &mut [f64]) {
+        for [of_values, own] in self.common(layout, first, values.len()) {
+            for (time_star, &step) in values[of_values].iter_mut().zip(&self.first_slip[own]) {
+                *time_star = if step == NEVER {
+                    f64::NAN
+                } else {
+                    f64::from(step) * dt_star
+                };
+            }
+        }
+    }
+
+    /// Which of `count` blocks from `first` on are its own, and which of its elements they are, row after row.
+    fn common(
+        &self,
+        layout: &Layout,
+        first: usize,
+        count: usize,
+    ) -> impl Iterator<Item = [Range<usize>; 2]> + use<> {
+        let (layout, begin) = (*layout, self.first);
+        let from = layout.element_of(first).max(begin);
+        let to = (layout.element_of(first + count - 1) + 1).min(begin + self.len);
+        layout.rows_among(from..to).filter_map(move |(_, _, part)| {
+            let element = from + part.start;
+            let b = layout.block(element)? - first;
+            let own = element - begin;
+            Some([b..b + part.len(), own..own + part.len()])
+        })
     }
 
     /// Continues from a checkpoint of which all columns are set, as if every tile had just been swept: the largest contact

@@ -537,11 +537,9 @@ impl Engine for Fused {
         [band.displacement.at(band.halo + k), band.velocity.at(k)]
     }
 
-    fn first_slip(&self, b: usize) -> f64 {
-        let (band, k) = self.locate(self.layout.element_of(b));
-        match self.bands[band].first_slip[k] {
-            NEVER => f64::NAN,
-            step => f64::from(step) * self.dt_star,
+    fn read_first_slips(&self, first: usize, values: &mut [f64]) {
+        for band in &self.bands {
+            band.read_first_slips(&self.layout, self.dt_star, first, values);
         }
     }
 
@@ -549,9 +547,9 @@ impl Engine for Fused {
         for band in &mut self.bands {
             (band.displacement, band.velocity) = (Vectors::default(), Vectors::default());
         }
-        (0..self.layout.n_own_blocks())
-            .map(|b| self.first_slip(b))
-            .collect()
+        let mut first_slips = vec![0.0; self.layout.n_own_blocks()];
+        self.read_first_slips(0, &mut first_slips);
+        first_slips
     }
 
     fn stress_square_max(&self, model: &Model, number: u64) -> f64 {

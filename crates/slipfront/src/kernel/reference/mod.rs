@@ -374,9 +374,12 @@ impl Engine for Reference {
         [state.displacement.at(b), state.velocity.at(b)]
     }
 
-    fn first_slip(&self, b: usize) -> f64 {
-        let (band, b) = self.locate(b);
-        band.first_slip[b]
+    fn read_first_slips(&self, first: usize, values: &mut [f64]) {
+        for one in &self.bands {
+            if let Some([own, of_values]) = one.common(first, values.len()) {
+                values[of_values].copy_from_slice(&one.band.first_slip[own]);
+            }
+        }
     }
 
     fn into_first_slips(self: Box<Self>) -> Vec<f64> {

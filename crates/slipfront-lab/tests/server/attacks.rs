@@ -1,0 +1,323 @@
+//! What is refused.
+
+use std::io::Write;
+use std::time::{Duration, Instant};
+
+use serde_json::json;
+use tungstenite::Message;
+
+use crate::laboratory::Served;
+use crate::page::{Page, try_connect};
+
+const SMALL: &str = "slider.blocks = [8, 8]\n";
+
+#[test]
+fn pages_of_other_sites_are_refused() {
+    let lab = Served::new();
+    let host = lab.host();
+    for origin in [
+        "http://evil.example",
+        "null",
+        "https://127.0.0.1",
+        "http://127.0.0.1:1",
+        "file://",
+    ] {
+        let line = format!("Origin: {origin}\r\n");
+        assert_eq!(lab.status("/", &host, &line), 403, "{origin}");
+        let refused = try_connect(&lab, &lab.token, &[("origin", origin)]).err();
+        assert_eq!(refused, Some(403), "{origin}");
+    }
+    let own = format!("http://{host}");
+    assert!(try_connect(&lab, &lab.token, &[("origin", &own)]).is_ok());
+}
+
+/// A name of somebody else's that was made to stand for 127.0.0.1.
+#[test]
+fn other_names_of_this_machine_are_refused() {
+    let lab = Served::new();
+    let port = lab.port;
+    for host in [
+        "evil.example",
+        &format!("evil.example:{port}"),
+        "127.0.0.1",
+        "127.0.0.1:1",
+        "",
+        &format!("127.0.0.1.evil:{port}"),
+    ] {
+        assert_eq!(lab.status("/", host, ""), 421, "{host:?}");
+    }
+    assert_eq!(
+        try_connect(&lab, &lab.token, &[("host", "evil.example")]).err(),
+        Some(421)
+    );
+    let own = lab.host();
+    assert_eq!(lab.status("/", &own, "Host: evil.example\r\n"), 421);
+    assert_eq!(lab.status("http://evil.example/", &own, ""), 421);
+    assert_eq!(lab.status("/", &format!("localhost:{port}"), ""), 200);
+}
+
+#[test]
+fn without_the_token_there_is_no_session() {
+    let lab = Served::new();
+    let most = &lab.token[1..];
+    for token in [
+        "",
+        "0123456789abcdef",
+        most,
+        &format!("{}0", lab.token),
+        &lab.token.to_uppercase(),
+    ] {
+        // A token of digits alone has no upper case.
+        if *token == lab.token {
+            continue;
+        }
+        assert_eq!(try_connect(&lab, token, &[]).err(), Some(401), "{token:?}");
+    }
+    let protocol = [("sec-websocket-protocol", "slipfront.lab.v1")];
+    assert_eq!(try_connect(&lab, "", &protocol).err(), Some(401));
+    // It is not in what anybody can fetch.
+    let page = lab.answer(&format!(
+        "GET / HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n",
+        lab.host()
+    ));
+    assert!(page.contains("200 OK") && !page.contains(&lab.token));
+    assert_eq!(lab.token.len(), 32);
+    assert_ne!(lab.token, Served::new().token);
+}
+
+#[test]
+fn answers_forbid_what_the_page_does_not_need() {
+    let lab = Served::new();
+    let host = lab.host();
+    for (path, status) in [("/", "200 OK"), ("/nothing.js", "404 Not Found")] {
+        let answer = lab.answer(&format!(
+            "GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n"
+        ));
+        assert!(answer.contains(status), "{answer}");
+        for line in [
+            "content-security-policy: default-src 'none'; script-src 'self'; style-src 'self';",
+            "frame-ancestors 'none'",
+            "x-content-type-options: nosniff",
+            "referrer-policy: no-referrer",
+            "cross-origin-resource-policy: same-origin",
+        ] {
+            assert!(answer.contains(line), "{line} in {answer}");
+        }
+    }
+}
+
+#[test]
+fn files_of_the_machine_are_not_served() {
+    let lab = Served::new();
+    let host = lab.host();
+    for path in [
+        "/../../../../etc/passwd",
+        "/..%2f..%2f..%2fetc/passwd",
+        "/%2e%2e/Cargo.toml",
+        "//etc/passwd",
+        "/../Cargo.toml",
+        "/web/../../Cargo.toml",
+        "/\\..\\Cargo.toml",
+        "/cases/circle.toml",
+    ] {
+        assert_eq!(lab.status(path, &host, ""), 404, "{path}");
+    }
+}
+
+#[test]
+fn paths_out_of_the_folder_are_refused() {
+    let lab = Served::new();
+    let mut page = Page::with_case(&lab, SMALL);
+    page.reply("case");
+    std::fs::create_dir_all(lab.results()).unwrap();
+    for name in [
+        "../stolen",
+        "/tmp/stolen",
+        "a/b",
+        "a\\b",
+        "..",
+        ".",
+        ".hidden",
+        "",
+        "con:",
+        &"x".repeat(101),
+        "a\0b",
+    ] {
+        let said = page.refusal(&json!({ "do": "save", "name": name }));
+        assert!(said.contains("is no name for a folder"), "{said}");
+        let said = page.refusal(&json!({ "do": "open", "source": { "folder": name } }));
+        assert!(said.contains("is no run of the folder of results"), "{said}");
+    }
+    // A case that was sent by somebody has the files that were sent with it, and no others.
+    let secret = lab.results().join("secret.csv");
+    std::fs::write(&secret, "1,1\n1,1\n").unwrap();
+    let secret = secret.to_str().unwrap();
+    for name in [
+        secret,
+        "../secret.csv",
+        "secret.csv",
+        "/etc/passwd",
+        "..\\secret.csv",
+    ] {
+        for key in ["friction.mu_static_field", "load.pressure_field"] {
+            let toml = format!("slider.blocks = [2, 2]\n{key} = '{name}'\n");
+            let said = page.refusal(&json!({ "do": "open", "source": { "toml": toml } }));
+            assert!(said.contains("cannot be read"), "{said}");
+            page.send(&json!({ "do": "set", "keys": { key: name, "slider.blocks": [2, 2] }, "gesture": 1 }));
+            page.reply("refused");
+        }
+    }
+    let said = page.refusal(&json!({ "do": "open", "source": { "preset": "../Cargo" } }));
+    assert!(said.contains("there is no case"), "{said}");
+}
+
+#[test]
+fn what_is_no_request_ends_the_connection_with_a_reason() {
+    let lab = Served::new();
+    let nested = format!(
+        "{{\"do\":\"set\",\"gesture\":1,\"keys\":{{\"a\":{}1",
+        "[".repeat(5000)
+    );
+    for text in [
+        "",
+        "{}",
+        "[]",
+        "null",
+        "{\"do\":\"explode\"}",
+        "{\"do\":\"step\",\"count\":-1}",
+        &nested,
+        "{\"do\":\"view\",\"colour\":\"red\"}",
+        "{\"do\":\"paint\",\"points\":[[1]],\"radius\":1,\"textured\":true,\"gesture\":1}",
+    ] {
+        let mut page = Page::open(&lab);
+        page.socket.send(Message::text(text)).unwrap();
+        let (code, reason) = page.end().unwrap();
+        assert_eq!(code, 1008, "{text}");
+        assert!(reason.starts_with("not a request"), "{reason}");
+    }
+    let mut page = Page::open(&lab);
+    page.socket.send(Message::binary(vec![1, 2, 3])).unwrap();
+    assert_eq!(page.end(), Some((1008, "requests are texts".to_owned())));
+}
+
+#[test]
+fn huge_and_torn_messages_end_the_connection_alone() {
+    let lab = Served::new();
+    let mut watching = Page::with_case(&lab, SMALL);
+    watching.reply("case");
+    // One byte more than there may be.
+    let mut page = Page::open(&lab);
+    let _ = page.socket.send(Message::text("x".repeat((8 << 20) + 1)));
+    page.end();
+    // Frames are written by hand: a text of 2^40 bytes; pieces of a text that has no end; bytes that are no UTF-8; half a frame.
+    let endless: Vec<u8> = [0x01, 0xfe, 0xff, 0xff, 0, 0, 0, 0]
+        .into_iter()
+        .chain([b' '; 65535])
+        .collect();
+    let parts: Vec<u8> = [0x00, 0xfe, 0xff, 0xff, 0, 0, 0, 0]
+        .into_iter()
+        .chain([b' '; 65535])
+        .collect();
+    let attacks = [
+        vec![0x81, 0xff, 0, 0, 1, 0, 0, 0, 0, 0, 1, 2, 3, 4],
+        endless.into_iter().chain(parts.repeat(200)).collect(),
+        vec![0x81, 0x82, 0, 0, 0, 0, 0xff, 0xfe],
+        vec![0x81, 0xfe, 0x10],
+        vec![0xf7, 0x80, 0, 0, 0, 0],
+    ];
+    for attack in attacks {
+        let mut page = Page::open(&lab);
+        let stream = page.socket.get_mut();
+        let _ = stream.write_all(&attack);
+        let _ = stream.shutdown(std::net::Shutdown::Write);
+        page.end();
+    }
+    // Everybody else is served as before.
+    watching.send(&json!({ "do": "view", "paused": true }));
+    watching.reply("numbers");
+    Page::with_case(&lab, SMALL).reply("case");
+}
+
+#[test]
+fn a_fifth_page_is_refused_until_one_is_closed() {
+    let lab = Served::new();
+    let mut pages: Vec<Page> = (0..4).map(|_| Page::open(&lab)).collect();
+    assert_eq!(try_connect(&lab, &lab.token, &[]).err(), Some(503));
+    for page in &mut pages {
+        page.reply("hello");
+    }
+    pages.pop();
+    let began = Instant::now();
+    while try_connect(&lab, &lab.token, &[]).is_err() {
+        assert!(
+            began.elapsed() < Duration::from_secs(10),
+            "its place was not given free"
+        );
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+#[test]
+fn cases_beyond_what_is_shown_are_refused() {
+    let lab = Served::new();
+    let mut page = Page::open(&lab);
+    let said = page.refusal(&json!({ "do": "open", "source": { "toml": "slider.blocks = [2000, 2000]" } }));
+    assert!(
+        said.contains("2000 x 2000 blocks are more than the 524288") && said.contains("slipfront run"),
+        "{said}"
+    );
+    page.send(&json!({ "do": "open", "source": { "toml": SMALL } }));
+    page.reply("case");
+    let said = page.refusal(&json!({ "do": "set", "keys": { "drive.v_star": -1 }, "gesture": 1 }));
+    assert!(said.contains("v_star"), "{said}");
+    assert_eq!(page.reply("case")["why"], "refused");
+    for (request, sentence) in [
+        (json!({ "do": "repeat", "seeds": 33 }), "33 seeds"),
+        (json!({ "do": "view", "pace": -1 }), "the pace is -1"),
+        (
+            json!({ "do": "view", "frames_per_second": 1000 }),
+            "1000 pictures",
+        ),
+        (
+            json!({ "do": "paint", "points": [], "radius": 1, "textured": true, "gesture": 2 }),
+            "a stroke has 1 to",
+        ),
+        (
+            json!({ "do": "paint", "points": [[1, 1]], "radius": 1e9, "textured": true, "gesture": 2 }),
+            "the radius of the brush",
+        ),
+        (
+            json!({ "do": "image", "png": "???", "threshold": 0.5, "gesture": 3 }),
+            "not Base64",
+        ),
+    ] {
+        let said = page.refusal(&request);
+        assert!(said.contains(sentence), "{said}");
+    }
+    // An image that is none is seen when it is meshed.
+    page.send(&json!({ "do": "image", "png": "aGVsbG8=", "threshold": 0.5, "gesture": 4 }));
+    let said = page.reply("refused")["sentence"].to_string();
+    assert!(said.contains("PNG"), "{said}");
+}
+
+/// A page that asks without end, and reads nothing.
+#[test]
+fn a_flood_does_not_fill_the_memory() {
+    let lab = Served::new();
+    let mut page = Page::with_case(&lab, SMALL);
+    page.socket
+        .get_mut()
+        .set_write_timeout(Some(Duration::from_millis(200)))
+        .unwrap();
+    let request = json!({ "do": "export" }).to_string();
+    let mut sent = 0;
+    while sent < 2_000_000 && page.socket.send(Message::text(request.as_str())).is_ok() {
+        sent += 1;
+    }
+    assert!(
+        sent < 2_000_000,
+        "the server took {sent} requests whose answers nobody reads"
+    );
+    let mut other = Page::with_case(&lab, SMALL);
+    other.reply("case");
+}

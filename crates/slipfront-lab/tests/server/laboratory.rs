@@ -1,0 +1,102 @@
+//! A server of a test's own.
+
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::path::PathBuf;
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use slipfront_lab::{Laboratory, Options, Start};
+use tempfile::TempDir;
+use tokio::sync::oneshot;
+
+/// Long enough for a slow machine, short enough for a test that fails.
+pub(crate) const TIMEOUT: Duration = Duration::from_secs(30);
+
+/// A server, which ends with the test.
+pub(crate) struct Served {
+    pub(crate) port: u16,
+    pub(crate) token: String,
+    folder: TempDir,
+    stop: Option<oneshot::Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Served {
+    pub(crate) fn new() -> Self {
+        Self::with(Start::default())
+    }
+
+    pub(crate) fn with(start: Start) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let laboratory = Laboratory::bind(Options {
+            start,
+            results: folder.path().join("results"),
+            port: 0,
+            threads: 1,
+        });
+        let laboratory = laboratory.unwrap();
+        let address = laboratory.address(None);
+        let (_, rest) = address.split_once("127.0.0.1:").unwrap();
+        let (port, token) = rest.split_once("/#token=").unwrap();
+        let (stop, stopped) = oneshot::channel();
+        let thread = std::thread::spawn(move || {
+            let stopped = async {
+                let _ = stopped.await;
+            };
+            laboratory.serve(stopped).unwrap();
+        });
+        Self {
+            port: port.parse().unwrap(),
+            token: token.to_owned(),
+            folder,
+            stop: Some(stop),
+            thread: Some(thread),
+        }
+    }
+
+    pub(crate) fn results(&self) -> PathBuf {
+        self.folder.path().join("results")
+    }
+
+    pub(crate) fn connect(&self) -> TcpStream {
+        let stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
+        stream.set_read_timeout(Some(TIMEOUT)).unwrap();
+        stream
+    }
+
+    /// The answer to these bytes, as far as the connection is closed after it.
+    pub(crate) fn answer(&self, request: &str) -> String {
+        let mut stream = self.connect();
+        stream.write_all(request.as_bytes()).unwrap();
+        let mut answer = Vec::new();
+        stream.read_to_end(&mut answer).unwrap();
+        String::from_utf8_lossy(&answer).into_owned()
+    }
+
+    /// The status of a request for a file, with this host and further lines.
+    pub(crate) fn status(&self, path: &str, host: &str, lines: &str) -> u16 {
+        let answer = self.answer(&format!(
+            "GET {path} HTTP/1.1\r\nHost: {host}\r\n{lines}Connection: close\r\n\r\n"
+        ));
+        answer.split(' ').nth(1).unwrap().parse().unwrap()
+    }
+
+    pub(crate) fn host(&self) -> String {
+        format!("127.0.0.1:{}", self.port)
+    }
+
+    /// Ends the server, and waits for it.
+    pub(crate) fn stop(&mut self) {
+        drop(self.stop.take());
+        if let Some(thread) = self.thread.take() {
+            thread.join().unwrap();
+        }
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        self.stop();
+    }
+}

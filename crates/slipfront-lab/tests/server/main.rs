@@ -1,0 +1,7 @@
+//! The server as a page sees it, and as somebody who means harm does.
+#![expect(clippy::unwrap_used, reason = "a test fails by a panic")]
+
+mod attacks;
+mod laboratory;
+mod page;
+mod pages;

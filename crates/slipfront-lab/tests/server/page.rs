@@ -1,0 +1,114 @@
+//! A page, without a browser.
+
+use std::net::TcpStream;
+use std::time::Instant;
+
+use serde_json::{Value, json};
+use tungstenite::client::IntoClientRequest;
+use tungstenite::protocol::CloseFrame;
+use tungstenite::{Error, Message, WebSocket};
+
+use crate::laboratory::{Served, TIMEOUT};
+
+/// A connection as a page has it.
+pub(crate) struct Page {
+    pub(crate) socket: WebSocket<TcpStream>,
+    /// Number of pictures received, and the last of them.
+    pub(crate) pictures: usize,
+    pub(crate) picture: Vec<u8>,
+}
+
+/// Why a connection was refused, or that it was not.
+pub(crate) fn try_connect(of: &Served, token: &str, headers: &[(&'static str, &str)]) -> Result<Page, u16> {
+    let mut request = format!("ws://{}/ws", of.host()).into_client_request().unwrap();
+    let protocols = format!("slipfront.lab.v1, token.{token}");
+    let all = [("sec-websocket-protocol", protocols.as_str())];
+    for (name, value) in all.iter().chain(headers) {
+        request.headers_mut().insert(*name, value.parse().unwrap());
+    }
+    match tungstenite::client(request, of.connect()) {
+        Ok((socket, _)) => Ok(Page {
+            socket,
+            pictures: 0,
+            picture: Vec::new(),
+        }),
+        Err(tungstenite::HandshakeError::Failure(Error::Http(response))) => Err(response.status().as_u16()),
+        Err(error) => panic!("{error}"),
+    }
+}
+
+impl Page {
+    pub(crate) fn open(of: &Served) -> Self {
+        try_connect(of, &of.token, &[]).unwrap_or_else(|status| panic!("refused with {status}"))
+    }
+
+    /// A page that shows a small case.
+    pub(crate) fn with_case(of: &Served, toml: &str) -> Self {
+        let mut page = Self::open(of);
+        page.send(&json!({ "do": "open", "source": { "toml": toml } }));
+        page
+    }
+
+    pub(crate) fn send(&mut self, request: &Value) {
+        self.socket.send(Message::text(request.to_string())).unwrap();
+    }
+
+    /// The next message, as far as it is one of the server.
+    pub(crate) fn read(&mut self) -> Result<Option<Value>, Error> {
+        match self.socket.read()? {
+            Message::Text(text) => Ok(Some(serde_json::from_str(&text).unwrap())),
+            Message::Binary(bytes) => {
+                if bytes[0] == 1 {
+                    self.pictures += 1;
+                    self.picture = bytes.to_vec();
+                }
+                Ok(None)
+            }
+            Message::Close(frame) => Err(closed(frame)),
+            _ => Ok(None),
+        }
+    }
+
+    /// The next reply for which this holds.
+    pub(crate) fn wait_for(&mut self, what: &str, holds: impl Fn(&Value) -> bool) -> Value {
+        let began = Instant::now();
+        while began.elapsed() < TIMEOUT {
+            let reply = self
+                .read()
+                .unwrap_or_else(|error| panic!("waiting for {what}: {error}"));
+            if let Some(reply) = reply.filter(&holds) {
+                return reply;
+            }
+        }
+        panic!("{what} did not come");
+    }
+
+    /// The next reply of this name.
+    pub(crate) fn reply(&mut self, is: &str) -> Value {
+        self.wait_for(is, |reply| reply["is"] == is)
+    }
+
+    /// The sentence with which a request is refused.
+    pub(crate) fn refusal(&mut self, request: &Value) -> String {
+        self.send(request);
+        self.reply("refused")["sentence"].as_str().unwrap().to_owned()
+    }
+
+    /// How the connection ends: its code and reason, or none if it just breaks.
+    pub(crate) fn end(&mut self) -> Option<(u16, String)> {
+        loop {
+            match self.socket.read() {
+                Ok(Message::Close(frame)) => {
+                    return frame.map(|frame| (frame.code.into(), frame.reason.to_string()));
+                }
+                Ok(_) => {}
+                Err(_) => return None,
+            }
+        }
+    }
+}
+
+fn closed(frame: Option<CloseFrame>) -> Error {
+    let reason = frame.map_or(String::new(), |frame| frame.reason.to_string());
+    Error::Io(std::io::Error::other(format!("closed: {reason}")))
+}
