@@ -152,8 +152,10 @@ export function startCurves() {
     plotIn(find('plot-sliding'), { label: say('axis_sliding'), lines: [series('run', () => colour('curve'))], numbered: true, scale: { range: [0, 100] } }),
   ];
   on('curve', take);
-  on('case', ({ why }) => {
+  on('case', ({ why, twin: compared }) => {
     if (why === 'open') clear(recorded);
+    if (why === 'open' || !compared) clear(twin);
+    refresh();
   });
   new ResizeObserver(fit).observe(find('plot-mu'));
   onTheme(() => plots.forEach((plot) => plot.redraw(false, true)));

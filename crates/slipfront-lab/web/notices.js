@@ -39,7 +39,8 @@ function showConnection({ yes, reason }) {
 /** Begins to listen. */
 export function startNotices() {
   on('connected', showConnection);
-  on('refused', ({ sentence }) => notice(sentence, { topic: 'refused' }));
+  // Below its first line a sentence about a case shows a line of a file that the reader does not see.
+  on('refused', ({ sentence }) => notice(sentence.split('\n')[0], { topic: 'refused' }));
   on('failed', ({ sentence }) => notice(say('failed', { sentence }), { topic: 'failed', serious: true }));
   on('problem', ({ key, values }) => notice(say(key, values)));
   on('case', ({ warnings, why }) => {
