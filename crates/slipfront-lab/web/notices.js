@@ -44,6 +44,8 @@ export function startNotices() {
   on('failed', ({ sentence }) => notice(say('failed', { sentence }), { topic: 'failed', serious: true }));
   on('problem', ({ key, values }) => notice(say(key, values)));
   on('case', ({ warnings, why }) => {
+    // After a refusal the case comes again as it stands.
+    if (why === 'refused') return;
     withdraw('failed');
     withdraw('refused');
     withdraw('warnings');
