@@ -97,6 +97,4 @@ export function startControls() {
     rows.forEach(listen);
   });
   on('case', show);
-  // What was refused does not hold: the values are shown again.
-  on('refused', show);
 }

@@ -118,9 +118,10 @@ function showCursor(plot) {
 
 function draw() {
   if (plots.length === 0) return;
-  const tables = [[run.t, run.mu], [twin.t, twin.mu], [recorded.t, recorded.mu]];
-  plots[0].setData(uPlot.join(tables));
-  plots[1].setData([run.t, run.sliding]);
+  // Both plots have all times, so that one stands below the other.
+  const [t, mu, sliding, ...others] = uPlot.join([[run.t, run.mu, run.sliding], [twin.t, twin.mu], [recorded.t, recorded.mu]]);
+  plots[0].setData([t, mu, ...others]);
+  plots[1].setData([t, sliding]);
   find('curve-twin').hidden = twin.t.length === 0;
   find('curve-recorded').hidden = recorded.t.length === 0;
 }
@@ -151,8 +152,10 @@ export function startCurves() {
     plotIn(find('plot-sliding'), { label: say('axis_sliding'), lines: [series('run', () => colour('curve'))], numbered: true, scale: { range: [0, 100] } }),
   ];
   on('curve', take);
-  on('case', ({ why }) => {
+  on('case', ({ why, twin: compared }) => {
     if (why === 'open') clear(recorded);
+    if (why === 'open' || !compared) clear(twin);
+    refresh();
   });
   new ResizeObserver(fit).observe(find('plot-mu'));
   onTheme(() => plots.forEach((plot) => plot.redraw(false, true)));

@@ -1,6 +1,7 @@
 // @ts-check
 // An image as texture: dropped on the page or chosen from a file. Dark is texture.
 import { send } from './connection.js';
+import { newGesture } from './edit.js';
 import { find, onPress } from './element.js';
 import { toBase64 } from './link.js';
 import { notice } from './notices.js';
@@ -24,7 +25,7 @@ async function take(file) {
   try {
     const blob = await asPng(file);
     if (blob.size > MAX_BYTES) return notice(say('image_too_large', { size: (blob.size / 2 ** 20).toFixed(1), most: MAX_BYTES / 2 ** 20 }));
-    send({ do: 'image', png: toBase64(new Uint8Array(await blob.arrayBuffer())), threshold: THRESHOLD });
+    send({ do: 'image', png: toBase64(new Uint8Array(await blob.arrayBuffer())), threshold: THRESHOLD, gesture: newGesture() });
   } catch {
     notice(say('image_unreadable', { name: file.name }));
   }

@@ -1,12 +1,14 @@
 // @ts-check
 // Sentences for the reader: what was refused, what failed, whether there is a connection. They can be dismissed and are read out.
-import { find, make } from './element.js';
-import { on, put } from './store.js';
+import { atMost, find, make } from './element.js';
+import { fixed } from './quantity.js';
+import { on, put, state } from './store.js';
 import { say } from './text.js';
 
 const MOST = 4;
 /** A sentence that asks for nothing goes away by itself. */
 const LONGEST_MS = 20_000;
+const ANNOUNCED_MS = 3000;
 
 /** Shows a sentence; one with the same `topic` takes its place. @param {string} text @param {{topic?: string, serious?: boolean}} [options] */
 export function notice(text, { topic = text, serious = false } = {}) {
@@ -39,27 +41,28 @@ function showConnection({ yes, reason }) {
 /** Begins to listen. */
 export function startNotices() {
   on('connected', showConnection);
-  on('refused', ({ sentence }) => notice(sentence, { topic: 'refused' }));
+  // Below its first line a sentence about a case shows a line of a file that the reader does not see.
+  on('refused', ({ sentence }) => notice(sentence.split('\n')[0], { topic: 'refused' }));
   on('failed', ({ sentence }) => notice(say('failed', { sentence }), { topic: 'failed', serious: true }));
   on('problem', ({ key, values }) => notice(say(key, values)));
   on('case', ({ warnings, why }) => {
+    // After a refusal the case comes again as it stands.
+    if (why === 'refused') return;
     withdraw('failed');
     withdraw('refused');
     withdraw('warnings');
-    if (warnings.length > 0 && why === 'open') notice(warnings.join(' '), { topic: 'warnings' });
+    // A lesson says itself what its case is for.
+    if (warnings.length > 0 && why === 'open' && !state.lesson) notice(warnings.join(' '), { topic: 'warnings' });
   });
 }
 
 /** Says something to those who listen to the page without seeing it. @param {string} text */
 export const announce = (text) => put('announcement', text);
 
-/** Reads announcements out, no more than one in some seconds, the newest. */
+/** Reads announcements out, the newest, and no more than one in some seconds. */
 export function startAnnouncements() {
-  let timer = 0;
-  on('announcement', () => {
-    clearTimeout(timer);
-    timer = window.setTimeout(() => (find('announcements').textContent = /** @type {any} */ (latest)), 300);
+  on('announcement', atMost(() => (find('announcements').textContent = state.announcement), ANNOUNCED_MS));
+  on('case', ({ why, name, texture_percent: percent }) => {
+    if (why !== 'rest' && why !== 'refused') announce(say('tell_case', { name, percent: fixed(percent, 1) }));
   });
-  let latest = '';
-  on('announcement', (text) => (latest = text));
 }

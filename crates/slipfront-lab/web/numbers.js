@@ -33,7 +33,8 @@ function showHeadline({ peak, twin_peak: twin, change_percent: change }) {
   const against = change !== null && change !== undefined;
   find('headline').textContent = against ? signed(change) : peakValue(peak, 'mu_star');
   find('headline-name').textContent = say(against ? 'headline_change' : 'headline_static');
-  find('headline-note').textContent = peak ? say(certain ? 'certain' : 'preliminary') : say('no_peak_yet');
+  const note = peak ? (certain ? 'certain' : 'preliminary') : state.case?.leg > 0 ? 'not_from_rest' : 'no_peak_yet';
+  find('headline-note').textContent = say(note);
   find('headline').classList.toggle('preliminary', !certain);
 }
 

@@ -58,6 +58,8 @@ export function startPointer(hand) {
   });
 
   const up = (/** @type {PointerEvent} */ event) => {
+    // A finger that is lifted points nowhere.
+    if (event.pointerType === 'touch') hand.hover(null);
     if (!down.delete(event.pointerId) || down.size > 0) return;
     if (mode === 'tool') hand.end();
     mode = 'none';

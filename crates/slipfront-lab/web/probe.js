@@ -1,6 +1,7 @@
 // @ts-check
 // What the block under the pointer has.
 import { find, make } from './element.js';
+import { camera } from './field.js';
 import { fixed, quantity } from './quantity.js';
 import { on, state } from './store.js';
 import { say } from './text.js';
@@ -26,6 +27,9 @@ function lines(probe) {
 function show(probe) {
   const [i, j] = probe.block;
   find('probe').hidden = false;
+  // It does not cover the block that it tells of.
+  const [x, y] = camera.toPixels(probe.block);
+  find('probe').classList.toggle('right', x < camera.pixels[0] / 2 && y > camera.pixels[1] / 2);
   find('probe-block').textContent = say('probe_block', { i, j });
   find('probe-values').replaceChildren(...lines(probe).flatMap(([name, value]) => [make('dt', { textContent: name }), make('dd', { textContent: value })]));
 }

@@ -5,7 +5,6 @@ import { find } from './element.js';
 import { fixed } from './quantity.js';
 import { on, state } from './store.js';
 import { say } from './text.js';
-import { setView } from './view.js';
 
 function show() {
   const index = find('replay').valueAsNumber - 1;
@@ -21,7 +20,6 @@ export function startReplay() {
     if (!recorded) return;
     find('replay').max = String(recorded.times_star.length);
     find('replay').value = '0';
-    if (recorded.field.length > 0 && !recorded.field.includes(state.view.field)) setView({ field: recorded.field[0] });
     show();
   });
   find('replay').addEventListener('input', () => {

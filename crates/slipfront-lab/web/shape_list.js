@@ -90,5 +90,6 @@ function show() {
 
 /** Begins to listen. */
 export function startShapeList() {
-  for (const topic of ['case', 'selected', 'refused']) on(topic, show);
+  on('case', show);
+  on('selected', show);
 }
