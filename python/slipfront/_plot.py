@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
 import numpy.typing as npt
 
+from ._case import Case
+
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from ._run import Run
 
 _WIDTH = 85 / 25.4
 _STYLE = {
@@ -27,7 +28,20 @@ _STYLE = {
 }
 
 
-def plot(run: Run, kind: str, ax: Axes | None, *, instant: str | int = -1, label: str | None = None) -> Axes:
+class Drawn(Protocol):
+    """What of a run is drawn."""
+
+    @property
+    def case(self) -> Case: ...
+    @property
+    def summary(self) -> dict[str, Any]: ...
+    @property
+    def series(self) -> xr.Dataset: ...
+    @property
+    def _arrays(self) -> dict[str, Any]: ...
+
+
+def plot(run: Drawn, kind: str, ax: Axes | None, *, instant: str | int = -1, label: str | None = None) -> Axes:
     """Draw a run; `Run.plot` says what."""
     import matplotlib.pyplot as plt
 
@@ -35,7 +49,7 @@ def plot(run: Run, kind: str, ax: Axes | None, *, instant: str | int = -1, label
     if kind == "friction":
         height, draw = 0.75, partial(_friction, run, label)
     else:
-        values, title = (run.front, "first slip, t*") if kind == "front" else _field(run, kind, instant)
+        values, title = (run._arrays["first_slip_time_star"], "first slip, t*") if kind == "front" else _field(run, kind, instant)
         height = min(max(0.85 * values.shape[0] / values.shape[1], 0.3), 1.5)
         draw = partial(_map, run, values, title)
     if ax is not None:
@@ -49,7 +63,7 @@ def plot(run: Run, kind: str, ax: Axes | None, *, instant: str | int = -1, label
     return ax
 
 
-def _friction(run: Run, label: str | None, ax: Axes) -> None:
+def _friction(run: Drawn, label: str | None, ax: Axes) -> None:
     series = run.series
     time_star, mu_star = np.asarray(series["time_star"]), np.asarray(series["mu_star"])
     (line,) = ax.plot(time_star, mu_star, label=label or run.case.name)
@@ -65,15 +79,15 @@ def _friction(run: Run, label: str | None, ax: Axes) -> None:
         ax.legend(frameon=False)
 
 
-def _map(run: Run, values: npt.NDArray[Any], title: str, ax: Axes) -> None:
-    x, y = (np.asarray(run.fields[axis]) for axis in ("x", "y"))
+def _map(run: Drawn, values: npt.NDArray[Any], title: str, ax: Axes) -> None:
+    x, y = (run._arrays[axis] for axis in ("x", "y"))
     half = 0.5 * run.case.numbers["block_size_m"] * run._arrays["stride"]
     unit, prefix = _unit(float(x[-1] + half))
     extent = (0.0, (x[-1] + half) / unit, 0.0, (y[-1] + half) / unit)
     image = ax.imshow(values, origin="lower", extent=extent, cmap="viridis", interpolation="nearest")
     # What has no value shows the ground; over a texture that has values, its outline is drawn along the edges of the blocks.
     ax.set_facecolor("0.8")
-    textured = np.asarray(run.fields["textured"])
+    textured = run._arrays["textured"]
     if np.isfinite(values[textured]).any():
         per_block = max(1, min(8, 4000 // max(values.shape)))
         fine = np.kron(textured, np.ones((per_block, per_block)))
@@ -84,7 +98,7 @@ def _map(run: Run, values: npt.NDArray[Any], title: str, ax: Axes) -> None:
     cast("Figure", ax.get_figure(root=True)).colorbar(image, ax=ax, label=title, fraction=0.046, pad=0.03)
 
 
-def _field(run: Run, name: str, instant: str | int) -> tuple[npt.NDArray[Any], str]:
+def _field(run: Drawn, name: str, instant: str | int) -> tuple[npt.NDArray[Any], str]:
     arrays = run._arrays["fields"]
     if name not in arrays:
         kept = ", ".join(f'"{kept}"' for kept in arrays) or "none"

@@ -3,15 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, TypeAlias
-
-if TYPE_CHECKING:
-    from ._simulation import Simulation
-
-Progress: TypeAlias = bool | Callable[["Simulation"], object] | None
-"""``True`` for a bar, ``False`` for nothing, ``None`` for a bar in terminals and notebooks, or a function of the simulation."""
+from typing import Any
 
 
 class Bar:

@@ -8,18 +8,21 @@ import os
 import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _dataset, _slipfront
 from ._case import Case
-from ._progress import Bar, Progress
+from ._progress import Bar
 from ._run import Run
 
 if TYPE_CHECKING:
     import xarray as xr
+
+Progress: TypeAlias = bool | Callable[["Simulation"], object] | None
+"""``True`` for a bar, ``False`` for nothing, ``None`` for a bar in terminals and notebooks, or a function of the simulation."""
 
 _ALL = 2**63
 
@@ -88,7 +91,7 @@ class Simulation:
 
     def __init__(self, case: Case, *, threads: int | None = None) -> None:
         self._threads = _threads(threads)
-        self._begin(case, _slipfront.Simulation(case._native, self._threads, None))
+        self._begin(case, _slipfront.Simulation(case._native, self._threads))
         self._legs: list[tuple[Case, int]] = []
         self._curves: list[xr.Dataset] = []
         # Where the drive stood when this leg began, block by block, and the time and steps before it.
@@ -319,31 +322,12 @@ class Simulation:
         (0.1, 0.0)
         """
         case = self._case.replace(overrides)
-        before, after = self._case, case
-        if case.shape != before.shape or case.numbers["block_size_m"] != before.numbers["block_size_m"]:
-            raise _slipfront.CaseError("a change keeps the blocks: their number and size are those of the slider that moves")
-        if not (before._native.has_no_memory and after._native.has_no_memory):
-            raise _slipfront.CaseError(
-                "contacts under this law of friction remember more than a displacement and a velocity: begin such a run from rest"
-            )
         with self._alone() as native:
-            moved, velocity = native.motion()
-            steps, time_star = native.step + 1, (native.step + 1) * before.numbers["dt_star"]
-        old, new = before.numbers, after.numbers
-        # The step that was begun: velocities are known half a step after displacements, and the new leg begins when they meet.
-        moved = moved + old["dt_star"] * velocity
-        drive = np.moveaxis(before._native.drive_position(time_star).reshape(*before.shape, 2), 2, 0)
-        ahead = (moved - drive) * old["displacement_unit_m"]
-        rows = (2, -1)
-        state = (
-            np.ascontiguousarray((ahead / new["displacement_unit_m"]).reshape(rows)),
-            np.ascontiguousarray((velocity * (old["speed_unit_m_s"] / new["speed_unit_m_s"])).reshape(rows)),
-        )
-        begun = _slipfront.Simulation(after._native, self._threads, state)
+            begun, steps, time_s, drive = native.change(case._native, self._threads)
         self._curves.append(self.series)
-        self._legs.append((before, steps))
-        self._origin = self._origin + drive * old["displacement_unit_m"]
-        self._before = (self._before[0] + steps, self._before[1] + time_star * old["time_unit_s"])
+        self._legs.append((self._case, steps))
+        self._origin = self._origin + drive
+        self._before = (self._before[0] + steps, self._before[1] + time_s)
         self._begin(case, begun)
 
     @property

@@ -14,7 +14,7 @@ pub(crate) fn rows<T: Element>(
     values.into_pyarray(py).reshape([count, columns])
 }
 
-/// The same of several arrays of equal size, one after the other: time, y, x.
+/// The same of several arrays of equal size, one after the other.
 pub(crate) fn stacked<'py, T: Element + Copy>(
     py: Python<'py>,
     arrays: &[&[T]],

@@ -4,12 +4,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use numpy::PyArray2;
+use numpy::{Element, PyArray2};
 use pyo3::prelude::*;
+use slipfront::Surface;
 use slipfront_case::case::Case as SlipfrontCase;
 use slipfront_case::case_file::{CaseError, CaseFile};
 
-use crate::arrays::{borrowed, rows};
+use crate::arrays::borrowed;
 use crate::errors::case_error;
 
 /// How long the engine works between two looks at signals.
@@ -40,6 +41,15 @@ pub(crate) fn make(
         (Ok(case), None) => Ok(Case(Arc::new(case))),
         (Err(error), None) => Err(case_error(py, &error)),
     }
+}
+
+/// Numbers of the surface of a case, which are not copied.
+fn of_surface<'py, T: Element>(
+    case: &Bound<'py, Case>,
+    values: impl Fn(&Surface) -> &[T],
+) -> PyResult<Bound<'py, PyArray2<T>>> {
+    let model = &case.get().0.model;
+    borrowed(case.clone().into_any(), values(&model.surface), model.lattice.nx)
 }
 
 #[pymethods]
@@ -133,43 +143,18 @@ impl Case {
     /// Whether a block is texture.
     #[getter]
     fn textured<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<bool>>> {
-        let model = &this.get().0.model;
-        borrowed(this.clone().into_any(), &model.surface.textured, model.lattice.nx)
+        of_surface(this, |surface| &surface.textured)
     }
 
     /// Static friction coefficient of every block.
     #[getter]
     fn mu_static<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let model = &this.get().0.model;
-        borrowed(
-            this.clone().into_any(),
-            &model.surface.mu_static,
-            model.lattice.nx,
-        )
+        of_surface(this, |surface| &surface.mu_static)
     }
 
     /// Kinetic friction coefficient of every block.
     #[getter]
     fn mu_kinetic<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let model = &this.get().0.model;
-        borrowed(
-            this.clone().into_any(),
-            &model.surface.mu_kinetic,
-            model.lattice.nx,
-        )
-    }
-
-    /// Where the drive is at a time, block by block, in units of displacement: two columns per block.
-    fn drive_position<'py>(&self, py: Python<'py>, time_star: f64) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let model = &self.0.model;
-        let path = model.drive.path(time_star);
-        let of_block = |b| model.drive.direction_at(&model.lattice, b).map(|d| d * path);
-        rows(py, (0..model.lattice.n_blocks()).flat_map(of_block).collect(), 2)
-    }
-
-    /// Whether what resists the motion of a block depends on no more than its displacement and velocity.
-    #[getter]
-    fn has_no_memory(&self) -> bool {
-        self.0.model.friction.n_columns() == 0
+        of_surface(this, |surface| &surface.mu_kinetic)
     }
 }

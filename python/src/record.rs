@@ -88,16 +88,8 @@ pub(crate) fn series<'py>(py: Python<'py>, rows: &[SeriesRow]) -> PyResult<Bound
 
 /// The events of slip of a slider driven at an edge: columns, with NaN for what was not found.
 pub(crate) fn precursors_of<'py>(py: Python<'py>, rows: &[PrecursorRow]) -> PyResult<Bound<'py, PyDict>> {
-    type Value = fn(&PrecursorRow) -> Option<f64>;
-    macro_rules! named {
-        ($($name:ident)*) => { [$((stringify!($name), (|row| row.$name.into()) as Value)),*] };
-    }
-    let all = named! {
-        time_star time_s length mu_star_before friction_coefficient_before mu_star_after friction_coefficient_after until_star
-    };
     let columns = PyDict::new(py);
-    for (name, value) in all {
-        let values: Vec<f64> = rows.iter().map(|row| value(row).unwrap_or(f64::NAN)).collect();
+    for (name, values) in precursors::columns(rows) {
         columns.set_item(name, values.into_pyarray(py))?;
     }
     Ok(columns)

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2};
+use numpy::{PyArray2, PyArray3};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use slipfront::communicator::Alone;
 use slipfront::observe::frames::Selection;
-use slipfront::{State, StopReason};
+use slipfront::{State, StopReason, VectorField};
 use slipfront_case::field_info::field_named;
 use slipfront_run::clock;
 use slipfront_run::columns::Columns;
@@ -17,9 +17,9 @@ use slipfront_run::fields::FieldFrame;
 use slipfront_run::running::{RunState, Running};
 use slipfront_run::series::SeriesRow;
 
-use crate::arrays::rows;
+use crate::arrays::{rows, stacked};
 use crate::case::{Case, LOOK_EVERY};
-use crate::errors::RunError;
+use crate::errors::{CaseError, RunError};
 use crate::record::{Record, series};
 
 /// A run in progress. Two threads cannot use one at once.
@@ -47,46 +47,42 @@ impl Simulation {
     }
 }
 
+/// Vectors of the blocks of a run: x and y, row by row.
+fn vectors<'py>(
+    py: Python<'py>,
+    VectorField { x, y }: VectorField,
+    running: &Running,
+) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    let lattice = running.case().model.lattice;
+    stacked(py, &[&x, &y], [lattice.ny, lattice.nx])
+}
+
 fn ended() -> PyErr {
     PyRuntimeError::new_err("this simulation has given its results away: begin another one")
 }
 
 #[pymethods]
 impl Simulation {
-    /// Begins a run of a case at rest, or with these dimensionless displacements and velocities, x and y in two rows.
+    /// Begins a run of a case at rest.
     #[new]
-    fn new(
-        py: Python<'_>,
+    fn new(py: Python<'_>, case: &Case, threads: usize) -> Self {
+        Self::of(py.detach(|| Running::start(&case.0, threads)))
+    }
+
+    /// The run that goes on under another case, the steps of this one and how long they have taken in s, and where the drive stands
+    /// over each block, x and y in m.
+    #[allow(clippy::type_complexity, reason = "a tuple of Python, which has no name")]
+    fn change<'py>(
+        &self,
+        py: Python<'py>,
         case: &Case,
         threads: usize,
-        state: Option<(PyReadonlyArray2<'_, f64>, PyReadonlyArray2<'_, f64>)>,
-    ) -> PyResult<Self> {
-        let n = case.0.model.lattice.n_blocks();
-        let state = match state {
-            None => None,
-            Some((displacement, velocity)) => {
-                let mut state = State::at_rest(n);
-                for (given, field) in [
-                    (displacement, &mut state.displacement),
-                    (velocity, &mut state.velocity),
-                ] {
-                    let values = given.as_slice()?;
-                    if values.len() != 2 * n || !values.iter().all(|value| value.is_finite()) {
-                        let sentence = format!("a state has two finite numbers for each of {n} blocks");
-                        return Err(PyValueError::new_err(sentence));
-                    }
-                    field.x.copy_from_slice(&values[..n]);
-                    field.y.copy_from_slice(&values[n..]);
-                }
-                Some(state)
-            }
-        };
-        let case = &case.0;
-        let running = py.detach(|| match state {
-            None => Running::start(case, threads),
-            Some(state) => Running::start_from(case, threads, state),
-        });
-        Ok(Self::of(running))
+    ) -> PyResult<(Self, u64, f64, Bound<'py, PyArray3<f64>>)> {
+        let running = self.running()?;
+        let leg = py.detach(|| running.change(&case.0, threads));
+        let leg = leg.map_err(|error| CaseError::new_err(error.to_string()))?;
+        let drive = vectors(py, leg.drive_m, running)?;
+        Ok((Self::of(leg.running), leg.steps, leg.time_s, drive))
     }
 
     /// At most `steps` steps, for 50 ms or a little longer; whether the run has ended: `end`, `onset` or none.
@@ -139,18 +135,13 @@ impl Simulation {
     /// Dimensionless displacements now, x and y, and velocities half a step later.
     fn motion<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyArray3<f64>>; 2]> {
         let running = self.running()?;
-        let lattice = running.case().model.lattice;
         let State {
             displacement,
             velocity,
         } = running.motion();
-        let array = |x: Vec<f64>, y: Vec<f64>| {
-            let both = [x, y].concat().into_pyarray(py);
-            both.reshape([2, lattice.ny, lattice.nx])
-        };
         Ok([
-            array(displacement.x, displacement.y)?,
-            array(velocity.x, velocity.y)?,
+            vectors(py, displacement, running)?,
+            vectors(py, velocity, running)?,
         ])
     }
 

@@ -8,7 +8,7 @@ use slipfront::observe::SlipEvent;
 use slipfront_case::case_file::names_of;
 
 use crate::names::PRECURSORS;
-use crate::series::{SeriesError, finish, read_rows};
+use crate::series::{SeriesError, columns_of, finish, read_rows};
 
 /// One row of `precursors.csv`. The last columns are empty for an event that went on when the run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -53,6 +53,16 @@ pub fn rows(events: &[SlipEvent], scales: &Scales) -> Vec<PrecursorRow> {
         .iter()
         .map(|event| PrecursorRow::new(event, scales))
         .collect()
+}
+
+/// The columns of a table of events, with NaN for what was not found.
+pub fn columns(rows: &[PrecursorRow]) -> impl Iterator<Item = (&'static str, Vec<f64>)> {
+    let all = columns_of! { PrecursorRow:
+        time_star time_s length mu_star_before friction_coefficient_before mu_star_after friction_coefficient_after until_star
+    };
+    let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    all.into_iter()
+        .map(move |(name, value)| (name, rows.iter().map(value).map(number).collect()))
 }
 
 /// The events as CSV, with the header also where there is none.

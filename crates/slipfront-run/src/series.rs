@@ -121,20 +121,24 @@ impl SeriesRow {
     }
 }
 
+/// Fields of the rows of a table: the name of each, and what gives its number in a row, if it has one.
+macro_rules! columns_of {
+    ($row:ty: $($name:ident)*) => {
+        [$((stringify!($name), (|row| row.$name.into()) as fn(&$row) -> Option<f64>)),*]
+    };
+}
+pub(crate) use columns_of;
+
 /// The columns of a series: their names and values, without those that it does not have, and without the numbers of the steps.
 pub fn columns(rows: &[SeriesRow]) -> Vec<(&'static str, Vec<f64>)> {
-    /// A number, or one that a series need not have.
-    type Value = fn(&SeriesRow) -> Option<f64>;
-    macro_rules! named {
-        ($($name:ident)*) => { [$((stringify!($name), (|row| row.$name.into()) as Value)),*] };
-    }
-    let all = named! {
+    let all = columns_of! { SeriesRow:
         time_star time_s drive_displacement_m mu_star friction_coefficient mu_lateral_star friction_force_n lateral_force_n
         torque_n_m sliding_percent work_j kinetic_energy_j lattice_energy_j drive_spring_energy_j friction_loss_j damping_loss_j
         viscous_loss_j contact_spring_energy_j broken_spring_loss_j mean_state_star
     };
-    let column = |(name, value): (_, Value)| Some((name, rows.iter().map(value).collect::<Option<_>>()?));
-    all.into_iter().filter_map(column).collect()
+    let all = all.into_iter();
+    all.filter_map(|(name, value)| Some((name, rows.iter().map(value).collect::<Option<_>>()?)))
+        .collect()
 }
 
 /// The rows as CSV. Numbers are the shortest that read back as the same bits.
