@@ -87,12 +87,12 @@ fn saved(
             Ok(Some(reason)) => break reason,
             Ok(None) => {}
             Err(error) => {
-                folder.discard();
+                give_up(folder);
                 return Err(sentence(error));
             }
         }
         if stop.load(Ordering::Relaxed) {
-            folder.discard();
+            give_up(folder);
             return Ok(None);
         }
         if told.elapsed() > REPORT {
@@ -104,4 +104,12 @@ fn saved(
     let mut record = running.record(reason);
     results::write(&case, &mut record, folder, started, threads).map_err(sentence)?;
     Ok(Some(out))
+}
+
+/// Takes away the folder of a run that is not completed, which was made for it.
+fn give_up(folder: RunFolder) {
+    let path = folder.path().to_owned();
+    folder.discard();
+    // One in which somebody else has put something stays.
+    let _ = std::fs::remove_dir(path);
 }

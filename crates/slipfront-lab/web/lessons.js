@@ -19,12 +19,18 @@ let numbers = {};
 /** @param {string} file */
 const load = async (file) => (await fetch(file)).json();
 
-/** A text with its numbers. @param {string} text */
-const told = (text) => text.replace(/\{(\w+)\}/g, (whole, id) => numbers[id]?.says ?? whole);
+/** A text with its numbers, which no line break parts from their units. @param {string} text */
+const withNumbers = (text) => text.replace(/\{(\w+)\}/g, (whole, id) => numbers[id]?.says.replaceAll(' ', '\u00a0') ?? whole);
+
+/** A text with the star of symbols as the rest of the page writes it: in the file another sign keeps it apart from emphasis. @param {string} text */
+const withStars = (text) => text.replaceAll('\u2217', '*');
+
+/** A text as it is shown. @param {string} text */
+const told = (text) => withStars(withNumbers(text));
 
 /** A paragraph, in which `*words*` are emphasised. @param {string} text */
 function paragraph(text) {
-  const parts = told(text).split(/\*([^*]+)\*/);
+  const parts = withNumbers(text).split(/\*([^*]+)\*/).map(withStars);
   return make('p', {}, parts.map((part, k) => (k % 2 === 1 ? make('em', { textContent: part }) : part)));
 }
 
@@ -63,6 +69,8 @@ function show(place) {
   find('lesson-step').textContent = say('lesson_step', { step: place.step + 1, of: lesson.steps.length, title: told(text.title) });
   find('lesson-text').replaceChildren(...text.text.map(paragraph));
   find('lesson-buttons').replaceChildren(...buttons(step, text.set ?? {}));
+  find('lesson-answer').open = false;
+  find('lesson-answer-text').replaceChildren(...text.answer.map(paragraph));
   find('lesson-previous').disabled = place.step === 0;
   find('lesson-next').textContent = say(place.step + 1 < lesson.steps.length ? 'lesson_next' : 'lesson_end');
   find('lesson').scrollTop = 0;

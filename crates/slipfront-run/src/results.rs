@@ -102,10 +102,20 @@ fn within<'a, T: Copy>(values: &'a [T], outline: Option<&Outline>, outside: T) -
         .collect()
 }
 
+/// What never changes, as it is written: where there is texture, the static and the kinetic coefficients.
+fn surface_of(case: &Case) -> (Cow<'_, [bool]>, [Cow<'_, [f64]>; 2]) {
+    let (surface, outline) = (&case.model.surface, case.model.slider().outline.as_ref());
+    let coefficients = [&surface.mu_static, &surface.mu_kinetic];
+    (
+        within(&surface.textured, outline, false),
+        coefficients.map(|values| within(values, outline, f64::NAN)),
+    )
+}
+
 /// What the [fields file](write_fields) of a run on one rank holds.
 pub fn fields_of(case: &Case, record: &Record) -> FieldsData {
-    let (lattice, surface) = (&case.model.lattice, &case.model.surface);
-    let outline = case.model.slider().outline.as_ref();
+    let lattice = &case.model.lattice;
+    let (textured, [mu_static, mu_kinetic]) = surface_of(case);
     let (names, scale) = (&case.output.fields, record.contact_stress_max);
     let frame = |(label, frame): &(String, Frame)| {
         FieldFrame::in_si_units(frame.clone(), label.clone(), names, &case.scales, scale)
@@ -119,9 +129,9 @@ pub fn fields_of(case: &Case, record: &Record) -> FieldsData {
         block_size: case.scales.block_size,
         time_unit_s: case.scales.time(),
         names: names.clone(),
-        textured: fields::thin(&within(&surface.textured, outline, false), lattice.nx, stride).collect(),
-        mu_static: thinned(&within(&surface.mu_static, outline, f64::NAN)),
-        mu_kinetic: thinned(&within(&surface.mu_kinetic, outline, f64::NAN)),
+        textured: fields::thin(&textured, lattice.nx, stride).collect(),
+        mu_static: thinned(&mu_static),
+        mu_kinetic: thinned(&mu_kinetic),
         first_slip_time_star: thinned(&record.first_slip_time_star),
         frames: record.frames.iter().map(frame).collect(),
     }
@@ -135,8 +145,7 @@ pub fn write_fields(
     out: &Path,
     communicator: &dyn Communicator,
 ) -> Result<Option<TempPath>, FieldsError> {
-    let surface = &case.model.surface;
-    let outline = case.model.slider().outline.as_ref();
+    let (textured, [mu_static, mu_kinetic]) = surface_of(case);
     let names = &case.output.fields;
     let scale = record.contact_stress_max;
     let frames: Vec<FieldFrame> = std::mem::take(&mut record.frames)
@@ -152,9 +161,9 @@ pub fn write_fields(
         time_unit_s: case.scales.time(),
         names,
         statics: StaticFields {
-            textured: &within(&surface.textured, outline, false),
-            mu_static: &within(&surface.mu_static, outline, f64::NAN),
-            mu_kinetic: &within(&surface.mu_kinetic, outline, f64::NAN),
+            textured: &textured,
+            mu_static: &mu_static,
+            mu_kinetic: &mu_kinetic,
             first_slip_time_star: &record.first_slip_time_star,
         },
         frames: &frames,

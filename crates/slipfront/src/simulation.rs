@@ -155,14 +155,7 @@ impl Simulation {
     ) -> Result<(), E> {
         let engine = &*self.engine;
         BlockColumn::for_each_part(self.model.surface.n_blocks(), |column, first, values| {
-            let blocks = (first..).zip(&mut *values);
-            match column {
-                BlockColumn::DisplacementX => blocks.for_each(|(b, to)| *to = engine.motion(b)[0][0]),
-                BlockColumn::DisplacementY => blocks.for_each(|(b, to)| *to = engine.motion(b)[0][1]),
-                BlockColumn::VelocityX => blocks.for_each(|(b, to)| *to = engine.checkpoint_velocity(b)[0]),
-                BlockColumn::VelocityY => blocks.for_each(|(b, to)| *to = engine.checkpoint_velocity(b)[1]),
-                BlockColumn::FirstSlip => engine.read_first_slips(first, values),
-            }
+            engine.read_column(column, first, values);
             write(column as usize, first, values)
         })?;
         (0..self.model.friction.n_columns()).try_for_each(|column| {
@@ -261,14 +254,7 @@ impl Simulation {
 
     /// Displacements now, velocities half a step later.
     pub fn state(&self) -> State {
-        let n = self.model.surface.n_blocks();
-        let mut state = State::at_rest(n);
-        for b in 0..n {
-            let [[ux, uy], [vx, vy]] = self.engine.motion(b);
-            (state.displacement.x[b], state.displacement.y[b]) = (ux, uy);
-            (state.velocity.x[b], state.velocity.y[b]) = (vx, vy);
-        }
-        state
+        self.engine.state()
     }
 
     /// The first peak of mu* as far as it is known by now.

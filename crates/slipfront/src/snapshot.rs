@@ -1,5 +1,6 @@
 //! What observers see of a run.
 
+use crate::checkpoint::BlockColumn;
 use crate::communicator::Communicator;
 use crate::kernel::block::{Block, Field};
 use crate::kernel::engine::Engine;
@@ -116,7 +117,7 @@ impl Snapshot<'_> {
     /// If there is not one value per block.
     pub fn read_first_slips(&self, values: &mut [f64]) {
         assert_eq!(values.len(), self.model.surface.n_blocks(), "one value per block");
-        self.engine.read_first_slips(0, values);
+        self.engine.read_column(BlockColumn::FirstSlip, 0, values);
     }
 
     /// When the first block of all ranks slid while in contact, t*. All ranks must call this together.
@@ -126,7 +127,7 @@ impl Snapshot<'_> {
         let mut earliest = f64::INFINITY;
         for first in (0..n).step_by(PART) {
             let times = &mut times[..PART.min(n - first)];
-            self.engine.read_first_slips(first, times);
+            self.engine.read_column(BlockColumn::FirstSlip, first, times);
             // The lesser of a number and NaN is the number.
             earliest = times.iter().copied().fold(earliest, f64::min);
         }

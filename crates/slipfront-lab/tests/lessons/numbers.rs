@@ -2,9 +2,10 @@
 
 use slipfront_case::case::Case;
 
-use crate::content::{Button, Keys, Lesson, Number, Quantity, case, lessons, numbers};
+use crate::content::{Button, Keys, Lesson, Number, Quantity, case, lessons, numbers, words};
 use crate::measured::Runs;
 use crate::said::Said;
+use crate::words::ids;
 
 /// What the key of a case with every default filled in says, as text: `0.05`, `50 × 50`, `1 kPa`.
 fn value_of_key(case: &Case, key: &str) -> toml::Value {
@@ -19,9 +20,9 @@ fn value_of_key(case: &Case, key: &str) -> toml::Value {
     found.unwrap_or_else(|| panic!("the case {} has no value of {key}", case.name))
 }
 
-/// Whether a text says the value of a key: numbers to the digits that are said, quantities letter by letter.
+/// Whether a text says the value of a key, which is not rounded: quantities with a unit letter by letter.
 fn says_key(says: &str, unit: &str, value: &toml::Value) -> bool {
-    let is = |says: &str, value: f64| Said::parse(says, unit).is_some_and(|said| said.is(value));
+    let is = |says: &str, value: f64| Said::parse(says, unit).is_some_and(|said| said.value == value);
     match value {
         toml::Value::String(text) => says == text,
         toml::Value::Integer(number) => is(says, *number as f64),
@@ -38,6 +39,12 @@ fn says_key(says: &str, unit: &str, value: &toml::Value) -> bool {
     }
 }
 
+/// Whether a text says the value that a key has in this case.
+fn says_key_of(number: &Number, key: &str, case: &Case) -> bool {
+    let unit = number.quantity.unit(Some(key));
+    says_key(&number.says, unit, &value_of_key(case, key))
+}
+
 #[test]
 fn what_is_said_is_what_is_computed() {
     let numbers = numbers();
@@ -47,9 +54,12 @@ fn what_is_said_is_what_is_computed() {
         .filter_map(|(id, number)| {
             let (says, key) = (&number.says, number.key.as_deref());
             let unit = number.quantity.unit(key);
-            let (is, value) = if number.quantity == Quantity::Key {
-                let value = value_of_key(&case(&number.case, &number.set), key.unwrap());
-                (says_key(says, unit, &value), value.to_string())
+            let (is, value) = if let Some(key) = key {
+                let case = case(&number.case, &number.set);
+                (
+                    says_key_of(number, key, &case),
+                    value_of_key(&case, key).to_string(),
+                )
             } else {
                 let value = runs.value(number);
                 let is = Said::parse(says, unit).is_some_and(|said| said.is(value));
@@ -113,5 +123,23 @@ fn numbers_are_of_cases_that_the_reader_can_see() {
             number.set,
             number.case
         );
+    }
+}
+
+#[test]
+fn the_label_of_a_button_says_what_it_sets() {
+    let (words, numbers) = (words(), numbers());
+    for lesson in lessons() {
+        for step in &lesson.steps {
+            for button in step.set.iter().filter(|button| !button.keys.is_empty()) {
+                let case = case(&step.case, &button.keys);
+                let label = &words[&lesson.id].steps[&step.id].set[&button.id];
+                for id in ids(label).unwrap().0 {
+                    let key = numbers[id].key.as_deref();
+                    let is = key.is_some_and(|key| says_key_of(&numbers[id], key, &case));
+                    assert!(is, "{}.{}.{}: {label}", lesson.id, step.id, button.id);
+                }
+            }
+        }
     }
 }

@@ -3,7 +3,7 @@
 /// Digits and what the last of them is worth.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Said {
-    value: f64,
+    pub(crate) value: f64,
     last_place: f64,
 }
 

@@ -21,7 +21,7 @@ fn texts(lesson: &LessonWords) -> impl Iterator<Item = &String> {
 }
 
 /// The ids in the braces of a text, and the text without them.
-fn ids(text: &str) -> Result<(Vec<&str>, String), String> {
+pub(crate) fn ids(text: &str) -> Result<(Vec<&str>, String), String> {
     let mut rest = text;
     let (mut ids, mut plain) = (Vec::new(), String::new());
     while let Some((before, after)) = rest.split_once('{') {

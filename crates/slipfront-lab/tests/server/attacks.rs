@@ -156,7 +156,7 @@ fn paths_out_of_the_folder_are_refused() {
         secret,
         "../secret.csv",
         "secret.csv",
-        "/etc/passwd",
+        "/etc/passwd.csv",
         "..\\secret.csv",
     ] {
         for key in ["friction.mu_static_field", "load.pressure_field"] {

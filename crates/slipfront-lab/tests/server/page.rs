@@ -76,8 +76,10 @@ impl Page {
             let reply = self
                 .read()
                 .unwrap_or_else(|error| panic!("waiting for {what}: {error}"));
-            if let Some(reply) = reply.filter(&holds) {
-                return reply;
+            match reply {
+                Some(reply) if holds(&reply) => return reply,
+                Some(reply) => assert_ne!(reply["is"], "refused", "waiting for {what}: {reply}"),
+                None => {}
             }
         }
         panic!("{what} did not come");
@@ -86,6 +88,16 @@ impl Page {
     /// The next reply of this name.
     pub(crate) fn reply(&mut self, is: &str) -> Value {
         self.wait_for(is, |reply| reply["is"] == is)
+    }
+
+    /// The next picture.
+    pub(crate) fn next_picture(&mut self) -> &[u8] {
+        let before = self.pictures;
+        while self.pictures == before {
+            self.read()
+                .unwrap_or_else(|error| panic!("waiting for a picture: {error}"));
+        }
+        &self.picture
     }
 
     /// The sentence with which a request is refused.

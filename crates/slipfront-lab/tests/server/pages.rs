@@ -158,7 +158,7 @@ fn paint_undo_and_redo_change_the_texture() {
     // The picture shows it where it is: the row of y = 4 but for the four blocks in its middle and below.
     page.send(&json!({ "do": "view", "field": "contact_stress", "paused": true }));
     page.reply("numbers");
-    page.reply("numbers");
+    page.next_picture();
     let (size, pixels) = page.picture.split_at(36);
     assert_eq!(size[32..36], [10, 0, 8, 0]);
     let textured: Vec<usize> = (0..80).filter(|&b| pixels[b] == 255).collect();
@@ -173,12 +173,12 @@ fn changes_go_on_or_begin_at_rest_as_was_chosen() {
     page.wait_for("some steps", |reply| {
         reply["is"] == "numbers" && number(&reply["step"]) > 100.0
     });
-    page.send(&json!({ "do": "set", "keys": { "drive.speed": "0.5 m/s" }, "gesture": 1 }));
+    page.send(&json!({ "do": "set", "keys": { "drive.speed": "0.2 mm/s" }, "gesture": 1 }));
     let case = page.wait_for("the change", |reply| reply["why"] == "change");
-    assert_eq!(
-        (&case["leg"], number(&case["values"]["speed"]["si"])),
-        (&json!(1), 0.5)
-    );
+    assert_eq!(case["leg"], 1);
+    let speed = number(&case["values"]["speed"]["si"]);
+    // It became V* and a speed again.
+    assert!((speed / 2e-4 - 1.0).abs() < 1e-15, "{speed}");
     assert!(number(&case["time_before_s"]) > 0.0);
     page.wait_for("its numbers", |reply| {
         reply["is"] == "numbers" && number(&reply["step"]) > 100.0
@@ -242,9 +242,8 @@ fn a_run_folder_is_shown_again() {
     assert_eq!(number(&end["summary"]["mu_star_max"]), largest);
     // And a snapshot of then.
     page.send(&json!({ "do": "frames_of", "index": 2 }));
-    page.reply("numbers");
-    page.reply("numbers");
-    assert_eq!(page.picture[2], 1, "it is marked as recorded");
+    // That of the end may be under way.
+    while page.next_picture()[2] != 1 {}
     // Other files in the folder are no run.
     std::fs::write(lab.results().join("first/case.toml"), "slider.blocks = [3, 3]").unwrap();
     let said = page.refusal(&json!({ "do": "open", "source": { "folder": "first" } }));

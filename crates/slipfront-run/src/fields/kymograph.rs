@@ -21,8 +21,7 @@ const BIN_WIDTH: &str = "bin_width_m";
 pub fn kymograph_bytes(kymograph: &Kymograph, case: &Case) -> Vec<u8> {
     let (model, scales) = (&case.model, &case.scales);
     let bins = PositionBins::of(&model.lattice, &model.drive);
-    let (steps, shares): (Vec<f64>, Vec<Vec<f32>>) = kymograph.rows().unzip();
-    let times: Vec<f64> = steps.iter().map(|step| step * case.time_plan.dt_star).collect();
+    let data = KymographData::of(kymograph, case);
     let place = match model.drive.rotation {
         None => "distance along the drive",
         Some(_) => "distance from the axis of the rotation",
@@ -39,7 +38,7 @@ pub fn kymograph_bytes(kymograph: &Kymograph, case: &Case) -> Vec<u8> {
     let share = "share of the blocks in contact that slide";
     let definition = Definition {
         records: 0,
-        dimensions: vec![(TIME, steps.len()), (PLACE, bins.count)],
+        dimensions: vec![(TIME, data.time_star.len()), (PLACE, bins.count)],
         attributes: vec![
             Attribute::text("Conventions", "CF-1.8"),
             Attribute::text("title", "Sliding blocks of a spring-block model of friction"),
@@ -58,8 +57,8 @@ pub fn kymograph_bytes(kymograph: &Kymograph, case: &Case) -> Vec<u8> {
     };
     let mut bytes = definition.header().bytes;
     // All variables have whole multiples of four bytes and stand in this order.
-    append(&mut bytes, times.iter().map(|time| time * scales.time()));
-    append(&mut bytes, times.iter().copied());
+    append(&mut bytes, data.time_star.iter().map(|time| time * scales.time()));
+    append(&mut bytes, data.time_star.iter().copied());
     append(
         &mut bytes,
         (0..bins.count).map(|bin| bins.middle(bin) * scales.block_size),
@@ -70,7 +69,7 @@ pub fn kymograph_bytes(kymograph: &Kymograph, case: &Case) -> Vec<u8> {
     );
     // One NaN only: its sign and payload depend on the machine.
     let one_nan = |share: f32| if share.is_nan() { f32::NAN } else { share };
-    append(&mut bytes, shares.into_iter().flatten().map(one_nan));
+    append(&mut bytes, data.sliding_share.into_iter().map(one_nan));
     bytes
 }
 

@@ -2,9 +2,10 @@
 
 use super::block::{Block, Field};
 use super::totals::{ContactTotals, Totals};
-use crate::checkpoint::MotionBounds;
+use crate::checkpoint::{BlockColumn, MotionBounds};
 use crate::model::Model;
 use crate::position_bins::PositionBins;
+use crate::state::State;
 
 /// A kernel with the state of all blocks. `number` is that of the present step, unless a function advances to it.
 pub(crate) trait Engine: Send + Sync {
@@ -31,10 +32,13 @@ pub(crate) trait Engine: Send + Sync {
     /// Displacement now and velocity half a step later of block `b`.
     fn motion(&self, b: usize) -> [[f64; 2]; 2];
 
-    /// When the blocks from `first` on first slid while in contact; NaN of those that never have.
-    fn read_first_slips(&self, first: usize, values: &mut [f64]);
+    /// The same of all blocks.
+    fn state(&self) -> State;
 
-    /// The same of every block; memory for the state is given back before any is taken for them.
+    /// A column of a checkpoint: its values of the blocks from `first` on.
+    fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]);
+
+    /// That of the first slips, of every block; memory for the state is given back before any is taken for them.
     fn into_first_slips(self: Box<Self>) -> Vec<f64>;
 
     /// Largest square of a contact stress of a block in contact at any step so far.
@@ -56,7 +60,4 @@ pub(crate) trait Engine: Send + Sync {
     /// What the law of friction remembers of the blocks from `first` on: one of its
     /// [`Friction::n_columns`](crate::friction::Friction::n_columns), of a kernel that computes such laws.
     fn read_memory(&self, _column: usize, _first: usize, _values: &mut [f64]) {}
-
-    /// Velocity of block `b` as a checkpoint keeps it.
-    fn checkpoint_velocity(&self, b: usize) -> [f64; 2];
 }

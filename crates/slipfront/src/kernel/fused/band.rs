@@ -268,15 +268,32 @@ impl Band {
         }
     }
 
-    /// When those blocks from `first` on that are its own first slid in contact, t*; NaN of those that never have.
-    pub(super) fn read_first_slips(&self, layout: &Layout, dt_star: f64, first: usize, values: &mut [f64]) {
+    /// Gives the values of a column of a checkpoint, from block `first` on, as far as these blocks are its own.
+    pub(super) fn read_column(
+        &self,
+        layout: &Layout,
+        dt_star: f64,
+        column: BlockColumn,
+        first: usize,
+        values: &mut [f64],
+    ) {
         for [of_values, own] in self.common(layout, first, values.len()) {
-            for (time_star, &step) in values[of_values].iter_mut().zip(&self.first_slip[own]) {
-                *time_star = if step == NEVER {
-                    f64::NAN
-                } else {
-                    f64::from(step) * dt_star
-                };
+            let values = &mut values[of_values];
+            let with_halo = self.halo + own.start..self.halo + own.end;
+            match column {
+                BlockColumn::DisplacementX => values.copy_from_slice(&self.displacement.x[with_halo]),
+                BlockColumn::DisplacementY => values.copy_from_slice(&self.displacement.y[with_halo]),
+                BlockColumn::VelocityX => values.copy_from_slice(&self.velocity.x[own]),
+                BlockColumn::VelocityY => values.copy_from_slice(&self.velocity.y[own]),
+                BlockColumn::FirstSlip => {
+                    for (time_star, &step) in values.iter_mut().zip(&self.first_slip[own]) {
+                        *time_star = if step == NEVER {
+                            f64::NAN
+                        } else {
+                            f64::from(step) * dt_star
+                        };
+                    }
+                }
             }
         }
     }

@@ -537,9 +537,23 @@ impl Engine for Fused {
         [band.displacement.at(band.halo + k), band.velocity.at(k)]
     }
 
-    fn read_first_slips(&self, first: usize, values: &mut [f64]) {
+    fn state(&self) -> State {
+        let mut state = State::at_rest(self.layout.n_own_blocks());
+        let columns = [
+            (BlockColumn::DisplacementX, &mut state.displacement.x),
+            (BlockColumn::DisplacementY, &mut state.displacement.y),
+            (BlockColumn::VelocityX, &mut state.velocity.x),
+            (BlockColumn::VelocityY, &mut state.velocity.y),
+        ];
+        for (column, values) in columns {
+            self.read_column(column, 0, values);
+        }
+        state
+    }
+
+    fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]) {
         for band in &self.bands {
-            band.read_first_slips(&self.layout, self.dt_star, first, values);
+            band.read_column(&self.layout, self.dt_star, column, first, values);
         }
     }
 
@@ -548,7 +562,7 @@ impl Engine for Fused {
             (band.displacement, band.velocity) = (Vectors::default(), Vectors::default());
         }
         let mut first_slips = vec![0.0; self.layout.n_own_blocks()];
-        self.read_first_slips(0, &mut first_slips);
+        self.read_column(BlockColumn::FirstSlip, 0, &mut first_slips);
         first_slips
     }
 
@@ -575,10 +589,6 @@ impl Engine for Fused {
 
     fn motion_bounds(&self) -> Option<MotionBounds> {
         Some(self.motion_bounds)
-    }
-
-    fn checkpoint_velocity(&self, b: usize) -> [f64; 2] {
-        self.motion(b)[1]
     }
 }
 

@@ -84,7 +84,7 @@ fn history(model: &Model, level: Level, steps: u64) -> Vec<u64> {
         bits.extend(numbers.into_iter().map(f64::to_bits));
     }
     let mut first_slips = vec![0.0; model.lattice.n_blocks()];
-    kernel.read_first_slips(0, &mut first_slips);
+    kernel.read_column(BlockColumn::FirstSlip, 0, &mut first_slips);
     assert!(first_slips.iter().any(|&time_star| time_star > 0.0));
     bits
 }

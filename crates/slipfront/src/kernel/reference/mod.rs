@@ -203,6 +203,15 @@ impl Reference {
         }
     }
 
+    /// Values of an array, of the blocks from `first` on.
+    fn read(&self, first: usize, values: &mut [f64], array: impl Fn(&Band) -> &[f64]) {
+        for one in &self.bands {
+            if let Some([own, of_values]) = one.common(first, values.len()) {
+                values[of_values].copy_from_slice(&array(&one.band)[own]);
+            }
+        }
+    }
+
     /// The band of block `b`, and its number there.
     fn locate(&self, b: usize) -> (&Band, usize) {
         let one = &self.bands[self.bands.partition_point(|one| one.blocks.end <= b)];
@@ -374,12 +383,24 @@ impl Engine for Reference {
         [state.displacement.at(b), state.velocity.at(b)]
     }
 
-    fn read_first_slips(&self, first: usize, values: &mut [f64]) {
-        for one in &self.bands {
-            if let Some([own, of_values]) = one.common(first, values.len()) {
-                values[of_values].copy_from_slice(&one.band.first_slip[own]);
-            }
-        }
+    fn state(&self) -> State {
+        let mut state = State::at_rest(self.bands.last().map_or(0, |one| one.blocks.end));
+        self.read(0, &mut state.displacement.x, |band| &band.state.displacement.x);
+        self.read(0, &mut state.displacement.y, |band| &band.state.displacement.y);
+        self.read(0, &mut state.velocity.x, |band| &band.state.velocity.x);
+        self.read(0, &mut state.velocity.y, |band| &band.state.velocity.y);
+        state
+    }
+
+    fn read_column(&self, column: BlockColumn, first: usize, values: &mut [f64]) {
+        self.read(first, values, |band| match column {
+            BlockColumn::DisplacementX => &band.state.displacement.x,
+            BlockColumn::DisplacementY => &band.state.displacement.y,
+            // Half a step before the present instant, which is evaluated again when it resumes.
+            BlockColumn::VelocityX => &band.forces.velocity.x,
+            BlockColumn::VelocityY => &band.forces.velocity.y,
+            BlockColumn::FirstSlip => &band.first_slip,
+        });
     }
 
     fn into_first_slips(self: Box<Self>) -> Vec<f64> {
@@ -407,17 +428,7 @@ impl Engine for Reference {
     }
 
     fn read_memory(&self, column: usize, first: usize, values: &mut [f64]) {
-        for one in &self.bands {
-            if let Some([own, of_values]) = one.common(first, values.len()) {
-                values[of_values].copy_from_slice(&one.band.contact.columns()[column][own]);
-            }
-        }
-    }
-
-    /// Half a step before the present instant, which is evaluated again when it resumes.
-    fn checkpoint_velocity(&self, b: usize) -> [f64; 2] {
-        let (band, b) = self.locate(b);
-        band.forces.velocity.at(b)
+        self.read(first, values, |band| band.contact.columns()[column]);
     }
 }
 
