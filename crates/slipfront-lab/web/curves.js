@@ -6,7 +6,7 @@ import { on, state } from './store.js';
 import { say } from './text.js';
 import { colour, onTheme } from './theme.js';
 
-const SPACING_MS = 110;
+const SPACING_MS = 200;
 /** With more points than this every second one is left out: no screen shows more. */
 const MOST = 20_000;
 

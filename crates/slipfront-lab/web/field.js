@@ -3,7 +3,7 @@
 import { Camera } from './camera.js';
 import { drawBar, table } from './colours.js';
 import { atMost, find, make, onPress } from './element.js';
-import { FIELDS, NO_BLOCK } from './frames.js';
+import { FIELDS } from './frames.js';
 import { drawOverlay } from './overlay.js';
 import { Picture } from './picture.js';
 import { on, put, state } from './store.js';
@@ -11,12 +11,12 @@ import { say } from './text.js';
 import { colour, onTheme } from './theme.js';
 import { setView } from './view.js';
 
-const BAR_SPACING_MS = 100;
+const BAR_SPACING_MS = 250;
 const BAR_HEIGHT = 46;
 
 export const camera = new Camera();
 
-/** What follows the pointer and the keyboard: drawn with the next picture. @type {{ring: {point: number[], radius: number}|null, cursor: number[]|null}} */
+/** What follows the pointer and the keyboard. @type {import('./overlay.js').Pointers} */
 export const pointers = { ring: null, cursor: null };
 
 /** @type {Picture} */
@@ -52,11 +52,13 @@ export function redraw() {
 export function drawNow() {
   cancelAnimationFrame(waiting);
   waiting = 0;
-  const ratio = devicePixelRatio;
   if (newest && !taken) picture.take(newest);
   taken = true;
-  picture.draw(camera, ratio);
-  if (above) drawOverlay(find('overlay').getContext('2d'), camera, ratio, pointers);
+  picture.draw();
+  if (above) {
+    picture.place(camera);
+    drawOverlay(find('overlay'), camera, devicePixelRatio, pointers);
+  }
   above = false;
   for (const action of watchers) action(picture.canvas);
 }
@@ -81,7 +83,7 @@ const refreshBar = atMost(drawBarOfPage, BAR_SPACING_MS);
 
 function recolour() {
   colours = table(find('colourmap').value);
-  picture.colour(colours, colours.subarray(4 * NO_BLOCK, 4 * NO_BLOCK + 4));
+  picture.colour(colours);
   find('legend-textured').style.background = colour('textured');
   find('legend-not-yet').style.background = colour('not-yet');
   refreshBar();
@@ -91,10 +93,6 @@ function recolour() {
 function fitCanvas() {
   const frame = find('frame');
   camera.pixels = [frame.clientWidth, frame.clientHeight];
-  for (const canvas of [picture.canvas, find('overlay')]) {
-    canvas.width = Math.round(frame.clientWidth * devicePixelRatio);
-    canvas.height = Math.round(frame.clientHeight * devicePixelRatio);
-  }
   refreshBar();
   redraw();
 }

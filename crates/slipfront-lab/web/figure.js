@@ -42,8 +42,15 @@ export function fieldFigure(scale) {
     const { numbers } = state;
     begin(context, width, height, say('figure_title', { name: state.case?.name ?? '', t: fixed(numbers?.t_star, 1), mu: fixed(numbers?.mu_star) }));
     context.imageSmoothingEnabled = false;
-    context.drawImage(field, MARGIN, MARGIN + TITLE, wide, high);
-    context.drawImage(find('overlay'), MARGIN, MARGIN + TITLE, wide, high);
+    const [left, top] = camera.toPixels([0, camera.blocks[1]]);
+    context.save();
+    context.beginPath();
+    context.rect(MARGIN, MARGIN + TITLE, wide, high);
+    context.clip();
+    context.drawImage(field, MARGIN + left, MARGIN + TITLE + top, camera.blocks[0] * camera.scale, camera.blocks[1] * camera.scale);
+    context.restore();
+    const above = find('overlay');
+    if (!above.hidden) context.drawImage(above, MARGIN + above.offsetLeft, MARGIN + TITLE + above.offsetTop, above.offsetWidth, above.offsetHeight);
     barInto(context, MARGIN, MARGIN + TITLE + high + 6, wide);
   };
   return [canvas, draw];

@@ -4,6 +4,11 @@ import { handles } from './shapes.js';
 import { state } from './store.js';
 import { colour } from './theme.js';
 
+/** @typedef {{ring: {point: number[], radius: number}|null, cursor: number[]|null}} Pointers */
+
+/** Pixels around what is drawn: half a cursor and the width of lines. */
+const MARGIN = 12;
+
 /** @param {CanvasRenderingContext2D} context @param {import('./camera.js').Camera} camera @param {number[][]} outline */
 function trace(context, camera, outline) {
   outline.forEach((point, k) => {
@@ -73,14 +78,39 @@ function drawCursor(context, camera, point) {
   strokeTwice(context, 1.5);
 }
 
+/** The part of the frame that is drawn on, [left, top, right, bottom] in pixels. @param {import('./camera.js').Camera} camera @param {Pointers} pointers */
+function extent(camera, { ring, cursor }) {
+  const points = (state.case?.shapes ?? []).flatMap((/** @type {any} */ shape) => shape.outlines.flat()).map((/** @type {number[]} */ point) => camera.toPixels(point));
+  if (cursor) points.push(camera.toPixels(cursor));
+  if (ring) {
+    const [x, y] = camera.toPixels(ring.point);
+    const reach = ring.radius * camera.scale;
+    points.push([x - reach, y - reach], [x + reach, y + reach]);
+  }
+  const box = [Infinity, Infinity, -Infinity, -Infinity];
+  for (const [x, y] of points) {
+    box[0] = Math.min(box[0], x);
+    box[1] = Math.min(box[1], y);
+    box[2] = Math.max(box[2], x);
+    box[3] = Math.max(box[3], y);
+  }
+  return box.map((value, side) => Math.min(Math.max(Math.round(value + (side < 2 ? -MARGIN : MARGIN)), 0), camera.pixels[side % 2]));
+}
+
 /**
- * Draws all of it. @param {CanvasRenderingContext2D} context @param {import('./camera.js').Camera} camera @param {number} ratio
- * @param {{ring: {point: number[], radius: number}|null, cursor: number[]|null}} pointers
+ * Draws all of it on a canvas as large as what is drawn: what lies above the field costs with every picture.
+ * @param {HTMLCanvasElement} canvas @param {import('./camera.js').Camera} camera @param {number} ratio @param {Pointers} pointers
  */
-export function drawOverlay(context, camera, ratio, { ring, cursor }) {
-  context.setTransform(ratio, 0, 0, ratio, 0, 0);
-  context.clearRect(0, 0, camera.pixels[0], camera.pixels[1]);
+export function drawOverlay(canvas, camera, ratio, pointers) {
+  const [left, top, right, bottom] = extent(camera, pointers);
+  canvas.hidden = right <= left || bottom <= top;
+  if (canvas.hidden) return;
+  Object.assign(canvas.style, { left: `${left}px`, top: `${top}px`, width: `${right - left}px`, height: `${bottom - top}px` });
+  canvas.width = Math.round((right - left) * ratio);
+  canvas.height = Math.round((bottom - top) * ratio);
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
+  context.setTransform(ratio, 0, 0, ratio, -left * ratio, -top * ratio);
   drawShapes(context, camera);
-  if (ring) drawRing(context, camera, ring);
-  if (cursor) drawCursor(context, camera, cursor);
+  if (pointers.ring) drawRing(context, camera, pointers.ring);
+  if (pointers.cursor) drawCursor(context, camera, pointers.cursor);
 }

@@ -1,5 +1,6 @@
 // @ts-check
-// The field as a WebGL2 picture: bytes in one texture, their colours in another, looked up for every pixel.
+// The field as a WebGL2 picture with one pixel for each block: bytes in one texture, their colours in another. The browser enlarges
+// it: without a graphics card that takes half the time of drawing every pixel of the screen here.
 
 const CORNERS = `#version 300 es
 void main() {
@@ -11,19 +12,10 @@ const COLOURS = `#version 300 es
 precision highp float;
 uniform highp sampler2D values;
 uniform sampler2D colours;
-uniform vec2 corner;
-uniform float pixel;
-uniform vec4 background;
 out vec4 colour;
 void main() {
-  ivec2 block = ivec2(floor(corner + gl_FragCoord.xy * pixel));
-  ivec2 size = textureSize(values, 0);
-  if (any(lessThan(block, ivec2(0))) || any(greaterThanEqual(block, size))) {
-    colour = background;
-  } else {
-    int value = int(texelFetch(values, block, 0).r * 255.0 + 0.5);
-    colour = texelFetch(colours, ivec2(value, 0), 0);
-  }
+  int value = int(texelFetch(values, ivec2(gl_FragCoord.xy), 0).r * 255.0 + 0.5);
+  colour = texelFetch(colours, ivec2(value, 0), 0);
 }`;
 
 /** @param {WebGL2RenderingContext} gl @param {number} kind @param {string} text */
@@ -48,7 +40,7 @@ export class Picture {
   /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
     this.canvas = canvas;
-    this.gl = canvas.getContext('webgl2', { antialias: false, alpha: false });
+    this.gl = canvas.getContext('webgl2', { antialias: false, alpha: false, depth: false });
     this.size = [0, 0];
     if (this.gl) this.prepare(this.gl);
   }
@@ -63,19 +55,18 @@ export class Picture {
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
     texture(gl, 1);
     texture(gl, 0);
-    this.places = Object.fromEntries(['values', 'colours', 'corner', 'pixel', 'background'].map((name) => [name, gl.getUniformLocation(program, name)]));
-    gl.uniform1i(this.places.values, 0);
-    gl.uniform1i(this.places.colours, 1);
+    gl.uniform1i(gl.getUniformLocation(program, 'values'), 0);
+    gl.uniform1i(gl.getUniformLocation(program, 'colours'), 1);
     this.size = [0, 0];
   }
 
-  /** The colours of the bytes, and of what is beside the slider. @param {Uint8Array} bytes @param {Uint8Array} background */
-  colour(bytes, background) {
-    if (!this.gl || !this.places) return;
-    this.gl.activeTexture(this.gl.TEXTURE1);
-    this.gl.texImage2D(this.gl.TEXTURE_2D, 0, this.gl.RGBA8, 256, 1, 0, this.gl.RGBA, this.gl.UNSIGNED_BYTE, bytes);
-    this.gl.activeTexture(this.gl.TEXTURE0);
-    this.gl.uniform4f(this.places.background, background[0] / 255, background[1] / 255, background[2] / 255, 1);
+  /** The colours of the bytes. @param {Uint8Array} bytes */
+  colour(bytes) {
+    const { gl } = this;
+    if (!gl) return;
+    gl.activeTexture(gl.TEXTURE1);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, 256, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    gl.activeTexture(gl.TEXTURE0);
   }
 
   /** Takes the values of a new picture. @param {{nx: number, ny: number, bytes: Uint8Array}} picture */
@@ -87,17 +78,23 @@ export class Picture {
     } else {
       gl.texImage2D(gl.TEXTURE_2D, 0, gl.R8, nx, ny, 0, gl.RED, gl.UNSIGNED_BYTE, bytes);
       this.size = [nx, ny];
+      this.canvas.width = nx;
+      this.canvas.height = ny;
+      gl.viewport(0, 0, nx, ny);
     }
   }
 
-  /** Draws what `camera` sees; pixels of the canvas are `ratio` times finer than those of the camera. @param {import('./camera.js').Camera} camera @param {number} ratio */
-  draw(camera, ratio) {
-    const { gl, places } = this;
-    if (!gl || !places) return;
-    const [left, bottom] = camera.toBlocks([0, camera.pixels[1]]);
-    gl.viewport(0, 0, this.canvas.width, this.canvas.height);
-    gl.uniform2f(places.corner, left, bottom);
-    gl.uniform1f(places.pixel, 1 / (camera.scale * ratio));
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  /** Draws the values that were taken last. */
+  draw() {
+    this.gl?.drawArrays(this.gl.TRIANGLES, 0, 3);
+  }
+
+  /** Puts the picture where `camera` sees it. @param {import('./camera.js').Camera} camera */
+  place(camera) {
+    const [left, top] = camera.toPixels([0, camera.blocks[1]]);
+    const { style } = this.canvas;
+    style.width = `${camera.blocks[0] * camera.scale}px`;
+    style.height = `${camera.blocks[1] * camera.scale}px`;
+    style.transform = `translate(${left}px, ${top}px)`;
   }
 }
