@@ -9,8 +9,14 @@ use crate::protocol::PresetEntry;
 
 static CASES: Dir = include_dir!("$CARGO_MANIFEST_DIR/cases");
 
-/// The case with which the page opens unless another one is named.
-pub(crate) const OPENING: &str = "circle";
+/// The case with which the page opens unless another one is named: that of the circle, of more blocks.
+///
+/// # Errors
+/// As for [`document`].
+pub(crate) fn opening() -> Result<Document, String> {
+    let blocks = Value::Array(vec![Value::Integer(100); 2]);
+    document("circle")?.with([("slider.blocks".to_owned(), Some(blocks))])
+}
 
 const PAPER: &str = "paper/";
 

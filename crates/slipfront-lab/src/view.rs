@@ -57,10 +57,10 @@ pub(crate) struct View {
 impl Default for View {
     fn default() -> Self {
         Self {
-            field: Shown::ContactStress,
+            field: Shown::Traction,
             visible: true,
             paused: false,
-            pace: 40.0,
+            pace: 25.0,
             twin: true,
             kymograph: false,
             frames_per_second: 60.0,

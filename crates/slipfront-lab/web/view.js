@@ -6,10 +6,10 @@ import { put, state } from './store.js';
 const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
 
 put('view', {
-  field: 'contact_stress',
+  field: 'traction',
   visible: !document.hidden,
   paused: calm,
-  pace: 10,
+  pace: 25,
   twin: true,
   kymograph: true,
   frames_per_second: 60,

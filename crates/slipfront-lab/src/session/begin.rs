@@ -1,0 +1,76 @@
+//! Runs begin: from rest, or as the next leg.
+
+use std::sync::Arc;
+
+use slipfront_case::case::Case;
+
+use super::state::{Session, Twin};
+use crate::live::Live;
+
+impl Session {
+    /// Runs the present case again, from rest or from where it is.
+    pub(super) fn run_present(&mut self, why: &'static str, from_rest: bool) -> Result<(), String> {
+        let case = self
+            .document()?
+            .case_to_show()
+            .map_err(|error| error.to_string())?;
+        self.begin(&Arc::new(case), why, from_rest)
+    }
+
+    /// Runs a case, of which the document is the present one.
+    pub(super) fn begin(
+        &mut self,
+        case: &Arc<Case>,
+        why: &'static str,
+        from_rest: bool,
+    ) -> Result<(), String> {
+        let went_on = match &mut self.live {
+            // A run that cannot go on under this case begins again.
+            Some(live) if !from_rest => live.change(case).is_ok(),
+            _ => false,
+        };
+        if !went_on {
+            self.live = Some(Live::from_rest(case, self.setting.threads));
+            self.painter.forget_scale();
+            self.clock.due = 0.0;
+        }
+        self.news.from_rest |= !went_on;
+        self.news.redraw = true;
+        self.shown_recording = None;
+        self.begin_twin(!went_on)?;
+        self.tell_case(why);
+        Ok(())
+    }
+
+    /// Lets the slider without texture run beside it, if there is one to compare with.
+    pub(super) fn begin_twin(&mut self, from_rest: bool) -> Result<(), String> {
+        let document = self.document()?;
+        if !self.view.twin || document.textures().as_array().is_none_or(Vec::is_empty) {
+            self.twin = None;
+            return Ok(());
+        }
+        let document = document.without_texture();
+        let toml = document.toml();
+        // What it depends on has not changed: it stays as far as it is.
+        if let Some(twin) = &self.twin
+            && twin.toml == toml
+            && (!from_rest || twin.live.leg == 0)
+        {
+            return Ok(());
+        }
+        let case = Arc::new(document.case_to_show().map_err(|error| error.to_string())?);
+        let went_on = match &mut self.twin {
+            Some(twin) if !from_rest => {
+                twin.toml.clone_from(&toml);
+                twin.live.change(&case).is_ok()
+            }
+            _ => false,
+        };
+        if !went_on {
+            let live = Live::from_rest(&case, self.setting.threads);
+            self.twin = Some(Twin { live, toml });
+            self.news.twin_reset = true;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,190 @@
+//! Changes of the case.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use toml::Value;
+
+use super::brush::stroke;
+use super::state::{Edited, Session};
+use crate::document::Document;
+use crate::history::History;
+use crate::opening::Opened;
+use crate::protocol::{Reply, Source};
+use crate::view::AfterChange;
+use crate::{base64, presets, replay};
+
+impl Session {
+    pub(super) fn open(&mut self, source: Source) -> Result<(), String> {
+        let mut recorded = None;
+        let document = if let Some(name) = source.preset {
+            presets::document(&name)?
+        } else if let Some(name) = source.folder {
+            let (document, found) = replay::read(&replay::folder(&self.setting.results, &name)?)?;
+            recorded = Some(found);
+            document
+        } else if let Some(toml) = source.toml {
+            let mut files = BTreeMap::new();
+            for (name, text) in source.files {
+                files.insert(name, base64::decode(&text)?);
+            }
+            let read = |name: &str| {
+                files
+                    .get(name)
+                    .cloned()
+                    .ok_or_else(|| std::io::ErrorKind::NotFound.into())
+            };
+            Document::new("case", &toml, read).map_err(|error| error.to_string())?
+        } else {
+            match &self.setting.start.0 {
+                Opened::Preset => presets::opening()?,
+                Opened::Case(document) => Document::clone(document),
+                Opened::Folder(path) => {
+                    let (document, found) = replay::read(path)?;
+                    recorded = Some(found);
+                    document
+                }
+            }
+        };
+        // Whether it can be run is known before anything is given up.
+        let case = Arc::new(document.case_to_show().map_err(|error| error.to_string())?);
+        (self.edited, self.mask) = (None, None);
+        (self.repeating, self.shown_recording) = (None, None);
+        self.history = Some(History::new(document));
+        self.recorded = recorded;
+        self.news.recorded = self.recorded.is_some();
+        self.begin(&case, "open", true)?;
+        if let Some(snapshots) = self
+            .recorded
+            .as_ref()
+            .and_then(|recorded| recorded.snapshots.as_ref())
+        {
+            let times_star = snapshots.frames.iter().map(|frame| frame.time_star).collect();
+            self.outbox.reply(&Reply::Recorded { times_star });
+        }
+        Ok(())
+    }
+
+    pub(super) fn set(
+        &mut self,
+        keys: serde_json::Map<String, serde_json::Value>,
+        gesture: u64,
+    ) -> Result<(), String> {
+        self.run_painted();
+        let mut changes = Vec::new();
+        for (key, value) in keys {
+            let value = match value {
+                serde_json::Value::Null => None,
+                value => Some(
+                    Value::try_from(value)
+                        .map_err(|error| format!("`{key}` is no value of TOML: {error}"))?,
+                ),
+            };
+            changes.push((key, value));
+        }
+        let document = self.document()?.with(changes)?;
+        self.edited = Some(Edited {
+            document,
+            gesture,
+            of: "set",
+        });
+        Ok(())
+    }
+
+    pub(super) fn paint(
+        &mut self,
+        points: &[[f64; 2]],
+        radius: f64,
+        textured: bool,
+        gesture: u64,
+    ) -> Result<(), String> {
+        self.run_set();
+        let live = self.live.as_ref().ok_or("no case is open yet")?;
+        let model = &live.case().model;
+        let lattice = &model.lattice;
+        let (mask, painted_by) = self
+            .mask
+            .get_or_insert_with(|| (model.surface.textured.clone(), gesture));
+        *painted_by = gesture;
+        stroke(mask, lattice, points, radius, textured)
+    }
+
+    pub(super) fn image(&mut self, text: &str, threshold: f64, gesture: u64) -> Result<(), String> {
+        self.run_painted();
+        let image = base64::decode(text)?;
+        let document = self
+            .document()?
+            .with_image(image, threshold)
+            .map_err(|error| error.to_string())?;
+        self.edited = Some(Edited {
+            document,
+            gesture,
+            of: "image",
+        });
+        Ok(())
+    }
+
+    pub(super) fn go_back(&mut self, why: &'static str, go: fn(&mut History) -> bool) -> Result<(), String> {
+        self.run_edited();
+        match self.history.as_mut().is_some_and(go) {
+            true => self.run_present(why, self.view.after_change == AfterChange::Rest),
+            false => Ok(()),
+        }
+    }
+
+    /// Runs the case with all that was edited since.
+    pub(super) fn run_edited(&mut self) {
+        self.run_painted();
+        self.run_set();
+    }
+
+    /// Makes a case of what was painted.
+    pub(super) fn run_painted(&mut self) {
+        let Some((mask, gesture)) = self.mask.take() else {
+            return;
+        };
+        let made = self.document().map(|document| {
+            let nx = self.live.as_ref().map_or(1, |live| live.case().model.lattice.nx);
+            document.with_mask(&mask, nx).map_err(|error| error.to_string())
+        });
+        match made.and_then(|made| made) {
+            Ok(document) => {
+                self.edited = Some(Edited {
+                    document,
+                    gesture,
+                    of: "paint",
+                });
+                self.run_set();
+            }
+            Err(sentence) => self.outbox.reply(&Reply::Refused {
+                of: "paint",
+                sentence,
+            }),
+        }
+    }
+
+    /// Runs the case whose keys were changed.
+    pub(super) fn run_set(&mut self) {
+        let Some(Edited {
+            document,
+            gesture,
+            of,
+        }) = self.edited.take()
+        else {
+            return;
+        };
+        let from_rest = self.view.after_change == AfterChange::Rest;
+        let made = document.case_to_show().map_err(|error| error.to_string());
+        let begun = made.and_then(|case| {
+            if let Some(history) = &mut self.history {
+                history.change(document, gesture);
+            }
+            self.begin(&Arc::new(case), "change", from_rest)
+        });
+        if let Err(sentence) = begun {
+            self.outbox.reply(&Reply::Refused { of, sentence });
+            // The page shows what it has asked for: it is told what holds.
+            self.tell_case("refused");
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! What a page asks for.
+
+use std::sync::Arc;
+
+use super::state::Session;
+use crate::history::History;
+use crate::protocol::{Reply, Request};
+use crate::repeat::{Stoppable, repeat};
+use crate::{base64, save, zip};
+
+/// Most seeds of a repetition.
+const MAX_SEEDS: u64 = 32;
+
+impl Session {
+    pub(super) fn answer(&mut self, request: Request) {
+        let of = request.name();
+        if let Err(sentence) = self.obey(request) {
+            self.outbox.reply(&Reply::Refused { of, sentence });
+        }
+    }
+
+    pub(super) fn obey(&mut self, request: Request) -> Result<(), String> {
+        match request {
+            Request::Open { source } => self.open(source),
+            Request::Set { keys, gesture } => self.set(keys, gesture),
+            Request::Paint {
+                points,
+                radius,
+                textured,
+                gesture,
+            } => self.paint(&points, radius, textured, gesture),
+            Request::Image {
+                png,
+                threshold,
+                gesture,
+            } => self.image(&png, threshold, gesture),
+            Request::Undo => self.go_back("undo", History::undo),
+            Request::Redo => self.go_back("redo", History::redo),
+            Request::Rest => {
+                self.run_edited();
+                self.run_present("rest", true)
+            }
+            Request::View(change) => {
+                let had_twin = self.view.twin;
+                self.view.change(&change)?;
+                self.news.redraw = true;
+                self.clock.due = 0.0;
+                if had_twin != self.view.twin && self.history.is_some() {
+                    self.begin_twin(true)?;
+                }
+                Ok(())
+            }
+            Request::Step { count } => {
+                self.single_steps = count.clamp(1, 10_000);
+                Ok(())
+            }
+            Request::Repeat { seeds } => self.repeat(seeds),
+            Request::Save { name } => self.save(name),
+            Request::SaveStop => {
+                self.saving = None;
+                Ok(())
+            }
+            Request::Export => self.export(),
+            Request::FramesOf { index } => {
+                self.shown_recording = index;
+                self.painter.forget_scale();
+                self.news.redraw = true;
+                Ok(())
+            }
+            #[cfg(test)]
+            Request::Panic => panic!("a defect that a test asks for"),
+        }
+    }
+
+    pub(super) fn repeat(&mut self, seeds: u64) -> Result<(), String> {
+        self.repeating = None;
+        if seeds == 0 {
+            return Ok(());
+        }
+        if !(2..=MAX_SEEDS).contains(&seeds) {
+            return Err(format!(
+                "{seeds} seeds were asked for, where there may be 2 to {MAX_SEEDS}"
+            ));
+        }
+        self.run_edited();
+        let (document, outbox) = (self.document()?.clone(), Arc::clone(&self.outbox));
+        let work = Stoppable::begin(&self.working, move |stop| repeat(&document, seeds, &outbox, stop));
+        self.repeating = Some(work.map_err(|error| error.to_string())?);
+        Ok(())
+    }
+
+    pub(super) fn save(&mut self, name: String) -> Result<(), String> {
+        self.run_edited();
+        save::folder(&self.setting.results, &name)?;
+        let (document, outbox, setting) = (
+            self.document()?.clone(),
+            Arc::clone(&self.outbox),
+            Arc::clone(&self.setting),
+        );
+        let work = Stoppable::begin(&self.working, move |stop| {
+            save::save(document, &setting.results, &name, setting.threads, &outbox, stop);
+        });
+        self.saving = Some(work.map_err(|error| error.to_string())?);
+        Ok(())
+    }
+
+    pub(super) fn export(&mut self) -> Result<(), String> {
+        self.run_edited();
+        let document = self.document()?;
+        let toml = document.toml();
+        let files = document
+            .files()
+            .iter()
+            .map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
+        let all = [("case.toml", toml.as_bytes())].into_iter().chain(files.clone());
+        let archive = zip::archive(all).map_err(|error| format!("the archive cannot be made: {error}"))?;
+        self.outbox.reply(&Reply::Exported {
+            toml: &toml,
+            files: files.map(|(name, bytes)| (name, base64::encode(bytes))).collect(),
+            zip: base64::encode(&archive),
+        });
+        Ok(())
+    }
+}

@@ -1,0 +1,224 @@
+//! What a page is told: the case, the curve, pictures, numbers.
+
+use std::time::Duration;
+
+use slipfront::PositionBins;
+use slipfront_run::summary::summary_json;
+
+use super::clock::is_due;
+use super::state::{News, Session};
+use crate::live::Points;
+use crate::picture::{self, Frame};
+use crate::protocol::{CaseReply, CurveReply, NumbersReply, ProbeReply, Reply, Units};
+use crate::{controls, shapes};
+
+/// Time between two reports of numbers, two of the block under the pointer, and two kymographs.
+const NUMBERS: Duration = Duration::from_millis(200);
+const PROBE: Duration = Duration::from_millis(100);
+const KYMOGRAPH: Duration = Duration::from_millis(500);
+
+impl Session {
+    pub(super) fn tell_case(&mut self, why: &'static str) {
+        let (Some(history), Some(live)) = (&self.history, &self.live) else {
+            return;
+        };
+        let (document, case) = (history.present(), live.case());
+        let (scales, lattice) = (&case.scales, &case.model.lattice);
+        let reply = CaseReply {
+            name: &document.name,
+            toml: document.toml(),
+            files: document.files().keys().map(String::as_str).collect(),
+            link_files_bytes: document.files().values().map(Vec::len).sum(),
+            blocks: [lattice.nx, lattice.ny],
+            block_size_m: scales.block_size,
+            n_blocks: case.model.n_blocks(),
+            texture_percent: case.texture.meshed_percent,
+            texture: document.textures(),
+            shapes: shapes::outlines(case),
+            values: controls::values(case),
+            units: Units {
+                time_s: scales.time(),
+                displacement_m: scales.displacement(),
+                speed_m_s: scales.speed(),
+                stress_pa: scales.stress(),
+            },
+            dt_star: case.time_plan.dt_star,
+            duration_star: case.time_plan.end_star(),
+            kinetic_from_star: {
+                let peak = live.running().snapshot().peak;
+                case.time_plan
+                    .kinetic
+                    .time_star(&peak, case.model.loading_speed())
+            },
+            steady_level: case.expected.steady_level,
+            can_undo: history.can_undo(),
+            can_redo: history.can_redo(),
+            leg: live.leg,
+            why,
+            time_before_s: live.time_before_s(),
+            twin: self.twin.is_some(),
+            has_memory: live.has_memory(),
+            warnings: case.warnings(),
+        };
+        self.outbox.reply(&Reply::Case(Box::new(reply)));
+    }
+
+    /// Tells what is new: curve, picture, numbers.
+    pub(super) fn tell(&mut self) {
+        let ends = self.count_ended();
+        let Some(live) = &mut self.live else { return };
+        let ended_now = ends != self.news.ends_told;
+        let points = live.new_points();
+        let twin = self.twin.as_mut().map_or_else(Points::default, |twin| {
+            if self.news.twin_reset {
+                twin.live.tell_again();
+            }
+            twin.live.new_points()
+        });
+        let recorded = self.recorded.as_ref().filter(|_| self.news.recorded);
+        if self.news.from_rest
+            || self.news.twin_reset
+            || !points.time_star.is_empty()
+            || !twin.time_star.is_empty()
+        {
+            self.outbox.reply(&Reply::Curve(CurveReply {
+                leg: live.leg,
+                from_rest: self.news.from_rest,
+                t: points.time_star,
+                mu: points.mu_star,
+                sliding: points.sliding_percent,
+                twin_reset: self.news.twin_reset,
+                twin_t: twin.time_star,
+                twin_mu: twin.mu_star,
+                recorded_t: recorded.map(|recorded| &*recorded.time_star),
+                recorded_mu: recorded.map(|recorded| &*recorded.mu_star),
+            }));
+        }
+        let redraw = self.news.redraw;
+        self.news = News {
+            ends_told: ends,
+            ..News::default()
+        };
+        self.paint_picture();
+        if redraw | ended_now | is_due(&mut self.clock.numbers, NUMBERS) {
+            self.tell_numbers();
+        }
+        if redraw | ended_now | is_due(&mut self.clock.probe, PROBE) {
+            self.tell_probe();
+        }
+        if self.view.kymograph && (redraw | ended_now | is_due(&mut self.clock.kymograph, KYMOGRAPH)) {
+            self.tell_kymograph();
+        }
+    }
+
+    pub(super) fn paint_picture(&mut self) {
+        let Some(live) = &self.live else { return };
+        let case = live.case();
+        let shown = self.view.field;
+        let recorded = self.recorded.as_ref();
+        let snapshot = self.shown_recording.zip(recorded).and_then(|(index, recorded)| {
+            let snapshots = recorded.snapshots.as_ref()?;
+            let values = recorded.values(index, shown)?;
+            Some((snapshots, snapshots.frames.get(index)?, values))
+        });
+        let picture = match snapshot {
+            Some((snapshots, frame, values)) => {
+                let frame = Frame {
+                    step: frame.step,
+                    time_star: frame.time_star,
+                    mu_star: f64::NAN,
+                    sliding_percent: f64::NAN,
+                    size: [snapshots.nx, snapshots.ny],
+                    textured: &snapshots.textured,
+                    recorded: true,
+                };
+                let exists = case
+                    .model
+                    .slider()
+                    .outline
+                    .as_ref()
+                    .map(|outline| &*outline.exists);
+                self.painter.picture(&frame, shown, &values, exists)
+            }
+            None => {
+                let now = live.running().snapshot();
+                self.painter.live(&now, &case.scales, live.origin(), shown)
+            }
+        };
+        self.outbox.picture(picture);
+    }
+
+    pub(super) fn tell_numbers(&mut self) {
+        let Some(live) = &self.live else { return };
+        let now = live.running().snapshot();
+        let (peak, twin_peak) = (live.peak(), self.twin.as_ref().and_then(|twin| twin.live.peak()));
+        let change_percent = peak
+            .zip(twin_peak)
+            .filter(|(one, other)| one.certain && other.certain)
+            .map(|(one, other)| 100.0 * (one.mu_star / other.mu_star - 1.0));
+        let summary = live
+            .summary()
+            .and_then(|summary| serde_json::from_str(&summary_json(&summary)).ok());
+        let reply = NumbersReply {
+            step: live.step(),
+            t_star: live.time_star(),
+            time_s: live.time_s(),
+            mu_star: now.point.mu_star,
+            sliding_percent: now.point.sliding_percent,
+            peak,
+            twin_peak,
+            change_percent,
+            kinetic: live.running().kinetic().map(|kinetic| kinetic.mu_star),
+            instants: live.running().instants().collect(),
+            steps_per_second: self.clock.rate(),
+            ended: live.ended.is_some(),
+            summary,
+        };
+        self.outbox.reply(&Reply::Numbers(Box::new(reply)));
+    }
+
+    pub(super) fn tell_probe(&mut self) {
+        let (Some(live), Some([i, j])) = (&self.live, self.view.probe) else {
+            return;
+        };
+        let (case, now) = (live.case(), live.running().snapshot());
+        let lattice = &case.model.lattice;
+        if i >= lattice.nx || j >= lattice.ny {
+            return;
+        }
+        let b = lattice.block(i, j);
+        let block = now.block(b);
+        let surface = &case.model.surface;
+        let textured = surface.textured[b];
+        let [from_x, from_y] = live.origin().map_or([0.0; 2], |origin| origin[b].map(f64::from));
+        let unit = case.scales.displacement();
+        let [x, y] = block.displacement.map(|u| u * unit);
+        let first_slip = now.first_slip_time_star()[b];
+        self.outbox.reply(&Reply::Probe(ProbeReply {
+            block: [i, j],
+            exists: case.model.slider().exists(b),
+            textured,
+            sliding: block.slides(),
+            mu_static: surface.mu_static[b],
+            mu_kinetic: surface.mu_kinetic[b],
+            contact_stress_pa: block.contact_stress() * case.scales.stress(),
+            traction_pa: if textured {
+                0.0
+            } else {
+                block.traction() * case.scales.stress()
+            },
+            displacement_m: (x + from_x).hypot(y + from_y),
+            speed_m_s: block.velocity[0].hypot(block.velocity[1]) * case.scales.speed(),
+            first_slip_star: (!first_slip.is_nan()).then_some(first_slip),
+        }));
+    }
+
+    pub(super) fn tell_kymograph(&mut self) {
+        let Some(live) = &self.live else { return };
+        let case = live.case();
+        let bins = PositionBins::of(&case.model.lattice, &case.model.drive);
+        if let Some(picture) = picture::kymograph(live.running().kymograph(), &bins, case.time_plan.dt_star) {
+            self.outbox.kymograph(picture);
+        }
+    }
+}
