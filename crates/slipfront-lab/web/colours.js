@@ -31,11 +31,9 @@ export function table(name) {
 export function drawBar(context, { x, y, width, bytes, low, high, unit, title }) {
   const [factor, letter] = unit === '' || unit === 't*' ? [1, ''] : prefix(Math.max(Math.abs(low), Math.abs(high)));
   const height = 12;
-  for (let k = 0; k < width; k++) {
-    const at = 4 * Math.round((k / Math.max(1, width - 1)) * LARGEST);
-    context.fillStyle = `rgb(${bytes[at]}, ${bytes[at + 1]}, ${bytes[at + 2]})`;
-    context.fillRect(x + k, y, 1, height);
-  }
+  const strip = new OffscreenCanvas(LARGEST + 1, 1);
+  strip.getContext('2d')?.putImageData(new ImageData(new Uint8ClampedArray(bytes.subarray(0, 4 * (LARGEST + 1))), LARGEST + 1, 1), 0, 0);
+  context.drawImage(strip, x, y, width, height);
   context.fillStyle = colour('text');
   context.strokeStyle = colour('text');
   context.font = '12px system-ui, sans-serif';
