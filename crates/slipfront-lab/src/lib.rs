@@ -12,6 +12,7 @@ mod assets;
 mod base64;
 mod controls;
 mod document;
+mod files;
 mod guard;
 mod history;
 mod live;
