@@ -14,6 +14,8 @@ mod docs;
 mod fixtures;
 mod folder;
 mod input;
+#[cfg(unix)]
+mod lab;
 mod looks;
 mod output;
 mod paper;
