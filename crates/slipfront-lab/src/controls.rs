@@ -5,8 +5,6 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use slipfront_case::case::Case;
 
-use crate::protocol::ControlValue;
-
 /// A quantity with a slider.
 #[derive(Debug, Serialize)]
 pub(crate) struct Control {
@@ -21,6 +19,13 @@ pub(crate) struct Control {
     max: f64,
     logarithmic: bool,
     whole: bool,
+}
+
+/// A quantity as a dimensionless group and with its unit.
+#[derive(Debug, Serialize)]
+pub(crate) struct ControlValue {
+    pub(crate) star: Option<f64>,
+    pub(crate) si: Option<f64>,
 }
 
 const fn group(id: &'static str, key: &'static str, [min, max]: [f64; 2]) -> Control {

@@ -8,8 +8,9 @@ use std::sync::Arc;
 use slipfront_case::case::Case;
 use slipfront_case::case_file::{CaseError, CaseFile, partners_of};
 use slipfront_case::disk::read_limited;
-use tempfile::TempDir;
 use toml::{Table, Value};
+
+use crate::files::{Files, plain_name};
 
 /// Most blocks of a case: such that the run, its twin and the pictures stay within the memory of a small machine.
 pub(crate) const MAX_BLOCKS: usize = 1 << 19;
@@ -29,40 +30,19 @@ pub(crate) struct Document {
     files: Arc<Files>,
 }
 
-/// The files of a case, in memory and in a folder of their own, which goes with them. They have plain names.
-#[derive(Debug)]
-struct Files {
-    contents: BTreeMap<String, Vec<u8>>,
-    folder: TempDir,
-}
-
-impl Files {
-    fn new(contents: BTreeMap<String, Vec<u8>>) -> Result<Self, CaseError> {
-        let written = || {
-            let folder = tempfile::tempdir()?;
-            for (name, bytes) in &contents {
-                std::fs::write(folder.path().join(name), bytes)?;
-            }
-            Ok(folder)
-        };
-        let folder = written().map_err(|error: std::io::Error| {
-            refused(format!(
-                "the files of the case cannot be written to a temporary folder: {error}"
-            ))
-        })?;
-        Ok(Self { contents, folder })
-    }
+/// The files of a case in a folder of their own.
+fn written(contents: BTreeMap<String, Vec<u8>>) -> Result<Arc<Files>, CaseError> {
+    let files = Files::new(contents).map_err(|error| {
+        refused(format!(
+            "the files of the case cannot be written to a temporary folder: {error}"
+        ))
+    })?;
+    Ok(Arc::new(files))
 }
 
 /// A sentence as the error of a case.
 fn refused(sentence: String) -> CaseError {
     CaseFile::default().source.error("", sentence)
-}
-
-/// A plain name, which stays within its folder on every system.
-pub(crate) fn is_plain_name(name: &str) -> bool {
-    let is_plain = |c: char| c.is_alphanumeric() || "_-. ()+".contains(c);
-    !name.is_empty() && name.len() <= 100 && !name.starts_with('.') && name.chars().all(is_plain)
 }
 
 impl Document {
@@ -98,20 +78,7 @@ impl Document {
                     format!("the files of the case have more than {MAX_FILES} bytes: scale them down");
                 return Err(case.source.error(&file.key, sentence));
             }
-            let plain = Path::new(file.name.as_str())
-                .file_name()
-                .unwrap_or_default()
-                .to_string_lossy();
-            let mut plain: String = plain
-                .chars()
-                .map(|c| {
-                    if is_plain_name(&c.to_string()) || c == '.' {
-                        c
-                    } else {
-                        '_'
-                    }
-                })
-                .collect();
+            let mut plain = plain_name(file.name);
             while contents.get(&plain).is_some_and(|other| *other != read) {
                 plain.insert_str(0, "2-");
             }
@@ -124,7 +91,7 @@ impl Document {
         Ok(Self {
             name: name.to_owned(),
             keys,
-            files: Arc::new(Files::new(contents)?),
+            files: written(contents)?,
         })
     }
 
@@ -145,7 +112,7 @@ impl Document {
 
     /// The files that it names.
     pub(crate) fn files(&self) -> &BTreeMap<String, Vec<u8>> {
-        &self.files.contents
+        self.files.contents()
     }
 
     /// The textures, as the page changes them.
@@ -189,7 +156,7 @@ impl Document {
     /// # Errors
     /// When it cannot be written.
     pub(crate) fn with_image(&self, png: Vec<u8>, threshold: f64) -> Result<Self, CaseError> {
-        let mut contents = self.files.contents.clone();
+        let mut contents = self.files.contents().clone();
         let mut painted = self.without_texture();
         let still_named: Vec<String> = painted.named_files();
         contents.retain(|name, _| still_named.contains(name));
@@ -207,7 +174,7 @@ impl Document {
         painted
             .keys
             .insert("texture".to_owned(), Value::Array(vec![texture.into()]));
-        painted.files = Arc::new(Files::new(contents)?);
+        painted.files = written(contents)?;
         Ok(painted)
     }
 
@@ -268,7 +235,7 @@ impl Document {
             );
             return Err(file.source.error("slider.blocks", sentence));
         }
-        Case::to_run(file, &self.name, self.files.folder.path(), &mut |_| true)
+        Case::to_run(file, &self.name, self.files.folder(), &mut |_| true)
     }
 }
 
@@ -284,7 +251,7 @@ impl Document {
             &mut case.texture,
         );
         for file in named {
-            if !self.files.contents.contains_key(file.name.as_str()) {
+            if !self.files.contents().contains_key(file.name.as_str()) {
                 let sentence = format!(
                     "{} cannot be read: it is not one of the files of the case",
                     file.name
@@ -319,31 +286,31 @@ fn mask_image(textured: &[bool], nx: usize) -> Result<Vec<u8>, png::EncodingErro
 }
 
 /// Sets a key such as `drive.v_star` or `texture.0.center`.
+///
+/// # Errors
+/// A sentence, if the case has no place for it.
 fn put(table: &mut Table, key: &str, value: Value) -> Result<(), String> {
-    let (first, rest) = key.split_once('.').unwrap_or((key, ""));
-    if rest.is_empty() {
-        table.insert(first.to_owned(), value);
-        return Ok(());
-    }
-    let nowhere = || format!("the case has no place for the key `{key}`");
-    match table
-        .entry(first.to_owned())
-        .or_insert_with(|| Table::new().into())
-    {
-        Value::Table(inner) => put(inner, rest, value),
-        Value::Array(values) => {
-            let (index, rest) = rest.split_once('.').ok_or_else(nowhere)?;
-            let element = index
-                .parse::<usize>()
-                .ok()
-                .and_then(|index| values.get_mut(index));
-            match element {
-                Some(Value::Table(inner)) => put(inner, rest, value),
-                _ => Err(nowhere()),
+    let (above, last) = key.rsplit_once('.').unwrap_or(("", key));
+    let mut place = Some(table);
+    let mut parts = above.split('.').filter(|part| !part.is_empty());
+    while let Some(part) = parts.next() {
+        let Some(table) = place else { break };
+        let inner = table
+            .entry(part.to_owned())
+            .or_insert_with(|| Table::new().into());
+        place = match inner {
+            Value::Table(inner) => Some(inner),
+            Value::Array(values) => {
+                let index = parts.next().and_then(|index| index.parse::<usize>().ok());
+                let element = index.and_then(|index| values.get_mut(index));
+                element.and_then(Value::as_table_mut)
             }
-        }
-        _ => Err(nowhere()),
+            _ => None,
+        };
     }
+    let table = place.ok_or_else(|| format!("the case has no place for the key `{key}`"))?;
+    table.insert(last.to_owned(), value);
+    Ok(())
 }
 
 /// Removes a key, if it is there.
@@ -357,5 +324,82 @@ fn remove(table: &mut Table, key: &str) {
                 remove(inner, rest);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn document(text: &str) -> Document {
+        Document::new("case", text, |_| Err(std::io::ErrorKind::NotFound.into())).unwrap()
+    }
+
+    #[test]
+    fn a_key_replaces_those_that_set_the_same_thing() {
+        let set = |document: &Document, key: &str, value: Option<Value>| {
+            document.with([(key.to_owned(), value)]).unwrap()
+        };
+        let slow = set(
+            &document("drive.v_star = 0.03"),
+            "drive.speed",
+            Some("1 um/s".into()),
+        );
+        assert_eq!(slow.toml().trim(), "[drive]\nspeed = \"1 um/s\"");
+        let fast = set(&slow, "drive.v_star", Some(0.1.into()));
+        assert_eq!(fast.case().unwrap().groups.v_star, 0.1);
+        assert_eq!(
+            set(&fast, "drive.v_star", None).case().unwrap().groups.v_star,
+            0.03
+        );
+        let error = fast
+            .with([("drive.v_star.more".to_owned(), Some(1.into()))])
+            .unwrap_err();
+        assert_eq!(error, "the case has no place for the key `drive.v_star.more`");
+    }
+
+    /// Of sizes that are no multiple of eight, which a byte of the image holds.
+    #[test]
+    fn a_mask_is_the_texture_it_was_painted_as() {
+        for (nx, ny) in [(1, 2), (7, 3), (8, 8), (13, 5), (100, 9)] {
+            let mask: Vec<bool> = (0..nx * ny).map(|b| (b * b + b / 3) % 3 == 1).collect();
+            let painted = document(&format!("slider.blocks = [{nx}, {ny}]"))
+                .with_mask(&mask, nx)
+                .unwrap();
+            assert_eq!(
+                painted.case().unwrap().model.surface.textured,
+                mask,
+                "{nx} x {ny}"
+            );
+            assert!(
+                painted
+                    .with_mask(&vec![false; nx * ny], nx)
+                    .unwrap()
+                    .textures()
+                    .as_array()
+                    .unwrap()
+                    .is_empty()
+            );
+        }
+    }
+
+    #[test]
+    fn files_of_one_name_are_kept_apart() {
+        let text = "slider.blocks = [2, 2]\nfriction.mu_static_field = 'a/mu.csv'\nfriction.mu_kinetic_field = 'b/mu.csv'\n";
+        let read = |path: &str| {
+            Ok(if path.starts_with('a') {
+                b"1,1\n1,1\n"
+            } else {
+                b"2,2\n2,2\n"
+            }
+            .to_vec())
+        };
+        let document = Document::new("case", text, read).unwrap();
+        assert_eq!(
+            document.files().keys().collect::<Vec<_>>(),
+            ["2-mu.csv", "mu.csv"]
+        );
+        let surface = &document.case().unwrap().model.surface;
+        assert_eq!((surface.mu_static[0], surface.mu_kinetic[0]), (1.0, 2.0));
     }
 }

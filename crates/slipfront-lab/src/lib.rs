@@ -5,13 +5,14 @@
 //!          --- requests ->                           --- channel ->
 //! ```
 //!
-//! The [server](server) answers on 127.0.0.1 alone; every page has a session of its own, with its own run, which works only while
+//! The server answers on 127.0.0.1 alone; every page has a session of its own, with its own run, which works only while
 //! somebody looks. What they say to each other stands in `protocol.rs`; the page itself in `web/`, without a build step.
 
 mod assets;
 mod base64;
 mod controls;
 mod document;
+mod files;
 mod guard;
 mod history;
 mod live;

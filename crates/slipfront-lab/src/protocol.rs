@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::controls::Control;
+use crate::controls::{Control, ControlValue};
 use crate::shapes::ShapeOutlines;
 use crate::view::ViewChange;
 
@@ -177,13 +177,6 @@ pub(crate) struct CaseReply<'a> {
     pub(crate) twin: bool,
     pub(crate) has_memory: bool,
     pub(crate) warnings: Vec<String>,
-}
-
-/// A quantity as a dimensionless group and with its unit.
-#[derive(Debug, Serialize)]
-pub(crate) struct ControlValue {
-    pub(crate) star: Option<f64>,
-    pub(crate) si: Option<f64>,
 }
 
 /// Units of the dimensionless quantities.

@@ -7,7 +7,8 @@ use slipfront_run::fields::{FieldsData, read_fields};
 use slipfront_run::names::{FIELDS, MANIFEST, SERIES};
 use slipfront_run::{series, summary, verify};
 
-use crate::document::{Document, is_plain_name};
+use crate::document::Document;
+use crate::files::is_plain_name;
 use crate::picture::{Shown, lengths};
 
 /// Largest file of fields whose snapshots are shown, in bytes.

@@ -11,7 +11,8 @@ use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
 use slipfront_run::running::Running;
 
-use crate::document::{Document, is_plain_name};
+use crate::document::Document;
+use crate::files::is_plain_name;
 use crate::outbox::Outbox;
 use crate::protocol::Reply;
 use crate::replay;

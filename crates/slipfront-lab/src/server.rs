@@ -15,10 +15,8 @@ use tokio::sync::{Semaphore, watch};
 
 use crate::opening::Start;
 use crate::session::Setting;
+use crate::socket::{MAX_PAGES, Shared};
 use crate::{assets, guard, presets, socket};
-
-/// Most pages at once.
-pub(crate) const MAX_PAGES: usize = 4;
 
 /// How long runs that are being saved have to take their unfinished folders away when the server ends.
 const TIME_TO_END: Duration = Duration::from_secs(10);
@@ -41,18 +39,6 @@ pub struct Laboratory {
     port: u16,
     token: String,
     setting: Setting,
-}
-
-/// What every connection is given.
-#[derive(Clone)]
-pub(crate) struct Shared {
-    pub(crate) setting: Arc<Setting>,
-    pub(crate) token: Arc<str>,
-    pub(crate) pages: Arc<Semaphore>,
-    /// Turns true when the server ends.
-    pub(crate) ends: watch::Receiver<bool>,
-    /// Held by every thread as long as it works.
-    pub(crate) working: Sender<()>,
 }
 
 impl Laboratory {

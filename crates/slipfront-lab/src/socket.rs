@@ -1,7 +1,7 @@
 //! The connection with one page.
 
 use std::sync::Arc;
-use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
+use std::sync::mpsc::{Sender, SyncSender, TrySendError, sync_channel};
 use std::thread;
 use std::time::Duration;
 
@@ -9,12 +9,15 @@ use axum::extract::State;
 use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, WebSocket, WebSocketUpgrade, close_code};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use tokio::sync::{Semaphore, watch};
 use tokio::time::{sleep, timeout};
 
 use crate::outbox::{Outbox, Outgoing};
 use crate::protocol::{MAX_MESSAGE, PROTOCOL, Request};
-use crate::server::{MAX_PAGES, Shared};
-use crate::session;
+use crate::session::{self, Setting};
+
+/// Most pages at once.
+pub(crate) const MAX_PAGES: usize = 4;
 
 /// Requests that wait for the session.
 const WAITING: usize = 64;
@@ -24,6 +27,18 @@ const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Time between two attempts to hand a request to a session that is busy.
 const RETRY: Duration = Duration::from_millis(5);
+
+/// What every connection is given.
+#[derive(Clone)]
+pub(crate) struct Shared {
+    pub(crate) setting: Arc<Setting>,
+    pub(crate) token: Arc<str>,
+    pub(crate) pages: Arc<Semaphore>,
+    /// Turns true when the server ends.
+    pub(crate) ends: watch::Receiver<bool>,
+    /// Held by every thread as long as it works.
+    pub(crate) working: Sender<()>,
+}
 
 /// Begins a session with a page that has the token. Browsers send it as a subprotocol, so that it stands in no address.
 pub(crate) async fn connect(

@@ -50,6 +50,9 @@ impl Lab {
             .as_deref()
             .and_then(|case| case.split_once(LINK))
             .map(|(_, link)| link);
+        // Before a case is made, which takes threads as well.
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = set_worker_threads(Some(self.threads.unwrap_or((cores as u16 - 1).max(1))), 1)?;
         let start = match &self.case {
             Some(case) if link.is_none() => Start::of(Path::new(case)).map_err(Failure::input)?,
             _ => Start::default(),
