@@ -10,5 +10,6 @@ import './lessons.mjs';
 import './keyboard.mjs';
 import './accessibility.mjs';
 import './connection.mjs';
+import './appearance.mjs';
 
 after(endAll);
