@@ -28,14 +28,16 @@ export function withdraw(topic) {
   for (const item of [...find('notices').children]) if (item.dataset.topic === topic) item.remove();
 }
 
+let lost = '';
+
 /** @param {{yes: boolean, reason: string}} connection */
 function showConnection({ yes, reason }) {
-  const alone = document.body.classList.contains('alone');
   document.body.classList.toggle('alone', !yes);
+  const before = lost;
+  lost = yes ? '' : reason ? say('lost_because', { reason }) : say('lost');
   if (yes) withdraw('connection');
-  // It is tried again and again, but told once.
-  else if (alone && !reason) return;
-  else notice(reason ? say('lost_because', { reason }) : say('lost'), { topic: 'connection', serious: true });
+  // It is tried again and again, but the same is told once.
+  else if (lost !== before) notice(lost, { topic: 'connection', serious: true });
 }
 
 /** Begins to listen. */

@@ -1,0 +1,53 @@
+// How the page looks at the end of a run, against pictures in expected/. `UPDATE=1` writes them anew.
+import assert from 'node:assert/strict';
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import path from 'node:path';
+import test from 'node:test';
+import pixelmatch from 'pixelmatch';
+import { PNG } from 'pngjs';
+import { ROOT } from './command.mjs';
+import { SIZES } from './accessibility.mjs';
+import { open, SMALL, sleep } from './page.mjs';
+
+const EXPECTED = path.join(import.meta.dirname, 'expected');
+/** Seen when pictures differ: what came. */
+const SEEN = path.join(ROOT, 'target/browser-seen');
+/**
+ * Share of the pixels that may differ. Edges of letters, which each version of the font library draws otherwise, are 2 to 5 % of the
+ * pictures, and half of them may differ by more than the eye sees. A panel that is lost is more: the smallest, the kymograph, is 2.3 %.
+ */
+const SHARE = 0.02;
+/** The least difference of a colour that counts, of 1: that of `pixelmatch`, below which an eye sees none. */
+const THRESHOLD = 0.1;
+
+for (const [name, colorScheme] of [['phone', 'light'], ['notebook', 'light'], ['projector', 'light'], ['notebook', 'dark']]) {
+  test(`the page looks as before: ${name}, ${colorScheme}`, async (t) => {
+    const lab = await open(t, { toml: SMALL, viewport: SIZES[name], colorScheme });
+    await lab.find('#field').selectOption('first_slip');
+    await lab.runToEnd();
+    await lab.press('pause');
+    await lab.page.mouse.move(0, 0);
+    await lab.page.evaluate(() => document.activeElement.blur());
+    // The slowest panel is drawn twice a second.
+    await sleep(1200);
+    // Steps per second are those of the machine.
+    const png = await lab.page.screenshot({ mask: [lab.find('#numbers dd').last()], animations: 'disabled' });
+    const file = `${name}-${colorScheme}.png`;
+    if (process.env.UPDATE) {
+      mkdirSync(EXPECTED, { recursive: true });
+      writeFileSync(path.join(EXPECTED, file), png);
+      return;
+    }
+    assert.ok(existsSync(path.join(EXPECTED, file)), `expected/${file} is missing: UPDATE=1 writes it`);
+    const [seen, expected] = [PNG.sync.read(png), PNG.sync.read(readFileSync(path.join(EXPECTED, file)))];
+    assert.deepEqual([seen.width, seen.height], [expected.width, expected.height]);
+    const differ = pixelmatch(seen.data, expected.data, null, seen.width, seen.height, { threshold: THRESHOLD });
+    const share = differ / (seen.width * seen.height);
+    t.diagnostic(`${(100 * share).toFixed(3)} % of the pixels differ`);
+    if (share > SHARE) {
+      mkdirSync(SEEN, { recursive: true });
+      writeFileSync(path.join(SEEN, file), png);
+    }
+    assert.ok(share <= SHARE, `${(100 * share).toFixed(2)} % of the pixels differ from expected/${file}, where ${100 * SHARE} % may: compare with target/browser-seen/${file}`);
+  });
+}

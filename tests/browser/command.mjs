@@ -1,0 +1,43 @@
+// The command `slipfront`, and the laboratories that it starts.
+import { execFile, spawn } from 'node:child_process';
+import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
+import path from 'node:path';
+import { promisify } from 'node:util';
+import { deflateRawSync } from 'node:zlib';
+
+export const ROOT = path.resolve(import.meta.dirname, '../..');
+const COMMAND = path.resolve(process.env.SLIPFRONT ?? path.join(ROOT, 'target/debug/slipfront'));
+
+mkdirSync(path.join(ROOT, 'target'), { recursive: true });
+/** A folder of this run of the tests, and the folder of results of the laboratory in it. */
+export const WORK = mkdtempSync(path.join(ROOT, 'target/browser.'));
+export const RESULTS = path.join(WORK, 'results');
+process.on('exit', () => rmSync(WORK, { recursive: true, force: true }));
+
+/** Runs the command to its end; returns what it printed. */
+export async function slipfront(...options) {
+  return (await promisify(execFile)(COMMAND, options, { cwd: WORK })).stdout;
+}
+
+/** Starts a laboratory; returns the address that it prints, and what stops it. */
+export async function startLaboratory(...options) {
+  const child = spawn(COMMAND, ['lab', '--no-open', '--results', RESULTS, ...options], { cwd: WORK, stdio: ['ignore', 'pipe', 'inherit'] });
+  const ended = new Promise((resolve) => child.once('exit', resolve));
+  const address = await new Promise((resolve, reject) => {
+    let printed = '';
+    child.stdout.on('data', (text) => {
+      printed += text;
+      const found = /(http:\S+)\n/.exec(printed);
+      if (found) resolve(found[1]);
+    });
+    ended.then(() => reject(new Error(`slipfront lab ended before it printed an address: ${printed}`)));
+  });
+  const stop = () => {
+    child.kill();
+    return ended;
+  };
+  return { address, stop };
+}
+
+/** A case as part of an address, as the page makes it. */
+export const link = (toml, files = {}) => deflateRawSync(JSON.stringify({ toml, files })).toString('base64url');

@@ -1,0 +1,116 @@
+// What is kept of a run: links, cases, run folders with the bytes of the command, pictures, clips.
+import assert from 'node:assert/strict';
+import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import path from 'node:path';
+import test from 'node:test';
+import { PNG } from 'pngjs';
+import { RESULTS, slipfront, startLaboratory, WORK } from './command.mjs';
+import { colours, open, say, SMALL, sleep, until } from './page.mjs';
+import { image } from './texture.mjs';
+
+const permissions = ['clipboard-read', 'clipboard-write'];
+
+async function copyLink(lab) {
+  await lab.press('open-keep');
+  await lab.press('copy-link');
+  await lab.notice(say('link_copied'));
+  return lab.page.evaluate(() => navigator.clipboard.readText());
+}
+
+/** The picture of the first slips when the run has ended. */
+async function firstSlips(lab) {
+  await lab.find('#field').selectOption('first_slip');
+  const { summary } = await lab.runToEnd();
+  const { values } = await until(() => lab.last.picture.field === 5 && lab.last.picture, 'the field of first slips');
+  return { summary, values };
+}
+
+test('a link opens the same case, which runs the same way', async (t) => {
+  const lab = await open(t, { toml: SMALL, permissions });
+  await lab.press('tool-brush');
+  await lab.after(() => lab.drag([3, 3], [6, 3]), 'case', ({ texture }) => texture[0].shape === 'mask');
+  const address = await copyLink(lab);
+  assert.match(address, /^http:\/\/127\.0\.0\.1:\d+\/#case=[\w-]+$/);
+  // The token of a link is the reader's own.
+  const other = await open(t, { address: `${lab.address}&${new URL(address).hash.slice(1)}` });
+  assert.equal(other.last.case.toml, lab.last.case.toml);
+  assert.equal(other.last.case.texture_percent, lab.last.case.texture_percent);
+  const [one, two] = [await firstSlips(lab), await firstSlips(other)];
+  assert.deepEqual(two.summary, one.summary);
+  assert.ok(one.values.equals(two.values), 'other blocks slip at other times');
+  assert.ok(one.values.some((value) => value <= 250), 'no block has slipped');
+  // The command starts with the case of a link.
+  const started = await startLaboratory(address);
+  t.after(started.stop);
+  assert.ok(started.address.endsWith(`&case=${address.split('#case=')[1]}`), started.address);
+  const third = await open(t, { address: started.address });
+  assert.equal(third.last.case.toml, lab.last.case.toml);
+});
+
+test('a case too large for a link is downloaded instead', async (t) => {
+  // Every pixel is at random below or above the threshold, by a generator of 32 bits: nothing in it can be packed.
+  let random = 1;
+  const noise = image(200, () => (random = (Math.imul(random, 1664525) + 1013904223) >>> 0) >>> 24);
+  const lab = await open(t, { toml: SMALL });
+  await lab.after(() => lab.find('#image-file').setInputFiles({ name: 'noise.png', mimeType: 'image/png', buffer: noise }), 'case', ({ texture }) => texture[0].shape === 'mask');
+  await lab.press('open-keep');
+  await lab.press('copy-link');
+  await lab.notice(say('link_too_long'));
+  await lab.press('open-keep');
+  const { contents } = await lab.download(() => lab.press('download-case'));
+  assert.equal(contents.subarray(0, 2).toString(), 'PK');
+});
+
+test('a run that is saved has the bytes of the command', async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  await lab.press('open-keep');
+  const { name, contents } = await lab.download(() => lab.press('download-case'));
+  assert.equal(contents.toString(), lab.last.case.toml);
+  await lab.press('open-keep');
+  await lab.find('#save-name').fill('kept');
+  const { folder } = await lab.after(() => lab.press('save'), 'saved');
+  await lab.notice(say('saved', { folder }));
+  const kept = path.join(RESULTS, 'kept');
+  const again = path.join(WORK, 'again/kept');
+  writeFileSync(path.join(WORK, name), contents);
+  await slipfront('run', name, '--quiet', '--out', again);
+  const files = readdirSync(kept, { recursive: true, withFileTypes: true }).filter((entry) => entry.isFile()).map((entry) => path.relative(kept, path.join(entry.path, entry.name)));
+  assert.ok(files.includes('summary.json') && files.includes('series.csv') && files.includes('case.toml'), files.join(' '));
+  assert.deepEqual(readdirSync(again, { recursive: true }).sort(), readdirSync(kept, { recursive: true }).sort());
+  for (const file of files.filter((name) => name !== 'manifest.json')) {
+    assert.ok(readFileSync(path.join(kept, file)).equals(readFileSync(path.join(again, file))), `${file} differs`);
+  }
+  // A name that is taken is refused.
+  await lab.press('open-keep');
+  await lab.find('#save-name').fill('kept');
+  await lab.after(() => lab.press('save'), 'refused', ({ of }) => of === 'save');
+});
+
+test('panels are kept as pictures', async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  await lab.runToEnd();
+  await sleep(600);
+  for (const panel of ['field', 'curves', 'kymograph']) {
+    await lab.press('open-keep');
+    const { name, contents } = await lab.download(() => lab.press(`png-${panel}`));
+    assert.match(name, new RegExp(`-${panel}\\.png$`));
+    const { width, height } = PNG.sync.read(contents);
+    assert.ok(width >= 300 && width <= 4000 && height >= 150 && height <= 4000, `${panel}: ${width} x ${height}`);
+    assert.ok(colours(contents) > 20, `${panel} has ${colours(contents)} colours`);
+  }
+});
+
+test('a clip is recorded', async (t) => {
+  const lab = await open(t, { toml: SMALL.replace('[20, 20]', '[50, 50]'), calm: false });
+  // Blocks that move at different speeds give the clip something to tell.
+  await lab.find('#field').selectOption('speed');
+  await lab.find('#pace').press('PageUp');
+  await lab.press('open-keep');
+  await lab.press('clip');
+  await sleep(2000);
+  const { name, contents } = await lab.download(() => lab.press('clip-running'));
+  assert.match(name, /\.webm$/);
+  // The first bytes of EBML, of which WebM is a kind.
+  assert.equal(contents.subarray(0, 4).toString('hex'), '1a45dfa3');
+  assert.ok(contents.length > 20_000, `${contents.length} bytes`);
+});

@@ -1,0 +1,193 @@
+// A page of the laboratory: what it and the server say to each other, and what a reader sees. When a test ends, its page is held to
+// what holds of every page: no error, nothing that the content security policy had to stop, no request to another host.
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import path from 'node:path';
+import { chromium } from 'playwright-core';
+import { PNG } from 'pngjs';
+import { link, ROOT, startLaboratory } from './command.mjs';
+
+const WEB = path.join(ROOT, 'crates/slipfront-lab/web');
+
+/** A word or a file of the page. */
+export const webText = (file) => readFile(path.join(WEB, file), 'utf8');
+export const webJson = async (file) => JSON.parse(await webText(file));
+const words = await webJson('en.json');
+/** A sentence of the page. */
+export const say = (key, values = {}) => words[key].replace(/\{(\w+)\}/g, (_, name) => values[name]);
+
+/** A small slider, smooth but for its cavity: less than a second from rest to the end. */
+export const SMALL = `
+[slider]
+blocks = [20, 20]
+
+[friction]
+sigma_static_star = 0.02
+
+[[texture]]
+shape = "cavity"
+coverage = 10
+
+[time]
+duration_star = 120
+`;
+export const PLAIN = SMALL.replace(/\[\[texture\]\][^[]*/, '');
+
+/** Longer than any answer takes on a machine with other work, so that it ends only a test that fails. */
+const PATIENCE_MS = 20_000;
+
+export const sleep = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
+
+/** Waits until `holds` gives something, and returns it. */
+export async function until(holds, what) {
+  const end = Date.now() + PATIENCE_MS;
+  for (;;) {
+    const found = await holds();
+    if (found) return found;
+    assert.ok(Date.now() < end, `${PATIENCE_MS / 1000} s passed, and not yet: ${typeof what === 'function' ? await what() : what}`);
+    await sleep(20);
+  }
+}
+
+export const browser = await chromium.launch({
+  executablePath: '/usr/bin/chromium',
+  args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
+    '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--force-color-profile=srgb', '--font-render-hinting=none'],
+});
+export const laboratory = await startLaboratory();
+
+/** Ends the browser and the laboratory. */
+export const endAll = () => Promise.all([browser.close(), laboratory.stop()]);
+
+/** How many colours a picture has. */
+export function colours(png) {
+  const { data } = PNG.sync.read(png);
+  return new Set(new Uint32Array(data.buffer, data.byteOffset, data.length / 4)).size;
+}
+
+/** What a message of bytes holds: a picture of the field, or a kymograph. */
+function parse(bytes) {
+  if (bytes[0] === 2) return ['kymograph', { rows: bytes.readUInt32LE(4), bins: bytes.readUInt32LE(8) }];
+  const [recorded, step, t] = [bytes.readUInt16LE(2) & 1, bytes.readUInt32LE(8), bytes.readFloatLE(12)];
+  return ['picture', { field: bytes[1], recorded: recorded === 1, step, t, values: bytes.subarray(36) }];
+}
+
+export class Lab {
+  /** The newest message of each kind from the server, and how many came. */
+  last = {};
+  count = {};
+  /** What the page has sent. */
+  sent = [];
+  /** How often it has connected or tried to. */
+  sockets = 0;
+  /** Whether it is left without a server. */
+  alone = false;
+  faults = [];
+
+  constructor(page, address) {
+    this.page = page;
+    this.address = address;
+    page.on('pageerror', (error) => this.faults.push(`error: ${error.message}`));
+    page.on('console', (message) => {
+      if (['error', 'warning'].includes(message.type()) && !this.mayFail(message.text())) this.faults.push(`console: ${message.text()}`);
+    });
+    page.on('request', (request) => {
+      const { hostname, protocol } = new URL(request.url());
+      if (hostname !== '127.0.0.1' && !['blob:', 'data:'].includes(protocol)) this.faults.push(`request: ${request.url()}`);
+    });
+    page.on('websocket', (socket) => {
+      this.sockets += 1;
+      socket.on('framesent', ({ payload }) => this.sent.push(JSON.parse(payload)));
+      socket.on('framereceived', ({ payload }) => this.hear(payload));
+    });
+  }
+
+  /** Software graphics are slow to read back, which Chromium tells as a warning; a lost connection is told only where a test makes it so. */
+  mayFail(text) {
+    return /GPU stall due to ReadPixels|GL Driver Message/.test(text) || (this.alone && /WebSocket connection/.test(text));
+  }
+
+  hear(payload) {
+    const [kind, message] = typeof payload === 'string' ? [JSON.parse(payload).is, JSON.parse(payload)] : parse(payload);
+    this.last[kind] = message;
+    this.count[kind] = (this.count[kind] ?? 0) + 1;
+  }
+
+  /** Does something, and waits for the answer that follows it. */
+  async after(action, kind, holds = () => true) {
+    const before = this.count[kind] ?? 0;
+    await action();
+    return until(() => (this.count[kind] ?? 0) > before && holds(this.last[kind]) && this.last[kind], () => `an answer "${kind}" to ${action}; the last is ${JSON.stringify(this.last[kind])?.slice(0, 600)}; refused ${this.last.refused?.sentence}`);
+  }
+
+  find(selector) {
+    return this.page.locator(selector);
+  }
+
+  press(id) {
+    return this.find(`#${id}`).click();
+  }
+
+  text(id) {
+    return this.find(`#${id}`).textContent();
+  }
+
+  /** Waits until the element has this text. */
+  async reads(id, wanted) {
+    const matches = (text) => (wanted instanceof RegExp ? wanted.test(text) : text === wanted);
+    await until(async () => matches(await this.text(id)), async () => `#${id} reads "${await this.text(id)}" and not ${wanted}`);
+  }
+
+  /** Waits for a notice with this sentence. */
+  notice(sentence) {
+    return until(async () => (await this.text('notices')).includes(sentence), async () => `a notice "${sentence}" in "${await this.text('notices')}"`);
+  }
+
+  /** Lets the run go on as fast as it can, until it has ended and its last picture was sent; returns its numbers. */
+  async runToEnd() {
+    await this.find('#pace').press('End');
+    if ((await this.text('pause')) === say('play')) await this.press('pause');
+    const ended = () => this.last.numbers?.ended && this.last.picture?.step === this.last.numbers.step && this.last.numbers;
+    return until(ended, () => `the end of the run; the last are ${JSON.stringify(this.last.numbers)}, step ${this.last.picture?.step}`);
+  }
+
+  /** Where a point in blocks is on the page, while the whole slider is seen. */
+  async at([x, y]) {
+    const { blocks } = this.last.case;
+    const box = await this.find('#frame').boundingBox();
+    const scale = Math.min(box.width / blocks[0], box.height / blocks[1]);
+    return [box.x + box.width / 2 + (x - blocks[0] / 2) * scale, box.y + box.height / 2 - (y - blocks[1] / 2) * scale];
+  }
+
+  /** Presses the pointer at the first point, in blocks, and moves it over the others. */
+  async drag(...points) {
+    const [first, ...others] = await Promise.all(points.map((point) => this.at(point)));
+    await this.page.mouse.move(...first);
+    await this.page.mouse.down();
+    for (const point of others) await this.page.mouse.move(...point, { steps: 4 });
+    await this.page.mouse.up();
+  }
+
+  /** Presses what offers a file; returns its name and contents. */
+  async download(action) {
+    const [file] = await Promise.all([this.page.waitForEvent('download', { timeout: PATIENCE_MS }), action()]);
+    return { name: file.suggestedFilename(), contents: await readFile(await file.path()) };
+  }
+}
+
+/** Opens a page on a case. `calm` asks for little motion, so that the run stands still at first. `t` is the test that it belongs to. */
+export async function open(t, { toml, files, address = laboratory.address, calm = true, keepNotices = false, ...options } = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, reducedMotion: calm ? 'reduce' : 'no-preference', ...options });
+  context.setDefaultTimeout(PATIENCE_MS);
+  const lab = new Lab(await context.newPage(), address);
+  t.after(async () => {
+    await context.close();
+    assert.deepEqual(lab.faults, []);
+  });
+  await lab.page.goto(toml === undefined ? address : `${address.replace(/&case=.*/, '')}&case=${link(toml, files)}`);
+  await until(() => lab.last.case && lab.last.picture, 'the first picture');
+  await until(async () => (await lab.text('case-name')) !== '', 'the name of the case');
+  // What the page says at first lies above the field.
+  if (!keepNotices) await lab.find('#notices button').evaluateAll((buttons) => buttons.forEach((button) => button.click()));
+  return lab;
+}

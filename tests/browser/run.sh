@@ -1,0 +1,18 @@
+#!/bin/bash
+# Lets a real browser, Debian's Chromium, use the laboratory: page and server together.
+#
+#     tests/browser/run.sh
+#
+# The command is target/debug/slipfront, or the one that SLIPFRONT names. Needs cargo, Node.js 20 or later with npm, and
+# Python; installs Chromium where it is missing. Exit status: 2 when something is missing.
+
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+if ! [ -x /usr/bin/chromium ]; then
+    apt-get update --quiet || exit 2
+    apt-get install --yes --quiet chromium || exit 2
+fi
+[ -n "${SLIPFRONT:-}" ] || cargo build --quiet --locked -p slipfront-cli
+npm ci --prefix tests/browser --silent --no-audit --no-fund || exit 2
+node --test --test-reporter=spec tests/browser/main.mjs

@@ -1,0 +1,115 @@
+// Texture by hand: brush, eraser, shapes and images; and that the friction which the page shows is the command's.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { writeFileSync } from 'node:fs';
+import path from 'node:path';
+import test from 'node:test';
+import { PNG } from 'pngjs';
+import { slipfront, WORK } from './command.mjs';
+import { open, PLAIN, say, until } from './page.mjs';
+
+/** A gray image by its function of column and row, from the top. */
+export function image(size, gray) {
+  const png = new PNG({ width: size, height: size });
+  for (let k = 0; k < size * size; k++) png.data.set([gray(k % size, Math.floor(k / size)), 0, 0, 255].map((value, channel) => (channel < 3 ? gray(k % size, Math.floor(k / size)) : value)), 4 * k);
+  return PNG.sync.write(png);
+}
+
+/** The summary that `slipfront run` prints for a case of the page, a file or a zip with its files. */
+async function summaryOf({ name, contents }) {
+  const file = path.join(WORK, name);
+  writeFileSync(file, contents);
+  const folder = path.join(WORK, `${name}.unpacked`);
+  if (name.endsWith('.zip')) execFileSync('python3', ['-m', 'zipfile', '-e', file, folder]);
+  return JSON.parse(await slipfront('run', name.endsWith('.zip') ? path.join(folder, 'case.toml') : file, '--json', '--out', path.join(WORK, `${name}.run`)));
+}
+
+test('a cavity that is painted lowers static friction, to the number of the command', async (t) => {
+  const lab = await open(t, { toml: PLAIN });
+  const smooth = (await lab.runToEnd()).summary.static_friction_star;
+  await lab.press('pause');
+  await lab.press('tool-brush');
+  await lab.find('#brush-size').fill('3');
+  await lab.drag([6, 10], [14, 10]);
+  const painted = await until(() => lab.last.case.texture_percent > 5 && lab.last.case, 'a texture');
+  await lab.reads('numbers', new RegExp(`${say('number_texture')}${painted.texture_percent.toFixed(1)} %`));
+  assert.equal(painted.texture[0].shape, 'mask');
+  const { summary } = await lab.runToEnd();
+  assert.ok(summary.static_friction_star < smooth, `${summary.static_friction_star} is not below ${smooth}`);
+  await lab.reads('headline', /^\u2212\d/);
+  await lab.press('open-keep');
+  const download = await lab.download(() => lab.press('download-case'));
+  assert.match(download.name, /\.zip$/);
+  const command = await summaryOf(download);
+  assert.deepEqual(command.static_friction_star, summary.static_friction_star);
+  await lab.reads('summary-values', new RegExp(`${say('summary_static').replace('*', '\\*')}${command.static_friction_star.toFixed(4)}`));
+  await lab.reads('numbers', new RegExp(`^${say('number_static').replace('*', '\\*')}${command.static_friction_star.toFixed(3)}`));
+});
+
+test('the eraser brings blocks into contact again; a stroke is one step of undo', async (t) => {
+  const lab = await open(t, { toml: PLAIN });
+  const stroke = async (tool, points, holds) => {
+    await lab.press(`tool-${tool}`);
+    return lab.after(() => lab.drag(...points), 'case', holds);
+  };
+  // Of width 5 around ten middles of blocks: five columns of ten blocks, and eight blocks beyond each end; then four of the ten.
+  const percent = 100 * (5 * 10 + 2 * 8) / 400;
+  await stroke('brush', [[5.5, 5.5], [5.5, 14.5]], (shown) => shown.texture_percent === percent);
+  await stroke('eraser', [[5.5, 11.5], [5.5, 14.5]], (shown) => shown.texture_percent === percent - 100 * (5 * 4 + 2 * 8) / 400);
+  await lab.after(() => lab.press('undo'), 'case', (shown) => shown.texture_percent === percent);
+  await lab.after(() => lab.press('undo'), 'case', (shown) => shown.texture_percent === 0);
+});
+
+/** What is drawn with each tool, and where its middle is then told, in blocks; a groove has one coordinate alone. */
+const TOOLS = { circle: {}, ellipse: { w: 0.5 }, polygon: { s: 2 }, groove: { shape: 'groove' }, array: { array: [3, 3] } };
+const micrometres = (text) => Number(/^([-\d.]+) um$/.exec(text)[1]);
+
+for (const [tool, keys] of Object.entries(TOOLS)) {
+  test(`${tool}: placed, moved, sized and deleted`, async (t) => {
+    const lab = await open(t, { toml: PLAIN });
+    const only = (shown) => shown.texture.length === 1;
+    const table = () => lab.last.case.texture[0];
+    // Blocks have an edge of a micrometre; an offset is told from the middle of the slider.
+    const place = () => (tool === 'groove' ? micrometres(table().offset) + 10 : micrometres(table().center[0]));
+    await lab.press(`tool-${tool}`);
+    await lab.after(() => lab.drag([9, 11]), 'case', only);
+    for (const [key, value] of Object.entries(keys)) assert.deepEqual(table()[key], value);
+    // A pointer stands on whole pixels, and a block has some twenty of them.
+    const near = (value, expected) => assert.ok(Math.abs(value - expected) < 0.1, `${value} is not ${expected}`);
+    near(place(), 9);
+    assert.equal(await lab.find('#shape-remove').count(), 1);
+    await lab.after(() => lab.drag([9, 11], [12, 11]), 'case', () => Math.abs(place() - 12) < 0.1);
+    const { coverage } = table();
+    const [outline] = lab.last.case.shapes[0].outlines;
+    const [xs, ys] = [0, 1].map((axis) => outline.map((point) => point[axis]));
+    const grip = [Math.max(...xs), tool === 'groove' ? 10 : Math.max(...ys)];
+    const outward = [grip[0] + 1.5, tool === 'groove' ? 10 : grip[1] + 1.5];
+    await lab.after(() => lab.drag(grip, outward), 'case', () => table().coverage > 1.2 * coverage);
+    await lab.find('#shape-coverage').fill('7.5');
+    await lab.after(() => lab.find('#shape-coverage').press('Enter'), 'case', () => table().coverage === 7.5);
+    await lab.after(() => lab.press('shape-remove'), 'case', ({ texture }) => texture.length === 0);
+    await lab.after(() => lab.press('undo'), 'case', only);
+    // With a drag the radius is given.
+    await lab.press(`tool-${tool}`);
+    await lab.after(() => lab.drag([5, 5], [5, 8]), 'case', ({ texture }) => texture.length === 2);
+    assert.notEqual(lab.last.case.texture[1].coverage, coverage);
+  });
+}
+
+test('an image becomes the texture, chosen as a file and dropped', async (t) => {
+  const lab = await open(t, { toml: PLAIN });
+  const half = image(20, (x) => (x < 10 ? 0 : 255));
+  const [chooser] = await Promise.all([lab.page.waitForEvent('filechooser'), lab.press('tool-image')]);
+  await lab.after(() => chooser.setFiles({ name: 'half.png', mimeType: 'image/png', buffer: half }), 'case', (shown) => shown.texture_percent === 50);
+  const quarter = image(20, (x, y) => (x < 10 && y < 10 ? 0 : 255));
+  await lab.after(() => lab.page.evaluate((bytes) => {
+    const data = new DataTransfer();
+    data.items.add(new File([new Uint8Array(bytes)], 'quarter.png', { type: 'image/png' }));
+    document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }));
+  }, [...quarter]), 'case', (shown) => shown.texture_percent === 25);
+  // Dark in the image is texture at the same place: left and above.
+  await lab.after(async () => lab.page.mouse.move(...(await lab.at([4.5, 15.5]))), 'probe', ({ textured }) => textured);
+  await lab.after(async () => lab.page.mouse.move(...(await lab.at([4.5, 4.5]))), 'probe', ({ textured }) => !textured);
+  await lab.find('#image-file').setInputFiles({ name: 'notes.txt', mimeType: 'text/plain', buffer: Buffer.from('no image') });
+  await lab.notice(say('image_unreadable', { name: 'notes.txt' }));
+});
