@@ -123,6 +123,14 @@ impl Document {
         })
     }
 
+    /// Whether it has textures.
+    pub(crate) fn has_texture(&self) -> bool {
+        self.keys
+            .get("texture")
+            .and_then(Value::as_array)
+            .is_some_and(|all| !all.is_empty())
+    }
+
     /// The same case without texture.
     pub(crate) fn without_texture(&self) -> Self {
         let mut twin = self.clone();

@@ -130,6 +130,11 @@ impl Live {
         self.before.time_s
     }
 
+    /// t* of the legs before.
+    pub(crate) fn time_before_star(&self) -> f64 {
+        self.before.time_star
+    }
+
     /// The points of the curve that were not told yet.
     pub(crate) fn new_points(&mut self) -> Points {
         let rows = &self.running.rows()[self.told..];

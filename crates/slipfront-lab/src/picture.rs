@@ -221,14 +221,20 @@ fn round_up(value: f32) -> f32 {
     step.unwrap_or(10.0) * power
 }
 
-/// What slides against place and time, as a picture.
-pub(crate) fn kymograph(of: &Kymograph, bins: &PositionBins, dt_star: f64) -> Option<Bytes> {
+/// What slides against place and time, as a picture; `before_star` is t* of the legs before.
+pub(crate) fn kymograph(
+    of: &Kymograph,
+    bins: &PositionBins,
+    dt_star: f64,
+    before_star: f64,
+) -> Option<Bytes> {
     let rows: Vec<(f64, Vec<f32>)> = of.rows().collect();
     let (first, last) = (rows.first()?.0, rows.last()?.0);
     let mut bytes = vec![KYMOGRAPH, 0, 0, 0];
     bytes.extend((rows.len() as u32).to_le_bytes());
     bytes.extend((bins.count as u32).to_le_bytes());
-    for number in [first * dt_star, last * dt_star, bins.start, bins.width as f64] {
+    let times = [first, last].map(|step| before_star + step * dt_star);
+    for number in [times[0], times[1], bins.start, bins.width as f64] {
         bytes.extend((number as f32).to_le_bytes());
     }
     let byte = |share: &f32| match share.is_nan() {

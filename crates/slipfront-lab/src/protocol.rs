@@ -91,7 +91,9 @@ impl Request {
 pub(crate) struct Source {
     pub(crate) preset: Option<String>,
     pub(crate) folder: Option<String>,
+    /// A case as text, and its name.
     pub(crate) toml: Option<String>,
+    pub(crate) name: Option<String>,
     /// Files that the TOML names, in Base64.
     #[serde(default)]
     pub(crate) files: BTreeMap<String, String>,

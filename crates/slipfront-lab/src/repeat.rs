@@ -42,36 +42,32 @@ impl Drop for Stoppable {
     }
 }
 
-/// Runs the case and the same without texture with the seeds from 1 on, each to the end of its first peak.
+/// Runs the case, and if it has texture the same without, with the seeds from 1 on, each to the end of its first peak.
 pub(crate) fn repeat(document: &Document, seeds: u64, outbox: &Outbox, stop: &AtomicBool) {
-    let (mut with, mut without) = (Vec::new(), Vec::new());
+    let twin = document.has_texture().then(|| document.without_texture());
+    let documents: Vec<&Document> = [document].into_iter().chain(&twin).collect();
+    let mut found: Vec<Vec<f64>> = vec![Vec::new(); documents.len()];
     for seed in 1..=seeds {
-        let pair = static_friction(document, seed, stop)
-            .and_then(|one| Ok((one, static_friction(&document.without_texture(), seed, stop)?)));
-        let (one, other) = match pair {
-            Ok((Some(one), Some(other))) => (one, other),
-            Ok(_) => return,
-            Err(sentence) => {
-                return outbox.reply(&Reply::Refused {
-                    of: "repeat",
-                    sentence,
-                });
+        for (document, found) in documents.iter().zip(&mut found) {
+            match static_friction(document, seed, stop) {
+                Ok(Some(friction)) => found.push(friction),
+                Ok(None) => return,
+                Err(sentence) => {
+                    let of = "repeat";
+                    return outbox.reply(&Reply::Refused { of, sentence });
+                }
             }
-        };
-        with.push(one);
-        without.push(other);
-        let changes: Vec<f64> = with
-            .iter()
-            .zip(&without)
-            .map(|(one, other)| 100.0 * (one / other - 1.0))
-            .collect();
+        }
+        let without = found.get(1).map_or(&[][..], Vec::as_slice);
+        let pairs = found[0].iter().zip(without);
+        let changes: Vec<f64> = pairs.map(|(one, other)| 100.0 * (one / other - 1.0)).collect();
         outbox.reply(&Reply::Repeated(RepeatedReply {
             done: seed,
             of: seeds,
             finished: seed == seeds,
             change_percent: estimate(&changes),
-            with: estimate(&with),
-            without: estimate(&without),
+            with: estimate(&found[0]),
+            without: estimate(without),
         }));
     }
 }

@@ -14,7 +14,7 @@ const name = () => state.case?.name ?? 'case';
 
 async function copyLink() {
   const { toml, files } = await exported();
-  const link = await makeLink({ toml, files });
+  const link = await makeLink({ name: name(), toml, files });
   if (link === null) return notice(say('link_too_long'));
   const address = `${location.origin}${location.pathname}#case=${link}`;
   history.replaceState(null, '', `#case=${link}`);

@@ -52,7 +52,7 @@ async function prepare(step) {
   if (!answer.ok) return notice(say('lesson_missing', { file: step.case }));
   const toml = await answer.text();
   setView({ twin: false, after_change: 'rest', ...step.view });
-  open({ toml, files: {} });
+  open({ name: step.case.replace(/^.*\/|\.toml$/g, ''), toml, files: {} });
 }
 
 /** @param {{lesson: string, step: number}|null} place */

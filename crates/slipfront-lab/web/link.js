@@ -1,5 +1,5 @@
 // @ts-check
-// A case as part of an address: base64url of the deflated JSON {"toml", "files"}.
+// A case as part of an address: base64url of the deflated JSON {"name", "toml", "files"}.
 
 /** A longer address is cut by some mail programs and chats. */
 const MAX_LENGTH = 16384;
@@ -20,7 +20,7 @@ export function toBase64(bytes) {
 /** @param {string} text @returns {Uint8Array<ArrayBuffer>} */
 export const fromBase64 = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 
-/** The link of a case, or null if it would be too long. @param {{toml: string, files: Record<string, string>}} content */
+/** The link of a case, or null if it would be too long. @param {{name?: string, toml: string, files: Record<string, string>}} content */
 export async function makeLink(content) {
   const json = new TextEncoder().encode(JSON.stringify(content));
   const packed = await through(json, new CompressionStream('deflate-raw'));
@@ -28,10 +28,10 @@ export async function makeLink(content) {
   return text.length > MAX_LENGTH ? null : text;
 }
 
-/** The case of a link; throws if it is none. @param {string} text @returns {Promise<{toml: string, files: Record<string, string>}>} */
+/** The case of a link; throws if it is none. @param {string} text @returns {Promise<{name?: string, toml: string, files: Record<string, string>}>} */
 export async function readLink(text) {
   const packed = fromBase64(text.replaceAll('-', '+').replaceAll('_', '/'));
-  const { toml, files } = JSON.parse(new TextDecoder().decode(await through(packed, new DecompressionStream('deflate-raw'))));
+  const { name, toml, files } = JSON.parse(new TextDecoder().decode(await through(packed, new DecompressionStream('deflate-raw'))));
   if (typeof toml !== 'string') throw new TypeError('toml');
-  return { toml, files: files ?? {} };
+  return { name, toml, files: files ?? {} };
 }

@@ -41,7 +41,7 @@ async function first() {
 function begin() {
   sendView();
   if (!opened || !state.case) first();
-  else send({ do: 'open', source: { toml: state.case.toml, files } });
+  else send({ do: 'open', source: { name: state.case.name, toml: state.case.toml, files } });
   opened = true;
 }
 

@@ -12,7 +12,8 @@ export function kind(table) {
   if (table.shape !== 'cavity') return table.shape === 'polygon' ? 'outline' : table.shape;
   if ((table.s ?? 1) > 1) return 'polygon';
   const single = (table.w ?? 0) === 0 ? 'circle' : 'ellipse';
-  return table.array ? 'array' : single;
+  const copies = Array.isArray(table.array) ? table.array : [];
+  return table.array === 'auto' || copies.some((/** @type {number} */ count) => count > 1) ? 'array' : single;
 }
 
 /** The middle of the slider in metres. @param {Slider} slider */

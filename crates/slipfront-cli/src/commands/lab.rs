@@ -42,6 +42,9 @@ const LINK: &str = "#case=";
 
 impl Lab {
     pub(crate) fn execute(self) -> Result<(), Failure> {
+        // First, since a large case is made on these threads.
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = set_worker_threads(Some(self.threads.unwrap_or((cores as u16 - 1).max(1))), 1)?;
         let link = self
             .case
             .as_deref()

@@ -45,7 +45,7 @@ impl Session {
     /// Lets the slider without texture run beside it, if there is one to compare with.
     pub(super) fn begin_twin(&mut self, from_rest: bool) -> Result<(), String> {
         let document = self.document()?;
-        if !self.view.twin || document.textures().as_array().is_none_or(Vec::is_empty) {
+        if !self.view.twin || !document.has_texture() {
             self.twin = None;
             return Ok(());
         }

@@ -8,6 +8,7 @@ use toml::Value;
 use super::brush::stroke;
 use super::state::{Edited, Session};
 use crate::document::Document;
+use crate::files::is_plain_name;
 use crate::history::History;
 use crate::opening::Opened;
 use crate::protocol::{Reply, Source};
@@ -24,6 +25,8 @@ impl Session {
             recorded = Some(found);
             document
         } else if let Some(toml) = source.toml {
+            let name = source.name.filter(|name| is_plain_name(name));
+            let name = name.unwrap_or_else(|| "case".to_owned());
             let mut files = BTreeMap::new();
             for (name, text) in source.files {
                 files.insert(name, base64::decode(&text)?);
@@ -34,7 +37,7 @@ impl Session {
                     .cloned()
                     .ok_or_else(|| std::io::ErrorKind::NotFound.into())
             };
-            Document::new("case", &toml, read).map_err(|error| error.to_string())?
+            Document::new(&name, &toml, read).map_err(|error| error.to_string())?
         } else {
             match &self.setting.start.0 {
                 Opened::Preset => presets::opening()?,

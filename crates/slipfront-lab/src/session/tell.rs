@@ -159,6 +159,11 @@ impl Session {
         let summary = live
             .summary()
             .and_then(|summary| serde_json::from_str(&summary_json(&summary)).ok());
+        let before = live.time_before_star();
+        let instants = live
+            .running()
+            .instants()
+            .map(|(letter, time)| (letter, before + time));
         let reply = NumbersReply {
             step: live.step(),
             t_star: live.time_star(),
@@ -169,7 +174,7 @@ impl Session {
             twin_peak,
             change_percent,
             kinetic: live.running().kinetic().map(|kinetic| kinetic.mu_star),
-            instants: live.running().instants().collect(),
+            instants: instants.collect(),
             steps_per_second: self.clock.rate(),
             ended: live.ended.is_some(),
             summary,
@@ -217,7 +222,12 @@ impl Session {
         let Some(live) = &self.live else { return };
         let case = live.case();
         let bins = PositionBins::of(&case.model.lattice, &case.model.drive);
-        if let Some(picture) = picture::kymograph(live.running().kymograph(), &bins, case.time_plan.dt_star) {
+        if let Some(picture) = picture::kymograph(
+            live.running().kymograph(),
+            &bins,
+            case.time_plan.dt_star,
+            live.time_before_star(),
+        ) {
             self.outbox.kymograph(picture);
         }
     }

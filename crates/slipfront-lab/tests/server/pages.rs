@@ -180,9 +180,12 @@ fn changes_go_on_or_begin_at_rest_as_was_chosen() {
     // It became V* and a speed again.
     assert!((speed / 2e-4 - 1.0).abs() < 1e-15, "{speed}");
     assert!(number(&case["time_before_s"]) > 0.0);
-    page.wait_for("its numbers", |reply| {
-        reply["is"] == "numbers" && number(&reply["step"]) > 100.0
+    let numbers = page.wait_for("its numbers", |reply| {
+        reply["is"] == "numbers" && !reply["instants"]["A"].is_null()
     });
+    // Instants of a leg count from rest as the curve does.
+    let before = number(&case["time_before_s"]) / number(&case["units"]["time_s"]);
+    assert!(number(&numbers["instants"]["A"]) > before);
     // Other blocks are another slider.
     page.send(&json!({ "do": "set", "keys": { "slider.blocks": [12, 10] }, "gesture": 2 }));
     assert_eq!(
@@ -281,6 +284,12 @@ fn the_uncertainty_is_that_of_several_seeds() {
         number(&repeated["change_percent"]["half_width"]),
         sample.half_width.unwrap()
     );
+    // Without texture there is nothing to compare with.
+    page.send(&json!({ "do": "set", "keys": { "texture": null }, "gesture": 1 }));
+    page.send(&json!({ "do": "repeat", "seeds": 2 }));
+    let repeated = page.wait_for("the last seed", |reply| reply["finished"] == true);
+    assert_eq!(repeated["change_percent"], Value::Null);
+    assert_eq!(repeated["without"], Value::Null);
 }
 
 #[test]
