@@ -52,7 +52,7 @@ export async function until(holds, what) {
 export const browser = await chromium.launch({
   executablePath: '/usr/bin/chromium',
   args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
-    '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--force-color-profile=srgb', '--font-render-hinting=none'],
+    '--disable-gpu', '--enable-unsafe-swiftshader', '--force-color-profile=srgb', '--font-render-hinting=none'],
 });
 export const laboratory = await startLaboratory();
 

@@ -15,5 +15,5 @@ if ! [ -x /usr/bin/chromium ]; then
 fi
 [ -n "${SLIPFRONT:-}" ] || cargo build --quiet --locked -p slipfront-cli
 npm ci --prefix tests/browser --silent --no-audit --no-fund || exit 2
-node --test crates/slipfront-lab/tests/page/
+node --test --test-reporter=spec crates/slipfront-lab/tests/page/
 node --test --test-reporter=spec tests/browser/main.mjs

@@ -109,7 +109,7 @@ test('a kymograph is read as it is laid out', () => {
 });
 
 test('a link gives the case back, and one that is too long is not made', async () => {
-  const content = { toml: 'name = "\u03bc"\n', files: { 'texture.png': toBase64(new Uint8Array([0, 255, 62])) } };
+  const content = { name: 'circle', toml: 'name = "\u03bc"\n', files: { 'texture.png': toBase64(new Uint8Array([0, 255, 62])) } };
   assert.deepEqual(await readLink(await makeLink(content)), content);
   assert.deepEqual([...fromBase64(content.files['texture.png'])], [0, 255, 62]);
   // Random bytes cannot be packed: 20 000 of them are 26 667 characters.
