@@ -7,8 +7,8 @@ const lessons = await webJson('lessons.json');
 const words = await webJson('lessons.en.json');
 const numbers = await webJson('lesson_numbers.json');
 
-/** The text of a paragraph as it is read. */
-const told = (text) => text.replace(/\{(\w+)\}/g, (_, id) => numbers[id].says).replaceAll('*', '');
+/** The text of a paragraph as it is read: numbers stay with their units, asterisks emphasise, and another sign stands for that of symbols. */
+const told = (text) => text.replace(/\{(\w+)\}/g, (_, id) => numbers[id].says.replaceAll(' ', '\u00a0')).replaceAll('*', '').replaceAll('\u2217', '*');
 
 /** Whether a case has a value of a key, of the few forms that buttons of lessons set. */
 function has({ toml, texture }, key, value) {

@@ -84,7 +84,9 @@ for (const [tool, keys] of Object.entries(TOOLS)) {
     const [xs, ys] = [0, 1].map((axis) => outline.map((point) => point[axis]));
     const grip = [Math.max(...xs), tool === 'groove' ? 10 : Math.max(...ys)];
     const outward = [grip[0] + 1.5, tool === 'groove' ? 10 : grip[1] + 1.5];
-    await lab.after(() => lab.drag(grip, outward), 'case', () => table().coverage > 1.2 * coverage);
+    // Of the answers to a drag the one to its last point is waited for.
+    const answered = () => table().coverage === lab.sent.findLast((order) => order.do === 'set').keys.texture[0].coverage;
+    await lab.after(() => lab.drag(grip, outward), 'case', () => table().coverage > 1.2 * coverage && answered());
     await lab.find('#shape-coverage').fill('7.5');
     await lab.after(() => lab.find('#shape-coverage').press('Enter'), 'case', () => table().coverage === 7.5);
     await lab.after(() => lab.press('shape-remove'), 'case', ({ texture }) => texture.length === 0);
