@@ -9,7 +9,7 @@ import { ROOT } from './command.mjs';
 import { SIZES } from './accessibility.mjs';
 import { open, SMALL, sleep } from './page.mjs';
 
-const EXPECTED = path.join(import.meta.dirname, 'expected');
+const EXPECTED = path.join(ROOT, 'tests/browser/expected');
 /** Seen when pictures differ: what came. */
 const SEEN = path.join(ROOT, 'target/browser-seen');
 /**

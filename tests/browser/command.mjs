@@ -2,10 +2,11 @@
 import { execFile, spawn } from 'node:child_process';
 import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
 import path from 'node:path';
+import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
 import { deflateRawSync } from 'node:zlib';
 
-export const ROOT = path.resolve(import.meta.dirname, '../..');
+export const ROOT = fileURLToPath(new URL('../..', import.meta.url));
 const COMMAND = path.resolve(process.env.SLIPFRONT ?? path.join(ROOT, 'target/debug/slipfront'));
 
 mkdirSync(path.join(ROOT, 'target'), { recursive: true });

@@ -3,7 +3,7 @@
 #
 #     tests/browser/run.sh
 #
-# The command is target/debug/slipfront, or the one that SLIPFRONT names. Needs cargo, Node.js 20 or later with npm, and
+# The command is target/debug/slipfront, or the one that SLIPFRONT names. Needs cargo, Node.js 18 or later with npm, and
 # Python; installs Chromium where it is missing. Exit status: 2 when something is missing.
 
 set -euo pipefail
@@ -15,5 +15,5 @@ if ! [ -x /usr/bin/chromium ]; then
 fi
 [ -n "${SLIPFRONT:-}" ] || cargo build --quiet --locked -p slipfront-cli
 npm ci --prefix tests/browser --silent --no-audit --no-fund || exit 2
-node --test --test-reporter=spec crates/slipfront-lab/tests/page/
+node --test --test-reporter=spec crates/slipfront-lab/tests/page/*.test.mjs
 node --test --test-reporter=spec tests/browser/main.mjs

@@ -11,6 +11,9 @@ import { removeSelected } from './tools.js';
 /** @typedef {{key: string, value: number, set: (value: number) => Record<string, any>}} Field `key` names it in en.json; `set` gives the keys that change */
 
 const MICRO = 1e6;
+
+/** Whether the case has changed while a number was typed. */
+let waiting = false;
 const slider = () => ({ blocks: state.case.blocks, blockSize: state.case.block_size_m, count: state.case.n_blocks });
 
 /** @param {any} table @param {string} key @returns {Field} */
@@ -55,7 +58,14 @@ function fields(table) {
 function row(index, { key, value, set }) {
   const id = `shape-${key}`;
   const input = make('input', { id, type: 'text', inputMode: 'decimal', size: 7, value: String(Number(value.toPrecision(6))), autocomplete: 'off' });
+  input.addEventListener('input', () => (input.dataset.typing = 'yes'));
+  input.addEventListener('blur', () => {
+    delete input.dataset.typing;
+    // Once the focus has arrived where it goes.
+    if (waiting) setTimeout(update);
+  });
   input.addEventListener('change', () => {
+    delete input.dataset.typing;
     const given = typed(input.value);
     if (given === null) return show();
     const { texture } = state.case;
@@ -88,8 +98,14 @@ function show() {
   else if (focused) list.querySelectorAll('button')[place]?.focus();
 }
 
+/** A number that is being typed is not taken away. */
+function update() {
+  waiting = find('shapes').querySelector('[data-typing]') !== null;
+  if (!waiting) show();
+}
+
 /** Begins to listen. */
 export function startShapeList() {
-  on('case', show);
+  on('case', update);
   on('selected', show);
 }

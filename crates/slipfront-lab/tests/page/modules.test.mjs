@@ -4,6 +4,7 @@ import { randomBytes } from 'node:crypto';
 import fs from 'node:fs';
 import path from 'node:path';
 import test from 'node:test';
+import { fileURLToPath } from 'node:url';
 import { Camera } from '../../web/camera.js';
 import { COLOURMAPS } from '../../web/colourmaps.js';
 import { parse } from '../../web/frames.js';
@@ -11,7 +12,7 @@ import { fromBase64, makeLink, readLink, toBase64 } from '../../web/link.js';
 import { fixed, length, metres, number, quantity, ticks, typed } from '../../web/quantity.js';
 import { center, coverageOf, create, enlarge, handles, inside, kind, move, turn } from '../../web/shapes.js';
 
-const WEB = path.join(import.meta.dirname, '../../web');
+const WEB = fileURLToPath(new URL('../../web', import.meta.url));
 const SLIDER = { blocks: [50, 40], blockSize: 1e-6, count: 2000 };
 // Numbers of one rounding: a few units of the last digit of a double.
 const near = (value, expected) => assert.ok(Math.abs(value - expected) <= 1e-12 * Math.max(1, Math.abs(expected)), `${value} is not ${expected}`);
