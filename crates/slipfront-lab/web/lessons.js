@@ -7,7 +7,7 @@ import { notice } from './notices.js';
 import { open } from './session.js';
 import { on, put, state } from './store.js';
 import { say } from './text.js';
-import { setView } from './view.js';
+import { setView, startsPaused } from './view.js';
 
 /** @type {any[]} */
 let lessons = [];
@@ -51,7 +51,7 @@ async function prepare(step) {
   const answer = await fetch(step.case);
   if (!answer.ok) return notice(say('lesson_missing', { file: step.case }));
   const toml = await answer.text();
-  setView({ twin: false, after_change: 'rest', ...step.view });
+  setView({ twin: false, after_change: 'rest', paused: startsPaused, ...step.view });
   open({ name: step.case.replace(/^.*\/|\.toml$/g, ''), toml, files: {} });
 }
 
