@@ -52,8 +52,12 @@ pub(crate) fn entries() -> Vec<PresetEntry> {
 fn title(text: &str) -> String {
     let lines = text.lines().map_while(|line| line.strip_prefix('#'));
     let comment = lines.map(str::trim).collect::<Vec<_>>().join(" ");
-    let end = comment.find(". ").unwrap_or(comment.len());
-    comment[..end].trim_end_matches('.').to_owned()
+    // "Fig. 3" and "Eq. 1" go on.
+    let ends = comment.match_indices(". ").map(|(end, _)| &comment[..end]);
+    let is_abbreviated =
+        |part: &&str| part.ends_with("Fig") || part.ends_with("Figs") || part.ends_with("Eq");
+    let sentence = ends.into_iter().find(|part| !is_abbreviated(part));
+    sentence.unwrap_or(&comment).trim_end_matches('.').to_owned()
 }
 
 /// A case by its name.

@@ -13,7 +13,7 @@ export function kind(table) {
   if ((table.s ?? 1) > 1) return 'polygon';
   const single = (table.w ?? 0) === 0 ? 'circle' : 'ellipse';
   const copies = Array.isArray(table.array) ? table.array : [];
-  return table.array === 'auto' || copies.some((/** @type {number} */ count) => count > 1) ? 'array' : single;
+  return table.pitch || copies.some((/** @type {number} */ count) => count > 1) ? 'array' : single;
 }
 
 /** The middle of the slider in metres. @param {Slider} slider */
