@@ -28,7 +28,9 @@ async function firstSlips(lab) {
 test('a link opens the same case, which runs the same way', async (t) => {
   const lab = await open(t, { toml: SMALL, permissions });
   await lab.press('tool-brush');
-  await lab.after(() => lab.drag([3, 3], [6, 3]), 'case', ({ texture }) => texture[0].shape === 'mask');
+  // Five rows of four blocks and eight beyond each end, none of which the cavity has.
+  const percent = lab.last.case.texture_percent + 100 * (5 * 4 + 2 * 8) / 400;
+  await lab.after(() => lab.drag([3.5, 3.5], [6.5, 3.5]), 'case', (shown) => shown.texture_percent === percent);
   const address = await copyLink(lab);
   assert.match(address, /^http:\/\/127\.0\.0\.1:\d+\/#case=[\w-]+$/);
   // The token of a link is the reader's own.

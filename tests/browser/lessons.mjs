@@ -42,8 +42,8 @@ for (const [number, lesson] of lessons.entries()) {
         assert.equal(await buttons.nth(place).textContent(), told(said.set[id]));
         const from = lab.sent.length;
         if (Object.keys(keys).length > 0) {
-          await lab.after(() => buttons.nth(place).click(), 'case');
-          assert.equal(lab.last.case.why, 'change', `${id}: ${lab.last.refused?.sentence}`);
+          // The case of a step may come a second time before that of its button.
+          await lab.after(() => buttons.nth(place).click(), 'case', ({ why }) => why === 'change');
         } else {
           await buttons.nth(place).click();
         }

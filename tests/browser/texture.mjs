@@ -6,7 +6,7 @@ import path from 'node:path';
 import test from 'node:test';
 import { PNG } from 'pngjs';
 import { slipfront, WORK } from './command.mjs';
-import { open, PLAIN, say, until } from './page.mjs';
+import { open, PLAIN, say } from './page.mjs';
 
 /** A gray image by its function of column and row, from the top. */
 export function image(size, gray) {
@@ -30,8 +30,8 @@ test('a cavity that is painted lowers static friction, to the number of the comm
   await lab.press('pause');
   await lab.press('tool-brush');
   await lab.find('#brush-size').fill('3');
-  await lab.drag([6, 10], [14, 10]);
-  const painted = await until(() => lab.last.case.texture_percent > 5 && lab.last.case, 'a texture');
+  // Three rows of ten blocks, and three blocks beyond each end.
+  const painted = await lab.after(() => lab.drag([5.5, 10.5], [14.5, 10.5]), 'case', (shown) => shown.texture_percent === 100 * (3 * 10 + 2 * 3) / 400);
   await lab.reads('numbers', new RegExp(`${say('number_texture')}${painted.texture_percent.toFixed(1)} %`));
   assert.equal(painted.texture[0].shape, 'mask');
   const { summary } = await lab.runToEnd();
@@ -85,15 +85,15 @@ for (const [tool, keys] of Object.entries(TOOLS)) {
     const grip = [Math.max(...xs), tool === 'groove' ? 10 : Math.max(...ys)];
     const outward = [grip[0] + 1.5, tool === 'groove' ? 10 : grip[1] + 1.5];
     // Of the answers to a drag the one to its last point is waited for.
-    const answered = () => table().coverage === lab.sent.findLast((order) => order.do === 'set').keys.texture[0].coverage;
-    await lab.after(() => lab.drag(grip, outward), 'case', () => table().coverage > 1.2 * coverage && answered());
+    const answered = (k) => lab.last.case.texture[k].coverage === lab.sent.findLast((order) => order.do === 'set').keys.texture[k].coverage;
+    await lab.after(() => lab.drag(grip, outward), 'case', () => table().coverage > 1.2 * coverage && answered(0));
     await lab.find('#shape-coverage').fill('7.5');
     await lab.after(() => lab.find('#shape-coverage').press('Enter'), 'case', () => table().coverage === 7.5);
     await lab.after(() => lab.press('shape-remove'), 'case', ({ texture }) => texture.length === 0);
     await lab.after(() => lab.press('undo'), 'case', only);
     // With a drag the radius is given.
     await lab.press(`tool-${tool}`);
-    await lab.after(() => lab.drag([5, 5], [5, 8]), 'case', ({ texture }) => texture.length === 2);
+    await lab.after(() => lab.drag([5, 5], [5, 8]), 'case', ({ texture }) => texture.length === 2 && answered(1));
     assert.notEqual(lab.last.case.texture[1].coverage, coverage);
   });
 }
