@@ -60,23 +60,15 @@ impl Document {
         let mut keys: Table = text.parse().map_err(|error| refused(format!("{error}")))?;
         let mut contents: BTreeMap<String, Vec<u8>> = BTreeMap::new();
         let (mut bytes, mut renamed) = (0, Vec::new());
-        let named = CaseFile::files_mut(
-            &mut case.slider,
-            &mut case.load,
-            &mut case.drive,
-            &mut case.friction,
-            &mut case.texture,
-        );
+        let (named, source) = case.files_mut();
         for file in named {
-            let read = read(file.name).map_err(|error| {
-                case.source
-                    .error(&file.key, format!("{} cannot be read: {error}", file.name))
-            })?;
+            let read = read(file.name)
+                .map_err(|error| source.error(&file.key, format!("{} cannot be read: {error}", file.name)))?;
             bytes += read.len() as u64;
             if bytes > MAX_FILES {
                 let sentence =
                     format!("the files of the case have more than {MAX_FILES} bytes: scale them down");
-                return Err(case.source.error(&file.key, sentence));
+                return Err(source.error(&file.key, sentence));
             }
             let mut plain = plain_name(file.name);
             while contents.get(&plain).is_some_and(|other| *other != read) {
@@ -162,12 +154,13 @@ impl Document {
     /// The same case with an image in place of its textures.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// When it cannot be written, or is no case without the image either.
     pub(crate) fn with_image(&self, png: Vec<u8>, threshold: f64) -> Result<Self, CaseError> {
         let mut contents = self.files.contents().clone();
         let mut painted = self.without_texture();
-        let still_named: Vec<String> = painted.named_files();
-        contents.retain(|name, _| still_named.contains(name));
+        let mut case = CaseFile::parse(&painted.toml(), &painted.name, &[])?;
+        let still_named: Vec<&String> = case.files_mut().0.map(|file| &*file.name).collect();
+        contents.retain(|name, _| still_named.contains(&name));
         let mut name = PAINTED.to_owned();
         while contents.contains_key(&name) {
             name.insert_str(0, "2-");
@@ -186,25 +179,10 @@ impl Document {
         Ok(painted)
     }
 
-    /// The files that its keys name.
-    fn named_files(&self) -> Vec<String> {
-        fn strings(value: &Value, found: &mut Vec<String>) {
-            match value {
-                Value::String(text) => found.push(text.clone()),
-                Value::Array(values) => values.iter().for_each(|value| strings(value, found)),
-                Value::Table(table) => table.values().for_each(|value| strings(value, found)),
-                _ => {}
-            }
-        }
-        let mut found = Vec::new();
-        self.keys.values().for_each(|value| strings(value, &mut found));
-        found
-    }
-
     /// The same case with a texture that is this mask, one value per block from y = 0 upwards.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// As for [`with_image`](Self::with_image).
     pub(crate) fn with_mask(&self, textured: &[bool], nx: usize) -> Result<Self, CaseError> {
         if !textured.contains(&true) {
             return Ok(self.without_texture());
@@ -245,19 +223,10 @@ impl Document {
         }
         Case::to_run(file, &self.name, self.files.folder(), &mut |_| true)
     }
-}
 
-impl Document {
     /// Refuses a case that names a file which does not belong to it, wherever that may be: keys may come from anybody's link.
     fn refuse_other_files(&self, case: &mut CaseFile) -> Result<(), CaseError> {
-        let source = &case.source;
-        let named = CaseFile::files_mut(
-            &mut case.slider,
-            &mut case.load,
-            &mut case.drive,
-            &mut case.friction,
-            &mut case.texture,
-        );
+        let (named, source) = case.files_mut();
         for file in named {
             if !self.files.contents().contains_key(file.name.as_str()) {
                 let sentence = format!(

@@ -68,13 +68,7 @@ impl NamedFiles {
             originals: Vec::new(),
             digests: Vec::new(),
         };
-        let files = CaseFile::files_mut(
-            &mut file.slider,
-            &mut file.load,
-            &mut file.drive,
-            &mut file.friction,
-            &mut file.texture,
-        );
+        let (files, source) = file.files_mut();
         for named in files {
             let original = folder.join(&*named.name);
             let digest = match digests.get(&original) {
@@ -85,7 +79,7 @@ impl NamedFiles {
                         FileUse::HeightMap => arrays::open_height_map(&original),
                     };
                     let digest = opened.and_then(|file| digest(&original, file));
-                    digest.map_err(|error| file.source.error(&named.key, error.to_string()))?
+                    digest.map_err(|error| source.error(&named.key, error.to_string()))?
                 }
                 None => Digest::default(),
             };
@@ -101,14 +95,7 @@ impl NamedFiles {
     pub(super) fn share(mut self, file: &mut CaseFile, ranks: &Ranks) -> Vec<Input> {
         ranks.communicator.sum(self.digests.as_flattened_mut());
         let mut inputs: Vec<Input> = Vec::new();
-        let files = CaseFile::files_mut(
-            &mut file.slider,
-            &mut file.load,
-            &mut file.drive,
-            &mut file.friction,
-            &mut file.texture,
-        );
-        let names = files.map(|named| named.name);
+        let names = file.files_mut().0.map(|named| named.name);
         for ((original, digest), written) in self.originals.into_iter().zip(self.digests).zip(names) {
             let [length, hash @ ..] = digest;
             let mut bytes = [0; blake3::OUT_LEN];

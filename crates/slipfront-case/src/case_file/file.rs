@@ -82,20 +82,14 @@ impl CaseFile {
         Self::parse(&text, &path.display().to_string(), overrides)
     }
 
-    /// Every file that these tables of a case name.
-    pub fn files_mut<'a>(
-        slider: &'a mut Slider,
-        load: &'a mut Load,
-        drive: &'a mut Drive,
-        friction: &'a mut Friction,
-        texture: &'a mut [Texture],
-    ) -> impl Iterator<Item = NamedFile<'a>> {
+    /// Every file that the case names, and what the case was read from, for errors about a file.
+    pub fn files_mut(&mut self) -> (impl Iterator<Item = NamedFile<'_>>, &Source) {
         let named = |key: &str, name, holds| NamedFile {
             key: key.to_owned(),
             name,
             holds,
         };
-        let of_textures = texture.iter_mut().enumerate();
+        let of_textures = self.texture.iter_mut().enumerate();
         let of_textures = of_textures.filter_map(move |(index, texture)| {
             let key = format!("texture.{index}.file");
             match &mut texture.shape {
@@ -105,21 +99,21 @@ impl CaseFile {
             }
         });
         let fields = [
-            ("slider.outline_file", &mut slider.outline_file),
-            ("slider.stiffness_field", &mut slider.stiffness_field),
-            ("slider.density_field", &mut slider.density_field),
-            ("load.pressure_field", &mut load.pressure_field),
-            ("friction.mu_static_field", &mut friction.mu_static_field),
-            ("friction.mu_kinetic_field", &mut friction.mu_kinetic_field),
+            ("slider.outline_file", &mut self.slider.outline_file),
+            ("slider.stiffness_field", &mut self.slider.stiffness_field),
+            ("slider.density_field", &mut self.slider.density_field),
+            ("load.pressure_field", &mut self.load.pressure_field),
+            ("friction.mu_static_field", &mut self.friction.mu_static_field),
+            ("friction.mu_kinetic_field", &mut self.friction.mu_kinetic_field),
         ];
         let fields = fields.into_iter();
-        let attached = match &mut drive.attached {
+        let attached = match &mut self.drive.attached {
             Attached::File(name) => Some(named("drive.attach_file", name, FileUse::Blocks)),
             Attached::At(_) => None,
         };
-        of_textures
-            .chain(attached)
-            .chain(fields.filter_map(move |(key, name)| Some(named(key, name.as_mut()?, FileUse::Blocks))))
+        let of_fields =
+            fields.filter_map(move |(key, name)| Some(named(key, name.as_mut()?, FileUse::Blocks)));
+        (of_textures.chain(attached).chain(of_fields), &self.source)
     }
 
     /// Checks every bound that needs nothing but the file. [`parse`](Self::parse) has done so already.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use slipfront_case::case::{Case, Input};
-use slipfront_case::case_file::{CaseError, CaseFile, NamedFile, ParsedCase};
+use slipfront_case::case_file::{CaseError, CaseFile, NamedFile, ParsedCase, Source};
 
 use crate::program;
 
@@ -64,16 +64,28 @@ fn texts(
         let ending = name.rsplit('.').next().unwrap_or_default();
         *name = format!("{}.{ending}", hash.unwrap_or_default());
     };
-    let (mut slider, mut load, mut drive) = (file.slider.clone(), file.load.clone(), file.drive.clone());
-    let (mut friction, mut texture) = (file.friction.clone(), file.texture.clone());
-    friction.seed = 0;
-    CaseFile::files_mut(&mut slider, &mut load, &mut drive, &mut friction, &mut texture).for_each(contents);
+    // All but the text that the case was read from, which takes longer to copy than the rest.
+    let mut hashed = CaseFile {
+        slider: file.slider.clone(),
+        load: file.load.clone(),
+        drive: file.drive.clone(),
+        friction: file.friction.clone(),
+        texture: file.texture.clone(),
+        time: file.time.clone(),
+        output: file.output.clone(),
+        source: Source::default(),
+    };
+    hashed.friction.seed = 0;
+    hashed.files_mut().0.for_each(contents);
     Ok([
-        text(&slider, known.map(|(file, texts)| (&file.slider, &texts[0])))?,
-        text(&load, None)?,
-        text(&drive, None)?,
-        text(&friction, None)?,
-        text(&texture, None)?,
-        text(&file.time, known.map(|(file, texts)| (&file.time, &texts[5])))?,
+        text(
+            &hashed.slider,
+            known.map(|(file, texts)| (&file.slider, &texts[0])),
+        )?,
+        text(&hashed.load, None)?,
+        text(&hashed.drive, None)?,
+        text(&hashed.friction, None)?,
+        text(&hashed.texture, None)?,
+        text(&hashed.time, known.map(|(file, texts)| (&file.time, &texts[5])))?,
     ])
 }
