@@ -16,7 +16,8 @@ use crate::threads::{count_from_one, set_worker_threads};
   slipfront lab                                          a circular cavity, sliding
   slipfront lab cases/groove_across.toml                 a case of yours
   slipfront lab results/circle                           a run again, beside what it recorded
-  slipfront lab 'http://127.0.0.1:4000/#case=q1YqSUyyUoKCWgA'   the case of a link that was copied there
+  slipfront lab 'http://127.0.0.1:4000/#case=q1Yqyc_NUbJSSinKLEvVK4svLkksUrBVMNAzjMlT0lFKy8xJLVayqq6tBQA'
+                                                         the case of a link that was copied there
 
 The page answers on this machine alone, and needs no network. Ctrl-C ends it.")]
 pub(crate) struct Lab {

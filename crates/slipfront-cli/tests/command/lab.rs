@@ -32,7 +32,7 @@ fn open(workspace: &Workspace, line: &str) -> (Child, String) {
 fn it_serves_its_page_until_a_signal() {
     let workspace = Workspace::small();
     workspace.write("large.toml", "slider.blocks = [300, 300]\n");
-    let link = "http://127.0.0.1:1234/#case=q1YqSUyyUoKCWgA";
+    let link = "http://127.0.0.1:1234/#case=q1Yqyc_NUbJSSinKLEvVK4svLkksUrBVMNAzjMlT0lFKy8xJLVayqq6tBQA";
     for (case, signal) in [("", "-INT"), ("large.toml", "-TERM"), (link, "-INT")] {
         let (child, address) = open(&workspace, &format!("lab --no-open {case}"));
         let (host, rest) = address.strip_prefix("http://").unwrap().split_once('/').unwrap();
