@@ -55,10 +55,7 @@ pub(crate) static CONTROLS: [Control; 8] = [
         logarithmic: true,
         ..group("load", "load.pressure", [1e3, 1e8])
     },
-    Control {
-        unit: "",
-        ..group("r_star", "friction.r_star", [0.0, 1.0])
-    },
+    group("r_star", "friction.r_star", [0.0, 1.0]),
     Control {
         si_key: Some("slider.damping_rate"),
         unit: "1/s",

@@ -9,6 +9,7 @@
 //! somebody looks. What they say to each other stands in `protocol.rs`; the page itself in `web/`, without a build step.
 
 mod assets;
+mod background;
 mod base64;
 mod controls;
 mod document;

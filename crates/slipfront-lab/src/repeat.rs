@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::Sender;
-use std::thread;
 
 use slipfront_case::case::Case;
 use slipfront_run::running::run_unless;
@@ -16,31 +14,6 @@ use crate::protocol::{Estimate, RepeatedReply, Reply};
 
 /// Confidence of the intervals.
 const CONFIDENCE: f64 = 0.95;
-
-/// Work in the background, which ends when this is dropped.
-pub(crate) struct Stoppable(Arc<AtomicBool>);
-
-impl Stoppable {
-    /// Begins work in a thread, which holds `working` and looks now and then whether it shall stop.
-    pub(crate) fn begin(
-        working: &Sender<()>,
-        work: impl FnOnce(&AtomicBool) + Send + 'static,
-    ) -> std::io::Result<Self> {
-        let stop = Arc::new(AtomicBool::new(false));
-        let (stops, working) = (Arc::clone(&stop), working.clone());
-        thread::Builder::new().spawn(move || {
-            work(&stops);
-            drop(working);
-        })?;
-        Ok(Self(stop))
-    }
-}
-
-impl Drop for Stoppable {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-}
 
 /// Runs the case, and if it has texture the same without, with the seeds from 1 on, each to the end of its first peak.
 pub(crate) fn repeat(document: &Document, seeds: u64, outbox: &Outbox, stop: &AtomicBool) {

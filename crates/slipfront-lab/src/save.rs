@@ -40,46 +40,37 @@ pub(crate) fn folder(results: &Path, name: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// Runs the case to its end and writes its folder; tells how far it is, and where the results are.
-pub(crate) fn save(
-    document: Document,
-    results: &Path,
-    name: &str,
-    threads: usize,
-    outbox: &Outbox,
-    stop: &AtomicBool,
-) {
-    match saved(document, results, name, threads, outbox, stop) {
-        Ok(Some(folder)) => outbox.reply(&Reply::Saved {
-            name,
-            folder: display_path(&folder),
-            folders: replay::folders(results),
+/// Runs the case to its end and writes it into a folder of the results; tells how far it is, and where they are.
+pub(crate) fn save(document: &Document, out: &Path, threads: usize, outbox: &Outbox, stop: &AtomicBool) {
+    match saved(document, out, threads, outbox, stop) {
+        Ok(true) => outbox.reply(&Reply::Saved {
+            name: &document.name,
+            folder: display_path(out),
+            folders: out.parent().map(replay::folders).unwrap_or_default(),
         }),
-        Ok(None) => {}
+        Ok(false) => {}
         Err(sentence) => outbox.reply(&Reply::Refused { of: "save", sentence }),
     }
 }
 
+/// Whether the run came to its end.
 fn saved(
-    mut document: Document,
-    results: &Path,
-    name: &str,
+    document: &Document,
+    out: &Path,
     threads: usize,
     outbox: &Outbox,
     stop: &AtomicBool,
-) -> Result<Option<PathBuf>, String> {
+) -> Result<bool, String> {
     /// Any error as its sentence.
     fn sentence(error: impl std::fmt::Display) -> String {
         error.to_string()
     }
     let started = clock::now();
-    document.name = name.to_owned();
     let case = Arc::new(document.case().map_err(sentence)?);
-    let out = folder(results, name)?;
     case.budget
-        .check_disk(&case.file, &out, 0, false)
+        .check_disk(&case.file, out, 0, false)
         .map_err(sentence)?;
-    let mut folder = RunFolder::prepare(&out, false, &case.inputs).map_err(sentence)?;
+    let mut folder = RunFolder::prepare(out, false, &case.inputs).map_err(sentence)?;
     results::write_case(&case, &mut folder).map_err(sentence)?;
     let mut running = Running::start(&case, threads);
     let mut told = Instant::now();
@@ -94,7 +85,7 @@ fn saved(
         }
         if stop.load(Ordering::Relaxed) {
             give_up(folder);
-            return Ok(None);
+            return Ok(false);
         }
         if told.elapsed() > REPORT {
             told = Instant::now();
@@ -104,7 +95,7 @@ fn saved(
     };
     let mut record = running.record(reason);
     results::write(&case, &mut record, folder, started, threads).map_err(sentence)?;
-    Ok(Some(out))
+    Ok(true)
 }
 
 /// Takes away the folder of a run that is not completed, which was made for it.

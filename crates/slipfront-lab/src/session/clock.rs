@@ -13,11 +13,11 @@ pub(super) struct Clock {
     pub(super) kymograph: Instant,
     /// Steps that are due, as a number with its fraction, and when this was found out.
     pub(super) due: f64,
-    pub(super) asked: Instant,
-    pub(super) counted_from: Instant,
-    pub(super) counted_steps: u64,
-    pub(super) steps_per_second: f64,
-    pub(super) seconds_per_step: f64,
+    asked: Instant,
+    counted_from: Instant,
+    counted_steps: u64,
+    steps_per_second: f64,
+    seconds_per_step: f64,
 }
 
 impl Clock {

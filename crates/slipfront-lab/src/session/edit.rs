@@ -142,7 +142,7 @@ impl Session {
     }
 
     /// Makes a case of what was painted.
-    pub(super) fn run_painted(&mut self) {
+    fn run_painted(&mut self) {
         let Some((mask, gesture)) = self.mask.take() else {
             return;
         };
@@ -167,7 +167,7 @@ impl Session {
     }
 
     /// Runs the case whose keys were changed.
-    pub(super) fn run_set(&mut self) {
+    fn run_set(&mut self) {
         let Some(Edited {
             document,
             gesture,

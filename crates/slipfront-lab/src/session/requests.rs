@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use super::state::Session;
+use crate::background::Stoppable;
 use crate::history::History;
 use crate::protocol::{Reply, Request};
-use crate::repeat::{Stoppable, repeat};
+use crate::repeat::repeat;
 use crate::{base64, save, zip};
 
 /// Most seeds of a repetition.
@@ -19,7 +20,7 @@ impl Session {
         }
     }
 
-    pub(super) fn obey(&mut self, request: Request) -> Result<(), String> {
+    fn obey(&mut self, request: Request) -> Result<(), String> {
         match request {
             Request::Open { source } => self.open(source),
             Request::Set { keys, gesture } => self.set(keys, gesture),
@@ -72,7 +73,7 @@ impl Session {
         }
     }
 
-    pub(super) fn repeat(&mut self, seeds: u64) -> Result<(), String> {
+    fn repeat(&mut self, seeds: u64) -> Result<(), String> {
         self.repeating = None;
         if seeds == 0 {
             return Ok(());
@@ -89,22 +90,20 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn save(&mut self, name: String) -> Result<(), String> {
+    fn save(&mut self, name: String) -> Result<(), String> {
         self.run_edited();
-        save::folder(&self.setting.results, &name)?;
-        let (document, outbox, setting) = (
-            self.document()?.clone(),
-            Arc::clone(&self.outbox),
-            Arc::clone(&self.setting),
-        );
+        let out = save::folder(&self.setting.results, &name)?;
+        let (mut document, outbox) = (self.document()?.clone(), Arc::clone(&self.outbox));
+        document.name = name;
+        let threads = self.setting.threads;
         let work = Stoppable::begin(&self.working, move |stop| {
-            save::save(document, &setting.results, &name, setting.threads, &outbox, stop);
+            save::save(&document, &out, threads, &outbox, stop);
         });
         self.saving = Some(work.map_err(|error| error.to_string())?);
         Ok(())
     }
 
-    pub(super) fn export(&mut self) -> Result<(), String> {
+    fn export(&mut self) -> Result<(), String> {
         self.run_edited();
         let document = self.document()?;
         let toml = document.toml();

@@ -37,7 +37,7 @@ pub(crate) fn serve(
 
 impl Session {
     /// Tells what there is to choose from.
-    pub(super) fn greet(setting: &Setting, outbox: &Outbox) {
+    fn greet(setting: &Setting, outbox: &Outbox) {
         outbox.reply(&Reply::Hello {
             version: VERSION,
             presets: &setting.presets,
@@ -69,7 +69,7 @@ impl Session {
     }
 
     /// Whether there is nothing to do before the page asks for something.
-    pub(super) fn is_idle(&self) -> bool {
+    fn is_idle(&self) -> bool {
         if !self.view.visible {
             return true;
         }
@@ -78,7 +78,7 @@ impl Session {
         !(moves || self.news.redraw || self.news.ends_told != self.count_ended())
     }
 
-    pub(super) fn time_to_wait(&self) -> Duration {
+    fn time_to_wait(&self) -> Duration {
         let next = self.clock.picture + Duration::from_secs_f64(1.0 / self.view.frames_per_second);
         match self.news.redraw || self.clock.due >= 1.0 {
             true => Duration::ZERO,

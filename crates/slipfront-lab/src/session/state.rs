@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::Sender;
 
 use super::clock::Clock;
+use crate::background::Stoppable;
 use crate::document::Document;
 use crate::history::History;
 use crate::live::Live;
@@ -12,7 +13,6 @@ use crate::opening::Start;
 use crate::outbox::Outbox;
 use crate::picture::Painter;
 use crate::protocol::PresetEntry;
-use crate::repeat::Stoppable;
 use crate::replay::Recorded;
 use crate::view::View;
 

@@ -25,7 +25,7 @@ impl Session {
     }
 
     /// Takes the steps that are due until the next picture.
-    pub(super) fn take_steps(&mut self, next: Instant) -> Result<(), String> {
+    fn take_steps(&mut self, next: Instant) -> Result<(), String> {
         let Some(live) = &mut self.live else { return Ok(()) };
         let dt_star = live.case().time_plan.dt_star;
         if self.view.paused {

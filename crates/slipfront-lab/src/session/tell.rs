@@ -111,7 +111,7 @@ impl Session {
         }
     }
 
-    pub(super) fn paint_picture(&mut self) {
+    fn paint_picture(&mut self) {
         let Some(live) = &self.live else { return };
         let case = live.case();
         let shown = self.view.field;
@@ -148,7 +148,7 @@ impl Session {
         self.outbox.picture(picture);
     }
 
-    pub(super) fn tell_numbers(&mut self) {
+    fn tell_numbers(&mut self) {
         let Some(live) = &self.live else { return };
         let now = live.running().snapshot();
         let (peak, twin_peak) = (live.peak(), self.twin.as_ref().and_then(|twin| twin.live.peak()));
@@ -182,7 +182,7 @@ impl Session {
         self.outbox.reply(&Reply::Numbers(Box::new(reply)));
     }
 
-    pub(super) fn tell_probe(&mut self) {
+    fn tell_probe(&mut self) {
         let (Some(live), Some([i, j])) = (&self.live, self.view.probe) else {
             return;
         };
@@ -218,7 +218,7 @@ impl Session {
         }));
     }
 
-    pub(super) fn tell_kymograph(&mut self) {
+    fn tell_kymograph(&mut self) {
         let Some(live) = &self.live else { return };
         let case = live.case();
         let bins = PositionBins::of(&case.model.lattice, &case.model.drive);
