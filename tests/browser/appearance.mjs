@@ -17,6 +17,8 @@ const SEEN = path.join(ROOT, 'target/browser-seen');
  * pictures, and half of them may differ by more than the eye sees. A panel that is lost is more: the smallest, the kymograph, is 2.3 %.
  */
 const SHARE = 0.02;
+/** How often the page is looked at before it is judged. */
+const LOOKS = 8;
 /** The least difference of a colour that counts, of 1: that of `pixelmatch`, below which an eye sees none. */
 const THRESHOLD = 0.1;
 
@@ -28,21 +30,28 @@ for (const [name, colorScheme] of [['phone', 'light'], ['notebook', 'light'], ['
     await lab.press('pause');
     await lab.page.mouse.move(0, 0);
     await lab.page.evaluate(() => document.activeElement.blur());
-    // The slowest panel is drawn twice a second.
-    await sleep(1200);
-    // Steps per second are those of the machine.
-    const png = await lab.page.screenshot({ mask: [lab.find('#numbers dd').last()], animations: 'disabled' });
     const file = `${name}-${colorScheme}.png`;
+    // The slowest panel is drawn twice a second. Steps per second are those of the machine.
+    const look = async () => {
+      await sleep(1200);
+      return lab.page.screenshot({ mask: [lab.find('#numbers dd').last()], animations: 'disabled' });
+    };
     if (process.env.UPDATE) {
       mkdirSync(EXPECTED, { recursive: true });
-      writeFileSync(path.join(EXPECTED, file), png);
+      writeFileSync(path.join(EXPECTED, file), await look());
       return;
     }
     assert.ok(existsSync(path.join(EXPECTED, file)), `expected/${file} is missing: UPDATE=1 writes it`);
-    const [seen, expected] = [PNG.sync.read(png), PNG.sync.read(readFileSync(path.join(EXPECTED, file)))];
-    assert.deepEqual([seen.width, seen.height], [expected.width, expected.height]);
-    const differ = pixelmatch(seen.data, expected.data, null, seen.width, seen.height, { threshold: THRESHOLD });
-    const share = differ / (seen.width * seen.height);
+    const expected = PNG.sync.read(readFileSync(path.join(EXPECTED, file)));
+    const { width, height } = expected;
+    let [png, share] = [null, 1];
+    // A busy machine draws later.
+    for (let looks = 0; looks < LOOKS && share > SHARE; looks++) {
+      png = await look();
+      const seen = PNG.sync.read(png);
+      assert.deepEqual([seen.width, seen.height], [width, height]);
+      share = pixelmatch(seen.data, expected.data, null, width, height, { threshold: THRESHOLD }) / (width * height);
+    }
     t.diagnostic(`${(100 * share).toFixed(3)} % of the pixels differ`);
     if (share > SHARE) {
       mkdirSync(SEEN, { recursive: true });

@@ -109,6 +109,7 @@ test('a clip is recorded', async (t) => {
   await lab.find('#pace').press('PageUp');
   await lab.press('open-keep');
   await lab.press('clip');
+  await lab.press('rest');
   await sleep(2000);
   const { name, contents } = await lab.download(() => lab.press('clip-running'));
   assert.match(name, /\.webm$/);

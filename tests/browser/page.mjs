@@ -34,9 +34,19 @@ duration_star = 120
 export const PLAIN = SMALL.replace(/\[\[texture\]\][^[]*/, '');
 
 /** Longer than any answer takes on a machine with other work, so that it ends only a test that fails. */
-const PATIENCE_MS = 20_000;
+const PATIENCE_MS = 60_000;
 
 export const sleep = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
+
+/** Waits until what `look` gives stays the same for a while, in which a run that goes on tells several times how far it is. */
+export async function untilSame(look, what) {
+  const sameForAWhile = async () => {
+    const before = JSON.stringify(look());
+    await sleep(600);
+    return JSON.stringify(look()) === before;
+  };
+  await until(sameForAWhile, what);
+}
 
 /** Waits until `holds` gives something, and returns it. */
 export async function until(holds, what) {
