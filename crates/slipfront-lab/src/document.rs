@@ -361,6 +361,25 @@ mod tests {
     }
 
     #[test]
+    fn an_image_replaces_those_of_the_textures_alone() {
+        let text = "friction.mu_static_field = 'mu.csv'\ntexture = [{ shape = 'mask', file = 'texture.png' }, { shape = 'mask', file = 'b.png' }]\n";
+        let document = Document::new("case", text, |name| Ok(name.into())).unwrap();
+        let painted = document.with_image(b"image".to_vec(), 0.25).unwrap();
+        let files = [("mu.csv", &b"mu.csv"[..]), ("texture.png", b"image")];
+        assert!(
+            painted
+                .files()
+                .iter()
+                .map(|(name, bytes)| (name.as_str(), bytes.as_slice()))
+                .eq(files)
+        );
+        assert_eq!(
+            painted.textures(),
+            serde_json::json!([{ "shape": "mask", "file": "texture.png", "threshold": 0.25 }])
+        );
+    }
+
+    #[test]
     fn files_of_one_name_are_kept_apart() {
         let text = "slider.blocks = [2, 2]\nfriction.mu_static_field = 'a/mu.csv'\nfriction.mu_kinetic_field = 'b/mu.csv'\n";
         let read = |path: &str| {
