@@ -66,7 +66,12 @@ fn peak<T>(work: impl FnOnce() -> T) -> (f64, T) {
 /// The program itself, which no allocator sees.
 const PROGRAM: f64 = 8.0 * 1024.0 * 1024.0;
 
-/// No less than is taken, and not so much more that a run is refused which there is room for.
+/// Whether what is said is not so much more than is taken that a run is refused which there is room for.
+fn is_near(said: f64, taken: f64) -> bool {
+    said <= 1.5 * (taken + PROGRAM)
+}
+
+/// No less than is taken, and near it.
 fn assert_honest(what: &str, said: f64, taken: f64) {
     let [shown_said, shown_taken] = [said, taken].map(|bytes| bytes / 1e6);
     assert!(
@@ -74,9 +79,21 @@ fn assert_honest(what: &str, said: f64, taken: f64) {
         "{what}: {shown_said} MB said, {shown_taken} MB taken"
     );
     assert!(
-        said <= 1.5 * (taken + PROGRAM),
+        is_near(said, taken),
         "{what}: {shown_said} MB said, only {shown_taken} MB taken"
     );
+}
+
+/// The same of work that draws two pictures at once, and gives what was said and taken. Whether the largest of two pictures meet is up
+/// to the system, as on a busy machine on which one waits for the other: they may, and the most of some tries tells.
+fn assert_honest_drawing(what: &str, mut work: impl FnMut() -> (f64, f64)) {
+    let (said, mut taken) = work();
+    for _ in 0..9 {
+        if !is_near(said, taken) {
+            taken = taken.max(work().1);
+        }
+    }
+    assert_honest(what, said, taken);
 }
 
 /// A `.npy` file of 400 x 400 values.
@@ -149,7 +166,7 @@ fn what_is_said_is_what_is_taken() {
     ] {
         let overrides: Vec<String> = sets.split(';').map(str::to_owned).collect();
         let out = folder.path().join("out");
-        let (taken, (memory, disk)) = peak(|| {
+        let run = || {
             let file = CaseFile::parse("", "case", &overrides).unwrap();
             let case = Arc::new(Case::new(file, "case", folder.path(), &mut |_| true, Ranks::ALONE).unwrap());
             let mut record = running::run(&case, 2).unwrap();
@@ -157,10 +174,13 @@ fn what_is_said_is_what_is_taken() {
             results::write_case(&case, &mut out).unwrap();
             results::write(&case, &mut record, out, jiff::Timestamp::now(), 1).unwrap();
             (case.budget.memory(), case.budget.disk())
+        };
+        assert_honest_drawing(sets, || {
+            let (taken, (memory, disk)) = peak(run);
+            assert_room(sets, disk, &out);
+            std::fs::remove_dir_all(&out).unwrap();
+            (memory, taken)
         });
-        assert_honest(sets, memory, taken);
-        assert_room(sets, disk, &out);
-        std::fs::remove_dir_all(out).unwrap();
     }
     bands(folder.path());
     checkpoints(folder.path());
@@ -291,11 +311,15 @@ fn pictures_of_a_large_lattice(folder: &Path) {
     let prepared = RunFolder::prepare(&out, false, &case.inputs).unwrap();
     results::write(&case, &mut record, prepared, jiff::Timestamp::now(), 1).unwrap();
     drop((case, record));
-    let before = LIVE.load(Ordering::Relaxed) as f64;
-    let (taken, drawn) = peak(|| pictures::draw(&out).unwrap());
-    assert_eq!(drawn.len(), 2);
-    let said = pictures::memory(std::slice::from_ref(&out)).unwrap();
-    assert_honest("pictures of a large lattice", said, taken - before);
+    assert_honest_drawing("pictures of a large lattice", || {
+        let before = LIVE.load(Ordering::Relaxed) as f64;
+        let (taken, drawn) = peak(|| pictures::draw(&out).unwrap());
+        assert_eq!(drawn.len(), 2);
+        (
+            pictures::memory(std::slice::from_ref(&out)).unwrap(),
+            taken - before,
+        )
+    });
     std::fs::remove_dir_all(out).unwrap();
 }
 
