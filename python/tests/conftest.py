@@ -1,5 +1,7 @@
 """What the tests share: the repository, from whose root they are run, and small cases."""
 
+import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -20,3 +22,11 @@ def small() -> sf.Case:
 def long() -> sf.Case:
     """A case that takes minutes."""
     return sf.Case.from_dict({"slider": {"blocks": [40, 40]}, "time": {"duration_star": 1e6}}, name="long")
+
+
+@pytest.fixture
+def interruptible() -> Iterator[None]:
+    """An interrupt raises KeyboardInterrupt also where it is ignored, as in a script that was started in the background."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)

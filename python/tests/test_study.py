@@ -76,6 +76,7 @@ def test_an_exception_of_an_own_quantity_ends_the_study_and_fails_no_run(study: 
     assert study.run(folder, progress=False).failures == []
 
 
+@pytest.mark.usefixtures("interruptible")
 def test_an_interrupt_ends_a_study_which_goes_on(small: sf.Case, tmp_path: Path) -> None:
     speeds = [0.01 + 0.001 * k for k in range(20)]
     study = sf.Study(small.replace({"slider.blocks": [100, 100]}), {"drive.v_star": speeds}, replicates=2)
