@@ -64,19 +64,19 @@ def test_edge_driven_runs_have_precursors() -> None:
 
 
 @pytest.mark.usefixtures("interruptible")
-def test_an_interrupt_ends_a_run(long: sf.Case) -> None:
+def test_an_interrupt_ends_a_run_at_once(long: sf.Case) -> None:
     pressed: list[float] = []
 
     def press() -> None:
-        pressed.append(time.monotonic())
+        pressed.append(time.process_time())
         os.kill(os.getpid(), signal.SIGINT)
 
     timer = threading.Timer(0.5, press)
     timer.start()
     with pytest.raises(KeyboardInterrupt):
         sf.run(long, progress=False)
-    # Slices of 50 ms, however busy the machine is, and not the minutes of the whole run.
-    assert time.monotonic() - pressed[0] < 20
+    # Slices of 50 ms. Time of the processor: that of the clock goes on while a busy machine does other work.
+    assert time.process_time() - pressed[0] < 0.2
     timer.join()
 
 

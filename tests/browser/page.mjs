@@ -42,7 +42,7 @@ export const sleep = (milliseconds) => new Promise((resolve) => setTimeout(resol
 export async function untilSame(look, what) {
   const sameForAWhile = async () => {
     const before = JSON.stringify(look());
-    await sleep(600);
+    await sleep(700);
     return JSON.stringify(look()) === before;
   };
   await until(sameForAWhile, what);

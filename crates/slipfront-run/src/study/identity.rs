@@ -64,7 +64,7 @@ fn texts(
         let ending = name.rsplit('.').next().unwrap_or_default();
         *name = format!("{}.{ending}", hash.unwrap_or_default());
     };
-    // All but the text that the case was read from, which takes longer to copy than the rest.
+    // Without the text that the case was read from, which decides nothing.
     let mut hashed = CaseFile {
         slider: file.slider.clone(),
         load: file.load.clone(),
