@@ -60,6 +60,17 @@ test('a value out of bounds is refused in a sentence, and the case stays', async
   await lab.reads('notices', '');
 });
 
+test('typing replaces a number that was put back', async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  await lab.find('#control-r_star').fill('-1');
+  await lab.after(() => lab.find('#control-r_star').press('Enter'), 'refused');
+  await until(async () => (await lab.find('#control-r_star').inputValue()) === '0.5', 'the value that holds');
+  await lab.after(async () => {
+    await lab.page.keyboard.type('0.4');
+    await lab.page.keyboard.press('Enter');
+  }, 'case', ({ values }) => values.r_star.star === 0.4);
+});
+
 test('the run goes on, stops, takes single steps and begins from rest', async (t) => {
   const lab = await open(t, { toml: SMALL });
   const stepIs = (step) => until(() => lab.last.numbers?.step === step, () => `step ${step}; it is ${lab.last.numbers?.step}`);

@@ -6,7 +6,7 @@ import path from 'node:path';
 import test from 'node:test';
 import { PNG } from 'pngjs';
 import { slipfront, WORK } from './command.mjs';
-import { open, PLAIN, say } from './page.mjs';
+import { open, PLAIN, say, SMALL, until } from './page.mjs';
 
 /** A gray image by its function of column and row, from the top. */
 export function image(size, gray) {
@@ -97,6 +97,19 @@ for (const [tool, keys] of Object.entries(TOOLS)) {
     assert.notEqual(lab.last.case.texture[1].coverage, coverage);
   });
 }
+
+test('a number that is typed after Tab takes the place of the one there, also when the answer came between', async (t) => {
+  const lab = await open(t, { toml: SMALL });
+  await lab.find('#shapes button').click();
+  await lab.find('#shape-coverage').fill('7.5');
+  await lab.after(() => lab.page.keyboard.press('Tab'), 'case', ({ texture }) => texture[0].coverage === 7.5);
+  await until(async () => (await lab.text('shapes')).includes('7.5 %'), 'the new coverage in the list');
+  assert.equal(await lab.page.evaluate(() => document.activeElement.id), 'shape-x');
+  await lab.after(async () => {
+    await lab.page.keyboard.type('12');
+    await lab.page.keyboard.press('Enter');
+  }, 'case', ({ texture }) => micrometres(texture[0].center[0]) === 12);
+});
 
 test('an image becomes the texture, chosen as a file and dropped', async (t) => {
   const lab = await open(t, { toml: PLAIN });

@@ -1,7 +1,7 @@
 // @ts-check
 // Sliders and number fields of the quantities that the server offers, each in both forms: dimensionless and with its unit.
 import { change, gradual } from './edit.js';
-import { find, make } from './element.js';
+import { find, make, rewrite } from './element.js';
 import { number, quantity, typed } from './quantity.js';
 import { on, state } from './store.js';
 import { say } from './text.js';
@@ -82,7 +82,7 @@ function show() {
     if (!value) continue;
     const { main, other: text } = forms(control, value);
     // What is being typed stays.
-    if (!field.dataset.typing && main !== null) field.value = String(Number(main.toPrecision(6)));
+    if (!field.dataset.typing && main !== null) rewrite(field, String(Number(main.toPrecision(6))));
     if (!slider.matches(':active') && main !== null) slider.value = String(placeOf(control, main));
     slider.setAttribute('aria-valuetext', `${main === null ? '' : number(main)} ${text}`);
     other.textContent = text;

@@ -18,6 +18,13 @@ export function make(name, properties = {}, content = []) {
   return element;
 }
 
+/** Writes into a text field. Where it has the focus all of it is then selected, as after Tab, so that typing replaces it. @param {HTMLInputElement} field @param {string} text */
+export function rewrite(field, text) {
+  if (field.value === text) return;
+  field.value = text;
+  if (document.activeElement === field) field.select();
+}
+
 /** Calls `action` when the element with this id is pressed. @param {string} id @param {() => void} action */
 export const onPress = (id, action) => find(id).addEventListener('click', action);
 

@@ -93,9 +93,11 @@ function show() {
   const [id, place] = [focused?.id, [...list.querySelectorAll('button')].indexOf(/** @type {any} */ (focused))];
   list.replaceChildren(...texture.map(item));
   find('no-shapes').hidden = texture.length > 0;
-  // The list is made anew, but the reader stays where he was.
-  if (id) find(id)?.focus();
-  else if (focused) list.querySelectorAll('button')[place]?.focus();
+  // The list is made anew, but the reader stays where he was, and what he types replaces the number as after Tab.
+  if (id) {
+    find(id)?.focus();
+    find(id)?.select?.();
+  } else if (focused) list.querySelectorAll('button')[place]?.focus();
 }
 
 /** A number that is being typed is not taken away. */
