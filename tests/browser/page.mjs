@@ -36,13 +36,16 @@ export const PLAIN = SMALL.replace(/\[\[texture\]\][^[]*/, '');
 /** Longer than any answer takes on a machine with other work, so that it ends only a test that fails. */
 const PATIENCE_MS = 60_000;
 
+/** Every message is given to the page up to so much later, which shows tests that do not wait for it. */
+const DELAY_MS = Number(process.env.DELAY_MS ?? 0);
+
 export const sleep = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
 
-/** Waits until what `look` gives stays the same for a while, in which a run that goes on tells several times how far it is. */
+/** Waits until what `look` gives stays the same for a while, in which a run that goes on tells some ten times how far it is. */
 export async function untilSame(look, what) {
   const sameForAWhile = async () => {
     const before = JSON.stringify(look());
-    await sleep(700);
+    await sleep(2000 + DELAY_MS);
     return JSON.stringify(look()) === before;
   };
   await until(sameForAWhile, what);
@@ -82,8 +85,34 @@ function parse(bytes) {
   return ['picture', { field: bytes[1], recorded: recorded === 1, step, t, values: bytes.subarray(36) }];
 }
 
+/** Lets a page tell with `handled()` each message of its newest socket that it has handled. */
+function tellHandled(delay) {
+  let newest = null;
+  window.WebSocket = class extends WebSocket {
+    constructor(...values) {
+      super(...values);
+      newest = this;
+    }
+
+    set onmessage(handle) {
+      const events = [];
+      let due = 0;
+      const next = () => {
+        handle.call(this, events.shift());
+        if (newest === this) window.handled();
+      };
+      super.onmessage = (event) => {
+        events.push(event);
+        due = Math.max(due, performance.now() + delay * Math.random());
+        if (delay > 0) setTimeout(next, due - performance.now());
+        else next();
+      };
+    }
+  };
+}
+
 export class Lab {
-  /** The newest message of each kind from the server, and how many came. */
+  /** The newest message of each kind from the server that the page has handled, and how many there were. */
   last = {};
   count = {};
   /** What the page has sent. */
@@ -107,9 +136,17 @@ export class Lab {
     });
     page.on('websocket', (socket) => {
       this.sockets += 1;
+      const arrived = (this.arrived = []);
       socket.on('framesent', ({ payload }) => this.sent.push(JSON.parse(payload)));
-      socket.on('framereceived', ({ payload }) => this.hear(payload));
+      socket.on('framereceived', ({ payload }) => arrived.push(payload));
     });
+  }
+
+  /** Opens the page at its address. */
+  async load(address) {
+    await this.page.exposeFunction('handled', () => this.hear(this.arrived.shift()));
+    await this.page.addInitScript(tellHandled, DELAY_MS);
+    await this.page.goto(address);
   }
 
   /** Software graphics are slow to read back, which Chromium tells as a warning; a lost connection is told only where a test makes it so. */
@@ -194,7 +231,7 @@ export async function open(t, { toml, files, address = laboratory.address, calm 
     await context.close();
     assert.deepEqual(lab.faults, []);
   });
-  await lab.page.goto(toml === undefined ? address : `${address.replace(/&case=.*/, '')}&case=${link(toml, files)}`);
+  await lab.load(toml === undefined ? address : `${address.replace(/&case=.*/, '')}&case=${link(toml, files)}`);
   await until(() => lab.last.case && lab.last.picture, 'the first picture');
   await until(async () => (await lab.text('case-name')) !== '', 'the name of the case');
   // What the page says at first lies above the field.

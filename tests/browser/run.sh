@@ -5,6 +5,8 @@
 #
 # The command is target/debug/slipfront, or the one that SLIPFRONT names. Needs cargo, Node.js 18 or later with npm, and
 # Python; installs Chromium where it is missing. Exit status: 2 when something is missing.
+#
+# With DELAY_MS=300 every message reaches the page up to 300 ms later: tests that do not wait for what they look at fail then.
 
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
