@@ -11,7 +11,7 @@ use tempfile::TempDir;
 use tokio::sync::oneshot;
 
 /// Long enough for a slow machine, short enough for a test that fails.
-pub(crate) const TIMEOUT: Duration = Duration::from_secs(60);
+pub(crate) const TIMEOUT: Duration = Duration::from_secs(30);
 
 /// A server, which ends with the test.
 pub(crate) struct Served {
