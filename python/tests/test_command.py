@@ -1,5 +1,6 @@
-"""The command in the wheel, and runs of every case with its bits."""
+"""The command in the wheel with its licences, and runs of every case with its bits."""
 
+import importlib.metadata
 import os
 import subprocess
 import sys
@@ -20,6 +21,15 @@ def test_the_command_has_its_version_and_status() -> None:
     assert command("--version").stdout == f"slipfront {sf.__version__}\n"
     refused = command("run", "cases/cirle.toml")
     assert refused.returncode == 2 and "did you mean" in refused.stderr
+
+
+def test_the_wheel_carries_the_licences_of_what_it_contains() -> None:
+    distribution = importlib.metadata.distribution("slipfront")
+    shipped = distribution.read_text("licenses/THIRD-PARTY-NOTICES.txt")
+    assert shipped is not None and shipped == command("licences").stdout
+    assert distribution.metadata.get_all("License-File") == ["THIRD-PARTY-NOTICES.txt"]
+    for words in ["Copyright (c) The slipfront developers", "Bitstream Vera", "uPlot", "\nrayon 1.", "\npyo3 0.", "\nnumpy 0."]:
+        assert words in shipped
 
 
 @pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)

@@ -80,6 +80,7 @@ enum Command {
     Lab(commands::lab::Lab),
     Verify(commands::verify::Verify),
     Completions(commands::completions::Completions),
+    Licences(commands::licences::Licences),
 }
 
 /// Friction of micro-textured surfaces, with one lattice divided over many processes, on one machine or many: what `slipfront
@@ -109,6 +110,7 @@ Examples:
         )
     )]
     Run(Run),
+    Licences(commands::licences::Licences),
 }
 
 /// Runs the command with these arguments, the first of which is the name of the program; gives its exit status.
@@ -137,6 +139,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
             Command::Lab(lab) => lab.execute(),
             Command::Verify(verify) => verify.execute(),
             Command::Completions(completions) => completions.execute(Cli::command()),
+            Command::Licences(licences) => licences.execute(),
         };
         done.map_err(RankFailure::from)
     })
@@ -148,11 +151,14 @@ pub fn main_on_ranks(args: impl IntoIterator<Item = OsString>, communicator: Arc
     if !ranks.is_first() {
         silence();
     }
-    let RanksCommand::Run(run) = match RanksCli::try_parse_from(args) {
+    let command = match RanksCli::try_parse_from(args) {
         Ok(cli) => cli.command,
         Err(error) => return print_usage(&error),
     };
-    execute(|| run.execute(&ranks))
+    execute(|| match command {
+        RanksCommand::Run(run) => run.execute(&ranks),
+        RanksCommand::Licences(licences) => licences.execute().map_err(RankFailure::from),
+    })
 }
 
 fn execute(work: impl FnOnce() -> Result<(), RankFailure>) -> u8 {

@@ -79,6 +79,7 @@ fn send(signal: &str, target: Target, child: &Child) {
 #[rstest]
 #[case("run --nonsense", 2, "unexpected argument '--nonsense'")]
 #[case("--help", 0, "byte for byte")]
+#[case("licences", 0, "Copyright (c) The slipfront developers")]
 #[case(
     "run --set slider.blocks=[40,2] -o results",
     2,

@@ -4,6 +4,7 @@ pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod family;
 pub(crate) mod lab;
+pub(crate) mod licences;
 pub(crate) mod movie;
 pub(crate) mod paper;
 pub(crate) mod plot;

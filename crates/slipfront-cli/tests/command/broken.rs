@@ -25,7 +25,13 @@ fn a_run_that_diverges_says_where_and_leaves_no_results() {
 #[test]
 fn a_closed_pipe_is_no_failure() {
     let workspace = Workspace::small();
-    for line in ["run small.toml", "check small.toml", "completions zsh", "--help"] {
+    for line in [
+        "run small.toml",
+        "check small.toml",
+        "completions zsh",
+        "licences",
+        "--help",
+    ] {
         let mut process = workspace.process(line);
         let mut child = process
             .stdout(Stdio::piped())
@@ -87,6 +93,7 @@ fn a_full_stdout_stops_no_work() {
     for line in [
         "check small.toml",
         "completions zsh",
+        "licences",
         "study study.toml --dry-run",
         "study slurm study.toml",
         "verify whole",

@@ -7,7 +7,7 @@ use crate::support::workspace::Workspace;
 fn help_names_every_subcommand_and_says_what_it_does() {
     let workspace = Workspace::small();
     let help = workspace.succeed("--help");
-    for command in ["run", "check", "texture", "plot", "completions"] {
+    for command in ["run", "check", "texture", "plot", "completions", "licences"] {
         assert!(help.contains(&format!("\n  {command} ")), "{command}: {help}");
         let own = workspace.succeed(&format!("{command} --help"));
         assert!(
@@ -50,6 +50,23 @@ fn completions_know_subcommands_and_options() {
         }
     }
     assert!(workspace.fail("completions dos", 2).contains("bash"));
+}
+
+/// That they are those of every crate is held by `tests/licences/run.sh`.
+#[test]
+fn licences_are_told_of_slipfront_and_of_what_it_contains() {
+    let workspace = Workspace::small();
+    let told = workspace.succeed("licences");
+    for words in [
+        "Copyright (c) The slipfront developers",
+        "TERMS AND CONDITIONS FOR USE, REPRODUCTION, AND DISTRIBUTION",
+        "\nrayon 1.",
+        "Bitstream Vera Fonts Copyright",
+        "Copyright (c) 2022 Leon Sorokin",
+        "The Rust Project Developers",
+    ] {
+        assert!(told.contains(words), "{words}");
+    }
 }
 
 #[test]
