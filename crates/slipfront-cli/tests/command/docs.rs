@@ -1,4 +1,4 @@
-//! Every command line in the book is one that the command understands, and every link in it leads somewhere.
+//! Every command line in the book is one that the command understands, every link in it leads somewhere, and it tells every `unsafe`.
 
 use std::path::{Path, PathBuf};
 
@@ -6,9 +6,13 @@ use assert_cmd::Command;
 
 use crate::support::process::program;
 
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
 fn pages() -> Vec<PathBuf> {
-    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let mut pages = vec![repository.join("README.md")];
+    let repository = repository();
+    let mut pages = vec![repository.join("README.md"), repository.join("SECURITY.md")];
     for folder in ["docs", "docs/guide", "docs/reference", "docs/validation"] {
         let entries = std::fs::read_dir(repository.join(folder)).expect("the book can be listed");
         pages.extend(entries.flatten().map(|entry| entry.path()));
@@ -150,4 +154,94 @@ fn every_link_in_the_book_leads_somewhere() {
     assert!(broken.is_empty(), "{broken}");
     assert!(count >= 50, "only {count} links were found");
     assert_eq!(anchor(" What 31 % means"), "what-31--means");
+}
+
+/// Adds the files of Rust in a folder to those found, but for those of tests.
+fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap().map(Result::unwrap) {
+        let (path, name) = (entry.path(), entry.file_name());
+        if path.is_dir()
+            && !["tests", "benches", "examples", "target"]
+                .iter()
+                .any(|tests| name == *tests)
+        {
+            rust_files(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// The numbers of the lines, from 0 on, in which the code and not its comment says `unsafe`.
+fn unsafe_lines(code: &str) -> Vec<usize> {
+    let is_unsafe = |line: &str| {
+        let code = line.split("//").next().unwrap_or_default();
+        code.split(|c: char| !(c.is_alphanumeric() || c == '_'))
+            .any(|word| word == "unsafe")
+    };
+    let lines = code.lines().enumerate();
+    lines
+        .filter(|(_, line)| is_unsafe(line))
+        .map(|(k, _)| k)
+        .collect()
+}
+
+/// What users run: each `unsafe` has its reason above it, and is told in the book with its file.
+#[test]
+fn every_unsafe_has_its_reason_and_stands_in_the_book() {
+    let repository = repository();
+    let mut files = Vec::new();
+    for folder in ["crates", "python"] {
+        rust_files(&repository.join(folder), &mut files);
+    }
+    assert!(files.len() >= 100, "only {} files were found", files.len());
+    let mut found = Vec::new();
+    for file in &files {
+        let code = std::fs::read_to_string(file).unwrap();
+        let name = file.strip_prefix(&repository).unwrap().display().to_string();
+        for k in unsafe_lines(&code) {
+            // Between the reason and the block there is room for the line that allows it.
+            let above: Vec<_> = code.lines().take(k).collect();
+            let has_reason = above[k.saturating_sub(2)..]
+                .iter()
+                .any(|line| line.contains("// SAFETY: "));
+            assert!(has_reason, "{name}:{}: `unsafe` lacks its SAFETY comment", k + 1);
+            found.push(name.clone());
+        }
+    }
+    found.sort();
+
+    let book = std::fs::read_to_string(repository.join("docs/reliability.md")).unwrap();
+    let (_, told) = book
+        .split_once("- `unsafe` stands in ")
+        .expect("the book tells it");
+    let mut lines = told.lines();
+    let number = lines.next().unwrap();
+    let places = lines.take_while(|line| line.starts_with("  "));
+    let mut listed: Vec<_> = places
+        .filter_map(|line| line.strip_prefix("  - `")?.split_once('`').map(|(file, _)| file))
+        .collect();
+    listed.sort_unstable();
+    assert_eq!(
+        listed, found,
+        "docs/reliability.md lists other places than the code has"
+    );
+    let words = [
+        "no place",
+        "one place",
+        "two places",
+        "three places",
+        "four places",
+    ];
+    assert!(
+        number.starts_with(words[found.len()]),
+        "{} are {number:?}",
+        found.len()
+    );
+}
+
+#[test]
+fn unsafe_is_found_in_code_and_not_in_comments() {
+    let code = "unsafe fn f() {}\n// unsafe\n#[allow(unsafe_code)]\nlet x = unsafe { g() };\nunsafe{h()} // unsafe\nunsafely();\n";
+    assert_eq!(unsafe_lines(code), [0, 3, 4]);
 }
