@@ -15,6 +15,14 @@ def fail(sentence):
     sys.exit(f"error: {sentence}")
 
 
+def run(main):
+    """Runs a program whose errors of files and texts are sentences."""
+    try:
+        main()
+    except (OSError, ValueError) as error:
+        fail(error)
+
+
 def cargo(command, manifest, *arguments):
     """What cargo prints, of the locked versions of the workspace that `manifest` belongs to."""
     line = ["cargo", command, "--quiet", "--locked", "--manifest-path", str(REPOSITORY / manifest), *arguments]

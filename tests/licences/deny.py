@@ -9,7 +9,7 @@ Advisories are those of `cargo deny` alone. Needs cargo and Python 3.11 or later
 import re
 import sys
 
-from crates import REPOSITORY, alternatives, fail, packages
+from crates import REPOSITORY, alternatives, fail, packages, run
 
 # The command with the module for Python and what is only tested, and the command for ranks.
 MANIFESTS = ["Cargo.toml", "crates/slipfront-mpi/Cargo.toml"]
@@ -121,8 +121,8 @@ def main():
         fail(f"deny.toml is read with tomllib, which Python has from 3.11 on; this is {sys.version.split()[0]}")
     try:
         rule = rules(tomllib.loads((REPOSITORY / "deny.toml").read_text("utf-8")))
-    except ValueError as error:
-        fail(error)
+    except tomllib.TOMLDecodeError as error:
+        fail(f"deny.toml: {error}")
     features = ["--all-features"] if rule["graph"]["all-features"] else []
     wrong, names = [], set()
     for manifest in MANIFESTS:
@@ -140,4 +140,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

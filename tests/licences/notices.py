@@ -14,7 +14,7 @@ import re
 import textwrap
 from pathlib import Path
 
-from crates import REPOSITORY, alternatives, cargo, fail, packages
+from crates import REPOSITORY, alternatives, cargo, fail, packages, run
 
 NOTICES = REPOSITORY / "crates/slipfront-cli/THIRD-PARTY-NOTICES.txt"
 # The command, the module for Python and the command for ranks, each by the folder of its crate.
@@ -82,8 +82,15 @@ def is_licence(name):
 
 def read(path):
     """The text of a file, the same whatever its tabs and ends of lines are."""
-    lines = path.read_text("utf-8").expandtabs().strip("\n").splitlines()
-    return "\n".join(line.rstrip() for line in lines)
+    try:
+        text = path.read_text("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path} is no text in UTF-8: {error}") from None
+    lines = [line.rstrip() for line in text.expandtabs().strip("\n").splitlines()]
+    # They are printed to terminals.
+    if unprintable := [line for line in lines if not line.isprintable()]:
+        raise ValueError(f"{path}: {unprintable[0]!r} has characters that cannot be printed")
+    return "\n".join(lines)
 
 
 def words(text):
@@ -188,4 +195,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

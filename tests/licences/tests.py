@@ -119,6 +119,10 @@ class Notices(unittest.TestCase):
             with self.assertRaisesRegex(SystemExit, f"made-up 1.0.0 has the licence {licence} and no file with its text"):
                 self.texts(licence)
 
+    def test_a_text_that_would_steer_a_terminal_is_refused(self):
+        with self.assertRaisesRegex(ValueError, "LICENSE: .* cannot be printed"):
+            self.texts(LICENSE="MIT \x1b[2J " + self.MIT)
+
     def test_terms_of_apache_are_left_out_where_they_are_those_alone(self):
         apache = notices.read(crates.REPOSITORY / "LICENSE-APACHE")
         ours = notices.without_apache_terms("Copyright 2019 Jane Doe\n" + apache.replace("  ", " ") + "\nLLVM exceptions")
