@@ -70,6 +70,9 @@ def test_a_case_never_changes() -> None:
         assert array.shape == (50, 50)
         with pytest.raises(ValueError, match="read-only"):
             array[0, 0] = 0
+        # The memory is the case's, on which the `unsafe` of arrays.rs stands.
+        with pytest.raises(ValueError, match="cannot set WRITEABLE"):
+            array.setflags(write=True)
     # The array holds what it shows.
     textured = case.textured
     before = textured.copy()
