@@ -9,7 +9,7 @@ use slipfront_case::case_file::CaseFile;
 use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::{CheckpointError, Checkpoints, LoadedCheckpoint};
 use slipfront_run::clock;
-use slipfront_run::run_folder::OpenedFolder;
+use slipfront_run::run_folder::{OpenedFolder, expect_shared};
 use slipfront_run::run_folder::inspection::{Contents, Inspection};
 use slipfront_run::run_folder::unfinished::Unfinished;
 use slipfront_run::running::Running;
@@ -40,6 +40,7 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
     let (running, checkpoints, from) =
         ranks.agree(begin(path, &case, loaded, previous, options.threads, &ranks))?;
     let folder = ranks.first(|| folder.resume(&case).map_err(Failure::input))?;
+    expect_shared(path, &*ranks.communicator())?;
     if options.is_verbose() {
         print_message(&report::physics(&case));
         print_message(&format!("goes on from {from}\n"));
@@ -193,6 +194,7 @@ fn remedy(error: &CheckpointError, path: &Path, case: &Case, previous: bool) -> 
                 _ => format!("no whole one is kept beside it: {ANEW}"),
             }
         }
+        CheckpointError::Differs(_) => "all of them must see one folder, on a disk that their machines share".to_owned(),
         CheckpointError::Case { .. } => format!("put back the files with which it was begun, or {ANEW}"),
         CheckpointError::Damaged { .. } | CheckpointError::Unreadable { .. } => ANEW.to_owned(),
         CheckpointError::Layout { .. } | CheckpointError::Program { .. } => format!("or {ANEW}"),
