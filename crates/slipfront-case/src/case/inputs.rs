@@ -13,7 +13,7 @@ use crate::arrays::{self, ArrayError, Slab};
 use crate::case_file::{CaseError, CaseFile, FileUse};
 use crate::machine::machine_number;
 use crate::same::{Given, expect_same, of_all, words_of};
-use crate::text::display_path;
+use crate::text::{display_path, single_line};
 
 /// Told the share that is done of laying the texture over the blocks; `false` ends it.
 pub type Watch<'a> = dyn FnMut(f64) -> bool + 'a;
@@ -150,7 +150,7 @@ impl NamedFiles {
     /// Names of the files, and what is in them.
     fn given(&self, digests: &[Digest]) -> Given {
         let named = self.0.iter().zip(digests).map(|(found, (length, hash))| {
-            let name = format!("{} (`{}`)", found.plain_name(), found.key);
+            let name = format!("{} (`{}`)", single_line(&found.plain_name()), found.key);
             let contents = format!("a file of {length} bytes with the hash {}", &hash.to_hex()[..16]);
             (name, contents)
         });
@@ -207,11 +207,20 @@ fn stamp(path: &Path) -> Result<String, ArrayError> {
     #[cfg(unix)]
     let identity = {
         use std::os::unix::fs::MetadataExt;
-        (metadata.dev(), metadata.ino(), metadata.ctime(), metadata.ctime_nsec())
+        (
+            metadata.dev(),
+            metadata.ino(),
+            metadata.ctime(),
+            metadata.ctime_nsec(),
+        )
     };
     #[cfg(not(unix))]
     let identity = path.canonicalize().ok();
-    Ok(format!("{identity:?} {} {:?}", metadata.len(), metadata.modified().ok()))
+    Ok(format!(
+        "{identity:?} {} {:?}",
+        metadata.len(),
+        metadata.modified().ok()
+    ))
 }
 
 fn hash_of_words(words: [i64; 4]) -> blake3::Hash {
