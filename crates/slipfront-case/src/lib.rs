@@ -14,6 +14,7 @@ pub mod field_info;
 pub mod machine;
 pub mod number_format;
 pub mod quantity;
+pub mod same;
 pub mod text;
 
 /// BLAKE3 hash of the sources of this crate.

@@ -1,6 +1,15 @@
-//! Memory and disk space that this machine has left.
+//! Memory and disk space that this machine has left, and which machine it is.
 
 use std::path::Path;
+
+use crate::same::words_of;
+
+/// A number that stands for the name of this machine.
+pub fn machine_number() -> i64 {
+    // Machines without a name are taken for one: what is found on them is compared otherwise.
+    let name = sysinfo::System::host_name().unwrap_or_default();
+    words_of(&blake3::hash(name.as_bytes()))[0]
+}
 
 /// Memory that this process may still take, in bytes: what the machine can give without swapping, or what is left to its
 /// control group or within its limit of addresses (`ulimit -v`) if that is less. `None` if the system does not say.

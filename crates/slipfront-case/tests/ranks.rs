@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used)] // A helper that cannot do its work fails its test.
 
+use std::fs::File;
+use std::io::Write;
 use std::path::Path;
 
 use rstest::rstest;
@@ -209,4 +211,156 @@ fn a_case_file_is_loaded_by_all_ranks() {
         said[0].is_err() && said.iter().all(|one| *one == said[0]),
         "{said:?}"
     );
+}
+
+/// Ranks of which the last was given another case all say what it is, and where.
+#[rstest]
+#[case::seed(
+    "friction.seed = 1",
+    "friction.seed = 2",
+    "`friction.seed` is 2 on rank 2 and 1 on rank 0"
+)]
+#[case::rows("", "slider.edges = 'periodic'", "`slider.edges` is")]
+#[case::longer("", "texture = [{ shape = 'groove', width = '1 um' }]", "`texture.0.")]
+#[case::shorter(
+    "texture = [{ shape = 'groove', width = '1 um' }]",
+    "",
+    "not given on rank 2 and"
+)]
+#[case::point(
+    "texture = [{ shape = 'polygon', points = [['0 um', '0 um'], ['9 um', '3 um'], ['3 um', '8 um']] }]",
+    "texture = [{ shape = 'polygon', points = [['0 um', '0 um'], ['9 um', '3 um'], ['3 um', '7 um']] }]",
+    "`texture.0.points.2` is"
+)]
+fn another_case_is_refused_by_all(#[case] text: &str, #[case] other: &str, #[case] sentence: &str) {
+    let made = Threads::run(4, |communicator| {
+        let text = if communicator.rank() == 2 { other } else { text };
+        let ranks = Ranks {
+            communicator,
+            on_node: 4,
+        };
+        make(text, Path::new(""), ranks, &mut |_| true)
+            .unwrap_err()
+            .to_string()
+    });
+    assert!(
+        made[0].contains(sentence) && made[0].contains("on rank 2"),
+        "{}",
+        made[0]
+    );
+    assert!(made.iter().all(|said| *said == made[0]), "{made:?}");
+}
+
+/// Contents, and not places, are what ranks must have alike.
+#[test]
+fn another_file_is_refused_by_all() {
+    let folders = [(); 3].map(|()| tempfile::tempdir().unwrap());
+    for folder in &folders {
+        write_inputs(folder.path());
+    }
+    let text = "friction = { mu_static_field = 'c.npy', mu_kinetic_field = 'mu.csv' }";
+    let made = || {
+        Threads::run(3, |communicator| {
+            let ranks = Ranks {
+                communicator,
+                on_node: 3,
+            };
+            let folder = folders[communicator.rank()].path();
+            make(text, folder, ranks, &mut |_| true).map_err(|error| error.to_string())
+        })
+    };
+    for case in made() {
+        assert_eq!(case.unwrap().inputs.len(), 2);
+    }
+    let edited = folders[1].path().join("mu.csv");
+    let bytes = std::fs::read_to_string(&edited).unwrap();
+    std::fs::write(&edited, bytes.replacen("0.8", "0.9", 1)).unwrap();
+    for case in made() {
+        let said = case.unwrap_err();
+        assert!(
+            said.starts_with("mu.csv (`friction.mu_kinetic_field`) is a file of")
+                && said.contains("on rank 1 and"),
+            "{said}"
+        );
+    }
+    std::fs::remove_file(&edited).unwrap();
+    for case in made() {
+        let said = case.unwrap_err();
+        assert!(
+            said.starts_with("rank 1: case.toml:") && said.contains("mu.csv"),
+            "{said}"
+        );
+    }
+}
+
+/// What was read after a change need not be what was hashed before it, on whichever rank it happens.
+#[rstest]
+fn a_file_that_changes_while_the_case_is_made_is_refused(#[values(1, 3)] size: usize) {
+    let folder = tempfile::tempdir().unwrap();
+    write_inputs(folder.path());
+    let text = "friction.mu_static_field = 'mu.csv'\ntexture = [{ shape = 'mask', file = 'mask.png' }]";
+    let made = Threads::run(size, |communicator| {
+        let ranks = Ranks {
+            communicator,
+            on_node: size,
+        };
+        // The texture is laid over the blocks before the coefficients are read.
+        let edit = &mut |_| {
+            if communicator.rank() + 1 == size {
+                let mut file = File::options().append(true).open(folder.path().join("mu.csv"));
+                file.as_mut().unwrap().write_all(b"# edited\n").unwrap();
+            }
+            true
+        };
+        make(text, folder.path(), ranks, edit)
+            .map(drop)
+            .map_err(|error| error.to_string())
+    });
+    for made in made {
+        let said = made.unwrap_err();
+        assert!(
+            said.contains("mu.csv was changed while the case was made"),
+            "{said}"
+        );
+    }
+}
+
+/// Bytes that this thread has read.
+#[cfg(target_os = "linux")]
+fn bytes_read() -> u64 {
+    let text = std::fs::read_to_string("/proc/thread-self/io").unwrap();
+    let line = text.lines().find_map(|line| line.strip_prefix("rchar: "));
+    line.unwrap().parse().unwrap()
+}
+
+/// Of ranks on one machine the first reads a file as a whole, and the others the rows that they hold.
+#[cfg(target_os = "linux")]
+#[test]
+fn one_rank_of_a_machine_hashes_a_file() {
+    const SIDE: usize = 512;
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({SIDE}, {SIDE}), }}");
+    text += &" ".repeat(118 - 1 - text.len());
+    let values = vec![0.5_f64; SIDE * SIDE];
+    let data = values
+        .iter()
+        .flat_map(|value| value.to_le_bytes())
+        .collect::<Vec<_>>();
+    let bytes = [&b"\x93NUMPY\x01\x00\x76\x00"[..], text.as_bytes(), b"\n", &data].concat();
+    std::fs::write(folder.path().join("mu.npy"), &bytes).unwrap();
+    let read = Threads::run(4, |communicator| {
+        let ranks = Ranks {
+            communicator,
+            on_node: 4,
+        };
+        let text = format!("slider.blocks = [{SIDE}, {SIDE}]\nfriction.mu_static_field = 'mu.npy'");
+        let file = CaseFile::parse(&text, "case.toml", &[]).unwrap();
+        let before = bytes_read();
+        Case::new(file, "case", folder.path(), &mut |_| true, ranks).unwrap();
+        (bytes_read() - before) as f64 / bytes.len() as f64
+    });
+    // A quarter of the rows, and buffers that are filled beyond what is needed.
+    let rows = 0.25..0.35;
+    assert!(rows.contains(&(read[0] - 1.0)), "{read:?}");
+    assert!(read[1..].iter().all(|read| rows.contains(read)), "{read:?}");
 }

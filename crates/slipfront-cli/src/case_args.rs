@@ -39,7 +39,7 @@ impl CaseArgs {
             Some(path) => Case::load_on_ranks(&path, &overrides, watch, ranks),
             None => {
                 let (text, name) = (include_str!("baseline.toml"), "baseline");
-                let file = CaseFile::parse(text, name, &overrides)?;
+                let file = ranks.agree(CaseFile::parse(text, name, &overrides))?;
                 Case::to_run_on_ranks(file, name, Path::new(""), watch, ranks)
             }
         })

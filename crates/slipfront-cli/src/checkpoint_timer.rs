@@ -1,5 +1,6 @@
 //! When the checkpoints of a run are saved: by the clock, when asked for, and when the run is told to stop.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::{Duration, Instant};
@@ -21,6 +22,15 @@ impl Interval {
     /// Whether checkpoints are saved at all.
     pub(crate) fn saves(self) -> bool {
         self.0.is_some()
+    }
+}
+
+impl fmt::Display for Interval {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Some(time) => write!(f, "{time:?}"),
+            None => f.write_str("off"),
+        }
     }
 }
 

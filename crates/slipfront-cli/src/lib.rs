@@ -31,12 +31,13 @@ use clap::{CommandFactory, Parser, Subcommand};
 use slipfront::Communicator;
 use slipfront_case::text::shell_quoted;
 use slipfront_run::agree::RankFailure;
+use slipfront_run::program::this_build;
 use slipfront_run::study::StudyFile;
 
 use crate::commands::run::{CHECKPOINTS_HELP, Run};
 use crate::failure::{Failure, report};
-use crate::print::expect_printed;
-use crate::print_stderr::{is_silent, silence};
+use crate::print::{expect_printed, print};
+use crate::print_stderr::silence;
 use crate::ranks::Ranks;
 pub use crate::report::physics;
 
@@ -151,14 +152,57 @@ pub fn main_on_ranks(args: impl IntoIterator<Item = OsString>, communicator: Arc
     if !ranks.is_first() {
         silence();
     }
-    let command = match RanksCli::try_parse_from(args) {
-        Ok(cli) => cli.command,
-        Err(error) => return print_usage(&error),
-    };
-    execute(|| match command {
-        RanksCommand::Run(run) => run.execute(&ranks),
-        RanksCommand::Licences(licences) => licences.execute().map_err(RankFailure::from),
+    execute(|| {
+        // Before all else: ranks of other builds may not say the next thing at the same time.
+        ranks.expect_same(|| vec![("the build".to_owned(), this_build().to_owned())])?;
+        let parsed = ranks.agree(parse_on_rank(args))?;
+        ranks.expect_same(|| vec![("what is asked for".to_owned(), parsed.name().to_owned())])?;
+        match parsed {
+            Parsed::Run(run) => run.execute(&ranks),
+            Parsed::Licences(licences) => ranks.first(|| licences.execute()).map(|_| ()),
+            // Help or version.
+            Parsed::Shown(text) => ranks.first(|| print(&text.to_string())).map(|_| ()),
+        }
     })
+}
+
+/// What the arguments of a rank ask for.
+enum Parsed {
+    Run(Box<Run>),
+    Licences(Licences),
+    /// Help or version, which clap gives as an error.
+    Shown(clap::Error),
+}
+
+impl Parsed {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Run(_) => "a run",
+            Self::Licences(_) => "licences",
+            Self::Shown(text) if text.kind() == ErrorKind::DisplayVersion => "the version",
+            Self::Shown(_) => "help",
+        }
+    }
+}
+
+/// What the arguments ask for; it is a failure of all ranks where those of one are wrong.
+fn parse_on_rank(args: impl IntoIterator<Item = OsString>) -> Result<Parsed, Failure> {
+    match RanksCli::try_parse_from(args) {
+        Ok(cli) => Ok(match cli.command {
+            RanksCommand::Run(run) => Parsed::Run(Box::new(run)),
+            RanksCommand::Licences(licences) => Parsed::Licences(licences),
+        }),
+        Err(error) if error.use_stderr() => {
+            let text = error.to_string();
+            let sentence = match text.trim_end().strip_prefix("error: ") {
+                Some(sentence) => sentence.to_owned(),
+                // Where there are no arguments at all, clap gives the help.
+                None => format!("a subcommand is missing\n\n{}", text.trim_end()),
+            };
+            Err(Failure::input(anyhow::anyhow!(sentence)))
+        }
+        Err(shown) => Ok(Parsed::Shown(shown)),
+    }
 }
 
 fn execute(work: impl FnOnce() -> Result<(), RankFailure>) -> u8 {
@@ -172,7 +216,7 @@ fn execute(work: impl FnOnce() -> Result<(), RankFailure>) -> u8 {
 
 /// Prints what was asked for, as help is, or what is wrong with the arguments.
 fn print_usage(error: &clap::Error) -> u8 {
-    let printed = if is_silent() { Ok(()) } else { error.print() };
+    let printed = error.print();
     // Of a wrong line the status is what matters; help and version are what was asked for.
     match expect_printed(printed) {
         Err(failure) if !error.use_stderr() => failure.report(),

@@ -6,11 +6,14 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use blake3::Hasher;
-use slipfront::Lattice;
+use slipfront::{Communicator, Lattice};
 
 use super::ranks::Ranks;
 use crate::arrays::{self, ArrayError, Slab};
 use crate::case_file::{CaseError, CaseFile, FileUse};
+use crate::machine::machine_number;
+use crate::same::{Given, expect_same, of_all, words_of};
+use crate::text::{display_path, single_line};
 
 /// Told the share that is done of laying the texture over the blocks; `false` ends it.
 pub type Watch<'a> = dyn FnMut(f64) -> bool + 'a;
@@ -46,79 +49,186 @@ pub fn name_of_copy(plain: &str, is_same: impl Fn(&str) -> Option<bool>) -> (Str
     (name, false)
 }
 
-/// Length and hash of a file as integers.
-type Digest = [i64; 5];
+/// Length and hash of a file.
+type Digest = (u64, blake3::Hash);
 
-/// Files that a case names, relative to a folder, with their digests; those of rank 0 alone are known.
-pub(super) struct NamedFiles {
-    originals: Vec<PathBuf>,
-    digests: Vec<Digest>,
+/// A file that a case names.
+struct Found {
+    key: String,
+    holds: FileUse,
+    original: PathBuf,
+    /// What changes when the file does, or is another one.
+    stamp: String,
 }
 
+/// Files that a case names, relative to a folder, as they are before any of them is read.
+pub(super) struct NamedFiles(Vec<Found>);
+
 impl NamedFiles {
-    /// Finds the files; rank 0 reads them as a whole.
-    pub(super) fn find(
-        file: &mut CaseFile,
-        folder: &Path,
-        lattice: &Lattice,
-        ranks: &Ranks,
-    ) -> Result<Self, CaseError> {
-        let mut digests: HashMap<PathBuf, Digest> = HashMap::new();
-        let mut found = Self {
-            originals: Vec::new(),
-            digests: Vec::new(),
-        };
+    /// Finds the files, and opens none.
+    pub(super) fn find(file: &mut CaseFile, folder: &Path) -> Result<Self, CaseError> {
         let (files, source) = file.files_mut();
-        for named in files {
+        let found = files.map(|named| {
             let original = folder.join(&*named.name);
-            let digest = match digests.get(&original) {
-                Some(known) => *known,
-                None if ranks.communicator.rank() == 0 => {
-                    let opened = match named.holds {
-                        FileUse::Blocks => arrays::open_file(&original, lattice.nx, lattice.ny),
-                        FileUse::HeightMap => arrays::open_height_map(&original),
-                    };
-                    let digest = opened.and_then(|file| digest(&original, file));
-                    digest.map_err(|error| source.error(&named.key, error.to_string()))?
-                }
-                None => Digest::default(),
-            };
-            digests.insert(original.clone(), digest);
-            found.originals.push(original);
-            found.digests.push(digest);
-        }
-        Ok(found)
+            let stamp = stamp(&original).map_err(|error| source.error(&named.key, error.to_string()))?;
+            Ok(Found {
+                key: named.key,
+                holds: named.holds,
+                original,
+                stamp,
+            })
+        });
+        found.collect::<Result<_, _>>().map(Self)
     }
 
-    /// Tells all ranks the digests, and replaces the names in the case by those of copies. Files of equal contents and names
-    /// are one.
-    pub(super) fn share(mut self, file: &mut CaseFile, ranks: &Ranks) -> Vec<Input> {
-        ranks.communicator.sum(self.digests.as_flattened_mut());
+    /// Hashes the files, and replaces their names in the case by those of copies. Files of equal contents and names are one.
+    ///
+    /// Of ranks that find the same files, as those of one machine do, one hashes them.
+    ///
+    /// # Errors
+    /// When a file is not the same for all ranks, or cannot be read.
+    pub(super) fn read(
+        &self,
+        file: &mut CaseFile,
+        lattice: &Lattice,
+        ranks: &Ranks,
+    ) -> Result<Vec<Input>, CaseError> {
+        if self.0.is_empty() {
+            return Ok(Vec::new());
+        }
+        let communicator = ranks.communicator;
+        let stamps = self.0.iter().map(|found| found.stamp.as_str());
+        let seen = format!("{} {}", machine_number(), stamps.collect::<String>());
+        let seen = of_all(communicator, words_of(&blake3::hash(seen.as_bytes()))[0]);
+        let reader = seen.iter().position(|other| *other == seen[communicator.rank()]);
+        let own = match reader == Some(communicator.rank()) {
+            true => self.hash(file, lattice).map(Some),
+            false => Ok(None),
+        };
+        let own = ranks.agree(own)?;
+        let digests = self.of_first(own.as_deref(), communicator);
+        // The others have another rank speak for them, which sees the same files.
+        let given = own.as_ref().unwrap_or(&digests);
+        expect_same(communicator, || self.given(given))?;
+        Ok(self.name_copies(file, &digests))
+    }
+
+    /// Length and hash of each file.
+    fn hash(&self, file: &CaseFile, lattice: &Lattice) -> Result<Vec<Digest>, CaseError> {
+        let mut known: HashMap<&Path, Digest> = HashMap::new();
+        let digests = self.0.iter().map(|found| {
+            let original = &found.original;
+            if let Some(digest) = known.get(&**original) {
+                return Ok(*digest);
+            }
+            let opened = match found.holds {
+                FileUse::Blocks => arrays::open_file(original, lattice.nx, lattice.ny),
+                FileUse::HeightMap => arrays::open_height_map(original),
+            };
+            let digest = opened.and_then(|opened| digest(original, opened));
+            let digest = digest.map_err(|error| placed(file, &found.key, error))?;
+            known.insert(original, digest);
+            Ok(digest)
+        });
+        digests.collect()
+    }
+
+    /// What rank 0 has found of each file.
+    fn of_first(&self, own: Option<&[Digest]>, communicator: &dyn Communicator) -> Vec<Digest> {
+        let mut words = vec![[0; 5]; self.0.len()];
+        if communicator.rank() == 0 {
+            for (words, (length, hash)) in words.iter_mut().zip(own.into_iter().flatten()) {
+                words[0] = length.cast_signed();
+                words[1..].copy_from_slice(&words_of(hash));
+            }
+        }
+        communicator.sum(words.as_flattened_mut());
+        let digest = |[length, hash @ ..]: [i64; 5]| (length.cast_unsigned(), hash_of_words(hash));
+        words.into_iter().map(digest).collect()
+    }
+
+    /// Names of the files, and what is in them.
+    fn given(&self, digests: &[Digest]) -> Given {
+        let named = self.0.iter().zip(digests).map(|(found, (length, hash))| {
+            let name = format!("{} (`{}`)", single_line(&found.plain_name()), found.key);
+            let contents = format!("a file of {length} bytes with the hash {}", &hash.to_hex()[..16]);
+            (name, contents)
+        });
+        named.collect()
+    }
+
+    fn name_copies(&self, file: &mut CaseFile, digests: &[Digest]) -> Vec<Input> {
         let mut inputs: Vec<Input> = Vec::new();
         let names = file.files_mut().0.map(|named| named.name);
-        for ((original, digest), written) in self.originals.into_iter().zip(self.digests).zip(names) {
-            let [length, hash @ ..] = digest;
-            let mut bytes = [0; blake3::OUT_LEN];
-            for (bytes, word) in bytes.chunks_exact_mut(8).zip(hash) {
-                bytes.copy_from_slice(&word.to_le_bytes());
-            }
-            let hash = blake3::Hash::from_bytes(bytes);
-            let plain = original.file_name().map(|name| name.to_string_lossy());
-            let plain = plain.unwrap_or("input".into());
-            let is_same = |name: &str| Some(inputs.iter().find(|input| input.name == name)?.hash == hash);
-            let (name, is_kept) = name_of_copy(&plain, is_same);
+        for ((found, (length, hash)), written) in self.0.iter().zip(digests).zip(names) {
+            let is_same = |name: &str| Some(inputs.iter().find(|input| input.name == name)?.hash == *hash);
+            let (name, is_kept) = name_of_copy(&found.plain_name(), is_same);
             written.clone_from(&name);
             if !is_kept {
                 inputs.push(Input {
                     name,
-                    original,
-                    length: length.cast_unsigned(),
-                    hash,
+                    original: found.original.clone(),
+                    length: *length,
+                    hash: *hash,
                 });
             }
         }
         inputs
     }
+
+    /// Fails if a file has changed since it was found: what was read of it afterwards need not be what was hashed.
+    pub(super) fn expect_unchanged(&self, file: &CaseFile) -> Result<(), CaseError> {
+        let changed = self.0.iter().find(|found| {
+            let now = stamp(&found.original);
+            !now.is_ok_and(|now| now == found.stamp)
+        });
+        let Some(found) = changed else { return Ok(()) };
+        let sentence = format!(
+            "{} was changed while the case was made of it: begin again, and leave this file as it is meanwhile",
+            display_path(&found.original)
+        );
+        Err(file.source.error(&found.key, sentence))
+    }
+}
+
+impl Found {
+    fn plain_name(&self) -> String {
+        let plain = self.original.file_name();
+        plain.map_or_else(|| "input".to_owned(), |name| name.to_string_lossy().into_owned())
+    }
+}
+
+/// Which file this is on its machine, and when it was changed.
+fn stamp(path: &Path) -> Result<String, ArrayError> {
+    let metadata = path.metadata().map_err(|source| ArrayError::Read {
+        path: path.to_owned(),
+        source,
+    })?;
+    #[cfg(unix)]
+    let identity = {
+        use std::os::unix::fs::MetadataExt;
+        (
+            metadata.dev(),
+            metadata.ino(),
+            metadata.ctime(),
+            metadata.ctime_nsec(),
+        )
+    };
+    #[cfg(not(unix))]
+    let identity = path.canonicalize().ok();
+    Ok(format!(
+        "{identity:?} {} {:?}",
+        metadata.len(),
+        metadata.modified().ok()
+    ))
+}
+
+fn hash_of_words(words: [i64; 4]) -> blake3::Hash {
+    let mut bytes = [0; blake3::OUT_LEN];
+    for (bytes, word) in bytes.chunks_exact_mut(8).zip(words) {
+        bytes.copy_from_slice(&word.to_le_bytes());
+    }
+    blake3::Hash::from_bytes(bytes)
 }
 
 fn digest(path: &Path, file: File) -> Result<Digest, ArrayError> {
@@ -127,13 +237,7 @@ fn digest(path: &Path, file: File) -> Result<Digest, ArrayError> {
         path: path.to_owned(),
         source,
     })?;
-    let mut digest = Digest::default();
-    digest[0] = hasher.count().cast_signed();
-    let hash = hasher.finalize();
-    for (word, bytes) in digest[1..].iter_mut().zip(hash.as_bytes().as_chunks::<8>().0) {
-        *word = i64::from_le_bytes(*bytes);
-    }
-    Ok(digest)
+    Ok((hasher.count(), hasher.finalize()))
 }
 
 /// The files that a case reads, and the rows that are wanted of them.

@@ -23,9 +23,25 @@ impl Ranks<'static> {
 }
 
 impl Ranks<'_> {
-    /// What this rank has found, if none has failed; else an error on all of them: that of the lowest rank that has one, or
-    /// that they were stopped.
+    /// What this rank has found, if none has failed; else an error on all of them: that of the lowest rank that has one, which it
+    /// names unless it is rank 0, or that they were stopped.
     pub fn agree<T>(&self, found: Result<T, CaseError>) -> Result<T, CaseError> {
+        self.agree_in_words(found, |rank, text| match rank {
+            0 => text,
+            _ => format!("rank {rank}: {text}"),
+        })
+    }
+
+    /// [`agree`](Self::agree) on what each rank has found in the rows that it holds: the error is that of reading all rows.
+    pub(super) fn agree_on_rows<T>(&self, found: Result<T, CaseError>) -> Result<T, CaseError> {
+        self.agree_in_words(found, |_, text| text)
+    }
+
+    fn agree_in_words<T>(
+        &self,
+        found: Result<T, CaseError>,
+        words: impl Fn(usize, String) -> String,
+    ) -> Result<T, CaseError> {
         let is_stopped = matches!(found, Err(CaseError::Stopped));
         if lowest_rank(self.communicator, is_stopped).is_some() {
             return Err(CaseError::Stopped);
@@ -36,7 +52,8 @@ impl Ranks<'_> {
         let own = found.err().filter(|_| self.communicator.rank() == lowest);
         let text = own.as_ref().map(ToString::to_string).unwrap_or_default();
         let text = text_of(self.communicator, lowest, &text);
-        Err(own.unwrap_or(CaseError::OnOtherRank(text)))
+        let own = own.filter(|_| lowest == 0);
+        Err(own.unwrap_or_else(|| CaseError::OnOtherRank(words(lowest, text))))
     }
 }
 

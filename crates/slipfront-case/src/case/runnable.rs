@@ -23,6 +23,7 @@ use super::time_plan::{Dynamics, TimePlan};
 use super::topography::Topography;
 use crate::arrays::Slab;
 use crate::case_file::{CaseError, CaseFile};
+use crate::same::expect_same;
 
 /// A case that can be run. It is valid by construction.
 #[derive(Debug)]
@@ -83,8 +84,7 @@ impl Case {
         Self::load_on_ranks(path, overrides, watch, Ranks::ALONE)
     }
 
-    /// [`load`](Self::load) on all `ranks` at once: each makes the surface of its own rows, and knows the rest of the case. If
-    /// one fails, all give the same error.
+    /// [`load`](Self::load) on all `ranks` at once, as [`to_run_on_ranks`](Self::to_run_on_ranks) does.
     pub fn load_on_ranks(
         path: &Path,
         overrides: &[String],
@@ -116,7 +116,8 @@ impl Case {
         Self::to_run_on_ranks(file, name, folder, watch, Ranks::ALONE)
     }
 
-    /// [`to_run`](Self::to_run) on all `ranks` at once, as [`load_on_ranks`](Self::load_on_ranks) does.
+    /// [`to_run`](Self::to_run) on all `ranks` at once: each makes the surface of its own rows, and knows the rest of the case. If
+    /// one fails, or was given another case or other files, all give the same error.
     pub fn to_run_on_ranks(
         file: CaseFile,
         name: &str,
@@ -147,15 +148,16 @@ impl Case {
         watch: &mut Watch,
         ranks: Ranks,
     ) -> Result<Self, CaseError> {
+        expect_same(ranks.communicator, || file.values())?;
         let [nx, ny] = file.slider.blocks.map(|count| count as usize);
         let lattice = Lattice::with_edges(nx, ny, file.slider.edges);
         let rows = lattice.rows_of(ranks.communicator);
         // Nothing is allocated before all ranks have looked at the memory that they share.
         let planned = Derived::of(&file, &lattice, &rows, &ranks, to_run)
-            .and_then(|derived| Ok((derived, NamedFiles::find(&mut file, folder, &lattice, &ranks)?)));
+            .and_then(|derived| Ok((derived, NamedFiles::find(&mut file, folder)?)));
         let (Derived { scales, groups, plan }, named) = ranks.agree(planned)?;
         let inputs = Inputs {
-            files: named.share(&mut file, &ranks),
+            files: named.read(&mut file, &lattice, &ranks)?,
             slab: Slab {
                 nx,
                 ny,
@@ -163,7 +165,7 @@ impl Case {
             },
         };
 
-        let blocks = ranks.agree(GivenBlocks::read(&file, &lattice, &inputs, watch))?;
+        let blocks = ranks.agree_on_rows(GivenBlocks::read(&file, &lattice, &inputs, watch))?;
         let mut slider = blocks.slider(&file, ranks.communicator)?;
         let n_blocks = slider.n_blocks(&lattice);
         let made = textures::mesh(&file, &scales, &lattice, n_blocks, &inputs, watch).and_then(|meshed| {
@@ -171,7 +173,8 @@ impl Case {
             let contact = contact(&file, &scales, &lattice, &inputs)?;
             Ok((meshed, coefficients, contact, attached(&file, &inputs, watch)?))
         });
-        let ((meshed, in_blocks), coefficients, contact, attached) = ranks.agree(made)?;
+        let ((meshed, in_blocks), coefficients, contact, attached) = ranks.agree_on_rows(made)?;
+        ranks.agree(named.expect_unchanged(&file))?;
         attach(&mut slider, &file, &lattice, &rows, attached, ranks.communicator)?;
         let surface = Surface::of_ranks(
             coefficients,

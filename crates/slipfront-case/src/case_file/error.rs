@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use crate::same::Difference;
 use crate::text::{MAX_EXCERPT, single_line, truncated};
 
 /// A case file that cannot be used.
@@ -33,6 +34,8 @@ pub enum CaseError {
     /// In the words of the rank that has found it.
     #[error("{0}")]
     OnOtherRank(String),
+    #[error(transparent)]
+    Differs(#[from] Difference),
 }
 
 /// Something that is wrong with the contents of a case, and where.

@@ -142,6 +142,42 @@ impl CaseFile {
         self.check()?;
         Ok(toml::to_string(self)?)
     }
+
+    /// Every key with its value, defaults filled in: `texture.0.coverage` and `25.0`.
+    ///
+    /// ```
+    /// use slipfront_case::case_file::CaseFile;
+    /// let values = CaseFile::default().values();
+    /// assert!(values.contains(&("`slider.blocks`".to_owned(), "[100, 100]".to_owned())));
+    /// ```
+    pub fn values(&self) -> Vec<(String, String)> {
+        let mut values = Vec::new();
+        // A case that was loaded can be written.
+        let tables = toml::Value::try_from(self);
+        flatten("", &tables.unwrap_or(toml::Value::Boolean(false)), &mut values);
+        values
+    }
+}
+
+/// Adds all values below a key, by the keys that lead there. An array of plain values is one of them.
+fn flatten(key: &str, value: &toml::Value, values: &mut Vec<(String, String)>) {
+    let below = |name: &str| match key {
+        "" => name.to_owned(),
+        _ => format!("{key}.{name}"),
+    };
+    match value {
+        toml::Value::Table(table) => {
+            for (name, value) in table {
+                flatten(&below(name), value, values);
+            }
+        }
+        toml::Value::Array(array) if array.iter().any(|value| value.is_table() || value.is_array()) => {
+            for (index, value) in array.iter().enumerate() {
+                flatten(&below(&index.to_string()), value, values);
+            }
+        }
+        plain => values.push((format!("`{key}`"), plain.to_string())),
+    }
 }
 
 /// A file that a case names.

@@ -2,13 +2,13 @@
 
 mod traffic;
 
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 use std::sync::Arc;
 
-use gethostname::gethostname;
 use slipfront::Communicator;
 use slipfront::communicator::Alone;
+use slipfront_case::machine::machine_number;
+use slipfront_case::same::{Given, expect_same, of_all};
 use slipfront_run::agree::{RankFailure, agree};
 use slipfront_run::resume_command::resume_command;
 
@@ -45,15 +45,11 @@ impl Ranks {
         Arc::clone(&self.communicator) as Arc<dyn Communicator>
     }
 
-    /// Number of ranks on this machine, by the hash of its name.
+    /// Number of ranks on this machine, by its name.
     pub(crate) fn on_node(&self) -> usize {
-        let mut hasher = DefaultHasher::new();
-        gethostname().hash(&mut hasher);
-        let own = hasher.finish().cast_signed();
-        let mut names = vec![0; self.size()];
-        names[self.communicator.rank()] = own;
-        self.communicator.sum(&mut names);
-        names.into_iter().filter(|name| *name == own).count()
+        let own = machine_number();
+        let machines = of_all(&*self.communicator, own).into_iter();
+        machines.filter(|machine| *machine == own).count()
     }
 
     /// Number of ranks.
@@ -69,6 +65,12 @@ impl Ranks {
     /// What this rank has done, if all have done it.
     pub(crate) fn agree<T>(&self, outcome: Result<T, Failure>) -> Result<T, RankFailure> {
         agree(&*self.communicator, outcome.map_err(RankFailure::from))
+    }
+
+    /// Fails unless all ranks were given the same.
+    pub(crate) fn expect_same(&self, given: impl FnOnce() -> Given) -> Result<(), RankFailure> {
+        let same = expect_same(&*self.communicator, given);
+        same.map_err(|difference| Failure::input(difference).into())
     }
 
     /// What the first rank alone does; none on the others.

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use slipfront_case::same::Difference;
 use thiserror::Error;
 
 /// How the file is laid out. A program reads no other layout.
@@ -29,4 +30,6 @@ pub enum CheckpointError {
     },
     #[error("{path} belongs to another case than the case.toml and inputs beside it")]
     Case { path: PathBuf },
+    #[error(transparent)]
+    Differs(#[from] Difference),
 }

@@ -12,8 +12,8 @@ use blake3::OUT_LEN;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use slipfront::Communicator;
-use slipfront::communicator::{lowest_rank, text_of};
 use slipfront_case::disk::{open_regular, remove_if_there};
+use slipfront_case::same::expect_same;
 use slipfront_case::text::truncated;
 
 use super::error::{CheckpointError, LAYOUT};
@@ -165,10 +165,26 @@ pub(super) fn read(
         source,
     };
     let damaged = |why| CheckpointError::Damaged { path: owned(), why };
-    let (mut file, own_line, own_length) = agree_on_io(communicator, open(path)).map_err(unreadable)?;
-    // Ranks may see different files, and must do the same nevertheless: what the first one sees counts.
-    let line = text_of(communicator, 0, &own_line);
-    let length = of_first(communicator, own_length);
+    let opened = agree_on_io(communicator, open(path)).map_err(unreadable)?;
+    let Opened {
+        mut file,
+        line,
+        length,
+        checksum,
+    } = opened;
+    // Where machines share a disk, one of them may see for a while what others have replaced.
+    expect_same(communicator, || {
+        let header = serde_json::from_str::<Header>(&line);
+        let step = header.map_or("unknown".to_owned(), |header| header.step.to_string());
+        let given = [
+            ("step", step),
+            ("first line", line.clone()),
+            ("length", format!("{length} bytes")),
+            ("checksum", blake3::hash(&checksum).to_hex().to_string()),
+        ];
+        let named = given.map(|(what, value)| (format!("the {what} of the checkpoint"), value));
+        named.into()
+    })?;
     let unknown = || damaged("its first line is not that of a checkpoint");
     let Layout { slipfront_checkpoint } = serde_json::from_str(&line).map_err(|_| unknown())?;
     if slipfront_checkpoint != LAYOUT {
@@ -177,17 +193,10 @@ pub(super) fn read(
     }
     let header: Header = serde_json::from_str(&line).map_err(|_| unknown())?;
     // Nothing is made of bytes before they are known to be those that were written.
-    let wrong = || damaged("its checksum does not fit");
-    let contents = length.checked_sub(OUT_LEN as u64).ok_or_else(wrong)?;
+    let contents = length.saturating_sub(OUT_LEN as u64);
     let hash = hash_of_pieces(&mut file, contents, communicator).map_err(unreadable)?;
-    let mut checksum = [0; OUT_LEN];
-    let read = file
-        .seek(SeekFrom::Start(contents))
-        .and_then(|_| file.read_exact(&mut checksum));
-    agree_on_io(communicator, read).map_err(unreadable)?;
-    let is_other = own_line != line || own_length != length || hash.as_bytes() != &checksum;
-    if lowest_rank(communicator, is_other).is_some() {
-        return Err(wrong());
+    if checksum != hash.as_bytes() {
+        return Err(damaged("its checksum does not fit"));
     }
     let here = program::this_build();
     if header.program != here {
@@ -213,13 +222,30 @@ pub(super) fn read(
     })
 }
 
-/// A file with its first line, empty if it is no text, and its length.
-fn open(path: &Path) -> std::io::Result<(File, String, u64)> {
-    let file = open_regular(path)?;
+/// A file that was opened to be read.
+struct Opened {
+    file: File,
+    /// The first line, empty if it is no text.
+    line: String,
+    length: u64,
+    /// The last bytes.
+    checksum: Vec<u8>,
+}
+
+fn open(path: &Path) -> std::io::Result<Opened> {
+    let mut file = open_regular(path)?;
     let length = file.metadata()?.len();
     let mut line = Vec::new();
     BufReader::new((&file).take(HEADER_MAX_BYTES)).read_until(b'\n', &mut line)?;
-    Ok((file, String::from_utf8(line).unwrap_or_default(), length))
+    let mut checksum = Vec::new();
+    file.seek(SeekFrom::Start(length.saturating_sub(OUT_LEN as u64)))?;
+    (&file).take(OUT_LEN as u64).read_to_end(&mut checksum)?;
+    Ok(Opened {
+        line: String::from_utf8(line).unwrap_or_default(),
+        file,
+        length,
+        checksum,
+    })
 }
 
 /// The state that takes all bytes from `begin` to `end`; an error of [`ErrorKind::InvalidData`] if there is none.

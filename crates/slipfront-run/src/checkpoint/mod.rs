@@ -14,6 +14,7 @@ use jiff::Timestamp;
 use slipfront::Communicator;
 use slipfront_case::case::Case;
 use slipfront_case::disk::{remove_if_there, sync_folder};
+use slipfront_case::same::expect_same;
 
 pub use self::error::CheckpointError;
 use self::file::{Header, VerifiedFile};
@@ -154,9 +155,10 @@ impl Checkpoints {
         for name in [CHECKPOINT, PREVIOUS].into_iter().skip(usize::from(previous)) {
             let path = Unfinished::of(folder).path().join(name);
             // A link with nothing at its end must be refused, and not taken for no checkpoint.
-            let mut is_there = [f64::from(u8::from(path.symlink_metadata().is_ok()))];
-            communicator.largest(&mut is_there);
-            if is_there[0] > 0.0 {
+            let is_there = path.symlink_metadata().is_ok();
+            let seen = if is_there { "there" } else { "missing" };
+            expect_same(communicator, || vec![(name.to_owned(), seen.to_owned())])?;
+            if is_there {
                 let file = file::read(&path, &hash_of(case), communicator)?;
                 let latest = name == CHECKPOINT;
                 return Ok(Some(LoadedCheckpoint { path, file, latest }));
@@ -337,9 +339,13 @@ mod tests {
                         true => other.path(),
                         false => folder.path(),
                     };
-                    Checkpoints::load(folder, &case, false, communicator).is_err()
+                    let loaded = Checkpoints::load(folder, &case, false, communicator);
+                    loaded.map(drop).unwrap_err().to_string()
                 });
-                assert_eq!(refused, [true; 3], "rank {differing} sees {} bytes", seen.len());
+                // Where it is rank 0 that differs, rank 1 is the first that is not like it.
+                let named = format!("on rank {} and", differing.max(1));
+                assert!(refused[0].contains(&named), "{}", refused[0]);
+                assert!(refused.iter().all(|said| *said == refused[0]), "{refused:?}");
             }
         }
     }

@@ -14,8 +14,11 @@ use std::fs::{File, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use slipfront::Communicator;
+use slipfront::communicator::text_of;
 use slipfront_case::case::{Case, Input};
 use slipfront_case::disk::{open_regular, sync_folder, write_temp};
+use slipfront_case::text::display_path;
 use tempfile::TempPath;
 
 use self::contents::{managed_files, refuse_unmanaged, remove_files, result_files};
@@ -23,6 +26,7 @@ use self::error::FolderError;
 use self::inspection::{Contents, Inspection};
 use self::journal::Journal;
 use self::unfinished::Unfinished;
+use crate::agree::{RankFailure, agree};
 use crate::manifest::{Manifest, ManifestFile};
 use crate::names::{CASE, CHECKPOINT, JOURNAL, MANIFEST, PREVIOUS, UNFINISHED};
 
@@ -67,8 +71,22 @@ impl OpenedFolder {
     ///
     /// # Errors
     /// When it holds something else, which includes foreign files in the place of the copies, or cannot be written.
-    pub fn prepare(mut self, force: bool, inputs: &[Input]) -> Result<RunFolder, FolderError> {
+    pub fn prepare(self, force: bool, inputs: &[Input]) -> Result<RunFolder, FolderError> {
+        self.claim(force, inputs)?.take()
+    }
+
+    /// Makes the folder ready as [`prepare`](Self::prepare) does, but removes nothing yet.
+    ///
+    /// # Errors
+    /// As for `prepare`.
+    pub fn claim(mut self, force: bool, inputs: &[Input]) -> Result<ClaimedFolder, FolderError> {
         let path = self.inspection.path.clone();
+        let missing = path.ancestors().take_while(|folder| !folder.exists());
+        let mut made: Vec<PathBuf> = missing.map(Path::to_owned).collect();
+        let hidden = path.join(UNFINISHED);
+        if !hidden.exists() {
+            made.insert(0, hidden);
+        }
         if !self.existed {
             std::fs::create_dir_all(&path).map_err(FolderError::unwritable(&path))?;
             // Another process may have made it since.
@@ -93,8 +111,11 @@ impl OpenedFolder {
             // Once the manifest is gone, nothing else says whose they are.
             folder.list(&listed)?;
         }
-        remove_files(&folder.path, managed)?;
-        Ok(folder)
+        Ok(ClaimedFolder {
+            folder,
+            replaced: managed,
+            made,
+        })
     }
 
     /// Takes over the folder of an interrupted run of this case: removes what it had written of its results, which are
@@ -121,6 +142,64 @@ impl OpenedFolder {
         folder.sync()?;
         Ok(folder)
     }
+}
+
+/// A folder that is ready for a new run, but for the files of an earlier one.
+#[derive(Debug)]
+pub struct ClaimedFolder {
+    folder: RunFolder,
+    /// Files of the earlier run.
+    replaced: Vec<String>,
+    /// Folders that were made for this run, each before the one in which it is.
+    made: Vec<PathBuf>,
+}
+
+impl ClaimedFolder {
+    /// Removes the files of the earlier run.
+    ///
+    /// # Errors
+    /// When one of them cannot be removed.
+    pub fn take(self) -> Result<RunFolder, FolderError> {
+        remove_files(&self.folder.path, self.replaced)?;
+        Ok(self.folder)
+    }
+
+    /// Leaves the folder as it was found.
+    pub fn release(self) {
+        // Why the run does not begin is what matters.
+        if self.made.contains(&self.folder.path.join(UNFINISHED)) {
+            let _ = self.folder.unfinished.remove();
+        }
+        for folder in self.made {
+            let _ = std::fs::remove_dir(folder);
+        }
+    }
+}
+
+/// Fails on all ranks, with the same words, unless each of them sees under its path the folder in which rank 0 is about to run.
+/// Every rank must ask.
+///
+/// # Errors
+/// When one of them does not; the sentence names the rank.
+pub fn expect_shared(path: &Path, communicator: &dyn Communicator) -> Result<(), RankFailure> {
+    let is_first = communicator.rank() == 0;
+    let failure = |sentence| RankFailure { status: 2, sentence };
+    let temporary = Unfinished::of(path).temporary();
+    let marked = is_first.then(|| write_temp(&temporary, |_| Ok(()))).transpose();
+    let marked = marked.map_err(|error| failure(FolderError::unwritable(path)(error).to_string()));
+    let mark = agree(communicator, marked)?;
+    let name = mark.as_ref().and_then(|mark| mark.file_name());
+    let name = name.unwrap_or_default().to_string_lossy();
+    let name = text_of(communicator, 0, &name);
+    let of_first = text_of(communicator, 0, &display_path(path));
+    let is_seen = temporary.join(name).symlink_metadata().is_ok();
+    let seen = is_seen.then_some(()).ok_or_else(|| {
+        failure(format!(
+            "the folder {} is not the folder {of_first} of rank 0: all ranks write to one, on a disk that their machines share",
+            display_path(path)
+        ))
+    });
+    agree(communicator, seen)
 }
 
 /// A folder that a run is being written to.

@@ -9,13 +9,14 @@ use std::sync::Arc;
 
 use clap::Args;
 use slipfront_case::case::Case;
+use slipfront_case::same::Given;
 use slipfront_case::text::{display_path, shell_quoted};
 use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::Checkpoints;
 use slipfront_run::clock;
 use slipfront_run::results;
 use slipfront_run::run_folder::error::FolderError;
-use slipfront_run::run_folder::{OpenedFolder, RunFolder};
+use slipfront_run::run_folder::{ClaimedFolder, OpenedFolder, RunFolder, expect_shared};
 use slipfront_run::running::Running;
 
 use self::complete::complete;
@@ -69,6 +70,7 @@ impl Run {
     /// Runs it, with all ranks that there are.
     pub(crate) fn execute(self, ranks: &Ranks) -> Result<(), RankFailure> {
         let started = clock::now();
+        ranks.expect_same(|| self.shared_options())?;
         let options = ranks.agree(self.options(ranks))?;
         if let Some(folder) = &self.resume {
             return resume::resume(folder, self.previous, options);
@@ -77,13 +79,34 @@ impl Run {
         let case = Arc::new(ranks.agree(self.case.load(ranks, &options.signals, options.quiet))?);
         let out = self.out.unwrap_or_else(|| Path::new("results").join(&case.name));
         let saves = options.interval.saves();
-        let folder = ranks.first(|| prepare_folder(&out, case_path.as_deref(), &case, self.force, saves))?;
+        let claimed = ranks.first(|| claim_folder(&out, case_path.as_deref(), &case, self.force, saves))?;
+        if let Err(failure) = expect_shared(&out, &*ranks.communicator()) {
+            if let Some(claimed) = claimed {
+                claimed.release();
+            }
+            return Err(failure);
+        }
+        let folder = ranks.agree(claimed.map(|claimed| begin_folder(claimed, &case)).transpose())?;
         if options.is_verbose() {
             print_message(&report::physics(&case));
         }
         let checkpoints = Checkpoints::new(&out, &case, started);
         let running = Running::start_on_ranks(&case, options.threads, ranks.communicator());
         complete(running, &out, folder, checkpoints, options)
+    }
+
+    /// The options on which it depends what the ranks do together. Where the others are, threads and the folder, each rank may have
+    /// its own, and what is printed is asked of the first one.
+    fn shared_options(&self) -> Given {
+        let flag = |is_given: bool| if is_given { "given" } else { "not given" }.to_owned();
+        let options = [
+            ("--resume", flag(self.resume.is_some())),
+            ("--previous", flag(self.previous)),
+            ("--force", flag(self.force)),
+            ("--checkpoint", self.checkpoint.to_string()),
+            ("--json", flag(self.json)),
+        ];
+        options.map(|(name, value)| (name.to_owned(), value)).into()
     }
 
     fn options(&self, ranks: &Ranks) -> Result<RunOptions, Failure> {
@@ -100,14 +123,14 @@ impl Run {
     }
 }
 
-/// Makes the folder of a new run ready, with all that the run needs to go on if it is stopped.
-fn prepare_folder(
+/// Makes the folder of a new run ready, but for the files of an earlier one.
+fn claim_folder(
     out: &Path,
     case_path: Option<&Path>,
     case: &Case,
     force: bool,
     saves: bool,
-) -> Result<RunFolder, Failure> {
+) -> Result<ClaimedFolder, Failure> {
     refuse_to_replace(case_path, case, out)?;
     let folder = OpenedFolder::open(out).map_err(Failure::input)?;
     let replaced = if force {
@@ -118,9 +141,14 @@ fn prepare_folder(
     case.budget
         .check_disk(&case.file, out, replaced, saves)
         .map_err(Failure::input)?;
-    let mut folder = folder
-        .prepare(force, &case.inputs)
-        .map_err(|error| with_free_folder(error, out))?;
+    folder
+        .claim(force, &case.inputs)
+        .map_err(|error| with_free_folder(error, out))
+}
+
+/// Writes to the folder of a new run all that the run needs to go on if it is stopped, in the place of an earlier one.
+fn begin_folder(claimed: ClaimedFolder, case: &Case) -> Result<RunFolder, Failure> {
+    let mut folder = claimed.take().map_err(Failure::input)?;
     results::write_case(case, &mut folder).map_err(Failure::running)?;
     Ok(folder)
 }

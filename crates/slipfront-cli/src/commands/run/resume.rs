@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use slipfront::communicator::Alone;
 use slipfront_case::case::Case;
-use slipfront_case::case_file::CaseFile;
+use slipfront_case::case_file::{CaseError, CaseFile};
 use slipfront_run::agree::RankFailure;
 use slipfront_run::checkpoint::{CheckpointError, Checkpoints, LoadedCheckpoint};
 use slipfront_run::clock;
-use slipfront_run::run_folder::OpenedFolder;
 use slipfront_run::run_folder::inspection::{Contents, Inspection};
 use slipfront_run::run_folder::unfinished::Unfinished;
+use slipfront_run::run_folder::{OpenedFolder, expect_shared};
 use slipfront_run::running::Running;
 use slipfront_run::summary::{read_summary, summary_json};
 use slipfront_run::verify::{VerifyError, expect_as_written};
@@ -40,6 +40,7 @@ pub(super) fn resume(path: &Path, previous: bool, options: RunOptions) -> Result
     let (running, checkpoints, from) =
         ranks.agree(begin(path, &case, loaded, previous, options.threads, &ranks))?;
     let folder = ranks.first(|| folder.resume(&case).map_err(Failure::input))?;
+    expect_shared(path, &*ranks.communicator())?;
     if options.is_verbose() {
         print_message(&report::physics(&case));
         print_message(&format!("goes on from {from}\n"));
@@ -107,7 +108,8 @@ fn case_to_resume(path: &Path, file: CaseFile, options: &RunOptions) -> Result<C
         Case::to_run_on_ranks(file, &name, path, watch, ranks)
     });
     let case = made.map_err(|failure| match failure {
-        Failure::Input(error) => {
+        // What differs between ranks is no trace of a stop.
+        Failure::Input(error) if !matches!(error.downcast_ref(), Some(CaseError::Differs(_))) => {
             let hint =
                 "if the run was stopped before all its inputs were copied, begin it again with --force";
             Failure::input(anyhow::anyhow!("{error}\n{hint}"))
@@ -192,6 +194,9 @@ fn remedy(error: &CheckpointError, path: &Path, case: &Case, previous: bool) -> 
                 ),
                 _ => format!("no whole one is kept beside it: {ANEW}"),
             }
+        }
+        CheckpointError::Differs(_) => {
+            "all of them must see one folder, on a disk that their machines share".to_owned()
         }
         CheckpointError::Case { .. } => format!("put back the files with which it was begun, or {ANEW}"),
         CheckpointError::Damaged { .. } | CheckpointError::Unreadable { .. } => ANEW.to_owned(),
