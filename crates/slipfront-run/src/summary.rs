@@ -550,11 +550,16 @@ fn after_run(
         ));
     }
     if !peak.ended {
-        warnings.push(
+        let rises = kinetic.is_some_and(|kinetic| kinetic.window_star[0] <= peak.time_star);
+        warnings.push(format!(
             "mu* did not fall half-way to its steady level in the time of a transition: there was none, and static_friction_star is the \
-             largest mu* of the run"
-                .to_owned(),
-        );
+             largest mu* of the run{}",
+            if rises {
+                "; the kinetic window begins before it, so that kinetic_friction_star may have a part of the rise"
+            } else {
+                ""
+            }
+        ));
     }
     if first_slip.is_none() {
         warnings.push(

@@ -78,7 +78,8 @@ impl Case {
         if drag > LARGE_DRAG * kinetic {
             // The drag is in proportion to the speed.
             warnings.push(format!(
-                "the drag of the damping, Omega* and V* = {}, adds {} to the kinetic friction of {}, so that mu_k* is no property of the                  surface: it is below a tenth of that at V* = {} or less",
+                "the drag of the damping at V* = {} adds {} to the kinetic friction of {}, and mu_k* contains it: it is a tenth of that or \
+                 less up to V* = {}",
                 four_digits(v_star),
                 four_digits(drag),
                 four_digits(kinetic),
@@ -90,7 +91,8 @@ impl Case {
         let has_thresholds = !matches!(self.model.friction, Friction::RateAndState(_));
         if has_thresholds && kinetic < held && level >= held {
             warnings.push(format!(
-                "no transition is possible: steady sliding at V* = {} takes mu* = {}, of which {} is drag of the damping, and the blocks                  hold {} at rest; what the run has as a first peak is no static friction: drive more slowly or damp less",
+                "no transition is possible: steady sliding at V* = {} takes mu* = {}, of which {} is drag of the damping, and the blocks \
+                 hold {} at rest; what the run has as a first peak is no static friction: drive more slowly or damp less",
                 four_digits(v_star),
                 four_digits(level),
                 four_digits(drag),

@@ -99,7 +99,7 @@ fn sliding_that_takes_as_much_force_as_its_start_is_told() {
     assert!(said.contains("takes mu* = 1.4, of which 0.9 is drag"), "{said}");
     assert!(said.contains("adds 0.9 to the kinetic friction of 0.5"), "{said}");
     // The speed below which the drag is small has no drag to speak of, and adhesion holds more.
-    assert!(said.contains("at V* = 0.5774 or less"), "{said}");
+    assert!(said.contains("up to V* = 0.5774"), "{said}");
     let held = warnings(&[&speed(0.6), soft, "friction.adhesion='20 kPa'"]);
     assert!(held.contains(drag) && !held.contains(no_transition), "{held}");
     // A turning slider is slow inside.
