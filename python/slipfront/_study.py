@@ -237,7 +237,10 @@ class StudyResults:
 
     @property
     def points(self) -> pd.DataFrame:
-        """A row for each point and quantity: mean, standard deviation, confidence interval of the mean, smallest and largest."""
+        """A row for each point and quantity: mean, standard deviation, confidence interval of the mean, smallest and largest.
+
+        Runs without a transition have no static friction and no reduction; ``runs_without_transition`` counts them.
+        """
         return frame(self._tables["points"])
 
     @property

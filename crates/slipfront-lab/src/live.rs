@@ -158,7 +158,7 @@ impl Live {
         (self.leg == 0 && now.step > 0).then_some(PeakReply {
             t_star: now.peak.time_star,
             mu_star: now.peak.mu_star,
-            certain: now.peak.ended || self.ended.is_some(),
+            certain: now.peak.ended,
         })
     }
 

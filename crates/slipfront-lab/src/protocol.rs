@@ -258,6 +258,8 @@ pub(crate) struct RepeatedReply {
     pub(crate) change_percent: Option<Estimate>,
     pub(crate) with: Option<Estimate>,
     pub(crate) without: Option<Estimate>,
+    /// How many of the runs had no transition.
+    pub(crate) without_transition: usize,
 }
 
 /// A mean and the half width of its interval.

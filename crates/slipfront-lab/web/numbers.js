@@ -28,12 +28,12 @@ function fill(id, rows) {
 const peakValue = (peak, key, digits = 3) => (peak ? `${peak.certain ? '' : '\u2248 '}${fixed(peak[key], digits)}` : '\u2013');
 
 /** @param {any} numbers */
-function showHeadline({ peak, twin_peak: twin, change_percent: change }) {
+function showHeadline({ peak, twin_peak: twin, change_percent: change, ended }) {
   const certain = Boolean(peak?.certain && (change === null || twin?.certain));
   const against = change !== null && change !== undefined;
   find('headline').textContent = against ? signed(change) : peakValue(peak, 'mu_star');
   find('headline-name').textContent = say(against ? 'headline_change' : 'headline_static');
-  const note = peak ? (certain ? 'certain' : 'preliminary') : state.case?.leg > 0 ? 'not_from_rest' : 'no_peak_yet';
+  const note = peak ? (certain ? 'certain' : ended ? 'no_transition' : 'preliminary') : state.case?.leg > 0 ? 'not_from_rest' : 'no_peak_yet';
   find('headline-note').textContent = say(note);
   find('headline').classList.toggle('preliminary', !certain);
 }
@@ -60,7 +60,7 @@ function showSummary(summary) {
   if (!summary) return;
   const speed = summary.front_speed_c_s;
   fill('summary-values', [
-    [say('summary_static'), fixed(summary.static_friction_star, 4)],
+    [say('summary_static'), `${summary.transition ? '' : '\u2265 '}${fixed(summary.static_friction_star, 4)}`],
     [say('summary_onset'), fixed(summary.onset_time_star, 1)],
     [say('summary_kinetic'), fixed(summary.kinetic_friction_star, 4)],
     [say('summary_front'), speed === null || speed === undefined ? '\u2013' : say('summary_front_value', { share: number(speed), speed: quantity(summary.front_speed_m_s, 'm/s') })],
@@ -90,7 +90,7 @@ function show(numbers) {
 }
 
 /** @param {any} repeated */
-function showRepeated({ done, of, finished, change_percent: change, with: textured, without }) {
+function showRepeated({ done, of, finished, change_percent: change, with: textured, without, without_transition: creeping }) {
   find('repeat-progress').hidden = finished;
   find('repeat-progress').max = of;
   find('repeat-progress').value = done;
@@ -100,7 +100,7 @@ function showRepeated({ done, of, finished, change_percent: change, with: textur
   const text = change
     ? say('repeated_change', { change: both(change, 1), with: both(textured), without: both(without), done })
     : textured ? say('repeated_plain', { with: both(textured), done }) : say('repeated_none', { done, of });
-  find('repeated').textContent = text;
+  find('repeated').textContent = creeping ? `${text} ${say('repeated_creeping', { creeping })}` : text;
   if (finished) announce(text);
 }
 

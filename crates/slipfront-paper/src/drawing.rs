@@ -125,7 +125,7 @@ pub(super) fn measured(label: &str, x: &[f64], numbers: &[Number]) -> Response {
         mean: column(0),
         low: column(1),
         high: column(2),
-        line: false,
+        ..Response::default()
     }
 }
 
@@ -138,6 +138,7 @@ pub(super) fn formula(label: &str, x: &[f64], value: impl Fn(f64) -> f64) -> Res
         low: blank.clone(),
         high: blank,
         line: true,
+        ..Response::default()
     }
 }
 

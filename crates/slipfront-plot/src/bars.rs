@@ -10,7 +10,7 @@ use crate::geometry::Area;
 use crate::legend::{Legend, Sample};
 use crate::note::Note;
 use crate::picture::{Picture, PictureError};
-use crate::series::{error_bar, interval};
+use crate::series::{cross, error_bar, interval};
 use crate::style::{BLACK, COLUMN_WIDTH, MARGIN, OPACITY_BAR, Rgb, WIDTH_FRAME, bar_colour};
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
@@ -59,6 +59,9 @@ pub struct Bar {
     pub low: f64,
     /// The upper end.
     pub high: f64,
+    /// Whether it is marked by a cross.
+    #[serde(default)]
+    pub crossed: bool,
 }
 
 /// Draws bars from zero with error bars, as wide as a journal's column (85 mm)
@@ -107,7 +110,12 @@ pub fn bars(chart: &BarChart) -> Result<Picture, PictureError> {
 }
 
 fn draw_bar(canvas: &mut Canvas, y: &Axis, Placed { bar, colour, .. }: &Placed, middle: f64, width: f64) {
+    /// From the foot of a bar to the cross that marks it.
+    const LIFT: f64 = 14.0;
     if !drawable(bar.mean) {
+        if bar.crossed {
+            cross(canvas, (middle, y.at(0.0) - LIFT));
+        }
         return;
     }
     let (foot, head) = (y.at(0.0), y.at(bar.mean));
@@ -117,6 +125,9 @@ fn draw_bar(canvas: &mut Canvas, y: &Axis, Placed { bar, colour, .. }: &Placed, 
     canvas.fill(area, *colour, OPACITY_BAR);
     if let Some((low, high)) = interval(bar.mean, bar.low, bar.high) {
         error_bar(canvas, middle, y.at(low), y.at(high), BLACK);
+    }
+    if bar.crossed {
+        cross(canvas, (middle, foot - LIFT));
     }
 }
 
@@ -212,6 +223,7 @@ mod tests {
             mean,
             low: mean - 1.0,
             high: mean + 1.0,
+            crossed: false,
         }
     }
 
@@ -273,6 +285,24 @@ mod tests {
         };
         assert!(first.colour != second.colour && first.step == -second.step);
         assert!(second.colour == third.colour && second.step == third.step);
+    }
+
+    #[test]
+    fn bars_that_are_not_whole_are_crossed() {
+        let lines = |bar: Bar| {
+            bars(&chart(&[("", &[bar])]))
+                .unwrap()
+                .svg
+                .matches("<line")
+                .count()
+        };
+        for mean in [2.0, f64::NAN] {
+            let crossed = Bar {
+                crossed: true,
+                ..bar("a", mean)
+            };
+            assert_eq!(lines(crossed), lines(bar("a", mean)) + 2, "{mean}");
+        }
     }
 
     #[test]

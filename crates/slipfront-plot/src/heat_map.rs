@@ -8,6 +8,7 @@ use crate::frame::{BAR_WIDTH, LOWER_ROOM, left_room, left_side, lower_side, shor
 use crate::geometry::{Align, Area};
 use crate::note::Note;
 use crate::picture::{Picture, PictureError};
+use crate::series::cross;
 use crate::style::{BLACK, BLANK, COLUMN_WIDTH, MARGIN, Rgb, SIZE_TICK, WHITE};
 use crate::text::{MINUS, Text, number};
 use crate::ticks::{Direction, MAX_STEPS, Tick, apart};
@@ -37,6 +38,8 @@ pub struct HeatMap {
     pub values: Vec<f64>,
     /// The half width of the confidence interval of every value in the same order, NaN where there is none; may be empty.
     pub half_widths: Vec<f64>,
+    /// Which cells are marked by a cross, in the same order; may be empty.
+    pub crossed: Vec<bool>,
     /// What the intervals are, below the map; may be empty.
     pub note: String,
 }
@@ -85,6 +88,15 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
         true => vec![f64::NAN; values.len()],
         false => in_order(&map.half_widths)?,
     };
+    let crossed: Vec<f64> = match map.crossed.is_empty() {
+        true => vec![0.0; values.len()],
+        false => in_order(
+            &map.crossed
+                .iter()
+                .map(|&is| f64::from(u8::from(is)))
+                .collect::<Vec<f64>>(),
+        )?,
+    };
     let half = median(&half_widths);
     let with_half = values.iter().flat_map(|value| [value - half, value + half]);
     let ranges = [range(with_half), range(half_widths.iter().copied())].map(<[f64; 2]>::from);
@@ -117,6 +129,7 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
     let mut canvas = Canvas::new(COLUMN_WIDTH, height + note.height);
     let titles = [map.x.title.as_str(), &map.y.title];
     draw_panel(&mut canvas, area, [&x, &y], (&values, &bars[0]), texts, titles);
+    draw_crosses(&mut canvas, [&x, &y], &crossed);
     if has_second {
         let area = Area {
             y: panel + TOP,
@@ -135,6 +148,17 @@ pub fn heat_map(map: &HeatMap) -> Result<Picture, PictureError> {
     }
     note.draw(&mut canvas);
     canvas.finish()
+}
+
+/// Draws a cross in the lower left corner of the cells that are not whole.
+fn draw_crosses(canvas: &mut Canvas, [x, y]: [&Cells; 2], crossed: &[f64]) {
+    /// From the corner to the middle of the cross.
+    const INSET: f64 = 14.0;
+    let (edges_x, edges_y, columns) = (x.edges(), y.edges(), x.values.len());
+    for cell in (0..crossed.len()).filter(|&cell| crossed[cell] > 0.0) {
+        let corner = (edges_x[cell % columns], edges_y[cell / columns]);
+        cross(canvas, (corner.0 + INSET, corner.1 - INSET));
+    }
 }
 
 /// The median of what is there; zero if there is nothing.
@@ -424,8 +448,10 @@ mod tests {
 
     #[test]
     fn the_order_of_the_values_does_not_matter() {
-        let map = map(3, 2);
+        let mut map = map(3, 2);
+        map.crossed = vec![true, false, false, false, true, false];
         let mut turned = map.clone();
+        turned.crossed.reverse();
         turned.x.values.reverse();
         turned.y.values.reverse();
         turned.values.reverse();

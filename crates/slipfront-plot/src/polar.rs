@@ -10,7 +10,7 @@ use crate::legend::{Legend, Sample};
 use crate::note::Note;
 use crate::picture::{Picture, PictureError};
 use crate::response::{Response, check_curves};
-use crate::series::{interval, marker};
+use crate::series::{cross, interval, marker};
 use crate::style::{
     BLACK, BLANK, COLUMN_WIDTH, MARGIN, RADIUS_MARKER, Rgb, SIZE_TICK, WIDTH_FRAME, WIDTH_LEADER, WIDTH_MARK,
     curve_style,
@@ -86,6 +86,9 @@ pub fn polar(polar: &Polar) -> Result<Picture, PictureError> {
     }
     for (index, round) in rounds.iter().enumerate() {
         ring.draw_curve(&mut canvas, round, index);
+    }
+    for curve in &polar.curves {
+        ring.draw_crosses(&mut canvas, curve);
     }
     note.draw(&mut canvas);
     canvas.finish()
@@ -239,6 +242,22 @@ impl Ring {
     }
 }
 
+impl Ring {
+    /// Draws the marks of points that are not whole, on the largest circle without a mean.
+    fn draw_crosses(&self, canvas: &mut Canvas, curve: &Response) {
+        for point in (0..curve.x.len()).filter(|&point| curve.is_crossed(point) && drawable(curve.x[point])) {
+            let (degrees, mean) = (curve.x[point], curve.mean[point]);
+            cross(
+                canvas,
+                match drawable(mean) && mean >= 0.0 {
+                    true => self.at(degrees, mean),
+                    false => self.around(degrees, RADIUS),
+                },
+            );
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -251,7 +270,7 @@ mod tests {
             mean: all(mean),
             low: all(mean - 0.1),
             high: all(mean + 0.1),
-            line: false,
+            ..Response::default()
         }
     }
 
@@ -331,6 +350,17 @@ mod tests {
             assert!(two.contains(&format!(">{text}</text>")), "{text}");
         }
         assert!(!svg(&[curve("static", &all, 0.8)]).contains(">static</text>"));
+    }
+
+    #[test]
+    fn points_that_are_not_whole_are_crossed() {
+        let plain = curve("", &[0.0, 90.0, 180.0, 270.0], 0.5);
+        let crossed = Response {
+            crossed: vec![true, false, true, false],
+            ..plain.clone()
+        };
+        let lines = |curve: &Response| svg(std::slice::from_ref(curve)).matches("<line").count();
+        assert_eq!(lines(&crossed), lines(&plain) + 4);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use crate::geometry::Area;
 use crate::legend::{Legend, Sample};
 use crate::note::Note;
 use crate::picture::{Picture, PictureError, check_columns};
-use crate::series::{error_bar, interval, marker, segments};
+use crate::series::{cross, error_bar, interval, marker, segments};
 use crate::style::{COLUMN_WIDTH, GREY, MARGIN, RADIUS_MARKER, WIDTH_LEADER, curve_style};
 use crate::text::Text;
 use crate::ticks::{Direction, MAX_STEPS};
@@ -50,6 +50,9 @@ pub struct Response {
     pub low: Vec<f64>,
     /// The upper end.
     pub high: Vec<f64>,
+    /// Which points are marked by a cross, on their marker or, without a mean, on the lower side; may be empty.
+    #[serde(default)]
+    pub crossed: Vec<bool>,
     /// Whether it is a formula or a level rather than measured: a line through its points, without markers.
     pub line: bool,
 }
@@ -103,6 +106,7 @@ pub fn response(responses: &Responses) -> Result<Picture, PictureError> {
     note.draw(&mut canvas);
     legend.draw(&mut canvas);
     draw_curves(&mut canvas, &x, &y, &curves);
+    draw_crosses(&mut canvas, area, &x, &y, &curves);
     canvas.frame(area);
     canvas.finish()
 }
@@ -122,7 +126,15 @@ fn sorted(curve: &Response) -> Response {
         mean: order.iter().map(|&index| curve.mean[index]).collect(),
         low,
         high,
+        crossed: order.iter().map(|&index| curve.is_crossed(index)).collect(),
         line: curve.line,
+    }
+}
+
+impl Response {
+    /// Whether a point is marked by a cross.
+    pub(crate) fn is_crossed(&self, point: usize) -> bool {
+        self.crossed.get(point).copied().unwrap_or(false)
     }
 }
 
@@ -177,6 +189,21 @@ fn draw_curves(canvas: &mut Canvas, x: &Axis, y: &Axis, curves: &[Response]) {
     }
 }
 
+/// Draws the marks of points that are not whole.
+fn draw_crosses(canvas: &mut Canvas, area: Area, x: &Axis, y: &Axis, curves: &[Response]) {
+    /// Above the lower side, where a cross stands for a point without a mean.
+    const LIFT: f64 = 14.0;
+    for curve in curves {
+        for point in (0..curve.x.len()).filter(|&point| curve.is_crossed(point)) {
+            let height = match drawable(curve.mean[point]) {
+                true => y.clamped(curve.mean[point]),
+                false => area.bottom() - LIFT,
+            };
+            cross(canvas, (x.at(curve.x[point]), height));
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -190,7 +217,7 @@ mod tests {
             low: mean.iter().map(|mean| mean - 0.1).collect(),
             high: mean.iter().map(|mean| mean + 0.1).collect(),
             mean,
-            line: false,
+            ..Response::default()
         }
     }
 
@@ -285,6 +312,19 @@ mod tests {
         both.log_y = true;
         let logarithmic = response(&both).unwrap().svg;
         assert!(logarithmic.contains(">100</text>") && !logarithmic.contains("NaN"));
+    }
+
+    /// A cross is two lines more, on the marker or on the lower side.
+    #[test]
+    fn points_that_are_not_whole_are_crossed() {
+        let mut plain = curve("", &[(1.0, 0.3), (2.0, 0.5), (3.0, 0.4)]);
+        plain.mean[1] = f64::NAN;
+        let crossed = Response {
+            crossed: vec![true, true, false],
+            ..plain.clone()
+        };
+        let lines = |curve: &Response| svg(std::slice::from_ref(curve)).matches("<line").count();
+        assert_eq!(lines(&crossed), lines(&plain) + 4);
     }
 
     #[test]

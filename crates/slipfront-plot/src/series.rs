@@ -3,7 +3,7 @@
 use crate::axis::{Axis, drawable};
 use crate::canvas::Canvas;
 use crate::geometry::Point;
-use crate::style::{Rgb, WHITE, WIDTH_MARK};
+use crate::style::{BLACK, Rgb, WHITE, WIDTH_MARK};
 
 /// Longer curves are thinned.
 const MAX_POINTS: usize = 4000;
@@ -56,6 +56,15 @@ pub(crate) fn marker(canvas: &mut Canvas, index: usize, (x, y): Point, radius: f
     for (size, colour) in [(radius + 1.5, WHITE), (radius, colour)] {
         let corner = |&(across, down): &Point| (x + size * across, y + size * down);
         canvas.polygon(MARKERS[shape].iter().map(corner).collect(), colour, 1.0);
+    }
+}
+
+/// Draws a cross, the mark of what is not whole.
+pub(crate) fn cross(canvas: &mut Canvas, (x, y): Point) {
+    /// How far it reaches to each side.
+    const ARM: f64 = 9.0;
+    for slope in [ARM, -ARM] {
+        canvas.line((x - ARM, y - slope), (x + ARM, y + slope), WIDTH_MARK, BLACK);
     }
 }
 

@@ -89,7 +89,7 @@ fn responses() -> Responses {
         mean: [1.0, 2.0, 4.0, 3.0].map(|mean| factor * mean).to_vec(),
         low: [0.5, 1.5, 3.5, 2.5].map(|mean| factor * mean).to_vec(),
         high: [1.5, 2.5, 4.5, 3.5].map(|mean| factor * mean).to_vec(),
-        line: false,
+        ..Response::default()
     };
     Responses {
         x_title: "V*".to_string(),
@@ -107,6 +107,7 @@ fn chart() -> BarChart {
         mean,
         low: mean - 1.0,
         high: mean + 1.0,
+        crossed: false,
     };
     let group = |label: &str| BarGroup {
         label: label.to_string(),

@@ -391,6 +391,7 @@ fn draw_precursors(folder: &Path) -> Result<Option<Picture>, ResultsError> {
             x,
             mean,
             line,
+            ..Response::default()
         }
     };
     let mut curves = vec![curve("events", points.collect(), false)];

@@ -56,7 +56,7 @@ pub struct Summary {
     pub sliding_percent_max: f64,
     /// Largest mu* of the whole run; above mu_s* where a later peak is higher than the first.
     pub mu_star_max: f64,
-    /// Whether mu* fell at least half-way to the steady level after its first peak.
+    /// Whether mu* fell at least half-way to the steady level after its first peak, and within the time of a transition.
     pub transition: bool,
     /// The instants A-F that were found.
     pub instants: Vec<InstantSummary>,
@@ -550,11 +550,16 @@ fn after_run(
         ));
     }
     if !peak.ended {
-        warnings.push(
-            "mu* never fell half-way to its steady level: there was no transition, and static_friction_star is the \
-             largest mu* of the run"
-                .to_owned(),
-        );
+        let rises = kinetic.is_some_and(|kinetic| kinetic.window_star[0] <= peak.time_star);
+        warnings.push(format!(
+            "mu* did not fall half-way to its steady level in the time of a transition: there was none, and static_friction_star is the \
+             largest mu* of the run{}",
+            if rises {
+                "; the kinetic window begins before it, so that kinetic_friction_star may have a part of the rise"
+            } else {
+                ""
+            }
+        ));
     }
     if first_slip.is_none() {
         warnings.push(

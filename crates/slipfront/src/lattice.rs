@@ -31,6 +31,28 @@ pub fn dt_star_limit() -> f64 {
     2.0 / OMEGA_MAX_SQUARED.sqrt()
 }
 
+/// How many drive springs' force a block bears that is held alone in a large sheet of free blocks, with drive springs of stiffness
+/// `k_drive`: the lattice brings it that of its neighbours too. The response of the free sheet, an integral over the waves of the lattice, is
+///
+/// ```text
+/// 1/G_xx(0)/k_s     G(0) = mean over q of [k_s + D(q)]^-1
+/// D_xx = 2 k_1 (1 - cos q_x) + 2 k_2 (1 - cos q_x cos q_y)     D_xy = 2 k_2 sin q_x sin q_y
+/// ```
+pub fn springs_on_a_lone_block(k_drive: f64) -> f64 {
+    /// Waves along each axis, enough for four digits down to a tenth of [`K_DRIVE`].
+    const WAVES: usize = 64;
+    let wave = |n: usize| (n as f64 + 0.5) / WAVES as f64 * std::f64::consts::TAU;
+    let response = |n: usize| {
+        let [qx, qy] = [wave(n % WAVES), wave(n / WAVES)];
+        let both = 2.0 * K_DIAGONAL * (1.0 - libm::cos(qx) * libm::cos(qy));
+        let [xx, yy] = [qx, qy].map(|q| k_drive + 2.0 * K_STRAIGHT * (1.0 - libm::cos(q)) + both);
+        let xy = 2.0 * K_DIAGONAL * libm::sin(qx) * libm::sin(qy);
+        yy / (xx * yy - xy * xy)
+    };
+    let n_waves = WAVES * WAVES;
+    n_waves as f64 / ((0..n_waves).map(response).sum::<f64>() * k_drive)
+}
+
 /// What lies beyond the edges of the lattice along one axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

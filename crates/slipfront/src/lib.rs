@@ -56,7 +56,7 @@ pub use error::{RunError, SurfaceError};
 pub use friction::{Ageing, ContactSprings, Coulomb, Friction, FrictionLaw, RateAndState, Weakening};
 pub use kernel::{Execution, Kernel, simd_width};
 pub use lattice::{Edge, Edges, Lattice};
-pub use model::Model;
+pub use model::{Model, ONSET_PATH};
 pub use position_bins::PositionBins;
 pub use scales::Scales;
 pub use simulation::Simulation;

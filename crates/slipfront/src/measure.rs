@@ -53,8 +53,9 @@ impl CurvePoint {
     }
 }
 
-/// The first peak of mu* that is followed by a fall of at least half-way to the steady level L. It is found while the run
-/// goes on: until such a fall is seen it is the largest mu* so far.
+/// The first peak of mu* that is followed by a fall of at least half-way to the steady level L, within the longest time that a
+/// transition takes. It is found while the run goes on: until such a fall is seen it is the largest mu* so far, and it stays that if
+/// the first fall comes too late, of a slider that creeps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peak {
     /// mu* at the peak: mu_s* once `ended`.
@@ -70,11 +71,14 @@ pub struct Peak {
     /// Largest mu* of the whole run so far.
     pub mu_star_max: f64,
     steady_level: f64,
+    longest_fall: f64,
+    /// Whether mu* fell half-way too late to be a transition.
+    crept: bool,
 }
 
 impl Peak {
-    /// Before the first step; `steady_level` is L, see [`Model::steady_level`].
-    pub(crate) fn new(steady_level: f64) -> Self {
+    /// Before the first step; `steady_level` is L, see [`Model::steady_level`], and `longest_fall` that of [`Model::longest_fall`].
+    pub(crate) fn new(steady_level: f64, longest_fall: f64) -> Self {
         let lowest = f64::NEG_INFINITY;
         Self {
             mu_star: lowest,
@@ -84,11 +88,17 @@ impl Peak {
             ended: false,
             mu_star_max: lowest,
             steady_level,
+            longest_fall,
+            crept: false,
         }
     }
 
-    /// Whether a fall to `mu_star` would end the peak.
-    pub(crate) fn ends_at(&self, mu_star: f64) -> bool {
+    /// Whether a fall to `mu_star` at this time would end the peak.
+    pub(crate) fn ends_at(&self, time_star: f64, mu_star: f64) -> bool {
+        !self.crept && self.is_half_way_down(mu_star) && time_star - self.time_star <= self.longest_fall
+    }
+
+    fn is_half_way_down(&self, mu_star: f64) -> bool {
         self.mu_star > self.steady_level && mu_star <= 0.5 * (self.mu_star + self.steady_level)
     }
 
@@ -103,7 +113,8 @@ impl Peak {
             (self.mu_star, self.step, self.time_star) = (mu_star, step, time_star);
             self.mu_lateral_star = point.mu_lateral_star;
         } else {
-            self.ended = self.ends_at(mu_star);
+            self.ended = self.ends_at(time_star, mu_star);
+            self.crept |= !self.ended && self.is_half_way_down(mu_star);
         }
     }
 }
@@ -113,7 +124,12 @@ mod tests {
     use super::*;
 
     fn peak_of(level: f64, curve: &[f64]) -> Peak {
-        let mut peak = Peak::new(level);
+        let long = curve.len() as f64;
+        peak_within(long, level, curve)
+    }
+
+    fn peak_within(longest_fall: f64, level: f64, curve: &[f64]) -> Peak {
+        let mut peak = Peak::new(level, longest_fall);
         for (n, &mu) in curve.iter().enumerate() {
             let point = CurvePoint {
                 mu_star: mu,
@@ -144,6 +160,21 @@ mod tests {
     #[test]
     fn of_equal_values_the_first_is_the_peak() {
         assert_eq!(peak_of(0.5, &[0.0, 1.0, 0.9, 1.0, 0.2]).step, 1);
+    }
+
+    /// The fall to 0.75 takes three steps from the peak at 1.
+    #[test]
+    fn a_fall_that_takes_too_long_is_creep() {
+        let curve = [0.0, 1.0, 0.9, 0.8, 0.75];
+        assert!(peak_within(3.0, 0.5, &curve).ended);
+        assert!(!peak_within(2.5, 0.5, &curve).ended);
+    }
+
+    /// What creeps goes up and down for ever: in the end some fall would be fast enough.
+    #[test]
+    fn what_has_crept_once_has_no_transition_any_more() {
+        let peak = peak_within(2.5, 0.5, &[0.0, 1.0, 0.9, 0.8, 0.75, 1.1, 0.3]);
+        assert_eq!((peak.mu_star, peak.step, peak.ended), (1.1, 5, false));
     }
 
     #[test]

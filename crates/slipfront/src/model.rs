@@ -6,10 +6,13 @@ use crate::communicator::Communicator;
 use crate::drive::Drive;
 use crate::fixed_point::sum_over;
 use crate::friction::Friction;
-use crate::lattice::{K_DRIVE, Lattice};
+use crate::lattice::{K_DRIVE, Lattice, springs_on_a_lone_block};
 use crate::slider::Slider;
 use crate::surface::Surface;
 use crate::vector_field::length;
+
+/// Path of the drive to the onset of sliding where all blocks touch, in units of displacement: t_s* = 2.5/V* (Eq. 12).
+pub const ONSET_PATH: f64 = 2.5;
 
 /// The slider with its surface and drive.
 #[derive(Clone, Debug, PartialEq)]
@@ -134,6 +137,51 @@ impl Model {
         self.drive.v_star * (self.drive.k_drive * self.driven_share() / K_DRIVE)
     }
 
+    /// Between which t* the onset is expected. The later of the two is Eq. 12 for blocks that bear their load alone, which is larger by the
+    /// [load factor](Surface::load_factor) f where only some touch; the earlier one is Eq. 12 for blocks that all touch or, if that
+    /// is later, for blocks that stand alone and are pushed by their free neighbours too:
+    ///
+    /// ```text
+    /// max(2.5, f/A k_2)/V* ... 2.5 f/V*
+    /// ```
+    ///
+    /// with A = [`springs_on_a_lone_block`] and the [speed of loading](Self::loading_speed) in place of V*. What a sheet of free blocks
+    /// brings to those that touch is known for a drive on every block alone; `f` is 1 for any other.
+    pub fn onset_estimate(&self, load_factor: f64) -> [f64; 2] {
+        let speed = self.loading_speed();
+        let late = ONSET_PATH * load_factor.max(1.0);
+        let lone = load_factor / (springs_on_a_lone_block(self.drive.k_drive) * K_DRIVE);
+        [lone.clamp(ONSET_PATH, late) / speed, late / speed]
+    }
+
+    /// The longest time in which mu* falls from its peak half-way to the [level of sliding](Self::steady_level) in a transition; what takes
+    /// longer is creep. It is the longest of the time of loading 2.5/V* (Eq. 12), after which kinetic friction is measured, that of
+    /// a slip front across the slider, a block per t*, and that of a swing of the slider on its drive springs.
+    pub fn longest_fall(&self) -> f64 {
+        let k_drive = self.drive.k_drive;
+        let loading = ONSET_PATH / self.loading_speed() * self.friction.loading_delay(k_drive);
+        let front = self.lattice.nx.max(self.lattice.ny) as f64;
+        let swing = std::f64::consts::TAU / k_drive.sqrt();
+        loading.max(front).max(swing)
+    }
+
+    /// Drag of the damping in steady sliding at V*, the part of [`steady_level`](Self::steady_level) that is no friction. All `ranks` of a
+    /// lattice must call this together.
+    pub fn steady_drag(&self, ranks: &dyn Communicator) -> f64 {
+        let drag = self.damping * self.drive.v_star;
+        let Some(rotation) = &self.drive.rotation else {
+            return drag * self.slider.mean_mass;
+        };
+        let torque = sum_over(ranks, self.surface.n_blocks(), |b| {
+            if self.slider.exists(b) {
+                drag * self.slider.mass(b) * self.relative_radius(b).powi(2)
+            } else {
+                0.0
+            }
+        });
+        torque / rotation.sum_radii
+    }
+
     /// Level of mu* in steady sliding at V*:
     ///
     /// ```text
@@ -146,7 +194,7 @@ impl Model {
     pub fn steady_level(&self, ranks: &dyn Communicator) -> f64 {
         let Some(rotation) = &self.drive.rotation else {
             let kinetic = self.friction.steady_force(&self.surface, self.drive.v_star);
-            return kinetic + self.damping * self.drive.v_star * self.slider.mean_mass;
+            return kinetic + self.steady_drag(ranks);
         };
         let force = |b: usize| {
             let relative = self.relative_radius(b);

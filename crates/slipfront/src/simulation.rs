@@ -69,7 +69,7 @@ impl Simulation {
         let mut engine = execution.begin(&model, dt_star, state, Arc::clone(&communicator));
         let totals = engine.step(&model, 0, true);
         let mut simulation = Self {
-            peak: Peak::new(model.steady_level(&*communicator)),
+            peak: Peak::new(model.steady_level(&*communicator), model.longest_fall()),
             model,
             dt_star,
             step: 0,

@@ -46,7 +46,8 @@ impl Stop {
 
     /// Whether the next step may be the last. A fall of mu* is known one step ahead.
     pub(crate) fn may_end(&self, now: &Snapshot) -> bool {
-        let onset_ends = || now.peak.ends_at(now.mu_star_next() - MU_STAR_ROUNDING);
+        let next = (now.step + 1) as f64 * now.dt_star;
+        let onset_ends = || now.peak.ends_at(next, now.mu_star_next() - MU_STAR_ROUNDING);
         now.step + 1 >= self.last_step || (self.after_onset && onset_ends())
     }
 

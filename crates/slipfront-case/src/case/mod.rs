@@ -15,6 +15,7 @@ mod textures;
 mod time_plan;
 mod topography;
 mod warnings;
+mod whole_slider;
 
 pub use self::budget::{Budget, COLUMN_TEXT, MOVIE_BATCH, PICTURE, PROGRAM, memory_of_movie, memory_to_draw};
 pub use self::groups::Groups;
@@ -24,3 +25,4 @@ pub use self::ranks::Ranks;
 pub use self::runnable::{Case, Expected, TextureReport};
 pub use self::time_plan::TimePlan;
 pub use self::topography::Topography;
+pub use self::whole_slider::WholeSlider;

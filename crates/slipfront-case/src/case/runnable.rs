@@ -19,7 +19,7 @@ use super::output::Output;
 use super::ranks::Ranks;
 use super::slider::GivenBlocks;
 use super::textures;
-use super::time_plan::{Dynamics, TimePlan};
+use super::time_plan::{Dynamics, TimePlan, load_factor};
 use super::topography::Topography;
 use crate::arrays::Slab;
 use crate::case_file::{CaseError, CaseFile};
@@ -57,8 +57,12 @@ pub struct Case {
 pub struct Expected {
     /// [`Model::steady_level`].
     pub steady_level: f64,
+    /// [`Model::steady_drag`].
+    pub steady_drag: f64,
     /// [`Model::first_slip_estimate`], t*.
     pub first_slip_star: f64,
+    /// [`Model::onset_estimate`], the earliest and the latest t*.
+    pub onset_star: [f64; 2],
 }
 
 /// The texture as asked and as meshed.
@@ -220,7 +224,9 @@ impl Case {
         refuse_large_angles(&file, &model.drive, groups.epsilon, time_plan.end_star())?;
         let expected = Expected {
             steady_level: model.steady_level(ranks.communicator),
+            steady_drag: model.steady_drag(ranks.communicator),
             first_slip_star: model.first_slip_estimate(ranks.communicator),
+            onset_star: model.onset_estimate(load_factor(&file, &model)),
         };
         budget.inputs = inputs.files.iter().map(|input| input.length as f64).sum();
         Ok(Self {
@@ -295,7 +301,7 @@ impl Plan {
         groups: &Groups,
         ranks: &Ranks,
     ) -> Result<Self, CaseError> {
-        let dynamics = Dynamics::of(model, ranks.communicator);
+        let dynamics = Dynamics::of(file, model, ranks.communicator);
         let plan = if dynamics == self.dynamics {
             self
         } else {

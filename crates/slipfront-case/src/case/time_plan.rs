@@ -1,13 +1,15 @@
 //! Duration and time step of a case.
 
 use slipfront::communicator::Communicator;
-use slipfront::lattice::dt_star_limit;
+use slipfront::lattice::{K_DRIVE, dt_star_limit};
 use slipfront::observe::KineticStart;
-use slipfront::{Lattice, Model, Scales, Stop, StopReason};
+use slipfront::{Lattice, Model, ONSET_PATH, Scales, Stop, StopReason};
 
 use super::drive::loading_share;
 use super::groups::Groups;
-use crate::case_file::{AutoOr, CaseError, CaseFile, DriveSpeed, RunTime, Snapshots, Step};
+use crate::case_file::{
+    Attached, AttachedEdge, AutoOr, CaseError, CaseFile, DriveSpeed, RunTime, Snapshots, Step,
+};
 use crate::number_format::four_digits;
 
 /// Duration and time step of a run, its end and the window of the kinetic friction.
@@ -32,6 +34,8 @@ pub(super) struct Dynamics {
     step_limit: f64,
     /// Speed in which waiting times are counted.
     loading_speed: f64,
+    /// Load of a block in contact over what it would be if every block touched, as far as that delays the onset.
+    load_factor: f64,
 }
 
 impl Dynamics {
@@ -40,15 +44,26 @@ impl Dynamics {
         Self {
             step_limit: dt_star_limit(),
             loading_speed: groups.v_star * loading_share(file, scales, lattice),
+            load_factor: 1.0,
         }
     }
 
     /// Of all blocks; all ranks must call this together.
-    pub(super) fn of(model: &Model, ranks: &dyn Communicator) -> Self {
+    pub(super) fn of(file: &CaseFile, model: &Model, ranks: &dyn Communicator) -> Self {
         Self {
             step_limit: model.stable_step_limit(ranks),
             loading_speed: model.loading_speed(),
+            load_factor: load_factor(file, model),
         }
+    }
+}
+
+/// Load of a block in contact over what it would be if every block touched, by which the onset comes later: 1 unless every block has a drive
+/// spring, and can bear its load by that alone.
+pub(super) fn load_factor(file: &CaseFile, model: &Model) -> f64 {
+    match file.drive.attached {
+        Attached::At(AttachedEdge::All) => model.surface.load_factor(),
+        Attached::At(_) | Attached::File(_) => 1.0,
     }
 }
 
@@ -82,10 +97,7 @@ impl TimePlan {
             return Err(file.source.error("time.step", sentence));
         }
         let (key, end_star) = match &time.duration {
-            RunTime::Star(AutoOr::Auto) => (
-                "time.duration_star",
-                auto_duration(file, scales, dynamics.loading_speed),
-            ),
+            RunTime::Star(AutoOr::Auto) => ("time.duration_star", auto_duration(file, scales, dynamics)),
             RunTime::Star(AutoOr::Number(duration)) => ("time.duration_star", *duration),
             RunTime::Duration(duration) => ("time.duration", duration.si() / scales.time()),
         };
@@ -142,9 +154,11 @@ impl TimePlan {
     }
 }
 
-/// 8/V* shows onset and sliding of the paper's slider. A drive that loads more slowly and adhesion delay the onset; under a program
-/// of speeds it is counted from the last of them.
-fn auto_duration(file: &CaseFile, scales: &Scales, loading_speed: f64) -> f64 {
+/// 8/V* shows onset and sliding of the paper's slider. Where only some blocks touch and bear f times the load, the onset comes before their
+/// own drive springs bear it all, at f/(k_s V*); after that time there must be room for the 2.5/V* that pass before the kinetic
+/// window begins, which takes longer than 8/V* where less than 48 % of the blocks touch. A drive that loads more slowly and adhesion delay the
+/// onset; under a program of speeds it is counted from the last of them.
+fn auto_duration(file: &CaseFile, scales: &Scales, dynamics: Dynamics) -> f64 {
     let delay = 1.0 + file.friction.adhesion.si() / scales.stress();
     let last = match &file.drive.speed {
         DriveSpeed::Program(segments) => segments
@@ -153,5 +167,6 @@ fn auto_duration(file: &CaseFile, scales: &Scales, loading_speed: f64) -> f64 {
             .next_back(),
         DriveSpeed::VStar(_) | DriveSpeed::Speed(_) => None,
     };
-    last.unwrap_or(0.0) + 8.0 / loading_speed * delay
+    let path = f64::max(8.0, dynamics.load_factor / K_DRIVE + ONSET_PATH);
+    last.unwrap_or(0.0) + path / dynamics.loading_speed * delay
 }

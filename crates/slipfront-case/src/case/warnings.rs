@@ -25,6 +25,9 @@ const LARGE_MISMATCH: f64 = 0.1;
 const LARGE_EPSILON: f64 = 1e-2;
 /// Speed above which loading is faster than the slip front.
 const LARGE_V_STAR: f64 = 0.2;
+/// Drag of the damping over kinetic friction above which there is a warning: without drag, mu_k* of a run is above the kinetic coefficient
+/// of the blocks by up to a twentieth, since some of them stick now and then, and twice that is no longer taken for it.
+const LARGE_DRAG: f64 = 0.1;
 /// Fewest blocks for which the paper calls edge effects small.
 const FEW_BLOCKS: usize = 625;
 
@@ -33,6 +36,7 @@ impl Case {
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = self.texture_warnings();
         warnings.extend(self.friction_warnings());
+        warnings.extend(self.level_warnings());
 
         let mut warn = |is_wrong: bool, sentence: &dyn Fn() -> String| {
             if is_wrong {
@@ -63,6 +67,38 @@ impl Case {
                 are(n_blocks, "block")
             )
         });
+        warnings
+    }
+
+    /// Where sliding takes as much force as the start of it, and where damping has a part in what is measured as kinetic friction.
+    fn level_warnings(&self) -> Vec<String> {
+        let (level, drag) = (self.expected.steady_level, self.expected.steady_drag);
+        let (kinetic, v_star) = (level - drag, self.groups.v_star);
+        let mut warnings = Vec::new();
+        if drag > LARGE_DRAG * kinetic {
+            // The drag is in proportion to the speed.
+            warnings.push(format!(
+                "the drag of the damping at V* = {} adds {} to the kinetic friction of {}, and mu_k* contains it: it is a tenth of that or \
+                 less up to V* = {}",
+                four_digits(v_star),
+                four_digits(drag),
+                four_digits(kinetic),
+                four_digits(LARGE_DRAG * kinetic / drag * v_star)
+            ));
+        }
+        // Under rate and state nothing holds like a threshold.
+        let held = self.model.surface.mean_static_force();
+        let has_thresholds = !matches!(self.model.friction, Friction::RateAndState(_));
+        if has_thresholds && kinetic < held && level >= held {
+            warnings.push(format!(
+                "no transition is possible: steady sliding at V* = {} takes mu* = {}, of which {} is drag of the damping, and the blocks \
+                 hold {} at rest; what the run has as a first peak is no static friction: drive more slowly or damp less",
+                four_digits(v_star),
+                four_digits(level),
+                four_digits(drag),
+                four_digits(held)
+            ));
+        }
         warnings
     }
 

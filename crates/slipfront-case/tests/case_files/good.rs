@@ -171,6 +171,43 @@ fn steps_and_durations_follow_the_blocks() {
     }
 }
 
+/// Where fewer than half of the blocks touch, the run lasts until their own drive springs have borne their load, and 2.5/V* more. The
+/// blocks of an edge drive bear theirs by the springs of others.
+#[test]
+fn runs_last_longer_where_few_blocks_touch() {
+    let end = |texture: &str, changes: &[&str]| {
+        let text = format!("[slider]\nblocks = [50, 50]\n{texture}");
+        let changes: Vec<String> = changes.iter().map(ToString::to_string).collect();
+        let case = Case::parse(&text, "case", &changes).unwrap();
+        (case.time_plan.end_star(), case.expected.onset_star)
+    };
+    let groove = |percent: u32| format!("[[texture]]\nshape = 'groove'\nwidth = '{} um'", percent / 2);
+    let usual = 8.0 / 0.03;
+    let close = |[found, expected]: [f64; 2]| (0.0..0.1 + 1e-9).contains(&(found - expected));
+    for percent in [0, 30, 50] {
+        let texture = if percent == 0 {
+            String::new()
+        } else {
+            groove(percent)
+        };
+        let (found, _) = end(&texture, &[]);
+        assert!(close([found, usual]), "{percent}: {found}");
+    }
+    for (percent, factor) in [(60, 2.5), (80, 5.0), (90, 10.0)] {
+        let (found, [from, to]) = end(&groove(percent), &[]);
+        assert!(
+            close([found, (factor / 0.375 + 2.5) / 0.03]),
+            "{percent}: {found}"
+        );
+        assert!(from >= 2.5 / 0.03 && (to / (2.5 / 0.03 * factor) - 1.0).abs() < 1e-12);
+        let kept = end(&groove(percent), &["load.redistribute=false"]);
+        assert!(close([kept.0, usual]) && kept.1 == [2.5 / 0.03; 2]);
+        let edge = end(&groove(percent), &["drive.attach='left'"]);
+        assert!(close([edge.0, 50.0 * usual]), "{}", edge.0);
+        assert_eq!(edge.1[0], edge.1[1]);
+    }
+}
+
 /// Times are held against the end of the run as its own drive springs make it: later than 8/V* of a soft slider, earlier of a stiff
 /// one, whose moduli are known only when a file is read.
 #[test]

@@ -69,3 +69,46 @@ fn a_drive_that_is_too_soft_is_told() {
     assert!(!warns(0.5));
     assert!(warns(0.02));
 }
+
+/// A steel slider on a machine of 0.5 N/um: as slow as the paper's by V* N_x, and pulled faster than its blocks can slide. The drag is Omega V*
+/// with Omega = sqrt(0.75) Omega*, so that the sentences begin where it is a tenth of R* and where both together are 1.
+#[test]
+fn sliding_that_takes_as_much_force_as_its_start_is_told() {
+    let warnings = |changes: &[&str]| {
+        let changes: Vec<String> = changes.iter().map(ToString::to_string).collect();
+        let text = "slider.omega_star = 0.1\nfriction = { sigma_static_star = 0, sigma_kinetic_star = 0 }";
+        Case::parse(text, "case", &changes).unwrap().warnings().join("\n")
+    };
+    let speed = |drag: f64| format!("drive.v_star={:?}", drag / (0.75_f64.sqrt() * 0.1));
+    let soft = "drive.stiffness_star=1e-3";
+    let [drag, no_transition] = ["the drag of the damping", "no transition is possible"];
+    for (size, has_drag, is_flat) in [
+        (0.0499, false, false),
+        (0.0501, true, false),
+        (0.4999, true, false),
+        (0.5001, true, true),
+    ] {
+        let said = warnings(&[&speed(size), soft]);
+        assert_eq!(
+            [said.contains(drag), said.contains(no_transition)],
+            [has_drag, is_flat],
+            "{size}: {said}"
+        );
+    }
+    let said = warnings(&[&speed(0.9), soft]);
+    assert!(said.contains("takes mu* = 1.4, of which 0.9 is drag"), "{said}");
+    assert!(said.contains("adds 0.9 to the kinetic friction of 0.5"), "{said}");
+    // The speed below which the drag is small has no drag to speak of, and adhesion holds more.
+    assert!(said.contains("up to V* = 0.5774"), "{said}");
+    let held = warnings(&[&speed(0.6), soft, "friction.adhesion='20 kPa'"]);
+    assert!(held.contains(drag) && !held.contains(no_transition), "{held}");
+    // A turning slider is slow inside.
+    let turning = warnings(&[&speed(0.0501), soft, "drive.motion='rotation'"]);
+    assert!(!turning.contains(drag), "{turning}");
+    // Blocks that lose nothing when they slip are told of by another sentence.
+    let equal = warnings(&["friction.r_star=1"]);
+    assert!(
+        equal.contains("do not lose friction") && !equal.contains(no_transition),
+        "{equal}"
+    );
+}

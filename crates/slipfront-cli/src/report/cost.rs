@@ -2,7 +2,7 @@
 
 use slipfront_case::case::Case;
 use slipfront_case::machine::available_memory;
-use slipfront_case::number_format::{byte_size, four_digits, with_si_prefix};
+use slipfront_case::number_format::{byte_size, four_digits, with_half_width, with_si_prefix};
 
 use super::summary::notes;
 use super::times::{duration, instant};
@@ -43,22 +43,52 @@ fn loading(case: &Case) -> (String, Option<String>) {
 }
 
 fn onset(case: &Case) -> String {
-    let at = |star: f64| {
-        let late = if star > case.time_plan.end_star() {
+    let late = |star: f64| {
+        if star > case.time_plan.end_star() {
             ", after the end of the run: lengthen `time.duration_star`"
         } else {
             ""
-        };
-        (instant(star, &case.scales), late)
+        }
     };
+    let at = |star: f64| instant(star, &case.scales);
+    let expected = &case.expected;
     let mut text = String::new();
     if case.file.texture.is_empty() {
-        let (first, late) = at(case.expected.first_slip_star);
-        text += &format!("first slip        {first}{late}\n");
+        let first = expected.first_slip_star;
+        text += &format!("first slip        {}{}\n", at(first), late(first));
     }
-    let (onset, late) = at(2.5 / case.model.loading_speed());
-    text += &format!("onset expected    about {onset} (Eq. 12){late}\n");
-    text
+    let [from, to] = expected.onset_star;
+    text += &match from < to {
+        false => format!("onset expected    about {} (Eq. 12){}\n", at(to), late(to)),
+        true => format!(
+            "onset expected    {} to {}: the {} % of the blocks that touch bear {} times the load; the earlier, the more scattered they \
+             are{}\n",
+            at(from),
+            at(to),
+            four_digits(100.0 - case.texture.meshed_percent),
+            four_digits(case.model.surface.load_factor()),
+            late(to)
+        ),
+    };
+    text + &whole_slider(case)
+}
+
+/// What the slider as a whole is expected to bear, where that is known and less than its blocks bear.
+fn whole_slider(case: &Case) -> String {
+    let given = case.scales.mu_static_mean;
+    let expected = case
+        .whole_slider()
+        .filter(|whole| whole.mu_static + whole.half_width < given);
+    expected.map_or(String::new(), |whole| {
+        format!(
+            "static friction   mu_s = {} of the slider, whose blocks have {}; mu_static = {:.3} would give {} (estimate from 50 x 50 blocks \
+             of this sigma_s*, R* and V*)\n",
+            with_half_width(whole.mu_static, Some(whole.half_width)),
+            four_digits(given),
+            whole.for_given,
+            four_digits(given)
+        )
+    })
 }
 
 fn scales(case: &Case) -> String {

@@ -155,13 +155,7 @@ fn point_value(plan: &Plan, results: &StudyResults, point: usize) -> Vec<String>
     let without = results.without_transition().filter(is_here).count();
     let sample = results.sample(plan, point, plan.main_quantity());
     let value = match sample {
-        Some(sample) => {
-            // The largest mu* of a run without a transition may still be exceeded.
-            let is_bound = without > 0 && plan.main_quantity() == "static_friction_star";
-            let bound = if is_bound { "at least " } else { "" };
-            let mean = with_half_width(sample.mean, sample.half_width);
-            format!("{bound}{mean}")
-        }
+        Some(sample) => with_half_width(sample.mean, sample.half_width),
         None if has_failed() => "failed".to_owned(),
         None => "none".to_owned(),
     };
@@ -186,9 +180,13 @@ fn notes(plan: &Plan, results: &StudyResults) -> String {
         .collect();
     if !without.is_empty() {
         text += &note(&format!(
-            "mu* never fell half-way to its steady level in {}, and static_friction_star is the largest mu* of them: lengthen \
-             `time.duration_star` of the base, unless they were expected to have no transition",
-            count(without.len(), "run")
+            "{} no transition: mu* rose and did not fall half-way to its steady level in the time of a transition. There is no static friction \
+             of such a run and no reduction, and no mean has them; `mu_star_max` is its largest mu*. Lengthen `time.duration_star` of the base \
+             if runs end before the fall; those that creep have none",
+            match without.len() {
+                1 => "1 run has".to_owned(),
+                runs => format!("{runs} runs have"),
+            }
         ));
     }
     text += &case_warnings(plan);

@@ -95,7 +95,7 @@ fn histogram(label: &str, bins: &[[f64; 2]], values: &[f64]) -> Response {
         mean: bins.iter().map(share).collect(),
         low: blank.clone(),
         high: blank,
-        line: false,
+        ..Response::default()
     }
 }
 

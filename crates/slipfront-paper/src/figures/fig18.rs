@@ -22,6 +22,7 @@ pub(super) fn measure(runner: &mut FigureRunner, data: &mut FigureData) -> Resul
             mean,
             low,
             high,
+            crossed: false,
         }
     };
     data.panel(

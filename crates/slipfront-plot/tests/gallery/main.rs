@@ -210,6 +210,8 @@ fn curve(label: &str, level: f64, line: bool) -> Response {
         high: mean.iter().map(|mean| mean + 0.05).collect(),
         mean,
         x,
+        // The second point is marked, as runs without a transition are.
+        crossed: vec![false, !line, false, false],
         line,
     }
 }
@@ -263,6 +265,7 @@ fn polars() {
             low: mean.iter().map(|mean| mean - half).collect(),
             high: mean.iter().map(|mean| mean + half).collect(),
             mean,
+            crossed: x.iter().map(|degrees| *degrees == 60.0).collect(),
             x,
             line: false,
         }
@@ -312,6 +315,7 @@ fn bar_charts() {
             mean: 0.8 + 0.01 * k as f64,
             low: 0.7,
             high: 0.9,
+            crossed: k == 1,
         };
         let group = |label: &&str| BarGroup {
             label: (*label).to_owned(),
@@ -353,6 +357,7 @@ fn heat_maps() {
             value_title: "static friction \u{3bc}\u{209b}*".to_owned(),
             values: (0..columns * rows).map(|k| scale * (k % 7) as f64).collect(),
             half_widths: (0..columns * rows).map(|k| half * (1 + k % 3) as f64).collect(),
+            crossed: (0..columns * rows).map(|k| k == 1).collect(),
             note: NOTE.to_owned(),
         })
     };

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::friction_tensor::{MIN_REPLICATES, Principal, Tensor};
 use super::levels::{Levels, combinations, direction_axis};
-use super::plan::{Plan, Role, RunKey};
+use super::plan::Plan;
 use super::statistics::{Sample, mean};
 use super::study_results::StudyResults;
 use super::summary_values::Quantity;
@@ -16,7 +16,7 @@ pub(super) const FRICTION: [(&str, &str); 2] = [
     ("kinetic_friction_star", "kinetic_lateral_friction_star"),
 ];
 
-/// Of a run without a transition this is only the largest mu*.
+/// A run without a transition has none.
 const STATIC: &str = "static_friction_star";
 
 /// Two directions are one if they differ by less, degrees.
@@ -105,7 +105,7 @@ impl Points<'_> {
         let number = Quantity::named(quantity)?;
         let has = |&(_, position): &(f64, usize)| {
             let replicates = 0..self.results.points[position].replicates;
-            let values = replicates.filter_map(|replicate| self.value(position, replicate, number));
+            let values = replicates.filter_map(|replicate| self.results.value(position, replicate, number));
             values.count()
         };
         all.iter().map(has).max().filter(|most| *most > 0)?;
@@ -164,30 +164,12 @@ impl Points<'_> {
         found
     }
 
-    /// A value of a replicate of a point; none of static friction if the run had no transition.
-    fn value(&self, position: usize, replicate: usize, quantity: Quantity) -> Option<f64> {
-        if Quantity::named(STATIC) == Some(quantity) && self.is_without_transition(position, replicate) {
-            return None;
-        }
-        self.results.value(position, replicate, quantity)
-    }
-
-    fn is_without_transition(&self, point: usize, replicate: usize) -> bool {
-        let run = RunKey {
-            point,
-            replicate,
-            role: Role::Point,
-        };
-        let result = self.results.runs.get(&run);
-        result.is_some_and(|result| result.as_ref().is_ok_and(|values| !values.transition))
-    }
-
     /// The values of each replicate in all directions; of those that have them all.
     fn replicates(&self, directions: &[(f64, usize)], quantity: Quantity) -> Vec<Vec<f64>> {
         let counts = directions.iter();
         let counts = counts.map(|(_, position)| self.results.points[*position].replicates);
         let values = |replicate: usize| {
-            let value = |(_, position): &(f64, usize)| self.value(*position, replicate, quantity);
+            let value = |(_, position): &(f64, usize)| self.results.value(*position, replicate, quantity);
             directions.iter().map(value).collect::<Option<Vec<f64>>>()
         };
         (0..counts.min().unwrap_or(0)).filter_map(values).collect()
@@ -201,12 +183,10 @@ impl Points<'_> {
         directions: usize,
         replicates: usize,
     ) -> Option<String> {
-        let runs = all.iter().flat_map(|&(_, position)| {
-            let replicates = 0..self.results.points[position].replicates;
-            replicates.map(move |replicate| (position, replicate))
-        });
-        let without = runs.filter(|&(position, replicate)| self.is_without_transition(position, replicate));
-        let without = if quantity == STATIC { without.count() } else { 0 };
+        let without = all
+            .iter()
+            .map(|&(_, position)| self.results.runs_without_transition(position, quantity));
+        let without = if quantity == STATIC { without.sum() } else { 0 };
         let most = all
             .iter()
             .map(|(_, position)| self.results.points[*position].replicates)
@@ -336,6 +316,7 @@ mod tests {
     use slipfront::surface::{Coefficients, Distribution};
 
     use super::*;
+    use crate::study::plan::RunKey;
     use crate::study::study_file::StudyFile;
     use crate::study::study_results::PointResult;
     use crate::study::summary_values::SummaryValues;

@@ -1,6 +1,6 @@
 //! Draws the pictures of a study.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use rayon::prelude::*;
 
@@ -12,6 +12,7 @@ use super::levels::{Levels, combinations};
 use super::picture_plan::{POLAR, PictureKind, PlannedPicture, measured_quantities, planned, polar};
 use super::plan::{PICTURES_AT_ONCE, Plan};
 use super::study_results::StudyResults;
+use super::summary_values::needs_transition;
 use slipfront_case::number_format::four_digits;
 use slipfront_plot::{
     Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Polar, Response, Responses,
@@ -63,6 +64,10 @@ struct Measured<'a> {
     note: String,
     /// How many values there are at each point that has one.
     counts: Vec<usize>,
+    /// The levels of points of which runs are left out that had no transition: a cross marks them.
+    crossed: HashSet<Vec<usize>>,
+    /// How many such runs there are.
+    without_transition: usize,
 }
 
 impl<'a> Measured<'a> {
@@ -79,12 +84,21 @@ impl<'a> Measured<'a> {
         let points = plan.points.iter().enumerate();
         let values = points.map(|(position, point)| (plan.levels(point), value(position)));
         let counts: Vec<usize> = samples.iter().flatten().map(|sample| sample.n).collect();
+        let without = |position: usize| match needs_transition(quantity) {
+            true => results.runs_without_transition(position, quantity),
+            false => 0,
+        };
+        let points = plan.points.iter().enumerate();
+        let crossed = points.filter(|&(position, _)| without(position) > 0);
+        let without_transition = (0..plan.points.len()).map(without).sum();
         Self {
             axes: &plan.axes,
             quantity,
             values: values.collect(),
-            note: note_on_intervals(plan.settings.confidence(), &counts),
+            note: note_on_intervals(plan.settings.confidence(), &counts, without_transition),
             counts,
+            crossed: crossed.map(|(_, point)| plan.levels(point)).collect(),
+            without_transition,
         }
     }
 
@@ -153,13 +167,14 @@ impl<'a> Measured<'a> {
             response.mean.push(mean);
             response.low.push(low);
             response.high.push(high);
+            response.crossed.push(self.crossed.contains(&levels));
         }
         response
     }
 
     fn map(&self, x: usize, y: usize) -> Result<Picture, PictureError> {
         let (columns, rows) = (by_number(&self.axes[x]), by_number(&self.axes[y]));
-        let (mut means, mut half_widths) = (Vec::new(), Vec::new());
+        let (mut means, mut half_widths, mut crossed) = (Vec::new(), Vec::new(), Vec::new());
         // A map is drawn for two axes alone.
         let mut levels = [0; 2];
         for &(_, row) in &rows {
@@ -168,6 +183,7 @@ impl<'a> Measured<'a> {
                 let [mean, low, high] = self.at(&levels);
                 means.push(mean);
                 half_widths.push(0.5 * (high - low));
+                crossed.push(self.crossed.contains(&levels[..]));
             }
         }
         let heat_axis = |axis: usize, numbers: &[(f64, usize)]| HeatAxis {
@@ -181,6 +197,7 @@ impl<'a> Measured<'a> {
             value_title: title(self.quantity),
             values: means,
             half_widths,
+            crossed,
             note: self.note.clone(),
         })
     }
@@ -194,6 +211,7 @@ impl<'a> Measured<'a> {
                 mean,
                 low,
                 high,
+                crossed: self.crossed.contains(levels),
             }
         };
         let levels = |axis: usize| 0..self.axes[axis].levels.len();
@@ -241,6 +259,7 @@ fn friction_polar(
         .flat_map(|measured| &measured.counts)
         .copied()
         .collect();
+    let without_transition = measured.iter().map(|measured| measured.without_transition).sum();
     let curves = combinations.iter().flat_map(|varied| {
         let curve = |measured: &Measured| {
             let mut response = measured.curve(over, &[], varied);
@@ -257,14 +276,23 @@ fn friction_polar(
             Some((_, other)) if plan.axes.len() == 2 => axis_symbol(other),
             _ => String::new(),
         },
-        note: note_on_intervals(plan.settings.confidence(), &counts),
+        note: note_on_intervals(plan.settings.confidence(), &counts, without_transition),
         curves: curves.collect(),
     });
     picture.map(Some)
 }
 
-/// What the intervals around means of so many values are.
-fn note_on_intervals(confidence: f64, counts: &[usize]) -> String {
+/// What the intervals around means of so many values are, and how many runs are left out of them.
+fn note_on_intervals(confidence: f64, counts: &[usize], without_transition: usize) -> String {
+    let intervals = intervals(confidence, counts);
+    match without_transition {
+        0 => intervals,
+        1 => format!("{intervals}; \u{d7}: without 1 run that had no transition"),
+        runs => format!("{intervals}; \u{d7}: without {runs} runs that had no transition"),
+    }
+}
+
+fn intervals(confidence: f64, counts: &[usize]) -> String {
     let [least, most] = [counts.iter().min(), counts.iter().max()].map(|count| count.copied().unwrap_or(0));
     if most < 2 {
         return "no intervals: one run at each point".to_owned();
@@ -296,16 +324,20 @@ mod tests {
     #[test]
     fn pictures_say_what_their_intervals_are() {
         assert_eq!(
-            note_on_intervals(0.95, &[5, 5]),
+            note_on_intervals(0.95, &[5, 5], 0),
             "95 % interval of the mean, n = 5"
         );
         assert_eq!(
-            note_on_intervals(0.999, &[8, 3]),
+            note_on_intervals(0.999, &[8, 3], 0),
             "99.9 % interval of the mean, n = 3 to 8"
         );
         assert_eq!(
-            note_on_intervals(0.95, &[1, 1]),
+            note_on_intervals(0.95, &[1, 1], 0),
             "no intervals: one run at each point"
+        );
+        assert_eq!(
+            note_on_intervals(0.95, &[4, 5], 6),
+            "95 % interval of the mean, n = 4 to 5; \u{d7}: without 6 runs that had no transition"
         );
     }
 }

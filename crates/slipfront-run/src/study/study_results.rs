@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::plan::{Plan, Role, RunKey};
 use super::record::RunResult;
 use super::statistics::Sample;
-use super::summary_values::{Quantity, reduction_percent};
+use super::summary_values::{Quantity, REDUCTION, reduction_percent};
 
 /// How many runs of a study are done.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -55,7 +55,7 @@ impl StudyResults {
         };
         match quantity {
             Quantity::Number(position) => values(Role::Point)?.get(position),
-            Quantity::Reduction => Some(reduction_percent(values(Role::Point)?, values(Role::Reference)?)),
+            Quantity::Reduction => reduction_percent(values(Role::Point)?, values(Role::Reference)?),
         }
     }
 
@@ -69,11 +69,36 @@ impl StudyResults {
         Sample::of(&values, plan.settings.confidence())
     }
 
-    /// Runs without a transition: their static friction is only the largest mu* of the run.
+    /// Runs without a transition, which have no static friction and no reduction.
     pub fn without_transition(&self) -> impl Iterator<Item = RunKey> {
-        let is_without = |result: &RunResult| result.as_ref().is_ok_and(|values| !values.transition);
-        let without = self.runs.iter().filter(move |(_, result)| is_without(result));
-        without.map(|(run, _)| *run)
+        self.runs
+            .keys()
+            .copied()
+            .filter(|run| self.is_without_transition(*run))
+    }
+
+    /// How many replicates of the point at `position` of the plan a quantity lacks because a run that it is taken from has no transition: that of
+    /// the point or, for a reduction, its reference. Of quantities that do not need one too, it is the number of such runs of the point.
+    pub fn runs_without_transition(&self, position: usize, name: &str) -> usize {
+        let replicates = self.points.get(position).map_or(0, |point| point.replicates);
+        let roles = match name == REDUCTION {
+            true => &[Role::Point, Role::Reference][..],
+            false => &[Role::Point],
+        };
+        let is_without = |replicate: usize| {
+            let run = |role: &Role| RunKey {
+                point: position,
+                replicate,
+                role: *role,
+            };
+            roles.iter().any(|role| self.is_without_transition(run(role)))
+        };
+        (0..replicates).filter(|replicate| is_without(*replicate)).count()
+    }
+
+    fn is_without_transition(&self, run: RunKey) -> bool {
+        let result = self.runs.get(&run);
+        result.is_some_and(|result| result.as_ref().is_ok_and(|values| !values.transition))
     }
 
     /// Failed runs and the reasons.

@@ -37,6 +37,31 @@ const OF_PRECURSORS: [(&str, NumberOf); 3] = [
     }),
 ];
 
+/// Numbers that the first peak of mu* defines. A run without a transition has none of them, whatever its summary says: its largest mu* is
+/// its `mu_star_max`.
+const OF_PEAK: [&str; 5] = [
+    "static_friction_star",
+    "static_friction",
+    "static_lateral_friction_star",
+    "onset_time_star",
+    "onset_time_s",
+];
+
+/// Numbers of the kinetic window. A run without a transition has them only if the window begins after its largest mu*: before that, mu* may
+/// still rise to the onset.
+const OF_KINETIC_WINDOW: [&str; 5] = [
+    "kinetic_friction_star",
+    "kinetic_friction_star_uncertainty",
+    "kinetic_friction",
+    "kinetic_lateral_friction_star",
+    "sliding_percent_kinetic",
+];
+
+/// Whether a quantity belongs to runs with a transition alone.
+pub(super) fn needs_transition(name: &str) -> bool {
+    name == REDUCTION || OF_PEAK.contains(&name)
+}
+
 type NumberOf = fn(&PrecursorSummary) -> Option<f64>;
 
 /// Whether tables have the quantity of this name only if one of their runs has it.
@@ -58,7 +83,7 @@ pub(super) const BEFORE_AXES: [&str; 3] = ["point", "replicate", "role"];
 pub(super) const AFTER_AXES: [&str; 4] = ["seed", "run", "status", "reason"];
 
 /// Columns of `points.csv` after those of the axes.
-pub(super) const STATISTICS: [&str; 9] = [
+pub(super) const STATISTICS: [&str; 10] = [
     "quantity",
     "n",
     "mean",
@@ -68,6 +93,7 @@ pub(super) const STATISTICS: [&str; 9] = [
     "min",
     "max",
     "narrow_enough",
+    "runs_without_transition",
 ];
 
 /// Whether the tables have a column of this name beside those of the axes: an axis cannot have it.
@@ -100,7 +126,8 @@ impl Quantity {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SummaryValues {
     values: Box<[Option<f64>]>,
-    static_friction_star: f64,
+    /// mu_s*; none without a transition.
+    static_friction_star: Option<f64>,
     /// Whether the run had a transition from static to kinetic friction.
     pub(super) transition: bool,
 }
@@ -108,10 +135,17 @@ pub struct SummaryValues {
 impl SummaryValues {
     pub(super) fn of(summary: &Summary) -> Self {
         let found: HashMap<_, _> = named(summary).into_iter().collect();
-        let values = known().iter().map(|name| found.get(name).copied().flatten());
+        let slides = summary
+            .kinetic_window_star
+            .is_some_and(|[from, _]| from > summary.onset_time_star);
+        let counts = |name: &str| {
+            summary.transition || !(OF_PEAK.contains(&name) || (OF_KINETIC_WINDOW.contains(&name) && !slides))
+        };
+        let known = known().iter().map(String::as_str);
+        let values = known.map(|name| found.get(name).copied().flatten().filter(|_| counts(name)));
         Self {
             values: values.collect(),
-            static_friction_star: summary.static_friction_star,
+            static_friction_star: summary.transition.then_some(summary.static_friction_star),
             transition: summary.transition,
         }
     }
@@ -141,13 +175,14 @@ fn named(summary: &Summary) -> Vec<(String, Option<f64>)> {
     numbers.chain(precursors).collect()
 }
 
-/// Reduction of mu_s* in % (Eq. 16), both runs on the same random surface:
+/// Reduction of mu_s* in % (Eq. 16), both runs on the same random surface; none unless both have a transition:
 ///
 /// ```text
 /// 100 (mu_s*(reference) - mu_s*)/mu_s*(reference)
 /// ```
-pub(super) fn reduction_percent(point: &SummaryValues, reference: &SummaryValues) -> f64 {
-    100.0 * (reference.static_friction_star - point.static_friction_star) / reference.static_friction_star
+pub(super) fn reduction_percent(point: &SummaryValues, reference: &SummaryValues) -> Option<f64> {
+    let (point, reference) = (point.static_friction_star?, reference.static_friction_star?);
+    Some(100.0 * (reference - point) / reference)
 }
 
 #[cfg(test)]
@@ -171,5 +206,57 @@ mod tests {
             panic!("a summary has a number of steps")
         };
         assert_eq!(SummaryValues::of(&viscous).get(position), Some(7.0));
+    }
+
+    /// Numbers that have a value in a run of this kind.
+    fn values_of(transition: bool, window_from: f64) -> SummaryValues {
+        SummaryValues::of(&Summary {
+            transition,
+            static_friction_star: 0.6,
+            static_friction: 0.3,
+            mu_star_max: 0.6,
+            onset_time_star: 120.0,
+            first_slip_time_star: Some(80.0),
+            kinetic_friction_star: Some(0.5),
+            kinetic_window_star: Some([window_from, 500.0]),
+            ..Summary::default()
+        })
+    }
+
+    fn number(values: &SummaryValues, name: &str) -> Option<f64> {
+        match Quantity::named(name) {
+            Some(Quantity::Number(position)) => values.get(position),
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn what_the_peak_defines_is_empty_without_a_transition() {
+        let (with, without) = (values_of(true, 200.0), values_of(false, 200.0));
+        for name in OF_PEAK {
+            assert!(number(&with, name).is_some(), "{name}");
+            assert_eq!(number(&without, name), None, "{name}");
+        }
+        for name in [
+            "mu_star_max",
+            "first_slip_time_star",
+            "kinetic_friction_star",
+            "transition",
+        ] {
+            assert!(number(&without, name).is_some(), "{name}");
+        }
+        assert_eq!(reduction_percent(&with, &with), Some(0.0));
+        assert_eq!(reduction_percent(&with, &without), None);
+        assert_eq!(reduction_percent(&without, &with), None);
+    }
+
+    /// While mu* still rises to the onset, its mean is no kinetic friction.
+    #[test]
+    fn a_kinetic_window_before_the_largest_mu_star_is_none_without_a_transition() {
+        assert_eq!(number(&values_of(false, 100.0), "kinetic_friction_star"), None);
+        assert_eq!(
+            number(&values_of(true, 100.0), "kinetic_friction_star"),
+            Some(0.5)
+        );
     }
 }

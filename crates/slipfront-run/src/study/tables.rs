@@ -7,7 +7,9 @@ use super::anisotropy::Anisotropy;
 use super::plan::{Plan, Role};
 use super::statistics::Sample;
 use super::study_results::StudyResults;
-use super::summary_values::{AFTER_AXES, BEFORE_AXES, Quantity, STATISTICS, is_optional, known};
+use super::summary_values::{
+    AFTER_AXES, BEFORE_AXES, Quantity, STATISTICS, is_optional, known, needs_transition,
+};
 
 /// `runs.csv`: for each run, references included, the levels of its point, the seed, whether it failed and why, and every
 /// number of its summary.
@@ -77,8 +79,9 @@ pub(super) fn points(plan: &Plan, results: &StudyResults, to: impl Write) -> csv
             let sample = results.sample(plan, position, name);
             let until = plan.settings.until.as_ref();
             let decides = until.is_some_and(|until| until.key == name);
-            // A decisive quantity that no run has gets a row without numbers.
-            if sample.is_none() && !decides {
+            let without = results.runs_without_transition(position, name);
+            // A decisive quantity that no run has gets a row without numbers, and so does one that runs lack for want of a transition.
+            if sample.is_none() && !decides && !(without > 0 && needs_transition(name)) {
                 continue;
             }
             let mut row = vec![point.index.to_string()];
@@ -92,6 +95,7 @@ pub(super) fn points(plan: &Plan, results: &StudyResults, to: impl Write) -> csv
             row.extend(numbers.unwrap_or_default().map(cell));
             let narrow = results.points[position].narrow.filter(|_| decides);
             row.push(narrow.map_or(String::new(), |narrow| narrow.to_string()));
+            row.push(without.to_string());
             table.write_record(row)?;
         }
     }

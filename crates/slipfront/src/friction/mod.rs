@@ -102,6 +102,14 @@ impl Friction {
             Self::ContactSprings(law) => threshold * (k + law.stiffness) / law.stiffness,
         }
     }
+
+    /// By how much longer a drive through springs of stiffness `k` takes to load contacts that yield than rigid ones.
+    pub(crate) fn loading_delay(&self, k: f64) -> f64 {
+        match self {
+            Self::ContactSprings(law) => (k + law.stiffness) / law.stiffness,
+            Self::Coulomb(_) | Self::RateAndState(_) => 1.0,
+        }
+    }
 }
 
 /// Rounds after which a fixed point that is approached by at least a factor of 2 in each is found to the last bit.

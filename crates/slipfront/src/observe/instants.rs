@@ -11,6 +11,7 @@ use super::frames::{Frame, Selection};
 use super::observer::Observer;
 use super::summary::KineticStart;
 use crate::error::RunError;
+use crate::model::ONSET_PATH;
 use crate::snapshot::Snapshot;
 
 /// Letters of the instants.
@@ -150,7 +151,7 @@ impl Observer for Instants {
         let mut ended = now.peak;
         ended.ended = true;
         let fall_until = self.kinetic.time_star(&ended, v_star);
-        let most_until = now.peak.time_star + 2.5 / v_star;
+        let most_until = now.peak.time_star + ONSET_PATH / v_star;
         self.known = [most_until, fall_until].map(|until| now.time_star >= until);
         if now.peak.step == now.step {
             // While mu* still rises the peak lies ahead, as it does at every step before the first slip.

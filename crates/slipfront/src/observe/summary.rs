@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::observer::Observer;
 use crate::error::RunError;
 use crate::measure::{CurvePoint, Peak};
+use crate::model::ONSET_PATH;
 use crate::snapshot::Snapshot;
 
 /// Where the kinetic window begins. It ends with the run.
@@ -22,8 +23,8 @@ impl KineticStart {
     pub fn time_star(&self, peak: &Peak, v_star: f64) -> f64 {
         match *self {
             KineticStart::At(time_star) => time_star,
-            KineticStart::Auto if peak.ended => peak.time_star + 2.5 / v_star,
-            KineticStart::Auto => 5.0 / v_star,
+            KineticStart::Auto if peak.ended => peak.time_star + ONSET_PATH / v_star,
+            KineticStart::Auto => 2.0 * ONSET_PATH / v_star,
         }
     }
 }

@@ -246,6 +246,12 @@ impl Surface {
         (sum + whole.n_contact as f64 * self.contact.adhesion.of_static) / whole.n_blocks as f64
     }
 
+    /// Load of a block in contact over what it would be if every block touched: `N/N_contact` of an even pressure, and 1 if the load of
+    /// textured blocks is not redistributed.
+    pub fn load_factor(&self) -> f64 {
+        self.load_factor
+    }
+
     /// Mean normal force over all blocks, textured ones included, in units of `P l^2`.
     pub fn mean_normal_force(&self) -> f64 {
         self.load_factor * self.whole.sum_pressure[1] / self.whole.n_blocks as f64

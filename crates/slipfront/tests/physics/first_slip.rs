@@ -3,8 +3,9 @@
 use rstest::rstest;
 use slipfront::communicator::Alone;
 use slipfront::exact_solutions::first_slip_time_star;
+use slipfront::lattice::{K_DRIVE, springs_on_a_lone_block};
 use slipfront::surface::{Coefficients, Load};
-use slipfront::{Drive, FrictionLaw, Lattice, Model, Simulation, Stop, Surface};
+use slipfront::{ContactSprings, Drive, Friction, FrictionLaw, Lattice, Model, Simulation, Stop, Surface};
 
 use crate::common::{Slider, at_rest};
 
@@ -111,4 +112,67 @@ fn friction_balances_all_other_forces_until_then() {
     let now = simulation.snapshot();
     assert!((now.point.mu_star - 0.375 * 0.03 * now.time_star).abs() < 1e-14);
     assert!(now.point.mu_lateral_star.abs() < 1e-15 && now.point.n_sliding == 0);
+}
+
+/// One block of 41 x 41 touches, under its own load alone. The others are free and push it with the force of their drive springs, so that it
+/// slips earlier by [`springs_on_a_lone_block`] than it would by its own. The drive is slow and damping critical for the slider as a whole: its
+/// viscous force, Omega V of the blocks that move, is 1e-3 of the threshold for each, and a step 1e-3 of the time.
+#[test]
+fn a_block_that_touches_alone_bears_its_neighbours_drive_too() {
+    let lattice = Lattice::free(41, 41);
+    let n = lattice.n_blocks();
+    let middle = n / 2;
+    let textured = (0..n).map(|b| b != middle).collect();
+    let given = Coefficients::given(vec![1.0; n], vec![0.5; n]);
+    let surface = Surface::new(given, textured, Load::Kept, 1.0).unwrap();
+    let v_star = 1e-3;
+    let model = Model::new(
+        lattice,
+        surface,
+        Drive::along_x(v_star),
+        1.2,
+        1e-6,
+        FrictionLaw::Projection,
+    );
+    assert_eq!(model.surface.load_factor(), 1.0);
+    let found = slipping(&model, 0.5).snapshot().earliest_first_slip().unwrap();
+    let exact = 1.0 / (springs_on_a_lone_block(K_DRIVE) * K_DRIVE * v_star);
+    assert!((found / exact - 1.0).abs() < 5e-3, "{found}, exactly {exact}");
+}
+
+/// By the formula of the onset: blocks that all touch, few that touch, and blocks whose load was not redistributed.
+#[test]
+fn an_onset_is_expected_between_that_of_lone_blocks_and_that_of_blocks_by_themselves() {
+    let model = Slider::default().model();
+    let usual = 2.5 / 0.03;
+    assert_eq!(model.onset_estimate(1.0), [usual; 2]);
+    let [from, to] = model.onset_estimate(2.0);
+    assert!(from == usual && (to / (2.0 * usual) - 1.0).abs() < 1e-14);
+    let [from, to] = model.onset_estimate(20.0);
+    // 5.0635 is the integral on 400 x 400 waves.
+    let lone = 20.0 / (5.0635 * 0.375 * 0.03);
+    assert!((from / lone - 1.0).abs() < 1e-4, "{from} {lone}");
+    assert!((to / (20.0 * usual) - 1.0).abs() < 1e-14);
+}
+
+/// 2.5/V* of a slow drive, a block per t* of a fast one, and the swing on soft springs; springs in contact share the path of the drive.
+#[test]
+fn a_transition_takes_no_longer_than_loading_crossing_or_a_swing() {
+    let slow = Slider::default().model();
+    assert_eq!(slow.longest_fall(), 2.5 / 0.03);
+    let fast = Slider {
+        v_star: 0.2,
+        ..Slider::default()
+    };
+    assert_eq!(fast.model().longest_fall(), 25.0);
+    let mut soft = fast.model();
+    soft.drive.k_drive = 0.01;
+    soft.drive.v_star = 10.0;
+    assert!((soft.longest_fall() - 20.0 * std::f64::consts::PI).abs() < 1e-12);
+    let mut yielding = slow;
+    yielding.friction = Friction::ContactSprings(ContactSprings {
+        stiffness: 0.125,
+        redraw: None,
+    });
+    assert!((yielding.longest_fall() - 4.0 * 2.5 / 0.03).abs() < 1e-9);
 }
