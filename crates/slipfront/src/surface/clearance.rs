@@ -123,6 +123,10 @@ impl Drawn {
         all: bool,
         effort: &mut Effort,
     ) -> Result<Option<([Option<f64>; 2], Self)>, TooMuch> {
+        if let Shape::Cavity(Cavity { s: 2.., .. }) = texture.shape {
+            // What its corners take, of time and of memory.
+            effort.take(16 * CORNERS)?;
+        }
         let Some((form, mut places)) = form(lattice, texture, all) else {
             return Ok(None);
         };
