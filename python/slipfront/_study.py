@@ -91,6 +91,14 @@ class Study:
         """The keys of the axes and the number of their levels."""
         return {", ".join(keys): levels for keys, levels in self._native.axes}
 
+    @property
+    def warnings(self) -> list[str]:
+        """What a reader should know of the cases of the points before trusting the results, the first of each kind."""
+        return [
+            f"{sentence} (at {'the point' if points == 1 else f'{points} points, the first'} {first})"
+            for sentence, points, first in self._native.warnings
+        ]
+
     def case(self, point: int, replicate: int = 0, *, reference: bool = False) -> Case:
         """The case of one run.
 
@@ -175,7 +183,9 @@ class Study:
             of_point = [k for k, (p, r) in enumerate(zip(rows["point"], rows["role"], strict=True)) if (p, r) == (point, "point")]
             for name in own:
                 found = dict(self._native.statistics([rows[name][k] for k in of_point if not np.isnan(rows[name][k])]))
-                row = {"point": point, "quantity": name, **{axis: rows[axis][of_point[0]] for axis in axes}, **found}
+                # Beside an axis of coverages stands what is meshed.
+                beside = [*axes, "texture_percent"]
+                row = {"point": point, "quantity": name, **{column: rows[column][of_point[0]] for column in beside}, **found}
                 for column, cells in points.items():
                     cells.append(row.get(column, np.nan))
 

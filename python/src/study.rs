@@ -87,6 +87,17 @@ impl Study {
             .collect()
     }
 
+    /// What a reader should know of the cases of the points, each with the number of points and the first of them.
+    #[getter]
+    fn warnings(&self) -> Vec<(String, usize, String)> {
+        let plan = &self.plan;
+        let told = plan.warnings().iter().map(|warning| {
+            let first = plan.describe(&plan.points[warning.first]);
+            (warning.sentence.clone(), warning.points, first)
+        });
+        told.collect()
+    }
+
     /// The case of a run.
     fn case(&self, py: Python<'_>, point: usize, replicate: usize, reference: bool) -> PyResult<Case> {
         let role = match reference {

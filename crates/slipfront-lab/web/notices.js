@@ -47,14 +47,19 @@ export function startNotices() {
   on('refused', ({ sentence }) => notice(sentence.split('\n')[0], { topic: 'refused' }));
   on('failed', ({ sentence }) => notice(say('failed', { sentence }), { topic: 'failed', serious: true }));
   on('problem', ({ key, values }) => notice(say(key, values)));
+  let kinds = '';
   on('case', ({ warnings, why }) => {
     // After a refusal the case comes again as it stands.
     if (why === 'refused') return;
     withdraw('failed');
     withdraw('refused');
+    const before = kinds;
+    // Sentences of one kind differ in their figures, which follow a slider that is dragged.
+    kinds = warnings.join(' ').replace(/[\d.]+/g, '');
+    if (kinds === before && why !== 'open') return;
     withdraw('warnings');
     // A lesson says itself what its case is for.
-    if (warnings.length > 0 && why === 'open' && !state.lesson) notice(warnings.join(' '), { topic: 'warnings' });
+    if (warnings.length > 0 && !state.lesson) notice(warnings.join(' '), { topic: 'warnings' });
   });
 }
 

@@ -462,9 +462,9 @@ fn the_smallest_lengths_are_told_of_every_shape() {
         )
         .unwrap();
         let found = smallest(&case).unwrap();
-        // Circles have 1024 corners.
+        // Rounding of places up to 40, a hundred times over.
         let near = |found: Option<f64>, wanted: Option<f64>| match (found, wanted) {
-            (Some(found), Some(wanted)) => (found - wanted).abs() < 1e-4,
+            (Some(found), Some(wanted)) => (found - wanted).abs() < 1e-12,
             (found, wanted) => found == wanted,
         };
         assert!(

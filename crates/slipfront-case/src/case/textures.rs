@@ -63,17 +63,10 @@ pub(super) fn shapes_in_blocks(
         let key = format!("texture.{index}");
         let arrays = arrays(&texture.pattern, scales, lattice)
             .map_err(|(name, sentence)| file.source.error(&format!("{key}.{name}"), sentence))?;
-        let copies = |shape: &surface::Shape| shape.n_copies(&arrays);
         let (shape, percent) = match &texture.shape {
-            Shape::Cavity(cavity) => {
-                let count = surface::n_copies(&arrays);
-                cavity_in_blocks(cavity, scales, lattice, n_blocks, count)
-            }
-            Shape::Groove(groove) => groove_in_blocks(groove, scales, lattice, n_blocks, &copies),
-            Shape::Polygon(polygon) => {
-                let points = polygon.points.iter().map(|point| in_blocks(scales, point));
-                (surface::Shape::Polygon(points.collect()), None)
-            }
+            Shape::Cavity(cavity) => cavity_in_blocks(cavity, scales, lattice, n_blocks, &arrays),
+            Shape::Groove(groove) => groove_in_blocks(groove, scales, lattice, n_blocks, &arrays),
+            Shape::Polygon(polygon) => (polygon_in_blocks(polygon, scales), None),
             Shape::Mask(mask) => {
                 let size = cell(&arrays, lattice).map_err(|sentence| file.source.error(&key, sentence))?;
                 let tile = masks.read(file, index, mask, size, inputs, watch)?;
@@ -114,6 +107,31 @@ pub(super) fn shapes_in_blocks(
         asked_percent: asked,
         topographies,
     })
+}
+
+/// The textures of which outlines are known, in blocks: all but masks and height maps.
+pub(super) fn outlines_in_blocks(
+    file: &CaseFile,
+    scales: &Scales,
+    lattice: &Lattice,
+    n_blocks: usize,
+) -> Vec<surface::Texture> {
+    let outline = |texture: &case_file::Texture| {
+        let arrays = arrays(&texture.pattern, scales, lattice).ok()?;
+        let shape = match &texture.shape {
+            Shape::Cavity(cavity) => cavity_in_blocks(cavity, scales, lattice, n_blocks, &arrays).0,
+            Shape::Groove(groove) => groove_in_blocks(groove, scales, lattice, n_blocks, &arrays).0,
+            Shape::Polygon(polygon) => polygon_in_blocks(polygon, scales),
+            Shape::Mask(_) | Shape::HeightMap(_) => return None,
+        };
+        let inverted = texture.pattern.invert;
+        Some(surface::Texture {
+            shape,
+            arrays,
+            inverted,
+        })
+    };
+    file.texture.iter().filter_map(outline).collect()
 }
 
 /// The arrays of a pattern in blocks, the outermost first: it is spread over the slider, and the next one over a place of it. An
@@ -292,9 +310,10 @@ fn cavity_in_blocks(
     scales: &Scales,
     lattice: &Lattice,
     n_blocks: usize,
-    count: usize,
+    arrays: &[surface::Array],
 ) -> (surface::Shape, Option<f64>) {
     let (s, w) = (cavity.s, cavity.w);
+    let count = surface::n_copies(arrays);
     let (lambda, percent) = match &cavity.size {
         case_file::CavitySize::Coverage(percent) => {
             (surface::cavity_lambda(*percent, n_blocks, s, w, count), *percent)
@@ -324,7 +343,7 @@ fn groove_in_blocks(
     scales: &Scales,
     lattice: &Lattice,
     n_blocks: usize,
-    copies: &dyn Fn(&surface::Shape) -> usize,
+    arrays: &[surface::Array],
 ) -> (surface::Shape, Option<f64>) {
     let of_width = |width: f64| {
         surface::Shape::Groove(surface::Groove {
@@ -333,7 +352,7 @@ fn groove_in_blocks(
             offset: scales.in_blocks(groove.offset.si()),
         })
     };
-    let count = copies(&of_width(0.0)) as f64;
+    let count = of_width(0.0).n_copies(arrays) as f64;
     // A groove is as long as the lattice: the share of it that the slider fills is that of its area.
     let share = n_blocks as f64 / lattice.n_blocks() as f64;
     let breadth = match groove.orientation {
@@ -348,4 +367,9 @@ fn groove_in_blocks(
         }
     };
     (of_width(width), Some(percent))
+}
+
+fn polygon_in_blocks(polygon: &case_file::Polygon, scales: &Scales) -> surface::Shape {
+    let points = polygon.points.iter().map(|point| in_blocks(scales, point));
+    surface::Shape::Polygon(points.collect())
 }

@@ -154,6 +154,7 @@ impl Case {
                 "the texture covers {meshed:.2} % of the blocks instead of {asked:.2} %: {why}"
             ));
         }
+        warnings.extend(self.too_coarse());
         warnings
     }
 

@@ -137,7 +137,7 @@ static DEFAULTS: LazyLock<HashMap<&str, Defaults>> = LazyLock::new(|| {
 pub(super) const TEXTURE: &str = "texture";
 
 /// Most blocks along an axis.
-pub(super) const MAX_BLOCKS: u64 = 100_000;
+pub(crate) const MAX_BLOCKS: u64 = 100_000;
 /// dt* at which the scheme becomes unstable: 2/sqrt(6.5 x 0.75) = 0.9058.
 pub(super) const UNSTABLE_STEP: f64 = 0.9058;
 /// The longest time, in t*.

@@ -37,7 +37,7 @@ pub use file::{CaseFile, FileUse, NamedFile, ParsedCase};
 pub use friction::{Ageing, AgeingLaw, Friction, KineticFriction, Velocity, VelocityLaw};
 pub use height_map::{Bearing, HeightMap};
 pub use key_table::{Bounds, Key, Kind, SECTIONS, Section, Title, names_a_file, title_of};
-pub(crate) use key_table::{MAX_COUNT, MAX_RELATIVE, MIN_RELATIVE};
+pub(crate) use key_table::{MAX_BLOCKS, MAX_COUNT, MAX_RELATIVE, MIN_RELATIVE};
 pub use keys::{
     STUDY_TABLES, TABLES as CASE_TABLES, exclude_each_other, header_below, partners_of,
     unknown as unknown_key, unknown_table as unknown_case_table,
@@ -48,6 +48,7 @@ pub use output::{Output, Snapshots};
 pub use overrides::Override;
 pub use pattern::{Array, Count, Pattern, Pitch};
 pub use probe::names_of;
+pub(crate) use slider::MAX_BLOCKS_TOTAL;
 pub use slider::{Damping, Grade, Slider};
 pub use source::Source;
 pub use tables::Tables;

@@ -68,7 +68,7 @@ pub enum Damping {
 }
 
 /// Most blocks altogether.
-const MAX_BLOCKS_TOTAL: u64 = 4_000_000_000;
+pub(crate) const MAX_BLOCKS_TOTAL: u64 = 4_000_000_000;
 /// Fewest blocks along a periodic axis: a block has two neighbours there.
 const MIN_BLOCKS_PERIODIC: u32 = 3;
 

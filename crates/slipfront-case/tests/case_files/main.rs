@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod bad;
+mod coarse;
 mod good;
 mod hostile;
 mod keys;

@@ -220,19 +220,13 @@ fn topography(topography: &Topography) -> String {
 /// The smallest lengths of the texture, on lines of their own, with what there is to say about them and `said` of a file.
 pub(crate) fn smallest(case: &Case, smallest: Clearance, said: &[String]) -> String {
     let mut lines = String::new();
-    let mut warnings = Vec::new();
     for (name, length) in [("feature", smallest.feature), ("gap", smallest.gap)] {
         let Some(blocks) = length else { continue };
         let length = with_si_prefix(blocks * case.scales.block_size, "m");
         lines += &format!("\nsmallest {name} {length}");
-        // Not for a length of one block that was rounded.
-        if blocks < 1.0 - 1e-9 {
-            warnings.push(format!(
-                "the smallest {name} of the texture, {length}, is smaller than a block: the blocks do not show it as it is drawn"
-            ));
-        }
     }
-    warnings.extend_from_slice(said);
+    let said = said.iter().cloned();
+    let warnings: Vec<String> = case.too_coarse().into_iter().chain(said).collect();
     for note in notes(&warnings).lines() {
         lines += &format!("\n{note}");
     }

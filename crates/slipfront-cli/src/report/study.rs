@@ -5,7 +5,7 @@ use std::path::Path;
 
 use slipfront_case::number_format::{are, byte_size, count, four_digits, with_half_width};
 use slipfront_run::study::{
-    Plan, RunKey, StudyResults, idle_axes, quantities_without_pictures, why_no_pictures,
+    MeshedCoverage, Plan, RunKey, StudyResults, idle_axes, quantities_without_pictures, why_no_pictures,
 };
 
 use super::anisotropy::anisotropy;
@@ -59,6 +59,7 @@ pub(crate) fn plan(plan: &Plan, block_steps: f64, seconds: f64, threads: usize) 
         idle_axes(plan)
             .iter()
             .chain(&why_no_pictures(&plan.axes))
+            .chain(&merged(plan))
             .map(|sentence| note(sentence))
             .collect::<String>(),
         case_warnings(plan)
@@ -77,6 +78,11 @@ fn axes(plan: &Plan) -> String {
         text += &format!("  {}: {}\n", axis.columns.join(" & "), levels.join(", "));
     }
     text
+}
+
+/// Coverages that are meshed to one.
+fn merged(plan: &Plan) -> Option<String> {
+    MeshedCoverage::of(plan)?.merged(plan)
 }
 
 /// Warnings about the cases of a study, each with the points that it concerns.
@@ -122,11 +128,18 @@ pub(crate) fn study(plan: &Plan, results: &StudyResults, folder: &Path) -> Strin
 fn points(plan: &Plan, results: &StudyResults) -> String {
     let shown = plan.points.len().min(MAX_POINTS);
     let axes = plan.axes.iter().flat_map(|axis| &axis.columns);
-    let header: Vec<&str> = axes.map(String::as_str).chain(["mean", "n"]).collect();
+    let meshed = meshed(plan, shown);
+    let name = meshed.as_ref().map(|_| "meshed %");
+    let header = axes.map(String::as_str).chain(name).chain(["mean", "n"]);
+    let header: Vec<&str> = header.collect();
     let row = |point: usize| {
         let levels = plan.columns(&plan.points[point]).into_iter();
         let levels = levels.map(|(_, level)| level.to_owned());
-        levels.chain(point_value(plan, results, point)).collect()
+        let meshed = meshed.as_ref().map(|cells| cells[point].clone());
+        levels
+            .chain(meshed)
+            .chain(point_value(plan, results, point))
+            .collect()
     };
     let rows: Vec<Vec<String>> = (0..shown).map(row).collect();
     let interval = match plan.settings.max_replicates() {
@@ -146,6 +159,25 @@ fn points(plan: &Plan, results: &StudyResults) -> String {
         text += &format!("  and {more} in points.csv\n");
     }
     text + "\n"
+}
+
+/// The coverage of the texture as meshed at the points that are shown, if an axis asks for another one at any of them.
+fn meshed(plan: &Plan, shown: usize) -> Option<Vec<String>> {
+    let coverage = MeshedCoverage::of(plan)?;
+    let levels: Vec<Vec<usize>> = plan.points[..shown]
+        .iter()
+        .map(|point| plan.levels(point))
+        .collect();
+    let meshed = levels.iter().map(|levels| coverage.at(levels).map(four_digits));
+    let meshed: Vec<String> = meshed.collect::<Option<_>>()?;
+    let axis = &plan.axes[coverage.axis];
+    let asked = levels
+        .iter()
+        .map(|levels| axis.levels[levels[coverage.axis]].number.map(four_digits));
+    asked
+        .zip(&meshed)
+        .any(|(asked, meshed)| asked.as_ref() != Some(meshed))
+        .then_some(meshed)
 }
 
 /// The main quantity at a point with its interval, of how many values it is, and what a reader must know of it.
@@ -189,6 +221,7 @@ fn notes(plan: &Plan, results: &StudyResults) -> String {
             }
         ));
     }
+    text.extend(merged(plan).map(|sentence| note(&sentence)));
     text += &case_warnings(plan);
     if results.orphaned_runs > 0 {
         text += &note(&format!(

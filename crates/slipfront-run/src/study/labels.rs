@@ -39,9 +39,8 @@ pub(super) fn axis_symbol(axis: &Axis) -> String {
     in_its_unit(axis, |label| label.legend())
 }
 
-/// A level of an axis beside those of others: what it is a value of, and its unit. A name says itself what it is.
-pub(super) fn level_with_symbol(axis: &Axis, level: usize) -> String {
-    let shown = axis.levels[level].shown();
+/// A level of an axis, as it is shown, beside those of others: what it is a value of, and its unit. A name says itself what it is.
+pub(super) fn level_with_symbol(axis: &Axis, shown: String) -> String {
     if axis.spacing == Spacing::Named {
         return shown;
     }
@@ -146,7 +145,8 @@ mod tests {
                 spacing,
                 ..axis(key, unit)
             };
-            level_with_symbol(&axis, 0)
+            let shown = axis.levels[0].shown();
+            level_with_symbol(&axis, shown)
         };
         let pressure = of("load.pressure", Some("kPa"), "0.05 MPa", Some(50.0));
         assert_eq!(pressure, "P = 50 kPa");

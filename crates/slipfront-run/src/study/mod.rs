@@ -20,6 +20,7 @@ mod journal;
 #[cfg(feature = "plot")]
 mod labels;
 mod levels;
+mod meshed;
 mod picture_plan;
 #[cfg(feature = "plot")]
 mod pictures;
@@ -44,6 +45,7 @@ pub use folder::{StudyFolder, is_study, refuse_foreign, study_of, write};
 pub use friction_tensor::Principal;
 pub use idle_axes::idle_axes;
 pub use journal::Records;
+pub use meshed::MeshedCoverage;
 pub use picture_plan::{quantities_without_pictures, why_no_pictures};
 pub use plan::{Plan, Point, Role, RunKey};
 pub use plan_warnings::Warning;

@@ -9,14 +9,19 @@ use super::axis::{Axis, Spacing};
 use super::error::StudyError;
 use super::labels::{axis_symbol, axis_title, level_with_symbol, quantity_symbol, title};
 use super::levels::{Levels, combinations};
+use super::meshed::MeshedCoverage;
 use super::picture_plan::{POLAR, PictureKind, PlannedPicture, measured_quantities, planned, polar};
 use super::plan::{PICTURES_AT_ONCE, Plan};
+use super::statistics::mean;
 use super::study_results::StudyResults;
 use super::summary_values::needs_transition;
 use slipfront_case::number_format::four_digits;
 use slipfront_plot::{
     Bar, BarChart, BarGroup, HeatAxis, HeatMap, Picture, PictureError, Polar, Response, Responses,
 };
+
+/// What a legend of several axes has no room for.
+const AS_MESHED: &str = "A* as meshed";
 
 /// Draws the pictures of a study and hands each on with the name of its files. No more are in memory at once than there is
 /// room for in the budget.
@@ -68,6 +73,8 @@ struct Measured<'a> {
     crossed: HashSet<Vec<usize>>,
     /// How many such runs there are.
     without_transition: usize,
+    /// What the coverages of an axis are meshed to: they are drawn there.
+    meshed: Option<MeshedCoverage>,
 }
 
 impl<'a> Measured<'a> {
@@ -99,6 +106,7 @@ impl<'a> Measured<'a> {
             counts,
             crossed: crossed.map(|(_, point)| plan.levels(point)).collect(),
             without_transition,
+            meshed: MeshedCoverage::of(plan),
         }
     }
 
@@ -115,42 +123,102 @@ impl<'a> Measured<'a> {
         self.values.get(levels).copied().unwrap_or([f64::NAN; 3])
     }
 
-    /// The name of a level in legends and under bars.
-    fn shown(&self, axis: usize, level: usize) -> String {
-        self.axes[axis].levels[level].shown()
+    /// What is meshed, where this axis is the one of coverages.
+    fn meshed(&self, axis: usize) -> Option<&MeshedCoverage> {
+        self.meshed.as_ref().filter(|meshed| meshed.axis == axis)
+    }
+
+    /// A title of an axis, which says so if it is one of coverages as they are meshed.
+    fn titled(&self, axis: usize, title: String) -> String {
+        match self.meshed(axis) {
+            Some(_) => format!("meshed {title}"),
+            None => title,
+        }
+    }
+
+    fn axis_title(&self, axis: usize) -> String {
+        self.titled(axis, axis_title(&self.axes[axis]))
+    }
+
+    fn axis_symbol(&self, axis: usize) -> String {
+        self.titled(axis, axis_symbol(&self.axes[axis]))
+    }
+
+    /// The name of a level in legends and notes, at these levels of other axes.
+    fn shown(&self, axis: usize, level: usize, held: &[(usize, usize)]) -> String {
+        let asked = self.axes[axis].levels[level].shown();
+        let Some(meshed) = self.meshed(axis) else {
+            return asked;
+        };
+        let is_held = |axis: usize| held.iter().any(|(other, _)| *other == axis);
+        let free: Vec<usize> = (0..self.axes.len())
+            .filter(|&other| other != axis && !is_held(other))
+            .collect();
+        let free = combinations(self.axes, &free);
+        let shown_at = |level: usize| {
+            let coverages = free.iter().filter_map(|free| {
+                let mut levels = vec![0; self.axes.len()];
+                for &(other, level) in held.iter().chain(free).chain(&[(axis, level)]) {
+                    levels[other] = level;
+                }
+                meshed.at(&levels)
+            });
+            range(&coverages.collect::<Vec<_>>())
+        };
+        let shown = shown_at(level);
+        let mut others = (0..self.axes[axis].levels.len()).filter(|&other| other != level);
+        match others.any(|other| shown_at(other) == shown) {
+            // What is meshed does not tell it from another one.
+            true => format!("{shown} ({asked} asked)"),
+            false => shown,
+        }
+    }
+
+    /// A level beside those of other axes, of which these are held.
+    fn level_with_symbol(&self, axis: usize, level: usize, held: &[(usize, usize)]) -> String {
+        level_with_symbol(&self.axes[axis], self.shown(axis, level, held))
     }
 
     fn curves(&self, x: usize, fixed: &[(usize, usize)], varied: &[usize]) -> Result<Picture, PictureError> {
         let curves = combinations(self.axes, varied).into_iter();
+        let curves: Vec<Response> = curves.map(|varied| self.curve(x, fixed, &varied)).collect();
+        // What covers no block has no place on a logarithmic scale.
+        let has_place = curves.iter().flat_map(|curve| &curve.x).all(|&x| x > 0.0);
         slipfront_plot::response(&Responses {
-            x_title: axis_title(&self.axes[x]),
-            log_x: self.axes[x].spacing == Spacing::Logarithmic,
+            x_title: self.axis_title(x),
+            log_x: self.axes[x].spacing == Spacing::Logarithmic && has_place,
             log_y: false,
             y_title: title(self.quantity),
             legend_title: match varied {
-                [axis] => axis_symbol(&self.axes[*axis]),
+                [axis] => self.axis_symbol(*axis),
                 _ => String::new(),
             },
-            note: self.note_at(fixed),
-            curves: curves.map(|varied| self.curve(x, fixed, &varied)).collect(),
+            note: self.note_at(fixed, varied),
+            curves,
         })
     }
 
     /// What the intervals are, after the levels that all curves of a picture have in common.
-    fn note_at(&self, fixed: &[(usize, usize)]) -> String {
+    fn note_at(&self, fixed: &[(usize, usize)], varied: &[usize]) -> String {
         let levels = fixed
             .iter()
-            .map(|&(axis, level)| level_with_symbol(&self.axes[axis], level));
-        let parts: Vec<String> = levels.chain([self.note.clone()]).collect();
+            .map(|&(axis, level)| self.level_with_symbol(axis, level, fixed));
+        // The title of a legend or of an axis says it otherwise.
+        let several = varied.iter().filter(|_| varied.len() > 1);
+        let mut beside_others = fixed.iter().map(|(axis, _)| axis).chain(several);
+        let is_meshed = beside_others.any(|&axis| self.meshed(axis).is_some());
+        let meshed = is_meshed.then(|| AS_MESHED.to_owned());
+        let parts: Vec<String> = levels.chain(meshed).chain([self.note.clone()]).collect();
         parts.join("; ")
     }
 
     /// A curve over axis `x` at these levels of the others; those of the `varied` axes name it, a single one of which is told by the title
     /// of the legend.
     fn curve(&self, x: usize, fixed: &[(usize, usize)], varied: &[(usize, usize)]) -> Response {
+        let held = [fixed, varied].concat();
         let label = varied.iter().map(|&(axis, level)| match varied.len() {
-            1 => self.shown(axis, level),
-            _ => level_with_symbol(&self.axes[axis], level),
+            1 => self.shown(axis, level, &held),
+            _ => self.level_with_symbol(axis, level, &held),
         });
         let mut response = Response {
             label: label.collect::<Vec<_>>().join(", "),
@@ -163,7 +231,8 @@ impl<'a> Measured<'a> {
         for (number, level) in by_number(&self.axes[x]) {
             levels[x] = level;
             let [mean, low, high] = self.at(&levels);
-            response.x.push(number);
+            let meshed = self.meshed(x).and_then(|meshed| meshed.at(&levels));
+            response.x.push(meshed.unwrap_or(number));
             response.mean.push(mean);
             response.low.push(low);
             response.high.push(high);
@@ -186,10 +255,16 @@ impl<'a> Measured<'a> {
                 crossed.push(self.crossed.contains(&levels[..]));
             }
         }
-        let heat_axis = |axis: usize, numbers: &[(f64, usize)]| HeatAxis {
-            title: axis_title(&self.axes[axis]),
-            values: numbers.iter().map(|(number, _)| *number).collect(),
-            log: self.axes[axis].spacing == Spacing::Logarithmic,
+        let numbers = |asked: &[(f64, usize)]| asked.iter().map(|(number, _)| *number).collect();
+        let heat_axis = |axis: usize, asked: &[(f64, usize)]| {
+            let log = self.axes[axis].spacing == Spacing::Logarithmic;
+            let title = axis_title(&self.axes[axis]);
+            let (title, values) = match (self.meshed(axis), self.meshed_lines(axis, asked, log)) {
+                (_, Some(meshed)) => (self.axis_title(axis), meshed),
+                (Some(_), None) => (format!("asked {title}"), numbers(asked)),
+                (None, None) => (title, numbers(asked)),
+            };
+            HeatAxis { title, values, log }
         };
         slipfront_plot::heat_map(&HeatMap {
             x: heat_axis(x, &columns),
@@ -202,12 +277,31 @@ impl<'a> Measured<'a> {
         })
     }
 
+    /// The means of what the lines of a map over two axes are meshed to; none if this is no axis of coverages, or if lines would not be
+    /// where they are asked in order.
+    fn meshed_lines(&self, axis: usize, asked: &[(f64, usize)], log: bool) -> Option<Vec<f64>> {
+        let meshed = self.meshed(axis)?;
+        let across = 0..self.axes[1 - axis].levels.len();
+        let line = |&(_, level): &(f64, usize)| {
+            let at = |other: usize| {
+                let mut levels = [other; 2];
+                levels[axis] = level;
+                meshed.at(&levels)
+            };
+            let found: Vec<f64> = across.clone().filter_map(at).collect();
+            (!found.is_empty()).then(|| mean(&found))
+        };
+        let lines: Vec<f64> = asked.iter().map(line).collect::<Option<_>>()?;
+        let is_rising = lines.windows(2).all(|pair| pair[0] < pair[1]);
+        (is_rising && (!log || lines[0] > 0.0)).then_some(lines)
+    }
+
     /// Bars for the names of one axis, or in groups for two.
     fn bars(&self) -> Result<Picture, PictureError> {
         let bar = |axis: usize, levels: &[usize]| {
             let [mean, low, high] = self.at(levels);
             Bar {
-                label: self.shown(axis, levels[axis]),
+                label: self.axes[axis].levels[levels[axis]].shown(),
                 mean,
                 low,
                 high,
@@ -221,7 +315,7 @@ impl<'a> Measured<'a> {
             vec![BarGroup { label, bars }]
         } else {
             let group = |one: usize| BarGroup {
-                label: self.shown(0, one),
+                label: self.axes[0].levels[one].shown(),
                 bars: levels(1).map(|other| bar(1, &[one, other])).collect(),
             };
             levels(0).map(group).collect()
@@ -270,13 +364,17 @@ fn friction_polar(
         };
         measured.iter().map(curve).collect::<Vec<_>>()
     });
+    let note = note_on_intervals(plan.settings.confidence(), &counts, without_transition);
     let picture = slipfront_plot::polar(&Polar {
         value_title: "friction \u{3bc}*".to_owned(),
         legend_title: match plan.axes.iter().enumerate().find(|(axis, _)| *axis != over) {
-            Some((_, other)) if plan.axes.len() == 2 => axis_symbol(other),
+            Some((other, _)) if plan.axes.len() == 2 => measured[0].axis_symbol(other),
             _ => String::new(),
         },
-        note: note_on_intervals(plan.settings.confidence(), &counts, without_transition),
+        note: match measured[0].meshed.is_some() && plan.axes.len() > 2 {
+            true => format!("{AS_MESHED}; {note}"),
+            false => note,
+        },
         curves: curves.collect(),
     });
     picture.map(Some)
@@ -305,6 +403,16 @@ fn intervals(confidence: f64, counts: &[usize]) -> String {
         "{} % interval of the mean, n = {count}",
         four_digits(100.0 * confidence)
     )
+}
+
+/// Coverages that a level is meshed to, from the smallest to the largest.
+fn range(coverages: &[f64]) -> String {
+    let ends = [f64::min, f64::max].map(|of| coverages.iter().copied().reduce(of));
+    let [least, most] = ends.map(|end| four_digits(end.unwrap_or(f64::NAN)));
+    match least == most {
+        true => least,
+        false => format!("{least} to {most}"),
+    }
 }
 
 /// Numbers of an axis in rising order, each with its level.

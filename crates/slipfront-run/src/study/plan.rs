@@ -58,6 +58,10 @@ struct RunSpec {
     memory_of_case: f64,
     /// Room for its files, in bytes.
     disk: f64,
+    /// A* as meshed, %.
+    texture_percent: f64,
+    /// What the shapes of its only texture cover as meshed, %; none of several.
+    meshed_coverage: Option<f64>,
 }
 
 /// Cases of more blocks are made one at a time while planning: one for each thread might not fit into memory.
@@ -265,6 +269,8 @@ impl Plan {
             memory: case.budget.memory_beside_others(writes),
             memory_of_case: case.budget.memory_of_case(),
             disk: if writes { case.budget.disk() } else { 0.0 },
+            texture_percent: case.texture.meshed_percent,
+            meshed_coverage: meshed_coverage(&case),
         };
         let mut warnings = case.warnings();
         if role == Role::Point && self.settings.max_replicates() > 1 {
@@ -439,6 +445,16 @@ impl Plan {
         runs.map(|run| RECORD_BYTES + self.spec_of(run).disk).sum()
     }
 
+    /// A* as meshed at the point at `position`, %.
+    pub fn texture_percent(&self, position: usize) -> f64 {
+        self.spec_of(first_run(position)).texture_percent
+    }
+
+    /// What the shapes of the only texture cover as meshed at the point at `position`, %; none where there are several textures.
+    pub(super) fn meshed_coverage(&self, position: usize) -> Option<f64> {
+        self.spec_of(first_run(position)).meshed_coverage
+    }
+
     /// Level of each axis at a point.
     pub fn levels(&self, point: &Point) -> Vec<usize> {
         let mut index = point.index;
@@ -483,6 +499,26 @@ impl Plan {
             })
         })
     }
+}
+
+/// The first run of the point at this position.
+fn first_run(point: usize) -> RunKey {
+    RunKey {
+        point,
+        replicate: 0,
+        role: Role::Point,
+    }
+}
+
+fn meshed_coverage(case: &Case) -> Option<f64> {
+    let [texture] = case.file.texture.as_slice() else {
+        return None;
+    };
+    let textured = case.texture.meshed_percent;
+    Some(match texture.pattern.invert {
+        true => 100.0 - textured,
+        false => textured,
+    })
 }
 
 #[cfg(test)]

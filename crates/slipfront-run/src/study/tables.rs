@@ -4,6 +4,7 @@
 use std::io::Write;
 
 use super::anisotropy::Anisotropy;
+use super::meshed::MeshedCoverage;
 use super::plan::{Plan, Role};
 use super::statistics::Sample;
 use super::study_results::StudyResults;
@@ -69,10 +70,12 @@ fn quantities(plan: &Plan, results: &StudyResults) -> Vec<(&'static str, Quantit
 }
 
 /// `points.csv`: for each point and quantity the number of values, their mean, standard deviation, confidence
-/// interval of the mean, smallest and largest; reductions are paired by seed.
+/// interval of the mean, smallest and largest; reductions are paired by seed. Beside an axis of coverages stands A* as meshed.
 pub(super) fn points(plan: &Plan, results: &StudyResults, to: impl Write) -> csv::Result<()> {
     let mut table = csv::Writer::from_writer(to);
-    table.write_record(["point"].into_iter().chain(axis_columns(plan)).chain(STATISTICS))?;
+    let meshed = MeshedCoverage::of(plan).map(|_| TEXTURE_PERCENT);
+    let names = ["point"].into_iter().chain(axis_columns(plan)).chain(meshed);
+    table.write_record(names.chain(STATISTICS))?;
     let quantities = quantities(plan, results);
     for (position, point) in plan.points.iter().enumerate() {
         for &(name, _) in &quantities {
@@ -86,6 +89,7 @@ pub(super) fn points(plan: &Plan, results: &StudyResults, to: impl Write) -> csv
             }
             let mut row = vec![point.index.to_string()];
             row.extend(plan.columns(point).into_iter().map(|(_, value)| value.to_owned()));
+            row.extend(meshed.map(|_| cell(Some(plan.texture_percent(position)))));
             row.extend([name.to_owned(), sample.map_or(0, |sample| sample.n).to_string()]);
             let numbers = sample.map(|sample| {
                 let [low, high] = sample.interval().map_or([None; 2], |ends| ends.map(Some));
@@ -177,6 +181,9 @@ const OF_ANISOTROPY: [&str; 25] = [
     "lateral_high",
     "lateral_direction",
 ];
+
+/// The column of A* as meshed, which has the name of the quantity.
+const TEXTURE_PERCENT: &str = "texture_percent";
 
 /// Columns of all axes.
 fn axis_columns(plan: &Plan) -> impl Iterator<Item = &str> {

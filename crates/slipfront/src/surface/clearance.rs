@@ -1,10 +1,11 @@
 //! The smallest textured feature and the smallest gap between two: what a tool must be able to make, and blocks to show.
 
 use std::collections::HashMap;
-use std::f64::consts::TAU;
 
-use super::outline::{Curve, Outlines};
-use super::pattern::Array;
+use super::closest::{Closest, Effort, Form, TooMuch, between_boxes, widths};
+use super::contour::Ellipse;
+use super::outline::Curve;
+use super::pattern::{Array, grids};
 use super::texture::{Cavity, Shape, Texture, Tile};
 use crate::lattice::{Edges, Lattice};
 
@@ -17,13 +18,16 @@ pub struct Clearance {
     pub gap: Option<f64>,
 }
 
-/// Corners by which curves are measured: a circle's radius is met within half a millionth of it.
+/// Corners by which cavities other than ellipses are measured: a radius is met within five millionths of it.
 const CORNERS: usize = 1024;
 /// Most copies that are all held against each other; of more, those next to each other in every pattern, and at its ends, are.
-const MANY: usize = 1024;
+const MANY: usize = 4096;
+/// Most points, edges and boxes that are looked at, which takes some tenths of a second: of textures that need more nothing is told.
+const EFFORT: usize = 50_000_000;
 
-/// The smallest width of each shape and distance between two copies, before edges cut them. Shapes that overlap are one. Of a mask
-/// these are its shortest runs of blocks along x and y.
+/// The smallest width of each shape and distance between two copies, before edges cut them. Shapes that overlap are one, and those that
+/// lie off the slider do not count. The width of a cavity is that of the largest circle in it, and of a mask these are its shortest runs of
+/// blocks along x and y. Neither is told of more shapes than can be looked at in some tenths of a second.
 ///
 /// ```
 /// # use slipfront::Lattice;
@@ -32,75 +36,53 @@ const MANY: usize = 1024;
 /// let circle = Cavity { center: [20.0, 10.0], lambda: 4.0, s: 1, w: 0.0, across: false, rotate: 0.0 };
 /// let arrays = vec![Array::spread(&lattice, [4, 2])];
 /// let found = clearance(&lattice, &[Texture { arrays, ..Shape::Cavity(circle).into() }]);
-/// assert!((found.feature.unwrap() - 8.0).abs() < 1e-4 && (found.gap.unwrap() - 2.0).abs() < 1e-4);
+/// assert_eq!((found.feature, found.gap), (Some(8.0), Some(2.0)));
 /// ```
 pub fn clearance(lattice: &Lattice, textures: &[Texture]) -> Clearance {
-    let all: usize = textures
+    measure(lattice, textures, &mut Effort(EFFORT)).unwrap_or_default()
+}
+
+fn measure(lattice: &Lattice, textures: &[Texture], effort: &mut Effort) -> Result<Clearance, TooMuch> {
+    let copies = textures
         .iter()
-        .map(|texture| texture.shape.n_copies(&texture.arrays))
-        .sum();
-    let mut clearance = Clearance::default();
+        .map(|texture| texture.shape.n_copies(&texture.arrays));
+    let all = copies.sum::<usize>() <= MANY;
+    let mut found = Clearance::default();
     let mut shapes = Vec::new();
     for texture in textures {
-        if let Shape::Tile(tile) = &texture.shape {
-            let [mut inside, mut outside] = runs(tile);
-            if texture.inverted {
-                [inside, outside] = [outside, inside];
-            }
-            least(&mut clearance.feature, inside);
-            least(&mut clearance.gap, outside);
-        }
-        let Some(corners) = corners(lattice, texture) else {
+        let drawn = match &texture.shape {
+            Shape::Tile(tile) => Some((runs(tile), None)),
+            _ => Drawn::of(lattice, texture, all, effort)?.map(|(widths, drawn)| (widths, Some(drawn))),
+        };
+        let Some(([mut inside, mut outside], drawn)) = drawn else {
             continue;
         };
-        let [mut inside, mut outside] = match &texture.shape {
-            // A rectangle that ends where the slider does, whose length is none of its widths.
-            Shape::Groove(groove) => [Some(groove.width), None],
-            Shape::Cavity(Cavity { lambda, s: 1, w, .. }) => [Some(2.0 * lambda * (1.0 - w.abs())), None],
-            _ => widths(&corners),
-        };
-        let places = places(&texture.arrays, all <= MANY);
         if texture.inverted {
             [inside, outside] = [outside, inside];
         }
-        least(&mut clearance.feature, inside);
-        least(&mut clearance.gap, outside);
-        shapes.push((corners, places, texture.inverted));
+        least(&mut found.feature, inside);
+        least(&mut found.gap, outside);
+        shapes.extend(drawn);
     }
+    let (pillars, dimples): (Vec<Drawn>, Vec<Drawn>) = shapes.into_iter().partition(|shape| shape.inverted);
+    let dimples = Copies::of(lattice, &dimples, effort)?;
+    let groups = pillars.chunks(1).map(|one| Copies::of(lattice, one, effort));
+    let pillars = groups.collect::<Result<Vec<_>, _>>()?;
     // Pillars are apart by what is textured between them.
-    for inverted in [false, true] {
-        let shapes: Vec<_> = shapes.iter().filter(|shape| shape.2 == inverted).collect();
-        let found = if inverted {
-            &mut clearance.feature
-        } else {
-            &mut clearance.gap
-        };
-        let mut known: HashMap<(usize, usize, [i64; 2]), f64> = HashMap::new();
-        for (i, (one, one_places, _)) in shapes.iter().enumerate() {
-            for (j, (other, other_places, _)) in shapes.iter().enumerate().skip(i) {
-                if inverted && i != j {
-                    continue;
-                }
-                for (m, from) in one_places.iter().enumerate() {
-                    for (n, to) in other_places.iter().enumerate() {
-                        for turn in turns(lattice) {
-                            if i == j && (m > n || m == n && turn == [0.0; 2]) {
-                                continue;
-                            }
-                            let shift = [0, 1].map(|axis| to[axis] - from[axis] + turn[axis]);
-                            if apart(one, other, shift) >= found.unwrap_or(f64::INFINITY) {
-                                continue;
-                            }
-                            let key = (i, j, shift.map(|length| (length * 1e6).round() as i64));
-                            let distance = *known.entry(key).or_insert_with(|| distance(one, other, shift));
-                            least(found, (distance > 0.0).then_some(distance));
-                        }
-                    }
-                }
+    for pillars in &pillars {
+        let is_textured = |at, effort: &mut Effort| Ok(!pillars.cover(at, effort)?);
+        least(&mut found.feature, pillars.least_distance(effort, is_textured)?);
+    }
+    let touches = |at, effort: &mut Effort| {
+        for pillars in &pillars {
+            if !pillars.cover(at, effort)? {
+                return Ok(false);
             }
         }
-    }
-    clearance
+        Ok(!dimples.cover(at, effort)?)
+    };
+    least(&mut found.gap, dimples.least_distance(effort, touches)?);
+    Ok(found)
 }
 
 fn least(found: &mut Option<f64>, value: Option<f64>) {
@@ -126,41 +108,98 @@ fn runs(tile: &Tile) -> [Option<f64>; 2] {
     found
 }
 
-/// The shape of a texture in the middle of its places.
-fn corners(lattice: &Lattice, texture: &Texture) -> Option<Vec<[f64; 2]>> {
-    let alone = vec![[vec![0.0], vec![0.0]]];
-    let outlines = match &texture.shape {
-        Shape::Cavity(cavity) => cavity.outlines(&alone),
-        Shape::Polygon(points) => Outlines::polygon(points, &alone),
+/// A shape of a texture, and the places at which it stands on the slider.
+struct Drawn {
+    form: Form,
+    places: Vec<[f64; 2]>,
+    inverted: bool,
+}
+
+impl Drawn {
+    /// A shape that is no mask with its widths, inside and outside; none if no copy of it lies on the slider.
+    fn of(
+        lattice: &Lattice,
+        texture: &Texture,
+        all: bool,
+        effort: &mut Effort,
+    ) -> Result<Option<([Option<f64>; 2], Self)>, TooMuch> {
+        if let Shape::Cavity(Cavity { s: 2.., .. }) = texture.shape {
+            // What its corners take, of time and of memory.
+            effort.take(16 * CORNERS)?;
+        }
+        let Some((form, mut places)) = form(lattice, texture, all) else {
+            return Ok(None);
+        };
+        let size = [lattice.nx as f64, lattice.ny as f64];
+        for axis in 0..2 {
+            let [low, high] = form.bounds(axis);
+            match lattice.edges[axis] {
+                Edges::Free if all => {
+                    places.retain(|at| high + at[axis] > 0.0 && low + at[axis] < size[axis]);
+                }
+                Edges::Free => {}
+                Edges::Periodic => {
+                    for at in &mut places {
+                        let turns = ((0.5 * (low + high) + at[axis]) / size[axis]).floor();
+                        at[axis] -= turns * size[axis];
+                    }
+                }
+            }
+        }
+        if places.is_empty() {
+            return Ok(None);
+        }
+        let widths = match (&texture.shape, &form) {
+            // A rectangle that ends where the slider does, whose length is none of its widths.
+            (Shape::Groove(groove), _) => [Some(groove.width), None],
+            (Shape::Cavity(Cavity { lambda, w, .. }), _) => [Some(2.0 * lambda * (1.0 - w.abs())), None],
+            (_, Form::Polygon(corners)) => widths(corners, effort)?,
+            _ => [None, None],
+        };
+        let inverted = texture.inverted;
+        Ok(Some((
+            widths,
+            Self {
+                form,
+                places,
+                inverted,
+            },
+        )))
+    }
+}
+
+/// The shape of a texture, and how far its copies are shifted from it: all, or some of many. None of a mask.
+fn form(lattice: &Lattice, texture: &Texture, all: bool) -> Option<(Form, Vec<[f64; 2]>)> {
+    let form = match &texture.shape {
+        Shape::Cavity(cavity) => match cavity.curve() {
+            Curve::Ellipse { semi_axes, axis } => Form::Ellipse(Ellipse {
+                center: cavity.center,
+                semi_axes,
+                axis,
+            }),
+            Curve::Polygon(vertices) => {
+                let step = vertices.len().div_ceil(CORNERS);
+                let some = vertices.iter().step_by(step);
+                Form::Polygon(some.map(|vertex| vertex.around(cavity.center)).collect())
+            }
+        },
+        Shape::Polygon(points) => Form::Polygon(points.clone()),
         Shape::Groove(groove) => {
             let [mut low, mut high] = groove.bounds(lattice, 0.0);
             let along = 1 - groove.axis();
             (low[along], high[along]) = (0.0, [lattice.nx, lattice.ny][along] as f64);
-            return Some(vec![low, [high[0], low[1]], high, [low[0], high[1]]]);
+            let across = |shift| {
+                let mut place = [0.0; 2];
+                place[groove.axis()] = shift;
+                place
+            };
+            let shifts = groove.shifts(&grids(&texture.arrays)).into_iter();
+            let corners = vec![low, [high[0], low[1]], high, [low[0], high[1]]];
+            return Some((Form::Polygon(corners), shifts.map(across).collect()));
         }
         Shape::Tile(_) => return None,
     };
-    let center = [0, 1].map(|axis| outlines.outermost(axis).next().unwrap_or_default());
-    Some(match &outlines.curve {
-        Curve::Ellipse { semi_axes, axis } => {
-            let ellipse = super::contour::Ellipse {
-                center,
-                semi_axes: *semi_axes,
-                axis: *axis,
-            };
-            (0..CORNERS)
-                .map(|k| ellipse.at(TAU * k as f64 / CORNERS as f64))
-                .collect()
-        }
-        Curve::Polygon(vertices) => {
-            let step = vertices.len().div_ceil(CORNERS);
-            vertices
-                .iter()
-                .step_by(step)
-                .map(|vertex| vertex.around(center))
-                .collect()
-        }
-    })
+    Some((form, places(&texture.arrays, all)))
 }
 
 /// The places of arrays of arrays: all, or of each the first three and the last line along both axes, with all distances between
@@ -181,6 +220,118 @@ fn places(arrays: &[Array], all: bool) -> Vec<[f64; 2]> {
     })
 }
 
+/// Copies of some shapes, from left to right.
+struct Copies<'a> {
+    forms: Vec<&'a Form>,
+    copies: Vec<Placed>,
+}
+
+struct Placed {
+    form: usize,
+    at: [f64; 2],
+    /// The smallest and the largest coordinate along each axis.
+    bounds: [[f64; 2]; 2],
+    /// Whether it goes on from beyond a periodic edge.
+    is_image: bool,
+}
+
+impl<'a> Copies<'a> {
+    /// The copies of shapes on the slider, and those beyond its periodic edges, up to half the slider away.
+    fn of(lattice: &Lattice, shapes: &'a [Drawn], effort: &mut Effort) -> Result<Self, TooMuch> {
+        let size = [lattice.nx as f64, lattice.ny as f64];
+        let mut copies = Vec::new();
+        for (form, shape) in shapes.iter().enumerate() {
+            let bounds = [0, 1].map(|axis| shape.form.bounds(axis));
+            effort.take(shape.places.len())?;
+            for &place in &shape.places {
+                for turn in turns(lattice) {
+                    let at = [place[0] + turn[0], place[1] + turn[1]];
+                    let bounds = [0, 1].map(|axis| bounds[axis].map(|bound| bound + at[axis]));
+                    let is_image = turn != [0.0; 2];
+                    let is_near = |axis: usize| {
+                        bounds[axis][1] > -0.5 * size[axis] && bounds[axis][0] < 1.5 * size[axis]
+                    };
+                    if !is_image || is_near(0) && is_near(1) {
+                        copies.push(Placed {
+                            form,
+                            at,
+                            bounds,
+                            is_image,
+                        });
+                    }
+                }
+            }
+        }
+        copies.sort_by(|one, other| one.bounds[0][0].total_cmp(&other.bounds[0][0]));
+        let forms = shapes.iter().map(|shape| &shape.form).collect();
+        Ok(Self { forms, copies })
+    }
+
+    /// Whether a point lies inside any copy.
+    fn cover(&self, point: [f64; 2], effort: &mut Effort) -> Result<bool, TooMuch> {
+        let end = self.copies.partition_point(|copy| copy.bounds[0][0] <= point[0]);
+        effort.take(end)?;
+        for copy in &self.copies[..end] {
+            let is_in_box = (0..2).all(|axis| {
+                let [low, high] = copy.bounds[axis];
+                (low..=high).contains(&point[axis])
+            });
+            let from_there = [0, 1].map(|axis| point[axis] - copy.at[axis]);
+            if is_in_box && self.forms[copy.form].contains(from_there, effort)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// The smallest distance between two copies between which all counts; of those that touch there is none.
+    fn least_distance(
+        &self,
+        effort: &mut Effort,
+        counts: impl Fn([f64; 2], &mut Effort) -> Result<bool, TooMuch>,
+    ) -> Result<Option<f64>, TooMuch> {
+        let mut found = f64::INFINITY;
+        // Patterns have few distances, which differ by rounding from place to place.
+        let mut known: HashMap<(usize, usize, [i64; 2]), Option<Closest>> = HashMap::new();
+        for (k, from) in self.copies.iter().enumerate() {
+            for to in &self.copies[k + 1..] {
+                effort.take(1)?;
+                if to.bounds[0][0] - from.bounds[0][1] >= found {
+                    break;
+                }
+                if from.is_image && to.is_image || between_boxes(&from.bounds, &to.bounds) >= found {
+                    continue;
+                }
+                let shift = [0, 1].map(|axis| to.at[axis] - from.at[axis]);
+                let key = (
+                    from.form,
+                    to.form,
+                    shift.map(|length| (length * 1e9).round() as i64),
+                );
+                let closest = match known.get(&key) {
+                    Some(closest) => *closest,
+                    None => {
+                        let closest = self.forms[from.form].closest(self.forms[to.form], shift, effort)?;
+                        known.insert(key, closest);
+                        closest
+                    }
+                };
+                let Some(closest) = closest.filter(|closest| closest.distance < found) else {
+                    continue;
+                };
+                let mut is_free = true;
+                for [x, y] in closest.between() {
+                    is_free = is_free && counts([x + from.at[0], y + from.at[1]], effort)?;
+                }
+                if is_free {
+                    found = closest.distance;
+                }
+            }
+        }
+        Ok(found.is_finite().then_some(found))
+    }
+}
+
 /// Shifts to the neighbouring images beyond periodic edges, and none.
 fn turns(lattice: &Lattice) -> impl Iterator<Item = [f64; 2]> {
     let along = |axis: usize| {
@@ -193,98 +344,6 @@ fn turns(lattice: &Lattice) -> impl Iterator<Item = [f64; 2]> {
     let (x, y) = (along(0), along(1));
     y.into_iter()
         .flat_map(move |y| x.clone().into_iter().map(move |x| [x, y]))
-}
-
-fn bounds(corners: &[[f64; 2]], axis: usize) -> [f64; 2] {
-    let start = [f64::INFINITY, f64::NEG_INFINITY];
-    corners.iter().fold(start, |[low, high], corner| {
-        [low.min(corner[axis]), high.max(corner[axis])]
-    })
-}
-
-/// At least this far are two shapes from each other, the second of which is shifted.
-fn apart(one: &[[f64; 2]], other: &[[f64; 2]], shift: [f64; 2]) -> f64 {
-    let between = |axis: usize| {
-        let ([low, high], [from, to]) = (bounds(one, axis), bounds(other, axis));
-        (from + shift[axis] - high).max(low - to - shift[axis]).max(0.0)
-    };
-    libm::hypot(between(0), between(1))
-}
-
-fn edges(corners: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
-    let next = corners.iter().cycle().skip(1);
-    corners.iter().zip(next).map(|(&from, &to)| [from, to])
-}
-
-/// Distance of a point from an edge, and its foot on the edge if it has one.
-fn to_edge(point: [f64; 2], [from, to]: [[f64; 2]; 2]) -> (f64, Option<[f64; 2]>) {
-    let along = [to[0] - from[0], to[1] - from[1]];
-    let square = along[0] * along[0] + along[1] * along[1];
-    let share = ((point[0] - from[0]) * along[0] + (point[1] - from[1]) * along[1]) / square;
-    let nearest = share.clamp(0.0, 1.0);
-    let nearest = [from[0] + nearest * along[0], from[1] + nearest * along[1]];
-    let distance = libm::hypot(point[0] - nearest[0], point[1] - nearest[1]);
-    (distance, (0.0..=1.0).contains(&share).then_some(nearest))
-}
-
-fn is_inside(point: [f64; 2], corners: &[[f64; 2]]) -> bool {
-    let crossed = edges(corners).filter(|[p, q]| {
-        (p[1] <= point[1]) != (q[1] <= point[1])
-            && point[0] < p[0] + (point[1] - p[1]) / (q[1] - p[1]) * (q[0] - p[0])
-    });
-    crossed.count() % 2 == 1
-}
-
-/// The smallest distance of a corner from an edge that it faces: across the inside, and across the outside of a shape.
-fn widths(corners: &[[f64; 2]]) -> [Option<f64>; 2] {
-    let mut found = [None, None];
-    for (at, &corner) in corners.iter().enumerate() {
-        for (start, edge) in edges(corners).enumerate() {
-            if start == at || (start + 1) % corners.len() == at {
-                continue;
-            }
-            let (distance, Some(foot)) = to_edge(corner, edge) else {
-                continue;
-            };
-            if found
-                .iter()
-                .all(|least: &Option<f64>| least.is_some_and(|least| least <= distance))
-            {
-                continue;
-            }
-            // Beside the middle of the edge, towards the corner.
-            let aside = [corner[0] - foot[0], corner[1] - foot[1]].map(|part| 1e-6 * part);
-            let beside = [0, 1].map(|axis| 0.5 * (edge[0][axis] + edge[1][axis]) + aside[axis]);
-            least(
-                &mut found[usize::from(!is_inside(beside, corners))],
-                Some(distance),
-            );
-        }
-    }
-    found
-}
-
-/// The distance between two shapes, the second of which is shifted; 0 if they overlap.
-fn distance(one: &[[f64; 2]], other: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
-    let other: Vec<[f64; 2]> = other
-        .iter()
-        .map(|corner| [corner[0] + x, corner[1] + y])
-        .collect();
-    if is_inside(one[0], &other) || is_inside(other[0], one) {
-        return 0.0;
-    }
-    let mut least = f64::INFINITY;
-    for (points, line) in [(one, &other[..]), (&other[..], one)] {
-        for &point in points {
-            if is_inside(point, line) {
-                return 0.0;
-            }
-            for edge in edges(line) {
-                least = least.min(to_edge(point, edge).0);
-            }
-        }
-    }
-    least
 }
 
 #[cfg(test)]
@@ -303,9 +362,9 @@ mod tests {
     }
 
     fn is_near(found: [f64; 2], expected: [f64; 2]) -> bool {
-        // Circles as polygons of 1024 corners differ from their radius by 5e-6 of it.
+        // Rounding of coordinates up to 60, a hundred times over.
         let near = |found: f64, expected: f64| {
-            (found - expected).abs() < 1e-3 || found.is_nan() && expected.is_nan()
+            (found - expected).abs() < 1e-12 || found.is_nan() && expected.is_nan()
         };
         near(found[0], expected[0]) && near(found[1], expected[1])
     }
@@ -390,5 +449,157 @@ mod tests {
             (found[0] - 12.0 * 15.0 / 325.0_f64.sqrt()).abs() < 1e-9,
             "{found:?}"
         );
+    }
+
+    fn circle(center: [f64; 2], lambda: f64) -> Texture {
+        let cavity = Cavity {
+            center,
+            lambda,
+            s: 1,
+            w: 0.0,
+            across: false,
+            rotate: 0.0,
+        };
+        Shape::Cavity(cavity).into()
+    }
+
+    fn groove(orientation: Orientation, width: f64, offset: f64) -> Texture {
+        let groove = Groove {
+            orientation,
+            width,
+            offset,
+        };
+        Shape::Groove(groove).into()
+    }
+
+    /// What a third shape covers is no gap between two others, nor is there one between grooves that cross or dimples that merge.
+    #[test]
+    fn gaps_are_not_looked_for_below_other_shapes() {
+        let free = Lattice::free(60, 60);
+        let gap = |textures: &[Texture]| clearance(&free, textures).gap;
+        let (across, along) = (
+            groove(Orientation::Across, 2.0, 0.0),
+            groove(Orientation::Along, 3.0, 5.0),
+        );
+        assert_eq!(gap(&[across.clone(), along.clone()]), None);
+        // Two dimples on both sides of a groove are nearer to it than to each other.
+        let dimples = [circle([24.0, 10.0], 4.0), circle([38.0, 10.0], 4.0)];
+        assert_eq!(gap(&dimples), Some(6.0));
+        assert_eq!(gap(&[dimples.to_vec(), vec![across.clone()]].concat()), Some(1.0));
+        let wide = groove(Orientation::Across, 8.0, 1.0);
+        assert_eq!(gap(&[dimples.to_vec(), vec![wide]].concat()), None);
+        // Dimples in a row that overlap are one groove: those that are next but one do not have the middle one between them.
+        let row = |pitch: f64| Texture {
+            arrays: vec![Array {
+                count: [6, 1],
+                spacing: [pitch, 1.0],
+                staggered: false,
+            }],
+            ..circle([30.0, 30.0], 4.0)
+        };
+        assert_eq!(gap(&[row(5.0)]), None);
+        assert_eq!(gap(&[row(8.0)]), None);
+        assert_eq!(gap(&[row(9.0)]), Some(1.0));
+        // Pillars that overlap, and dimples below pillars of another texture.
+        let pillars = |pitch| Texture {
+            inverted: true,
+            ..row(pitch)
+        };
+        let found = clearance(&free, &[pillars(5.0)]);
+        assert_eq!((found.feature, found.gap), (None, Some(8.0)));
+        let found = clearance(&free, &[pillars(9.0), across, along]);
+        assert_eq!((found.feature, found.gap), (Some(1.0), Some(8.0)));
+    }
+
+    #[test]
+    fn what_lies_off_the_slider_does_not_count() {
+        let free = Lattice::free(60, 40);
+        let found = clearance(
+            &free,
+            &[
+                circle([30.0, 20.0], 5.0),
+                circle([-3.0, 20.0], 2.0),
+                circle([30.0, 44.0], 3.0),
+            ],
+        );
+        assert_eq!((found.feature, found.gap), (Some(10.0), None));
+        // A dimple that an edge cuts counts as it is drawn.
+        let found = clearance(&free, &[circle([30.0, 20.0], 5.0), circle([30.0, 40.5], 2.0)]);
+        assert_eq!((found.feature, found.gap), (Some(4.0), Some(13.5)));
+        // Beyond a periodic edge it goes on at the opposite one.
+        let periodic = Lattice::with_edges(60, 40, [Edges::Periodic; 2]);
+        let found = clearance(
+            &periodic,
+            &[circle([30.0, 20.0], 5.0), circle([30.0, -153.0], 2.0)],
+        );
+        assert_eq!((found.feature, found.gap), (Some(4.0), Some(6.0)));
+        // Of places far apart all but one lie beside the slider.
+        let wide = Array {
+            count: [3, 3],
+            spacing: [70.0, 50.0],
+            staggered: false,
+        };
+        let found = clearance(
+            &free,
+            &[Texture {
+                arrays: vec![wide],
+                ..circle([30.0, 20.0], 5.0)
+            }],
+        );
+        assert_eq!((found.feature, found.gap), (Some(10.0), None));
+    }
+
+    /// The vertices of a sharp cavity are no narrow feature: they narrow to nothing in blocks of any size.
+    #[test]
+    fn a_cavity_is_as_wide_as_the_circle_in_it() {
+        for (s, w) in [(2, 0.5), (3, -1.0 / 3.0), (4, 0.05), (64, 1.0 / 64.0)] {
+            let cavity = Cavity {
+                center: [30.0, 30.0],
+                lambda: 9.0,
+                s,
+                w,
+                across: true,
+                rotate: 20.0,
+            };
+            let found = clearance(&Lattice::free(60, 60), &[Shape::Cavity(cavity).into()]);
+            assert_eq!(
+                (found.feature, found.gap),
+                (Some(18.0 * (1.0 - w.abs())), None),
+                "{s}"
+            );
+        }
+    }
+
+    /// As many copies as are all held against each other, more of them, and as many textures of their own, with a groove that reaches
+    /// over all of them: a tenth of what may be looked at is enough.
+    #[test]
+    fn many_shapes_are_measured_in_little_time() {
+        let measured = |lattice: &Lattice, textures: &[Texture]| {
+            let found = measure(lattice, textures, &mut Effort(EFFORT / 10)).unwrap();
+            [found.feature.unwrap(), found.gap.unwrap()]
+        };
+        for edges in [Edges::Free, Edges::Periodic] {
+            for count in [64, 65, 100] {
+                let size = 10 * count;
+                let lattice = Lattice::with_edges(size, size, [edges; 2]);
+                let array = Array::spread(&lattice, [count, count]);
+                for array in [array, array.staggered()] {
+                    let dimples = Texture {
+                        arrays: vec![array],
+                        ..circle([5.0 * count as f64; 2], 3.0)
+                    };
+                    assert!(is_near(
+                        measured(&lattice, std::slice::from_ref(&dimples)),
+                        [6.0, 4.0]
+                    ));
+                    let with_groove = [dimples, groove(Orientation::Along, 1.0, 0.0)];
+                    assert_eq!(measured(&lattice, &with_groove)[0], 1.0);
+                }
+            }
+            let alone = |k: usize| circle([10.0 * (k % 50) as f64 + 5.0, 10.0 * (k / 50) as f64 + 5.0], 3.0);
+            let textures: Vec<Texture> = (0..2500).map(alone).collect();
+            let lattice = Lattice::with_edges(500, 500, [edges; 2]);
+            assert_eq!(measured(&lattice, &textures), [6.0, 4.0]);
+        }
     }
 }

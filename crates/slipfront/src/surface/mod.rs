@@ -5,6 +5,7 @@
 //! blocks that a rank holds.
 
 mod clearance;
+mod closest;
 mod coefficients;
 mod contour;
 mod load;

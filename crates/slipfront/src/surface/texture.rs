@@ -187,7 +187,7 @@ impl Cavity {
         Outlines::at(self.curve(), self.center, grids)
     }
 
-    fn curve(&self) -> Curve {
+    pub(super) fn curve(&self) -> Curve {
         let axis = unit_vector(self.rotate);
         let swap = |p: [f64; 2]| if self.across { [p[1], p[0]] } else { p };
         if self.s == 1 || self.w == 0.0 {

@@ -515,11 +515,99 @@ fn what_deserves_a_word_is_said_once() {
         let note = "of the blocks instead of 0.20 %: it is clipped, overlaps, or is too fine for the blocks \
                     (at the point texture.0.coverage = 0.2)";
         assert_eq!(said.matches(note).count(), 1, "{said}");
+        let coarse = "; the outline needs 5 and 10, at least ";
+        assert_eq!(said.matches(coarse).count(), 1, "{said}");
+        assert!(
+            said.contains("for a slider of the same size) (at every point)"),
+            "{said}"
+        );
+        let merged = "`texture.0.coverage` = 0.2 and 11 are meshed to one coverage: take more blocks to tell them apart";
+        assert_eq!(said.matches(merged).count(), 1, "{said}");
         // Both levels cover the same blocks, which is said where nothing has run yet.
         let idle = said.contains("the axis of `texture.0.coverage` changes nothing");
         assert_eq!(idle, line.ends_with("--dry-run"), "{said}");
-        assert_eq!(said.matches("note: ").count(), 1 + usize::from(idle), "{said}");
+        assert_eq!(said.matches("note: ").count(), 3 + usize::from(idle), "{said}");
     }
+}
+
+/// Of 25 columns, 5 % are one and 15 % are three: 4 and 12 %. A study that asks for these has the same runs, and the same pictures.
+#[test]
+fn coverages_are_drawn_and_told_as_they_are_meshed() {
+    let study = |axes: &str| {
+        format!(
+            "base.slider.blocks = [25, 8]\nbase.time.stop = 'after_onset'\nbase.texture = [{{ shape = 'groove', coverage = 10 }}]\n\
+             [study]\nreplicates = 2\nreference = {{ texture = [] }}\n{axes}"
+        )
+    };
+    let coverage = |list: &str| format!("[[axes]]\nkey = 'texture.0.coverage'\nlist = {list}\n");
+    let speed = "[[axes]]\nkey = 'drive.v_star'\nlist = [0.1, 0.2]\n";
+    let workspace = Workspace::with_study(&study(&(coverage("[5, 15]") + speed)));
+    let said = workspace.succeed("study study.toml -o asked");
+    let rows: Vec<Vec<&str>> = said
+        .lines()
+        .map(|line| line.split_whitespace().take(3).collect())
+        .collect();
+    for row in [
+        ["5", "0.1", "4"],
+        ["5", "0.2", "4"],
+        ["15", "0.1", "12"],
+        ["15", "0.2", "12"],
+    ] {
+        assert!(rows.iter().any(|found| *found == row), "{said}");
+    }
+    assert!(
+        said.contains("texture.0.coverage   drive.v_star   meshed %"),
+        "{said}"
+    );
+    for row in workspace.results("asked").table("points.csv") {
+        let expected = if row["texture.0.coverage"] == "5" {
+            "4.0"
+        } else {
+            "12.0"
+        };
+        assert_eq!(row["texture_percent"], expected);
+    }
+    // As curves over the coverage, as maps, and in the legend of curves over the speed.
+    workspace.write("exact.toml", study(&(coverage("[4, 12]") + speed)));
+    let exact = workspace.succeed("study exact.toml -o exact");
+    assert!(!exact.contains("meshed %"), "{exact}");
+    workspace.write("speed.toml", study(&(speed.to_owned() + &coverage("[5, 15]"))));
+    workspace.write(
+        "speed_exact.toml",
+        study(&(speed.to_owned() + &coverage("[4, 12]"))),
+    );
+    for name in ["speed", "speed_exact"] {
+        workspace.succeed(&format!("study {name}.toml -o {name}"));
+    }
+    for (one, other) in [("asked", "exact"), ("speed", "speed_exact")] {
+        for picture in [
+            "static_friction_star",
+            "static_reduction_percent",
+            "static_friction_star_map",
+        ] {
+            let [one, other] = [one, other].map(|folder| workspace.read(&format!("{folder}/{picture}.svg")));
+            assert!(one == other, "{picture}");
+            let picture = String::from_utf8(one).unwrap();
+            assert!(picture.contains(">meshed "), "{picture}");
+        }
+    }
+}
+
+/// 5 and 6 % of 25 columns are one column: what is drawn at one place is told, and a map keeps its columns apart.
+#[test]
+fn coverages_that_are_meshed_to_one_are_told() {
+    let workspace = Workspace::with_study(
+        "base.slider.blocks = [25, 8]\nbase.time.stop = 'after_onset'\nbase.texture = [{ shape = 'groove', coverage = 10 }]\n\
+         [[axes]]\nkey = 'texture.0.coverage'\nlist = [5, 6, 15]\n[[axes]]\nkey = 'drive.v_star'\nlist = [0.1, 0.2]",
+    );
+    for line in ["study study.toml --dry-run", "study study.toml -o out"] {
+        let said = unwrapped(&workspace.succeed(line));
+        let told = "note: `texture.0.coverage` = 5 and 6 are meshed to one coverage: take more blocks to tell them apart";
+        assert_eq!(said.matches(told).count(), 1, "{said}");
+    }
+    let picture = |name: &str| String::from_utf8(workspace.read(&format!("out/{name}.svg"))).unwrap();
+    assert!(picture("static_friction_star").contains(">meshed texture coverage "));
+    assert!(picture("static_friction_star_map").contains(">asked texture coverage "));
 }
 
 /// Pressures of one V* are one dimensionless model: the study says so before it runs, and how to mean it.

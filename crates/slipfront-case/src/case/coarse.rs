@@ -1,0 +1,110 @@
+//! Whether blocks are fine enough for the outline of a texture.
+
+use slipfront::surface::{Clearance, clearance};
+
+use super::runnable::Case;
+use super::textures::outlines_in_blocks;
+use crate::case_file::{MAX_BLOCKS, MAX_BLOCKS_TOTAL, Outline, Shape, Texture};
+use crate::number_format::{exact, four_digits, si_prefix, with_si_prefix};
+
+/// Blocks that a feature needs across, so that its area is meshed well.
+const ACROSS_A_FEATURE: f64 = 5.0;
+/// Blocks that a gap between two features needs across, so that a slip front can run there.
+const ACROSS_A_GAP: f64 = 10.0;
+/// Share by which a length may be too small: rounding of lengths and of the block size.
+const ROUNDING: f64 = 1e-6;
+/// Smallest edge of a block, m.
+const LEAST_BLOCK: f64 = 1e-12;
+
+impl Case {
+    /// Where blocks are too coarse for the outlines of its textures, and how many there should be; of masks and height maps, whose
+    /// outlines are not known, nothing is said.
+    pub fn too_coarse(&self) -> Option<String> {
+        let lattice = &self.model.lattice;
+        let outlines = outlines_in_blocks(&self.file, &self.scales, lattice, self.model.n_blocks());
+        let Clearance { feature, gap } = clearance(lattice, &outlines);
+        let [feature_name, gap_name] = names(&self.file.texture);
+        let found = [
+            (feature_name, feature, ACROSS_A_FEATURE),
+            (gap_name, gap, ACROSS_A_GAP),
+        ];
+        let too_small = found.into_iter().filter_map(|(name, blocks, needed)| {
+            let blocks = blocks.filter(|blocks| *blocks < needed * (1.0 - ROUNDING))?;
+            Some((name, blocks, needed))
+        });
+        let too_small: Vec<(&str, f64, f64)> = too_small.collect();
+        let finer = too_small.iter().map(|(_, blocks, needed)| needed / blocks);
+        let finer = finer.reduce(f64::max)?;
+        let told = |(place, (name, blocks, _)): (usize, &(&str, f64, f64))| match place {
+            0 if *blocks == 1.0 => format!("the smallest {name} is 1 block across"),
+            0 => format!("the smallest {name} is {} blocks across", four_digits(*blocks)),
+            _ => format!("the smallest {name} {}", four_digits(*blocks)),
+        };
+        let told: Vec<String> = too_small.iter().enumerate().map(told).collect();
+        let needed: Vec<String> = too_small
+            .iter()
+            .map(|(_, _, needed)| needed.to_string())
+            .collect();
+        Some(format!(
+            "{}; the outline needs {}, {}",
+            told.join(" and "),
+            needed.join(" and "),
+            self.blocks_for(finer)
+        ))
+    }
+
+    /// What to set for blocks that are so many times finer, on a slider of this size: the ratio of its sides stays as it is.
+    fn blocks_for(&self, finer: f64) -> String {
+        let (lattice, block_size) = (&self.model.lattice, self.scales.block_size);
+        let sides = [lattice.nx, lattice.ny].map(|blocks| blocks as u64);
+        let parts = greatest_common_divisor(sides);
+        let more = (parts as f64 * finer * (1.0 - ROUNDING)).ceil();
+        let [nx, ny] = sides.map(|blocks| (blocks / parts) as f64 * more);
+        let size = block_size * parts as f64 / more;
+        if nx.max(ny) > MAX_BLOCKS as f64 || nx * ny > MAX_BLOCKS_TOTAL as f64 || size < LEAST_BLOCK {
+            return format!(
+                "blocks of {}, of which no slider of this size can be made",
+                with_si_prefix(block_size / finer, "m")
+            );
+        }
+        // Of other outlines a coverage is that of the blocks which exist: how many these are depends a little on their size.
+        let least = match self.file.slider.outline {
+            Outline::Rectangle => "at least",
+            Outline::Disc | Outline::Mask => "about",
+        };
+        format!(
+            "{least} {nx} x {ny} blocks (`slider.blocks = [{nx}, {ny}]`, with `slider.block_size = \"{}\"` for a slider of the same size)",
+            ten_digits(size)
+        )
+    }
+}
+
+/// What is textured and what is between, as their user calls it.
+fn names(textures: &[Texture]) -> [&'static str; 2] {
+    let drawn = || {
+        let shapes = textures.iter();
+        shapes.filter(|texture| !matches!(texture.shape, Shape::Mask(_) | Shape::HeightMap(_)))
+    };
+    let all = |is: fn(&Texture) -> bool| drawn().all(is);
+    match () {
+        () if all(|texture| texture.pattern.invert) => ["gap", "pillar"],
+        () if drawn().any(|texture| texture.pattern.invert) => ["feature", "gap"],
+        () if all(|texture| matches!(texture.shape, Shape::Cavity(_))) => ["dimple", "gap"],
+        () if all(|texture| matches!(texture.shape, Shape::Groove(_))) => ["groove", "gap"],
+        () => ["feature", "gap"],
+    }
+}
+
+fn greatest_common_divisor([one, other]: [u64; 2]) -> u64 {
+    match other {
+        0 => one,
+        _ => greatest_common_divisor([other, one % other]),
+    }
+}
+
+/// A length with so many digits that as many copies have room in a pitch as before, which 1e-9 may decide.
+fn ten_digits(length: f64) -> String {
+    let (factor, prefix) = si_prefix(length);
+    let rounded = format!("{:.9e}", length / factor);
+    format!("{} {prefix}m", exact(rounded.parse().unwrap_or(length)))
+}

@@ -1,0 +1,404 @@
+//! How far two closed outlines are from each other, and how wide one is. Lengths are in blocks.
+
+use std::f64::consts::TAU;
+
+use super::contour::Ellipse;
+
+/// Lengths that are none but for the rounding of coordinates: such outlines touch.
+const TOUCHING: f64 = 1e-6;
+/// Directions of which the best is the first guess of the one in which two ellipses are farthest apart.
+const DIRECTIONS: usize = 256;
+/// Times that the interval around this guess is cut by a third: to 1e-9 of it, beyond which the distance no longer changes.
+const CUTS: usize = 52;
+/// Corners by which an ellipse is held against a polygon: its radius is met within five millionths.
+const CORNERS: usize = 1024;
+
+/// A closed outline.
+#[derive(Debug)]
+pub(super) enum Form {
+    Ellipse(Ellipse),
+    /// By the even-odd rule.
+    Polygon(Vec<[f64; 2]>),
+}
+
+/// Where two outlines are nearest to each other.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Closest {
+    pub(super) distance: f64,
+    /// The two nearest points.
+    pub(super) ends: [[f64; 2]; 2],
+}
+
+impl Closest {
+    /// Points between the two outlines.
+    pub(super) fn between(&self) -> [[f64; 2]; 5] {
+        [0.1, 0.3, 0.5, 0.7, 0.9].map(|share| at_share(self.ends, share))
+    }
+}
+
+/// There was more to look at than is worth it.
+#[derive(Debug)]
+pub(super) struct TooMuch;
+
+/// How many points, edges and boxes may still be looked at.
+pub(super) struct Effort(pub(super) usize);
+
+impl Effort {
+    pub(super) fn take(&mut self, steps: usize) -> Result<(), TooMuch> {
+        self.0 = self.0.checked_sub(steps).ok_or(TooMuch)?;
+        Ok(())
+    }
+}
+
+impl Form {
+    /// The smallest and the largest coordinate along an axis.
+    pub(super) fn bounds(&self, axis: usize) -> [f64; 2] {
+        match self {
+            Self::Ellipse(ellipse) => {
+                let mut direction = [0.0; 2];
+                direction[axis] = 1.0;
+                let half = reach(ellipse, direction);
+                [ellipse.center[axis] - half, ellipse.center[axis] + half]
+            }
+            Self::Polygon(corners) => bounds(corners, axis),
+        }
+    }
+
+    /// Whether a point lies inside.
+    pub(super) fn contains(&self, point: [f64; 2], effort: &mut Effort) -> Result<bool, TooMuch> {
+        match self {
+            Self::Ellipse(ellipse) => {
+                let [a, b] = ellipse.semi_axes;
+                let [u, v] = along_axes(ellipse, less(point, ellipse.center));
+                Ok((u / a).powi(2) + (v / b).powi(2) < 1.0)
+            }
+            Self::Polygon(corners) => is_inside(point, corners, effort),
+        }
+    }
+
+    /// Where another form, shifted by so much, is nearest; none if it touches this one or overlaps it.
+    pub(super) fn closest(
+        &self,
+        other: &Self,
+        shift: [f64; 2],
+        effort: &mut Effort,
+    ) -> Result<Option<Closest>, TooMuch> {
+        let found = match (self, other) {
+            (Self::Ellipse(one), Self::Ellipse(other)) => {
+                effort.take(2 * DIRECTIONS)?;
+                Some(between_ellipses(one, other, shift))
+            }
+            _ => {
+                let other = other.corners().into_iter().map(|corner| plus(corner, shift));
+                between_polygons(&self.corners(), &other.collect::<Vec<_>>(), effort)?
+            }
+        };
+        Ok(found.filter(|closest| closest.distance > TOUCHING))
+    }
+
+    fn corners(&self) -> Vec<[f64; 2]> {
+        match self {
+            Self::Ellipse(ellipse) => (0..CORNERS)
+                .map(|k| ellipse.at(TAU * k as f64 / CORNERS as f64))
+                .collect(),
+            Self::Polygon(corners) => corners.clone(),
+        }
+    }
+}
+
+fn plus([x, y]: [f64; 2], [dx, dy]: [f64; 2]) -> [f64; 2] {
+    [x + dx, y + dy]
+}
+
+fn less([x, y]: [f64; 2], [dx, dy]: [f64; 2]) -> [f64; 2] {
+    [x - dx, y - dy]
+}
+
+fn dot(one: [f64; 2], other: [f64; 2]) -> f64 {
+    one[0] * other[0] + one[1] * other[1]
+}
+
+/// Positive where the second vector points to the left of the first.
+fn cross(one: [f64; 2], other: [f64; 2]) -> f64 {
+    one[0] * other[1] - one[1] * other[0]
+}
+
+/// A vector along the axes of an ellipse.
+fn along_axes(ellipse: &Ellipse, vector: [f64; 2]) -> [f64; 2] {
+    [dot(ellipse.axis, vector), cross(ellipse.axis, vector)]
+}
+
+/// How far an ellipse reaches from its centre in a direction.
+fn reach(ellipse: &Ellipse, direction: [f64; 2]) -> f64 {
+    let [u, v] = along_axes(ellipse, direction);
+    libm::hypot(ellipse.semi_axes[0] * u, ellipse.semi_axes[1] * v)
+}
+
+/// The point of an ellipse that is farthest in a direction.
+fn farthest(ellipse: &Ellipse, direction: [f64; 2]) -> [f64; 2] {
+    let [a, b] = ellipse.semi_axes;
+    let [u, v] = along_axes(ellipse, direction);
+    let reach = reach(ellipse, direction);
+    let ([u, v], [c, s]) = ([a * a * u / reach, b * b * v / reach], ellipse.axis);
+    plus(ellipse.center, [u * c - v * s, u * s + v * c])
+}
+
+/// Two convex outlines are as far apart as their shadows on the line on which these are farthest from each other. Negative if the
+/// ellipses overlap.
+fn between_ellipses(one: &Ellipse, other: &Ellipse, shift: [f64; 2]) -> Closest {
+    let from_one = less(plus(other.center, shift), one.center);
+    let direction = |angle: f64| [libm::cos(angle), libm::sin(angle)];
+    let between = |direction| dot(direction, from_one) - reach(one, direction) - reach(other, direction);
+    let is_circle = |ellipse: &Ellipse| ellipse.semi_axes[0] == ellipse.semi_axes[1];
+    let best = if is_circle(one) && is_circle(other) {
+        let length = libm::hypot(from_one[0], from_one[1]);
+        match length > 0.0 {
+            true => from_one.map(|part| part / length),
+            false => [1.0, 0.0],
+        }
+    } else {
+        let step = TAU / DIRECTIONS as f64;
+        let angles = (0..DIRECTIONS).map(|k| k as f64 * step);
+        let value = |angle: &f64| between(direction(*angle));
+        let guess = angles.max_by(|a, b| value(a).total_cmp(&value(b))).unwrap_or(0.0);
+        let (mut low, mut high) = (guess - step, guess + step);
+        for _ in 0..CUTS {
+            let third = (high - low) / 3.0;
+            match value(&(low + third)) < value(&(high - third)) {
+                true => low += third,
+                false => high -= third,
+            }
+        }
+        direction(0.5 * (low + high))
+    };
+    let back = best.map(|part| -part);
+    Closest {
+        distance: between(best),
+        ends: [farthest(one, best), plus(farthest(other, back), shift)],
+    }
+}
+
+fn bounds(corners: &[[f64; 2]], axis: usize) -> [f64; 2] {
+    let start = [f64::INFINITY, f64::NEG_INFINITY];
+    corners.iter().fold(start, |[low, high], corner| {
+        [low.min(corner[axis]), high.max(corner[axis])]
+    })
+}
+
+/// At least so far are two boxes from each other.
+pub(super) fn between_boxes(one: &[[f64; 2]; 2], other: &[[f64; 2]; 2]) -> f64 {
+    let between = |axis: usize| {
+        let ([low, high], [from, to]) = (one[axis], other[axis]);
+        (from - high).max(low - to).max(0.0)
+    };
+    libm::hypot(between(0), between(1))
+}
+
+fn edges(corners: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
+    let next = corners.iter().cycle().skip(1);
+    corners.iter().zip(next).map(|(&from, &to)| [from, to])
+}
+
+fn is_inside(point: [f64; 2], corners: &[[f64; 2]], effort: &mut Effort) -> Result<bool, TooMuch> {
+    effort.take(corners.len())?;
+    let crossed = edges(corners).filter(|[p, q]| {
+        (p[1] <= point[1]) != (q[1] <= point[1])
+            && point[0] < p[0] + (point[1] - p[1]) / (q[1] - p[1]) * (q[0] - p[0])
+    });
+    Ok(crossed.count() % 2 == 1)
+}
+
+/// The point of an edge that is nearest to a point, as a share of the way along it that may lie beyond its ends.
+fn share_of(point: [f64; 2], [from, to]: [[f64; 2]; 2]) -> f64 {
+    let along = less(to, from);
+    dot(less(point, from), along) / dot(along, along)
+}
+
+fn at_share([from, to]: [[f64; 2]; 2], share: f64) -> [f64; 2] {
+    [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]))
+}
+
+fn square_between(one: [f64; 2], other: [f64; 2]) -> f64 {
+    let between = less(other, one);
+    dot(between, between)
+}
+
+/// Whether two edges cross.
+fn do_cross([p, q]: [[f64; 2]; 2], [r, s]: [[f64; 2]; 2]) -> bool {
+    let sides =
+        |from, to, points: [[f64; 2]; 2]| points.map(|point| cross(less(to, from), less(point, from)) > 0.0);
+    let ([a, b], [c, d]) = (sides(p, q, [r, s]), sides(r, s, [p, q]));
+    a != b && c != d
+}
+
+/// Where two polygons are nearest to each other; none if they overlap.
+fn between_polygons(
+    one: &[[f64; 2]],
+    other: &[[f64; 2]],
+    effort: &mut Effort,
+) -> Result<Option<Closest>, TooMuch> {
+    let boxes = [one, other].map(|corners| [0, 1].map(|axis| bounds(corners, axis)));
+    if between_boxes(&boxes[0], &boxes[1]) == 0.0 {
+        if is_inside(one[0], other, effort)? || is_inside(other[0], one, effort)? {
+            return Ok(None);
+        }
+        for edge in edges(one) {
+            let around = [0, 1].map(|axis| bounds(&edge, axis));
+            if between_boxes(&around, &boxes[1]) > 0.0 {
+                continue;
+            }
+            effort.take(other.len())?;
+            if edges(other).any(|crossed| do_cross(edge, crossed)) {
+                return Ok(None);
+            }
+        }
+    }
+    // A first bound, from some corners of each, leaves most others out.
+    let some = |corners: &[[f64; 2]]| corners.len().div_ceil(32);
+    let mut least = f64::INFINITY;
+    for &corner in one.iter().step_by(some(one)) {
+        for &facing in other.iter().step_by(some(other)) {
+            least = least.min(square_between(corner, facing));
+        }
+    }
+    let mut ends = None;
+    for (points, line, around) in [(one, other, boxes[1]), (other, one, boxes[0])] {
+        for &point in points {
+            let far = between_boxes(&point.map(|at| [at, at]), &around);
+            if far * far > least {
+                continue;
+            }
+            effort.take(line.len())?;
+            for edge in edges(line) {
+                let nearest = at_share(edge, share_of(point, edge).clamp(0.0, 1.0));
+                let square = square_between(point, nearest);
+                if square < least || square == least && ends.is_none() {
+                    least = square;
+                    ends = Some([point, nearest]);
+                }
+            }
+        }
+    }
+    Ok(ends.map(|ends| Closest {
+        distance: least.sqrt(),
+        ends,
+    }))
+}
+
+/// The smallest distance of a corner of a polygon from an edge that it faces: across the inside, and across the outside.
+pub(super) fn widths(corners: &[[f64; 2]], effort: &mut Effort) -> Result<[Option<f64>; 2], TooMuch> {
+    effort.take(corners.len() * corners.len())?;
+    // Whether the inside is to the left of an edge.
+    let is_left = |edge: [[f64; 2]; 2]| {
+        let [x, y] = less(edge[1], edge[0]);
+        let beside = plus(at_share(edge, 0.5), [-1e-6 * y, 1e-6 * x]);
+        is_inside(beside, corners, effort)
+    };
+    let left: Vec<bool> = edges(corners).map(is_left).collect::<Result<_, _>>()?;
+    let mut least = [f64::INFINITY; 2];
+    for (at, &corner) in corners.iter().enumerate() {
+        for (start, edge) in edges(corners).enumerate() {
+            if start == at || (start + 1) % corners.len() == at {
+                continue;
+            }
+            let share = share_of(corner, edge);
+            if !(0.0..=1.0).contains(&share) {
+                continue;
+            }
+            let is_to_the_left = cross(less(edge[1], edge[0]), less(corner, edge[0])) > 0.0;
+            let least = &mut least[usize::from(is_to_the_left != left[start])];
+            *least = least.min(square_between(corner, at_share(edge, share)));
+        }
+    }
+    Ok(least.map(|square| square.is_finite().then(|| square.sqrt())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ellipse(center: [f64; 2], semi_axes: [f64; 2], degrees: f64) -> Form {
+        let turn = degrees.to_radians();
+        Form::Ellipse(Ellipse {
+            center,
+            semi_axes,
+            axis: [turn.cos(), turn.sin()],
+        })
+    }
+
+    fn rectangle([x, y]: [f64; 2], [width, height]: [f64; 2]) -> Form {
+        Form::Polygon(vec![
+            [x, y],
+            [x + width, y],
+            [x + width, y + height],
+            [x, y + height],
+        ])
+    }
+
+    fn distance(one: &Form, other: &Form, shift: [f64; 2]) -> Option<f64> {
+        let found = one.closest(other, shift, &mut Effort(usize::MAX)).unwrap();
+        found.map(|closest| closest.distance)
+    }
+
+    /// Ellipses as their support functions have them, held against polygons of their corners, which are within 5e-6 of their size.
+    #[test]
+    fn ellipses_are_as_far_apart_as_their_corners() {
+        for (degrees, shift) in [(0.0, [9.0, 3.0]), (35.0, [2.0, -8.0]), (80.0, [-7.0, 6.0])] {
+            let (one, other) = (
+                ellipse([1.0, 2.0], [4.0, 1.5], degrees),
+                ellipse([0.5, 2.5], [2.0, 1.0], 20.0),
+            );
+            let exact = distance(&one, &other, shift).unwrap();
+            let polygons = [&one, &other].map(|form| Form::Polygon(form.corners()));
+            let measured = distance(&polygons[0], &polygons[1], shift).unwrap();
+            assert!((exact - measured).abs() < 2e-5, "{exact} {measured}");
+        }
+        // Circles are exact.
+        let circle = ellipse([0.0; 2], [1.5; 2], 0.0);
+        assert_eq!(distance(&circle, &circle, [3.0, 4.0]), Some(2.0));
+        assert_eq!(distance(&circle, &circle, [3.0, 0.0]), None);
+        assert_eq!(distance(&circle, &circle, [1.0, 0.0]), None);
+        assert_eq!(distance(&circle, &circle, [0.0; 2]), None);
+    }
+
+    #[test]
+    fn polygons_that_cross_or_hold_each_other_have_no_distance() {
+        let (across, along) = (
+            rectangle([10.0, 0.0], [2.0, 50.0]),
+            rectangle([0.0, 20.0], [50.0, 3.0]),
+        );
+        assert_eq!(distance(&across, &along, [0.0; 2]), None);
+        assert_eq!(
+            distance(&along, &rectangle([4.0, 21.0], [1.0; 2]), [0.0; 2]),
+            None
+        );
+        let apart = across.closest(
+            &rectangle([15.0, 60.0], [5.0; 2]),
+            [1.0, -30.0],
+            &mut Effort(1000),
+        );
+        let apart = apart.unwrap().unwrap();
+        assert_eq!(apart.distance, 4.0);
+        assert!(
+            apart
+                .between()
+                .iter()
+                .all(|[x, y]| (12.0..16.0).contains(x) && (30.0..=35.0).contains(y)),
+            "{apart:?}"
+        );
+        // Tiles that share an edge.
+        assert_eq!(distance(&across, &across, [2.0, 0.0]), None);
+    }
+
+    #[test]
+    fn what_would_take_too_long_is_given_up() {
+        let star: Vec<[f64; 2]> = (0..1000)
+            .map(|k| {
+                let (angle, radius) = (TAU * f64::from(k) / 1000.0, 5.0 + f64::from(k % 2));
+                [radius * angle.cos(), radius * angle.sin()]
+            })
+            .collect();
+        assert!(widths(&star, &mut Effort(900_000)).is_err());
+        assert!(widths(&star, &mut Effort(10_000_000)).is_ok());
+    }
+}
