@@ -162,14 +162,30 @@ mod tests {
         ] {
             let source = Source::new("case.toml", &text);
             let error = limit_nesting(&source, 0, &text).unwrap_err().to_string();
-            assert!(error.starts_with("case.toml:1:") && error.contains("more than 64 levels deep"), "{error}");
+            assert!(
+                error.starts_with("case.toml:1:") && error.contains("more than 64 levels deep"),
+                "{error}"
+            );
         }
     }
 
     #[test]
     fn keys_have_few_parts() {
-        assert_eq!(parts_of("texture.0.center.1"), Ok(vec!["texture", "0", "center", "1"]));
-        for key in ["", ".", "drive.", "a..b", "a.b.c.d.e", &"a.".repeat(5000), "a b", "\u{e9}", "\"a\".b"] {
+        assert_eq!(
+            parts_of("texture.0.center.1"),
+            Ok(vec!["texture", "0", "center", "1"])
+        );
+        for key in [
+            "",
+            ".",
+            "drive.",
+            "a..b",
+            "a.b.c.d.e",
+            &"a.".repeat(5000),
+            "a b",
+            "\u{e9}",
+            "\"a\".b",
+        ] {
             assert!(parts_of(key).is_err(), "{key:.80}");
         }
     }

@@ -103,7 +103,9 @@ impl Override {
         // What is not TOML is a string without quotes, which a shell takes away.
         let string = || Spanned::new(0..text.len(), DeValue::String(Cow::Borrowed(text)));
         let start = start + self.value.start;
-        let parsed = limit_nesting(source, start, text).ok().and_then(|text| DeValue::parse(text).ok());
+        let parsed = limit_nesting(source, start, text)
+            .ok()
+            .and_then(|text| DeValue::parse(text).ok());
         let value = parsed.unwrap_or_else(string);
         change
             .set(root, &path, moved(value, start))

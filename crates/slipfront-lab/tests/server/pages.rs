@@ -318,19 +318,3 @@ fn every_case_to_choose_from_can_be_shown() {
         assert_eq!(reply["is"], "case", "{preset}: {reply}");
     }
 }
-
-/// A run that is being saved leaves no half of a folder.
-#[test]
-fn the_end_of_the_server_ends_everything() {
-    let mut lab = Served::new();
-    let mut page = Page::with_case(&lab, "slider.blocks = [300, 300]\ntime.duration_star = 1e5\n");
-    page.reply("case");
-    page.send(&json!({ "do": "save", "name": "long" }));
-    page.reply("saving");
-    lab.stop();
-    assert_eq!(
-        page.end().unwrap().1,
-        "the laboratory was stopped in its terminal"
-    );
-    assert!(!lab.results().join("long").exists());
-}

@@ -238,7 +238,9 @@ impl StudyFile {
     pub fn parse(text: &str, file: &str, name: &str, folder: &Path) -> Result<Self, StudyError> {
         let mut source = Source::new(file, text);
         let root = DeTable::parse(limit_nesting(&source, 0, text)?);
-        let root = root.map_err(|error| syntax_error(&source, 0, &error))?.into_inner();
+        let root = root
+            .map_err(|error| syntax_error(&source, 0, &error))?
+            .into_inner();
         source.note_places(&root);
         let mut tables = Tables {
             root,
