@@ -316,7 +316,8 @@ fn table_of<'t, 'k>(
 /// A sentence, if the case has no place for it.
 fn put(table: &mut Table, key: &str, value: Value) -> Result<(), String> {
     let found = table_of(table, key, true)?;
-    let (table, last) = found.ok_or_else(|| format!("the case has no place for the key `{key}`"))?;
+    let (table, last) =
+        found.ok_or_else(|| format!("the case has no place for the key `{}`", truncated(key)))?;
     table.insert(last.to_owned(), value);
     Ok(())
 }

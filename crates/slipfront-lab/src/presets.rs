@@ -2,6 +2,7 @@
 
 use include_dir::{Dir, include_dir};
 use slipfront_case::case_file::CaseError;
+use slipfront_case::text::truncated;
 use toml::{Table, Value};
 
 use crate::document::Document;
@@ -84,7 +85,7 @@ pub(crate) fn document(name: &str) -> Result<Document, String> {
 }
 
 fn unknown(name: &str) -> String {
-    format!("there is no case `{name}`")
+    format!("there is no case `{}`", truncated(name))
 }
 
 /// The case of a file of the paper: as a whole, or the base of its study. The run goes on to its end, to be seen.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use slipfront::observe::Field;
-use slipfront_case::text::display_path;
+use slipfront_case::text::{display_path, truncated};
 use slipfront_run::fields::{FieldsData, read_fields};
 use slipfront_run::names::{CASE, FIELDS, MANIFEST, SERIES, SUMMARY};
 use slipfront_run::{series, summary, verify};
@@ -42,7 +42,10 @@ pub(crate) fn folders(results: &Path) -> Vec<String> {
 /// A sentence, if the name is more than a name, or leads out of the results and of what is `allowed`.
 pub(crate) fn folder(results: &Path, name: &str, allowed: &[PathBuf]) -> Result<PathBuf, String> {
     if !is_plain_name(name) {
-        return Err(format!("{name:?} is no run of the folder of results"));
+        return Err(format!(
+            "{:?} is no run of the folder of results",
+            truncated(name)
+        ));
     }
     let found = Reach::new(results, "the results", allowed).and_then(|reach| reach.resolve(name));
     found.map_err(|error| format!("{} cannot be read: {error}", display_path(&results.join(name))))

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use slipfront_case::text::display_path;
+use slipfront_case::text::{display_path, truncated};
 use slipfront_run::clock;
 use slipfront_run::results;
 use slipfront_run::run_folder::RunFolder;
@@ -25,7 +25,8 @@ const REPORT: Duration = Duration::from_millis(200);
 pub(crate) fn folder(results: &Path, name: &str) -> Result<PathBuf, String> {
     if !is_plain_name(name) {
         return Err(format!(
-            "{name:?} is no name for a folder: take up to 100 letters, digits, blanks and -_.+(), and no dot at the start"
+            "{:?} is no name for a folder: take up to 100 letters, digits, blanks and -_.+(), and no dot at the start",
+            truncated(name)
         ));
     }
     let folder = results.join(name);

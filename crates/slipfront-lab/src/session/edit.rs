@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use slipfront_case::text::truncated;
 use toml::Value;
 
 use super::brush::stroke;
@@ -85,7 +86,7 @@ impl Session {
                 serde_json::Value::Null => None,
                 value => Some(
                     Value::try_from(value)
-                        .map_err(|error| format!("`{key}` is no value of TOML: {error}"))?,
+                        .map_err(|error| format!("`{}` is no value of TOML: {error}", truncated(&key)))?,
                 ),
             };
             changes.push((key, value));
