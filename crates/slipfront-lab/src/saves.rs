@@ -148,53 +148,43 @@ impl Saves {
         list.show();
     }
 
-    /// Tells pages and terminal how the saving of a run has ended, and whether it is there.
+    /// Tells terminal and pages how the saving of a run has ended: whether it is there, or why not.
     fn finish(&self, name: &str, out: &Path, outcome: Result<bool, String>) {
         let folder = display_path(out);
-        let mut list = self.list();
-        let share = list.find(name).map_or(0.0, |one| one.share);
-        list.under_way.retain(|one| one.name != name);
-        list.show();
-        let (reply, sentence) = match outcome {
-            Ok(true) => {
-                let sentence = format!("the run is saved in {folder}");
-                let folders = out.parent().map(replay::folders).unwrap_or_default();
-                (
-                    Some(Reply::Saved {
-                        name,
-                        folder,
-                        folders,
-                    }),
-                    sentence,
-                )
-            }
-            Ok(false) => {
-                let why = if list.ends {
+        let (share, ends) = {
+            let mut list = self.list();
+            (list.find(name).map_or(0.0, |one| one.share), list.ends)
+        };
+        let sentence = match &outcome {
+            Ok(true) => format!("the run is saved in {folder}"),
+            Ok(false) => format!(
+                "{folder} was not saved: {} after {:.0} % of the run, whose unfinished folder is removed",
+                if ends {
                     "the laboratory ended"
                 } else {
                     "it was stopped"
-                };
-                let percent = 100.0 * share;
-                let sentence = format!(
-                    "{folder} was not saved: {why} after {percent:.0} % of the run, whose unfinished folder is removed"
-                );
-                (None, sentence)
-            }
-            Err(error) => {
-                let sentence = format!("{folder} was not saved: {error}");
-                let reply = Reply::Refused {
-                    of: "save",
-                    sentence: sentence.clone(),
-                };
-                (Some(reply), sentence)
-            }
+                },
+                100.0 * share
+            ),
+            Err(error) => format!("{folder} was not saved: {error}"),
         };
-        for page in list.pages() {
-            if let Some(reply) = &reply {
-                page.reply(reply);
-            }
-        }
+        // Not while the list is locked, since a terminal may hold up what is printed.
         (self.tell)(&sentence);
+        let reply = match outcome {
+            Ok(true) => Some(Reply::Saved {
+                name,
+                folder,
+                folders: out.parent().map(replay::folders).unwrap_or_default(),
+            }),
+            Ok(false) => None,
+            Err(_) => Some(Reply::Refused { of: "save", sentence }),
+        };
+        let mut list = self.list();
+        list.under_way.retain(|one| one.name != name);
+        for page in list.pages() {
+            reply.iter().for_each(|reply| page.reply(reply));
+        }
+        list.show();
     }
 
     /// Stops saving a run, if it is under way.
