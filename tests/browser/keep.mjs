@@ -124,7 +124,7 @@ test('saves that another page has begun are shown, and can be stopped', async (t
   await beginToSave(lab, 'two');
   const other = await open(t, { toml: SMALL });
   await until(async () => (await other.find('#saving li').count()) === 2, 'two rows');
-  await other.find('#saving li', { hasText: 'one' }).locator('button').click();
+  await other.find('#saving li[data-name=one] button').click();
   await until(async () => (await lab.find('#saving li').allTextContents()).join().includes('one') === false, 'one row');
   await lab.find('#saving li button').click();
   await until(() => other.last.saving.under_way.length === 0, 'no save');
