@@ -159,7 +159,7 @@ impl Document {
     ///
     /// # Errors
     /// When it cannot be written, or is no case without the image either.
-    pub(crate) fn with_image(&self, png: Vec<u8>, threshold: f64) -> Result<Self, CaseError> {
+    pub(crate) fn with_image(&self, png: &[u8], threshold: f64) -> Result<Self, CaseError> {
         let mut painted = self.without_texture();
         painted.drop_unnamed_files()?;
         let mut name = PAINTED.to_owned();
@@ -172,7 +172,7 @@ impl Document {
         if threshold != slipfront_case::case_file::DEFAULT_THRESHOLD {
             texture.insert("threshold".to_owned(), threshold.into());
         }
-        painted.files.insert(name.clone(), kept(&name, &png)?);
+        painted.files.insert(name.clone(), kept(&name, png)?);
         painted
             .keys
             .insert("texture".to_owned(), Value::Array(vec![texture.into()]));
@@ -203,7 +203,7 @@ impl Document {
         }
         let png = mask_image(textured, nx)
             .map_err(|error| refused(format!("the mask cannot be written: {error}")))?;
-        self.with_image(png, slipfront_case::case_file::DEFAULT_THRESHOLD)
+        self.with_image(&png, slipfront_case::case_file::DEFAULT_THRESHOLD)
     }
 
     /// The case that can be run, as `slipfront run` makes it.
@@ -409,7 +409,7 @@ mod tests {
     fn an_image_replaces_those_of_the_textures_alone() {
         let text = "friction.mu_static_field = 'mu.csv'\ntexture = [{ shape = 'mask', file = 'texture.png' }, { shape = 'mask', file = 'b.png' }]\n";
         let document = Document::new("case", text, |name| Ok(name.into())).unwrap();
-        let painted = document.with_image(b"image".to_vec(), 0.25).unwrap();
+        let painted = document.with_image(b"image", 0.25).unwrap();
         let files = [("mu.csv", b"mu.csv".to_vec()), ("texture.png", b"image".to_vec())];
         assert!(
             painted

@@ -108,7 +108,7 @@ mod tests {
         let mut history = History::new(first);
         let mut paths = Vec::new();
         for number in 0..60 {
-            let image = history.present().with_image(vec![number; IMAGE], 0.5).unwrap();
+            let image = history.present().with_image(&vec![number; IMAGE], 0.5).unwrap();
             paths.extend(image.files().get("texture.png").map(|file| file.path()));
             history.change(image, u64::from(number));
             assert!(history.bytes() <= MAX_BYTES);

@@ -94,17 +94,17 @@ impl Saves {
     pub(crate) fn begin(
         self: &Arc<Self>,
         mut document: Document,
-        name: String,
+        name: &str,
         results: &Path,
         threads: usize,
         working: &Sender<()>,
     ) -> Result<(), String> {
-        let out = save::folder(results, &name)?;
+        let out = save::folder(results, name)?;
         let mut list = self.list();
         if list.ends {
             return Err("the laboratory ends: nothing is saved any more".to_owned());
         }
-        if list.find(&name).is_some() {
+        if list.find(name).is_some() {
             return Err(format!(
                 "{} is being saved already: take another name",
                 display_path(&out)
@@ -115,10 +115,10 @@ impl Saves {
                 "{MAX_SAVES} runs are being saved already: wait until one of them is done, or stop it"
             ));
         }
-        document.name.clone_from(&name);
+        name.clone_into(&mut document.name);
         let stop = Arc::new(AtomicBool::new(false));
         list.under_way.push(UnderWay {
-            name: name.clone(),
+            name: name.to_owned(),
             share: 0.0,
             stop: Arc::clone(&stop),
         });
@@ -128,7 +128,7 @@ impl Saves {
             let work = || save::save(&document, &out, threads, &stop, told);
             let outcome = catch_unwind(AssertUnwindSafe(work))
                 .unwrap_or_else(|_| Err("a defect of the simulation, which stands above".to_owned()));
-            saves.finish(&document.name, &out, outcome);
+            saves.finish(&document.name, &out, &outcome);
             drop(working);
         });
         if let Err(error) = begun {
@@ -149,13 +149,13 @@ impl Saves {
     }
 
     /// Tells terminal and pages how the saving of a run has ended: whether it is there, or why not.
-    fn finish(&self, name: &str, out: &Path, outcome: Result<bool, String>) {
+    fn finish(&self, name: &str, out: &Path, outcome: &Result<bool, String>) {
         let folder = display_path(out);
         let (share, ends) = {
             let mut list = self.list();
             (list.find(name).map_or(0.0, |one| one.share), list.ends)
         };
-        let sentence = match &outcome {
+        let sentence = match outcome {
             Ok(true) => format!("the run is saved in {folder}"),
             Ok(false) => format!(
                 "{folder} was not saved: {} after {:.0} % of the run, whose unfinished folder is removed",

@@ -123,7 +123,7 @@ impl Session {
         let image = base64::decode(text)?;
         let document = self
             .document()?
-            .with_image(image, threshold)
+            .with_image(&image, threshold)
             .map_err(|error| error.to_string())?;
         self.edited = Some(Edited {
             document,

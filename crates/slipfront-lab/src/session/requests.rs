@@ -57,7 +57,7 @@ impl Session {
                 Ok(())
             }
             Request::Repeat { seeds } => self.repeat(seeds),
-            Request::Save { name } => self.save(name),
+            Request::Save { name } => self.save(&name),
             Request::SaveStop { name } => {
                 self.setting.saves.stop(&name);
                 Ok(())
@@ -91,7 +91,7 @@ impl Session {
         Ok(())
     }
 
-    fn save(&mut self, name: String) -> Result<(), String> {
+    fn save(&mut self, name: &str) -> Result<(), String> {
         self.run_edited();
         let (document, setting) = (self.document()?.clone(), &self.setting);
         setting
